@@ -1,0 +1,20 @@
+"""One kind of error for every file we read: it names the file, the place, the cause and the remedy."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+
+class FileError(Exception):
+    """A file could not be read or written.
+
+    `where` is a line, node or field ("line 12", "node 'Hips'"); `remedy` says what the user can do.
+    """
+
+    def __init__(self, path: str | Path, cause: str, where: str = "", remedy: str = "") -> None:
+        self.path, self.cause, self.where, self.remedy = Path(path), cause, where, remedy
+        place = f"{self.path.name}, {where}" if where else self.path.name
+        super().__init__(f"{place}: {cause}." + (f" {remedy}" if remedy else ""))
+
+    def __reduce__(self) -> tuple[type[FileError], tuple[Path, str, str, str]]:
+        return type(self), (self.path, self.cause, self.where, self.remedy)

@@ -1,0 +1,1 @@
+"""The meta-graph: its values, edits, checks and expansion."""

@@ -1,0 +1,126 @@
+"""The clip: one piece of motion, the same value whatever file it came from."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+from typing import Any
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from metagraph.motion import rotation
+from metagraph.motion.skeleton import Pose, Skeleton
+
+Array = NDArray[Any]
+
+
+class ClipError(ValueError):
+    """A clip's numbers do not fit together."""
+
+
+@dataclass(frozen=True, eq=False)
+class Clip:
+    """Motion on a skeleton at a constant frame rate.
+
+    rotations: `[F, J, 4]` float32, local, xyzw, neighbours on the same side. translations: `[F, T, 3]` float32,
+    metres, local, for the joints listed in `translated` (ascending, always with joint 0 first); all other joints keep
+    their rest translation. weights: `[F, K]` morph target weights for `morphs`. notes: what the reader changed or
+    dropped, in words, for the user.
+    """
+
+    name: str
+    skeleton: Skeleton
+    fps: float
+    rotations: Array
+    translations: Array
+    translated: tuple[int, ...] = (0,)
+    morphs: tuple[str, ...] = ()
+    weights: Array | None = None
+    notes: tuple[str, ...] = ()
+
+    def __post_init__(self) -> None:
+        r = np.ascontiguousarray(self.rotations, np.float32)
+        t = np.ascontiguousarray(self.translations, np.float32)
+        count, joints = len(r), len(self.skeleton)
+        if count == 0:
+            raise ClipError(f"clip '{self.name}' has no frames")
+        if r.shape != (count, joints, 4):
+            raise ClipError(f"clip '{self.name}': rotations are {r.shape}, expected ({count}, {joints}, 4)")
+        if not self.translated or self.translated[0] != 0 or list(self.translated) != sorted(set(self.translated)):
+            raise ClipError(f"clip '{self.name}': translated joints must ascend and begin with joint 0")
+        if t.shape != (count, len(self.translated), 3) or self.translated[-1] >= joints:
+            raise ClipError(
+                f"clip '{self.name}': translations are {t.shape}, expected ({count}, {len(self.translated)}, 3)"
+            )
+        if not (self.fps > 0 and np.isfinite(self.fps)):
+            raise ClipError(f"clip '{self.name}': {self.fps} frames per second")
+        if not (np.isfinite(r).all() and np.isfinite(t).all()):
+            raise ClipError(f"clip '{self.name}' holds a value that is not a number")
+        w = (
+            np.zeros((count, len(self.morphs)), np.float32)
+            if self.weights is None
+            else np.ascontiguousarray(self.weights, np.float32)
+        )
+        if w.shape != (count, len(self.morphs)) or not np.isfinite(w).all():
+            raise ClipError(
+                f"clip '{self.name}': morph weights are {w.shape}, expected ({count}, {len(self.morphs)}) finite numbers"
+            )
+        for field, array in (("rotations", r), ("translations", t), ("weights", w)):
+            array.setflags(write=False)
+            object.__setattr__(self, field, array)
+
+    @property
+    def frames(self) -> int:
+        return len(self.rotations)
+
+    @property
+    def duration(self) -> float:
+        """Seconds from the first frame to the last."""
+        return (self.frames - 1) / self.fps
+
+    @property
+    def root(self) -> Array:
+        """Translation of joint 0, `[F, 3]`, metres."""
+        return np.asarray(self.translations[:, 0])
+
+    def poses(self) -> Pose:
+        """Return every frame as poses `[F, J, ...]`."""
+        full = np.broadcast_to(
+            self.skeleton.rest_translations.astype(np.float32), (self.frames, len(self.skeleton), 3)
+        ).copy()
+        full[:, list(self.translated)] = self.translations
+        return Pose(self.rotations, full)
+
+    def pose_at(self, seconds: ArrayLike) -> Pose:
+        """Sample at `seconds [...]`, clamped to the clip: linear on translations, nlerp on rotations."""
+        low, high, part = self.locate(seconds)
+        rotations = rotation.nlerp(
+            self.rotations[low],
+            self.rotations[high],
+            np.broadcast_to(part[..., None], (*low.shape, len(self.skeleton))),
+        )
+        moved = self.translations[low] * (1 - part[..., None, None]) + self.translations[high] * part[..., None, None]
+        full = np.broadcast_to(
+            self.skeleton.rest_translations.astype(np.float32), (*low.shape, len(self.skeleton), 3)
+        ).copy()
+        full[..., list(self.translated), :] = moved
+        return Pose(rotations, full)
+
+    def locate(self, seconds: ArrayLike) -> tuple[Array, Array, Array]:
+        """Return the frames before and after `seconds [...]` and the part of the way between them (float32, 0..1)."""
+        at = np.clip(np.asarray(seconds, np.float64) * self.fps, 0, self.frames - 1)
+        low = np.minimum(at.astype(np.int64), max(0, self.frames - 2))
+        high = np.minimum(low + 1, self.frames - 1)
+        return low, high, (at - low).astype(np.float32)
+
+    def trimmed(self, first: int, last: int | None = None) -> Clip:
+        """Return frames `first` to `last` (excluded). Raises ClipError when none are left."""
+        return replace(
+            self,
+            rotations=self.rotations[first:last],
+            translations=self.translations[first:last],
+            weights=None if self.weights is None else self.weights[first:last],
+        )
+
+    def renamed(self, name: str) -> Clip:
+        return replace(self, name=name)

@@ -1,0 +1,205 @@
+"""Rotations as quaternions: `xyzw`, float, unit length, arrays with free leading dimensions `[..., 4]`.
+
+`multiply(a, b)` applies `b` first, then `a`, as matrices do. Angles are radians.
+"""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+Array = NDArray[Any]
+
+IDENTITY: Array = np.array([0.0, 0.0, 0.0, 1.0])
+
+
+def identity(shape: tuple[int, ...] = (), dtype: Any = np.float64) -> Array:
+    """Return unit rotations `[*shape, 4]`."""
+    out = np.zeros((*shape, 4), dtype)
+    out[..., 3] = 1
+    return out
+
+
+def normalize(q: ArrayLike) -> Array:
+    """Scale to unit length `[..., 4]`; a zero quaternion becomes the identity."""
+    q = np.asarray(q)
+    length = np.sqrt(np.einsum("...i,...i->...", q, q))[..., None]
+    safe = np.where(length > 1e-12, length, 1)
+    return np.asarray(
+        np.where(length > 1e-12, q / safe, np.asarray(IDENTITY, q.dtype if q.dtype.kind == "f" else float))
+    )
+
+
+def conjugate(q: ArrayLike) -> Array:
+    """Return the inverse of unit quaternions `[..., 4]`."""
+    q = np.asarray(q)
+    return q * np.array([-1, -1, -1, 1], q.dtype)
+
+
+def multiply(a: ArrayLike, b: ArrayLike) -> Array:
+    """Return the product `[..., 4]`: rotate by `b`, then by `a`."""
+    a, b = np.asarray(a), np.asarray(b)
+    ax, ay, az, aw = a[..., 0], a[..., 1], a[..., 2], a[..., 3]
+    bx, by, bz, bw = b[..., 0], b[..., 1], b[..., 2], b[..., 3]
+    out = np.empty((*np.broadcast_shapes(a.shape, b.shape)[:-1], 4), np.result_type(a, b))
+    out[..., 0] = aw * bx + ax * bw + ay * bz - az * by
+    out[..., 1] = aw * by - ax * bz + ay * bw + az * bx
+    out[..., 2] = aw * bz + ax * by - ay * bx + az * bw
+    out[..., 3] = aw * bw - ax * bx - ay * by - az * bz
+    return out
+
+
+def rotate(q: ArrayLike, v: ArrayLike) -> Array:
+    """Rotate vectors `v [..., 3]` by `q [..., 4]`."""
+    q, v = np.asarray(q), np.asarray(v)
+    x, y, z, w = q[..., 0], q[..., 1], q[..., 2], q[..., 3]
+    vx, vy, vz = v[..., 0], v[..., 1], v[..., 2]
+    tx, ty, tz = 2 * (y * vz - z * vy), 2 * (z * vx - x * vz), 2 * (x * vy - y * vx)
+    out = np.empty((*np.broadcast_shapes(q.shape[:-1], v.shape[:-1]), 3), np.result_type(q, v))
+    out[..., 0] = vx + w * tx + y * tz - z * ty
+    out[..., 1] = vy + w * ty + z * tx - x * tz
+    out[..., 2] = vz + w * tz + x * ty - y * tx
+    return out
+
+
+def from_axis_angle(axis: ArrayLike, angle: ArrayLike) -> Array:
+    """Return rotations `[..., 4]` of `angle [...]` radians about `axis [..., 3]` (any length but zero)."""
+    axis, angle = np.asarray(axis, float), np.asarray(angle, float)
+    axis = axis / np.maximum(np.linalg.norm(axis, axis=-1, keepdims=True), 1e-12)
+    half = angle[..., None] / 2
+    return np.concatenate([axis * np.sin(half), np.cos(half) + 0 * axis[..., :1]], -1)
+
+
+def from_euler(angles: ArrayLike, order: str) -> Array:
+    """Return rotations `[..., 4]` from intrinsic Euler `angles [..., 3]` (radians); `order` like "ZXY", first applied outermost."""
+    angles = np.asarray(angles)
+    half = angles * 0.5
+    s, c = np.sin(half), np.cos(half)
+    out: Array | None = None
+    for i, axis in enumerate(order.upper()):
+        q = np.zeros((*angles.shape[:-1], 4), angles.dtype)
+        q[..., "XYZ".index(axis)] = s[..., i]
+        q[..., 3] = c[..., i]
+        out = q if out is None else multiply(out, q)
+    assert out is not None
+    return out
+
+
+def to_euler(q: ArrayLike, order: str = "ZXY") -> Array:
+    """Return intrinsic Euler angles `[..., 3]` (radians) of unit `q [..., 4]` for an `order` of three different axes."""
+    m = to_matrix(q)
+    i, j, k = ("XYZ".index(a) for a in order.upper())
+    sign = 1.0 if (i, j, k) in ((0, 1, 2), (1, 2, 0), (2, 0, 1)) else -1.0
+    middle = np.arcsin(np.clip(sign * m[..., i, k], -1, 1))
+    locked = np.abs(m[..., i, k]) > 1 - 1e-9
+    first = np.where(
+        locked, np.arctan2(sign * m[..., k, j], m[..., j, j]), np.arctan2(-sign * m[..., j, k], m[..., k, k])
+    )
+    last = np.where(locked, 0.0, np.arctan2(-sign * m[..., i, j], m[..., i, i]))
+    return np.stack([first, middle, last], -1)
+
+
+def to_matrix(q: ArrayLike) -> Array:
+    """Return rotation matrices `[..., 3, 3]` of unit quaternions."""
+    q = np.asarray(q)
+    x, y, z, w = q[..., 0], q[..., 1], q[..., 2], q[..., 3]
+    out = np.empty((*q.shape[:-1], 3, 3), q.dtype)
+    out[..., 0, 0] = 1 - 2 * (y * y + z * z)
+    out[..., 0, 1] = 2 * (x * y - w * z)
+    out[..., 0, 2] = 2 * (x * z + w * y)
+    out[..., 1, 0] = 2 * (x * y + w * z)
+    out[..., 1, 1] = 1 - 2 * (x * x + z * z)
+    out[..., 1, 2] = 2 * (y * z - w * x)
+    out[..., 2, 0] = 2 * (x * z - w * y)
+    out[..., 2, 1] = 2 * (y * z + w * x)
+    out[..., 2, 2] = 1 - 2 * (x * x + y * y)
+    return out
+
+
+def from_matrix(m: ArrayLike) -> Array:
+    """Return quaternions `[..., 4]` of proper rotation matrices `[..., 3, 3]`, with `w >= 0`."""
+    m = np.asarray(m, float)
+    xx, yy, zz = m[..., 0, 0], m[..., 1, 1], m[..., 2, 2]
+    squares = np.stack([1 + xx - yy - zz, 1 - xx + yy - zz, 1 - xx - yy + zz, 1 + xx + yy + zz], -1)
+    yz, zx, xy = m[..., 2, 1] - m[..., 1, 2], m[..., 0, 2] - m[..., 2, 0], m[..., 1, 0] - m[..., 0, 1]
+    sxy, sxz, syz = m[..., 0, 1] + m[..., 1, 0], m[..., 0, 2] + m[..., 2, 0], m[..., 1, 2] + m[..., 2, 1]
+    rows = np.stack(
+        [
+            np.stack([squares[..., 0], sxy, sxz, yz], -1),
+            np.stack([sxy, squares[..., 1], syz, zx], -1),
+            np.stack([sxz, syz, squares[..., 2], xy], -1),
+            np.stack([yz, zx, xy, squares[..., 3]], -1),
+        ],
+        -2,
+    )
+    best = np.argmax(squares, -1)
+    q = np.take_along_axis(rows, best[..., None, None], -2)[..., 0, :]
+    q = normalize(q)
+    return np.where(q[..., 3:] < 0, -q, q)
+
+
+def log(q: ArrayLike) -> Array:
+    """Return rotation vectors `[..., 3]` (axis times angle, at most pi) of unit quaternions."""
+    q = np.asarray(q)
+    q = np.where(q[..., 3:] < 0, -q, q)
+    s = np.sqrt(np.einsum("...i,...i->...", q[..., :3], q[..., :3]))[..., None]
+    factor = np.where(s > 1e-8, 2 * np.arctan2(s, q[..., 3:]) / np.where(s > 1e-8, s, 1), 2.0)
+    return q[..., :3] * factor
+
+
+def exp(v: ArrayLike) -> Array:
+    """Return unit quaternions `[..., 4]` of rotation vectors `[..., 3]`."""
+    v = np.asarray(v)
+    angle = np.sqrt(np.einsum("...i,...i->...", v, v))[..., None]
+    factor = np.where(angle > 1e-8, np.sin(angle / 2) / np.where(angle > 1e-8, angle, 1), 0.5)
+    return np.concatenate([v * factor, np.cos(angle / 2)], -1)
+
+
+def power(q: ArrayLike, weight: ArrayLike) -> Array:
+    """Return `q [..., 4]` turned by `weight [...]` times its angle, the short way; 0 gives the identity, 1 gives `q`."""
+    return exp(log(q) * np.asarray(weight)[..., None])
+
+
+def nlerp(a: ArrayLike, b: ArrayLike, weight: ArrayLike) -> Array:
+    """Blend `a` to `b [..., 4]` by `weight [...]` in 0..1 along the shorter arc: a normalised straight line."""
+    a, b = np.asarray(a), np.asarray(b)
+    w = np.asarray(weight)[..., None].astype(a.dtype)
+    dot = np.einsum("...i,...i->...", a, b)[..., None]
+    mixed = a * (1 - w) + b * np.where(dot < 0, -w, w)
+    return mixed / np.sqrt(np.maximum(np.einsum("...i,...i->...", mixed, mixed), 1e-20))[..., None]
+
+
+def slerp(a: ArrayLike, b: ArrayLike, weight: ArrayLike) -> Array:
+    """Blend `a` to `b [..., 4]` by `weight [...]` in 0..1 at constant speed along the shorter arc."""
+    a, b = np.asarray(a), np.asarray(b)
+    return multiply(a, power(multiply(conjugate(a), b), weight))
+
+
+def angle_between(a: ArrayLike, b: ArrayLike) -> Array:
+    """Return the angle `[...]` in radians, 0..pi, between two rotations."""
+    d = multiply(conjugate(a), b)
+    return np.asarray(2 * np.arctan2(np.linalg.norm(d[..., :3], axis=-1), np.abs(d[..., 3])))
+
+
+def continuous(q: ArrayLike) -> Array:
+    """Flip signs along the first axis of `q [F, ..., 4]` so that neighbours are on the same side."""
+    q = np.asarray(q)
+    if len(q) < 2:
+        return q
+    flips = np.einsum("...i,...i->...", q[1:], q[:-1]) < 0
+    odd = np.concatenate([np.zeros((1, *flips.shape[1:]), bool), np.cumsum(flips, 0) % 2 == 1])
+    return np.where(odd[..., None], -q, q)
+
+
+def between(a: ArrayLike, b: ArrayLike) -> Array:
+    """Return the shortest rotation `[..., 4]` taking direction `a [..., 3]` to direction `b [..., 3]`."""
+    a, b = np.asarray(a, float), np.asarray(b, float)
+    a = a / np.maximum(np.linalg.norm(a, axis=-1, keepdims=True), 1e-12)
+    b = b / np.maximum(np.linalg.norm(b, axis=-1, keepdims=True), 1e-12)
+    dot = np.einsum("...i,...i->...", a, b)[..., None]
+    # Opposite directions: half a turn about any perpendicular axis.
+    side = np.where(np.abs(a[..., :1]) < 0.9, np.array([1.0, 0, 0]), np.array([0, 1.0, 0]))
+    axis = np.where(dot < -1 + 1e-9, np.cross(a, side), np.cross(a, b))
+    return normalize(np.concatenate([axis, np.where(dot < -1 + 1e-9, 0.0, 1 + dot)], -1))

@@ -1,0 +1,180 @@
+"""The skeleton: joints with names, parents and a rest pose; forward kinematics over any number of poses at once."""
+
+from __future__ import annotations
+
+import hashlib
+from collections.abc import Sequence
+from dataclasses import dataclass
+from functools import cached_property
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from metagraph.motion import rotation
+
+Array = NDArray[Any]
+
+
+@dataclass(frozen=True, eq=False)
+class Skeleton:
+    """Joints in an order where every parent comes before its children.
+
+    names: unique joint names. parents: `[J]` int, -1 for a root; joint 0 is a root.
+    rest_rotations: `[J, 4]` local, xyzw. rest_translations: `[J, 3]` local, metres, Y up.
+    Any scale found in a file has been folded into the translations. Two skeletons are equal when their
+    `fingerprint`s are.
+    """
+
+    names: tuple[str, ...]
+    parents: Array
+    rest_rotations: Array
+    rest_translations: Array
+
+    def __post_init__(self) -> None:
+        parents = np.asarray(self.parents, np.int32)
+        rotations = rotation.normalize(np.asarray(self.rest_rotations, np.float64))
+        translations = np.asarray(self.rest_translations, np.float64)
+        count = len(self.names)
+        if count == 0:
+            raise ValueError("a skeleton needs at least one joint")
+        if parents.shape != (count,) or rotations.shape != (count, 4) or translations.shape != (count, 3):
+            raise ValueError(
+                f"a skeleton of {count} joints needs parents [{count}], rotations [{count}, 4] and translations [{count}, 3]"
+            )
+        if len(set(self.names)) != count:
+            raise ValueError("joint names must be unique")
+        if parents[0] != -1 or np.any(parents >= np.arange(count)) or np.any(parents < -1):
+            raise ValueError("every joint's parent must come before it, and joint 0 must be a root")
+        if not (np.isfinite(rotations).all() and np.isfinite(translations).all()):
+            raise ValueError("the rest pose holds a value that is not a number")
+        for array in (parents, rotations, translations):
+            array.setflags(write=False)
+        object.__setattr__(self, "parents", parents)
+        object.__setattr__(self, "rest_rotations", rotations)
+        object.__setattr__(self, "rest_translations", translations)
+
+    def __len__(self) -> int:
+        return len(self.names)
+
+    def __eq__(self, other: object) -> bool:
+        return isinstance(other, Skeleton) and self.fingerprint == other.fingerprint
+
+    def __hash__(self) -> int:
+        return hash(self.fingerprint)
+
+    def index(self, name: str) -> int:
+        """Return the joint's place. Raises KeyError when there is no joint of that name."""
+        return self._places[name]
+
+    def __contains__(self, name: object) -> bool:
+        return name in self._places
+
+    @cached_property
+    def _places(self) -> dict[str, int]:
+        return {name: i for i, name in enumerate(self.names)}
+
+    @cached_property
+    def fingerprint(self) -> str:
+        """Hex digest of names, parents and rest translations rounded to 0.1 mm; what makes two skeletons the same."""
+        digest = hashlib.sha256("\n".join(self.names).encode())
+        digest.update(self.parents.astype("<i4").tobytes())
+        digest.update((np.round(self.rest_translations, 4) + 0.0).astype("<f4").tobytes())
+        digest.update((np.round(self._signed_rest, 3) + 0.0).astype("<f4").tobytes())
+        return digest.hexdigest()[:16]
+
+    @property
+    def _signed_rest(self) -> Array:
+        q = self.rest_rotations
+        return np.where(q[:, 3:] < 0, -q, q)
+
+    @cached_property
+    def levels(self) -> tuple[Array, ...]:
+        """Joints grouped by depth, roots first: what forward kinematics walks."""
+        depth = np.zeros(len(self), int)
+        for i in range(1, len(self)):
+            depth[i] = depth[self.parents[i]] + 1 if self.parents[i] >= 0 else 0
+        return tuple(np.flatnonzero(depth == d) for d in range(depth.max() + 1))
+
+    @cached_property
+    def children(self) -> tuple[tuple[int, ...], ...]:
+        """For each joint, its children's places."""
+        out: list[list[int]] = [[] for _ in self.names]
+        for i, parent in enumerate(self.parents):
+            if parent >= 0:
+                out[parent].append(i)
+        return tuple(tuple(c) for c in out)
+
+    def descendants(self, joint: int) -> tuple[int, ...]:
+        """Return `joint` and everything below it."""
+        inside = {joint}
+        for i in range(joint + 1, len(self)):
+            if int(self.parents[i]) in inside:
+                inside.add(i)
+        return tuple(sorted(inside))
+
+    def chain(self, joint: int) -> tuple[int, ...]:
+        """Return the joints from the root to `joint`, both included."""
+        out = [joint]
+        while self.parents[out[-1]] >= 0:
+            out.append(int(self.parents[out[-1]]))
+        return tuple(reversed(out))
+
+    @cached_property
+    def rest(self) -> Pose:
+        """The rest pose."""
+        return Pose(self.rest_rotations, self.rest_translations)
+
+    @cached_property
+    def height(self) -> float:
+        """Extent of the rest pose's joints along its longest axis, metres; at least 1 mm."""
+        _, positions = self.globals(self.rest)
+        return max(1e-3, float(np.ptp(positions, axis=0).max()))
+
+    def globals(self, pose: Pose) -> tuple[Array, Array]:
+        """Return model-space rotations `[..., J, 4]` and positions `[..., J, 3]` of poses."""
+        local_r, local_t = pose.rotations, pose.translations
+        out_r = np.empty(local_r.shape, local_r.dtype)
+        out_p = np.empty(local_t.shape, local_t.dtype)
+        for level, joints in enumerate(self.levels):
+            if level == 0:
+                out_r[..., joints, :] = local_r[..., joints, :]
+                out_p[..., joints, :] = local_t[..., joints, :]
+                continue
+            parents = self.parents[joints]
+            above = out_r[..., parents, :]
+            out_r[..., joints, :] = rotation.multiply(above, local_r[..., joints, :])
+            out_p[..., joints, :] = out_p[..., parents, :] + rotation.rotate(above, local_t[..., joints, :])
+        return out_r, out_p
+
+
+@dataclass(frozen=True, eq=False)
+class Pose:
+    """Local joint transforms: `rotations [..., J, 4]` xyzw, `translations [..., J, 3]` metres."""
+
+    rotations: Array
+    translations: Array
+
+    def __getitem__(self, key: Any) -> Pose:
+        """Pick along the leading dimensions."""
+        return Pose(self.rotations[key], self.translations[key])
+
+    @property
+    def root(self) -> Array:
+        """Translation of joint 0, `[..., 3]`."""
+        return np.asarray(self.translations[..., 0, :])
+
+
+def unique_names(names: Sequence[str]) -> tuple[str, ...]:
+    """Return the names with `_2`, `_3` ... appended where one repeats, and empty ones called `joint`."""
+    seen: set[str] = set()
+    out = []
+    for raw in names:
+        name = raw.strip() or "joint"
+        candidate, n = name, 1
+        while candidate in seen:
+            n += 1
+            candidate = f"{name}_{n}"
+        seen.add(candidate)
+        out.append(candidate)
+    return tuple(out)

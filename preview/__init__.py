@@ -1,0 +1,1 @@
+"""OpenGL preview: numbers in, pixels out; no Qt."""

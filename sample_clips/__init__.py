@@ -1,0 +1,1 @@
+"""Our own clips: a talking character, made by the code in `make`."""

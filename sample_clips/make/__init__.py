@@ -1,0 +1,1 @@
+"""Code that makes the sample clips, the mannequin and the sample projects: `python -m sample_clips.make`."""
