@@ -49,22 +49,14 @@ class Clip:
         if not self.translated or self.translated[0] != 0 or list(self.translated) != sorted(set(self.translated)):
             raise ClipError(f"clip '{self.name}': translated joints must ascend and begin with joint 0")
         if t.shape != (count, len(self.translated), 3) or self.translated[-1] >= joints:
-            raise ClipError(
-                f"clip '{self.name}': translations are {t.shape}, expected ({count}, {len(self.translated)}, 3)"
-            )
+            raise ClipError(f"clip '{self.name}': translations are {t.shape}, expected ({count}, {len(self.translated)}, 3)")
         if not (self.fps > 0 and np.isfinite(self.fps)):
             raise ClipError(f"clip '{self.name}': {self.fps} frames per second")
         if not (np.isfinite(r).all() and np.isfinite(t).all()):
             raise ClipError(f"clip '{self.name}' holds a value that is not a number")
-        w = (
-            np.zeros((count, len(self.morphs)), np.float32)
-            if self.weights is None
-            else np.ascontiguousarray(self.weights, np.float32)
-        )
+        w = np.zeros((count, len(self.morphs)), np.float32) if self.weights is None else np.ascontiguousarray(self.weights, np.float32)
         if w.shape != (count, len(self.morphs)) or not np.isfinite(w).all():
-            raise ClipError(
-                f"clip '{self.name}': morph weights are {w.shape}, expected ({count}, {len(self.morphs)}) finite numbers"
-            )
+            raise ClipError(f"clip '{self.name}': morph weights are {w.shape}, expected ({count}, {len(self.morphs)}) finite numbers")
         for field, array in (("rotations", r), ("translations", t), ("weights", w)):
             array.setflags(write=False)
             object.__setattr__(self, field, array)
@@ -85,9 +77,7 @@ class Clip:
 
     def poses(self) -> Pose:
         """Return every frame as poses `[F, J, ...]`."""
-        full = np.broadcast_to(
-            self.skeleton.rest_translations.astype(np.float32), (self.frames, len(self.skeleton), 3)
-        ).copy()
+        full = np.broadcast_to(self.skeleton.rest_translations.astype(np.float32), (self.frames, len(self.skeleton), 3)).copy()
         full[:, list(self.translated)] = self.translations
         return Pose(self.rotations, full)
 
@@ -100,9 +90,7 @@ class Clip:
             np.broadcast_to(part[..., None], (*low.shape, len(self.skeleton))),
         )
         moved = self.translations[low] * (1 - part[..., None, None]) + self.translations[high] * part[..., None, None]
-        full = np.broadcast_to(
-            self.skeleton.rest_translations.astype(np.float32), (*low.shape, len(self.skeleton), 3)
-        ).copy()
+        full = np.broadcast_to(self.skeleton.rest_translations.astype(np.float32), (*low.shape, len(self.skeleton), 3)).copy()
         full[..., list(self.translated), :] = moved
         return Pose(rotations, full)
 

@@ -27,9 +27,7 @@ def normalize(q: ArrayLike) -> Array:
     q = np.asarray(q)
     length = np.sqrt(np.einsum("...i,...i->...", q, q))[..., None]
     safe = np.where(length > 1e-12, length, 1)
-    return np.asarray(
-        np.where(length > 1e-12, q / safe, np.asarray(IDENTITY, q.dtype if q.dtype.kind == "f" else float))
-    )
+    return np.asarray(np.where(length > 1e-12, q / safe, np.asarray(IDENTITY, q.dtype if q.dtype.kind == "f" else float)))
 
 
 def conjugate(q: ArrayLike) -> Array:
@@ -94,9 +92,7 @@ def to_euler(q: ArrayLike, order: str = "ZXY") -> Array:
     sign = 1.0 if (i, j, k) in ((0, 1, 2), (1, 2, 0), (2, 0, 1)) else -1.0
     middle = np.arcsin(np.clip(sign * m[..., i, k], -1, 1))
     locked = np.abs(m[..., i, k]) > 1 - 1e-9
-    first = np.where(
-        locked, np.arctan2(sign * m[..., k, j], m[..., j, j]), np.arctan2(-sign * m[..., j, k], m[..., k, k])
-    )
+    first = np.where(locked, np.arctan2(sign * m[..., k, j], m[..., j, j]), np.arctan2(-sign * m[..., j, k], m[..., k, k]))
     last = np.where(locked, 0.0, np.arctan2(-sign * m[..., i, j], m[..., i, i]))
     return np.stack([first, middle, last], -1)
 

@@ -39,9 +39,7 @@ class Skeleton:
         if count == 0:
             raise ValueError("a skeleton needs at least one joint")
         if parents.shape != (count,) or rotations.shape != (count, 4) or translations.shape != (count, 3):
-            raise ValueError(
-                f"a skeleton of {count} joints needs parents [{count}], rotations [{count}, 4] and translations [{count}, 3]"
-            )
+            raise ValueError(f"a skeleton of {count} joints needs parents [{count}], rotations [{count}, 4] and translations [{count}, 3]")
         if len(set(self.names)) != count:
             raise ValueError("joint names must be unique")
         if parents[0] != -1 or np.any(parents >= np.arange(count)) or np.any(parents < -1):
