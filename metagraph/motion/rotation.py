@@ -8,9 +8,10 @@ from __future__ import annotations
 from typing import Any
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import NDArray
 
 Array = NDArray[Any]
+Numbers = Any  # an array, a nested sequence or a number: whatever numpy.asarray takes
 
 IDENTITY: Array = np.array([0.0, 0.0, 0.0, 1.0])
 
@@ -22,7 +23,7 @@ def identity(shape: tuple[int, ...] = (), dtype: Any = np.float64) -> Array:
     return out
 
 
-def normalize(q: ArrayLike) -> Array:
+def normalize(q: Numbers) -> Array:
     """Scale to unit length `[..., 4]`; a zero quaternion becomes the identity."""
     q = np.asarray(q)
     length = np.sqrt(np.einsum("...i,...i->...", q, q))[..., None]
@@ -30,13 +31,13 @@ def normalize(q: ArrayLike) -> Array:
     return np.asarray(np.where(length > 1e-12, q / safe, np.asarray(IDENTITY, q.dtype if q.dtype.kind == "f" else float)))
 
 
-def conjugate(q: ArrayLike) -> Array:
+def conjugate(q: Numbers) -> Array:
     """Return the inverse of unit quaternions `[..., 4]`."""
     q = np.asarray(q)
     return q * np.array([-1, -1, -1, 1], q.dtype)
 
 
-def multiply(a: ArrayLike, b: ArrayLike) -> Array:
+def multiply(a: Numbers, b: Numbers) -> Array:
     """Return the product `[..., 4]`: rotate by `b`, then by `a`."""
     a, b = np.asarray(a), np.asarray(b)
     ax, ay, az, aw = a[..., 0], a[..., 1], a[..., 2], a[..., 3]
@@ -49,7 +50,7 @@ def multiply(a: ArrayLike, b: ArrayLike) -> Array:
     return out
 
 
-def rotate(q: ArrayLike, v: ArrayLike) -> Array:
+def rotate(q: Numbers, v: Numbers) -> Array:
     """Rotate vectors `v [..., 3]` by `q [..., 4]`."""
     q, v = np.asarray(q), np.asarray(v)
     x, y, z, w = q[..., 0], q[..., 1], q[..., 2], q[..., 3]
@@ -62,7 +63,7 @@ def rotate(q: ArrayLike, v: ArrayLike) -> Array:
     return out
 
 
-def from_axis_angle(axis: ArrayLike, angle: ArrayLike) -> Array:
+def from_axis_angle(axis: Numbers, angle: Numbers) -> Array:
     """Return rotations `[..., 4]` of `angle [...]` radians about `axis [..., 3]` (any length but zero)."""
     axis, angle = np.asarray(axis, float), np.asarray(angle, float)
     axis = axis / np.maximum(np.linalg.norm(axis, axis=-1, keepdims=True), 1e-12)
@@ -70,7 +71,7 @@ def from_axis_angle(axis: ArrayLike, angle: ArrayLike) -> Array:
     return np.concatenate([axis * np.sin(half), np.cos(half) + 0 * axis[..., :1]], -1)
 
 
-def from_euler(angles: ArrayLike, order: str) -> Array:
+def from_euler(angles: Numbers, order: str) -> Array:
     """Return rotations `[..., 4]` from intrinsic Euler `angles [..., 3]` (radians); `order` like "ZXY", first applied outermost."""
     angles = np.asarray(angles)
     half = angles * 0.5
@@ -85,7 +86,7 @@ def from_euler(angles: ArrayLike, order: str) -> Array:
     return out
 
 
-def to_euler(q: ArrayLike, order: str = "ZXY") -> Array:
+def to_euler(q: Numbers, order: str = "ZXY") -> Array:
     """Return intrinsic Euler angles `[..., 3]` (radians) of unit `q [..., 4]` for an `order` of three different axes."""
     m = to_matrix(q)
     i, j, k = ("XYZ".index(a) for a in order.upper())
@@ -97,7 +98,7 @@ def to_euler(q: ArrayLike, order: str = "ZXY") -> Array:
     return np.stack([first, middle, last], -1)
 
 
-def to_matrix(q: ArrayLike) -> Array:
+def to_matrix(q: Numbers) -> Array:
     """Return rotation matrices `[..., 3, 3]` of unit quaternions."""
     q = np.asarray(q)
     x, y, z, w = q[..., 0], q[..., 1], q[..., 2], q[..., 3]
@@ -114,7 +115,7 @@ def to_matrix(q: ArrayLike) -> Array:
     return out
 
 
-def from_matrix(m: ArrayLike) -> Array:
+def from_matrix(m: Numbers) -> Array:
     """Return quaternions `[..., 4]` of proper rotation matrices `[..., 3, 3]`, with `w >= 0`."""
     m = np.asarray(m, float)
     xx, yy, zz = m[..., 0, 0], m[..., 1, 1], m[..., 2, 2]
@@ -136,7 +137,7 @@ def from_matrix(m: ArrayLike) -> Array:
     return np.where(q[..., 3:] < 0, -q, q)
 
 
-def log(q: ArrayLike) -> Array:
+def log(q: Numbers) -> Array:
     """Return rotation vectors `[..., 3]` (axis times angle, at most pi) of unit quaternions."""
     q = np.asarray(q)
     q = np.where(q[..., 3:] < 0, -q, q)
@@ -145,7 +146,7 @@ def log(q: ArrayLike) -> Array:
     return q[..., :3] * factor
 
 
-def exp(v: ArrayLike) -> Array:
+def exp(v: Numbers) -> Array:
     """Return unit quaternions `[..., 4]` of rotation vectors `[..., 3]`."""
     v = np.asarray(v)
     angle = np.sqrt(np.einsum("...i,...i->...", v, v))[..., None]
@@ -153,12 +154,12 @@ def exp(v: ArrayLike) -> Array:
     return np.concatenate([v * factor, np.cos(angle / 2)], -1)
 
 
-def power(q: ArrayLike, weight: ArrayLike) -> Array:
+def power(q: Numbers, weight: Numbers) -> Array:
     """Return `q [..., 4]` turned by `weight [...]` times its angle, the short way; 0 gives the identity, 1 gives `q`."""
     return exp(log(q) * np.asarray(weight)[..., None])
 
 
-def nlerp(a: ArrayLike, b: ArrayLike, weight: ArrayLike) -> Array:
+def nlerp(a: Numbers, b: Numbers, weight: Numbers) -> Array:
     """Blend `a` to `b [..., 4]` by `weight [...]` in 0..1 along the shorter arc: a normalised straight line."""
     a, b = np.asarray(a), np.asarray(b)
     w = np.asarray(weight)[..., None].astype(a.dtype)
@@ -167,19 +168,19 @@ def nlerp(a: ArrayLike, b: ArrayLike, weight: ArrayLike) -> Array:
     return mixed / np.sqrt(np.maximum(np.einsum("...i,...i->...", mixed, mixed), 1e-20))[..., None]
 
 
-def slerp(a: ArrayLike, b: ArrayLike, weight: ArrayLike) -> Array:
+def slerp(a: Numbers, b: Numbers, weight: Numbers) -> Array:
     """Blend `a` to `b [..., 4]` by `weight [...]` in 0..1 at constant speed along the shorter arc."""
     a, b = np.asarray(a), np.asarray(b)
     return multiply(a, power(multiply(conjugate(a), b), weight))
 
 
-def angle_between(a: ArrayLike, b: ArrayLike) -> Array:
+def angle_between(a: Numbers, b: Numbers) -> Array:
     """Return the angle `[...]` in radians, 0..pi, between two rotations."""
     d = multiply(conjugate(a), b)
     return np.asarray(2 * np.arctan2(np.linalg.norm(d[..., :3], axis=-1), np.abs(d[..., 3])))
 
 
-def continuous(q: ArrayLike) -> Array:
+def continuous(q: Numbers) -> Array:
     """Flip signs along the first axis of `q [F, ..., 4]` so that neighbours are on the same side."""
     q = np.asarray(q)
     if len(q) < 2:
@@ -189,7 +190,7 @@ def continuous(q: ArrayLike) -> Array:
     return np.where(odd[..., None], -q, q)
 
 
-def between(a: ArrayLike, b: ArrayLike) -> Array:
+def between(a: Numbers, b: Numbers) -> Array:
     """Return the shortest rotation `[..., 4]` taking direction `a [..., 3]` to direction `b [..., 3]`."""
     a, b = np.asarray(a, float), np.asarray(b, float)
     a = a / np.maximum(np.linalg.norm(a, axis=-1, keepdims=True), 1e-12)
