@@ -11,7 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 Array = NDArray[Any]
-Numbers = Any  # an array, a nested sequence or a number: whatever numpy.asarray takes
+Numbers = Any  # whatever numpy.asarray takes: arrays, nested sequences, numbers
 
 IDENTITY: Array = np.array([0.0, 0.0, 0.0, 1.0])
 
@@ -34,7 +34,7 @@ def normalize(q: Numbers) -> Array:
 def conjugate(q: Numbers) -> Array:
     """Return the inverse of unit quaternions `[..., 4]`."""
     q = np.asarray(q)
-    return q * np.array([-1, -1, -1, 1], q.dtype)
+    return np.asarray(q * np.array([-1, -1, -1, 1], q.dtype))
 
 
 def multiply(a: Numbers, b: Numbers) -> Array:
@@ -143,7 +143,7 @@ def log(q: Numbers) -> Array:
     q = np.where(q[..., 3:] < 0, -q, q)
     s = np.sqrt(np.einsum("...i,...i->...", q[..., :3], q[..., :3]))[..., None]
     factor = np.where(s > 1e-8, 2 * np.arctan2(s, q[..., 3:]) / np.where(s > 1e-8, s, 1), 2.0)
-    return q[..., :3] * factor
+    return np.asarray(q[..., :3] * factor)
 
 
 def exp(v: Numbers) -> Array:
@@ -165,7 +165,7 @@ def nlerp(a: Numbers, b: Numbers, weight: Numbers) -> Array:
     w = np.asarray(weight)[..., None].astype(a.dtype)
     dot = np.einsum("...i,...i->...", a, b)[..., None]
     mixed = a * (1 - w) + b * np.where(dot < 0, -w, w)
-    return mixed / np.sqrt(np.maximum(np.einsum("...i,...i->...", mixed, mixed), 1e-20))[..., None]
+    return np.asarray(mixed / np.sqrt(np.maximum(np.einsum("...i,...i->...", mixed, mixed), 1e-20))[..., None])
 
 
 def slerp(a: Numbers, b: Numbers, weight: Numbers) -> Array:
@@ -184,10 +184,10 @@ def continuous(q: Numbers) -> Array:
     """Flip signs along the first axis of `q [F, ..., 4]` so that neighbours are on the same side."""
     q = np.asarray(q)
     if len(q) < 2:
-        return q
+        return np.asarray(q)
     flips = np.einsum("...i,...i->...", q[1:], q[:-1]) < 0
     odd = np.concatenate([np.zeros((1, *flips.shape[1:]), bool), np.cumsum(flips, 0) % 2 == 1])
-    return np.where(odd[..., None], -q, q)
+    return np.asarray(np.where(odd[..., None], -q, q))
 
 
 def between(a: Numbers, b: Numbers) -> Array:
