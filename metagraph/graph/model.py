@@ -1,0 +1,284 @@
+"""The values a project is made of. All are frozen; mappings in them are never changed in place.
+
+Ids are made once from the project's counter and never change; names are free text for people.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Mapping
+from dataclasses import dataclass, field, replace
+from functools import cached_property
+from types import MappingProxyType
+from typing import Any, Literal, get_args
+
+from metagraph.motion.clip import Clip
+from metagraph.motion.skeleton import Skeleton
+
+Layer = Literal["body", "arms", "head"]
+Kind = Literal["stance", "gesture", "fidget", "transition"]
+Limb = Literal["left", "right", "both"]
+Part = Literal["legs", "spine", "arms", "head", "face"]
+
+LAYERS: tuple[Layer, ...] = get_args(Layer)
+KINDS: tuple[Kind, ...] = get_args(Kind)
+LIMBS: tuple[Limb, ...] = get_args(Limb)
+PARTS: tuple[Part, ...] = get_args(Part)
+
+# Which layer reaches which part, and how strongly: Borer et al., section 5 (weights of 1.0). The face moves with the head.
+REACH: Mapping[Layer, Mapping[Part, float]] = {
+    "body": {"legs": 1.0, "spine": 1.0, "arms": 0.0, "head": 1.0, "face": 1.0},
+    "arms": {"legs": 0.0, "spine": 1.0, "arms": 1.0, "head": 1.0, "face": 1.0},
+    "head": {"legs": 0.0, "spine": 1.0, "arms": 0.0, "head": 1.0, "face": 1.0},
+}
+
+
+@dataclass(frozen=True, slots=True)
+class Timing:
+    """When an action plays within its clip; seconds of the clip.
+
+    start, end: the part that plays; `end` None is the clip's end. blend_in, blend_out: seconds of blending from and to
+    the stance, within start..end (for a looping stance, blend_in is the overlap at the loop's seam). loop: repeats.
+    earliest_exit: from here on the action may be left, or None to play it through. stroke: its most telling moment.
+    """
+
+    start: float = 0.0
+    end: float | None = None
+    blend_in: float = 0.2
+    blend_out: float = 0.3
+    loop: bool = False
+    earliest_exit: float | None = None
+    stroke: float | None = None
+
+
+@dataclass(frozen=True, slots=True)
+class Action:
+    """One use of a clip in the graph.
+
+    stance: id of the stance it starts from (for kind "stance", the stance whose loop it is). end_stance: only for
+    transitions. limb: which arm it needs; the other keeps to the stance. joints: names of the only joints it moves;
+    empty means all. tags: free words, "positive" and "negative" among them. likelihood: relative, > 0.
+    """
+
+    id: str
+    clip: str
+    kind: Kind
+    layer: Layer
+    stance: str
+    name: str
+    end_stance: str | None = None
+    timing: Timing = Timing()
+    limb: Limb = "both"
+    joints: tuple[str, ...] = ()
+    tags: tuple[str, ...] = ()
+    likelihood: float = 1.0
+
+
+@dataclass(frozen=True, slots=True)
+class Stance:
+    id: str
+    layer: Layer
+    name: str
+
+
+Index = Mapping[tuple[str, Kind], tuple[Action, ...]]
+
+
+@dataclass(frozen=True)
+class MetaGraph:
+    """One layer: its stances and actions. start: the stance a performance begins in. weights: part -> 0..2."""
+
+    layer: Layer
+    stances: Mapping[str, Stance] = field(default_factory=dict)
+    actions: Mapping[str, Action] = field(default_factory=dict)
+    start: str | None = None
+    weights: Mapping[Part, float] = field(default_factory=dict)
+
+    def weight(self, part: Part) -> float:
+        """How strongly this layer moves a body part."""
+        return self.weights.get(part, REACH[self.layer][part])
+
+    @cached_property
+    def index(self) -> Index:
+        """The multi-index of this layer: (stance, kind) -> actions, in the order they were placed."""
+        buckets: dict[tuple[str, Kind], list[Action]] = {}
+        for action in self.actions.values():
+            buckets.setdefault((action.stance, action.kind), []).append(action)
+        return MappingProxyType({key: tuple(bucket) for key, bucket in buckets.items()})
+
+    def of(self, stance: str, kind: Kind) -> tuple[Action, ...]:
+        """Return the actions of a kind placed on a stance."""
+        return self.index.get((stance, kind), ())
+
+    @cached_property
+    def into(self) -> Mapping[str, tuple[Action, ...]]:
+        """Transitions by the stance they end in."""
+        out: dict[str, list[Action]] = {}
+        for (_, kind), bucket in self.index.items():
+            for action in bucket if kind == "transition" else ():
+                if action.end_stance is not None:
+                    out.setdefault(action.end_stance, []).append(action)
+        return {stance: tuple(actions) for stance, actions in out.items()}
+
+    def with_actions(self, changes: Mapping[str, Action | None]) -> MetaGraph:
+        """Return the graph with actions added, replaced (in place) or, for None, removed.
+
+        The index is patched rather than rebuilt, so that an edit costs the same in a graph of ten thousand.
+        """
+        actions = dict(self.actions)
+        touched: dict[tuple[str, Kind], dict[str, Action]] = {}
+
+        def bucket(action: Action) -> dict[str, Action]:
+            key = (action.stance, action.kind)
+            if key not in touched:
+                touched[key] = {a.id: a for a in self.index.get(key, ())}
+            return touched[key]
+
+        resort: set[tuple[str, Kind]] = set()
+        for ident, action in changes.items():
+            before = actions.get(ident)
+            if action is None:
+                if before is not None:
+                    bucket(before).pop(ident)
+                    del actions[ident]
+                continue
+            if before is not None and (before.stance, before.kind) != (action.stance, action.kind):
+                bucket(before).pop(ident)
+                resort.add((action.stance, action.kind))
+            bucket(action)[ident] = action
+            actions[ident] = action
+        out = replace(self, actions=actions)
+        index = dict(self.index)
+        order = {ident: n for n, ident in enumerate(actions)} if resort else {}
+        for key, kept in touched.items():
+            rows = sorted(kept.values(), key=lambda a: order[a.id]) if key in resort else list(kept.values())
+            if rows:
+                index[key] = tuple(rows)
+            else:
+                index.pop(key, None)
+        out.__dict__["index"] = MappingProxyType(index)
+        return out
+
+
+@dataclass(frozen=True)
+class ClipEntry:
+    """A clip the project knows. path: relative to the project file, `/` between folders. take: which animation in the file.
+
+    digest: SHA-256 of the file, hex. frames, fps: as last read. motion: the loaded clip, None while the file is missing.
+    """
+
+    id: str
+    name: str
+    path: str
+    take: int = 0
+    digest: str = ""
+    frames: int = 0
+    fps: float = 30.0
+    motion: Clip | None = field(default=None, compare=False, repr=False)
+
+    @property
+    def duration(self) -> float:
+        """Seconds from the first frame to the last."""
+        return max(0, self.frames - 1) / self.fps
+
+
+@dataclass(frozen=True)
+class BasePose:
+    """The pose all offsets are taken against: a frame of a clip, or the skeleton's rest pose when clip is None."""
+
+    clip: str | None = None
+    frame: int = 0
+
+
+@dataclass(frozen=True)
+class Markov:
+    """A first-order model over (limb, kind) that writes meta actions when nobody asks for any (Borer et al., 7.3).
+
+    matrix: rows of probabilities, each summing to 1. gap: mean seconds of rest between two actions.
+    positive, negative: share of gestures asked for with that tag.
+    """
+
+    layer: Layer
+    states: tuple[tuple[Limb, Kind], ...]
+    matrix: tuple[tuple[float, ...], ...]
+    gap: float = 2.5
+    positive: float = 0.0
+    negative: float = 0.0
+
+
+@dataclass(frozen=True)
+class Settings:
+    """Planner constants. alpha: how quickly a used action becomes unlikely (4 in the paper). seed: 32-bit.
+
+    never_twice: an action is not played twice in a row where there is another. shortest: seconds below which
+    the remainder of a cut meta action is not worth keeping. wait: how late, in seconds, a request may start.
+    """
+
+    alpha: float = 4.0
+    seed: int = 1
+    never_twice: bool = True
+    shortest: float = 0.4
+    wait: float = 4.0
+
+
+def _empty_graphs() -> dict[Layer, MetaGraph]:
+    return {layer: MetaGraph(layer) for layer in LAYERS}
+
+
+@dataclass(frozen=True)
+class Project:
+    """Everything that is saved. roles: corrections, role -> joint name. parts: corrections, joint name -> body part.
+
+    character: path of the GLB to draw, relative to the project file, or None for a stick figure.
+    """
+
+    name: str = "untitled"
+    skeleton: Skeleton | None = None
+    clips: Mapping[str, ClipEntry] = field(default_factory=dict)
+    graphs: Mapping[Layer, MetaGraph] = field(default_factory=_empty_graphs)
+    base: BasePose = BasePose()
+    roles: Mapping[str, str] = field(default_factory=dict)
+    parts: Mapping[str, Part] = field(default_factory=dict)
+    markov: Mapping[Layer, Markov] = field(default_factory=dict)
+    settings: Settings = Settings()
+    character: str | None = None
+    next_id: int = 1
+
+    def actions(self) -> Iterable[Action]:
+        """Every action of every layer."""
+        for layer in LAYERS:
+            yield from self.graphs[layer].actions.values()
+
+    def action(self, ident: str) -> Action | None:
+        """Return the action of that id, whatever its layer."""
+        for layer in LAYERS:
+            found = self.graphs[layer].actions.get(ident)
+            if found is not None:
+                return found
+        return None
+
+    def stance(self, ident: str | None) -> Stance | None:
+        """Return the stance of that id, whatever its layer."""
+        for layer in LAYERS:
+            if ident is not None and ident in self.graphs[layer].stances:
+                return self.graphs[layer].stances[ident]
+        return None
+
+    def span(self, action: Action) -> tuple[float, float]:
+        """Return start and end of the part that plays, seconds of its clip; the end is never before the start."""
+        entry = self.clips.get(action.clip)
+        length = entry.duration if entry else 0.0
+        start = min(max(0.0, action.timing.start), length)
+        end = length if action.timing.end is None else min(action.timing.end, length)
+        return start, max(start, end)
+
+    @cached_property
+    def uses(self) -> Mapping[str, tuple[Action, ...]]:
+        """Clip id -> the actions that use it."""
+        out: dict[str, list[Action]] = {}
+        for action in self.actions():
+            out.setdefault(action.clip, []).append(action)
+        return {clip: tuple(actions) for clip, actions in out.items()}
+
+    def with_graph(self, graph: MetaGraph, **more: Any) -> Project:
+        """Return the project with one layer's graph replaced."""
+        return replace(self, graphs={**self.graphs, graph.layer: graph}, **more)
