@@ -1,0 +1,313 @@
+"""Edits: pure functions `Project -> Project`. Every way of changing a project, from a drop to a script, ends here.
+
+An edit that cannot be done raises EditError, whose words are meant for the user; the project is then unchanged.
+"""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Collection, Iterable, Mapping, Sequence
+from dataclasses import replace
+from typing import Any
+
+from metagraph.graph.model import (
+    PARTS,
+    Action,
+    BasePose,
+    ClipEntry,
+    Kind,
+    Layer,
+    Limb,
+    Markov,
+    Part,
+    Project,
+    Settings,
+    Stance,
+    Timing,
+)
+from metagraph.motion.clip import Clip
+from metagraph.motion.features import loop_error
+
+SEAM = 0.01  # metres a loop may be open before its seam gets blended
+_LIMB_WORDS: tuple[tuple[Limb, str], ...] = (
+    ("both", r"(?:bt|both|lr|2h|twohands?)"),
+    ("left", r"(?:lf|lt|left|l)"),
+    ("right", r"(?:rt|right|r)"),
+)
+
+
+class EditError(ValueError):
+    """The edit cannot be done; the message says why."""
+
+
+def limb_of(name: str) -> Limb:
+    """Guess the limb from a clip's name: `_lf`, `_rt`, `_bt`, `Left`, `Right` and their like; both when it does not say."""
+    words = re.sub(r"(?<=[a-z0-9])(?=[A-Z])", "_", name).lower()
+    for limb, pattern in _LIMB_WORDS:
+        if re.search(rf"(?:^|[^a-z]){pattern}(?:[^a-z]|$)", words):
+            return limb
+    return "both"
+
+
+# --- clips -----------------------------------------------------------------------------------------------------------
+
+
+def add_clips(project: Project, loaded: Iterable[tuple[str, int, str, Clip]]) -> Project:
+    """Add clips given as (path, take, digest, clip); one that is already there (same path and take) is refreshed in place.
+
+    The first clip's skeleton becomes the project's.
+    """
+    clips = dict(project.clips)
+    known = {(entry.path, entry.take): entry for entry in clips.values()}
+    skeleton, next_id = project.skeleton, project.next_id
+    for path, take, digest, clip in loaded:
+        if skeleton is None:
+            skeleton = clip.skeleton
+        before = known.get((path, take))
+        ident = before.id if before else f"c{next_id}"
+        next_id += 0 if before else 1
+        name = before.name if before else clip.name
+        clips[ident] = ClipEntry(ident, name, path, take, digest, clip.frames, clip.fps, clip)
+    return replace(project, clips=clips, skeleton=skeleton, next_id=next_id)
+
+
+def with_motions(project: Project, motions: Mapping[str, Clip]) -> Project:
+    """Return the project with loaded motion filled in for clip ids; what is saved does not change."""
+    clips = {i: replace(e, motion=motions[i]) if i in motions else e for i, e in project.clips.items()}
+    return replace(project, clips=clips)
+
+
+def rename_clip(project: Project, clip: str, name: str) -> Project:
+    return replace(project, clips={**project.clips, clip: replace(project.clips[clip], name=_clean(name))})
+
+
+def remove_clips(project: Project, clips: Collection[str]) -> Project:
+    """Remove clips and the actions that use them; a base pose taken from one falls back to the rest pose."""
+    gone = [a.id for clip in clips for a in project.uses.get(clip, ())]
+    project = remove_actions(project, gone)
+    left = {i: e for i, e in project.clips.items() if i not in clips}
+    base = BasePose() if project.base.clip in clips else project.base
+    return replace(project, clips=left, base=base, skeleton=project.skeleton if left else None)
+
+
+# --- stances ---------------------------------------------------------------------------------------------------------
+
+
+def add_stance(project: Project, layer: Layer, name: str, clips: Sequence[str] = ()) -> Project:
+    """Make a stance, with `clips` as its loops. The first stance of a layer is where a performance starts."""
+    graph = project.graphs[layer]
+    name = _free_name(_clean(name), {s.name for s in graph.stances.values()})
+    stance = Stance(f"s{project.next_id}", layer, name)
+    graph = replace(graph, stances={**graph.stances, stance.id: stance}, start=graph.start or stance.id)
+    project = project.with_graph(graph, next_id=project.next_id + 1)
+    return place(project, clips, layer, "stance", stance.id) if clips else project
+
+
+def rename_stance(project: Project, stance: str, name: str) -> Project:
+    found = _stance(project, stance)
+    graph = project.graphs[found.layer]
+    return project.with_graph(replace(graph, stances={**graph.stances, stance: replace(found, name=_clean(name))}))
+
+
+def remove_stance(project: Project, stance: str) -> Project:
+    """Remove a stance, its actions, and the transitions that end in it."""
+    found = _stance(project, stance)
+    graph = project.graphs[found.layer]
+    gone = [a.id for a in graph.actions.values() if stance in (a.stance, a.end_stance)]
+    graph = graph.with_actions(dict.fromkeys(gone))
+    stances = {i: s for i, s in graph.stances.items() if i != stance}
+    start = graph.start if graph.start != stance else next(iter(stances), None)
+    return project.with_graph(replace(graph, stances=stances, start=start))
+
+
+def set_start(project: Project, stance: str) -> Project:
+    """Let performances begin in this stance."""
+    found = _stance(project, stance)
+    return project.with_graph(replace(project.graphs[found.layer], start=stance))
+
+
+# --- actions ---------------------------------------------------------------------------------------------------------
+
+
+def refusal(project: Project, clips: Sequence[str], layer: Layer, kind: Kind, stance: str | None, end: str | None = None) -> str | None:
+    """Return in words why clips cannot be placed so, or None when they can. `stance` None asks for a new stance."""
+    if not clips:
+        return "nothing to place"
+    missing = [c for c in clips if c not in project.clips]
+    if missing:
+        return "a clip that is not in this project"
+    for clip in clips:
+        entry = project.clips[clip]
+        if entry.motion is not None and project.skeleton is not None and entry.motion.skeleton != project.skeleton:
+            return f"'{entry.name}' has another skeleton than this project"
+    graph = project.graphs[layer]
+    if kind == "stance":
+        return None
+    if stance is None or stance not in graph.stances:
+        return f"make a stance first: drop a clip on the middle of the {layer} layer"
+    if kind == "transition":
+        if end is None or end not in graph.stances:
+            return "choose the stance this transition ends in first"
+        if end == stance:
+            return "a transition must end in another stance"
+    return None
+
+
+def place(project: Project, clips: Sequence[str], layer: Layer, kind: Kind, stance: str | None, end_stance: str | None = None) -> Project:
+    """Drop clips on a meta node. Dropped on "stance" with no stance given, the first clip makes a new one.
+
+    Raises EditError with the words of `refusal`.
+    """
+    why = refusal(project, clips, layer, kind, stance, end_stance)
+    if why is not None:
+        raise EditError(why)
+    if stance is None:
+        return add_stance(project, layer, project.clips[clips[0]].name, clips)
+    graph = project.graphs[layer]
+    _stance(project, stance)
+    changes: dict[str, Action | None] = {}
+    next_id = project.next_id
+    for clip in clips:
+        entry = project.clips[clip]
+        ident = f"a{next_id}"
+        next_id += 1
+        changes[ident] = Action(
+            id=ident,
+            clip=clip,
+            kind=kind,
+            layer=layer,
+            stance=stance,
+            name=entry.name,
+            end_stance=end_stance if kind == "transition" else None,
+            timing=default_timing(entry, kind),
+            limb=limb_of(entry.name) if layer == "arms" and kind in ("gesture", "fidget") else "both",
+        )
+    return project.with_graph(graph.with_actions(changes), next_id=next_id)
+
+
+def default_timing(entry: ClipEntry, kind: Kind) -> Timing:
+    """Return the timing a clip gets when it is dropped: blends of at most a quarter of it, a blended seam where a loop is open."""
+    quarter = round(entry.duration / 4, 3)
+    if kind == "stance":
+        open_by = loop_error(entry.motion) if entry.motion is not None and entry.frames > 1 else 0.0
+        return Timing(blend_in=min(0.4, quarter) if open_by > SEAM else 0.0, blend_out=0.0, loop=True)
+    return Timing(blend_in=min(0.2, quarter), blend_out=min(0.25, quarter))
+
+
+def update_actions(project: Project, actions: Collection[str], **changes: Any) -> Project:
+    """Set fields of actions; `timing` takes a mapping of the Timing fields to change, or a whole Timing."""
+    graphs = dict(project.graphs)
+    for layer, graph in project.graphs.items():
+        edits: dict[str, Action | None] = {}
+        for ident in actions:
+            action = graph.actions.get(ident)
+            if action is None:
+                continue
+            fields = dict(changes)
+            if isinstance(fields.get("timing"), Mapping):
+                fields["timing"] = replace(action.timing, **fields["timing"])
+            edits[ident] = replace(action, **fields)
+        if edits:
+            graphs[layer] = graph.with_actions(edits)
+    return replace(project, graphs=graphs)
+
+
+def move_actions(project: Project, actions: Collection[str], kind: Kind, stance: str, end_stance: str | None = None) -> Project:
+    """Put actions on another meta node or stance, also across layers, keeping their settings."""
+    target = _stance(project, stance)
+    moved = [a for i in actions if (a := project.action(i)) is not None]
+    why = refusal(project, [a.clip for a in moved], target.layer, kind, stance, end_stance)
+    if why is not None:
+        raise EditError(why)
+    project = remove_actions(project, [a.id for a in moved if a.layer != target.layer])
+    changes: dict[str, Action | None] = {}
+    for action in moved:
+        timing = action.timing
+        if (kind == "stance") != (action.kind == "stance"):
+            timing = default_timing(project.clips[action.clip], kind)
+        changes[action.id] = replace(
+            action, kind=kind, layer=target.layer, stance=stance, end_stance=end_stance if kind == "transition" else None, timing=timing
+        )
+    return project.with_graph(project.graphs[target.layer].with_actions(changes))
+
+
+def remove_actions(project: Project, actions: Collection[str]) -> Project:
+    """Take actions out of the graph; their clips stay in the library."""
+    graphs = dict(project.graphs)
+    for layer, graph in project.graphs.items():
+        gone = dict.fromkeys(i for i in actions if i in graph.actions)
+        if gone:
+            graphs[layer] = graph.with_actions(gone)
+    return replace(project, graphs=graphs)
+
+
+# --- the rest --------------------------------------------------------------------------------------------------------
+
+
+def set_base(project: Project, clip: str | None, frame: int = 0) -> Project:
+    """Take the base pose from a frame of a clip, or from the skeleton's rest pose."""
+    if clip is not None:
+        entry = project.clips.get(clip)
+        if entry is None:
+            raise EditError("the clip of the base pose is not in this project")
+        frame = min(max(0, frame), max(0, entry.frames - 1))
+    return replace(project, base=BasePose(clip, frame if clip else 0))
+
+
+def set_weight(project: Project, layer: Layer, part: Part, weight: float) -> Project:
+    """Set how strongly a layer moves a body part, 0..2."""
+    if part not in PARTS:
+        raise EditError(f"there is no body part '{part}'; there are {', '.join(PARTS)}")
+    graph = project.graphs[layer]
+    return project.with_graph(replace(graph, weights={**graph.weights, part: min(2.0, max(0.0, weight))}))
+
+
+def set_role(project: Project, role: str, joint: str | None) -> Project:
+    """Correct which joint plays a role; None goes back to what was found."""
+    roles = {r: j for r, j in project.roles.items() if r != role}
+    return replace(project, roles=roles if joint is None else {**roles, role: joint})
+
+
+def set_part(project: Project, joints: Collection[str], part: Part | None) -> Project:
+    """Correct which body part joints belong to; None goes back to what was found."""
+    parts = {j: p for j, p in project.parts.items() if j not in joints}
+    return replace(project, parts=parts if part is None else {**parts, **dict.fromkeys(joints, part)})
+
+
+def set_settings(project: Project, **changes: Any) -> Project:
+    settings: Settings = replace(project.settings, **changes)
+    return replace(project, settings=settings)
+
+
+def set_markov(project: Project, model: Markov) -> Project:
+    return replace(project, markov={**project.markov, model.layer: model})
+
+
+def set_character(project: Project, path: str | None) -> Project:
+    return replace(project, character=path)
+
+
+def rename_project(project: Project, name: str) -> Project:
+    return replace(project, name=_clean(name))
+
+
+def _stance(project: Project, ident: str) -> Stance:
+    found = project.stance(ident)
+    if found is None:
+        raise EditError("that stance is no longer in the project")
+    return found
+
+
+def _clean(name: str) -> str:
+    name = " ".join(name.split())
+    if not name:
+        raise EditError("a name needs at least one letter")
+    return name
+
+
+def _free_name(name: str, taken: Collection[str]) -> str:
+    candidate, n = name, 1
+    while candidate in taken:
+        n += 1
+        candidate = f"{name} {n}"
+    return candidate

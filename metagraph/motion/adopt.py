@@ -1,0 +1,77 @@
+"""Bring a clip onto the project's skeleton when both are the same character, and say why when they are not."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+
+from metagraph.motion import rotation
+from metagraph.motion.clip import Clip
+from metagraph.motion.skeleton import Skeleton
+
+LENGTH_TOLERANCE = 0.02  # of the skeleton's height: files of one character differ by rounding and by their first frame
+MOVED = 1e-4  # metres: below this a joint keeps its rest translation
+
+
+class SkeletonMismatch(ValueError):
+    """The clip belongs to another skeleton; the message says how they differ."""
+
+
+def difference(clip: Skeleton, project: Skeleton) -> str | None:
+    """Return in words why a clip on skeleton `clip` cannot play on `project`, or None when it can.
+
+    A clip may lack joints (a face-only file), but not bring its own, and the bones it shares must be as long.
+    """
+    extra = [name for name in clip.names if name not in project]
+    shared = [name for name in clip.names if name in project]
+    if len(shared) < max(1, len(clip) // 2):
+        return f"its joints have other names (it has '{extra[0]}', the project has '{project.names[0]}')"
+    if extra:
+        more = f" and {len(extra) - 1} more" if len(extra) > 1 else ""
+        return f"the project's skeleton has no joint '{extra[0]}'{more}"
+    for i, name in enumerate(clip.names):
+        parent = clip.parents[i]
+        if parent < 0:
+            continue
+        above = project.parents[project.index(name)]
+        if above < 0 or project.names[above] != clip.names[parent]:
+            return f"joint '{name}' hangs on '{clip.names[parent]}' instead of '{project.names[above] if above >= 0 else 'nothing'}'"
+    ours = np.linalg.norm(project.rest_translations[[project.index(n) for n in clip.names]], axis=-1)
+    theirs = np.linalg.norm(clip.rest_translations, axis=-1)
+    inner = clip.parents >= 0
+    if inner.any():
+        ratio = np.median(theirs[inner & (ours > 1e-3)] / ours[inner & (ours > 1e-3)]) if (inner & (ours > 1e-3)).any() else 1.0
+        if not 0.7 < ratio < 1.4:
+            return f"its bones are {ratio:.3g} times as long"
+    return None
+
+
+def adopt(clip: Clip, skeleton: Skeleton) -> Clip:
+    """Return the clip expressed on `skeleton`: joints reordered by name, missing ones at rest, bones as the clip has them.
+
+    Raises SkeletonMismatch when the skeletons are not of the same character.
+    """
+    if clip.skeleton is skeleton:
+        return clip
+    if clip.skeleton == skeleton:
+        return replace(clip, skeleton=skeleton)
+    why = difference(clip.skeleton, skeleton)
+    if why is not None:
+        raise SkeletonMismatch(why)
+    places = np.array([skeleton.index(name) for name in clip.skeleton.names])
+    source = clip.poses()
+    rotations = np.broadcast_to(skeleton.rest_rotations, (clip.frames, len(skeleton), 4)).astype(np.float32)
+    translations = np.broadcast_to(skeleton.rest_translations, (clip.frames, len(skeleton), 3)).astype(np.float32)
+    rotations[:, places] = source.rotations
+    translations[:, places] = source.translations
+    rest = skeleton.rest_translations.astype(np.float32)
+    moved = np.flatnonzero(np.abs(translations - rest).max(axis=(0, 2)) > MOVED)
+    translated = tuple(sorted({0, *(int(j) for j in moved)}))
+    return replace(
+        clip,
+        skeleton=skeleton,
+        rotations=rotation.continuous(rotations),
+        translations=translations[:, list(translated)],
+        translated=translated,
+    )

@@ -1,0 +1,57 @@
+"""What can be measured on a clip: speed of the hands and head, stroke, how well a loop closes, how far two poses are apart."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from metagraph.motion.clip import Clip
+from metagraph.motion.skeleton import Pose, Skeleton
+
+Array = NDArray[Any]
+
+
+def positions(clip: Clip, reference: int = 0) -> Array:
+    """Return joint positions `[F, J, 3]` in metres, with the first frame's `reference` joint above the origin."""
+    _, out = clip.skeleton.globals(clip.poses())
+    return np.asarray(out - out[:1, reference : reference + 1] * np.array([1, 0, 1], np.float32))
+
+
+def speed(clip: Clip, joints: Sequence[int], frame_of: int | None = None) -> Array:
+    """Return `[F]` the fastest of `joints`' speeds, metres a second, relative to joint `frame_of` (the shoulders' parent, say).
+
+    Central differences; one-frame clips have speed 0.
+    """
+    if clip.frames < 2 or not joints:
+        return np.zeros(clip.frames, np.float32)
+    _, where = clip.skeleton.globals(clip.poses())
+    chosen = where[:, list(joints)]
+    if frame_of is not None:
+        chosen = chosen - where[:, frame_of : frame_of + 1]
+    velocity = np.gradient(chosen, 1 / clip.fps, axis=0)
+    return np.asarray(np.linalg.norm(velocity, axis=-1).max(axis=-1))
+
+
+def stroke(speeds: Array, fps: float) -> float:
+    """Return the time in seconds of the largest speed: a gesture's most telling moment."""
+    return float(np.argmax(speeds)) / fps if len(speeds) else 0.0
+
+
+def pose_distance(skeleton: Skeleton, a: Pose, b: Pose, joints: Sequence[int] | None = None) -> Array:
+    """Return `[...]` the largest distance in metres of any of `joints` between poses, both with joint 0 at the origin."""
+    _, pa = skeleton.globals(a)
+    _, pb = skeleton.globals(b)
+    chosen = list(range(len(skeleton))) if joints is None else list(joints)
+    if not chosen:
+        return np.zeros(pa.shape[:-2])
+    d = (pa - pa[..., :1, :])[..., chosen, :] - (pb - pb[..., :1, :])[..., chosen, :]
+    return np.asarray(np.linalg.norm(d, axis=-1).max(axis=-1))
+
+
+def loop_error(clip: Clip, start: float = 0.0, end: float | None = None) -> float:
+    """Return in metres how far the pose at `end` is from the pose at `start` (seconds)."""
+    ends = clip.pose_at(np.array([start, clip.duration if end is None else end]))
+    return float(pose_distance(clip.skeleton, ends[0], ends[1]))
