@@ -1,0 +1,292 @@
+"""Problems of a project: where they are, what they are, what to do about them. `check` never changes anything."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator
+from dataclasses import dataclass
+from functools import lru_cache
+from typing import Any, Literal
+
+import numpy as np
+from numpy.typing import NDArray
+
+from metagraph.graph import anatomy
+from metagraph.graph.expand import ends_in, reachable
+from metagraph.graph.model import KINDS, LAYERS, REACH, Action, Layer, MetaGraph, Project
+from metagraph.motion import rotation
+from metagraph.motion.clip import Clip
+from metagraph.motion.features import pose_distance
+
+Array = NDArray[Any]
+Severity = Literal["error", "warning", "hint"]
+
+FAR = 0.08  # metres a joint may be from the stance at a clip's ends before it shows (of a 1.7 m character)
+OPEN_LOOP = 0.05  # metres a loop may be open where its seam is not blended
+FLOATS = 0.06  # of the height: how far the base pose's feet may be from where the stances have them
+TWISTED = np.radians(50)  # how far the base pose's hips may be turned from the stance's
+
+
+@dataclass(frozen=True)
+class Problem:
+    """code: stable word for programs. message: what is wrong; remedy: what to do. The ids say where to jump to."""
+
+    severity: Severity
+    code: str
+    message: str
+    remedy: str
+    layer: Layer | None = None
+    stance: str | None = None
+    action: str | None = None
+    clip: str | None = None
+
+
+def check(project: Project) -> list[Problem]:
+    """Return every problem, errors first, otherwise in the order of the project."""
+    found = [*_clips(project), *_base(project), *_character(project)]
+    for layer in LAYERS:
+        found += _graph(project, project.graphs[layer])
+    if project.clips and not any(project.graphs[layer].stances for layer in LAYERS):
+        found.append(
+            Problem("hint", "no-stance", "nothing plays yet", "Drop a resting clip on the middle of a layer to make its first stance.")
+        )
+    order = {"error": 0, "warning": 1, "hint": 2}
+    return sorted(found, key=lambda p: order[p.severity])
+
+
+def _clips(project: Project) -> Iterator[Problem]:
+    for entry in project.clips.values():
+        if entry.motion is None:
+            used = project.uses.get(entry.id, ())
+            yield Problem(
+                "error" if used else "warning",
+                "file-missing",
+                f"the file of clip '{entry.name}' is missing ({entry.path})",
+                "Put the file back, or choose 'Find missing files' and show where it is now.",
+                clip=entry.id,
+            )
+        elif project.skeleton is not None and entry.motion.skeleton != project.skeleton:
+            yield Problem(
+                "error" if project.uses.get(entry.id) else "warning",
+                "other-skeleton",
+                f"clip '{entry.name}' has another skeleton ({len(entry.motion.skeleton)} joints, the project has {len(project.skeleton)})",
+                "Remove it, or import it into a project of its own.",
+                clip=entry.id,
+            )
+
+
+def _base(project: Project) -> Iterator[Problem]:
+    if project.skeleton is None:
+        return
+    if project.base.clip is not None:
+        entry = project.clips.get(project.base.clip)
+        if entry is None or entry.motion is None:
+            yield Problem(
+                "error", "base-missing", "the clip of the base pose is missing", "Choose another base pose.", clip=project.base.clip
+            )
+            return
+        if project.base.frame >= entry.frames:
+            last = entry.frames - 1
+            yield Problem(
+                "error",
+                "base-frame",
+                f"the base pose is frame {project.base.frame} of '{entry.name}', which ends at {last}",
+                "Choose a frame inside the clip.",
+                clip=entry.id,
+            )
+    elif any(project.graphs[layer].actions for layer in LAYERS):
+        first = _first_pose(project, _start_loop(project, "body") or _start_loop(project, "arms"))
+        if first is not None and float(pose_distance(project.skeleton, first, anatomy.base_pose(project))) > 0.25 * project.skeleton.height:
+            yield Problem(
+                "warning",
+                "base-rest",
+                "the base pose is the skeleton's rest pose, far from how the character stands; layers will add up to a twisted pose",
+                "Take the base pose from a frame with the hands at the sides: right-click a clip, 'Use this frame as base pose'.",
+            )
+    loop = _start_loop(project, "body")
+    stance = _first_pose(project, loop)
+    if loop is None or stance is None:
+        return
+    rests = _name(project, loop.stance)
+    base = anatomy.base_pose(project)
+    height = project.skeleton.height
+    base_r, base_p = project.skeleton.globals(base)
+    stance_r, stance_p = project.skeleton.globals(stance)
+    roles = anatomy.roles(project)
+    feet = [roles[r] for r in ("left_foot", "right_foot", "left_toes", "right_toes") if r in roles]
+    lift = float(base_p[feet, 1].min() - stance_p[feet, 1].min()) if feet else 0.0
+    if abs(lift) > FLOATS * height:
+        way = "above" if lift > 0 else "below"
+        yield Problem(
+            "warning",
+            "base-floats",
+            f"the base pose stands {abs(lift) * 100:.0f} cm {way} stance '{rests}'; the character will leave the ground",
+            "Take the base pose from a clip in which the character stands as in its stances.",
+            clip=project.base.clip,
+        )
+    hips = roles.get("hips", 0)
+    turn = float(rotation.angle_between(base_r[hips], stance_r[hips]))
+    if turn > TWISTED:
+        yield Problem(
+            "warning",
+            "base-twisted",
+            f"the base pose's hips are turned {np.degrees(turn):.0f} degrees from stance '{rests}'; the character will twist",
+            "Take the base pose from a clip facing the same way.",
+            clip=project.base.clip,
+        )
+
+
+def _character(project: Project) -> Iterator[Problem]:
+    if project.skeleton is None or not any(project.graphs[layer].actions for layer in LAYERS):
+        return
+    found = anatomy.parts(project)
+    for part in ("arms", "head", "legs", "spine"):
+        if part not in found:
+            yield Problem(
+                "warning", "no-part", f"no joint of the skeleton was recognised as {part}", "Open 'Skeleton' and say which joints they are."
+            )
+
+
+def _graph(project: Project, graph: MetaGraph) -> Iterator[Problem]:
+    layer = graph.layer
+    for stance in graph.stances.values():
+
+        def at(severity: Severity, code: str, message: str, remedy: str, stance_id: str = stance.id) -> Problem:
+            return Problem(severity, code, message, remedy, layer, stance_id)
+
+        if not graph.of(stance.id, "stance"):
+            yield at("error", "no-loop", f"stance '{stance.name}' has no loop to rest in", "Drop a resting clip on the middle node.")
+        for kind in KINDS[1:3]:
+            if not graph.of(stance.id, kind):
+                yield at("hint", f"no-{kind}s", f"stance '{stance.name}' has no {kind}s", f"Drop clips on its {kind} node.")
+        if len(graph.stances) > 1 and not any(a.end_stance in graph.stances for a in graph.of(stance.id, "transition")):
+            yield at("warning", "dead-end", f"stance '{stance.name}' cannot be left", "Drop a clip on its transition node.")
+        if graph.start in graph.stances and stance.id not in reachable(graph, graph.start or ""):
+            yield at(
+                "warning",
+                "unreachable",
+                f"stance '{stance.name}' cannot be reached",
+                "Drop a transition that ends in it on another stance.",
+            )
+    if graph.actions and graph.start not in graph.stances:
+        yield Problem("error", "no-start", f"the {layer} layer has no stance to begin in", "Choose a stance and 'Start here'.", layer)
+    for part, weight in graph.weights.items():
+        if not 0 <= weight <= 2:
+            yield Problem("error", "weight", f"the {layer} layer's weight on {part} is {weight:g}", "Set it between 0 and 2.", layer)
+    for action in graph.actions.values():
+        yield from _action(project, graph, action)
+
+
+def _action(project: Project, graph: MetaGraph, action: Action) -> Iterator[Problem]:
+    def at(severity: Severity, code: str, message: str, remedy: str) -> Problem:
+        return Problem(severity, code, f"'{action.name}' {message}", remedy, graph.layer, action.stance, action.id, action.clip)
+
+    timing, entry = action.timing, project.clips.get(action.clip)
+    if action.stance not in graph.stances:
+        yield at("error", "lost-stance", "belongs to a stance that is not there", "Move it to a stance, or remove it.")
+    if action.kind == "transition":
+        if action.end_stance is None:
+            yield at("error", "no-end", "is a transition that ends nowhere", "Choose its end stance.")
+        elif action.end_stance not in graph.stances:
+            yield at("error", "lost-end", "ends in a stance that is not there", "Choose another end stance.")
+        elif action.end_stance == action.stance:
+            yield at("warning", "circle", "ends in the stance it starts from", "Choose another end stance, or make it a gesture.")
+    if not (np.isfinite(action.likelihood) and action.likelihood > 0):
+        yield at("error", "likelihood", f"has the likelihood {action.likelihood:g} and can never be chosen", "Set it above 0.")
+    if project.skeleton is not None and (unknown := [j for j in action.joints if j not in project.skeleton]):
+        yield at("error", "mask", f"moves joint '{unknown[0]}', which the skeleton does not have", "Correct its joints.")
+    if entry is None:
+        yield at("error", "lost-clip", "uses a clip that is not in the project", "Remove it, or import the clip again.")
+        return
+    end = entry.duration if timing.end is None else timing.end
+    tolerance = 0.5 / entry.fps
+    if timing.start < 0 or end > entry.duration + tolerance:
+        yield at(
+            "error",
+            "trim",
+            f"plays {timing.start:.2f}-{end:.2f} s of a clip of {entry.duration:.2f} s",
+            "Bring start and end inside the clip.",
+        )
+    elif end <= timing.start and entry.frames > 1:
+        yield at("error", "empty", f"ends at {end:.2f} s, not after its start at {timing.start:.2f} s", "Move its end behind its start.")
+    elif min(timing.blend_in, timing.blend_out) < 0 or (
+        action.kind != "stance" and timing.blend_in + timing.blend_out > end - timing.start + tolerance
+    ):
+        yield at(
+            "warning",
+            "blend",
+            f"blends for {timing.blend_in + timing.blend_out:.2f} s of its {end - timing.start:.2f} s",
+            "Shorten its blends.",
+        )
+    if timing.earliest_exit is not None and not timing.start <= timing.earliest_exit <= end:
+        yield at("warning", "exit", f"may be left at {timing.earliest_exit:.2f} s, outside what plays", "Bring the earliest exit inside.")
+    yield from _ends(project, graph, action, at)
+
+
+def _ends(project: Project, graph: MetaGraph, action: Action, at: Callable[[Severity, str, str, str], Problem]) -> Iterator[Problem]:
+    """Compare a clip's ends with the stances it leaves and enters, on the joints its layer moves."""
+    motion = _motion(project, action)
+    if motion is None or project.skeleton is None:
+        return
+    joints = _reached(project, graph, action)
+    scale = project.skeleton.height / 1.6
+    start, end = project.span(action)
+    if action.kind == "stance":
+        gap = _gap(motion, start, motion, end, joints)
+        if gap > OPEN_LOOP * scale and action.timing.blend_in <= 0:
+            yield at(
+                "warning",
+                "open-loop",
+                f"does not close: its ends are {gap * 100:.0f} cm apart",
+                "Blend its seam (blend in), or trim it to a loop.",
+            )
+        return
+    for stance, moment, word in ((action.stance, start, "begins"), (ends_in(action), end, "ends")):
+        loop = next(iter(graph.of(stance, "stance")), None) if stance else None
+        target = _motion(project, loop) if loop is not None else None
+        if loop is None or target is None:
+            continue
+        gap = _gap(motion, moment, target, project.span(loop)[0], joints)
+        if gap > FAR * scale:
+            yield at(
+                "warning",
+                "far-start" if word == "begins" else "far-end",
+                f"{word} {gap * 100:.0f} cm from stance '{_name(project, stance)}'",
+                "Trim it, lengthen the blend, or place it on the stance it fits.",
+            )
+
+
+def _reached(project: Project, graph: MetaGraph, action: Action) -> tuple[int, ...]:
+    moved = anatomy.mask(project, action)
+    parts = anatomy.parts(project)
+    return tuple(
+        j
+        for j, part in enumerate(parts)
+        if graph.weights.get(part, REACH[graph.layer][part]) > 0 and part != "face" and (moved is None or moved[j] > 0)
+    )
+
+
+@lru_cache(maxsize=65536)
+def _gap(a: Clip, seconds_a: float, b: Clip, seconds_b: float, joints: tuple[int, ...]) -> float:
+    """Largest distance in metres of the joints, root aside. Clips compare by identity, so edits elsewhere cost nothing."""
+    return float(pose_distance(a.skeleton, a.pose_at(seconds_a), b.pose_at(seconds_b), joints))
+
+
+def _motion(project: Project, action: Action | None) -> Clip | None:
+    entry = project.clips.get(action.clip) if action is not None else None
+    motion = entry.motion if entry is not None else None
+    return motion if motion is not None and motion.skeleton == project.skeleton else None
+
+
+def _start_loop(project: Project, layer: Layer) -> Action | None:
+    graph = project.graphs[layer]
+    return next(iter(graph.of(graph.start, "stance")), None) if graph.start else None
+
+
+def _first_pose(project: Project, loop: Action | None) -> Any:
+    motion = _motion(project, loop)
+    return motion.pose_at(project.span(loop)[0]) if motion is not None and loop is not None else None
+
+
+def _name(project: Project, stance: str | None) -> str:
+    found = project.stance(stance)
+    return found.name if found is not None else "?"

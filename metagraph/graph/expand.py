@@ -1,0 +1,104 @@
+"""The ordinary state machine a meta-graph stands for: what an animator would have had to draw by hand.
+
+A state is an action. An action that ends in a stance connects to every action that starts in it: to its loops, its
+gestures and fidgets, and the transitions that leave it.
+"""
+
+from __future__ import annotations
+
+from collections import Counter
+from collections.abc import Iterator
+from dataclasses import dataclass
+
+from metagraph.graph.model import LAYERS, Action, Layer, MetaGraph, Project
+
+
+@dataclass(frozen=True, slots=True)
+class Connection:
+    """source, target: action ids. leave: clip seconds of the source at which it may be left, None for at any time. blend: seconds."""
+
+    source: str
+    target: str
+    leave: float | None
+    blend: float
+
+
+@dataclass(frozen=True)
+class Size:
+    """How large the expanded machine is; `clips` counts the different clips that were placed."""
+
+    clips: int
+    states: int
+    connections: int
+
+
+def ends_in(action: Action) -> str | None:
+    """Return the stance an action leaves the layer in."""
+    return action.end_stance if action.kind == "transition" else action.stance
+
+
+def size(project: Project, layer: Layer | None = None, stance: str | None = None) -> Size:
+    """Count states and connections without listing them; for one layer, or for what starts or ends in one stance."""
+    clips: set[str] = set()
+    states = connections = 0
+    for graph in (project.graphs[layer],) if layer else tuple(project.graphs[x] for x in LAYERS):
+        actions = [a for a in graph.actions.values() if stance is None or stance in (a.stance, ends_in(a))]
+        clips.update(a.clip for a in actions)
+        states += len(actions)
+        arriving = Counter(e for a in actions if (e := ends_in(a)) is not None and e in graph.stances)
+        leaving = Counter(a.stance for a in actions)
+        itself = len([a for a in actions if a.kind != "transition" and a.stance in graph.stances])
+        connections += sum(n * leaving[s] for s, n in arriving.items()) - itself
+    return Size(len(clips), states, connections)
+
+
+def connections(project: Project, graph: MetaGraph) -> Iterator[Connection]:
+    """Yield every connection of a layer: sources in the order they were placed, each with its targets in that order."""
+    for source in graph.actions.values():
+        end = ends_in(source)
+        if end is None or end not in graph.stances:
+            continue
+        _, last = project.span(source)
+        leave = None if source.kind == "stance" else source.timing.earliest_exit if source.timing.earliest_exit is not None else last
+        for kind in ("stance", "gesture", "fidget", "transition"):
+            for target in graph.of(end, kind):
+                if target.id != source.id:
+                    blend = source.timing.blend_out if target.kind == "stance" else target.timing.blend_in
+                    yield Connection(source.id, target.id, leave, blend)
+
+
+def chain(graph: MetaGraph, start: str, goal: str) -> tuple[str, ...] | None:
+    """Return the stances after `start` on the shortest way of transitions to `goal`; () if already there, None if there is no way.
+
+    Among equally short ways the one whose transitions were placed first is taken.
+    """
+    if start == goal:
+        return ()
+    before: dict[str, str] = {start: start}
+    queue = [start]
+    for stance in queue:
+        for action in graph.of(stance, "transition"):
+            end = action.end_stance
+            if end is None or end in before or end not in graph.stances:
+                continue
+            before[end] = stance
+            if end == goal:
+                way = [end]
+                while before[way[-1]] != start:
+                    way.append(before[way[-1]])
+                return tuple(reversed(way))
+            queue.append(end)
+    return None
+
+
+def reachable(graph: MetaGraph, start: str) -> frozenset[str]:
+    """Return the stances that transitions lead to from `start`, itself included."""
+    seen = {start}
+    queue = [start]
+    for stance in queue:
+        for action in graph.of(stance, "transition"):
+            end = action.end_stance
+            if end is not None and end in graph.stances and end not in seen:
+                seen.add(end)
+                queue.append(end)
+    return frozenset(seen)

@@ -1,0 +1,85 @@
+"""The Markov model that performs when nobody asks for anything: a first-order chain over (limb, kind).
+
+The arms matrix is the paper's (Borer et al., figure 11), learned from annotated casual conversation. Body and head
+have no published matrix; theirs are ours, shaped on the paper's labels: the head nods and now and then changes its tilt,
+the body mostly rests, shifts and fidgets.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping
+
+from metagraph.graph.model import Kind, Layer, Limb, Markov, Project
+from metagraph.playback.choice import pick, uniform
+from metagraph.playback.plan import WRITTEN, MetaAction, Request
+
+_LIMB: Mapping[str, Limb] = {"L": "left", "R": "right", "LR": "both"}
+_KIND: Mapping[str, Kind] = {"G": "gesture", "F": "fidget", "T": "transition"}
+
+
+def _states(text: str) -> tuple[tuple[Limb, Kind], ...]:
+    return tuple((_LIMB[word.split(",")[0]], _KIND[word.split(",")[1]]) for word in text.split())
+
+
+def _rows(text: str) -> tuple[tuple[float, ...], ...]:
+    """Read percentages; rounding in print is evened out so that each row sums to 1."""
+    rows = [[float(x) for x in line.split()] for line in text.strip().splitlines()]
+    return tuple(tuple(x / sum(row) for x in row) for row in rows)
+
+
+ARMS = Markov(
+    "arms",
+    _states("L,G L,F L,T R,G R,F R,T LR,G LR,F LR,T"),
+    _rows("""
+    25   37.5 12.5 12.5 0  0  12.5 0    0
+    26.7 33.3 6.7  13.3 20 0  0    0    0
+    20   20   0    0    60 0  0    0    0
+    0    28.6 0    42.9 0  0  14.3 0    14.3
+    0    42.9 14.3 0    0  0  14.3 14.3 14.3
+    0    0    100  0    0  0  0    0    0
+    25   0    0    25   25 0  0    25   0
+    0    33.3 33.3 0    0  0  33.3 0    0
+    0    0    0    0    20 20 0    0    60
+    """),
+    gap=1.6,
+)
+HEAD = Markov("head", _states("LR,G LR,F LR,T"), _rows("60 20 20\n60 15 25\n70 20 10"), gap=2.4, positive=0.2, negative=0.1)
+BODY = Markov("body", _states("LR,G LR,F LR,T"), _rows("10 40 50\n20 30 50\n25 45 30"), gap=6.0)
+DEFAULTS: Mapping[Layer, Markov] = {"body": BODY, "arms": ARMS, "head": HEAD}
+
+
+def model(project: Project, layer: Layer) -> Markov:
+    """Return the project's model of a layer, or the default."""
+    return project.markov.get(layer, DEFAULTS[layer])
+
+
+def write(chain: Markov, seed: int, until: float) -> Iterator[MetaAction]:
+    """Yield meta actions from 0 to `until` seconds: rests drawn between 0.35 and 1.65 times the mean gap, windows of 1 to 3 s.
+
+    Each draw is keyed by the meta action's number, so a longer horizon only appends. A chain that cannot leave a row
+    of zeros starts again from any state.
+    """
+    time, state, number = 0.0, -1, 0
+    while True:
+        key = f"auto/{chain.layer}/{number}"
+        row = chain.matrix[state] if state >= 0 else [1.0] * len(chain.states)
+        weights = {str(i): p for i, p in enumerate(row)}
+        if not any(p > 0 for p in row):
+            weights = dict.fromkeys(weights, 1.0)
+        state = int(pick(seed, key, "state", weights))
+        limb, kind = chain.states[state]
+        time += chain.gap * (0.35 + 1.3 * uniform(seed, key, "gap"))
+        if time >= until:
+            return
+        length = 1.0 + 2.0 * uniform(seed, key, "length")
+        tags: tuple[str, ...] = ()
+        if kind == "gesture":
+            draw = uniform(seed, key, "tag")
+            if draw < chain.positive:
+                tags = ("positive",)
+            elif draw < chain.positive + chain.negative:
+                tags = ("negative",)
+        request = Request(key, chain.layer, kind, time, length, tags=tags, limb=limb, priority=WRITTEN)
+        yield MetaAction(request, time, time + length, written=True)
+        time += length
+        number += 1

@@ -1,0 +1,225 @@
+"""From a meta plan to specific actions: candidates, the three temporal cases, the draw (Borer et al., section 6.2)."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field
+from typing import Any
+
+from metagraph.graph.expand import chain
+from metagraph.graph.model import Action, MetaGraph, Project
+from metagraph.playback.choice import pick
+from metagraph.playback.plan import Cue, MetaAction, Outcome, Report, Rest
+
+FITS = 1e-6  # seconds by which sums of times may be off
+LOOP_FADE = 0.6  # seconds of crossfade when a long rest changes from one loop of its stance to another
+
+
+@dataclass
+class Performer:
+    """One layer being planned, cue after cue. Mutable while planning; nothing of it leaves the planner.
+
+    counts: how often each action was used, times alpha. last: the action used last, by (stance, kind).
+    """
+
+    project: Project
+    graph: MetaGraph
+    seed: int
+    stance: str
+    free: float = 0.0
+    counts: dict[str, float] = field(default_factory=dict)
+    last: dict[tuple[str, str], str] = field(default_factory=dict)
+    cues: list[Cue] = field(default_factory=list)
+    rests: list[Rest] = field(default_factory=list)
+    reports: list[Report] = field(default_factory=list)
+
+    def begin(self) -> bool:
+        """Lay the first loop down; return whether the layer can perform at all."""
+        loop = self._loop(self.stance, f"rest/{self.graph.layer}")
+        if loop is None:
+            return False
+        self.rests.append(Rest(self.stance, loop, 0.0, 0.0, 0.0))
+        return True
+
+    def perform(self, metas: Sequence[MetaAction]) -> None:
+        """Realise a conflict-free meta plan, in order."""
+        for meta, limit, wish in _bounds(metas):
+            if meta.end <= self.free + FITS:
+                running = self.cues[-1].action.name if self.cues else "the running action"
+                self._tell(meta, "covered", f"wholly covered by '{running}', which plays until {self.free:.2f} s")
+                continue
+            self._realise(meta, max(self.free, meta.start), limit, wish)
+
+    def _realise(self, meta: MetaAction, now: float, limit: float, wish: float) -> None:
+        steps = self._steps(meta)
+        if steps is None:
+            return
+        cues: list[Cue] = []
+        stance = self.stance
+        for number, candidates in enumerate(steps):
+            final = number == len(steps) - 1
+            fitting = {a.id: a for a in candidates if now + self._shortest(a) <= limit + FITS}
+            if not fitting:
+                if meta.written:
+                    self._tell(meta, "no-room", f"nothing fits into {limit - now:.2f} s")
+                else:
+                    self._tell(meta, "no-room", f"nothing fits into the {limit - now:.2f} s before something more important")
+                return
+            action = self._draw(list(fitting.values()), f"{meta.key}" if final else f"{meta.key}/{number}")
+            cue = self._cue(action, now, limit, wish if final else float("inf"), stance, meta.key)
+            cues.append(cue)
+            now, stance = cue.end, cue.then
+        for cue in cues:
+            self._keep(cue)
+
+    def _steps(self, meta: MetaAction) -> list[list[Action]] | None:
+        """Return the candidates of each action in turn: the transitions to get there, then the action; None if impossible."""
+        request, graph = meta.request, self.graph
+        if request.action is not None:
+            action = graph.actions.get(request.action)
+            if action is None or action.stance not in graph.stances:
+                self._tell(meta, "unknown-action", f"there is no action '{request.action}' in the {graph.layer} layer")
+                return None
+            if action.kind == "stance":
+                return self._way(meta, action.stance)
+            if action.kind == "transition" and not self._usable(action):
+                self._tell(meta, "no-stance", f"'{action.name}' ends in a stance that has no loop")
+                return None
+            way = self._way(meta, action.stance)
+            return None if way is None else [*way, [action]]
+        if request.stance is not None and request.kind in ("transition", "stance"):
+            if request.stance not in graph.stances:
+                self._tell(meta, "no-stance", f"there is no stance '{request.stance}' in the {graph.layer} layer")
+                return None
+            return self._way(meta, request.stance)
+        found = [a for a in graph.of(self.stance, request.kind) if self._usable(a) and set(request.tags) <= set(a.tags)]
+        exact = [a for a in found if request.limb is None or a.limb == request.limb]
+        if not exact and meta.written:  # the model's limb and tags are wishes, not orders
+            exact = found or [a for a in graph.of(self.stance, request.kind) if self._usable(a)]
+        if not exact:
+            name = graph.stances[self.stance].name
+            asked = " ".join(x for x in (request.limb or "", *request.tags, request.kind) if x)
+            others = sorted(
+                {graph.stances[a.stance].name for a in graph.actions.values() if a.kind == request.kind and set(request.tags) <= set(a.tags)
+                 and a.stance in graph.stances and (request.limb is None or a.limb == request.limb)}
+            )  # fmt: skip
+            hint = f"; there is one in '{others[0]}'" if others else ""
+            self._tell(meta, "no-candidate", f"stance '{name}' has no {asked}{hint}")
+            return None
+        return [exact]
+
+    def _way(self, meta: MetaAction, goal: str) -> list[list[Action]] | None:
+        """Return the transitions' candidates hop by hop from the current stance to `goal`; [] when already there."""
+        stances = chain(_usable_graph(self.graph), self.stance, goal)
+        if stances is None:
+            a, b = self.graph.stances[self.stance].name, self.graph.stances[goal].name
+            self._tell(meta, "no-way", f"no chain of transitions leads from '{a}' to '{b}'")
+            return None
+        hops, at = [], self.stance
+        for following in stances:
+            hops.append([a for a in self.graph.of(at, "transition") if a.end_stance == following])
+            at = following
+        return hops
+
+    def _usable(self, action: Action) -> bool:
+        if action.likelihood <= 0:
+            return False
+        return action.kind != "transition" or (
+            action.end_stance in self.graph.stances and bool(self.graph.of(action.end_stance or "", "stance"))
+        )
+
+    def _shortest(self, action: Action) -> float:
+        """Seconds an action needs at the least: to its earliest exit and its blend out, or all of it."""
+        start, end = self.project.span(action)
+        exit_at = action.timing.earliest_exit
+        if exit_at is None:
+            return end - start
+        return min(end - start, max(0.0, exit_at - start) + action.timing.blend_out)
+
+    def _draw(self, candidates: list[Action], key: str) -> Action:
+        """Draw with p_k ~ likelihood_k / max(c_k, 1); the one played last in this place is left out where there is another."""
+        if len(candidates) > 1 and self.project.settings.never_twice:
+            first = candidates[0]
+            last = self.last.get((first.stance, first.kind))
+            candidates = [a for a in candidates if a.id != last] or candidates
+        weights = {a.id: a.likelihood / max(self.counts.get(a.id, 0.0), 1.0) for a in candidates}
+        chosen = pick(self.seed, key, "action", weights) if any(w > 0 for w in weights.values()) else candidates[0].id
+        return next(a for a in candidates if a.id == chosen)
+
+    def _cue(self, action: Action, now: float, limit: float, wish: float, stance: str, meta: str) -> Cue:
+        start, end = self.project.span(action)
+        length = end - start
+        if action.timing.earliest_exit is not None:
+            length = min(length, max(self._shortest(action), min(limit, wish) - now))
+        into, out = max(0.0, action.timing.blend_in), max(0.0, action.timing.blend_out)
+        squeeze = min(1.0, length / (into + out)) if into + out > 0 else 1.0
+        then = action.end_stance if action.kind == "transition" and action.end_stance else stance
+        return Cue(action, now, now + length, start, into * squeeze, out * squeeze, stance, then, meta)
+
+    def _keep(self, cue: Cue) -> None:
+        self.cues.append(cue)
+        self.free, self.stance = cue.end, cue.then
+        count(self.counts, self.last, cue, self.project.settings.alpha)
+        loop = self._loop(cue.then, cue.meta)
+        if loop is not None:
+            # The loop begins anew under the action, so that the action's last pose meets the loop's first.
+            middle = cue.start + cue.blend_in
+            self.rests.append(Rest(cue.then, loop, cue.end - cue.blend_out, middle, cue.end - cue.blend_out - middle))
+
+    def _loop(self, stance: str, key: str) -> Action | None:
+        loops = self.graph.of(stance, "stance")
+        weights = {a.id: a.likelihood for a in loops if a.likelihood > 0}
+        if not weights:
+            return loops[0] if loops else None
+        chosen = pick(self.seed, key, "loop", weights)
+        return next(a for a in loops if a.id == chosen)
+
+    def vary_rests(self, end: float) -> None:
+        """Where a stance has several loops, change between them in long rests, at a loop's end."""
+        out: list[Rest] = []
+        for place, rest in enumerate(self.rests):
+            out.append(rest)
+            loops = self.graph.of(rest.stance, "stance")
+            if len(loops) < 2:
+                continue
+            until = self.rests[place + 1].fade_start if place + 1 < len(self.rests) else end
+            current, change, number = rest, rest.start, 0
+            while True:
+                start, stop = self.project.span(current.action)
+                change += max(1.0, stop - start - current.action.timing.blend_in)
+                if change > until:
+                    break
+                number += 1
+                loop = self._loop(rest.stance, f"{self.graph.layer}/{rest.start:.3f}/{number}")
+                if loop is not None and loop.id != current.action.id:
+                    current = Rest(rest.stance, loop, change, change - LOOP_FADE, LOOP_FADE)
+                    out.append(current)
+        self.rests = out
+
+    def _tell(self, meta: MetaAction, outcome: Outcome, message: str, **more: Any) -> None:
+        self.reports.append(Report(meta.request.id, outcome, message, self.graph.layer, meta.start, written=meta.written, **more))
+
+
+def _bounds(metas: Sequence[MetaAction]) -> list[tuple[MetaAction, float, float]]:
+    """Return each meta action with when the next more important one begins, and the next as important that was asked for."""
+    out = []
+    first: dict[tuple[int, bool], float] = {}  # (priority, written) -> start of the next such
+    for meta in reversed(metas):
+        priority = meta.request.priority
+        limit = min((t for (p, _), t in first.items() if p > priority), default=float("inf"))
+        wish = min((t for (p, written), t in first.items() if p >= priority and not written), default=float("inf"))
+        out.append((meta, limit, wish))
+        first[(priority, meta.written)] = meta.start
+    return out[::-1]
+
+
+def count(counts: dict[str, float], last: dict[tuple[str, str], str], cue: Cue, alpha: float) -> None:
+    """Note that an action was used: c_k += alpha."""
+    counts[cue.action.id] = counts.get(cue.action.id, 0.0) + alpha
+    last[(cue.stance, cue.action.kind)] = cue.action.id
+
+
+def _usable_graph(graph: MetaGraph) -> MetaGraph:
+    """Return the graph without transitions into stances that have no loop."""
+    lost: Mapping[str, None] = {a.id: None for end, actions in graph.into.items() if not graph.of(end, "stance") for a in actions}
+    return graph.with_actions(lost) if lost else graph

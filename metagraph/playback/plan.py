@@ -1,0 +1,146 @@
+"""Requests, meta actions and plans: what the planner takes and gives. All values; times are seconds."""
+
+from __future__ import annotations
+
+from bisect import bisect_right
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+from functools import cached_property
+from typing import Literal
+
+from metagraph.graph.model import LAYERS, Action, Kind, Layer, Limb
+
+ASKED = 1  # default priority of a request
+WRITTEN = 0  # priority of what the Markov model writes
+
+
+@dataclass(frozen=True, slots=True)
+class Request:
+    """What an agent or animator asks for, at any level of abstraction.
+
+    id: unique; it keys the random draws. start: seconds. duration: how long the activity is wanted, None for one action.
+    action: id of a specific action. tags: all of them must be on the action. limb: which arm. stance: id of the stance to
+    go to (kind "transition"). priority: higher wins. resume: whether, when something more important cuts it, its
+    remainder goes on afterwards.
+    """
+
+    id: str
+    layer: Layer
+    kind: Kind
+    start: float
+    duration: float | None = None
+    action: str | None = None
+    tags: tuple[str, ...] = ()
+    limb: Limb | None = None
+    stance: str | None = None
+    priority: int = ASKED
+    resume: bool = False
+
+
+@dataclass(frozen=True, slots=True)
+class MetaAction:
+    """A request placed in time: `start`..`end` is the window it may use. written: by the Markov model, not asked for.
+    part: 0 for the request itself, n for its n-th remainder after a cut.
+    """
+
+    request: Request
+    start: float
+    end: float
+    part: int = 0
+    written: bool = False
+
+    @property
+    def key(self) -> str:
+        """What keys this meta action's random draws."""
+        return self.request.id if self.part == 0 else f"{self.request.id}+{self.part}"
+
+
+@dataclass(frozen=True, slots=True)
+class Cue:
+    """One action in the plan. It plays clip seconds `entry`..`entry + (end - start)` during `start`..`end`.
+
+    blend_in, blend_out: seconds, fitting inside the cue. stance: before it; then: the stance it leaves the layer in.
+    meta: key of the meta action it realises.
+    """
+
+    action: Action
+    start: float
+    end: float
+    entry: float
+    blend_in: float
+    blend_out: float
+    stance: str
+    then: str
+    meta: str
+
+
+@dataclass(frozen=True, slots=True)
+class Rest:
+    """The stance loop that lies under the cues from `start` on: loop seconds are `time - start`, wrapped.
+
+    fade_start, fade: when and for how many seconds it takes over from the loop before.
+    """
+
+    stance: str
+    action: Action
+    start: float
+    fade_start: float
+    fade: float
+
+
+Outcome = Literal["late", "cut", "resumed", "covered", "no-room", "no-candidate", "no-way", "no-stance", "unknown-action", "past"]
+
+
+@dataclass(frozen=True, slots=True)
+class Report:
+    """What became of a meta action that was not simply played as asked. played: whether something of it still plays."""
+
+    request: str
+    outcome: Outcome
+    message: str
+    layer: Layer
+    at: float
+    played: bool = False
+    written: bool = False
+
+
+@dataclass(frozen=True)
+class LayerPlan:
+    """cues never overlap and ascend; rests ascend by fade_start, the first covering everything before."""
+
+    layer: Layer
+    metas: tuple[MetaAction, ...] = ()
+    cues: tuple[Cue, ...] = ()
+    rests: tuple[Rest, ...] = ()
+
+    @cached_property
+    def starts(self) -> list[float]:
+        return [cue.start for cue in self.cues]
+
+    def cue_at(self, seconds: float) -> Cue | None:
+        """Return the cue playing at a time, or None while the stance rests."""
+        place = bisect_right(self.starts, seconds) - 1
+        return self.cues[place] if place >= 0 and seconds < self.cues[place].end else None
+
+    def stance_at(self, seconds: float) -> str | None:
+        """Return the stance the layer rests in or, during a transition, leaves."""
+        place = bisect_right(self.starts, seconds) - 1
+        if place >= 0:
+            cue = self.cues[place]
+            return cue.stance if seconds < cue.end else cue.then
+        return self.rests[0].stance if self.rests else None
+
+
+def _empty() -> dict[Layer, LayerPlan]:
+    return {layer: LayerPlan(layer) for layer in LAYERS}
+
+
+@dataclass(frozen=True)
+class Plan:
+    """The specific actions of every layer from 0 to `end` seconds, and what became of requests that could not be met."""
+
+    seed: int
+    end: float
+    layers: Mapping[Layer, LayerPlan] = field(default_factory=_empty)
+    reports: tuple[Report, ...] = ()
+    requests: tuple[Request, ...] = ()
