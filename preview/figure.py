@@ -1,0 +1,242 @@
+"""Figures: what is drawn for a skeleton. They turn global joint transforms into a mesh's palette, any number at once."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from metagraph.motion import rotation
+from metagraph.motion.character import Character, Material
+from metagraph.motion.skeleton import Skeleton
+from preview import joints as rules
+from preview.mesh import VERTEX, Batch, Mesh, ball, capsule, egg
+
+Array = NDArray[Any]
+
+LEFT_COLOR, MIDDLE_COLOR, RIGHT_COLOR = (222, 226, 232), (190, 193, 198), (150, 154, 163)  # neutral: only light tells the sides apart
+
+
+class Figure:
+    """A mesh that follows a skeleton.
+
+    skeleton: whose global transforms the figure takes. mesh: in its rest pose. sources: `[M]`, for each matrix of the
+    palette the joint of `skeleton` it follows (-1: none). shadow: joints `[S]` and radii `[S]` that darken the ground.
+    """
+
+    def __init__(self, skeleton: Skeleton, mesh: Mesh, sources: Array) -> None:
+        self.skeleton, self.mesh, self.sources = skeleton, mesh, sources
+        self.drawn = rules.drawn(skeleton)
+        _, rest = skeleton.globals(skeleton.rest)
+        self.height = max(1e-3, float(np.ptp(rest[self.drawn], axis=0).max()))
+        self.lines = np.array([i for i in range(len(skeleton)) if self.drawn[i] and self._above(i) >= 0], int)
+        self.line_starts = np.array([self._above(i) for i in self.lines], int)
+        body = [k for k, i in enumerate(self.lines) if not rules.is_finger(skeleton.names[i])]
+        self.shadow = (self.lines[body], self.line_starts[body])
+        self._head = rules.head(skeleton)
+
+    def _above(self, joint: int) -> int:
+        """The nearest drawn joint above, or -1."""
+        parent = int(self.skeleton.parents[joint])
+        while parent >= 0 and not self.drawn[parent]:
+            parent = int(self.skeleton.parents[parent])
+        return parent
+
+    def palette(self, rotations: Array, positions: Array) -> Array:
+        """Return `[..., M, 3, 4]` float32: rest pose to posed, from global `rotations [..., J, 4]`, `positions [..., J, 3]`."""
+        raise NotImplementedError
+
+    def bounds(self, positions: Array) -> tuple[Array, Array]:
+        """Return the lowest and highest corner of a box round the figure in all poses `positions [..., J, 3]`."""
+        points = np.asarray(positions, float)[..., self.drawn, :].reshape(-1, 3)
+        points = points[np.isfinite(points).all(1)]
+        if not len(points):
+            return np.zeros(3), np.ones(3)
+        skin, crown = 0.045 * self.height, 0.11 * self.height
+        return points.min(0) - skin, points.max(0) + [skin, crown, skin]
+
+    def head(self, rotations: Array, positions: Array) -> Array:
+        """Return the middle of the head `[..., 3]`: a little above its joint, else the top of the figure."""
+        if self._head is None:
+            top = np.argmax(np.asarray(positions)[..., 1], -1)
+            return np.take_along_axis(np.asarray(positions), top[..., None, None], -2)[..., 0, :]
+        up = rotation.rotate(rotation.conjugate(self._rest_rotation(self._head)), np.array([0, 0.05 * self.height, 0]))
+        return np.asarray(positions[..., self._head, :] + rotation.rotate(rotations[..., self._head, :], up))
+
+    def _rest_rotation(self, joint: int) -> Array:
+        return np.asarray(self.skeleton.globals(self.skeleton.rest)[0][joint])
+
+
+class SkinnedFigure(Figure):
+    """A character's mesh on a project's skeleton, which may be another than its own.
+
+    Joints are matched by name; one that is missing follows its nearest matched ancestor, and one without any such
+    ancestor follows the first that matched. `matched` counts the joints found.
+    """
+
+    def __init__(self, character: Character, skeleton: Skeleton | None = None) -> None:
+        own = character.skeleton
+        skeleton = own if skeleton is None else skeleton
+        rest_r, rest_p = own.globals(own.rest)
+        found = np.array([skeleton.index(n) if n in skeleton else -1 for n in own.names])
+        self.matched = int((found >= 0).sum())
+        follow = np.arange(len(own))  # the character's joint whose matrix each joint uses
+        first = int(np.argmax(found >= 0)) if self.matched else 0
+        for i in range(len(own)):
+            if found[i] < 0:
+                follow[i] = follow[own.parents[i]] if own.parents[i] >= 0 else first
+        self._inverse_rotations = rotation.conjugate(rest_r)[follow].astype(np.float32)
+        self._rest_positions = rest_p[follow].astype(np.float32)
+        super().__init__(skeleton, _character_mesh(character), found[follow])
+        self.character = character
+
+    def palette(self, rotations: Array, positions: Array) -> Array:
+        sources = np.maximum(self.sources, 0)
+        turn = rotation.multiply(np.asarray(rotations, np.float32)[..., sources, :], self._inverse_rotations)
+        out = np.empty((*turn.shape[:-1], 3, 4), np.float32)
+        out[..., :3] = rotation.to_matrix(turn)
+        out[..., 3] = np.asarray(positions, np.float32)[..., sources, :] - rotation.rotate(turn, self._rest_positions)
+        out[..., self.sources < 0, :, :] = np.eye(3, 4, dtype=np.float32)
+        return out
+
+
+class StickFigure(Figure):
+    """Tapered bones, joint balls and a head for any skeleton, sized by it. The left is a little lighter than the right."""
+
+    def __init__(self, skeleton: Skeleton) -> None:
+        # Matrix j moves with joint j; matrix J + j stretches from the drawn joint above to joint j.
+        count = len(skeleton)
+        self._parts: list[tuple[tuple[Array, Array, Array], int, Array, tuple[int, int, int]]] = []
+        super().__init__(skeleton, Mesh(np.zeros(0, VERTEX), np.zeros((0, 3), np.uint32), (), 2 * count), np.tile(np.arange(count), 2))
+        rest_r, rest_p = skeleton.globals(skeleton.rest)
+        self._rest_rotations, self._rest_positions = rest_r.astype(np.float32), rest_p.astype(np.float32)
+        self._above_of = np.arange(count)
+        self._above_of[self.lines] = self.line_starts
+        self.sources[count:] = self._above_of  # a bone is moved by the joint it starts at
+        self._build(rest_p)
+        self.mesh = _joined(self._parts, 2 * count)
+
+    def palette(self, rotations: Array, positions: Array) -> Array:
+        rotations, positions = np.asarray(rotations, np.float32), np.asarray(positions, np.float32)
+        turn = rotation.multiply(rotations, rotation.conjugate(self._rest_rotations))
+        count = turn.shape[-2]
+        out = np.empty((*turn.shape[:-2], 2 * count, 3, 4), np.float32)
+        out[..., :count, :, :3] = rotation.to_matrix(turn)
+        out[..., :count, :, 3] = positions - rotation.rotate(turn, self._rest_positions)
+        # Bones lead from joint to joint wherever a file has moved those, and stretch with them.
+        above = self._above_of
+        before = (self._rest_positions - self._rest_positions[above]).astype(np.float32)
+        now = positions - positions[..., above, :]
+        carried = rotation.rotate(turn[..., above, :], before)
+        aim = rotation.multiply(rotation.between(carried, now).astype(np.float32), turn[..., above, :])
+        length = np.maximum(np.linalg.norm(before, axis=-1), 1e-6)
+        axis = before / length[..., None]
+        stretch = np.clip(np.linalg.norm(now, axis=-1) / length, 0.0, 20.0) - 1
+        matrix = rotation.to_matrix(aim)
+        along = np.einsum("...ij,...j->...i", matrix, np.broadcast_to(axis, now.shape))
+        out[..., count:, :, :3] = matrix + stretch[..., None, None] * along[..., :, None] * axis[..., None, :]
+        out[..., count:, :, 3] = positions[..., above, :] - np.einsum(
+            "...ij,...j->...i", out[..., count:, :, :3], np.broadcast_to(self._rest_positions[above], now.shape)
+        )
+        return out
+
+    def _build(self, rest: Array) -> None:
+        skeleton, height = self.skeleton, self.height
+        side = rules.sides(skeleton)
+        colors = {1: LEFT_COLOR, 0: MIDDLE_COLOR, -1: RIGHT_COLOR}
+        finger = [rules.is_finger(n) for n in skeleton.names]
+        radius = np.full(len(skeleton), 0.006 * height)
+        for child, parent in zip(self.lines, self.line_starts, strict=True):
+            offset = rest[child] - rest[parent]
+            length = float(np.linalg.norm(offset))
+            if length < 1e-5:
+                continue
+            small = finger[child] or length < 0.02 * height
+            thick = min(0.15 * length, 0.022 * height) if not small else min(0.2 * length, 0.0055 * height)
+            thin = thick * (0.62 if not small else 0.85)
+            radius[child], radius[parent] = max(radius[child], thin), max(radius[parent], thick if not finger[child] else 0)
+            sides, rings = (6, 2) if small else (12, 3)
+            turn = rotation.between(np.array([0.0, 1, 0]), offset)
+            self._add(capsule(length, thick, thin, sides, rings), len(skeleton) + int(child), rest[parent], colors[int(side[child])], turn)
+        for joint in np.flatnonzero(self.drawn):
+            if joint == self._head or finger[joint]:
+                continue
+            size = radius[joint] * 1.16
+            self._add(ball(size), int(joint), rest[joint], (128, 131, 138))
+        if self._head is not None:
+            self._add_head(rest, self._head, colors[0])
+        elif len(self.lines) == 0:
+            self._add(
+                ball(0.08 if height <= 2e-3 else 0.05 * height),
+                int(np.flatnonzero(self.drawn)[0]),
+                rest[int(np.flatnonzero(self.drawn)[0])],
+                colors[0],
+            )
+
+    def _add_head(self, rest: Array, joint: int, color: tuple[int, int, int]) -> None:
+        """An egg above the head's joint, in line with the rest pose's upright."""
+        tall = 0.135 * self.height
+        self._add(egg(tall, tall * 0.42), joint, rest[joint] + [0, -0.1 * tall, 0.06 * tall], color)
+
+    def _add(
+        self, shape: tuple[Array, Array, Array], matrix: int, at: Array, color: tuple[int, int, int], turn: Array = rotation.IDENTITY
+    ) -> None:
+        positions, normals, triangles = shape
+        self._parts.append(((rotation.rotate(turn, positions) + at, rotation.rotate(turn, normals), triangles), matrix, at, color))
+
+
+def _joined(parts: list[Any], matrices: int) -> Mesh:
+    """Put rigid parts into one mesh."""
+    vertices, triangles, count = [], [], 0
+    for (positions, normals, corners), matrix, _, color in parts:
+        v = np.zeros(len(positions), VERTEX)
+        v["position"], v["normal"] = positions, normals
+        v["bones"][:, 0], v["weights"][:, 0] = matrix, 1
+        v["color"] = (*color, 90)
+        vertices.append(v)
+        triangles.append(corners + count)
+        count += len(v)
+    if not parts:
+        return Mesh(np.zeros(0, VERTEX), np.zeros((0, 3), np.uint32), (), matrices)
+    indices = np.concatenate(triangles).astype(np.uint32)
+    return Mesh(np.concatenate(vertices), indices, (Batch(0, len(indices)),), matrices)
+
+
+def _character_mesh(character: Character) -> Mesh:
+    """Bring a character's surfaces together by texture, so that a model of many plain materials is one draw."""
+    groups: dict[tuple[bytes | None, bool], list[tuple[Array, Material]]] = {}
+    for surface in character.surfaces:
+        material = character.materials[surface.material] if surface.material < len(character.materials) else Material("")
+        run = np.asarray(character.triangles[surface.first : surface.first + surface.count])
+        groups.setdefault((material.image, material.double_sided), []).append((run, material))
+    if not character.surfaces and len(character.triangles):
+        groups[(None, False)] = [(np.asarray(character.triangles), Material(""))]
+    vertices, triangles, batches, origins = [], [], [], []
+    count = first = 0
+    for (image, double_sided), runs in groups.items():
+        start = first
+        for run, material in runs:
+            used, corners = np.unique(run, return_inverse=True)
+            v = np.zeros(len(used), VERTEX)
+            v["position"], v["normal"], v["uv"] = character.positions[used], character.normals[used], character.uvs[used]
+            weights = np.maximum(np.nan_to_num(character.weights[used]), 0)
+            total = weights.sum(1, keepdims=True)
+            v["weights"] = np.where(total > 1e-6, weights / np.maximum(total, 1e-6), [1.0, 0, 0, 0])
+            v["bones"] = character.joints[used]
+            v["color"] = (*_srgb8(material.color[:3]), round(255 * (1 - min(1, max(0, material.roughness)))))
+            vertices.append(v)
+            triangles.append(corners.reshape(-1, 3) + count)
+            origins.append(used)
+            count, first = count + len(used), first + len(run)
+        batches.append(Batch(start, first - start, image, double_sided))
+    if not batches:
+        return Mesh(np.zeros(0, VERTEX), np.zeros((0, 3), np.uint32), (), len(character.skeleton))
+    morphs = None if character.morph_positions is None else np.asarray(character.morph_positions, np.float32)[:, np.concatenate(origins)]
+    return Mesh(np.concatenate(vertices), np.concatenate(triangles).astype(np.uint32), tuple(batches), len(character.skeleton), morphs)
+
+
+def _srgb8(linear: tuple[float, ...]) -> list[int]:
+    """Linear 0..1 to sRGB 0..255."""
+    c = np.clip(np.asarray(linear, float), 0, 1)
+    return [int(x) for x in np.round(255 * np.where(c <= 0.0031308, 12.92 * c, 1.055 * c ** (1 / 2.4) - 0.055))]

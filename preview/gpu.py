@@ -1,0 +1,158 @@
+"""What lies on the graphics card: meshes, their textures, and each frame's palettes."""
+
+from __future__ import annotations
+
+import io
+from collections.abc import Sequence
+from dataclasses import dataclass, field
+from typing import Any
+
+import moderngl
+import numpy as np
+from numpy.typing import NDArray
+
+from preview.mesh import Mesh
+from preview.scene import Actor
+
+Array = NDArray[Any]
+
+KEEP_MESHES = 8
+IDLE_FRAMES = 240
+TEXTURE_LIMIT = 2048
+MARK_STRENGTH = 200  # of 255: how much a mark covers the figure's own colour
+
+# How the vertex (see mesh.VERTEX) is read by shaders of each kind; positions come from a buffer of their own.
+_LAYOUTS = {
+    "depth": ("12x 12x 8x 4u2 4f 4x", ("in_bones", "in_weights")),
+    "plain": ("12x 3f 8x 4u2 4f 4f1", ("in_normal", "in_bones", "in_weights", "in_color")),
+    "textured": ("12x 3f 2f 4u2 4f 4f1", ("in_normal", "in_uv", "in_bones", "in_weights", "in_color")),
+}
+
+
+@dataclass
+class LoadedMesh:
+    """One mesh's buffers, and a vertex array for each program that draws it."""
+
+    vertices: moderngl.Buffer
+    positions: moderngl.Buffer
+    indices: moderngl.Buffer
+    images: dict[bytes, moderngl.Texture]
+    arrays: dict[int, moderngl.VertexArray] = field(default_factory=dict)
+    morphs: bytes = b""
+    idle: int = 0
+
+    def array(self, ctx: moderngl.Context, program: moderngl.Program, kind: str) -> moderngl.VertexArray:
+        """Return the vertex array for `program`; `kind` is depth, plain or textured."""
+        if program.glo not in self.arrays:
+            layout, names = _LAYOUTS[kind]
+            content = [(self.positions, "3f", "in_position"), (self.vertices, layout, *names)]
+            self.arrays[program.glo] = ctx.vertex_array(program, content, self.indices)
+        return self.arrays[program.glo]
+
+    def release(self) -> None:
+        for array in self.arrays.values():
+            array.release()
+        for texture in self.images.values():
+            texture.release()
+        for buffer in (self.vertices, self.positions, self.indices):
+            buffer.release()
+
+
+class Store:
+    """Loads what a frame needs and lets go of what has not been drawn for long."""
+
+    def __init__(self, ctx: moderngl.Context) -> None:
+        self._ctx = ctx
+        self._meshes: dict[Mesh, LoadedMesh] = {}
+        self.palette = ctx.texture((3, 1), 4, dtype="f4")
+        self.marks = ctx.texture((1, 1), 4)
+
+    def __getitem__(self, mesh: Mesh) -> LoadedMesh:
+        return self._meshes[mesh]
+
+    def __len__(self) -> int:
+        return len(self._meshes)
+
+    def release(self) -> None:
+        for loaded in self._meshes.values():
+            loaded.release()
+        self._meshes.clear()
+        self.palette.release()
+        self.marks.release()
+
+    def prepare(self, actors: Sequence[Actor]) -> list[int]:
+        """Load meshes, palettes (all in one texture) and marks; return each actor's first row in the palette texture."""
+        for loaded in self._meshes.values():
+            loaded.idle += 1
+        rows, row = [], 0
+        for actor in actors:
+            self._load(actor.figure.mesh, actor.morphs)
+            rows.append(row)
+            row += actor.count
+        crowded = len(self._meshes) > KEEP_MESHES
+        for mesh in [m for m, loaded in self._meshes.items() if loaded.idle > (0 if crowded else IDLE_FRAMES)]:
+            self._meshes.pop(mesh).release()
+        if actors:
+            self._write_palettes(actors, rows, row)
+        if any(actor.marks for actor in actors):
+            self._write_marks(actors)
+        return rows
+
+    def _write_palettes(self, actors: Sequence[Actor], rows: Sequence[int], height: int) -> None:
+        width = max(a.figure.mesh.matrices for a in actors)
+        if len(actors) == 1:
+            data = actors[0].figure.palette(actors[0].rotations, actors[0].positions)
+        else:
+            data = np.zeros((height, width, 3, 4), np.float32)
+            for actor, row in zip(actors, rows, strict=True):
+                palette = actor.figure.palette(actor.rotations, actor.positions)
+                data[row : row + actor.count, : actor.figure.mesh.matrices] = palette.reshape(actor.count, -1, 3, 4)
+        if self.palette.size[0] < 3 * width or self.palette.size[1] < height:
+            self.palette.release()
+            self.palette = self._ctx.texture((3 * width, height), 4, dtype="f4")
+            self.palette.filter = moderngl.NEAREST, moderngl.NEAREST
+        self.palette.write(np.ascontiguousarray(data, "<f4"), viewport=(0, 0, 3 * width, height))
+
+    def _write_marks(self, actors: Sequence[Actor]) -> None:
+        width = max(a.figure.mesh.matrices for a in actors)
+        marks = np.zeros((len(actors), width, 4), np.uint8)
+        for row, actor in zip(marks, actors, strict=True):
+            for joint, color in actor.marks.items():
+                row[: len(actor.figure.sources)][actor.figure.sources == joint] = (*(round(255 * c) for c in color), MARK_STRENGTH)
+        self.marks.release()
+        self.marks = self._ctx.texture((width, len(actors)), 4, marks.tobytes())
+        self.marks.filter = moderngl.NEAREST, moderngl.NEAREST
+
+    def _load(self, mesh: Mesh, weights: Array | None) -> None:
+        loaded = self._meshes.get(mesh)
+        if loaded is None:
+            buffer = self._ctx.buffer
+            loaded = self._meshes[mesh] = LoadedMesh(
+                buffer(mesh.vertices.tobytes()),
+                buffer(mesh.vertices["position"].tobytes()),
+                buffer(np.ascontiguousarray(mesh.triangles, "<u4").tobytes()),
+                {b.image: self._image(b.image) for b in mesh.batches if b.image is not None},
+            )
+        loaded.idle = 0
+        if mesh.morphs is None or weights is None or len(weights) != len(mesh.morphs):
+            return
+        wanted = np.asarray(weights, np.float32)
+        if wanted.tobytes() != loaded.morphs:  # on change only; the card then draws it as any mesh
+            active = np.flatnonzero(np.abs(wanted) > 1e-5)
+            moved = mesh.vertices["position"] + np.tensordot(wanted[active], mesh.morphs[active], 1)
+            loaded.positions.write(np.ascontiguousarray(moved, "<f4").tobytes())
+            loaded.morphs = wanted.tobytes()
+
+    def _image(self, encoded: bytes) -> moderngl.Texture:
+        """Decode a texture; one that cannot be read becomes white, as the figure is worth more than its paint."""
+        from PIL import Image
+
+        try:
+            picture = Image.open(io.BytesIO(encoded)).convert("RGBA")
+        except Exception:  # Pillow raises many kinds on broken files
+            picture = Image.new("RGBA", (1, 1), "white")
+        picture.thumbnail((TEXTURE_LIMIT, TEXTURE_LIMIT))
+        texture = self._ctx.texture(picture.size, 4, picture.tobytes())
+        texture.build_mipmaps()
+        texture.filter = moderngl.LINEAR_MIPMAP_LINEAR, moderngl.LINEAR
+        return texture

@@ -1,0 +1,88 @@
+"""Which joints deserve to be drawn, and on which side they are, judged by their names and places."""
+
+from __future__ import annotations
+
+import re
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from metagraph.motion.skeleton import Skeleton
+
+_CONTROL = re.compile(
+    r"(^|[^a-z])(ik|fk|ctrl|control|pole|poletarget|target|twist|roll|helper|dummy|nub|site|end|null|camera|prop|weapon|attach|socket|jiggle)([^a-z]|$)"
+)
+_FINGER = re.compile(r"thumb|index|middle|ring(?!s)|little|pinky|finger|metacarp|carpal")
+_FACE = re.compile(
+    r"eye|lid|brow|jaw|tongue|teeth|tooth|lip(?!s?tick)|cheek|nose|nostril|mouth|ear(?!th)|face|squint|smile|hair|beard|tail|skirt|cloth|cape"
+)
+_LEFT = re.compile(r"left|(^|[^a-z])l([^a-z]|$)")
+_RIGHT = re.compile(r"right|(^|[^a-z])r([^a-z]|$)")
+
+
+def words(name: str) -> str:
+    """Return the name in lower case with its humps split: `mixamorig:LeftUpLeg2` gives `mixamorig:left_up_leg2`."""
+    return re.sub(r"(?<=[a-z0-9])(?=[A-Z])|(?<=[A-Z])(?=[A-Z][a-z])", "_", name).lower()
+
+
+def is_control(name: str) -> bool:
+    """Whether the joint is a rig's helper (IK goal, twist, end marker), not part of the body."""
+    return bool(_CONTROL.search(re.sub(r"\d+", "", words(name))))
+
+
+def is_finger(name: str) -> bool:
+    return bool(_FINGER.search(words(name)))
+
+
+def is_face(name: str) -> bool:
+    """Whether the joint is in the face, or hair and cloth: things too small or too loose to stand for a bone."""
+    return bool(_FACE.search(words(name).replace("forearm", "").replace("fore_arm", "").replace("gear", "").replace("rear", "")))
+
+
+def sides(skeleton: Skeleton) -> NDArray[Any]:
+    """Return `[J]`: 1 left, -1 right, 0 middle; by name, else as the parent, as left and right are rarely said twice."""
+    out = np.zeros(len(skeleton), np.int8)
+    for i, name in enumerate(skeleton.names):
+        word = words(name)
+        left, right = bool(_LEFT.search(word)), bool(_RIGHT.search(word))
+        parent = int(skeleton.parents[i])
+        out[i] = 1 if left and not right else -1 if right and not left else out[parent] if parent >= 0 else 0
+    return out
+
+
+def head(skeleton: Skeleton) -> int | None:
+    """Return the head's joint by name; None where no joint is called a head."""
+    found = [
+        i
+        for i, n in enumerate(skeleton.names)
+        if re.search(r"(^|[^a-z])head([^a-z]|$)", re.sub(r"\d+", "", words(n))) and not is_control(n)
+    ]
+    return found[0] if found else None
+
+
+def drawn(skeleton: Skeleton) -> NDArray[Any]:
+    """Return `[J]` bool: the joints a stick figure shows. Always at least one."""
+    count, top = len(skeleton), head(skeleton)
+    keep = np.array([not is_control(n) and not is_face(n) for n in skeleton.names])
+    offsets = np.linalg.norm(skeleton.rest_translations, axis=1)
+    below = np.ones(count, int)
+    for i in range(count - 1, 0, -1):
+        if skeleton.parents[i] >= 0:
+            below[skeleton.parents[i]] += below[i]
+    for i in range(count):
+        parent = int(skeleton.parents[i])
+        if parent >= 0 and not keep[parent] and not is_control(skeleton.names[parent]):
+            keep[i] = False  # what hangs on hair or a jaw goes with it
+        if parent >= 0 and below[i] == 1 and offsets[i] < 1e-6:
+            keep[i] = False
+        if parent >= 0 and below[i] == 1 and below[parent] > 12:
+            keep[i] = i == top or (keep[i] and is_finger(skeleton.names[i]))
+    # A root on the ground below the hips is no bone: begin where the body first branches.
+    branching = [i for i in range(count) if keep[i] and sum(bool(keep[c]) for c in skeleton.children[i]) > 1]
+    if branching:
+        for i in skeleton.chain(branching[0])[:-1]:
+            keep[i] = False
+    if not keep.any():
+        keep[0] = True
+    return keep

@@ -1,0 +1,97 @@
+"""What the graphics card is given: vertices skinned to the matrices of a palette, and boxes and capsules to build them from."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+Array = NDArray[Any]
+
+VERTEX = np.dtype(
+    [
+        ("position", "<f4", 3),
+        ("normal", "<f4", 3),
+        ("uv", "<f4", 2),
+        ("bones", "<u2", 4),
+        ("weights", "<f4", 4),
+        ("color", "u1", 4),  # sRGB; the fourth is shininess
+    ]
+)
+
+
+@dataclass(frozen=True, eq=False)
+class Batch:
+    """Triangles `first .. first + count` that share a texture and a side rule."""
+
+    first: int
+    count: int
+    image: bytes | None = None
+    double_sided: bool = False
+
+
+@dataclass(frozen=True, eq=False)
+class Mesh:
+    """vertices: `[V]` of VERTEX in rest pose. triangles: `[N, 3]`. matrices: how many the palette holds.
+
+    morphs: offsets of the positions `[K, V, 3]`, or None. Compared by identity: the renderer keeps one copy per value.
+    """
+
+    vertices: Array
+    triangles: Array
+    batches: tuple[Batch, ...]
+    matrices: int
+    morphs: Array | None = None
+
+
+def lathe(profile: Sequence[tuple[float, float]], sides: int) -> tuple[Array, Array, Array]:
+    """Turn a profile of `(y, radius)` pairs, from low to high, round the Y axis: positions, normals `[V, 3]`, triangles."""
+    p = np.asarray(profile, float)
+    slope = np.gradient(p, axis=0)
+    outward = np.stack([-slope[:, 1], slope[:, 0]], -1)  # (along y, along the radius)
+    outward[0], outward[-1] = ((-1.0, 0.0) if p[0, 1] < 1e-9 else outward[0]), ((1.0, 0.0) if p[-1, 1] < 1e-9 else outward[-1])
+    outward /= np.maximum(np.linalg.norm(outward, axis=1, keepdims=True), 1e-12)
+    angle = np.arange(sides) * (2 * math.pi / sides)
+    circle = np.stack([np.sin(angle), np.cos(angle)], -1)
+    positions = np.empty((len(p), sides, 3))
+    normals = np.empty((len(p), sides, 3))
+    positions[..., 1], normals[..., 1] = p[:, None, 0], outward[:, None, 0]
+    positions[..., [0, 2]] = p[:, None, 1:] * circle
+    normals[..., [0, 2]] = outward[:, None, 1:] * circle
+    i, j = np.meshgrid(np.arange(len(p) - 1), np.arange(sides), indexing="ij")
+    a, b = i * sides + j, i * sides + (j + 1) % sides
+    c, d = a + sides, b + sides
+    triangles = np.concatenate([np.stack([a, b, d], -1).reshape(-1, 3), np.stack([a, d, c], -1).reshape(-1, 3)])
+    flat = positions.reshape(-1, 3)
+    corner = flat[triangles]
+    area = np.linalg.norm(np.cross(corner[:, 1] - corner[:, 0], corner[:, 2] - corner[:, 0]), axis=1)
+    return flat, normals.reshape(-1, 3), triangles[area > 1e-12]
+
+
+def capsule(length: float, low: float, high: float, sides: int = 10, rings: int = 3) -> tuple[Array, Array, Array]:
+    """A tapered bone along +Y from 0 to `length` with round ends of the radii `low` and `high`."""
+    turn = np.linspace(-math.pi / 2, 0, rings + 1)
+    first = [(low * math.sin(t), low * math.cos(t) if i else 0.0) for i, t in enumerate(turn)]
+    last = [(length - high * math.sin(t), high * math.cos(t) if i else 0.0) for i, t in enumerate(turn)]
+    return lathe(first + last[::-1], sides)
+
+
+def ball(radius: float, sides: int = 12, rings: int = 8) -> tuple[Array, Array, Array]:
+    """A sphere round the origin."""
+    turn = np.linspace(-math.pi / 2, math.pi / 2, rings + 1)
+    return lathe([(radius * math.sin(t), 0.0 if i in (0, rings) else radius * math.cos(t)) for i, t in enumerate(turn)], sides)
+
+
+def egg(profile_height: float, radius: float, sides: int = 18, rings: int = 14) -> tuple[Array, Array, Array]:
+    """A head: from 0 to `profile_height` along +Y, narrower at the chin."""
+    turn = np.linspace(0, math.pi, rings + 1)
+    rows = []
+    for i, t in enumerate(turn):
+        y = (1 - math.cos(t)) / 2
+        width = math.sin(t) * (0.78 + 0.30 * y - 0.06 * y * y)
+        rows.append((y * profile_height, 0.0 if i in (0, rings) else radius * width))
+    return lathe(rows, sides)

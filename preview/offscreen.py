@@ -1,0 +1,89 @@
+"""Pictures without a window or a display."""
+
+from __future__ import annotations
+
+import contextlib
+import sys
+from types import TracebackType
+from typing import Any
+
+import moderngl
+import numpy as np
+from numpy.typing import NDArray
+
+from preview.camera import Camera
+from preview.renderer import Renderer
+from preview.scene import DARK, Scene, Theme
+
+
+class OpenGLError(RuntimeError):
+    """There is no OpenGL 3.3 here; the message says what to install."""
+
+
+def standalone_context() -> moderngl.Context:
+    """Return a context of OpenGL 3.3 that belongs to no window. Raises OpenGLError."""
+    tries: list[dict[str, Any]] = [{"backend": "egl"}, {}] if sys.platform.startswith("linux") else [{}]
+    reasons = []
+    for options in tries:
+        try:
+            return moderngl.create_context(standalone=True, require=330, **options)
+        except Exception as error:  # each backend raises its own kinds
+            reasons.append(f"{options.get('backend', 'system')}: {error}")
+    remedy = {
+        "linux": "Install Mesa's software renderer, on Debian or Ubuntu: apt install libegl1 libgl1",
+        "darwin": "Sign in to a graphical session; macOS gives no OpenGL without one",
+    }.get(sys.platform, "Install the graphics card's driver")
+    raise OpenGLError(f"There is no OpenGL 3.3 ({'; '.join(reasons)}). {remedy}.")
+
+
+class Offscreen:
+    """A picture of `width` by `height` pixels to draw into, with its own context and renderer.
+
+    Use it in a `with` block or call `release()`; from one thread. Any size may be asked of `render`; it grows.
+    """
+
+    def __init__(self, width: int, height: int, samples: int | None = None) -> None:
+        self._ctx = standalone_context()
+        with self._ctx:
+            self.renderer = Renderer(self._ctx, samples)
+            self._fbo = self._ctx.simple_framebuffer((max(1, width), max(1, height)))
+        self.size = (max(1, width), max(1, height))
+        self._released = False
+
+    @property
+    def description(self) -> str:
+        """What draws: a graphics card's name or a software renderer's."""
+        with self._ctx:
+            return str(self._ctx.info["GL_RENDERER"])
+
+    def render(self, scene: Scene, camera: Camera, theme: Theme = DARK, size: tuple[int, int] | None = None) -> NDArray[np.uint8]:
+        """Return the picture `[H, W, 4]` uint8, sRGB, first row at the top, alpha premultiplied."""
+        if size is not None and (max(1, size[0]), max(1, size[1])) != self.size:
+            self.resize(*size)
+        width, height = self.size
+        with self._ctx:
+            self.renderer.draw(scene, camera, self.size, self._fbo, theme)
+            data = self._fbo.read(components=4, alignment=1)
+        return np.ascontiguousarray(np.frombuffer(data, np.uint8).reshape(height, width, 4)[::-1])
+
+    def resize(self, width: int, height: int) -> None:
+        self.size = (max(1, width), max(1, height))
+        with self._ctx:
+            self._fbo.release()
+            self._fbo = self._ctx.simple_framebuffer(self.size)
+
+    def release(self) -> None:
+        """Give the context back. Safe to call twice."""
+        if self._released:
+            return
+        self._released = True
+        with contextlib.suppress(Exception), self._ctx:  # a lost context has nothing left to give back
+            self.renderer.release()
+            self._fbo.release()
+        self._ctx.release()
+
+    def __enter__(self) -> Offscreen:
+        return self
+
+    def __exit__(self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None) -> None:
+        self.release()

@@ -1,0 +1,371 @@
+"""Draws scenes with OpenGL 3.3: the same pictures in a window and without one, on a graphics card and in software."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import Any
+
+import moderngl
+import numpy as np
+from numpy.typing import NDArray
+
+from preview import shaders
+from preview.camera import Camera
+from preview.gpu import Store
+from preview.scene import DARK, Actor, Scene, Theme
+
+Array = NDArray[Any]
+
+TO_LIGHT = np.array([-0.42, 0.80, 0.62]) / np.linalg.norm([-0.42, 0.80, 0.62])
+SHADOW_SIZE = 512
+SHADOW_LIMIT = 8  # instances; a crowd has only the soft spots under it
+SHADE = 0.8  # how dark the figure's shadow on itself is
+LIFT = 0.0015  # metres by which the shadow lies above the ground
+_SOFTWARE = ("llvmpipe", "softpipe", "swiftshader", "software", "basic render")
+
+
+def is_software(ctx: moderngl.Context) -> bool:
+    """Whether the context draws with the processor: multisampling is then too slow and edges are smoothed afterwards."""
+    return any(word in str(ctx.info.get("GL_RENDERER", "")).lower() for word in _SOFTWARE)
+
+
+@dataclass(frozen=True, eq=False)
+class _Frame:
+    """What the passes of one picture share. rows: each actor's first row in the palette. light: world to shadow map."""
+
+    scene: Scene
+    actors: list[Actor]
+    rows: list[int]
+    camera: Camera
+    size: tuple[int, int]
+    theme: Theme
+    matrix: Array
+    bounds: tuple[Array, Array]
+    light: Array | None
+
+    def which(self, solid: bool) -> list[int]:
+        return [i for i, actor in enumerate(self.actors) if (actor.opacity >= 1) == solid]
+
+
+class Renderer:
+    """Belongs to one context. `samples` None chooses: 4 on a graphics card, 0 in software (edges are smoothed instead)."""
+
+    def __init__(self, ctx: moderngl.Context, samples: int | None = None) -> None:
+        self.ctx = ctx
+        self.software = is_software(ctx)
+        self.samples = min((0 if self.software else 4) if samples is None else samples, int(ctx.max_samples))
+        self.store = Store(ctx)
+        self._programs: dict[str, moderngl.Program] = {}
+        self._plain: dict[str, moderngl.VertexArray] = {}
+        self._buffers: dict[str, moderngl.Buffer] = {}
+        self._size = (0, 0)
+        self._targets: list[Any] = []
+        self._resize(1, 1)
+        self._shadow_map = ctx.depth_texture((SHADOW_SIZE, SHADOW_SIZE))
+        self._shadow_map.compare_func = "<="
+        self._shadow_map.repeat_x = self._shadow_map.repeat_y = False
+        self._shadow_fbo = ctx.framebuffer(depth_attachment=self._shadow_map)
+
+    def release(self) -> None:
+        """Give everything on the graphics card back; the context must be current."""
+        self.store.release()
+        for held in (*self._plain.values(), *self._programs.values(), *self._buffers.values(), *reversed(self._targets)):
+            held.release()
+        self._shadow_fbo.release()
+        self._shadow_map.release()
+        for gone in (self._plain, self._programs, self._buffers):
+            gone.clear()
+        self._targets.clear()
+
+    def draw(self, scene: Scene, camera: Camera, size: tuple[int, int], target: moderngl.Framebuffer, theme: Theme = DARK) -> None:
+        """Draw into `target`'s lower left `size` (width, height, pixels). Sets all state it needs; keeps none of the caller's.
+
+        Actors whose transforms hold something that is not a number are left out.
+        """
+        width, height = max(1, int(size[0])), max(1, int(size[1]))
+        actors = [a for a in scene.actors if _drawable(a)]
+        self._resize(width, height)
+        rows = self.store.prepare(actors)
+        matrix = camera.projection(width / height) @ camera.view()
+        solid = [a for a in actors if a.opacity >= 1]
+        frame = _Frame(scene, actors, rows, camera, (width, height), theme, matrix, Scene(tuple(solid)).bounds(), None)
+        if scene.shadow and 0 < sum(a.count for a in solid) <= SHADOW_LIMIT:
+            frame = _Frame(scene, actors, rows, camera, (width, height), theme, matrix, frame.bounds, self._cast(frame))
+
+        self._state(self._main, (0, 0, width, height), moderngl.DEPTH_TEST)
+        self._main.clear(*(scene.background or (0.0, 0.0, 0.0, 0.0)), depth=1.0)
+        # Front to back, so that software does not paint what is covered later: figures, ground, sky.
+        self._bodies(frame, frame.which(solid=True))
+        if scene.background is None:
+            if scene.ground and camera.eye[1] > 0:
+                self._ground(frame)
+                if scene.shadow and solid:
+                    self._shadows(frame, solid)
+            self._sky(frame)
+        self._ghosts(frame)
+        self._overlay(frame)
+        self._finish(frame, target)
+
+    # --- passes
+
+    def _cast(self, frame: _Frame) -> Array:
+        """Draw depth as the lamp sees it; return the matrix from the world to the shadow map, 0..1."""
+        low, high = frame.bounds
+        centre, radius = (low + high) / 2, max(0.05, float(np.linalg.norm(high - low)) / 2)
+        side = np.cross([0.0, 1, 0], TO_LIGHT)
+        side /= np.linalg.norm(side)
+        axes = np.stack([side, np.cross(TO_LIGHT, side), -TO_LIGHT])
+        matrix = np.eye(4)
+        matrix[:3, :3] = axes / radius
+        matrix[:3, 3] = -axes @ centre / radius
+        self._state(self._shadow_fbo, (0, 0, SHADOW_SIZE, SHADOW_SIZE), moderngl.DEPTH_TEST)
+        self._shadow_fbo.clear(depth=1.0)
+        self._depths(frame, frame.which(solid=True), matrix)
+        half = np.eye(4) * 0.5
+        half[:3, 3], half[3, 3] = 0.5, 1
+        return np.asarray(half @ matrix)
+
+    def _depths(self, frame: _Frame, which: Sequence[int], matrix: Array) -> None:
+        program = self._program("depth", shaders.DEPTH_VERTEX, shaders.DEPTH)
+        _set(program, u_matrix=matrix, u_palette=0)
+        self.store.palette.use(0)
+        for i in which:
+            _set(program, u_row=frame.rows[i])
+            self._triangles(frame.actors[i], program, "depth")
+
+    def _bodies(self, frame: _Frame, which: Sequence[int]) -> None:
+        theme = frame.theme
+        self.store.palette.use(0)
+        self._shadow_map.use(1)
+        self.store.marks.use(3)
+        for i in which:
+            actor = frame.actors[i]
+            cast = frame.light is not None and actor.opacity >= 1
+            for kind in ("plain", "textured"):
+                if not any((b.image is not None) == (kind == "textured") for b in actor.figure.mesh.batches):
+                    continue
+                words = [w for w, on in (("TEXTURED", kind == "textured"), ("MARKED", bool(actor.marks)), ("SHADOWED", cast)) if on]
+                head = "#version 330 core\n" + "".join(f"#define {w}\n" for w in words)
+                program = self._program("body " + " ".join(words), head + shaders.BODY_VERTEX, head + shaders.BODY)
+                _set(program, u_matrix=frame.matrix, u_eye=frame.camera.eye, u_to_light=TO_LIGHT, u_opacity=actor.opacity)
+                _set(program, u_palette=0, u_shadow=1, u_image=2, u_marks=3, u_marks_row=i, u_row=frame.rows[i])
+                _set(program, u_key=theme.key, u_above=theme.above, u_below=theme.below, u_rim=theme.rim, u_shade=SHADE)
+                if frame.light is not None:
+                    _set(program, u_light=frame.light)
+                self._triangles(actor, program, kind)
+
+    def _ghosts(self, frame: _Frame) -> None:
+        """Depth first, so that a ghost shows its nearest surface only, then colour."""
+        which = frame.which(solid=False)
+        if not which:
+            return
+        self._main.color_mask = (False, False, False, False)
+        self._depths(frame, which, frame.matrix)
+        self._main.color_mask = (True, True, True, True)
+        self.ctx.blend_func = moderngl.ONE, moderngl.ONE_MINUS_SRC_ALPHA
+        self._bodies(frame, which)
+
+    def _ground(self, frame: _Frame) -> None:
+        self.ctx.enable_only(moderngl.DEPTH_TEST)
+        camera, theme = frame.camera, frame.theme
+        reach = min(60.0, max(7.0, 2.2 * camera.distance))
+        spacing = 0.5 if camera.distance < 14 else 1.0 if camera.distance < 40 else 5.0
+        program = self._program("ground", shaders.GROUND_VERTEX, shaders.GROUND)
+        _set(program, u_matrix=frame.matrix, u_centre=(camera.target[0], camera.target[2], reach), u_reach=reach)
+        _set(program, u_floor=theme.floor, u_line=theme.line, u_spacing=(spacing, theme.line_strength))
+        self._backdrop("ground", program, frame, moderngl.TRIANGLE_STRIP, 4)
+
+    def _shadows(self, frame: _Frame, solid: Sequence[Actor]) -> None:
+        """What darkens the ground lies a hair above it and multiplies."""
+        lifted = frame.matrix.copy()
+        lifted[:, 3] += frame.matrix[:, 1] * LIFT
+        self.ctx.enable_only(moderngl.DEPTH_TEST | moderngl.BLEND)
+        self.ctx.blend_func = moderngl.ZERO, moderngl.SRC_COLOR
+        if frame.light is not None:
+            low, high = frame.bounds
+            thrown = -TO_LIGHT / TO_LIGHT[1] * max(0.0, float(high[1]))
+            low, high = np.minimum(low, low + thrown), np.maximum(high, high + thrown)
+            middle, half = (low + high) / 2, float(np.max((high - low)[[0, 2]])) / 2 * 1.1
+            program = self._program("cast", shaders.GROUND_VERTEX, shaders.CAST)
+            self._shadow_map.use(1)
+            _set(
+                program, u_matrix=lifted, u_centre=(middle[0], middle[2], half), u_dark=frame.theme.shadow, u_shadow=1, u_light=frame.light
+            )
+            self._bare("cast", program).render(moderngl.TRIANGLE_STRIP, 4)
+        program = self._program("spots", shaders.SPOT_VERTEX, shaders.SPOT)
+        _set(program, u_matrix=lifted, u_dark=frame.theme.shadow)
+        self._squares("spots", program, np.concatenate([_spots(a) for a in solid]), "4f/i", "in_spot")
+
+    def _sky(self, frame: _Frame) -> None:
+        self.ctx.enable_only(moderngl.DEPTH_TEST)
+        program = self._program("sky", shaders.COVER, shaders.SKY)
+        _set(program, u_depth=1.0)
+        self._backdrop("sky", program, frame, moderngl.TRIANGLES, 3)
+
+    def _backdrop(self, key: str, program: moderngl.Program, frame: _Frame, mode: int, count: int) -> None:
+        _set(program, u_pixel=(1 / frame.size[0], 1 / frame.size[1]), u_top=frame.theme.top, u_bottom=frame.theme.bottom)
+        self._bare(key, program).render(mode, count)
+
+    def _overlay(self, frame: _Frame) -> None:
+        """The skeletons of actors that want it, over everything."""
+        segments = []
+        for actor in frame.actors:
+            if actor.bones and len(actor.figure.lines):
+                p = np.asarray(actor.positions).reshape(-1, len(actor.figure.skeleton), 3)
+                segments.append(np.concatenate([p[:, actor.figure.line_starts], p[:, actor.figure.lines]], -1).reshape(-1, 6))
+        if not segments:
+            return
+        lines = np.concatenate(segments)
+        dots = np.tile(lines[:, 3:], 2)
+        self.ctx.enable_only(moderngl.BLEND)
+        self.ctx.blend_func = moderngl.ONE, moderngl.ONE_MINUS_SRC_ALPHA
+        program = self._program("lines", shaders.LINE_VERTEX, shaders.LINE)
+        unit = max(1.0, frame.size[1] / 540)
+        for data, width in ((lines, 1.6 * unit), (dots, 4.0 * unit)):
+            _set(program, u_matrix=frame.matrix, u_size=frame.size, u_width=width, u_ink=frame.theme.ink)
+            self._squares("lines", program, data, "3f 3f/i", "in_start", "in_end")
+
+    def _finish(self, frame: _Frame, target: Any) -> None:
+        """Bring the picture to the target; without multisampling, smooth the edges where there are figures."""
+        if self._resolved is not None:
+            self.ctx.copy_framebuffer(self._resolved, self._main)
+        width, height = frame.size
+        self._state(target, (0, 0, width, height), moderngl.NOTHING)
+        self._picture.use(0)
+        copy = self._program("copy", shaders.COVER, shaders.COPY)
+        _set(copy, u_picture=0, u_depth=0.0)
+        x, y, w, h = (0, 0, 0, 0) if self.samples else _covered(frame)
+        for piece in ((0, 0, width, y), (0, y + h, width, height - y - h), (0, y, x, h), (x + w, y, width - x - w, h)):
+            if piece[2] > 0 and piece[3] > 0:
+                target.scissor = piece
+                self._bare("copy", copy).render(moderngl.TRIANGLES, 3)
+        if w and h:
+            smooth = self._program("smooth", shaders.COVER, shaders.SMOOTH)
+            _set(smooth, u_picture=0, u_depth=0.0, u_pixel=(1 / width, 1 / height))
+            target.scissor = (x, y, w, h)
+            self._bare("smooth", smooth).render(moderngl.TRIANGLES, 3)
+        target.scissor = None
+
+    # --- helpers
+
+    def _state(self, target: Any, viewport: tuple[int, int, int, int], flags: int) -> None:
+        """Everything somebody else may have changed since the last frame."""
+        ctx: Any = self.ctx
+        target.viewport = viewport
+        target.scissor = None
+        target.depth_mask = True
+        if target is not self._shadow_fbo:
+            target.color_mask = (True, True, True, True)
+        target.use()
+        ctx.enable_only(flags)
+        ctx.depth_func = "<="
+        ctx.blend_equation = moderngl.FUNC_ADD
+        ctx.front_face, ctx.cull_face = "ccw", "back"
+        ctx.wireframe = False
+        ctx.polygon_offset = 0.0, 0.0
+
+    def _resize(self, width: int, height: int) -> None:
+        if self._size == (width, height):
+            return
+        for held in reversed(self._targets):
+            held.release()
+        ctx, size = self.ctx, (width, height)
+        self._picture = ctx.texture(size, 4)
+        self._picture.repeat_x = self._picture.repeat_y = False
+        self._resolved: moderngl.Framebuffer | None = None
+        if self.samples:
+            color, depth = ctx.renderbuffer(size, 4, self.samples), ctx.depth_renderbuffer(size, self.samples)
+            self._main, self._resolved = ctx.framebuffer([color], depth), ctx.framebuffer([self._picture])
+            self._targets = [self._picture, color, depth, self._main, self._resolved]
+        else:
+            depth = ctx.depth_renderbuffer(size)
+            self._main = ctx.framebuffer([self._picture], depth)
+            self._targets = [self._picture, depth, self._main]
+        self._size = size
+
+    def _triangles(self, actor: Actor, program: moderngl.Program, kind: str) -> None:
+        """Draw the actor's batches that `program` is for: all (kind depth), the plain ones or the textured ones."""
+        loaded = self.store[actor.figure.mesh]
+        array = loaded.array(self.ctx, program, kind)
+        flags = moderngl.DEPTH_TEST | (moderngl.BLEND if actor.opacity < 1 and kind != "depth" else moderngl.NOTHING)
+        for batch in actor.figure.mesh.batches:
+            if kind != "depth" and (batch.image is not None) != (kind == "textured"):
+                continue
+            if kind == "textured" and batch.image is not None:
+                loaded.images[batch.image].use(2)
+            self.ctx.enable_only(flags | (moderngl.NOTHING if batch.double_sided else moderngl.CULL_FACE))
+            array.render(moderngl.TRIANGLES, batch.count * 3, first=batch.first * 3, instances=actor.count)
+
+    def _squares(self, key: str, program: moderngl.Program, data: Array, layout: str, *names: str) -> None:
+        """Draw one square for each row of `data`."""
+        if not len(data):
+            return
+        content = np.ascontiguousarray(data, "<f4").tobytes()
+        if key not in self._buffers:
+            self._buffers[key] = self.ctx.buffer(reserve=len(content))
+            self._plain[key] = self.ctx.vertex_array(program, [(self._buffers[key], layout, *names)])
+        self._buffers[key].orphan(max(len(content), self._buffers[key].size))
+        self._buffers[key].write(content)
+        self._plain[key].render(moderngl.TRIANGLE_STRIP, 4, instances=len(data))
+
+    def _bare(self, key: str, program: moderngl.Program) -> moderngl.VertexArray:
+        """A vertex array without vertices, for shaders that make their own."""
+        if key not in self._plain:
+            self._plain[key] = self.ctx.vertex_array(program, [])
+        return self._plain[key]
+
+    def _program(self, key: str, vertex: str, fragment: str) -> moderngl.Program:
+        if key not in self._programs:
+            self._programs[key] = self.ctx.program(vertex_shader=vertex, fragment_shader=fragment)
+        return self._programs[key]
+
+
+def _drawable(actor: Actor) -> bool:
+    return bool(
+        actor.count and len(actor.figure.mesh.vertices) and np.isfinite(actor.positions).all() and np.isfinite(actor.rotations).all()
+    )
+
+
+def _covered(frame: _Frame) -> tuple[int, int, int, int]:
+    """The part of the picture with figures in it: x, y (from below), width, height, pixels."""
+    if not frame.actors:
+        return 0, 0, 0, 0
+    size = np.array(frame.size)
+    boxes = [a.figure.bounds(a.positions) for a in frame.actors]
+    corners = np.array([[box[k >> j & 1][j] for j in range(3)] for box in boxes for k in range(8)])
+    seen = frame.camera.project(corners, frame.size[0] / frame.size[1])
+    if not np.isfinite(seen).all():
+        return 0, 0, *frame.size
+    seen[:, 1] = 1 - seen[:, 1]
+    low = np.maximum(np.clip(seen.min(0), 0, 1) * size - 2, 0).astype(int)
+    high = np.minimum(np.clip(seen.max(0), 0, 1) * size + 3, size).astype(int)
+    return int(low[0]), int(low[1]), int(high[0] - low[0]), int(high[1] - low[1])
+
+
+def _spots(actor: Actor) -> Array:
+    """Where a body darkens the ground `[S, 4]`: x, z, radius, strength; wider and weaker with height."""
+    ends, starts = actor.figure.shadow
+    p = np.asarray(actor.positions, float).reshape(-1, len(actor.figure.skeleton), 3)
+    h = actor.figure.height
+    if not len(ends):
+        ends = starts = np.flatnonzero(actor.figure.drawn)[:1]
+    middle = (p[:, ends] + p[:, starts]) / 2
+    length = np.linalg.norm(p[:, ends] - p[:, starts], axis=-1)
+    up = np.maximum(middle[..., 1], 0) / h
+    radius = 0.55 * length + 0.05 * h + 0.30 * up * h
+    strength = 0.60 * np.exp(-5.0 * up) * np.clip(length / (0.12 * h), 0.25, 1.0)
+    out = np.stack([middle[..., 0], middle[..., 2], radius, strength], -1).reshape(-1, 4)
+    return np.asarray(out[out[:, 3] > 0.01])
+
+
+def _set(program: moderngl.Program, **values: Any) -> None:
+    """Set uniforms by name; those a compiler left out are skipped. Matrices are given row-major."""
+    for name, value in values.items():
+        member: Any = program.get(name, None)
+        if member is None:
+            continue
+        if isinstance(value, np.ndarray) and value.shape == (4, 4):
+            member.write(np.ascontiguousarray(value.T, "<f4").tobytes())
+        else:
+            member.value = tuple(float(x) for x in value) if isinstance(value, (tuple, np.ndarray)) else value

@@ -1,0 +1,104 @@
+"""What the renderer is given each frame: who is where, and in which light."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from preview.figure import Figure
+
+Array = NDArray[Any]
+Color = tuple[float, float, float]
+
+
+@dataclass(frozen=True, eq=False)
+class Actor:
+    """A figure in one pose, or in many at once (a crowd is one draw).
+
+    rotations `[..., J, 4]` xyzw and positions `[..., J, 3]`: global, on the figure's skeleton. morphs: weights `[K]`.
+    marks: sRGB colours 0..1 for joints to point out, such as those of a mask. bones: draw the skeleton over the mesh.
+    opacity below 1 makes a ghost, without shadow.
+    """
+
+    figure: Figure
+    rotations: Array
+    positions: Array
+    morphs: Array | None = None
+    marks: Mapping[int, Color] = field(default_factory=dict)
+    bones: bool = False
+    opacity: float = 1.0
+
+    @property
+    def count(self) -> int:
+        """How many instances."""
+        return int(np.prod(self.rotations.shape[:-2], dtype=int))
+
+
+@dataclass(frozen=True, eq=False)
+class Scene:
+    """background: one flat sRGB colour with alpha, premultiplied, instead of the theme's; there is no ground then."""
+
+    actors: tuple[Actor, ...] = ()
+    ground: bool = True
+    shadow: bool = True
+    background: tuple[float, float, float, float] | None = None
+
+    def bounds(self) -> tuple[Array, Array]:
+        """Return the lowest and highest corner of a box round all actors; a person's size when there are none."""
+        boxes = [a.figure.bounds(a.positions) for a in self.actors if a.count]
+        if not boxes:
+            return np.array([-0.5, 0.0, -0.5]), np.array([0.5, 1.8, 0.5])
+        return np.min([b[0] for b in boxes], axis=0), np.max([b[1] for b in boxes], axis=0)
+
+
+@dataclass(frozen=True)
+class Theme:
+    """Colours: sky, floor and ink in sRGB 0..1; lights linear. All neutral: in the window colour means kind."""
+
+    name: str
+    top: Color
+    bottom: Color
+    floor: Color
+    line: Color
+    line_strength: float
+    shadow: Color  # what the ground is multiplied by in full shadow
+    key: Color
+    above: Color
+    below: Color
+    rim: Color
+    ink: Color  # the skeleton drawn over a mesh
+
+
+DARK = Theme(
+    "dark",
+    top=(0.150, 0.158, 0.176),
+    bottom=(0.250, 0.262, 0.290),
+    floor=(0.165, 0.173, 0.191),
+    line=(0.42, 0.44, 0.48),
+    line_strength=0.36,
+    shadow=(0.42, 0.42, 0.45),
+    key=(1.30, 1.26, 1.20),
+    above=(0.40, 0.43, 0.48),
+    below=(0.19, 0.175, 0.165),
+    rim=(0.42, 0.46, 0.55),
+    ink=(0.96, 0.97, 0.98),
+)
+LIGHT = Theme(
+    "light",
+    top=(0.855, 0.865, 0.880),
+    bottom=(0.965, 0.968, 0.975),
+    floor=(0.890, 0.897, 0.910),
+    line=(0.62, 0.64, 0.67),
+    line_strength=0.42,
+    shadow=(0.66, 0.67, 0.70),
+    key=(1.22, 1.19, 1.15),
+    above=(0.52, 0.54, 0.58),
+    below=(0.34, 0.33, 0.32),
+    rim=(0.16, 0.17, 0.19),
+    ink=(0.08, 0.09, 0.10),
+)
+THEMES = {theme.name: theme for theme in (DARK, LIGHT)}

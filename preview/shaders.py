@@ -1,0 +1,305 @@
+"""The shaders, GLSL 3.30. Colours are lit in linear light and written as sRGB."""
+
+from __future__ import annotations
+
+# A triangle that covers the picture.
+COVER = """#version 330 core
+out vec2 v_at;
+uniform float u_depth;
+void main() {
+    v_at = vec2((gl_VertexID << 1) & 2, gl_VertexID & 2);
+    gl_Position = vec4(v_at * 2.0 - 1.0, u_depth, 1.0);
+}
+"""
+
+_SKY = """
+uniform vec2 u_pixel;  // one by the picture's size
+uniform vec3 u_top, u_bottom;
+vec3 sky() {
+    vec2 at = gl_FragCoord.xy * u_pixel;
+    vec2 off = (at - vec2(0.5, 0.42)) * vec2(0.9, 1.15);
+    float t = clamp(1.0 - 1.9 * dot(off, off), 0.0, 1.0);  // light gathers behind the figure
+    // Half a step of noise hides the bands eight bits would show.
+    float noise = fract(52.9829189 * fract(dot(gl_FragCoord.xy, vec2(0.06711056, 0.00583715))));
+    return mix(u_top, u_bottom, t) + (noise - 0.5) / 255.0;
+}
+"""
+
+SKY = "#version 330 core\n" + _SKY + "out vec4 o_color;\nvoid main() { o_color = vec4(sky(), 1.0); }\n"
+
+GROUND_VERTEX = """#version 330 core
+uniform mat4 u_matrix;
+uniform vec3 u_centre;  // x, z, half the side
+out vec2 v_at;
+void main() {
+    vec2 corner = vec2(gl_VertexID & 1, gl_VertexID >> 1) * 2.0 - 1.0;
+    v_at = u_centre.xy + corner * u_centre.z;
+    gl_Position = u_matrix * vec4(v_at.x, 0.0, v_at.y, 1.0);
+}
+"""
+
+GROUND = (
+    "#version 330 core\n"
+    + _SKY
+    + """
+uniform vec3 u_centre, u_floor, u_line;
+uniform vec2 u_spacing;  // metres between lines; strength of the lines
+uniform float u_reach;   // metres after which the ground has become sky
+in vec2 v_at;
+out vec4 o_color;
+void main() {
+    vec3 back = sky();
+    vec2 away = (v_at - u_centre.xy) / u_reach;
+    float near = clamp(1.0 - dot(away, away), 0.0, 1.0);
+    near *= near;
+    vec2 p = v_at / u_spacing.x;
+    vec2 w = max(fwidth(p), vec2(1e-5));
+    vec2 d = abs(fract(p - 0.5) - 0.5) / w;
+    // A line a pixel and a bit wide; where lines come closer than pixels they melt into their mean.
+    vec2 l = clamp(1.35 - d, 0.0, 1.0) * clamp(0.55 / w - 0.6, 0.0, 1.0);
+    vec2 axis = 1.0 + 0.7 * clamp(1.5 - abs(p) / w, 0.0, 1.0);
+    float ink = max(l.x * axis.x, l.y * axis.y) * u_spacing.y * near;
+    vec3 color = mix(back, mix(back, u_floor, 0.85), near);
+    o_color = vec4(mix(color, u_line, ink), 1.0);
+}
+"""
+)
+
+_SHADOW = """
+uniform sampler2DShadow u_shadow;
+uniform mat4 u_light;
+float lit(vec3 world, float radius, float bias) {
+    vec4 p = u_light * vec4(world, 1.0);
+    p.z -= bias;
+    vec2 r = vec2(radius, radius * 0.45);
+    return 0.25 * (texture(u_shadow, p.xyz + vec3(r.x, r.y, 0.0)) + texture(u_shadow, p.xyz + vec3(-r.y, r.x, 0.0))
+                 + texture(u_shadow, p.xyz + vec3(-r.x, -r.y, 0.0)) + texture(u_shadow, p.xyz + vec3(r.y, -r.x, 0.0)));
+}
+"""
+
+# The shadow on the ground: a square under the figure that multiplies what is there.
+CAST = (
+    "#version 330 core\n"
+    + _SHADOW
+    + """
+uniform vec3 u_centre, u_dark;
+in vec2 v_at;
+out vec4 o_color;
+void main() {
+    vec3 world = vec3(v_at.x, 0.0, v_at.y);
+    float light = 0.5 * (lit(world, 0.0045, 0.002) + lit(world, 0.0110, 0.002));
+    vec2 off = (v_at - u_centre.xy) / u_centre.z;
+    float near = clamp(1.15 - dot(off, off), 0.0, 1.0);
+    o_color = vec4(mix(vec3(1.0), u_dark, (1.0 - light) * near * 0.7), 1.0);
+}
+"""
+)
+
+# Soft spots where the body comes near the ground: one square each.
+SPOT_VERTEX = """#version 330 core
+uniform mat4 u_matrix;
+in vec4 in_spot;  // x, z, radius, strength
+out vec2 v_at;
+out float v_strength;
+void main() {
+    v_at = vec2(gl_VertexID & 1, gl_VertexID >> 1) * 2.0 - 1.0;
+    v_strength = in_spot.w;
+    gl_Position = u_matrix * vec4(in_spot.x + v_at.x * in_spot.z, 0.0, in_spot.y + v_at.y * in_spot.z, 1.0);
+}
+"""
+SPOT = """#version 330 core
+uniform vec3 u_dark;
+in vec2 v_at;
+in float v_strength;
+out vec4 o_color;
+void main() {
+    float t = clamp(1.0 - dot(v_at, v_at), 0.0, 1.0);
+    float noise = fract(52.9829189 * fract(dot(gl_FragCoord.xy + v_strength * 97.0, vec2(0.06711056, 0.00583715))));
+    o_color = vec4(mix(vec3(1.0), u_dark, t * t * v_strength) + (noise - 0.5) / 255.0, 1.0);
+}
+"""
+
+_SKIN = """
+uniform sampler2D u_palette;  // three texels a matrix, one row an instance
+uniform int u_row;
+in vec3 in_position;
+in uvec4 in_bones;
+in vec4 in_weights;
+mat4x3 skin() {
+    int row = u_row + gl_InstanceID;
+    ivec4 at = ivec4(in_bones) * 3;
+    vec4 x = texelFetch(u_palette, ivec2(at.x, row), 0) * in_weights.x;
+    vec4 y = texelFetch(u_palette, ivec2(at.x + 1, row), 0) * in_weights.x;
+    vec4 z = texelFetch(u_palette, ivec2(at.x + 2, row), 0) * in_weights.x;
+    for (int i = 1; i < 4; ++i) {
+        int a = at[i];
+        float w = in_weights[i];
+        x += texelFetch(u_palette, ivec2(a, row), 0) * w;
+        y += texelFetch(u_palette, ivec2(a + 1, row), 0) * w;
+        z += texelFetch(u_palette, ivec2(a + 2, row), 0) * w;
+    }
+    return transpose(mat3x4(x, y, z));
+}
+"""
+
+DEPTH_VERTEX = (
+    "#version 330 core\n"
+    + _SKIN
+    + """
+uniform mat4 u_matrix;
+void main() { gl_Position = u_matrix * vec4(skin() * vec4(in_position, 1.0), 1.0); }
+"""
+)
+DEPTH = "#version 330 core\nvoid main() {}\n"
+
+BODY_VERTEX = (
+    _SKIN
+    + """
+uniform mat4 u_matrix;
+in vec3 in_normal;
+in vec2 in_uv;
+in vec4 in_color;
+out vec3 v_world, v_normal;
+out vec2 v_uv;
+out vec4 v_color;
+#ifdef MARKED
+uniform sampler2D u_marks;  // one texel a matrix: colour, amount
+uniform int u_marks_row;
+out vec4 v_mark;
+#endif
+void main() {
+    mat4x3 m = skin();
+    v_world = m * vec4(in_position, 1.0);
+    v_normal = mat3(m) * in_normal;
+    v_uv = in_uv;
+    v_color = vec4(pow(in_color.rgb, vec3(2.2)), in_color.a);
+#ifdef MARKED
+    v_mark = vec4(0.0);
+    for (int i = 0; i < 4; ++i) {
+        vec4 mark = texelFetch(u_marks, ivec2(int(in_bones[i]), u_marks_row), 0) * in_weights[i];
+        v_mark += vec4(mark.rgb * texelFetch(u_marks, ivec2(int(in_bones[i]), u_marks_row), 0).a, mark.a);
+    }
+#endif
+    gl_Position = u_matrix * vec4(v_world, 1.0);
+}
+"""
+)
+
+BODY = (
+    _SHADOW
+    + """
+uniform vec3 u_eye, u_to_light, u_key, u_above, u_below, u_rim;
+uniform float u_shade, u_opacity;  // how much of the cast shadow to use
+#ifdef TEXTURED
+uniform sampler2D u_image;
+#endif
+in vec3 v_world, v_normal;
+in vec2 v_uv;
+in vec4 v_color;
+#ifdef MARKED
+in vec4 v_mark;
+#endif
+out vec4 o_color;
+void main() {
+    vec3 n = normalize(v_normal) * (gl_FrontFacing ? 1.0 : -1.0);
+    vec3 v = normalize(u_eye - v_world);
+    vec3 base = v_color.rgb;
+#ifdef TEXTURED
+    vec3 texel = texture(u_image, v_uv).rgb;
+    base *= texel * texel * (0.7 * texel + 0.3);  // close to the power of 2.2, without it
+#endif
+#ifdef MARKED
+    float amount = clamp(v_mark.a, 0.0, 1.0);
+    base = mix(base, v_mark.rgb * v_mark.rgb / max(v_mark.a, 1e-3), amount);
+#endif
+    float facing = dot(n, u_to_light);
+    float away = 1.0 - clamp(dot(n, v), 0.0, 1.0);
+    float light = clamp(facing * 0.86 + 0.14, 0.0, 1.0);  // the terminator is soft, as on skin
+#ifdef SHADOWED
+    light *= mix(1.0, lit(v_world + n * 0.010, 0.0022, 0.0025), u_shade);
+#endif
+    float up = n.y * 0.5 + 0.5;
+    vec3 fill = mix(u_below, u_above, up) * (1.0 - 0.25 * away);
+    fill += u_above * (0.22 * clamp(dot(n, v), 0.0, 1.0));  // a weak lamp beside the camera
+    float edge = away * away;
+    float rim = edge * edge * (0.35 + 0.65 * up);
+    vec3 h = normalize(u_to_light + v);
+    float shine = v_color.a;
+    float nh = clamp(dot(n, h), 0.0, 1.0);
+    float gloss = pow(nh, 8.0 + 240.0 * shine * shine) * (0.03 + 0.9 * shine * shine) * light;
+    vec3 color = base * (u_key * light + fill) + u_rim * rim * (0.25 + base) + u_key * gloss;
+    color = color / (1.0 + 0.18 * max(color.r, max(color.g, color.b)));  // roll highlights off
+    o_color = vec4(pow(color, vec3(1.0 / 2.2)), 1.0) * u_opacity;
+}
+"""
+)
+
+# Lines of constant width in pixels with a dark rim, for the skeleton over the mesh.
+LINE_VERTEX = """#version 330 core
+uniform mat4 u_matrix;
+uniform vec2 u_size;
+uniform float u_width;
+in vec3 in_start, in_end;
+out vec2 v_pixel;
+flat out vec2 v_from, v_to;
+void main() {
+    vec4 a = u_matrix * vec4(in_start, 1.0), b = u_matrix * vec4(in_end, 1.0);
+    a.xy /= max(a.w, 1e-3); b.xy /= max(b.w, 1e-3);
+    vec2 p = (a.xy * 0.5 + 0.5) * u_size, q = (b.xy * 0.5 + 0.5) * u_size;
+    vec2 along = q - p;
+    float len = length(along);
+    along = len > 1e-3 ? along / len : vec2(1.0, 0.0);
+    vec2 side = vec2(-along.y, along.x);
+    float pad = u_width + 1.5;
+    bool last = (gl_VertexID & 1) == 1;
+    vec2 at = (last ? q + along * pad : p - along * pad) + side * ((gl_VertexID >> 1) == 1 ? pad : -pad);
+    v_pixel = at; v_from = p; v_to = q;
+    float hidden = min(a.w, b.w) > 1e-3 ? 0.0 : 2.0;
+    gl_Position = vec4(at / u_size * 2.0 - 1.0, hidden, 1.0);
+}
+"""
+LINE = """#version 330 core
+uniform vec3 u_ink;
+uniform float u_width;
+in vec2 v_pixel;
+flat in vec2 v_from, v_to;
+out vec4 o_color;
+void main() {
+    vec2 along = v_to - v_from, off = v_pixel - v_from;
+    float t = clamp(dot(off, along) / max(dot(along, along), 1e-6), 0.0, 1.0);
+    float d = length(off - along * t);
+    float line = clamp(u_width * 0.5 + 0.5 - d, 0.0, 1.0);
+    float rim = clamp(u_width * 0.5 + 1.5 - d, 0.0, 1.0) * 0.45;
+    float alpha = max(line, rim);
+    o_color = vec4(u_ink * line, 1.0) * alpha;
+}
+"""
+
+COPY = """#version 330 core
+uniform sampler2D u_picture;
+out vec4 o_color;
+void main() { o_color = texelFetch(u_picture, ivec2(gl_FragCoord.xy), 0); }
+"""
+
+# Smooths edges found by contrast: looks along an edge's direction and takes the mean, unless that leaves the local range.
+SMOOTH = """#version 330 core
+uniform sampler2D u_picture;
+uniform vec2 u_pixel;
+in vec2 v_at;
+out vec4 o_color;
+float luma(vec4 c) { return dot(c.rgb, vec3(0.30, 0.59, 0.11)) + 0.3 * c.a; }
+void main() {
+    vec4 here = texture(u_picture, v_at);
+    float m = luma(here);
+    float a = luma(texture(u_picture, v_at + vec2(-0.5, -0.5) * u_pixel)), b = luma(texture(u_picture, v_at + vec2(0.5, -0.5) * u_pixel));
+    float c = luma(texture(u_picture, v_at + vec2(-0.5, 0.5) * u_pixel)), d = luma(texture(u_picture, v_at + vec2(0.5, 0.5) * u_pixel));
+    float low = min(m, min(min(a, b), min(c, d))), high = max(m, max(max(a, b), max(c, d)));
+    vec2 along = vec2((c + d) - (a + b), (a + c) - (b + d));
+    float least = 1.0 / (min(abs(along.x), abs(along.y)) + max((a + b + c + d) * 0.03, 0.008));
+    along = clamp(along * least, -6.0, 6.0) * u_pixel;
+    vec4 near = 0.5 * (texture(u_picture, v_at - along / 6.0) + texture(u_picture, v_at + along / 6.0));
+    vec4 wide = 0.5 * near + 0.25 * (texture(u_picture, v_at - along * 0.5) + texture(u_picture, v_at + along * 0.5));
+    float w = luma(wide);
+    o_color = high - low < 0.03 ? here : (w < low || w > high) ? near : wide;
+}
+"""
