@@ -1,0 +1,63 @@
+"""Read and write glTF 2.0: .glb, .gltf, .vrm. Everything comes out in metres, Y up, on one skeleton per file."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+from metagraph.errors import FileError
+from metagraph.formats.gltf_character import character_of
+from metagraph.formats.gltf_clips import read_clip
+from metagraph.formats.gltf_file import extras, open_gltf
+from metagraph.formats.gltf_skeleton import build_rig
+from metagraph.formats.gltf_writer import write_glb
+from metagraph.formats.takes import unique_takes
+from metagraph.motion.character import Character
+from metagraph.motion.clip import Clip
+
+__all__ = ["read_character", "read_gltf_clips", "vrm_roles", "write_glb"]
+
+
+def read_gltf_clips(path: str | Path) -> list[Clip]:
+    """Return every animation of a file as a clip; all share one Skeleton.
+
+    Keys are resampled to the constant frame rate they lie on (30 when any would do). The rest pose comes from the
+    skin's inverse bind matrices where they are sound, else from the nodes. Raises FileError, also when there is no
+    animation of the skeleton.
+    """
+    gltf = open_gltf(path)
+    if not gltf.json.animations:
+        raise FileError(path, "it holds no animation", "", "Export it with its animation, or open it as a character.")
+    rig = build_rig(gltf)
+    clips = [clip for i in range(len(gltf.json.animations)) if (clip := read_clip(gltf, rig, i)) is not None]
+    if not clips:
+        raise FileError(path, "none of its animations moves the skeleton", "", "Export it with its animation.")
+    return unique_takes(clips)
+
+
+def read_character(path: str | Path) -> Character:
+    """Return all meshes of the default scene as one skinned character in its skeleton's rest pose. Raises FileError."""
+    gltf = open_gltf(path)
+    return character_of(gltf, build_rig(gltf))
+
+
+def vrm_roles(path: str | Path) -> dict[str, int]:
+    """Return role -> joint as a VRM 0.x, VRM 1.0 or VRMA file states it; empty for other files. Raises FileError."""
+    gltf = open_gltf(path)
+    stated = extras(gltf.json.extensions)
+    bones: dict[str, object] = {}
+    for name in ("VRMC_vrm", "VRMC_vrm_animation", "VRM"):
+        humanoid = stated.get(name, {}).get("humanoid", {}) if isinstance(stated.get(name), dict) else {}
+        found = humanoid.get("humanBones", {}) if isinstance(humanoid, dict) else {}
+        if isinstance(found, list):  # VRM 0.x
+            found = {b.get("bone"): b for b in found if isinstance(b, dict)}
+        if isinstance(found, dict):
+            bones.update({k: v.get("node") for k, v in found.items() if isinstance(k, str) and isinstance(v, dict)})
+    if not bones:
+        return {}
+    places = build_rig(gltf).places
+    out = {}
+    for bone, node in bones.items():
+        role = "".join(f"_{c.lower()}" if c.isupper() else c for c in bone)
+        if isinstance(node, int) and node in places:
+            out[role] = places[node]
+    return out

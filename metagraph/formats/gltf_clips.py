@@ -1,0 +1,241 @@
+"""Animations of a glTF file as clips: every channel resampled to one constant frame rate."""
+
+from __future__ import annotations
+
+from collections import defaultdict
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from metagraph.formats.gltf_file import Animation, Gltf, extras
+from metagraph.formats.gltf_skeleton import Rig
+from metagraph.formats.takes import frame_rate, take_name, without_bind_pose
+from metagraph.motion import rotation
+from metagraph.motion.clip import Clip
+
+Array = NDArray[Any]
+
+STILL = 1e-5  # metres: a translation channel that moves less than this from the rest pose is dropped
+_LONGEST = 6 * 3600.0  # seconds
+
+
+@dataclass(frozen=True, eq=False)
+class _Grid:
+    """Frame times in seconds, and how each array of key times maps onto them."""
+
+    times: Array
+    fps: float
+
+
+def read_clip(gltf: Gltf, rig: Rig, number: int) -> Clip | None:
+    """Return animation `number` as a clip, or None when it moves nothing of the skeleton. Raises FileError."""
+    animation = gltf.json.animations[number]
+    where = f"animation {number} '{animation.name}'"
+    groups, morph_channels, notes = _channels(gltf, rig, animation, where)
+    if not groups and not morph_channels:
+        return None
+    inputs = {key[0] for key in groups} | {channel[0] for channel in morph_channels}
+    keys = {i: _key_times(gltf, i, where) for i in sorted(inputs)}
+    start, end = min(float(k[0]) for k in keys.values()), max(float(k[-1]) for k in keys.values())
+    if not end - start <= _LONGEST:
+        gltf.fail(f"it lasts {end - start:.3g} s", where)
+    wanted = extras(animation.extras).get("fps")
+    fps = frame_rate(list(keys.values()), float(wanted) if isinstance(wanted, int | float) and 1 <= wanted <= 1000 else None)
+    frames = max(1, round((end - start) * fps) + 1)
+    joints = len(rig.nodes)
+    gltf.spend(frames * joints * 32, where)
+    if start * fps > 0.5:
+        notes.append(f"it starts at {start:.3f} s in the file; that moment is now 0")
+    grid = _Grid(np.minimum(start + np.arange(frames) / fps, end), fps)
+
+    rotations = np.empty((frames, joints, 4), np.float32)
+    rotations[:] = rig.still_rotations
+    rest = np.asarray(rig.skeleton.rest_translations)
+    still = np.einsum("jab,jb->ja", rig.lift, rig.still_translations) + rig.shift
+    moved = {j: np.broadcast_to(still[j], (frames, 3)) for j in np.flatnonzero(np.abs(still - rest).max(-1) > STILL).tolist()}
+    scaled = 0
+    for (source, mode, path), targets in groups.items():
+        places = np.array([t[0] for t in targets])
+        width = 4 if path == "rotation" else 3
+        values = _stack(gltf, [t[1] for t in targets], len(keys[source]) * (3 if mode == "CUBICSPLINE" else 1), width, where)
+        if path == "rotation":
+            rotations[:, places] = _sample(keys[source], values, grid, mode, True).transpose(1, 0, 2)
+        elif path == "translation":
+            values = values.astype(np.float64) if values.dtype.kind != "f" else values
+            lifted = np.einsum("cab,ckb->cka", rig.lift[places], values)
+            own = slice(1, None, 3) if mode == "CUBICSPLINE" else slice(None)
+            lifted[:, own] += rig.shift[places, None]
+            loose = np.abs(lifted[:, own] - rest[places, None]).max((-1, -2)) > STILL
+            for j in places[~loose].tolist():
+                moved.pop(j, None)
+            if loose.any():
+                sampled = _sample(keys[source], lifted[loose], grid, mode, False)
+                moved.update(zip(places[loose].tolist(), sampled, strict=True))
+        else:
+            own = slice(1, None, 3) if mode == "CUBICSPLINE" else slice(None)
+            away = np.abs(values[:, own] - rig.still_scales[places, None]).max((-1, -2))
+            scaled += int((away > 0.01 * np.abs(rig.still_scales[places]).max(-1)).sum())
+    if scaled:
+        notes.append(f"the scale of {scaled} joints is animated; clips hold no scale, so it was left out")
+    turned = np.flatnonzero(rotation.angle_between(rig.turn, rotation.IDENTITY) > 0)
+    if len(turned):
+        rotations[:, turned] = rotation.multiply(rig.turn[turned].astype(np.float32), rotations[:, turned])
+    translated = tuple(sorted({0, *moved}))
+    translations = np.stack([moved.get(j, np.broadcast_to(rest[j], (frames, 3))) for j in translated], 1)
+    if not (np.isfinite(rotations).all() and np.isfinite(translations).all()):
+        bad = np.flatnonzero(~np.isfinite(rotations).all((0, 2)))
+        name = (
+            rig.skeleton.names[int(bad[0])] if len(bad) else rig.skeleton.names[next(j for j in moved if not np.isfinite(moved[j]).all())]
+        )
+        gltf.fail("a key is not a number", f"{where}, node '{name}'")
+    if np.abs(translations).max() > 1e7:
+        gltf.fail("a translation is out of range", where)
+    morphs, weights = _morphs(gltf, morph_channels, keys, grid, where)
+    clip = Clip(
+        take_name(animation.name, gltf.path.stem),
+        rig.skeleton,
+        fps,
+        rotation.continuous(rotation.normalize(rotations)),
+        translations,
+        translated,
+        morphs,
+        weights,
+        (*rig.notes, *notes),
+    )
+    return without_bind_pose(clip)
+
+
+_Group = tuple[int, str, str]
+
+
+def _channels(
+    gltf: Gltf, rig: Rig, animation: Animation, where: str
+) -> tuple[dict[_Group, list[tuple[int, int]]], list[tuple[int, str, int, int]], list[str]]:
+    """Sort channels into groups that share key times: (input, mode, path) -> [(joint, output)], and the morph channels."""
+    groups: dict[_Group, list[tuple[int, int]]] = defaultdict(list)
+    morphs: list[tuple[int, str, int, int]] = []
+    unknown: set[str] = set()
+    samplers = animation.samplers
+    for channel in animation.channels:
+        node, path = channel.target.node, channel.target.path
+        if channel.sampler >= len(samplers):
+            gltf.fail(f"sampler {channel.sampler} does not exist", where)
+        sampler = samplers[channel.sampler]
+        mode = sampler.interpolation
+        if mode not in ("LINEAR", "STEP", "CUBICSPLINE"):
+            gltf.fail(f"interpolation '{mode}' is unknown", where)
+        if node is None:
+            unknown.add(path)
+        elif path == "weights":
+            morphs.append((sampler.input, mode, node, sampler.output))
+        elif path in ("translation", "rotation", "scale"):
+            joint = rig.places.get(node)
+            if joint is not None:  # else it animates something that never moves and was folded away
+                groups[sampler.input, mode, path].append((joint, sampler.output))
+        else:
+            unknown.add(path)
+    notes = [f"channels for '{path[:40]}' were left out" for path in sorted(unknown)]
+    return groups, morphs, notes
+
+
+def _key_times(gltf: Gltf, accessor: int, where: str) -> Array:
+    times = np.asarray(gltf.array(accessor, where, "SCALAR"), np.float64)
+    if not len(times):
+        gltf.fail(f"accessor {accessor} holds no key times", where)
+    if not np.isfinite(times).all() or (np.diff(times) < 0).any():
+        gltf.fail(f"the key times of accessor {accessor} do not ascend", where)
+    return times
+
+
+def _stack(gltf: Gltf, outputs: list[int], count: int, width: int, where: str) -> Array:
+    """Return key values `[C, count, width]` of several accessors."""
+    arrays = []
+    for output in outputs:
+        values = gltf.array(output, where)
+        if values.ndim != 2 or values.shape[1] != width or len(values) < count:
+            gltf.fail(f"accessor {output} holds {'x'.join(map(str, values.shape))} values, expected {count}x{width}", where)
+        arrays.append(values if len(values) == count else values[:count])
+    if sum(a.nbytes for a in arrays) > 1 << 20:
+        gltf.spend(sum(a.nbytes for a in arrays), where)
+    return np.stack(arrays)
+
+
+def _sample(times: Array, values: Array, grid: _Grid, mode: str, turning: bool) -> Array:
+    """Evaluate channels with common key times at the grid: `[C, K, n]` (3 K for splines) -> `[C, F, n]`."""
+    at, count = grid.times, len(times)
+    spline = mode == "CUBICSPLINE"
+    keys = values[:, 1::3] if spline else values
+    if count == 1 or (not spline and (keys == keys[:, :1]).all()):
+        return np.broadcast_to(keys[:, :1], (len(keys), len(at), keys.shape[-1]))
+    near = 1e-3 / grid.fps
+    if not spline and count == len(at) and np.abs(times - at).max() < near:
+        return keys
+    low = np.clip(np.searchsorted(times, at + near, "right") - 1, 0, count - 1)
+    if mode == "STEP":
+        return keys[:, low]
+    low = np.minimum(low, count - 2)
+    gap = times[low + 1] - times[low]
+    part = np.clip((at - times[low]) / np.where(gap > 1e-9, gap, 1), 0, 1)
+    a, b = keys[:, low], keys[:, low + 1]
+    u = part[None, :, None]
+    if spline:
+        gap, u2, u3 = gap[None, :, None], u * u, u * u * u
+        leave, arrive = values[:, 2::3][:, low], values[:, 0::3][:, low + 1]
+        out = (2 * u3 - 3 * u2 + 1) * a + gap * (u3 - 2 * u2 + u) * leave + (3 * u2 - 2 * u3) * b + gap * (u3 - u2) * arrive
+        return np.asarray(rotation.normalize(out) if turning else out)
+    if not turning:
+        return np.asarray(a + (b - a) * u)
+    # Slerp: keys may be far apart after a tool has thinned them out.
+    dot = np.einsum("cfi,cfi->cf", a, b, dtype=np.float64)[..., None]
+    b = np.where(dot < 0, -b, b)
+    angle = np.arccos(np.clip(np.abs(dot), 0, 1))
+    sine = np.sin(angle)
+    close = sine < 1e-3
+    sine = np.where(close, 1, sine)
+    return np.asarray(a * np.where(close, 1 - u, np.sin((1 - u) * angle) / sine) + b * np.where(close, u, np.sin(u * angle) / sine))
+
+
+def morph_names(gltf: Gltf, node: int) -> tuple[str, ...]:
+    """Return the names of the morph targets of a node's mesh: from `targetNames`, else made from the mesh's name."""
+    mesh_index = gltf.json.nodes[node].mesh
+    if mesh_index is None:
+        return ()
+    mesh = gltf.item(gltf.json.meshes, mesh_index, "mesh", f"node {node}")
+    count = max((len(p.targets) for p in mesh.primitives), default=0)
+    if not count:
+        return ()
+    first = mesh.primitives[0]
+    for raw in (mesh.extras, gltf.json.nodes[node].extras, first.extras):
+        names = extras(raw).get("targetNames")
+        if isinstance(names, list) and len(names) >= count and all(isinstance(n, str) and n for n in names[:count]):
+            return tuple(names[:count])
+    return tuple(f"{mesh.name or 'mesh'}_morph_{k}" for k in range(count))
+
+
+def _morphs(
+    gltf: Gltf, channels: list[tuple[int, str, int, int]], keys: dict[int, Array], grid: _Grid, where: str
+) -> tuple[tuple[str, ...], Array | None]:
+    """Return morph names and weights `[F, K]`; meshes that share a target's name share its weight."""
+    columns: dict[str, Array] = {}
+    for source, mode, node, output in channels:
+        if node >= len(gltf.json.nodes):
+            gltf.fail(f"its target node {node} does not exist", where)
+        names = morph_names(gltf, node)
+        values = gltf.array(output, where, "SCALAR")
+        count = len(keys[source]) * (3 if mode == "CUBICSPLINE" else 1)
+        if not names:
+            continue
+        if len(values) != count * len(names):
+            gltf.fail(f"accessor {output} holds {len(values)} weights, expected {count} x {len(names)}", where)
+        gltf.spend(len(grid.times) * len(names) * 8, where)
+        tracks = np.asarray(values, np.float64).reshape(count, len(names)).T[..., None]
+        for name, track in zip(names, _sample(keys[source], tracks, grid, mode, False)[..., 0], strict=True):
+            columns.setdefault(name, track)
+    if not columns:
+        return (), None
+    weights = np.stack(list(columns.values()), 1)
+    if not np.isfinite(weights).all() or np.abs(weights).max() > 1e6:
+        gltf.fail("a morph weight is not a sensible number", where)
+    return tuple(columns), weights

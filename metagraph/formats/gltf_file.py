@@ -1,0 +1,365 @@
+"""A glTF 2.0 file opened and checked: its JSON as typed values, its buffers, and accessors as arrays.
+
+Nothing in the file is believed: every index, length and range is checked before use, and the memory that a small
+file may ask for (zero-filled accessors, long resampled clips) is bounded by `Gltf.spend`.
+"""
+
+from __future__ import annotations
+
+import base64
+import binascii
+import struct
+from pathlib import Path
+from typing import Annotated, Any, NoReturn
+from urllib.parse import unquote
+
+import msgspec
+import numpy as np
+from numpy.typing import NDArray
+
+from metagraph.errors import FileError
+
+Array = NDArray[Any]
+Index = Annotated[int, msgspec.Meta(ge=0)]
+Vec3 = tuple[float, float, float]
+Vec4 = tuple[float, float, float, float]
+
+_COMPONENTS = {5120: "<i1", 5121: "<u1", 5122: "<i2", 5123: "<u2", 5125: "<u4", 5126: "<f4"}
+_DTYPES = {code: np.dtype(name) for code, name in _COMPONENTS.items()}
+_WIDTHS = {"SCALAR": 1, "VEC2": 2, "VEC3": 3, "VEC4": 4, "MAT4": 16}
+# Required extensions that change nothing we read, or that the reader understands.
+_KNOWN = ("KHR_mesh_quantization", "KHR_materials_", "KHR_texture_", "EXT_texture_", "KHR_lights_", "KHR_xmp", "VRM", "KHR_node_visibility")
+_REMEDIES = {
+    "EXT_meshopt_compression": "Export it again without meshopt compression, or unpack it with 'gltf-transform copy'.",
+    "KHR_draco_mesh_compression": "Export it again without Draco compression, or unpack it with 'gltf-transform copy'.",
+}
+_FREE_BYTES = 64 << 20  # what a file of any size may ask for
+_BYTES_PER_BYTE = 64  # and what each of its bytes adds
+
+
+class _Value(msgspec.Struct, rename="camel", gc=False):
+    pass
+
+
+class SparseIndices(_Value):
+    buffer_view: Index
+    component_type: int
+    byte_offset: Index = 0
+
+
+class SparseValues(_Value):
+    buffer_view: Index
+    byte_offset: Index = 0
+
+
+class Sparse(_Value):
+    count: Index
+    indices: SparseIndices
+    values: SparseValues
+
+
+class Accessor(_Value):
+    component_type: int
+    count: Index
+    type: str
+    buffer_view: Index | None = None
+    byte_offset: Index = 0
+    normalized: bool = False
+    sparse: Sparse | None = None
+
+
+class BufferView(_Value):
+    buffer: Index
+    byte_length: Index
+    byte_offset: Index = 0
+    byte_stride: Index = 0
+
+
+class Buffer(_Value):
+    byte_length: Index
+    uri: str | None = None
+
+
+class Node(_Value):
+    name: str = ""
+    children: list[Index] = []  # noqa: RUF012 (msgspec copies defaults)
+    translation: Vec3 | None = None
+    rotation: Vec4 | None = None
+    scale: Vec3 | None = None
+    matrix: list[float] | None = None
+    mesh: Index | None = None
+    skin: Index | None = None
+    camera: Index | None = None
+    weights: list[float] | None = None
+    extras: msgspec.Raw = msgspec.Raw()
+
+
+class Skin(_Value):
+    joints: list[Index]
+    inverse_bind_matrices: Index | None = None
+    skeleton: Index | None = None
+
+
+class Target(_Value):
+    path: str
+    node: Index | None = None
+
+
+class Channel(_Value):
+    sampler: Index
+    target: Target
+
+
+class Sampler(_Value):
+    input: Index
+    output: Index
+    interpolation: str = "LINEAR"
+
+
+class Animation(_Value):
+    channels: list[Channel]
+    samplers: list[Sampler]
+    name: str = ""
+    extras: msgspec.Raw = msgspec.Raw()
+
+
+class Primitive(_Value):
+    attributes: dict[str, Index]
+    indices: Index | None = None
+    material: Index | None = None
+    mode: int = 4
+    targets: list[dict[str, Index]] = []  # noqa: RUF012
+    extras: msgspec.Raw = msgspec.Raw()
+
+
+class Mesh(_Value):
+    primitives: list[Primitive]
+    name: str = ""
+    weights: list[float] | None = None
+    extras: msgspec.Raw = msgspec.Raw()
+
+
+class TextureInfo(_Value):
+    index: Index
+
+
+class Pbr(_Value):
+    base_color_factor: Vec4 = (1.0, 1.0, 1.0, 1.0)
+    base_color_texture: TextureInfo | None = None
+    roughness_factor: float = 1.0
+
+
+class MaterialValue(_Value):
+    name: str = ""
+    pbr_metallic_roughness: Pbr | None = None
+    double_sided: bool = False
+
+
+class Texture(_Value):
+    source: Index | None = None
+
+
+class Image(_Value):
+    uri: str | None = None
+    buffer_view: Index | None = None
+
+
+class Scene(_Value):
+    nodes: list[Index] = []  # noqa: RUF012
+
+
+class Document(_Value):
+    scene: Index = 0
+    scenes: list[Scene] = []  # noqa: RUF012
+    nodes: list[Node] = []  # noqa: RUF012
+    skins: list[Skin] = []  # noqa: RUF012
+    animations: list[Animation] = []  # noqa: RUF012
+    meshes: list[Mesh] = []  # noqa: RUF012
+    materials: list[MaterialValue] = []  # noqa: RUF012
+    textures: list[Texture] = []  # noqa: RUF012
+    images: list[Image] = []  # noqa: RUF012
+    accessors: list[Accessor] = []  # noqa: RUF012
+    buffer_views: list[BufferView] = []  # noqa: RUF012
+    buffers: list[Buffer] = []  # noqa: RUF012
+    extensions: msgspec.Raw = msgspec.Raw()
+    extensions_required: list[str] = []  # noqa: RUF012
+
+
+_decoder = msgspec.json.Decoder(Document)
+
+
+class Gltf:
+    """An open file: `json`, and arrays on request. Every problem is a FileError that names the place."""
+
+    def __init__(self, path: Path, document: Document, binary: memoryview | None, size: int) -> None:
+        self.path, self.json = path, document
+        self._binary = binary
+        self._buffers: dict[int, memoryview] = {}
+        self._left = _FREE_BYTES + _BYTES_PER_BYTE * size
+        for name in document.extensions_required:
+            if not name.startswith(_KNOWN):
+                self.fail(
+                    f"it needs the glTF extension {name}, which is not supported", "", _REMEDIES.get(name, "Export it again without it.")
+                )
+
+    def fail(self, cause: str, where: str = "", remedy: str = "The file is damaged: export it again.") -> NoReturn:
+        raise FileError(self.path, cause, where, remedy)
+
+    def spend(self, size: int, where: str) -> None:
+        """Count `size` bytes that the file asks for beyond its own; FileError once it is out of all proportion."""
+        self._left -= size
+        if self._left < 0:
+            self.fail("it asks for far more memory than its size warrants", where)
+
+    def item(self, items: list[Any], index: int, kind: str, where: str) -> Any:
+        """Return `items[index]`, or fail naming what refers to it."""
+        if index >= len(items):
+            self.fail(f"{kind} {index} does not exist (there are {len(items)})", where)
+        return items[index]
+
+    def buffer(self, index: int, where: str) -> memoryview:
+        """Return a buffer's bytes."""
+        if index not in self._buffers:
+            value: Buffer = self.item(self.json.buffers, index, "buffer", where)
+            if value.uri is None:
+                if index or self._binary is None:
+                    self.fail(f"buffer {index} has no data", where)
+                self._buffers[index] = self._binary
+            else:
+                self._buffers[index] = memoryview(self.resource(value.uri, f"buffer {index}"))
+                self._left += _BYTES_PER_BYTE * len(self._buffers[index])
+        return self._buffers[index]
+
+    def resource(self, uri: str, where: str) -> bytes:
+        """Return the bytes of a data URI or of a file beside this one. Raises FileError when it is absent or elsewhere."""
+        if uri.startswith("data:"):
+            head, comma, body = uri.partition(",")
+            try:
+                return base64.b64decode(body, validate=True) if head.endswith(";base64") and comma else unquote(body).encode("latin-1")
+            except (binascii.Error, ValueError) as error:
+                self.fail(f"its data URI cannot be decoded ({error})", where)
+        name = unquote(uri)
+        folder = self.path.parent.resolve()
+        try:
+            target = (folder / name).resolve()
+            if "://" in name or not target.is_relative_to(folder):
+                self.fail(f"it points to '{name[:80]}', outside the file's own folder", where, "Put that file beside the glTF file.")
+            return target.read_bytes()
+        except (OSError, ValueError):
+            self.fail(f"'{name[:80]}' is not there", where, "Put it beside the glTF file, or export one .glb file.")
+
+    def view(self, index: int, where: str) -> tuple[memoryview, BufferView]:
+        """Return the bytes of a buffer view and its description."""
+        view: BufferView = self.item(self.json.buffer_views, index, "buffer view", where)
+        data = self.buffer(view.buffer, f"buffer view {index}")
+        if view.byte_offset + view.byte_length > len(data):
+            self.fail(f"buffer view {index} ends at byte {view.byte_offset + view.byte_length} of {len(data)}", where)
+        return data[view.byte_offset : view.byte_offset + view.byte_length], view
+
+    def array(self, index: int, where: str, kind: str = "") -> Array:
+        """Return accessor `index` as `[count, n]`, or `[count]` for scalars; normalised integers as float32.
+
+        kind: the type it must have ("VEC3"), if any. The array may be a view of the file's bytes: do not write to it.
+        """
+        accessor: Accessor = self.item(self.json.accessors, index, "accessor", where)
+        dtype, width = _DTYPES.get(accessor.component_type), _WIDTHS.get(accessor.type)
+        if dtype is None or width is None or (width == 16 and accessor.component_type != 5126):
+            self.fail(f"accessor {index} has component type {accessor.component_type} and type '{accessor.type}'", where)
+        if kind and accessor.type != kind:
+            self.fail(f"accessor {index} holds {accessor.type}, expected {kind}", where)
+        if accessor.buffer_view is None:
+            self.spend(accessor.count * width * dtype.itemsize, where)
+            out = np.zeros((accessor.count, width), dtype)
+        else:
+            out = self._strided(accessor, index, dtype, width, where)
+        if accessor.sparse is not None:
+            self.spend(out.nbytes, where)
+            out = self._with_sparse(out, accessor.sparse, dtype, width, f"{where}, accessor {index}")
+        if accessor.normalized and dtype.kind != "f":
+            out = np.maximum(out.astype(np.float32) / np.float32(np.iinfo(dtype).max), np.float32(-1))
+        return out[:, 0] if width == 1 else out
+
+    def _strided(self, accessor: Accessor, index: int, dtype: np.dtype[Any], width: int, where: str) -> Array:
+        assert accessor.buffer_view is not None
+        data, view = self.view(accessor.buffer_view, where)
+        item = width * dtype.itemsize
+        stride = view.byte_stride or item
+        end = accessor.byte_offset + stride * (accessor.count - 1) + item if accessor.count else 0
+        if stride < item or end > len(data):
+            self.fail(f"accessor {index} ends at byte {end} of a buffer view of {len(data)}", where)
+        return np.ndarray((accessor.count, width), dtype, data, accessor.byte_offset if accessor.count else 0, (stride, dtype.itemsize))
+
+    def _with_sparse(self, base: Array, sparse: Sparse, dtype: np.dtype[Any], width: int, where: str) -> Array:
+        places_type = _DTYPES.get(sparse.indices.component_type)
+        if places_type is None or places_type.kind != "u":
+            self.fail("its sparse indices are not unsigned integers", where)
+        data, _ = self.view(sparse.indices.buffer_view, where)
+        values, _ = self.view(sparse.values.buffer_view, where)
+        if sparse.indices.byte_offset + sparse.count * places_type.itemsize > len(
+            data
+        ) or sparse.values.byte_offset + sparse.count * width * dtype.itemsize > len(values):
+            self.fail("its sparse values lie beyond their buffer view", where)
+        places = np.frombuffer(data, places_type, sparse.count, sparse.indices.byte_offset)
+        if sparse.count and int(places.max()) >= len(base):
+            self.fail(f"its sparse index {int(places.max())} is beyond its {len(base)} elements", where)
+        out = base.copy()
+        out[places] = np.frombuffer(values, dtype, sparse.count * width, sparse.values.byte_offset).reshape(-1, width)
+        return out
+
+
+def open_gltf(path: str | Path) -> Gltf:
+    """Open a .glb, .vrm or .gltf file. Raises FileError."""
+    path = Path(path)
+    try:
+        data = path.read_bytes()
+    except OSError as error:
+        raise FileError(path, f"it cannot be read ({error.strerror})", "", "Check that it exists and that you may read it.") from error
+    text: bytes | memoryview = data
+    binary = None
+    if data[:4] == b"glTF":
+        text, binary = _chunks(path, data)
+    elif data[:3] == b"\xef\xbb\xbf":
+        text = data[3:]
+    elif data.lstrip()[:1] != b"{":
+        raise FileError(path, "it is neither a binary nor a text glTF file", "its first bytes", "Check that the file has the right ending.")
+    try:
+        document = _decoder.decode(text)
+    except (msgspec.MsgspecError, RecursionError, ValueError) as error:
+        raise FileError(path, f"its JSON does not describe a glTF scene ({error})", "its header", "Export it again.") from error
+    return Gltf(path, document, binary, len(data))
+
+
+def _chunks(path: Path, data: bytes) -> tuple[memoryview, memoryview | None]:
+    """Return the JSON and binary chunks of a GLB file."""
+    remedy = "The file is cut off or damaged: copy or export it again."
+    if len(data) < 20:
+        raise FileError(path, f"it ends after {len(data)} bytes", "its header", remedy)
+    version, _, size, kind = struct.unpack_from("<IIII", data, 4)
+    if version != 2:
+        raise FileError(path, f"it is glTF version {version}", "its header", "Export it as glTF 2.0.")
+    if kind != 0x4E4F534A or 20 + size > len(data):
+        raise FileError(path, f"its JSON chunk of {size} bytes does not fit its {len(data)} bytes", "its header", remedy)
+    whole = memoryview(data)
+    at, binary = 20 + size, None
+    while at + 8 <= len(data):
+        length, kind = struct.unpack_from("<II", data, at)
+        if kind == 0x004E4942:
+            if at + 8 + length > len(data):
+                raise FileError(
+                    path, f"its binary chunk of {length} bytes is cut off after {len(data) - at - 8}", "its binary chunk", remedy
+                )
+            binary = whole[at + 8 : at + 8 + length]
+            break
+        at += 8 + length + (-length % 4)
+    return whole[20 : 20 + size], binary
+
+
+def extras(raw: msgspec.Raw) -> dict[str, Any]:
+    """Return `extras` or `extensions` as a dictionary, empty when there is none or it is something else."""
+    if not bytes(raw):
+        return {}
+    try:
+        value = msgspec.json.decode(raw)
+    except (msgspec.MsgspecError, RecursionError, ValueError):
+        return {}
+    return value if isinstance(value, dict) else {}

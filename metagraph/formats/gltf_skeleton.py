@@ -1,0 +1,340 @@
+"""From glTF nodes to a Skeleton: which nodes are joints, the rest pose, and where the scale went."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from metagraph.formats.gltf_file import Gltf, Node
+from metagraph.motion import rotation
+from metagraph.motion.skeleton import Skeleton, unique_names
+
+Array = NDArray[Any]
+
+_TALL, _TINY = 20.0, 0.05  # metres: nothing that talks is taller or smaller, so the file is in other units
+_LARGEST = 1e7  # a translation or scale beyond this is damage
+
+
+@dataclass(frozen=True, eq=False)
+class Rig:
+    """A skeleton and how the file's nodes map onto it.
+
+    nodes: the node of each joint. places: node -> joint. parents: the parent of every node. A joint's translation is
+    `lift [J, 3, 3] @ file value + shift [J, 3]`, its rotation `turn [J, 4] * file value`. still_rotations,
+    still_translations, still_scales: the nodes' own values, what a joint without channels keeps, in the file's terms.
+    rest_matrices: `[J, 4, 4]`, the full rest transforms with scale, metres. worlds: `[N, 4, 4]` of every node as saved.
+    """
+
+    skeleton: Skeleton
+    nodes: tuple[int, ...]
+    places: dict[int, int]
+    parents: tuple[int, ...]
+    lift: Array
+    shift: Array
+    turn: Array
+    still_rotations: Array
+    still_translations: Array
+    still_scales: Array
+    rest_matrices: Array
+    worlds: Array
+    unit: float
+    notes: tuple[str, ...]
+
+
+def compose(translations: Array, rotations: Array, scales: Array) -> Array:
+    """Return matrices `[..., 4, 4]` of translation, rotation (xyzw), scale."""
+    out = np.zeros((*translations.shape[:-1], 4, 4))
+    out[..., :3, :3] = rotation.to_matrix(rotations) * scales[..., None, :]
+    out[..., :3, 3] = translations
+    out[..., 3, 3] = 1
+    return out
+
+
+def decompose(matrices: Array) -> tuple[Array, Array, Array]:
+    """Return translations, rotations (xyzw) and scales of matrices `[..., 4, 4]`; a mirror shows as a negative x scale."""
+    linear = matrices[..., :3, :3]
+    scales = np.linalg.norm(linear, axis=-2)
+    scales[..., 0] *= np.where(np.linalg.det(linear) < 0, -1, 1)
+    safe = np.where(np.abs(scales) > 1e-12, scales, 1)
+    return matrices[..., :3, 3], rotation.from_matrix(linear / safe[..., None, :]), scales
+
+
+def build_rig(gltf: Gltf) -> Rig:
+    """Return the one skeleton of the file. Raises FileError."""
+    nodes = gltf.json.nodes
+    if not nodes:
+        gltf.fail("it holds no nodes", "", "Export it with its skeleton.")
+    parents, order = _tree(gltf, nodes)
+    translations, rotations, scales = _transforms(gltf, nodes)
+    members = _members(gltf, nodes, parents, order)
+    joints = _in_order(gltf, members, parents, order)
+    places = {node: i for i, node in enumerate(joints)}
+    above = np.array([places.get(parents[n], -1) for n in joints])
+    locals_ = compose(translations, rotations, scales)
+    worlds = _globals(locals_, np.array(parents), order)
+    notes: list[str] = []
+
+    still = (rotations[joints], translations[joints], scales[joints])
+    roots = np.flatnonzero(above < 0)
+    base = np.tile(np.eye(4), (len(joints), 1, 1))  # what was folded into each root: its ancestors' transform
+    for i in roots:
+        if parents[joints[i]] >= 0:
+            base[i] = worlds[parents[joints[i]]]
+    rest_t, rest_r, rest_s = _rest_pose(gltf, joints, places, above, base, worlds, still)
+
+    spread = np.abs(rest_s).max(-1) > np.abs(rest_s).min(-1) * 1.01
+    if spread.any():
+        notes.append(f"{int(spread.sum())} joints are scaled unevenly; their rotation is kept, their scale is not")
+    chain = np.argsort(_depths(above), kind="stable")
+    size = np.abs(np.cbrt(np.prod(rest_s, -1)))
+    lift, shift, turn = np.zeros((len(joints), 3, 3)), np.zeros((len(joints), 3)), rotation.identity((len(joints),))
+    total = np.ones(len(joints))
+    _, base_r, base_s = decompose(base[roots])
+    if (base_s[:, 0] < 0).any() or (rest_s < 0).any():
+        notes.append("the file mirrors a part of its scene with a negative scale; that part may look turned")
+    lift[roots], shift[roots], turn[roots] = base[roots, :3, :3], base[roots, :3, 3], base_r
+    total[roots] = np.abs(np.cbrt(np.prod(base_s, -1))) * size[roots]
+    for i in chain:
+        if above[i] >= 0:
+            p = above[i]
+            lift[i] = np.diag(rest_s[p] * (total[p] / (size[p] or 1)))
+            total[i] = total[p] * size[i]
+    rest_translations = np.einsum("jab,jb->ja", lift, rest_t) + shift
+    rest_rotations = rotation.normalize(rotation.multiply(turn, rest_r))
+    names = unique_names([nodes[n].name or f"node_{n}" for n in joints])
+    if len(set(names) - {nodes[n].name.strip() for n in joints if nodes[n].name}):
+        notes.append("joints without a name or with a repeated one were given names of their own")
+
+    skeleton = Skeleton(names, above, rest_rotations, rest_translations)
+    unit = 0.01 if skeleton.height > _TALL else 100.0 if 1e-3 < skeleton.height < _TINY and len(joints) > 3 else 1.0
+    if unit != 1.0:
+        notes.append(
+            f"its skeleton is {skeleton.height:.3g} m long: read {'100 times smaller (centimetres)' if unit < 1 else '100 times larger'}"
+        )
+        lift, shift = lift * unit, shift * unit
+        skeleton = Skeleton(names, above, rest_rotations, rest_translations * unit)
+    rest_locals = compose(rest_t, rest_r, rest_s)
+    rest_locals[roots] = base[roots] @ rest_locals[roots]
+    rest_matrices = _globals(rest_locals, above, list(chain))
+    rest_matrices[:, :3] *= unit
+    return Rig(
+        skeleton, tuple(joints), places, tuple(parents), lift, shift, turn, *still, rest_matrices, worlds, unit, tuple(notes)
+    )  # fmt: skip
+
+
+def _tree(gltf: Gltf, nodes: list[Node]) -> tuple[list[int], list[int]]:
+    """Return every node's parent, and the nodes depth first with parents before children."""
+    parents = [-1] * len(nodes)
+    for i, node in enumerate(nodes):
+        for child in node.children:
+            if child >= len(nodes):
+                gltf.fail(f"child {child} does not exist", f"node {i} '{node.name}'")
+            if parents[child] >= 0 or child == i:
+                gltf.fail(f"node {child} has more than one parent", f"node {i} '{node.name}'")
+            parents[child] = i
+    order: list[int] = []
+    stack = [i for i in range(len(nodes) - 1, -1, -1) if parents[i] < 0]
+    while stack:
+        i = stack.pop()
+        order.append(i)
+        stack.extend(reversed(nodes[i].children))
+    if len(order) < len(nodes):
+        lost = min(set(range(len(nodes))) - set(order))
+        gltf.fail("it is its own ancestor", f"node {lost} '{nodes[lost].name}'")
+    return parents, order
+
+
+def _transforms(gltf: Gltf, nodes: list[Node]) -> tuple[Array, Array, Array]:
+    """Return every node's translation, rotation and scale."""
+    translations = np.array([n.translation or (0.0, 0.0, 0.0) for n in nodes])
+    rotations = np.array([n.rotation or (0.0, 0.0, 0.0, 1.0) for n in nodes])
+    scales = np.array([n.scale or (1.0, 1.0, 1.0) for n in nodes])
+    for i, node in enumerate(nodes):
+        if node.matrix is not None:
+            if len(node.matrix) != 16 or not np.isfinite(node.matrix).all() or np.abs(node.matrix).max() > _LARGEST:
+                gltf.fail("its matrix is not 16 sensible numbers", f"node {i} '{node.name}'")
+            translations[i], rotations[i], scales[i] = decompose(np.array(node.matrix).reshape(4, 4).T)
+    wild = (np.abs(translations).max(-1) > _LARGEST) | (np.abs(scales).max(-1) > _LARGEST) | (np.abs(rotations).max(-1) > _LARGEST)
+    if wild.any():
+        i = int(np.flatnonzero(wild)[0])
+        gltf.fail("its translation, rotation or scale is out of range", f"node {i} '{nodes[i].name}'")
+    return translations, rotation.normalize(rotations), scales
+
+
+def _members(gltf: Gltf, nodes: list[Node], parents: list[int], order: list[int]) -> set[int]:
+    """Return the nodes that become joints."""
+    doc = gltf.json
+    skinned: set[int] = set()
+    for s, skin in enumerate(doc.skins):
+        for joint in skin.joints:
+            if joint >= len(nodes):
+                gltf.fail(f"joint {joint} does not exist", f"skin {s}")
+            skinned.add(joint)
+    animated: dict[int, list[tuple[str, int]]] = {}
+    for a, animation in enumerate(doc.animations):
+        for channel in animation.channels:
+            node = channel.target.node
+            if node is None or channel.target.path not in ("translation", "rotation", "scale"):
+                continue
+            if node >= len(nodes):
+                gltf.fail(f"its target node {node} does not exist", f"animation {a} '{animation.name}'")
+            sampler = gltf.item(animation.samplers, channel.sampler, "sampler", f"animation {a} '{animation.name}'")
+            animated.setdefault(node, []).append((channel.target.path, sampler.output))
+    if skinned:
+        moving = {n for n, outputs in animated.items() if n not in skinned and _moves(gltf, nodes[n], outputs)}
+        members = skinned | moving
+    else:
+        members = _without_skin(nodes, parents, order, set(animated))
+    # Close the gaps: a node between two joints is a joint.
+    under, over = set(), set(members)
+    for i in order:
+        if parents[i] in under or parents[i] in members:
+            under.add(i)
+    for i in reversed(order):
+        if i in over and parents[i] >= 0:
+            over.add(parents[i])
+    return members | (under & over)
+
+
+def _moves(gltf: Gltf, node: Node, outputs: list[tuple[str, int]]) -> bool:
+    """Whether an animated node ever leaves the transform it has in the scene."""
+    if node.matrix is not None:
+        return True
+    still = {
+        "translation": node.translation or (0, 0, 0),
+        "rotation": node.rotation or (0, 0, 0, 1),
+        "scale": node.scale or (1, 1, 1),
+    }
+    for path, output in outputs:
+        values = np.asarray(gltf.array(output, f"node '{node.name}'"), float)
+        rest = np.array(still[path], float)
+        if values.ndim != 2 or values.shape[1] != len(rest):
+            return True
+        if path == "rotation":
+            values = values * np.where(values @ rest < 0, -1, 1)[:, None]
+        if len(values) and np.abs(values - rest).max() > 1e-4 * max(1.0, float(np.abs(rest).max())):
+            return True
+    return False
+
+
+def _without_skin(nodes: list[Node], parents: list[int], order: list[int], animated: set[int]) -> set[int]:
+    """Joints of a file that has no skin: the trees with animation in them, less scenery and less a wrapper on top."""
+    kept: set[int] = set()
+    for i in reversed(order):
+        below = any(c in kept for c in nodes[i].children)
+        scenery = nodes[i].mesh is not None or nodes[i].camera is not None or bool(nodes[i].children)
+        if i in animated or below or not scenery:
+            kept.add(i)
+    live: set[int] = set()
+    for i in reversed(order):
+        if i in animated or i in live:
+            live.add(i)
+            if parents[i] >= 0:
+                live.add(parents[i])
+    tops = [i for i in order if parents[i] < 0 and (i in live or not animated)]
+    inside: set[int] = set()
+    for i in order:
+        if i in kept and (i in tops or parents[i] in inside):
+            inside.add(i)
+    for top in tops:
+        while top in inside and top not in animated:
+            children = [c for c in nodes[top].children if c in inside]
+            if len(children) != 1 or not animated:
+                break
+            inside.discard(top)
+            top = children[0]
+    return inside or {order[0]}
+
+
+def _in_order(gltf: Gltf, members: set[int], parents: list[int], order: list[int]) -> list[int]:
+    """Return the joints, parents first, otherwise in the order the skins list them, then as in the scene."""
+    wanted = [j for skin in gltf.json.skins for j in skin.joints] + [i for i in order if i in members]
+    out: list[int] = []
+    seen: set[int] = set()
+    for joint in wanted:
+        line = []
+        while joint >= 0 and joint in members and joint not in seen:
+            seen.add(joint)
+            line.append(joint)
+            joint = parents[joint]
+        out.extend(reversed(line))
+    return out
+
+
+def _depths(parents: Array) -> Array:
+    depths = np.full(len(parents), -1)
+    for i in range(len(parents)):
+        line = [i]
+        while depths[line[-1]] < 0 and parents[line[-1]] >= 0:
+            line.append(int(parents[line[-1]]))
+        start = max(0, int(depths[line[-1]]))
+        for k, j in enumerate(reversed(line)):
+            depths[j] = start + k
+    return depths
+
+
+def _globals(locals_: Array, parents: Array, order: list[int]) -> Array:
+    """Return model-space matrices of local ones, walking level by level."""
+    out = locals_.copy()
+    depths = _depths(parents)
+    for depth in range(1, int(depths.max()) + 1):
+        here = np.flatnonzero(depths == depth)
+        out[here] = out[parents[here]] @ locals_[here]
+    return out
+
+
+def _rest_pose(
+    gltf: Gltf, joints: list[int], places: dict[int, int], above: Array, base: Array, worlds: Array, still: tuple[Array, Array, Array]
+) -> tuple[Array, Array, Array]:
+    """Return the rest translations, rotations and scales of the joints, in the file's own local terms.
+
+    Exporters save nodes in whatever pose was on the screen, so the inverse bind matrices are the better witness. They
+    are believed when they describe rigid bones in the same frame as the nodes; where both agree the nodes' numbers
+    win, being exact.
+    """
+    rotations, translations, scales = (a.copy() for a in still)
+    differs = False
+    for s, skin in enumerate(gltf.json.skins):
+        if skin.inverse_bind_matrices is None or not skin.joints:
+            continue
+        inverse = np.asarray(gltf.array(skin.inverse_bind_matrices, f"skin {s}", "MAT4"), float)
+        if len(inverse) < len(skin.joints):
+            gltf.fail(f"{len(inverse)} inverse bind matrices for {len(skin.joints)} joints", f"skin {s}")
+        inverse = inverse[: len(skin.joints)].reshape(-1, 4, 4).transpose(0, 2, 1)
+        if not np.isfinite(inverse).all() or np.abs(inverse).max() > _LARGEST or (np.abs(np.linalg.det(inverse[:, :3, :3])) < 1e-15).any():
+            continue
+        bind = np.linalg.inv(inverse)
+        own = np.array([places[j] for j in skin.joints])
+        at = {joint: k for k, joint in enumerate(own.tolist())}
+        parent = np.array([at.get(int(above[j]), -1) for j in own])
+        inner, tops = np.flatnonzero(parent >= 0), np.flatnonzero(parent < 0)
+        free = [k for k in tops if above[own[k]] < 0]
+        local = np.tile(np.eye(4), (len(own), 1, 1))
+        local[inner] = inverse[parent[inner]] @ bind[inner]
+        believable = True
+        for k in free:
+            world, j = worlds[skin.joints[k]], own[k]
+            _, world_r, world_s = decompose(world)
+            where, bind_r, bind_s = decompose(bind[k])
+            if rotation.angle_between(world_r, bind_r) > np.radians(60) or abs(np.linalg.det(base[j, :3, :3])) < 1e-15:
+                believable = False
+                break
+            ratio = np.cbrt(abs(np.prod(world_s))) / np.cbrt(abs(np.prod(bind_s)))
+            placed = compose(where * ratio, bind_r, world_s)
+            local[k] = np.linalg.inv(base[j]) @ placed
+        t, r, size = decompose(local)
+        use = np.concatenate([inner, np.array(free, int)])
+        rigid = np.abs(rotation.to_matrix(r) * size[:, None, :] - local[:, :3, :3]).max((-1, -2)) < 0.02 * np.abs(size).max(-1)
+        ratio_s = size[use] / np.where(np.abs(scales[own[use]]) > 1e-9, scales[own[use]], 1)
+        if not believable or not rigid[use].all() or (ratio_s < 0.5).any() or (ratio_s > 2).any():
+            continue
+        reach = max(1e-9, float(np.abs(translations[own]).max()))
+        differs |= bool(np.abs(t[use] - still[1][own[use]]).max() > 2e-6 * reach) if len(use) else False
+        differs |= bool(rotation.angle_between(r[use], still[0][own[use]]).max() > 1e-4) if len(use) else False
+        translations[own[use]], rotations[own[use]], scales[own[use]] = t[use], r[use], size[use]
+    if not differs:
+        rotations, translations, scales = still
+    return translations, rotations, scales

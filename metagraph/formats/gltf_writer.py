@@ -1,0 +1,303 @@
+"""Write clips, and a character if there is one, as a single binary glTF file."""
+
+from __future__ import annotations
+
+import os
+import struct
+from collections.abc import Sequence
+from pathlib import Path
+from typing import Any
+
+import msgspec
+import numpy as np
+from numpy.typing import NDArray
+
+from metagraph.errors import FileError
+from metagraph.motion import rotation
+from metagraph.motion.character import Character
+from metagraph.motion.clip import Clip
+from metagraph.motion.skeleton import Skeleton
+
+Array = NDArray[Any]
+
+_FLOAT, _SHORT, _USHORT, _UBYTE, _UINT = 5126, 5122, 5123, 5121, 5125
+_TYPES = {1: "SCALAR", 2: "VEC2", 3: "VEC3", 4: "VEC4", 16: "MAT4"}
+_ARRAY_BUFFER, _ELEMENT_BUFFER = 34962, 34963
+
+
+class _Body:
+    """The binary chunk as it grows, with its views and accessors; equal arrays are stored once."""
+
+    def __init__(self) -> None:
+        self.data = bytearray()
+        self.views: list[dict[str, Any]] = []
+        self.accessors: list[dict[str, Any]] = []
+        self._known: dict[tuple[Any, ...], int] = {}
+
+    def view(self, raw: bytes, target: int | None = None, stride: int = 0) -> int:
+        self.data += b"\0" * (-len(self.data) % 4)
+        view: dict[str, Any] = {"buffer": 0, "byteOffset": len(self.data), "byteLength": len(raw)}
+        if target:
+            view["target"] = target
+        if stride:
+            view["byteStride"] = stride
+        self.data += raw
+        self.views.append(view)
+        return len(self.views) - 1
+
+    def array(self, values: Array, component: int, *, target: int | None = None, normalized: bool = False, bounds: bool = False) -> int:
+        """Add `[count]` or `[count, n]` values and return the accessor's index."""
+        dtype = {_FLOAT: "<f4", _SHORT: "<i2", _USHORT: "<u2", _UBYTE: "<u1", _UINT: "<u4"}[component]
+        values = np.ascontiguousarray(values, dtype)
+        key = (values.tobytes(), component, values.shape, target, normalized)
+        if key in self._known:
+            return self._known[key]
+        width = 1 if values.ndim == 1 else values.shape[1]
+        size = width * values.itemsize
+        stride = 0
+        raw = values.tobytes()
+        if target == _ARRAY_BUFFER and size % 4:  # vertex attributes start on multiples of four
+            padded = np.zeros((len(values), size + (-size % 4)), np.uint8)
+            padded[:, :size] = values.view(np.uint8).reshape(len(values), size)
+            raw, stride = padded.tobytes(), padded.shape[1]
+        accessor: dict[str, Any] = {
+            "bufferView": self.view(raw, target, stride),
+            "componentType": component,
+            "count": len(values),
+            "type": _TYPES[width],
+        }
+        if normalized:
+            accessor["normalized"] = True
+        if bounds:
+            flat = values.reshape(len(values), width).astype(float)
+            accessor["min"], accessor["max"] = flat.min(0).tolist(), flat.max(0).tolist()
+        self.accessors.append(accessor)
+        self._known[key] = len(self.accessors) - 1
+        return self._known[key]
+
+
+def write_glb(
+    path: str | Path,
+    clips: Sequence[Clip],
+    character: Character | None = None,
+    quantize: bool = True,
+    tolerance: float | None = None,
+) -> None:
+    """Write one skeleton, its skin and every clip as an animation.
+
+    clips: all on the same skeleton, which is also the character's. quantize: store rotations as normalised 16-bit
+    integers (error below 0.003 degrees). tolerance: how far keys may be thinned out: the largest change of a
+    quaternion component or, in metres, of a translation; by default 5e-5 when quantizing, else 0. A rotation that
+    stays the same keeps one key. Raises FileError when the file cannot be written, ValueError for mixed skeletons.
+    """
+    path = Path(path)
+    if not clips and character is None:
+        raise ValueError("nothing to write: neither a clip nor a character")
+    skeleton = character.skeleton if character is not None else clips[0].skeleton
+    for clip in clips:
+        if clip.skeleton is not skeleton and clip.skeleton != skeleton:
+            raise ValueError(f"clip '{clip.name}' is on another skeleton; retarget it first")
+    tolerance = (5e-5 if quantize else 0.0) if tolerance is None else tolerance
+    body = _Body()
+    document: dict[str, Any] = {"asset": {"version": "2.0", "generator": "Metagraph"}, "scene": 0}
+    document["nodes"] = nodes = _joint_nodes(skeleton)
+    roots = [i for i, p in enumerate(skeleton.parents) if p < 0]
+    # Two roots need a common node above them for the skin to be valid.
+    if len(roots) > 1:
+        nodes.append({"name": "Armature", "children": roots})
+        roots = [len(nodes) - 1]
+    rest_r, rest_p = skeleton.globals(skeleton.rest)
+    inverse = np.tile(np.eye(4), (len(skeleton), 1, 1))
+    inverse[:, :3, :3] = rotation.to_matrix(rest_r).transpose(0, 2, 1)
+    inverse[:, :3, 3] = -np.einsum("jab,jb->ja", inverse[:, :3, :3], rest_p)
+    document["skins"] = [
+        {
+            "name": "Skin",
+            "joints": list(range(len(skeleton))),
+            "inverseBindMatrices": body.array(inverse.transpose(0, 2, 1).reshape(-1, 16), _FLOAT),
+            "skeleton": roots[0],
+        }
+    ]
+    morphs: tuple[str, ...] = ()
+    mesh_node = None
+    if character is not None and len(character.triangles):
+        mesh_node = _add_character(document, body, character)
+        morphs = character.morphs
+        roots = [*roots, mesh_node]
+    document["scenes"] = [{"nodes": roots}]
+    animations = [_animation(body, clip, quantize, tolerance, morphs, mesh_node) for clip in clips]
+    if animations:
+        document["animations"] = animations
+    document["accessors"], document["bufferViews"] = body.accessors, body.views
+    document["buffers"] = [{"byteLength": len(body.data)}]
+    head = msgspec.json.encode(document)
+    head += b" " * (-len(head) % 4)
+    body.data += b"\0" * (-len(body.data) % 4)
+    size = 12 + 8 + len(head) + 8 + len(body.data)
+    parts = (
+        struct.pack("<4sIIII", b"glTF", 2, size, len(head), 0x4E4F534A),
+        head,
+        struct.pack("<II", len(body.data), 0x004E4942),
+        body.data,
+    )
+    write_whole(path, b"".join(parts))
+
+
+def write_whole(path: Path, data: bytes) -> None:
+    """Write a file in one step: a reader sees the old file or the new one, never a half. Raises FileError."""
+    beside = path.with_name(f".{path.name}.{os.getpid()}.part")
+    try:
+        beside.write_bytes(data)
+        beside.replace(path)
+    except OSError as error:
+        beside.unlink(missing_ok=True)
+        raise FileError(
+            path, f"it cannot be written ({error.strerror})", "", "Check the folder, its permissions and the free space."
+        ) from error
+
+
+def _joint_nodes(skeleton: Skeleton) -> list[dict[str, Any]]:
+    out: list[dict[str, Any]] = []
+    for i, name in enumerate(skeleton.names):
+        node: dict[str, Any] = {
+            "name": name,
+            "translation": skeleton.rest_translations[i].tolist(),
+            "rotation": skeleton.rest_rotations[i].tolist(),
+        }
+        if skeleton.children[i]:
+            node["children"] = list(skeleton.children[i])
+        out.append(node)
+    return out
+
+
+def _add_character(document: dict[str, Any], body: _Body, character: Character) -> int:
+    """Add mesh, materials and images; return the node that carries the mesh."""
+    weights = np.maximum(np.asarray(character.weights, np.float32), 0)
+    total = weights.sum(1, keepdims=True)
+    weights = np.where(total > 0, weights / np.where(total > 0, total, 1), np.array([1, 0, 0, 0], np.float32)).astype(np.float32)
+    joints = np.where(weights > 0, character.joints, 0)
+    normals = np.asarray(character.normals, np.float64)
+    length = np.linalg.norm(normals, axis=1, keepdims=True)
+    normals = np.where(length > 1e-9, normals / np.maximum(length, 1e-9), [0.0, 1.0, 0.0])
+    attributes = {
+        "POSITION": body.array(character.positions, _FLOAT, target=_ARRAY_BUFFER, bounds=True),
+        "NORMAL": body.array(normals, _FLOAT, target=_ARRAY_BUFFER),
+        "TEXCOORD_0": body.array(character.uvs, _FLOAT, target=_ARRAY_BUFFER),
+        "JOINTS_0": body.array(joints, _UBYTE if len(character.skeleton) <= 255 else _USHORT, target=_ARRAY_BUFFER),
+        "WEIGHTS_0": body.array(weights, _FLOAT, target=_ARRAY_BUFFER),
+    }
+    targets = []
+    if character.morph_positions is not None:
+        targets = [{"POSITION": body.array(offsets, _FLOAT, target=_ARRAY_BUFFER, bounds=True)} for offsets in character.morph_positions]
+    primitives = []
+    for surface in character.surfaces:
+        if not surface.count:
+            continue
+        order = np.asarray(character.triangles[surface.first : surface.first + surface.count]).reshape(-1)
+        primitive: dict[str, Any] = {
+            "attributes": attributes,
+            "indices": body.array(order, _USHORT if int(order.max()) < 65535 else _UINT, target=_ELEMENT_BUFFER),
+            "material": surface.material,
+        }
+        if targets:
+            primitive["targets"] = targets
+        primitives.append(primitive)
+    mesh: dict[str, Any] = {"name": character.name, "primitives": primitives}
+    if targets:
+        mesh["weights"] = [0.0] * len(targets)
+        mesh["extras"] = {"targetNames": list(character.morphs)}
+    images: list[dict[str, Any]] = []
+    known: dict[bytes, int] = {}
+    materials = []
+    for material in character.materials:
+        pbr: dict[str, Any] = {"baseColorFactor": list(material.color), "metallicFactor": 0.0, "roughnessFactor": material.roughness}
+        if material.image is not None:
+            if material.image not in known:
+                known[material.image] = len(images)
+                kind = "image/png" if material.image[:4] == b"\x89PNG" else "image/jpeg"
+                images.append({"bufferView": body.view(material.image), "mimeType": kind})
+            pbr["baseColorTexture"] = {"index": known[material.image]}
+        value: dict[str, Any] = {"name": material.name, "pbrMetallicRoughness": pbr}
+        if material.double_sided:
+            value["doubleSided"] = True
+        materials.append(value)
+    if materials:
+        document["materials"] = materials
+    if images:
+        document["images"] = images
+        document["textures"] = [{"source": i} for i in range(len(images))]
+    document["meshes"] = [mesh]
+    document["nodes"].append({"name": character.name, "mesh": 0, "skin": 0})
+    return len(document["nodes"]) - 1
+
+
+def _animation(body: _Body, clip: Clip, quantize: bool, tolerance: float, morphs: tuple[str, ...], mesh_node: int | None) -> dict[str, Any]:
+    times = np.arange(clip.frames) / clip.fps
+    samplers: list[dict[str, Any]] = []
+    channels: list[dict[str, Any]] = []
+
+    def add(node: int, path: str, kept: Array, values: Array, component: int) -> None:
+        own = times[kept]
+        source = body.array(own, _FLOAT, bounds=True)
+        output = body.array(values, component, normalized=component == _SHORT)
+        samplers.append({"input": source, "output": output, "interpolation": "LINEAR"})
+        channels.append({"sampler": len(samplers) - 1, "target": {"node": node, "path": path}})
+
+    rotations = clip.rotations.astype(np.float64)
+    for joint, kept in enumerate(_keys(rotations, tolerance, True)):
+        values = rotations[kept, joint]
+        if quantize:
+            values = np.round(rotation.normalize(values) * 32767)
+        add(joint, "rotation", kept, values, _SHORT if quantize else _FLOAT)
+    translations = clip.translations.astype(np.float64)
+    for place, kept in zip(clip.translated, _keys(translations, tolerance, False), strict=True):
+        if place == 0 and clip.frames > 1 and len(kept) == 1:
+            kept = np.array([0, clip.frames - 1])  # keeps the clip's length, whatever else stands still
+        add(place, "translation", kept, translations[kept, clip.translated.index(place)], _FLOAT)
+    shared = [clip.morphs.index(name) if name in clip.morphs else -1 for name in morphs]
+    if mesh_node is not None and clip.weights is not None and any(i >= 0 for i in shared):
+        weights = np.stack([clip.weights[:, i] if i >= 0 else np.zeros(clip.frames) for i in shared], 1)
+        still = bool((np.abs(weights - weights[:1]) <= tolerance).all())
+        kept = np.array([0]) if still else np.arange(clip.frames)
+        add(mesh_node, "weights", kept, weights[kept].reshape(-1), _FLOAT)
+    return {"name": clip.name, "samplers": samplers, "channels": channels, "extras": {"fps": clip.fps}}
+
+
+def _keys(values: Array, tolerance: float, turning: bool) -> list[Array]:
+    """Return for each track of `values [F, C, n]` the frames to keep so that what lies between is within tolerance.
+
+    Every track starts with its ends and is split at its worst frame until none is too far off, all tracks at once.
+    """
+    frames, tracks = values.shape[:2]
+    still = np.abs(values - values[:1]).max((0, 2)) <= tolerance
+    if frames <= 2 or tolerance <= 0:
+        return [np.array([0]) if s else np.arange(frames) for s in still]
+    keep = np.zeros((tracks, frames), bool)
+    keep[:, 0] = keep[:, -1] = True
+    data = values.transpose(1, 0, 2)
+    every = np.broadcast_to(np.arange(frames), (tracks, frames))
+    open_tracks = np.flatnonzero(~still)
+    while len(open_tracks):
+        mask, own = keep[open_tracks], data[open_tracks]
+        low = np.maximum.accumulate(np.where(mask, every[: len(mask)], 0), 1)
+        high = np.minimum.accumulate(np.where(mask, every[: len(mask)], frames - 1)[:, ::-1], 1)[:, ::-1]
+        a, b = np.take_along_axis(own, low[..., None], 1), np.take_along_axis(own, high[..., None], 1)
+        part = (every[: len(mask)] - low) / np.maximum(high - low, 1)
+        guess = rotation.slerp(a, b, part) if turning else a + (b - a) * part[..., None]
+        if turning:
+            guess = guess * np.sign(np.einsum("tfi,tfi->tf", guess, own))[..., None]
+        error = np.abs(guess - own).max(-1)
+        error[mask] = 0
+        late = (error > tolerance).any(1)
+        # In every stretch between kept frames, keep its worst frame when that is too far off.
+        rows, cols = np.nonzero(mask)
+        starts = rows * frames + cols
+        worst = np.maximum.reduceat(error.reshape(-1), starts)
+        stretch = np.cumsum(mask.reshape(-1)) - 1
+        hit = (error.reshape(-1) > tolerance) & (error.reshape(-1) >= worst[stretch])
+        mask |= hit.reshape(mask.shape)
+        keep[open_tracks] = mask
+        open_tracks = open_tracks[late]
+    # A track with its own key times pays four bytes a key for them; keep every frame where that costs more.
+    keep[keep.sum(1) > 0.66 * frames] = True
+    return [np.array([0]) if s else np.flatnonzero(k) for s, k in zip(still, keep, strict=True)]

@@ -1,0 +1,89 @@
+"""What every reader does to a take: its name, its frame rate, and a bind pose left on its first frame."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Sequence
+from dataclasses import replace
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from metagraph.motion import rotation
+from metagraph.motion.clip import Clip
+
+Array = NDArray[Any]
+
+# Names that tools give on their own; the file's name says more.
+_GENERIC = re.compile(r"(?i)(take|untitled|animation|anim|action|default|scene|clip|unreal take|mixamo\.com|bindpose|animstack)[ _.:]*\d*")
+_RATES = (30.0, 24.0, 25.0, 60.0, 50.0, 48.0, 30000 / 1001, 24000 / 1001, 60000 / 1001, 120.0, 100.0, 240.0, 90.0, 72.0)
+
+
+def take_name(raw: str, stem: str) -> str:
+    """Return a take's name, or the file's stem where the take has none or a tool's default ("Take 001")."""
+    parts = [part.strip() for part in raw.split("|") if part.strip()]
+    parts = [part for part in parts if not re.fullmatch(r"(?i)armature(\.\d+)?|base ?layer|layer ?\d*|root|rig", part)]
+    if not parts or any(_GENERIC.fullmatch(part) for part in parts):
+        return stem
+    return " ".join(parts)
+
+
+def frame_rate(keys: Sequence[Array], wanted: float | None = None) -> float:
+    """Return the frames per second on which key times (seconds, each array ascending) lie; 30 when any would do.
+
+    wanted: a rate to prefer when the keys lie on it.
+    """
+    start = min((float(k[0]) for k in keys if len(k)), default=0.0)
+    every = np.unique(np.concatenate([np.asarray(k, float) for k in keys] or [np.zeros(1)])) - start
+    if len(every) < 2:
+        return wanted or 30.0
+    slack = 1e-3 + 2e-7 * float(every[-1] + abs(start)) * 30
+    for rate in (wanted, *_RATES) if wanted else _RATES:
+        frames = every * rate
+        if np.abs(frames - np.round(frames)).max() <= slack * max(1.0, rate / 30):
+            return rate
+    gaps = np.diff(every)
+    gap = float(np.median(gaps[gaps > 1e-4])) if (gaps > 1e-4).any() else 1 / 30
+    rate = float(np.clip(1 / gap, 10.0, 240.0))
+    if abs(rate - round(rate)) < 0.05:
+        rate = float(round(rate))
+    even = np.abs(gaps * rate - np.round(gaps * rate)).max() < 0.05
+    return rate if even else 60.0 if rate > 45 else 30.0
+
+
+def without_bind_pose(clip: Clip) -> Clip:
+    """Drop a first frame that is plainly the rest pose left there by a tool, and say so in the notes.
+
+    Plainly: the frame equals the rest pose within 0.5 degrees everywhere, and the jump from it is over 15 degrees and
+    over 8 times any other jump within the next second.
+    """
+    if clip.frames < 4:
+        return clip
+    first, rest = clip.rotations[0].astype(float), clip.skeleton.rest_rotations
+    if float(rotation.angle_between(first, rest).max()) > np.radians(0.5):
+        return clip
+    window = clip.rotations[: 2 + max(4, round(clip.fps))].astype(float)
+    jumps = rotation.angle_between(window[1:], window[:-1]).max(-1)
+    if jumps[0] < np.radians(15) or jumps[0] < 8 * float(jumps[1:].max()):
+        return clip
+    shorter = clip.trimmed(1)
+    return replace(shorter, notes=(*clip.notes, "its first frame was the bind pose and was dropped"))
+
+
+def unique_takes(clips: Sequence[Clip]) -> list[Clip]:
+    """Give takes of one file that share a name numbers: walk, walk_2."""
+    seen: dict[str, int] = {}
+    taken = {clip.name for clip in clips}
+    out = []
+    for clip in clips:
+        seen[clip.name] = seen.get(clip.name, 0) + 1
+        name, n = clip.name, seen[clip.name]
+        if n > 1:
+            while f"{clip.name}_{n}" in taken:
+                n += 1
+            name = f"{clip.name}_{n}"
+            seen[clip.name] = n
+            taken.add(name)
+        out.append(clip if name == clip.name else clip.renamed(name))
+    return out
