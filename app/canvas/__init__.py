@@ -1,0 +1,1 @@
+"""The meta-graph in the middle of the window."""

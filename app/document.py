@@ -1,0 +1,170 @@
+"""The document: the project being edited, its undo stack, its file and its journal.
+
+Every change - drop, menu, paste, undo, load - ends in `changed(before, after)`; views redraw what is not the same object.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from pathlib import Path
+
+from PySide6.QtCore import QObject, QStandardPaths, Signal
+from PySide6.QtGui import QUndoCommand, QUndoStack
+
+from metagraph.errors import FileError
+from metagraph.formats.journal import Journal, journal_path
+from metagraph.formats.store import moved, save_project
+from metagraph.graph.model import Project
+
+Edit = Callable[[Project], Project]
+
+
+class _Change(QUndoCommand):
+    """The one undo command: the project before and after."""
+
+    def __init__(self, document: Document, text: str, before: Project, after: Project, merge: str | None) -> None:
+        super().__init__(text)
+        self.document, self.before, self.after, self.merge = document, before, after, merge
+
+    def redo(self) -> None:
+        self.document._set(self.after)
+
+    def undo(self) -> None:
+        self.document._set(self.before)
+
+    def id(self) -> int:
+        return 1 if self.merge is not None else -1
+
+    def mergeWith(self, other: QUndoCommand) -> bool:
+        if not isinstance(other, _Change) or other.merge != self.merge:
+            return False
+        self.after = other.after
+        return True
+
+
+class Document(QObject):
+    """changed: (before, after) projects. state_changed: path, dirty mark or undo texts may differ. failed: words for the user."""
+
+    changed = Signal(object, object)
+    state_changed = Signal()
+    failed = Signal(str)
+
+    def __init__(self, parent: QObject | None = None) -> None:
+        super().__init__(parent)
+        self.project = Project()
+        self.path: Path | None = None
+        self.read_only = False  # the sample project: saving asks for a place of one's own
+        self.undo_stack = QUndoStack(self)
+        self.undo_stack.cleanChanged.connect(lambda _: self.state_changed.emit())
+        self.undo_stack.indexChanged.connect(lambda _: self.state_changed.emit())
+        self._journal: Journal | None = None
+
+    # --- editing
+
+    def edit(self, text: str, function: Edit, merge: str | None = None) -> None:
+        """Change the project by a pure function; one undo step named `text`. Edits with the same `merge` in a row are one step.
+
+        Raises EditError, from the function; the project is then as it was.
+        """
+        after = function(self.project)
+        if after is not self.project and after != self.project:
+            self.undo_stack.push(_Change(self, text, self.project, after, merge))
+
+    def finish_merging(self) -> None:
+        """End a run of merged edits (the mouse was released), so that the next begins a step of its own."""
+        count = self.undo_stack.count()
+        top = self.undo_stack.command(count - 1) if count else None
+        if isinstance(top, _Change):
+            top.merge = None
+
+    def refresh(self, function: Edit) -> None:
+        """Change what is not saved (loaded motion); no undo step, not dirty."""
+        self._set(function(self.project), quiet=True)
+
+    def _set(self, project: Project, quiet: bool = False) -> None:
+        before, self.project = self.project, project
+        if not quiet and self._journal is not None:
+            try:
+                self._journal.edit(before, project)
+            except FileError as error:
+                self.failed.emit(str(error))
+        self.changed.emit(before, project)
+
+    def undo(self) -> None:
+        self.undo_stack.undo()
+
+    def redo(self) -> None:
+        self.undo_stack.redo()
+
+    @property
+    def dirty(self) -> bool:
+        return not self.undo_stack.isClean()
+
+    @property
+    def folder(self) -> Path | None:
+        """What clip paths are relative to; None while the project was never saved (paths are absolute then)."""
+        return self.path.parent if self.path is not None else None
+
+    # --- files
+
+    def load(self, project: Project, path: Path | None, read_only: bool = False, recovered: bool = False) -> None:
+        """Show another project. recovered: it holds edits that are not in its file."""
+        self.close_journal()
+        before, self.project = self.project, project
+        self.path, self.read_only = path, read_only
+        self.undo_stack.clear()
+        if recovered:
+            self.undo_stack.resetClean()
+        self._begin_journal(project if recovered or path is None else None)
+        self.changed.emit(before, project)
+        self.state_changed.emit()
+
+    def save(self, path: Path | None = None) -> None:
+        """Write the project, to its own file or another. Raises FileError."""
+        target = path or self.path
+        if target is None:
+            raise ValueError("a project that was never saved needs a path")
+        if target == self.path:
+            save_project(self.project, target)
+        else:
+            after = moved(self.project, self.path, target)
+            save_project(after, target, target)
+            before, self.project = self.project, after
+            # Steps back would bring paths relative to the old place; a new place begins a new history.
+            self.undo_stack.clear()
+            self.path, self.read_only = target, False
+            self.changed.emit(before, after)
+        self.undo_stack.setClean()
+        self._begin_journal(None)
+        self.state_changed.emit()
+
+    # --- journal
+
+    def _begin_journal(self, base: Project | None) -> None:
+        if self._journal is not None:
+            self._journal.remove()
+        place = untitled_journal() if self.path is None or self.read_only else journal_path(self.path)
+        self._journal = Journal(place, None if self.read_only else self.path)
+        if base is not None or self.read_only:
+            try:
+                self._journal.begin(base or self.project)
+            except (FileError, OSError) as error:
+                self._journal = None
+                self.failed.emit(f"Autosave is off: {error}")
+
+    def close_journal(self) -> None:
+        """Forget the journal; when the user has saved or chosen to discard."""
+        if self._journal is not None:
+            self._journal.remove()
+            self._journal = None
+
+
+def state_folder() -> Path:
+    """Return where recent projects and the journal of unsaved work are kept; made if need be."""
+    folder = Path(QStandardPaths.writableLocation(QStandardPaths.StandardLocation.AppDataLocation))
+    folder.mkdir(parents=True, exist_ok=True)
+    return folder
+
+
+def untitled_journal() -> Path:
+    return state_folder() / "untitled.journal"

@@ -1,0 +1,115 @@
+"""Long jobs off the GUI thread: progress, cancelling, and results delivered back on the GUI thread."""
+
+from __future__ import annotations
+
+import traceback
+from collections.abc import Callable
+from typing import Any
+
+from PySide6.QtCore import QObject, QRunnable, QThreadPool, Signal, Slot
+
+
+class Job(QObject):
+    """A running job. `done` carries its result, `failed` the exception, `progress` (done, total, words).
+
+    Exactly one of done and failed is emitted, then `ended`; after `cancel` neither done nor failed is.
+    """
+
+    progress = Signal(int, int, str)
+    done = Signal(object)
+    failed = Signal(object)
+    ended = Signal()
+
+    def __init__(self, title: str, work: Callable[[Job], Any]) -> None:
+        super().__init__()
+        self.title = title
+        self._work = work
+        self.cancelled = False
+
+    def cancel(self) -> None:
+        self.cancelled = True
+
+    def tell(self, done: int, total: int, words: str = "") -> None:
+        """Report progress; called by the work, on its own thread."""
+        self.progress.emit(done, total, words)
+
+
+class _Runner(QRunnable):
+    def __init__(self, job: Job) -> None:
+        super().__init__()
+        self.job = job
+        self.setAutoDelete(True)
+
+    @Slot()
+    def run(self) -> None:
+        try:
+            result = self.job._work(self.job)
+        except Exception as error:
+            if not self.job.cancelled:
+                error.__notes__ = [*getattr(error, "__notes__", []), traceback.format_exc()]
+                self._send(self.job.failed, error)
+        else:
+            if not self.job.cancelled:
+                self._send(self.job.done, result)
+        self._send(self.job.ended)
+
+    @staticmethod
+    def _send(signal: Any, *values: Any) -> None:
+        try:
+            signal.emit(*values)
+        except RuntimeError:
+            pass  # the window is gone; nobody wants the result
+
+
+class Jobs(QObject):
+    """Starts jobs and keeps them alive while they run. `changed` tells when one starts or ends."""
+
+    changed = Signal()
+
+    def __init__(self, parent: QObject | None = None) -> None:
+        super().__init__(parent)
+        self.running: list[Job] = []
+        self._pool = QThreadPool(self)
+        self._pool.setMaxThreadCount(2)  # long jobs must not starve the short ones the preview needs
+        self._quick = QThreadPool(self)
+        self._quick.setMaxThreadCount(1)
+
+    def start(
+        self,
+        title: str,
+        work: Callable[[Job], Any],
+        done: Callable[[Any], None] | None = None,
+        failed: Callable[[Exception], None] | None = None,
+        quick: bool = False,
+    ) -> Job:
+        """Run `work(job)` on a thread. quick: a short background job, not shown to the user."""
+        job = Job(title, work)
+        if done is not None:
+            job.done.connect(done)
+        if failed is not None:
+            job.failed.connect(failed)
+        if not quick:
+            self.running.append(job)
+            job.ended.connect(lambda: self._ended(job))
+            self.changed.emit()
+        else:
+            self._alive.add(job)
+            job.ended.connect(lambda: self._alive.discard(job))
+        (self._quick if quick else self._pool).start(_Runner(job))
+        return job
+
+    _alive: set[Job] = set()  # quick jobs, kept from being collected while they run
+
+    def _ended(self, job: Job) -> None:
+        if job in self.running:
+            self.running.remove(job)
+            self.changed.emit()
+
+    def stop(self) -> None:
+        """Cancel everything and wait for it; at closing."""
+        for job in [*self.running, *self._alive]:
+            job.cancel()
+        self._pool.clear()
+        self._quick.clear()
+        self._pool.waitForDone(5000)
+        self._quick.waitForDone(5000)

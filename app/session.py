@@ -1,0 +1,175 @@
+"""The session: what the user looks at - layer, stances, selection, playhead. Never saved with the project."""
+
+from __future__ import annotations
+
+from typing import Literal
+
+from PySide6.QtCore import QObject, Signal
+
+from app.document import Document
+from metagraph.graph.model import LAYERS, Action, Layer, Project
+
+Show = Literal["plan", "clip", "context"]
+
+
+class Session(QObject):
+    """layer_changed: another layer's tab. stance_changed: another current stance, or another other stance for transitions.
+    selection_changed: other clips or actions are selected. show_changed: the preview shows something else (see `show`).
+    playing_changed, moved: transport. theme_changed: dark or light.
+    """
+
+    layer_changed = Signal()
+    stance_changed = Signal()
+    selection_changed = Signal()
+    show_changed = Signal()
+    playing_changed = Signal()
+    moved = Signal(float)
+    theme_changed = Signal()
+
+    def __init__(self, document: Document, parent: QObject | None = None) -> None:
+        super().__init__(parent)
+        self.document = document
+        self.layer: Layer = "arms"
+        self.stances: dict[Layer, str] = {}  # the current stance of each layer
+        self.others: dict[Layer, str] = {}  # the other stance, where a dropped transition ends
+        self.clips: tuple[str, ...] = ()  # selected in the library
+        self.actions: tuple[str, ...] = ()  # selected in the graph
+        self.show: Show = "plan"
+        self.shown: str | None = None  # the clip (or action) shown alone or in context
+        self.playing = True
+        self.speed = 1.0
+        self.loop = True
+        self.seconds = 0.0
+        self.theme: Literal["dark", "light"] = "dark"
+        document.changed.connect(self._follow)
+
+    # --- layer and stance
+
+    def set_layer(self, layer: Layer) -> None:
+        if layer != self.layer:
+            self.layer = layer
+            self.layer_changed.emit()
+            self.stance_changed.emit()
+
+    def stance(self, layer: Layer | None = None) -> str | None:
+        """Return the current stance's id: the chosen one, else the layer's start."""
+        layer = layer or self.layer
+        graph = self.document.project.graphs[layer]
+        chosen = self.stances.get(layer)
+        if chosen in graph.stances:
+            return chosen
+        return graph.start if graph.start in graph.stances else next(iter(graph.stances), None)
+
+    def set_stance(self, stance: str) -> None:
+        found = self.document.project.stance(stance)
+        if found is None:
+            return
+        self.stances[found.layer] = stance
+        if found.layer != self.layer:
+            self.set_layer(found.layer)
+        else:
+            self.stance_changed.emit()
+
+    def other(self, layer: Layer | None = None) -> str | None:
+        """Return where a dropped transition ends: the chosen other stance, else the first that is not the current one."""
+        layer = layer or self.layer
+        stances = self.document.project.graphs[layer].stances
+        current, chosen = self.stance(layer), self.others.get(layer)
+        if chosen in stances and chosen != current:
+            return chosen
+        return next((s for s in stances if s != current), None)
+
+    def set_other(self, stance: str) -> None:
+        self.others[self.layer] = stance
+        self.stance_changed.emit()
+
+    # --- selection
+
+    def select_clips(self, clips: tuple[str, ...]) -> None:
+        """Select in the library; nothing is selected in the graph then."""
+        if (clips, ()) != (self.clips, self.actions):
+            self.clips, self.actions = clips, ()
+            self.selection_changed.emit()
+
+    def select_actions(self, actions: tuple[str, ...]) -> None:
+        """Select in the graph; the library follows with the actions' clips by looking at `actions`."""
+        if (actions, ()) != (self.actions, self.clips):
+            self.clips, self.actions = (), actions
+            self.selection_changed.emit()
+
+    def selected_actions(self) -> tuple[Action, ...]:
+        """Return the selected actions that exist, in the order of selection."""
+        found = (self.document.project.action(i) for i in self.actions)
+        return tuple(a for a in found if a is not None)
+
+    def jump(self, layer: Layer | None = None, stance: str | None = None, action: str | None = None, clip: str | None = None) -> None:
+        """Go to a place of the project: what the problems panel and the timeline call."""
+        project = self.document.project
+        found = project.action(action) if action else None
+        if found is not None:
+            stance, layer = found.stance, found.layer
+        if layer is not None:
+            self.set_layer(layer)
+        if stance is not None:
+            self.set_stance(stance)
+        if found is not None:
+            self.select_actions((found.id,))
+        elif clip is not None and clip in project.clips:
+            self.select_clips((clip,))
+
+    # --- preview
+
+    def show_plan(self) -> None:
+        self._show("plan", None)
+
+    def show_clip(self, clip: str) -> None:
+        """Play a clip alone."""
+        self._show("clip", clip)
+
+    def show_context(self, ident: str) -> None:
+        """Play a clip or an action in context: stance, clip, back to the stance, the other layers on."""
+        self._show("context", ident)
+
+    def _show(self, show: Show, shown: str | None) -> None:
+        if (show, shown) != (self.show, self.shown):
+            if show == "plan":
+                self.seconds = self._plan_seconds
+            elif self.show == "plan":
+                self._plan_seconds = self.seconds
+            if show != "plan":
+                self.seconds = 0.0
+            self.show, self.shown = show, shown
+            self.show_changed.emit()
+        if show != "plan":
+            self.seek(0.0)
+            self.set_playing(True)
+
+    _plan_seconds = 0.0
+
+    def set_playing(self, playing: bool) -> None:
+        if playing != self.playing:
+            self.playing = playing
+            self.playing_changed.emit()
+
+    def seek(self, seconds: float) -> None:
+        """Move the playhead; `moved` is emitted."""
+        self.seconds = max(0.0, seconds)
+        self.moved.emit(self.seconds)
+
+    def set_theme(self, theme: Literal["dark", "light"]) -> None:
+        if theme != self.theme:
+            self.theme = theme
+            self.theme_changed.emit()
+
+    # --- following the document
+
+    def _follow(self, before: Project, after: Project) -> None:
+        actions = tuple(i for i in self.actions if after.action(i) is not None)
+        clips = tuple(i for i in self.clips if i in after.clips)
+        if (actions, clips) != (self.actions, self.clips):
+            self.actions, self.clips = actions, clips
+            self.selection_changed.emit()
+        if self.shown is not None and self.shown not in after.clips and after.action(self.shown) is None:
+            self.show_plan()
+        if any(before.graphs[layer].stances is not after.graphs[layer].stances for layer in LAYERS):
+            self.stance_changed.emit()
