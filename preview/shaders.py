@@ -115,7 +115,8 @@ out vec4 o_color;
 void main() {
     float t = clamp(1.0 - dot(v_at, v_at), 0.0, 1.0);
     float noise = fract(52.9829189 * fract(dot(gl_FragCoord.xy + v_strength * 97.0, vec2(0.06711056, 0.00583715))));
-    o_color = vec4(mix(vec3(1.0), u_dark, t * t * v_strength) + (noise - 0.5) / 255.0, 1.0);
+    vec3 less = (vec3(1.0) - u_dark) * (t * t * v_strength);
+    o_color = vec4(1.0 - less - (noise - 0.5) * min(vec3(1.0 / 255.0), less), 1.0);
 }
 """
 

@@ -1,0 +1,93 @@
+"""Contact sheets: many pictures in rows with words under them, and PNG files."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from metagraph.errors import FileError
+
+Array = NDArray[Any]
+Color = tuple[int, int, int]
+
+PAPER: Color = (28, 29, 33)
+INK: Color = (232, 234, 237)
+FAINT: Color = (150, 154, 163)
+
+
+def contact_sheet(
+    images: Sequence[Array],
+    columns: int,
+    labels: Sequence[str] = (),
+    title: str = "",
+    notes: Sequence[str] = (),
+    gap: int = 12,
+    paper: Color = PAPER,
+    ink: Color = INK,
+) -> Array:
+    """Return one picture `[H, W, 3]` uint8 of `images` (uint8 `[h, w, 3 or 4]`, any sizes) in `columns`.
+
+    labels: a line under each image; notes: a fainter second line. Words too long for their image end in an ellipsis.
+    """
+    from PIL import Image, ImageDraw
+
+    columns = max(1, min(columns, len(images) or 1))
+    rows = -(-len(images) // columns)
+    width = max([im.shape[1] for im in images], default=160)
+    height = max([im.shape[0] for im in images], default=0)
+    text = max(12, min(18, width // 14))
+    lines = (1 if any(labels) else 0) + (1 if any(notes) else 0)
+    cell = height + round(lines * text * 1.45) + (6 if lines else 0)
+    head = round(text * 2.6) if title else 0
+    page = Image.new("RGB", (columns * (width + gap) + gap, head + rows * (cell + gap) + gap), paper)
+    draw = ImageDraw.Draw(page)
+    font, large = _font(text), _font(round(text * 1.3))
+    if title:
+        draw.text((gap, gap), _fit(draw, title, large, page.width - 2 * gap), ink, large)
+    faint = tuple((2 * a + b) // 3 for a, b in zip(ink, paper, strict=True))
+    for i, image in enumerate(images):
+        x, y = gap + (i % columns) * (width + gap), head + gap + (i // columns) * (cell + gap)
+        picture = Image.fromarray(np.ascontiguousarray(image))
+        page.paste(
+            picture, (x + (width - picture.width) // 2, y + (height - picture.height) // 2), picture if picture.mode == "RGBA" else None
+        )
+        for line, (words, color) in enumerate(((labels, ink), (notes, faint))):
+            if i < len(words):
+                at = (x, y + height + 6 + (round(line * text * 1.45) if any(labels) else 0))
+                draw.text(at, _fit(draw, words[i], font, width), color, font)
+    return np.asarray(page)
+
+
+def write_png(path: str | Path, picture: Array) -> None:
+    """Write uint8 `[H, W, 3 or 4]`. The file appears only when it is complete. Raises FileError."""
+    from PIL import Image
+
+    path = Path(path)
+    part = path.with_name(f".{path.name}.part")
+    try:
+        Image.fromarray(np.ascontiguousarray(picture)).save(part, "PNG", compress_level=6)
+        part.replace(path)
+    except OSError as error:
+        raise FileError(path, f"the picture could not be written ({error})", remedy="Check the folder and the free space.") from error
+    finally:
+        part.unlink(missing_ok=True)
+
+
+def _font(size: int) -> Any:
+    """Pillow's own scalable face: the same words on every system."""
+    from PIL import ImageFont
+
+    return ImageFont.load_default(size)
+
+
+def _fit(draw: Any, words: str, font: Any, width: int) -> str:
+    words = " ".join(words.split())
+    if draw.textlength(words, font) <= width:
+        return words
+    while words and draw.textlength(words + "…", font) > width:
+        words = words[:-1]
+    return words.rstrip() + "…"

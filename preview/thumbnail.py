@@ -1,0 +1,89 @@
+"""Thumbnails: one telling pose of a clip, small."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from metagraph.motion.clip import Clip
+from metagraph.motion.skeleton import Pose
+from preview import joints as rules
+from preview.camera import Camera
+from preview.figure import Figure
+from preview.offscreen import Offscreen
+from preview.scene import DARK, Actor, Scene, Theme
+
+Array = NDArray[Any]
+
+LOOK_AT = 120  # frames of a clip that are compared
+
+
+def telling_frame(clip: Clip) -> int:
+    """Return the frame whose pose is farthest from the first: root aside, fingers and face counting little."""
+    frames = np.unique(np.linspace(0, clip.frames - 1, min(clip.frames, LOOK_AT)).round().astype(int))
+    poses = clip.poses()[frames]
+    translations = poses.translations.copy()
+    translations[:, 0] = 0
+    _, positions = clip.skeleton.globals(Pose(poses.rotations, translations))
+    small = np.array([rules.is_finger(n) or rules.is_face(n) or rules.is_control(n) for n in clip.skeleton.names])
+    apart = np.linalg.norm(positions - positions[:1], axis=-1) * np.where(small, 0.1, 1.0)
+    return int(frames[np.argmax(apart.sum(1))])
+
+
+def thumbnail(
+    offscreen: Offscreen,
+    figure: Figure,
+    rotations: Array,
+    positions: Array,
+    size: int = 160,
+    scale: int = 2,
+    tint: tuple[float, float, float] | None = None,
+    paper: tuple[float, float, float] | None = (0.110, 0.114, 0.129),
+    theme: Theme = DARK,
+) -> Array:
+    """Return a square picture `[size * scale, size * scale, 4]` uint8 of one pose on the figure's skeleton.
+
+    rotations `[J, 4]`, positions `[J, 3]`: global. paper: sRGB background, None for a transparent one. tint: an sRGB
+    colour (that of the clip's kind) the paper takes a little of. All clips of a skeleton are framed alike, so that they
+    can be compared; one that leaves the frame is shown whole.
+    """
+    pixels = size * scale
+    background = (0.0, 0.0, 0.0, 0.0)
+    if paper is not None:
+        share = 0.0 if tint is None else 0.16
+        r, g, b = (p * (1 - share) + t * share for p, t in zip(paper, tint or paper, strict=True))
+        background = (r, g, b, 1.0)
+    root = positions[0] * [1, 0, 1]
+    actor = Actor(figure, rotations, positions - root)
+    low, high = figure.bounds(actor.positions)
+    # The box of a person with half-raised arms, turned as the character is.
+    reach, top = 0.42 * figure.height, 1.1 * figure.height
+    centre = (low + high) / 2
+    half = np.array([reach, 0, reach * 0.4])
+    low = np.minimum(low, [centre[0] - half[0], 0, centre[2] - half[2]])
+    high = np.maximum(high, [centre[0] + half[0], min(top, max(high[1], top * 0.9)), centre[2] + half[2]])
+    camera = Camera().facing(_heading(figure, actor) + np.radians(22), np.radians(6)).frame((low, high), 1.0, margin=1.02)
+    return offscreen.render(Scene((actor,), background=background), camera, theme, (pixels, pixels))
+
+
+def clip_thumbnail(offscreen: Offscreen, figure: Figure, clip: Clip, **options: Any) -> Array:
+    """Return `thumbnail` of the clip's telling frame; the clip is on the figure's skeleton."""
+    rotations, positions = clip.skeleton.globals(clip.poses()[telling_frame(clip)])
+    return thumbnail(offscreen, figure, rotations, positions, **options)
+
+
+def _heading(figure: Figure, actor: Actor) -> float:
+    """Where the hips face, radians about +Y: across the line from the right limbs to the left ones."""
+    side = rules.sides(figure.skeleton) * figure.drawn
+    if not ((side > 0).any() and (side < 0).any()):
+        return 0.0
+    p = np.asarray(actor.positions, float)
+    near = np.array([rules.is_finger(n) for n in figure.skeleton.names])
+    upper = [i for i in range(len(side)) if side[i] and not near[i] and side[figure.skeleton.parents[i]] == 0]
+    left, right = [i for i in upper if side[i] > 0], [i for i in upper if side[i] < 0]
+    if not left or not right:
+        return 0.0
+    across = p[left].mean(0) - p[right].mean(0)
+    return float(np.arctan2(-across[2], across[0])) if np.hypot(across[0], across[2]) > 1e-6 else 0.0

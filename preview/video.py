@@ -1,0 +1,72 @@
+"""Writes pictures to an MP4 (H.264), through PyAV."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterable
+from fractions import Fraction
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from metagraph.errors import FileError
+
+Array = NDArray[Any]
+
+
+class Cancelled(Exception):  # noqa: N818 - not an error: the user asked for it
+    """The user stopped a video; nothing was left behind."""
+
+
+def write_video(
+    path: str | Path,
+    frames: Iterable[Array],
+    fps: float,
+    size: tuple[int, int] | None = None,
+    progress: Callable[[int], None] | None = None,
+    cancelled: Callable[[], bool] | None = None,
+    quality: int = 20,
+) -> int:
+    """Write `frames` (uint8 `[H, W, 3 or 4]`, sRGB, all of one size) at `fps` and return how many there were.
+
+    size: width and height of the video; by default that of the first frame, made even as H.264 needs. Frames that differ
+    are scaled. quality: x264's rate factor, 0 (lossless) .. 51. progress is called with the number of frames written.
+    The file appears only when it is complete. Raises FileError (no frames, not writable), Cancelled.
+    """
+    import av
+
+    path = Path(path)
+    if not (fps > 0 and np.isfinite(fps)):
+        raise FileError(path, f"{fps} frames per second is no frame rate")
+    part = path.with_name(f".{path.name}.part.mp4")
+    count = 0
+    try:
+        with av.open(str(part), "w", format="mp4", options={"movflags": "faststart"}) as container:
+            stream: Any = None
+            for picture in frames:
+                if cancelled is not None and cancelled():
+                    raise Cancelled
+                if stream is None:
+                    height, width = picture.shape[:2]
+                    width, height = size or (width, height)
+                    stream = container.add_stream("libx264", rate=Fraction(fps).limit_denominator(1001))
+                    stream.width, stream.height = max(2, width + width % 2), max(2, height + height % 2)
+                    stream.pix_fmt = "yuv420p"
+                    stream.options = {"preset": "veryfast", "crf": str(quality), "tune": "animation"}
+                frame = av.VideoFrame.from_ndarray(np.ascontiguousarray(picture[..., :3], np.uint8), format="rgb24")
+                for packet in stream.encode(frame):  # scales to the stream's size when the frame differs
+                    container.mux(packet)
+                count += 1
+                if progress is not None:
+                    progress(count)
+            if stream is None:
+                raise FileError(path, "there are no frames to write", remedy="Choose a time span longer than one frame.")
+            for packet in stream.encode():
+                container.mux(packet)
+        part.replace(path)
+    except OSError as error:
+        raise FileError(path, f"the video could not be written ({error})", remedy="Check the folder and the free space.") from error
+    finally:
+        part.unlink(missing_ok=True)
+    return count
