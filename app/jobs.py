@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import contextlib
 import traceback
 from collections.abc import Callable
 from typing import Any
@@ -55,10 +56,8 @@ class _Runner(QRunnable):
 
     @staticmethod
     def _send(signal: Any, *values: Any) -> None:
-        try:
+        with contextlib.suppress(RuntimeError):  # the window is gone; nobody wants the result
             signal.emit(*values)
-        except RuntimeError:
-            pass  # the window is gone; nobody wants the result
 
 
 class Jobs(QObject):
@@ -69,6 +68,7 @@ class Jobs(QObject):
     def __init__(self, parent: QObject | None = None) -> None:
         super().__init__(parent)
         self.running: list[Job] = []
+        self._alive: set[Job] = set()  # quick jobs, kept from being collected while they run
         self._pool = QThreadPool(self)
         self._pool.setMaxThreadCount(2)  # long jobs must not starve the short ones the preview needs
         self._quick = QThreadPool(self)
@@ -97,8 +97,6 @@ class Jobs(QObject):
             job.ended.connect(lambda: self._alive.discard(job))
         (self._quick if quick else self._pool).start(_Runner(job))
         return job
-
-    _alive: set[Job] = set()  # quick jobs, kept from being collected while they run
 
     def _ended(self, job: Job) -> None:
         if job in self.running:

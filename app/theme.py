@@ -1,0 +1,141 @@
+"""Looks: palettes, the four kinds' colours, the style sheet. Colour means kind and nothing else; warnings are yellow."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+
+from PySide6.QtGui import QColor, QFont, QPalette
+from PySide6.QtWidgets import QApplication
+
+from metagraph.graph.model import Kind
+
+
+@dataclass(frozen=True)
+class Theme:
+    """Colours as #rrggbb. ground: behind panels; panel, card, field: ever closer to the eye; line: borders."""
+
+    name: str
+    ground: str
+    panel: str
+    card: str
+    field: str
+    hover: str
+    line: str
+    text: str
+    dim: str
+    strong: str  # the one filled button, selected tabs
+    on_strong: str
+    warning: str
+    error: str
+    kinds: Mapping[str, str]  # text and marks, contrast of at least 4.5:1 on panel and card
+    fills: Mapping[str, str]  # areas
+
+    def kind(self, kind: Kind | str) -> QColor:
+        return QColor(self.kinds[kind])
+
+    def fill(self, kind: Kind | str) -> QColor:
+        return QColor(self.fills[kind])
+
+
+_KINDS = {"stance": "#3fb8a6", "gesture": "#f0a63c", "fidget": "#a98bf0", "transition": "#5aa3f0"}
+DARK = Theme(
+    "dark", ground="#17181b", panel="#1e2024", card="#25282d", field="#191b1f", hover="#2e3238", line="#34383f", text="#dfe3e8",
+    dim="#9aa1ab", strong="#e8eaed", on_strong="#17181b", warning="#e8c24a", error="#ff7a6e", kinds=_KINDS, fills=_KINDS,
+)  # fmt: skip
+LIGHT = Theme(
+    "light", ground="#e9ebee", panel="#f6f7f8", card="#ffffff", field="#ffffff", hover="#e4e7eb", line="#cdd2d8", text="#1d2126",
+    dim="#59616b", strong="#23272d", on_strong="#ffffff", warning="#8a6500", error="#b3261e",
+    kinds={"stance": "#14756a", "gesture": "#8f5a00", "fidget": "#6a45c4", "transition": "#1a63b8"}, fills=_KINDS,
+)  # fmt: skip
+THEMES = {"dark": DARK, "light": LIGHT}
+KIND_MARKS = {"stance": "●", "gesture": "▲", "fidget": "◆", "transition": "➜"}  # never colour alone
+KIND_TITLES = {"stance": "Stance", "gesture": "Gesture", "fidget": "Fidget", "transition": "Transition"}
+
+
+def theme(name: str) -> Theme:
+    return THEMES.get(name, DARK)
+
+
+def palette(look: Theme) -> QPalette:
+    out = QPalette()
+    role = QPalette.ColorRole
+    for key, color in (
+        (role.Window, look.panel), (role.WindowText, look.text), (role.Base, look.field), (role.AlternateBase, look.card),
+        (role.Text, look.text), (role.Button, look.card), (role.ButtonText, look.text), (role.ToolTipBase, look.card),
+        (role.ToolTipText, look.text), (role.Highlight, look.hover), (role.HighlightedText, look.text),
+        (role.PlaceholderText, look.dim), (role.Link, look.text), (role.Mid, look.line), (role.Dark, look.line),
+        (role.BrightText, look.error), (role.Light, look.hover), (role.Midlight, look.hover), (role.Shadow, look.ground),
+    ):  # fmt: skip
+        out.setColor(role, QColor(color))
+    for item in (role.Text, role.WindowText, role.ButtonText):
+        faded = QColor(look.dim)
+        faded.setAlpha(140)
+        out.setColor(QPalette.ColorGroup.Disabled, item, faded)
+    return out
+
+
+def style_sheet(look: Theme) -> str:
+    """Return the style of the whole window; 8 px grid, 6 px radius, no gradients."""
+    t = look
+    return f"""
+    QMainWindow, QMainWindow::separator {{ background: {t.ground}; }}
+    QMainWindow::separator {{ width: 6px; height: 6px; }}
+    QMainWindow::separator:hover {{ background: {t.line}; }}
+    QToolTip {{ background: {t.card}; color: {t.text}; border: 1px solid {t.line}; padding: 4px 6px; }}
+    QDockWidget {{ color: {t.dim}; font-weight: 600; }}
+    QDockWidget::title {{ background: {t.panel}; padding: 7px 10px; border-bottom: 1px solid {t.line}; }}
+    QDockWidget > QWidget {{ background: {t.panel}; }}
+    QToolBar {{ background: {t.panel}; border: none; border-bottom: 1px solid {t.line}; padding: 5px 8px; spacing: 4px; }}
+    QStatusBar {{ background: {t.panel}; color: {t.dim}; border-top: 1px solid {t.line}; }}
+    QStatusBar::item {{ border: none; }}
+    QMenuBar {{ background: {t.panel}; color: {t.text}; padding: 2px 6px; }}
+    QMenuBar::item {{ padding: 4px 8px; border-radius: 4px; }}
+    QMenuBar::item:selected, QMenu::item:selected {{ background: {t.hover}; }}
+    QMenu {{ background: {t.card}; color: {t.text}; border: 1px solid {t.line}; padding: 4px; }}
+    QMenu::item {{ padding: 5px 28px 5px 20px; border-radius: 4px; }}
+    QMenu::item:disabled {{ color: {t.dim}; }}
+    QMenu::separator {{ height: 1px; background: {t.line}; margin: 4px 8px; }}
+    QToolButton, QPushButton {{ background: transparent; color: {t.text}; border: 1px solid transparent; border-radius: 6px; padding: 5px 10px; }}
+    QPushButton {{ background: {t.card}; border-color: {t.line}; }}
+    QToolButton:hover, QPushButton:hover {{ background: {t.hover}; }}
+    QToolButton:checked {{ background: {t.hover}; border-color: {t.line}; }}
+    QToolButton:disabled, QPushButton:disabled {{ color: {t.dim}; }}
+    QToolButton:focus, QPushButton:focus {{ border-color: {t.dim}; }}
+    QPushButton[strong="true"] {{ background: {t.strong}; color: {t.on_strong}; border-color: {t.strong}; font-weight: 600; }}
+    QLineEdit, QDoubleSpinBox, QSpinBox, QComboBox, QPlainTextEdit {{ background: {t.field}; color: {t.text};
+        border: 1px solid {t.line}; border-radius: 6px; padding: 4px 8px; selection-background-color: {t.dim}; selection-color: {t.ground}; }}
+    QLineEdit:focus, QDoubleSpinBox:focus, QSpinBox:focus, QComboBox:focus {{ border-color: {t.dim}; }}
+    QComboBox::drop-down {{ border: none; width: 20px; }}
+    QComboBox QAbstractItemView {{ background: {t.card}; border: 1px solid {t.line}; outline: none; }}
+    QListView, QTreeView, QTableView, QScrollArea, QGraphicsView {{ background: {t.panel}; border: none; outline: none; }}
+    QHeaderView::section {{ background: {t.panel}; color: {t.dim}; border: none; border-bottom: 1px solid {t.line}; padding: 5px 8px; }}
+    QTreeView::item, QTableView::item {{ padding: 4px; }}
+    QTreeView::item:selected, QTableView::item:selected, QListView::item:selected {{ background: {t.hover}; color: {t.text}; }}
+    QScrollBar:vertical {{ background: transparent; width: 10px; margin: 0; }}
+    QScrollBar:horizontal {{ background: transparent; height: 10px; margin: 0; }}
+    QScrollBar::handle {{ background: {t.line}; border-radius: 4px; min-height: 28px; min-width: 28px; margin: 1px; }}
+    QScrollBar::handle:hover {{ background: {t.dim}; }}
+    QScrollBar::add-line, QScrollBar::sub-line, QScrollBar::add-page, QScrollBar::sub-page {{ background: none; width: 0; height: 0; }}
+    QProgressBar {{ background: {t.field}; border: 1px solid {t.line}; border-radius: 5px; text-align: center; color: {t.text}; max-height: 14px; }}
+    QProgressBar::chunk {{ background: {t.dim}; border-radius: 4px; }}
+    QTabBar::tab {{ background: transparent; color: {t.dim}; padding: 6px 14px; border-radius: 6px; margin: 2px; }}
+    QTabBar::tab:selected {{ background: {t.hover}; color: {t.text}; }}
+    QTabWidget::pane {{ border: none; }}
+    QSlider::groove:horizontal {{ height: 4px; background: {t.line}; border-radius: 2px; }}
+    QSlider::handle:horizontal {{ width: 14px; margin: -5px 0; border-radius: 7px; background: {t.text}; }}
+    QLabel[dim="true"] {{ color: {t.dim}; }}
+    QLabel[title="true"] {{ font-weight: 600; }}
+    QGroupBox {{ border: none; margin-top: 18px; font-weight: 600; color: {t.dim}; }}
+    QGroupBox::title {{ subcontrol-origin: margin; left: 0; }}
+    """
+
+
+def apply(app: QApplication, look: Theme) -> None:
+    """Give the application a theme's style."""
+    app.setStyle("Fusion")
+    app.setPalette(palette(look))
+    app.setStyleSheet(style_sheet(look))
+    font = QFont(app.font())
+    font.setPixelSize(13)
+    app.setFont(font)
