@@ -67,7 +67,7 @@ def palette(look: Theme) -> QPalette:
         (role.PlaceholderText, look.dim), (role.Link, look.text), (role.Mid, look.line), (role.Dark, look.line),
         (role.BrightText, look.error), (role.Light, look.hover), (role.Midlight, look.hover), (role.Shadow, look.ground),
     ):  # fmt: skip
-        out.setColor(role, QColor(color))
+        out.setColor(key, QColor(color))
     for item in (role.Text, role.WindowText, role.ButtonText):
         faded = QColor(look.dim)
         faded.setAlpha(140)
@@ -96,7 +96,8 @@ def style_sheet(look: Theme) -> str:
     QMenu::item {{ padding: 5px 28px 5px 20px; border-radius: 4px; }}
     QMenu::item:disabled {{ color: {t.dim}; }}
     QMenu::separator {{ height: 1px; background: {t.line}; margin: 4px 8px; }}
-    QToolButton, QPushButton {{ background: transparent; color: {t.text}; border: 1px solid transparent; border-radius: 6px; padding: 5px 10px; }}
+    QToolButton, QPushButton {{ background: transparent; color: {t.text}; border: 1px solid transparent;
+        border-radius: 6px; padding: 5px 10px; }}
     QPushButton {{ background: {t.card}; border-color: {t.line}; }}
     QToolButton:hover, QPushButton:hover {{ background: {t.hover}; }}
     QToolButton:checked {{ background: {t.hover}; border-color: {t.line}; }}
@@ -109,7 +110,7 @@ def style_sheet(look: Theme) -> str:
     QComboBox::drop-down {{ border: none; width: 20px; }}
     QComboBox QAbstractItemView {{ background: {t.card}; border: 1px solid {t.line}; outline: none; }}
     QListView, QTreeView, QTableView, QScrollArea, QGraphicsView {{ background: {t.panel}; border: none; outline: none; }}
-    QHeaderView::section {{ background: {t.panel}; color: {t.dim}; border: none; border-bottom: 1px solid {t.line}; padding: 5px 8px; }}
+    QHeaderView::section {{ background: {t.panel}; color: {t.dim}; border: none; padding: 5px 8px; }}
     QTreeView::item, QTableView::item {{ padding: 4px; }}
     QTreeView::item:selected, QTableView::item:selected, QListView::item:selected {{ background: {t.hover}; color: {t.text}; }}
     QScrollBar:vertical {{ background: transparent; width: 10px; margin: 0; }}
@@ -117,7 +118,7 @@ def style_sheet(look: Theme) -> str:
     QScrollBar::handle {{ background: {t.line}; border-radius: 4px; min-height: 28px; min-width: 28px; margin: 1px; }}
     QScrollBar::handle:hover {{ background: {t.dim}; }}
     QScrollBar::add-line, QScrollBar::sub-line, QScrollBar::add-page, QScrollBar::sub-page {{ background: none; width: 0; height: 0; }}
-    QProgressBar {{ background: {t.field}; border: 1px solid {t.line}; border-radius: 5px; text-align: center; color: {t.text}; max-height: 14px; }}
+    QProgressBar {{ background: {t.field}; border: 1px solid {t.line}; border-radius: 5px; text-align: center; max-height: 14px; }}
     QProgressBar::chunk {{ background: {t.dim}; border-radius: 4px; }}
     QTabBar::tab {{ background: transparent; color: {t.dim}; padding: 6px 14px; border-radius: 6px; margin: 2px; }}
     QTabBar::tab:selected {{ background: {t.hover}; color: {t.text}; }}

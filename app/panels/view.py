@@ -1,0 +1,160 @@
+"""The picture of the character: one painter behind two hosts, an OpenGL widget and, where there is none, an image.
+
+Left drag orbits, right or middle drag (or Shift + left) pans, the wheel zooms, a double click frames the character.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import Any
+
+import moderngl
+import numpy as np
+from PySide6.QtCore import QPointF, Qt, Signal
+from PySide6.QtGui import QGuiApplication, QImage, QMouseEvent, QPainter, QPaintEvent, QWheelEvent
+from PySide6.QtOpenGLWidgets import QOpenGLWidget
+from PySide6.QtWidgets import QWidget
+
+from preview.camera import Camera
+from preview.renderer import Renderer
+from preview.scene import DARK, Scene, Theme
+
+Compose = Callable[[], Scene]
+
+
+class CameraMouse:
+    """Mouse to camera, for any widget that has `camera` and `camera_changed`."""
+
+    camera: Camera
+
+    def _init_camera(self) -> None:
+        self.camera = Camera()
+        self.moved_by_hand = False
+        self._last: QPointF | None = None
+
+    def mousePressEvent(self, event: QMouseEvent) -> None:
+        self._last = event.position()
+        event.accept()
+
+    def mouseMoveEvent(self, event: QMouseEvent) -> None:
+        if self._last is None or not event.buttons():
+            return
+        delta = event.position() - self._last
+        self._last = event.position()
+        buttons, height = event.buttons(), max(1, self.height())  # type: ignore[attr-defined]
+        shift = bool(event.modifiers() & Qt.KeyboardModifier.ShiftModifier)
+        if buttons & Qt.MouseButton.LeftButton and not shift:
+            self.camera = self.camera.orbit(delta.x() / height, delta.y() / height)
+        else:
+            self.camera = self.camera.pan(delta.x() / height, delta.y() / height)
+        self.moved_by_hand = True
+        self.update()  # type: ignore[attr-defined]
+
+    def mouseReleaseEvent(self, event: QMouseEvent) -> None:
+        self._last = None
+
+    def mouseDoubleClickEvent(self, event: QMouseEvent) -> None:
+        self.frame_wanted.emit()  # type: ignore[attr-defined]
+
+    def wheelEvent(self, event: QWheelEvent) -> None:
+        self.camera = self.camera.zoom(event.angleDelta().y() / 120)
+        self.moved_by_hand = True
+        self.update()  # type: ignore[attr-defined]
+        event.accept()
+
+
+class GLView(CameraMouse, QOpenGLWidget):
+    """Draws the scene with OpenGL into the widget. painted: milliseconds one frame took to issue."""
+
+    painted = Signal(float)
+    frame_wanted = Signal()
+    failed = Signal(str)
+
+    def __init__(self, compose: Compose, parent: QWidget | None = None) -> None:
+        QOpenGLWidget.__init__(self, parent)
+        self._init_camera()
+        self._compose = compose
+        self._renderer: Renderer | None = None
+        self._ctx: moderngl.Context | None = None
+        self.theme: Theme = DARK
+        self.setFocusPolicy(Qt.FocusPolicy.ClickFocus)
+
+    def initializeGL(self) -> None:
+        try:
+            self._ctx = moderngl.create_context(require=330)
+            self._renderer = Renderer(self._ctx)
+        except Exception as error:
+            self.failed.emit(f"The preview needs OpenGL 3.3: {error}")
+            return
+        self.context().aboutToBeDestroyed.connect(self._lost)
+
+    def _lost(self) -> None:
+        self.makeCurrent()
+        if self._renderer is not None:
+            self._renderer.release()
+        self._renderer = None
+        self.doneCurrent()
+
+    def paintGL(self) -> None:
+        if self._renderer is None or self._ctx is None:
+            return
+        ratio = self.devicePixelRatioF()
+        size = (max(1, round(self.width() * ratio)), max(1, round(self.height() * ratio)))
+        target = self._ctx.detect_framebuffer(self.defaultFramebufferObject())
+        self._renderer.draw(self._compose(), self.camera, size, target, self.theme)
+        self.painted.emit(0.0)
+
+
+class ImageView(CameraMouse, QWidget):
+    """The same picture through an offscreen context, for platforms without OpenGL widgets."""
+
+    painted = Signal(float)
+    frame_wanted = Signal()
+    failed = Signal(str)
+
+    def __init__(self, compose: Compose, parent: QWidget | None = None) -> None:
+        QWidget.__init__(self, parent)
+        self._init_camera()
+        self._compose = compose
+        self._offscreen: Any = None
+        self.theme: Theme = DARK
+        self.setAttribute(Qt.WidgetAttribute.WA_OpaquePaintEvent)
+        self.setFocusPolicy(Qt.FocusPolicy.ClickFocus)
+
+    def paintEvent(self, event: QPaintEvent) -> None:
+        ratio = self.devicePixelRatioF()
+        size = (max(1, round(self.width() * ratio)), max(1, round(self.height() * ratio)))
+        if self._offscreen is None:
+            from preview.offscreen import Offscreen, OpenGLError
+
+            try:
+                self._offscreen = Offscreen(*size)
+            except OpenGLError as error:
+                self._offscreen = False
+                self.failed.emit(str(error))
+        painter = QPainter(self)
+        if self._offscreen:
+            picture = self._offscreen.render(self._compose(), self.camera, self.theme, size)
+            image = to_image(picture)
+            image.setDevicePixelRatio(ratio)
+            painter.drawImage(0, 0, image)
+        else:
+            painter.fillRect(self.rect(), self.palette().window())
+        painter.end()
+        self.painted.emit(0.0)
+
+    def grabFramebuffer(self) -> QImage:
+        return self.grab().toImage()
+
+
+def make_view(compose: Compose, parent: QWidget | None = None) -> GLView | ImageView:
+    """Return the host that works on this platform."""
+    without = {"offscreen", "minimal", "vnc", "linuxfb", "minimalegl", "eglfs"}
+    return (ImageView if QGuiApplication.platformName() in without else GLView)(compose, parent)
+
+
+def to_image(picture: np.ndarray) -> QImage:
+    """Return a QImage of `[H, W, 4]` uint8, premultiplied; it owns its pixels."""
+    height, width = picture.shape[:2]
+    data = np.ascontiguousarray(picture)
+    return QImage(data.data, width, height, width * 4, QImage.Format.Format_RGBA8888_Premultiplied).copy()
