@@ -1,0 +1,145 @@
+"""The arms layer with the hands clasped in front: they open to speak and find each other again."""
+
+from __future__ import annotations
+
+from sample_clips.make.hands import SHAPES, Finger
+from sample_clips.make.phrases import arms_clip
+from sample_clips.make.places import BEAT, LOW, OFFERING, OPEN_PALM, READY, SHRUGGED
+from sample_clips.make.poses import Hand
+from sample_clips.make.recipe import Recipe, go, home
+from sample_clips.make.stances import CLASP_OVER, CLASP_UNDER
+
+S = "hands_clasped"
+APART = Hand(at=(0.130, 1.035, 0.245), turn=-14, bend=6, shape="relaxed", elbow=(0.6, -0.6, -0.4))
+CLOSE = APART.moved(-0.025, -0.012, -0.015, shape="cupped")
+CLASPED = (("Right", "LeftHand"),)  # one hand carries the other
+BACK = go(0.46, lf=CLOSE.moved(0.0, -0.01, -0.01), rt=CLOSE.moved(0.0, 0.012, 0.012), spine=(1, 0, 0), head=(-0.5, 0, 0), flow=0.2, overshoot=0.0)
+
+
+def both(up: float, forwards: float) -> dict[str, Hand]:
+    """Return both clasped hands moved together."""
+    return {"lf": CLASP_UNDER.moved(0, up, forwards), "rt": CLASP_OVER.moved(0, up, forwards)}
+
+
+def rubbing(slide: float, up: float = 0.035) -> dict[str, Hand]:
+    """Return flat hands, palm on palm, one slid forwards by metres and the other back."""
+    left = Hand(at=(0.070, 1.05 + up, 0.215 - slide), fingers=(-0.62, 0.10, 0.78), palm=(-0.78, -0.05, -0.62), shape="flat", elbow=LOW)
+    right = Hand(at=(0.070, 1.06 + up, 0.222 + slide), fingers=(-0.62, 0.14, 0.78), palm=(-0.78, -0.05, -0.62), shape="flat", elbow=LOW)
+    return {"lf": left, "rt": right}
+
+
+THUMB_ROUND = (  # the thumbs chase each other
+    ((44, -12, 14, 10), (20, 22, 4, 4)),
+    ((34, 8, 4, 2), (44, 2, 22, 20)),
+    ((16, 14, 4, 6), (46, -8, 20, 22)),
+    ((20, -6, 18, 20), (26, 14, 6, 6)),
+)
+
+
+def with_thumb(hand: Hand, thumb: Finger) -> Hand:
+    """Return the hand with its thumb elsewhere."""
+    return hand.moved(shape=(thumb, *SHAPES[str(hand.shape)][1:]))
+
+
+CLIPS = (
+    Recipe("hands_clasped__stance", "arms", "stance", S, S, seconds=6.2),
+    arms_clip(
+        S,
+        "gesture",
+        "beat_small",
+        "bt",
+        go(0.34, **both(0.045, 0.02), head=(-2, 0, 0), spine=(0, 0, 0), overshoot=0.0, flow=0.06),
+        go(0.24, hold=0.30, **both(-0.018, 0.022), head=(3, 0, 0), spine=(3, 0, 0), peak=0.55, overshoot=0.10),
+        home(0.6),
+        tags="beat",
+        together=True,
+        pins=CLASPED,
+        likelihood=1.4,
+    ),
+    arms_clip(
+        S,
+        "gesture",
+        "open_palms",
+        "bt",
+        go(0.32, lf=APART, rt=APART.moved(0, 0.01), flow=0.18, overshoot=0.0),
+        go(0.36, hold=0.42, lf=OPEN_PALM.moved(-0.04, -0.03), rt=OPEN_PALM.moved(-0.03, -0.02), head=(2, 1, 4), spine=(0, 0, 0), overshoot=0.05),
+        BACK,
+        home(0.44),
+        tags="explain open",
+        likelihood=1.2,
+    ),
+    arms_clip(
+        S,
+        "gesture",
+        "beat_double",
+        "rt",
+        go(0.42, rt=READY.moved(-0.03, 0.0, 0.01), head=(-2, 0, 0), overshoot=0.0, flow=0.08),
+        go(0.22, hold=0.08, rt=BEAT.moved(-0.03, 0.02), head=(3, 0, 0), spine=(3, 0, 0), peak=0.55, overshoot=0.08),
+        go(0.24, rt=READY.moved(-0.01, -0.03, 0.02), head=(0, 0, 0), spine=(1, 0, 0), overshoot=0.0, flow=0.07),
+        go(0.22, hold=0.30, rt=BEAT.moved(-0.01, 0.03), head=(3, 0, 1), spine=(2.5, 0, 0), peak=0.55, overshoot=0.08),
+        go(0.44, rt=CLOSE.moved(0.0, 0.02, 0.025), spine=(1, 0, 0), head=(-0.5, 0, 0), flow=0.18, overshoot=0.0),
+        home(0.44),
+        tags="beat",
+    ),
+    arms_clip(
+        S,
+        "gesture",
+        "shrug",
+        "bt",
+        go(0.30, lf=APART.moved(0.03, 0.0, 0.0, turn=24), rt=APART.moved(0.03, 0.01, 0.0, turn=24), head=(2, 0, 0), flow=0.2, overshoot=0.0),
+        go(0.36, hold=0.40, lf=SHRUGGED.moved(-0.06, -0.04, 0.01), rt=SHRUGGED.moved(-0.05, -0.03, 0.01), head=(-2, 2, -7), spine=(-2, 0, 0), overshoot=0.05),
+        BACK,
+        home(0.46),
+        tags="unsure",
+    ),
+    arms_clip(
+        S,
+        "gesture",
+        "offer",
+        "rt",
+        go(0.36, rt=APART.moved(0.02, 0.02, 0.02, turn=20), flow=0.22, overshoot=0.0),
+        go(0.36, hold=0.44, rt=OFFERING.moved(-0.01, -0.02, -0.01), head=(2, -2, 4), spine=(4, 1, 0), overshoot=0.045),
+        go(0.46, rt=CLOSE.moved(0.0, 0.02, 0.025), spine=(1, 0, 0), head=(-0.5, 0, 0), flow=0.2, overshoot=0.0),
+        home(0.46),
+        tags="you open positive",
+    ),
+    arms_clip(
+        S,
+        "fidget",
+        "rub_hands",
+        "bt",
+        go(0.38, **rubbing(0.0), head=(2, 0, 0), overshoot=0.0, flow=0.05),
+        go(0.22, **rubbing(0.030), overshoot=0.0, flow=0.04),
+        go(0.24, **rubbing(-0.028), head=(3, 1, 1), overshoot=0.0, flow=0.04),
+        go(0.23, **rubbing(0.026), overshoot=0.0, flow=0.04),
+        go(0.24, **rubbing(-0.018), head=(1, 0, 0), overshoot=0.0, flow=0.04),
+        home(0.55),
+        tags="eager positive",
+        together=True,
+        drag=0.3,
+    ),
+    arms_clip(
+        S,
+        "fidget",
+        "twiddle_thumbs",
+        "bt",
+        *(
+            go(0.21, lf=with_thumb(CLASP_UNDER, left), rt=with_thumb(CLASP_OVER, right), head=(4, 0, 0), overshoot=0.0, flow=0.07)
+            for left, right in (*THUMB_ROUND, *THUMB_ROUND[:2])
+        ),
+        home(0.45),
+        tags="bored",
+        together=True,
+        likelihood=0.6,
+    ),
+    arms_clip(
+        S,
+        "fidget",
+        "regrip",
+        "bt",
+        go(0.34, lf=CLOSE.moved(-0.012, -0.012, -0.02), rt=CLOSE.moved(-0.005, 0.012, 0.02), spine=(0, 0, 0), head=(1, 0, 0), flow=0.04),
+        go(0.34, hold=0.12, lf=CLASP_UNDER.moved(0.004, 0.012, 0.008), rt=CLASP_OVER.moved(0.004, 0.012, 0.012), spine=(1.5, 0, 0)),
+        home(0.5),
+        likelihood=0.7,
+    ),
+)
