@@ -1,0 +1,436 @@
+"""Which joint is the left hand: roles, body parts and sides of a skeleton, from its names and its hierarchy.
+
+Names say what a joint is about, the hierarchy decides between them: an arm is the line of joints above a hand, so
+`LeftShoulder` is a collar bone in one skeleton and an upper arm in the next, and a twist or IK helper beside that line
+never wins. Where names say nothing, the shape of the rest pose does.
+"""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterable, Mapping, Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from metagraph.motion.skeleton import Skeleton
+
+_CENTRE = ("hips", "spine", "chest", "upper_chest", "neck", "head", "jaw")
+_SIDED = (
+    "eye",
+    "upper_lid",
+    "lower_lid",
+    "shoulder",
+    "upper_arm",
+    "lower_arm",
+    "hand",
+    "upper_leg",
+    "lower_leg",
+    "foot",
+    "toes",
+)
+ROLES: tuple[str, ...] = (*_CENTRE, *(f"left_{r}" for r in _SIDED), *(f"right_{r}" for r in _SIDED))
+PARTS = ("legs", "spine", "arms", "head", "face")
+# What a character needs to gesture, stand and look.
+REQUIRED: tuple[str, ...] = (
+    "hips",
+    "spine",
+    "head",
+    *(f"{s}_{r}" for s in ("left", "right") for r in ("upper_arm", "lower_arm", "hand", "upper_leg", "lower_leg", "foot")),
+)
+
+_LEFT, _RIGHT = {"left", "l", "lft", "lf"}, {"right", "r", "rgt", "rt"}
+# Joints that serve the animator or the skin, not the body.
+_HELPERS = frozenset(
+    "ik fk pole target ctrl control controller twist roll helper end nub effector goal slot aux adjust adj dummy socket prop"
+    " weapon mch org tweak mid handle locator footsteps offset driver jiggle volume corrective bulge muscle".split()
+)
+_FOUR_LEGGED = {"front", "hind", "rear", "back"}
+_FACE = frozenset(
+    "eye eyes eyeball eyebrow brow lid eyelid lids jaw mouth lip lips tongue cheek nose nostril chin teeth tooth temple zygomatic"
+    " squint sneer crease face facial corner gum forehead".split()
+)
+_ARM = frozenset(
+    "hand wrist elbow arm forearm upperarm lowerarm shoulder clav clavicle collar thumb index middle ring pinky little"
+    " finger fingers fng palm".split()
+)
+
+
+@dataclass(frozen=True)
+class _Words:
+    """A joint's name taken apart: words without side and digits, run together, and the side it names."""
+
+    words: tuple[str, ...]
+    joined: str
+    side: str
+    number: int
+
+
+def _take_apart(name: str) -> _Words:
+    bare = re.split(r"[:|]", name)[-1]
+    pieces = [p.lower() for p in re.findall(r"[A-Z]+(?=[A-Z][a-z])|[A-Z]?[a-z]+|[A-Z]+|\d+|[^\W\d_a-zA-Z]+", bare)]
+    words: list[str] = []
+    side, number = "centre", 0
+    for piece in pieces:
+        glued = re.fullmatch(r"(left|right)(\w+)", piece)
+        for word in (glued[1], glued[2]) if glued else (piece,):
+            if word in _LEFT:
+                side = "left"
+            elif word in _RIGHT:
+                side = "right"
+            elif word.isdigit():
+                number = int(word)
+            elif word not in ("c", "m"):
+                words.append(word)
+    return _Words(tuple(words), "".join(words), side, number)
+
+
+def _kind(words: _Words) -> str:
+    """Return what a name alone says of a limb's joint; "" when it says nothing, or nothing certain."""
+    own, joined = set(words.words), words.joined
+    if own & _FOUR_LEGGED and ("leg" in joined or "foot" in joined or "paw" in joined or "toe" in joined):
+        return ""
+    for kind, tests in (
+        ("lower_arm", ("forearm", "lowerarm", "lowarm", "armlower", "elbow", "ulna")),
+        ("upper_arm", ("upperarm", "uparm", "armupper", "humerus")),
+        ("lower_leg", ("lowerleg", "lowleg", "leglower", "knee", "calf", "shin")),
+        ("upper_leg", ("upperleg", "upleg", "legupper", "thigh", "femur")),
+        ("shoulder", ("clav", "collar", "scapula")),
+    ):
+        if any(test in joined for test in tests):
+            return kind
+    for kind, exact in (
+        ("hand", {"hand", "wrist", "palm"}),
+        ("foot", {"foot", "ankle", "feet"}),
+        ("toes", {"toe", "toes", "ball", "toebase"}),
+        ("upper_arm", {"arm"}),
+    ):
+        if own & exact:
+            return kind
+    return ""
+
+
+class _Reader:
+    """One skeleton's names and tree, and the roles found so far."""
+
+    def __init__(self, skeleton: Skeleton) -> None:
+        self.skeleton = skeleton
+        self.words = [_take_apart(name) for name in skeleton.names]
+        helpers = [bool(_HELPERS & set(w.words)) for w in self.words]
+        common = sum(helpers) > len(helpers) / 2  # a word that most joints bear says nothing
+        self.helper = [False] * len(helpers) if common else helpers
+        self.kinds = ["" if h else _kind(w) for w, h in zip(self.words, self.helper, strict=True)]
+        self.parents = [int(p) for p in skeleton.parents]
+        self.roles: dict[str, int] = {}
+
+    def above(self, joint: int) -> list[int]:
+        """Return the ancestors, nearest first."""
+        out = []
+        while self.parents[joint] >= 0:
+            joint = self.parents[joint]
+            out.append(joint)
+        return out
+
+    def topmost(self, joints: Iterable[int]) -> list[int]:
+        """Return those that have none of the others above them."""
+        some = set(joints)
+        return sorted(j for j in some if not some.intersection(self.above(j)))
+
+    def called(self, *names: str, side: str = "centre") -> list[int]:
+        """Return the joints with one of these words on this side, helpers excluded, topmost only."""
+        wanted = set(names)
+        return self.topmost(
+            i for i, w in enumerate(self.words) if w.side == side and wanted & set(w.words) and not self.helper[i]
+        )
+
+    def of_kind(self, kind: str, side: str) -> list[int]:
+        return self.topmost(i for i, k in enumerate(self.kinds) if k == kind and self.words[i].side == side)
+
+    def biggest(self, joints: Sequence[int]) -> int:
+        """Return the one with the most joints below it, the first of equals."""
+        return max(joints, key=lambda j: (len(self.skeleton.descendants(j)), -j))
+
+    def limb(self, side: str, end: str, lower: str, upper: str, collar: str | None) -> None:
+        """Name the joints of an arm or a leg from its end upwards."""
+        ends = self.of_kind(end, side)
+        if end == "hand" and len(ends) > 1:  # several palms: the one that carries the middle finger
+            middle = [e for e in ends if any("middle" in self.words[d].joined for d in self.skeleton.descendants(e))]
+            ends = middle or ends
+        line: list[int] = []
+        if ends:
+            tip = self.biggest(ends)
+            self.roles[f"{side}_{end}"] = tip
+            line = [j for j in reversed(self.above(tip)) if self.words[j].side == side and not self.helper[j]]
+        elif self.of_kind(lower, side):
+            line = [self.biggest(self.of_kind(lower, side))]
+            line = [*(j for j in reversed(self.above(line[0])) if self.words[j].side == side and not self.helper[j]), *line]
+            below = [c for c in self.skeleton.children[line[-1]] if not self.helper[c]]
+            if below:
+                self.roles[f"{side}_{end}"] = self.biggest(below)
+
+        def take(role: str, kind: str, last: bool) -> None:
+            nonlocal line
+            known = [i for i, j in enumerate(line) if self.kinds[j] == kind]
+            place = known[0] if known else len(line) - 1 if last and line else None
+            if place is not None:
+                self.roles[f"{side}_{role}"] = line[place]
+                line = line[:place]
+
+        take(lower, lower, True)
+        take(upper, upper, True)
+        if collar:
+            take(collar, collar, True)
+        for role in (lower, upper):  # limbs cut into separate trees, as IK rigs are
+            if f"{side}_{role}" not in self.roles and (named := self.of_kind(role, side)):
+                self.roles[f"{side}_{role}"] = self.biggest(named)
+
+    def toes(self, side: str) -> None:
+        foot = self.roles.get(f"{side}_foot")
+        if foot is None:
+            return
+        below = set(self.skeleton.descendants(foot)) - {foot}
+        named = [j for j in self.of_kind("toes", side) if j in below]
+        free = named or [c for c in self.skeleton.children[foot] if not self.helper[c] and self.words[c].side == side]
+        if free:
+            self.roles[f"{side}_toes"] = self.biggest(free)
+
+    def common(self, joints: Sequence[int]) -> int | None:
+        """Return the nearest joint that is, or is above, all of these."""
+        lines = [list(reversed([j, *self.above(j)])) for j in joints]
+        shared = None
+        for step in zip(*lines, strict=False):
+            if len(set(step)) > 1:
+                break
+            shared = step[0]
+        return shared
+
+    def trunk(self) -> None:
+        """Name hips, spine, chest, neck and head, given the limbs."""
+        roles = self.roles
+        legs = [roles[r] for r in ("left_upper_leg", "right_upper_leg") if r in roles]
+        arms = [roles[r] for r in ("left_upper_arm", "right_upper_arm") if r in roles]
+        heads, necks = self.called("head"), self.called("neck")
+        if heads:
+            roles["head"] = self.biggest(heads)
+        if necks:
+            roles["neck"] = self.biggest(necks)
+            if "head" not in roles:  # the end of the neck, where the face hangs
+                line = [roles["neck"]]
+                while True:
+                    below = [c for c in self.skeleton.children[line[-1]] if "neck" in self.words[c].words and not self.helper[c]]
+                    if not below:
+                        break
+                    line.append(below[0])
+                roles["head"] = line[-1]
+                if len(line) == 1:
+                    del roles["neck"]
+        if "head" not in roles and len(arms) == 2 and (top := self.common(arms)) is not None:
+            line = [top]
+            while True:
+                below = [c for c in self.skeleton.children[line[-1]] if self.words[c].side == "centre" and not self.helper[c]]
+                if not below:
+                    break
+                line.append(self.biggest(below))
+            if len(line) > 1:
+                roles["head"] = line[-1]
+                if len(line) > 2:
+                    roles["neck"] = line[1]
+        if "neck" in roles and "head" in roles and roles["neck"] not in self.above(roles["head"]):
+            del roles["neck"]
+        ends = legs + ([roles["head"]] if "head" in roles else [])
+        named = [j for w in ("hips", "pelvis", "hip") for j, x in enumerate(self.words) if w in x.words and x.side == "centre" and not self.helper[j]]
+        fitting = [j for j in named if all(j == e or j in self.above(e) for e in ends)]
+        if fitting:
+            roles["hips"] = max(fitting, key=lambda j: len(self.above(j)))
+        elif len(legs) == 2 and (shared := self.common(ends)) is not None:
+            roles["hips"] = shared
+        elif named:
+            roles["hips"] = named[0]
+        if "hips" not in roles or "head" not in roles:
+            return
+        top = roles.get("neck", roles["head"])
+        line = [j for j in reversed(self.above(top)) if roles["hips"] in self.above(j) and not self.helper[j]]
+        if "neck" not in roles and len(arms) == 2:
+            # Joints between the arms and the head are the neck, whatever they are called.
+            over = self.common(arms)
+            beyond = [j for j in line if over in self.above(j)]
+            if beyond:
+                roles["neck"] = beyond[0]
+                line = [j for j in line if j not in beyond]
+        chests = [j for j in line if {"chest", "thorax", "ribcage"} & set(self.words[j].words)]
+        if line:
+            roles["spine"] = line[0]
+        rest = line[1:]
+        if len(rest) == 1:
+            roles["chest"] = rest[0]
+        elif rest:
+            roles["upper_chest"] = rest[-1]
+            own = [j for j in chests if j in rest[:-1]]
+            roles["chest"] = own[0] if own else rest[(len(rest) - 1) // 2]
+
+    def face(self) -> None:
+        head = self.roles.get("head")
+        if head is None:
+            return
+        below = set(self.skeleton.descendants(head)) - {head}
+        jaws = [j for j in self.called("jaw") if j in below]
+        if jaws:
+            self.roles["jaw"] = self.biggest(jaws)
+        for side in ("left", "right"):
+            own = [j for j in sorted(below) if self.words[j].side == side and not self.helper[j]]
+            # "adj" marks a helper in most rigs, but VRM's own eyes bear it.
+            eyes = [
+                j
+                for j in sorted(below)
+                if self.words[j].side == side and self.words[j].joined.endswith(("eye", "eyeball")) and "under" not in self.words[j].words
+            ]
+            if eyes:
+                self.roles[f"{side}_eye"] = eyes[0]
+            lids = [j for j in own if "lid" in self.words[j].joined]
+            low = [j for j in lids if {"low", "lower", "bottom", "dwn", "down"} & set(self.words[j].words)]
+            high = [j for j in lids if j not in low]
+            for role, found in (("upper_lid", high), ("lower_lid", low)):
+                if found:  # the middle one of several along the lid
+                    self.roles[f"{side}_{role}"] = sorted(found, key=lambda j: (self.words[j].number, j))[len(found) // 2]
+
+
+def find_roles(skeleton: Skeleton) -> dict[str, int]:
+    """Return role -> joint for the ROLES that the skeleton has, by names first, by the rest pose's shape where those fail."""
+    reader = _Reader(skeleton)
+    for side in ("left", "right"):
+        reader.limb(side, "hand", "lower_arm", "upper_arm", "shoulder")
+        reader.limb(side, "foot", "lower_leg", "upper_leg", None)
+        reader.toes(side)
+    reader.trunk()
+    reader.face()
+    if len(reader.roles) < 4:
+        shaped = _by_shape(skeleton)
+        if len(shaped) > len(reader.roles):
+            return _ordered(shaped)
+    return _ordered(reader.roles)
+
+
+def _ordered(roles: Mapping[str, int]) -> dict[str, int]:
+    return {role: roles[role] for role in ROLES if role in roles}
+
+
+def _by_shape(skeleton: Skeleton) -> dict[str, int]:
+    """Find a standing figure in a rest pose whose names say nothing: two mirrored legs down, arms out, a head up."""
+    _, positions = skeleton.globals(skeleton.rest)
+    children, height = skeleton.children, skeleton.height
+
+    def line(joint: int) -> list[int]:
+        out = [joint]
+        while len(children[out[-1]]) == 1:
+            out.append(children[out[-1]][0])
+        return out
+
+    def pair(joints: Sequence[int]) -> tuple[int, int] | None:
+        """Return two of the joints that mirror each other across x = 0, the one with larger x first."""
+        best, found = 0.03 * height, None
+        for a in joints:
+            for b in joints:
+                mirrored = positions[b] * [-1, 1, 1]
+                distance = float(np.linalg.norm(positions[line(a)[-1]] - positions[line(b)[-1]] * [-1, 1, 1]) + np.linalg.norm(positions[a] - mirrored))
+                if positions[a, 0] > positions[b, 0] + 0.01 * height and distance < best:
+                    best, found = distance, (a, b)
+        return found
+
+    for hips in range(len(skeleton)):
+        down = [c for c in children[hips] if positions[line(c)[-1], 1] < positions[hips, 1] - 0.2 * height]
+        legs = pair(down)
+        up = [c for c in children[hips] if c not in (legs or ())]
+        if legs is None or not up or min(len(line(leg)) for leg in legs) < 3:
+            continue
+        trunk = line(max(up, key=lambda c: len(skeleton.descendants(c))))
+        arms = pair(children[trunk[-1]])
+        if arms is None or min(len(line(a)) for a in arms) < 3:
+            continue
+        rest = [c for c in children[trunk[-1]] if c not in arms]
+        roles = {"hips": hips, "spine": trunk[0]}
+        if len(trunk) > 1:
+            roles["chest"] = trunk[1]
+        if len(trunk) > 2:
+            roles["upper_chest"] = trunk[-1]
+        if rest:
+            neck = line(max(rest, key=lambda c: float(positions[line(c)[-1], 1])))
+            roles["head"] = neck[min(1, len(neck) - 1)]
+            if len(neck) > 1:
+                roles["neck"] = neck[0]
+        toe = line(legs[0])
+        ahead = positions[toe[min(3, len(toe) - 1)], 2] - positions[toe[2], 2]
+        sides = ("left", "right") if ahead >= -1e-6 else ("right", "left")
+        for k, side in enumerate(sides):
+            roles.update(zip((f"{side}_upper_leg", f"{side}_lower_leg", f"{side}_foot", f"{side}_toes"), line(legs[k]), strict=False))
+            arm = line(arms[k])
+            names = [f"{side}_shoulder", f"{side}_upper_arm", f"{side}_lower_arm", f"{side}_hand"]
+            roles.update(zip(names[-min(4, len(arm)) :], arm[:4], strict=False))
+        return roles
+    return {}
+
+
+def missing_roles(roles: Mapping[str, int]) -> tuple[str, ...]:
+    """Return which of the REQUIRED roles are missing: the reasons why a skeleton is no humanoid."""
+    return tuple(role for role in REQUIRED if role not in roles)
+
+
+def is_humanoid(roles: Mapping[str, int]) -> bool:
+    """Whether a skeleton with these roles can gesture, stand and look; `missing_roles` says what it lacks."""
+    return not missing_roles(roles)
+
+
+def body_parts(skeleton: Skeleton, roles: Mapping[str, int] | None = None) -> tuple[str, ...]:
+    """Return for each joint one of PARTS.
+
+    Hips and what is above them are "legs", the line from there to the neck is "spine", neck and head are "head", what
+    hangs on the head by a facial name is "face", shoulders to fingers are "arms". Any other joint goes with its parent.
+    """
+    reader = _Reader(skeleton)
+    roles = find_roles(skeleton) if roles is None else roles
+    known: dict[int, str] = {}
+    hips = roles.get("hips")
+    for joint in [hips, *reader.above(hips)] if hips is not None else ():
+        known[joint] = "legs"
+    head = roles.get("head")
+    for joint in [head, *reader.above(head)] if head is not None else ():
+        if joint not in known:
+            neck = roles.get("neck")
+            high = joint == head or joint == neck or (neck is not None and neck in reader.above(joint))
+            known[joint] = "head" if high else "spine"
+    for role, joint in roles.items():
+        part = {"spine": "spine", "chest": "spine", "upper_chest": "spine", "neck": "head", "head": "head"}.get(role)
+        if role.endswith(("shoulder", "arm", "hand")):
+            part = "arms"
+        elif role.endswith(("leg", "foot", "toes")):
+            part = "legs"
+        elif role.endswith(("eye", "lid", "jaw")):
+            part = "face"
+        if part and known.get(joint) != "legs":
+            known[joint] = part
+    inside = set(skeleton.descendants(head)) if head is not None else set()
+    out: list[str] = []
+    for i, words in enumerate(reader.words):
+        parent = reader.parents[i]
+        part = known.get(i)
+        if part is None and i in inside:
+            facial = _FACE & set(words.words) or words.joined.endswith(("lip", "lid", "brow", "eye"))
+            part = "face" if facial or out[parent] == "face" else "head"
+        if part is None and words.side != "centre" and _ARM & set(words.words) and (parent < 0 or out[parent] in ("legs", "spine")):
+            foot = {"foot", "toe", "leg"} & set(words.words)  # "LeftFootThumb" is a toe
+            part = None if foot else "arms"
+        out.append(part or (out[parent] if parent >= 0 else "legs"))
+    return tuple(out)
+
+
+def joint_sides(skeleton: Skeleton, roles: Mapping[str, int] | None = None) -> tuple[str, ...]:
+    """Return for each joint "left", "right" or "centre": by role, by name, else as its parent."""
+    reader = _Reader(skeleton)
+    roles = find_roles(skeleton) if roles is None else roles
+    known = {joint: role.split("_")[0] for role, joint in roles.items() if role.startswith(("left_", "right_"))}
+    known.update({joint: "centre" for role, joint in roles.items() if role in _CENTRE})
+    out: list[str] = []
+    for i, words in enumerate(reader.words):
+        parent = reader.parents[i]
+        inherited = out[parent] if parent >= 0 else "centre"
+        out.append(known.get(i) or (words.side if words.side != "centre" else inherited))
+    return tuple(out)
