@@ -82,7 +82,7 @@ class Buffer(_Value):
 
 class Node(_Value):
     name: str = ""
-    children: list[Index] = []  # noqa: RUF012 (msgspec copies defaults)
+    children: list[Index] = []
     translation: Vec3 | None = None
     rotation: Vec4 | None = None
     scale: Vec3 | None = None
@@ -128,7 +128,7 @@ class Primitive(_Value):
     indices: Index | None = None
     material: Index | None = None
     mode: int = 4
-    targets: list[dict[str, Index]] = []  # noqa: RUF012
+    targets: list[dict[str, Index]] = []
     extras: msgspec.Raw = msgspec.Raw()
 
 
@@ -165,24 +165,24 @@ class Image(_Value):
 
 
 class Scene(_Value):
-    nodes: list[Index] = []  # noqa: RUF012
+    nodes: list[Index] = []
 
 
 class Document(_Value):
     scene: Index = 0
-    scenes: list[Scene] = []  # noqa: RUF012
-    nodes: list[Node] = []  # noqa: RUF012
-    skins: list[Skin] = []  # noqa: RUF012
-    animations: list[Animation] = []  # noqa: RUF012
-    meshes: list[Mesh] = []  # noqa: RUF012
-    materials: list[MaterialValue] = []  # noqa: RUF012
-    textures: list[Texture] = []  # noqa: RUF012
-    images: list[Image] = []  # noqa: RUF012
-    accessors: list[Accessor] = []  # noqa: RUF012
-    buffer_views: list[BufferView] = []  # noqa: RUF012
-    buffers: list[Buffer] = []  # noqa: RUF012
+    scenes: list[Scene] = []
+    nodes: list[Node] = []
+    skins: list[Skin] = []
+    animations: list[Animation] = []
+    meshes: list[Mesh] = []
+    materials: list[MaterialValue] = []
+    textures: list[Texture] = []
+    images: list[Image] = []
+    accessors: list[Accessor] = []
+    buffer_views: list[BufferView] = []
+    buffers: list[Buffer] = []
     extensions: msgspec.Raw = msgspec.Raw()
-    extensions_required: list[str] = []  # noqa: RUF012
+    extensions_required: list[str] = []
 
 
 _decoder = msgspec.json.Decoder(Document)

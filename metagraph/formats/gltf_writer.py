@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import os
 import struct
 from collections.abc import Sequence
 from pathlib import Path
@@ -12,7 +11,6 @@ import msgspec
 import numpy as np
 from numpy.typing import NDArray
 
-from metagraph.errors import FileError
 from metagraph.motion import rotation
 from metagraph.motion.character import Character
 from metagraph.motion.clip import Clip
@@ -140,20 +138,9 @@ def write_glb(
         struct.pack("<II", len(body.data), 0x004E4942),
         body.data,
     )
-    write_whole(path, b"".join(parts))
+    from metagraph.formats.store import write_atomically  # which reads clips, hence not at the top
 
-
-def write_whole(path: Path, data: bytes) -> None:
-    """Write a file in one step: a reader sees the old file or the new one, never a half. Raises FileError."""
-    beside = path.with_name(f".{path.name}.{os.getpid()}.part")
-    try:
-        beside.write_bytes(data)
-        beside.replace(path)
-    except OSError as error:
-        beside.unlink(missing_ok=True)
-        raise FileError(
-            path, f"it cannot be written ({error.strerror})", "", "Check the folder, its permissions and the free space."
-        ) from error
+    write_atomically(path, b"".join(parts))
 
 
 def _joint_nodes(skeleton: Skeleton) -> list[dict[str, Any]]:

@@ -55,13 +55,14 @@ def frame_rate(keys: Sequence[Array], wanted: float | None = None) -> float:
 def without_bind_pose(clip: Clip) -> Clip:
     """Drop a first frame that is plainly the rest pose left there by a tool, and say so in the notes.
 
-    Plainly: the frame equals the rest pose within 0.5 degrees everywhere, and the jump from it is over 15 degrees and
-    over 8 times any other jump within the next second.
+    Plainly: in that frame at least 60 % of the joints are in the rest pose within 0.5 degrees and all within 30, and
+    the jump from it is over 15 degrees and over 8 times any other jump within the next second.
     """
     if clip.frames < 4:
         return clip
     first, rest = clip.rotations[0].astype(float), clip.skeleton.rest_rotations
-    if float(rotation.angle_between(first, rest).max()) > np.radians(0.5):
+    away = rotation.angle_between(first, rest)
+    if np.mean(away < np.radians(0.5)) < 0.6 or float(away.max()) > np.radians(30):
         return clip
     window = clip.rotations[: 2 + max(4, round(clip.fps))].astype(float)
     jumps = rotation.angle_between(window[1:], window[:-1]).max(-1)

@@ -139,9 +139,7 @@ class _Reader:
     def called(self, *names: str, side: str = "centre") -> list[int]:
         """Return the joints with one of these words on this side, helpers excluded, topmost only."""
         wanted = set(names)
-        return self.topmost(
-            i for i, w in enumerate(self.words) if w.side == side and wanted & set(w.words) and not self.helper[i]
-        )
+        return self.topmost(i for i, w in enumerate(self.words) if w.side == side and wanted & set(w.words) and not self.helper[i])
 
     def of_kind(self, kind: str, side: str) -> list[int]:
         return self.topmost(i for i, k in enumerate(self.kinds) if k == kind and self.words[i].side == side)
@@ -238,7 +236,12 @@ class _Reader:
         if "neck" in roles and "head" in roles and roles["neck"] not in self.above(roles["head"]):
             del roles["neck"]
         ends = legs + ([roles["head"]] if "head" in roles else [])
-        named = [j for w in ("hips", "pelvis", "hip") for j, x in enumerate(self.words) if w in x.words and x.side == "centre" and not self.helper[j]]
+        named = [
+            j
+            for w in ("hips", "pelvis", "hip")
+            for j, x in enumerate(self.words)
+            if w in x.words and x.side == "centre" and not self.helper[j]
+        ]
         fitting = [j for j in named if all(j == e or j in self.above(e) for e in ends)]
         if fitting:
             roles["hips"] = max(fitting, key=lambda j: len(self.above(j)))
@@ -331,7 +334,9 @@ def _by_shape(skeleton: Skeleton) -> dict[str, int]:
         for a in joints:
             for b in joints:
                 mirrored = positions[b] * [-1, 1, 1]
-                distance = float(np.linalg.norm(positions[line(a)[-1]] - positions[line(b)[-1]] * [-1, 1, 1]) + np.linalg.norm(positions[a] - mirrored))
+                distance = float(
+                    np.linalg.norm(positions[line(a)[-1]] - positions[line(b)[-1]] * [-1, 1, 1]) + np.linalg.norm(positions[a] - mirrored)
+                )
                 if positions[a, 0] > positions[b, 0] + 0.01 * height and distance < best:
                     best, found = distance, (a, b)
         return found

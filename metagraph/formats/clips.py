@@ -1,0 +1,158 @@
+"""Read clips from files of any format, one by one or by the hundred."""
+
+from __future__ import annotations
+
+import hashlib
+from collections.abc import Callable, Iterable
+from dataclasses import dataclass, replace
+from pathlib import Path
+
+from metagraph.errors import FileError
+from metagraph.motion.clip import Clip, ClipError
+
+SUFFIXES = (".bvh", ".glb", ".gltf", ".vrm", ".vrma", ".fbx")
+
+_GLTF = (".glb", ".gltf", ".vrm", ".vrma")
+_REMEDY = f"Clips are read from {', '.join(SUFFIXES)}."
+
+
+@dataclass(frozen=True, eq=False)
+class ImportReport:
+    """What came of importing many files.
+
+    clips: (file, take's number in the file, clip). failures: one error per file that could not be read. notes:
+    what the user should know, each naming its file. cancelled: whether the user stopped before the end.
+    """
+
+    clips: tuple[tuple[Path, int, Clip], ...]
+    failures: tuple[FileError, ...]
+    notes: tuple[str, ...]
+    cancelled: bool = False
+
+
+def read_clips(path: str | Path) -> list[Clip]:
+    """Return all takes of a file. Takes of one frame are skipped where others are longer, with a note on those.
+
+    The content decides what the file is, and must agree with its ending. Raises FileError.
+    """
+    path = Path(path)
+    suffix = path.suffix.lower()
+    kind = _content(path)
+    wanted = {".bvh": "bvh", ".fbx": "fbx", **dict.fromkeys(_GLTF, "gltf")}.get(suffix)
+    if wanted is None:
+        raise FileError(path, f"'{path.suffix or path.name}' is not an ending of a clip file", "", _REMEDY)
+    if kind != wanted:
+        names = {"bvh": "a BVH file", "gltf": "a glTF file", "fbx": "an FBX file"}
+        if kind in names:
+            raise FileError(path, f"it is {names[kind]} in spite of its ending", "its first bytes", "Rename it to match its content.")
+        raise FileError(path, f"it is {kind}, not {names[wanted]}", "its first bytes", _REMEDY)
+    try:
+        if wanted == "bvh":
+            from metagraph.formats.bvh import read_bvh
+
+            clips = [read_bvh(path)]
+        elif wanted == "gltf":
+            from metagraph.formats.gltf import read_gltf_clips
+
+            clips = read_gltf_clips(path)
+        else:
+            from metagraph.formats.fbx import read_fbx_clips
+
+            clips = read_fbx_clips(path)
+    except ClipError as error:
+        raise FileError(path, str(error), "its motion", "Export it again.") from error
+    return _without_junk(clips)
+
+
+def _without_junk(clips: list[Clip]) -> list[Clip]:
+    """Drop takes of a single frame beside longer ones: tools leave them behind."""
+    junk = [clip.name for clip in clips if clip.frames == 1]
+    if not junk or len(junk) == len(clips):
+        return clips
+    told = f"skipped {', '.join(repr(n) for n in junk)}: one frame only"
+    kept = [clip for clip in clips if clip.frames > 1]
+    return [replace(kept[0], notes=(*kept[0].notes, told)), *kept[1:]]
+
+
+def _content(path: Path) -> str:
+    """Return "bvh", "gltf", "fbx", or a description of something else. Raises FileError when it cannot be read."""
+    try:
+        with path.open("rb") as file:
+            head = file.read(4096)
+    except OSError as error:
+        raise FileError(path, f"it cannot be read ({error.strerror})", "", "Check that it exists and that you may read it.") from error
+    start = head.lstrip(b"\xef\xbb\xbf \t\r\n")
+    if not head:
+        return "an empty file"
+    if head.startswith(b"glTF") or start.startswith(b"{"):
+        return "gltf"
+    if head.startswith(b"Kaydara FBX Binary") or start.startswith(b"; FBX") or b"FBXHeaderExtension" in head:
+        return "fbx"
+    if start[:9].upper() == b"HIERARCHY":
+        return "bvh"
+    if head.startswith(b"version https://git-lfs"):
+        return "a Git LFS pointer whose content was never fetched"
+    if start[:1] == b"<":
+        return "a web page or XML file"
+    return "something else"
+
+
+def find_clip_files(folder: str | Path) -> list[Path]:
+    """Return every clip file in a folder and below, sorted by path without regard to case; hidden ones are skipped."""
+    folder = Path(folder)
+    found = [
+        p
+        for p in folder.rglob("*")
+        if p.suffix.lower() in SUFFIXES and p.is_file() and not any(part.startswith(".") for part in p.relative_to(folder).parts)
+    ]
+    return sorted(found, key=lambda p: (str(p).casefold(), str(p)))
+
+
+def import_clips(
+    paths: Iterable[str | Path],
+    progress: Callable[[int, int, Path], None] | None = None,
+    cancelled: Callable[[], bool] | None = None,
+) -> ImportReport:
+    """Read many files; a bad one fails alone.
+
+    progress: called before each file with how many are done, how many there are, and the file. cancelled: asked before
+    each file. Files whose skeletons are the same share one Skeleton object. One thread: a clip takes a millisecond or
+    two, and reading is bound by Python, so a pool gains nothing (see tests/benchmarks/bench_formats.py).
+    """
+    files = [Path(p) for p in paths]
+    clips: list[tuple[Path, int, Clip]] = []
+    failures: list[FileError] = []
+    notes: list[str] = []
+    skeletons: dict[str, Clip] = {}
+    stopped = False
+    for done, path in enumerate(files):
+        if cancelled is not None and cancelled():
+            stopped = True
+            break
+        if progress is not None:
+            progress(done, len(files), path)
+        try:
+            takes = read_clips(path)
+        except FileError as error:
+            failures.append(error)
+            continue
+        except MemoryError:
+            failures.append(FileError(path, "there is not enough memory for it", "", "Close other programs, or split the file."))
+            continue
+        for number, clip in enumerate(takes):
+            known = skeletons.setdefault(clip.skeleton.fingerprint, clip)
+            clips.append((path, number, clip if known.skeleton is clip.skeleton else replace(clip, skeleton=known.skeleton)))
+            notes += [f"{path.name}: {note}" for note in clip.notes]
+    if progress is not None and not stopped and files:
+        progress(len(files), len(files), files[-1])
+    return ImportReport(tuple(clips), tuple(failures), tuple(dict.fromkeys(notes)), stopped)
+
+
+def digest(path: str | Path) -> str:
+    """Return the SHA-256 of a file's content, hex. Raises FileError."""
+    path = Path(path)
+    try:
+        with path.open("rb") as file:
+            return hashlib.file_digest(file, "sha256").hexdigest()
+    except OSError as error:
+        raise FileError(path, f"it cannot be read ({error.strerror})", "", "Check that it exists and that you may read it.") from error
