@@ -118,7 +118,7 @@ def style_sheet(look: Theme) -> str:
     QScrollBar::handle {{ background: {t.line}; border-radius: 4px; min-height: 28px; min-width: 28px; margin: 1px; }}
     QScrollBar::handle:hover {{ background: {t.dim}; }}
     QScrollBar::add-line, QScrollBar::sub-line, QScrollBar::add-page, QScrollBar::sub-page {{ background: none; width: 0; height: 0; }}
-    QProgressBar {{ background: {t.field}; border: 1px solid {t.line}; border-radius: 5px; text-align: center; max-height: 14px; }}
+    QProgressBar {{ background: {t.field}; border: none; border-radius: 5px; text-align: center; max-height: 14px; }}
     QProgressBar::chunk {{ background: {t.dim}; border-radius: 4px; }}
     QTabBar::tab {{ background: transparent; color: {t.dim}; padding: 6px 14px; border-radius: 6px; margin: 2px; }}
     QTabBar::tab:selected {{ background: {t.hover}; color: {t.text}; }}

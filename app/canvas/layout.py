@@ -1,0 +1,201 @@
+"""Where everything on the canvas is: a pure function of the project and the size, and the hit test on its result."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+from typing import Literal
+
+from PySide6.QtCore import QPointF, QRectF, QSizeF
+
+from metagraph.graph.model import Action, Kind, Layer, Project
+
+GRID = 8
+CHIP_HEIGHT, CHIP_TOP = 34, 12
+HEADER, ROW, PAD = 38, 24, 8
+BAR = 44  # width of a likelihood bar
+FOOT = 40  # the sentence at the bottom
+CHIP_MIN, CHIP_MAX = 108, 190
+
+Area = Literal["chip", "add", "card", "loop", "node", "row", "bar", "other", "start", "nothing"]
+
+
+@dataclass(frozen=True)
+class Hit:
+    """What lies under a point. ident: stance or action id. kind: of the node."""
+
+    area: Area
+    ident: str | None = None
+    kind: Kind | None = None
+
+
+@dataclass(frozen=True)
+class Row:
+    action: Action
+    rect: QRectF
+    bar: QRectF
+
+
+@dataclass(frozen=True)
+class Node:
+    """rows: those in sight. count: of all. scroll, most: the first row in sight and the largest it can be."""
+
+    kind: Kind
+    rect: QRectF
+    header: QRectF
+    body: QRectF
+    rows: tuple[Row, ...]
+    count: int
+    scroll: int
+    most: int
+    other: QRectF = field(default_factory=QRectF)  # the chooser of a transition's end
+
+
+@dataclass(frozen=True)
+class Chip:
+    """stance None is the "+" at the end. words: its hole, if any."""
+
+    stance: str | None
+    rect: QRectF
+    name: str
+    count: int = 0
+    words: str = ""
+
+
+@dataclass(frozen=True)
+class Layout:
+    size: QSizeF
+    chips: tuple[Chip, ...]
+    card: QRectF
+    loops: QRectF  # the part of the card where a drop adds a loop to the stance, during a drag
+    nodes: Mapping[Kind, Node]
+    foot: QRectF
+    stance: str | None
+
+    def hit(self, at: QPointF, dragging: bool = False) -> Hit:
+        """Return what lies under a point; `dragging` splits the card into "a new stance" and "another loop"."""
+        for chip in self.chips:
+            if chip.rect.contains(at):
+                return Hit("add") if chip.stance is None else Hit("chip", chip.stance)
+        for node in self.nodes.values():
+            if not node.rect.contains(at):
+                continue
+            if node.other.contains(at) and not dragging:
+                return Hit("other", None, node.kind)
+            for row in node.rows:
+                if row.bar.adjusted(-4, -6, 4, 6).contains(at):
+                    return Hit("bar", row.action.id, node.kind)
+                if row.rect.contains(at):
+                    return Hit("row", row.action.id, node.kind)
+            return Hit("node", None, node.kind)
+        if self.card.contains(at):
+            if dragging and self.stance is not None and self.loops.contains(at):
+                return Hit("loop", self.stance, "stance")
+            return Hit("card", self.stance, "stance")
+        return Hit("nothing")
+
+    def row(self, action: str) -> Row | None:
+        return next((row for node in self.nodes.values() for row in node.rows if row.action.id == action), None)
+
+
+def hole(project: Project, layer: Layer, stance: str) -> str:
+    """Return in words what a stance lacks, the worst first, or nothing."""
+    graph = project.graphs[layer]
+    if not graph.of(stance, "stance"):
+        return "no loop"
+    if len(graph.stances) > 1 and not graph.of(stance, "transition"):
+        return "no way out"
+    if not graph.of(stance, "gesture"):
+        return "no gestures"
+    if not graph.of(stance, "fidget"):
+        return "no fidgets"
+    return ""
+
+
+def arrange(
+    project: Project,
+    layer: Layer,
+    stance: str | None,
+    size: QSizeF,
+    scroll: Mapping[Kind, int] | None = None,
+    widths: Mapping[str, float] | None = None,
+) -> Layout:
+    """Lay the canvas out. scroll: the first row shown in each node. widths: of texts, in pixels, for the chips."""
+    scroll, widths = scroll or {}, widths or {}
+    width, height = max(size.width(), 420.0), max(size.height(), 360.0)
+    graph = project.graphs[layer]
+
+    chips: list[Chip] = []
+    x, y = 2.0 * GRID, float(CHIP_TOP)
+    for ident, s in graph.stances.items():
+        count = sum(len(graph.of(ident, k)) for k in ("gesture", "fidget", "transition"))
+        words = hole(project, layer, ident)
+        text = (
+            widths.get(s.name, 7.2 * len(s.name)) + widths.get(str(count), 16.0) + (widths.get(words, 7 * len(words)) + 8 if words else 0)
+        )
+        w = min(max(text + 44, CHIP_MIN), CHIP_MAX + (80 if words else 0))
+        if x + w > width - 56 and x > 2 * GRID:
+            x, y = 2.0 * GRID, y + CHIP_HEIGHT + GRID
+        chips.append(Chip(ident, QRectF(x, y, w, CHIP_HEIGHT), s.name, count, words))
+        x += w + GRID
+    chips.append(Chip(None, QRectF(x, y, CHIP_HEIGHT, CHIP_HEIGHT), "+"))
+
+    top = y + CHIP_HEIGHT + 2 * GRID
+    bottom = height - FOOT
+    usable = max(bottom - top, 200.0)
+    side = min(max(width * 0.285, 176.0), 300.0)
+    card_w = min(max(width - 2 * side - 2 * 56, 128.0), 240.0)
+    transitions = graph.of(stance, "transition") if stance else ()
+    wide = min(max(width * 0.56, 300.0), 520.0)
+    columns = 2 if wide > 400 else 1
+    lines = -(-len(transitions) // columns)
+    low_h = min(HEADER + max(lines, 1) * ROW + PAD + 2, usable * 0.36)
+    low_h = max(low_h, HEADER + 2 * ROW)
+    card_h = min(max(usable - low_h - 5 * GRID, 120.0), card_w * 1.15)
+    slack = max(0.0, usable - low_h - card_h)
+    card = QRectF((width - card_w) / 2, top + slack * 0.42, card_w, card_h)
+    low_top = min(card.bottom() + max(3.0 * GRID, slack * 0.3), bottom - low_h - GRID)
+
+    nodes: dict[Kind, Node] = {}
+    beside = max(low_top - 2 * GRID - top, 120.0) if wide > width - 2 * side - 6 * GRID else max(bottom - top - GRID, 120.0)
+    for kind, left in (("gesture", 2.0 * GRID), ("fidget", width - side - 2.0 * GRID)):
+        actions = graph.of(stance, kind) if stance else ()  # type: ignore[arg-type]
+        wanted = HEADER + max(len(actions), 2) * ROW + PAD + (ROW if len(actions) else 0)
+        h = min(wanted, beside)
+        nodes[kind] = _node(kind, QRectF(left, top, side, h), actions, scroll.get(kind, 0), 1)  # type: ignore[index,arg-type]
+    nodes["transition"] = _node(
+        "transition", QRectF((width - wide) / 2, low_top, wide, low_h), transitions, scroll.get("transition", 0), columns
+    )
+    loops = QRectF(card.left(), card.top() + card.height() * 0.58, card.width(), card.height() * 0.42)
+    return Layout(QSizeF(width, height), tuple(chips), card, loops, nodes, QRectF(2 * GRID, bottom, width - 4 * GRID, FOOT), stance)
+
+
+def _node(kind: Kind, rect: QRectF, actions: tuple[Action, ...], scroll: int, columns: int) -> Node:
+    header = QRectF(rect.left(), rect.top(), rect.width(), HEADER)
+    body = QRectF(rect.left(), rect.top() + HEADER, rect.width(), rect.height() - HEADER - PAD)
+    lines = max(1, int(body.height() // ROW))
+    total = -(-len(actions) // columns)
+    most = max(0, total - lines)
+    first = min(max(0, scroll), most)
+    column = (rect.width() - 2 * GRID - (columns - 1) * GRID) / columns
+    rows: list[Row] = []
+    for place in range(first * columns, min(len(actions), (first + lines) * columns)):
+        line, at = divmod(place - first * columns, columns)
+        area = QRectF(rect.left() + GRID + at * (column + GRID), body.top() + line * ROW, column, ROW)
+        bar = QRectF(area.right() - BAR - 6, area.center().y() - 1.5, BAR, 3)
+        rows.append(Row(actions[place], area, bar))
+    other = QRectF(rect.right() - 168, rect.top() + 7, 160 - 34, HEADER - 14) if kind == "transition" else QRectF()
+    return Node(kind, rect, header, body, tuple(rows), len(actions), first, most, other)
+
+
+def likelihood_at(row: Row, x: float) -> float:
+    """Return the likelihood a bar shows at a place: 0.1 at its left, 1 in its middle, 3 at its right, in steps of 0.1."""
+    part = min(1.0, max(0.0, (x - row.bar.left()) / row.bar.width()))
+    value = 0.1 + part * 1.8 if part <= 0.5 else 1.0 + (part - 0.5) * 4.0
+    return round(value, 1)
+
+
+def bar_part(likelihood: float) -> float:
+    """Return how much of a bar a likelihood fills, 0..1; inverse of `likelihood_at` up to its ends."""
+    part = (likelihood - 0.1) / 1.8 if likelihood <= 1 else 0.5 + (likelihood - 1.0) / 4.0
+    return min(1.0, max(0.0, part))
