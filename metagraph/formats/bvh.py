@@ -193,7 +193,7 @@ def _motion(path: Path, data: bytes, at: int, channels: int, notes: list[str]) -
     if rows == 0 or (promised <= 0 and rows > 1):
         cause = f"'Frames:' says {promised} but {rows} rows follow" if rows else "it has no frames"
         raise FileError(path, cause, where, "Export it with its motion.")
-    if rest and rows + 1 < promised or abs(rows - promised) > 1:
+    if (rest and rows + 1 < promised) or abs(rows - promised) > 1:
         line = _uneven_row(data, start, channels)
         cause = (
             f"this row does not hold {channels} numbers"

@@ -68,7 +68,8 @@ def parse(data: Any, at: int, end: int, out: Any) -> tuple[int, int]:
                 return count, start
             power = 0
             while at < end and 48 <= data[at] <= 57:
-                power = min(power * 10 + (np.int64(data[at]) - 48), 9999)
+                if power < 9999:
+                    power = power * 10 + (np.int64(data[at]) - 48)
                 at += 1
             shift += -power if down else power
         if at < end and not (data[at] == 32 or 9 <= data[at] <= 13):

@@ -314,6 +314,11 @@ def open_gltf(path: str | Path) -> Gltf:
         data = path.read_bytes()
     except OSError as error:
         raise FileError(path, f"it cannot be read ({error.strerror})", "", "Check that it exists and that you may read it.") from error
+    return parse_gltf(path, data)
+
+
+def parse_gltf(path: Path, data: bytes) -> Gltf:
+    """Open the bytes of a file; `path` names it in errors and is where its buffers lie. Raises FileError."""
     text: bytes | memoryview = data
     binary = None
     if data[:4] == b"glTF":

@@ -93,7 +93,8 @@ def build_rig(gltf: Gltf) -> Rig:
     lift, shift, turn = np.zeros((len(joints), 3, 3)), np.zeros((len(joints), 3)), rotation.identity((len(joints),))
     total = np.ones(len(joints))
     _, base_r, base_s = decompose(base[roots])
-    if (base_s[:, 0] < 0).any() or (rest_s < 0).any():
+    carrying = [int(p) for p in above if p >= 0]  # a mirrored tip changes nothing
+    if (base_s[:, 0] < 0).any() or (rest_s[carrying] < 0).any():
         notes.append("the file mirrors a part of its scene with a negative scale; that part may look turned")
     lift[roots], shift[roots], turn[roots] = base[roots, :3, :3], base[roots, :3, 3], base_r
     total[roots] = np.abs(np.cbrt(np.prod(base_s, -1))) * size[roots]

@@ -23,7 +23,7 @@ _TYPES = {1: "SCALAR", 2: "VEC2", 3: "VEC3", 4: "VEC4", 16: "MAT4"}
 _ARRAY_BUFFER, _ELEMENT_BUFFER = 34962, 34963
 
 
-class _Body:
+class Body:
     """The binary chunk as it grows, with its views and accessors; equal arrays are stored once."""
 
     def __init__(self) -> None:
@@ -80,13 +80,16 @@ def write_glb(
     character: Character | None = None,
     quantize: bool = True,
     tolerance: float | None = None,
+    pose_nodes: bool = False,
 ) -> None:
     """Write one skeleton, its skin and every clip as an animation.
 
     clips: all on the same skeleton, which is also the character's. quantize: store rotations as normalised 16-bit
     integers (error below 0.003 degrees). tolerance: how far keys may be thinned out: the largest change of a
     quaternion component or, in metres, of a translation; by default 5e-5 when quantizing, else 0. A rotation that
-    stays the same keeps one key. Raises FileError when the file cannot be written, ValueError for mixed skeletons.
+    stays the same keeps one key. pose_nodes: joints that stand still, alike in every clip, are posed by their nodes and
+    cost no key at all; the rest pose is then only in the inverse bind matrices, as in many exporters' files. Raises
+    FileError when the file cannot be written, ValueError for mixed skeletons.
     """
     path = Path(path)
     if not clips and character is None:
@@ -96,7 +99,7 @@ def write_glb(
         if clip.skeleton is not skeleton and clip.skeleton != skeleton:
             raise ValueError(f"clip '{clip.name}' is on another skeleton; retarget it first")
     tolerance = (5e-5 if quantize else 0.0) if tolerance is None else tolerance
-    body = _Body()
+    body = Body()
     document: dict[str, Any] = {"asset": {"version": "2.0", "generator": "Metagraph"}, "scene": 0}
     document["nodes"] = nodes = _joint_nodes(skeleton)
     roots = [i for i, p in enumerate(skeleton.parents) if p < 0]
@@ -123,24 +126,25 @@ def write_glb(
         morphs = character.morphs
         roots = [*roots, mesh_node]
     document["scenes"] = [{"nodes": roots}]
-    animations = [_animation(body, clip, quantize, tolerance, morphs, mesh_node) for clip in clips]
+    posed = _pose_still_nodes(nodes, clips, tolerance) if pose_nodes and clips else frozenset()
+    animations = [_animation(body, clip, quantize, tolerance, morphs, mesh_node, posed) for clip in clips]
     if animations:
         document["animations"] = animations
+    from metagraph.formats.store import write_atomically  # which reads clips, hence not at the top
+
+    write_atomically(path, glb_bytes(document, body))
+
+
+def glb_bytes(document: dict[str, Any], body: Body) -> bytes:
+    """Return the file: header, JSON and binary chunk. Adds the accessors, views and buffer of `body` to `document`."""
     document["accessors"], document["bufferViews"] = body.accessors, body.views
     document["buffers"] = [{"byteLength": len(body.data)}]
     head = msgspec.json.encode(document)
     head += b" " * (-len(head) % 4)
     body.data += b"\0" * (-len(body.data) % 4)
     size = 12 + 8 + len(head) + 8 + len(body.data)
-    parts = (
-        struct.pack("<4sIIII", b"glTF", 2, size, len(head), 0x4E4F534A),
-        head,
-        struct.pack("<II", len(body.data), 0x004E4942),
-        body.data,
-    )
-    from metagraph.formats.store import write_atomically  # which reads clips, hence not at the top
-
-    write_atomically(path, b"".join(parts))
+    start = struct.pack("<4sIIII", b"glTF", 2, size, len(head), 0x4E4F534A)
+    return b"".join((start, head, struct.pack("<II", len(body.data), 0x004E4942), body.data))
 
 
 def _joint_nodes(skeleton: Skeleton) -> list[dict[str, Any]]:
@@ -157,7 +161,7 @@ def _joint_nodes(skeleton: Skeleton) -> list[dict[str, Any]]:
     return out
 
 
-def _add_character(document: dict[str, Any], body: _Body, character: Character) -> int:
+def _add_character(document: dict[str, Any], body: Body, character: Character) -> int:
     """Add mesh, materials and images; return the node that carries the mesh."""
     weights = np.maximum(np.asarray(character.weights, np.float32), 0)
     total = weights.sum(1, keepdims=True)
@@ -218,7 +222,19 @@ def _add_character(document: dict[str, Any], body: _Body, character: Character) 
     return len(document["nodes"]) - 1
 
 
-def _animation(body: _Body, clip: Clip, quantize: bool, tolerance: float, morphs: tuple[str, ...], mesh_node: int | None) -> dict[str, Any]:
+def _pose_still_nodes(nodes: list[dict[str, Any]], clips: Sequence[Clip], tolerance: float) -> frozenset[int]:
+    """Turn the nodes of joints whose rotation no clip changes, and return those joints."""
+    first = clips[0].rotations[0].astype(np.float64)
+    away = np.max([np.abs(clip.rotations - first).max((0, 2)) for clip in clips], axis=0)
+    still = np.flatnonzero(away <= max(tolerance, 1e-7))
+    for joint in still.tolist():
+        nodes[joint]["rotation"] = np.round(rotation.normalize(first[joint]), 7).tolist()
+    return frozenset(still.tolist())
+
+
+def _animation(
+    body: Body, clip: Clip, quantize: bool, tolerance: float, morphs: tuple[str, ...], mesh_node: int | None, posed: frozenset[int]
+) -> dict[str, Any]:
     times = np.arange(clip.frames) / clip.fps
     samplers: list[dict[str, Any]] = []
     channels: list[dict[str, Any]] = []
@@ -232,6 +248,8 @@ def _animation(body: _Body, clip: Clip, quantize: bool, tolerance: float, morphs
 
     rotations = clip.rotations.astype(np.float64)
     for joint, kept in enumerate(_keys(rotations, tolerance, True)):
+        if joint in posed:
+            continue
         values = rotations[kept, joint]
         if quantize:
             values = np.round(rotation.normalize(values) * 32767)

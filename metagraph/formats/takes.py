@@ -26,7 +26,7 @@ def take_name(raw: str, stem: str) -> str:
     parts = [part for part in parts if not re.fullmatch(r"(?i)armature(\.\d+)?|base ?layer|layer ?\d*|root|rig", part)]
     if not parts or any(_GENERIC.fullmatch(part) for part in parts):
         return stem
-    return " ".join(parts)
+    return " ".join(dict.fromkeys(parts))
 
 
 def frame_rate(keys: Sequence[Array], wanted: float | None = None) -> float:

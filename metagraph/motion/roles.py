@@ -39,20 +39,25 @@ REQUIRED: tuple[str, ...] = (
     *(f"{s}_{r}" for s in ("left", "right") for r in ("upper_arm", "lower_arm", "hand", "upper_leg", "lower_leg", "foot")),
 )
 
+
+def _words(text: str) -> frozenset[str]:
+    return frozenset(text.split())
+
+
 _LEFT, _RIGHT = {"left", "l", "lft", "lf"}, {"right", "r", "rgt", "rt"}
 # Joints that serve the animator or the skin, not the body.
-_HELPERS = frozenset(
+_HELPERS = _words(
     "ik fk pole target ctrl control controller twist roll helper end nub effector goal slot aux adjust adj dummy socket prop"
-    " weapon mch org tweak mid handle locator footsteps offset driver jiggle volume corrective bulge muscle".split()
+    " weapon mch org tweak mid handle locator footsteps offset driver jiggle volume corrective bulge muscle"
 )
 _FOUR_LEGGED = {"front", "hind", "rear", "back"}
-_FACE = frozenset(
+_FACE = _words(
     "eye eyes eyeball eyebrow brow lid eyelid lids jaw mouth lip lips tongue cheek nose nostril chin teeth tooth temple zygomatic"
-    " squint sneer crease face facial corner gum forehead".split()
+    " squint sneer crease face facial corner gum forehead"
 )
-_ARM = frozenset(
+_ARM = _words(
     "hand wrist elbow arm forearm upperarm lowerarm shoulder clav clavicle collar thumb index middle ring pinky little"
-    " finger fingers fng palm".split()
+    " finger fingers fng palm"
 )
 
 
@@ -400,7 +405,7 @@ def body_parts(skeleton: Skeleton, roles: Mapping[str, int] | None = None) -> tu
     for joint in [head, *reader.above(head)] if head is not None else ():
         if joint not in known:
             neck = roles.get("neck")
-            high = joint == head or joint == neck or (neck is not None and neck in reader.above(joint))
+            high = joint in (head, neck) or (neck is not None and neck in reader.above(joint))
             known[joint] = "head" if high else "spine"
     for role, joint in roles.items():
         part = {"spine": "spine", "chest": "spine", "upper_chest": "spine", "neck": "head", "head": "head"}.get(role)
