@@ -13,7 +13,9 @@ S = "hands_clasped"
 APART = Hand(at=(0.130, 1.035, 0.245), turn=-14, bend=6, shape="relaxed", elbow=(0.6, -0.6, -0.4))
 CLOSE = APART.moved(-0.025, -0.012, -0.015, shape="cupped")
 CLASPED = (("Right", "LeftHand"),)  # one hand carries the other
-BACK = go(0.46, lf=CLOSE.moved(0.0, -0.01, -0.01), rt=CLOSE.moved(0.0, 0.012, 0.012), spine=(1, 0, 0), head=(-0.5, 0, 0), flow=0.2, overshoot=0.0)
+BACK = go(
+    0.46, lf=CLOSE.moved(0.0, -0.01, -0.01), rt=CLOSE.moved(0.0, 0.012, 0.012), spine=(1, 0, 0), head=(-0.5, 0, 0), flow=0.2, overshoot=0.0
+)
 
 
 def both(up: float, forwards: float) -> dict[str, Hand]:
@@ -62,7 +64,15 @@ CLIPS = (
         "open_palms",
         "bt",
         go(0.32, lf=APART, rt=APART.moved(0, 0.01), flow=0.18, overshoot=0.0),
-        go(0.36, hold=0.42, lf=OPEN_PALM.moved(-0.04, -0.03), rt=OPEN_PALM.moved(-0.03, -0.02), head=(2, 1, 4), spine=(0, 0, 0), overshoot=0.05),
+        go(
+            0.36,
+            hold=0.42,
+            lf=OPEN_PALM.moved(-0.04, -0.03),
+            rt=OPEN_PALM.moved(-0.03, -0.02),
+            head=(2, 1, 4),
+            spine=(0, 0, 0),
+            overshoot=0.05,
+        ),
         BACK,
         home(0.44),
         tags="explain open",
@@ -86,8 +96,18 @@ CLIPS = (
         "gesture",
         "shrug",
         "bt",
-        go(0.30, lf=APART.moved(0.03, 0.0, 0.0, turn=24), rt=APART.moved(0.03, 0.01, 0.0, turn=24), head=(2, 0, 0), flow=0.2, overshoot=0.0),
-        go(0.36, hold=0.40, lf=SHRUGGED.moved(-0.06, -0.04, 0.01), rt=SHRUGGED.moved(-0.05, -0.03, 0.01), head=(-2, 2, -7), spine=(-2, 0, 0), overshoot=0.05),
+        go(
+            0.30, lf=APART.moved(0.03, 0.0, 0.0, turn=24), rt=APART.moved(0.03, 0.01, 0.0, turn=24), head=(2, 0, 0), flow=0.2, overshoot=0.0
+        ),
+        go(
+            0.36,
+            hold=0.40,
+            lf=SHRUGGED.moved(-0.06, -0.04, 0.01),
+            rt=SHRUGGED.moved(-0.05, -0.03, 0.01),
+            head=(-2, 2, -7),
+            spine=(-2, 0, 0),
+            overshoot=0.05,
+        ),
         BACK,
         home(0.46),
         tags="unsure",

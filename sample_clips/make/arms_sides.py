@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from typing import Any
 
+from sample_clips.make.phrases import arms_clip, beat
 from sample_clips.make.places import (
     BEAT,
     BIG_BEAT,
@@ -33,11 +34,11 @@ from sample_clips.make.places import (
     WEIGHED,
     WIDE_APART,
 )
-from sample_clips.make.phrases import arms_clip, beat
 from sample_clips.make.poses import Hand
 from sample_clips.make.recipe import HOME, Recipe, go, home
 from sample_clips.make.stances import SIDE
 from sample_clips.make.tracks import Step
+
 
 def gesture(action: str, limb: str, *steps: Step, tags: str = "", **more: Any) -> Recipe:
     return arms_clip("hands_at_sides", "gesture", action, limb, *steps, tags=tags, **more)
@@ -65,7 +66,14 @@ GESTURES = (
     gesture(
         "shrug",
         "bt",
-        go(0.30, lf=READY.moved(0.0, -0.06, -0.03, turn=24), rt=READY.moved(0.0, -0.05, -0.03, turn=26), head=(3, 0, 0), flow=0.3, overshoot=0.0),
+        go(
+            0.30,
+            lf=READY.moved(0.0, -0.06, -0.03, turn=24),
+            rt=READY.moved(0.0, -0.05, -0.03, turn=26),
+            head=(3, 0, 0),
+            flow=0.3,
+            overshoot=0.0,
+        ),
         go(0.36, hold=0.46, lf=SHRUGGED.moved(0.0, -0.02), rt=SHRUGGED, spine=(-2, 0, 1.0), head=(-2, 2, 8), overshoot=0.05),
         home(0.8, peak=0.36),
         tags="unsure question",
@@ -101,7 +109,14 @@ GESTURES = (
         go(0.48, hold=0.02, rt=COUNTING, head=(-1, 0, 1), overshoot=0.02),
         go(0.20, hold=0.22, rt=COUNTING.moved(0.01, -0.025, 0.03, shape="count_one", bend=6), head=(4, 0, 0), peak=0.52, overshoot=0.08),
         go(0.12, rt=COUNTING.moved(0.012, 0.0, 0.01, shape="count_one", turn=4), head=(1, 0, 0), flow=0.05, overshoot=0.0),
-        go(0.18, hold=0.20, rt=COUNTING.moved(0.025, -0.025, 0.035, shape="count_two", bend=6, turn=6), head=(4, -1, 0), peak=0.52, overshoot=0.08),
+        go(
+            0.18,
+            hold=0.20,
+            rt=COUNTING.moved(0.025, -0.025, 0.035, shape="count_two", bend=6, turn=6),
+            head=(4, -1, 0),
+            peak=0.52,
+            overshoot=0.08,
+        ),
         go(0.12, rt=COUNTING.moved(0.03, 0.0, 0.015, shape="count_two", turn=6), head=(1, 0, -1), flow=0.05, overshoot=0.0),
         go(0.18, hold=0.32, rt=COUNTING.moved(0.045, -0.03, 0.045, shape="count_three", bend=8, turn=9), head=(5, -2, 0), overshoot=0.08),
         home(0.76),
@@ -148,7 +163,15 @@ GESTURES = (
     gesture(
         "refuse",
         "bt",
-        go(0.46, lf=SWEEP_IN.moved(0.0, 0.0, -0.012), rt=SWEEP_IN.moved(0.0, 0.055, 0.055), head=(4, 0, 0), spine=(1, 0, 0), flow=0.08, overshoot=0.0),
+        go(
+            0.46,
+            lf=SWEEP_IN.moved(0.0, 0.0, -0.012),
+            rt=SWEEP_IN.moved(0.0, 0.055, 0.055),
+            head=(4, 0, 0),
+            spine=(1, 0, 0),
+            flow=0.08,
+            overshoot=0.0,
+        ),
         go(0.36, hold=0.36, lf=SWEEP_OUT, rt=SWEEP_OUT.moved(0.0, 0.02), head=(0, -5, 0), spine=(-2, 0, 0), peak=0.42, overshoot=0.06),
         home(0.78),
         tags="negative refuse",
@@ -185,9 +208,21 @@ GESTURES = (
         "air_quotes",
         "bt",
         go(0.62, lf=QUOTING, rt=QUOTING.moved(0.0, 0.008), head=(-1, 0, 4), overshoot=0.02),
-        go(0.15, lf=QUOTING.moved(up=-0.018, shape="quotes_curled"), rt=QUOTING.moved(up=-0.012, shape="quotes_curled"), head=(2, 0, 5), overshoot=0.0),
+        go(
+            0.15,
+            lf=QUOTING.moved(up=-0.018, shape="quotes_curled"),
+            rt=QUOTING.moved(up=-0.012, shape="quotes_curled"),
+            head=(2, 0, 5),
+            overshoot=0.0,
+        ),
         go(0.15, lf=QUOTING, rt=QUOTING.moved(0.0, 0.008), overshoot=0.0),
-        go(0.15, lf=QUOTING.moved(up=-0.018, shape="quotes_curled"), rt=QUOTING.moved(up=-0.012, shape="quotes_curled"), head=(3, 0, 6), overshoot=0.0),
+        go(
+            0.15,
+            lf=QUOTING.moved(up=-0.018, shape="quotes_curled"),
+            rt=QUOTING.moved(up=-0.012, shape="quotes_curled"),
+            head=(3, 0, 6),
+            overshoot=0.0,
+        ),
         go(0.16, hold=0.12, lf=QUOTING, rt=QUOTING.moved(0.0, 0.008), overshoot=0.03),
         home(0.85),
         tags="irony",
@@ -197,7 +232,15 @@ GESTURES = (
         "on_the_other_hand",
         "bt",
         go(0.46, hold=0.22, rt=WEIGHED, head=(2, -9, 3), spine=(0, -2, 1.5), overshoot=0.05),
-        go(0.44, hold=0.30, lf=WEIGHED.moved(0.0, 0.01), rt=WEIGHED.moved(-0.02, -0.06, 0.0), head=(2, 9, -3), spine=(0, 2, -1.5), overshoot=0.05),
+        go(
+            0.44,
+            hold=0.30,
+            lf=WEIGHED.moved(0.0, 0.01),
+            rt=WEIGHED.moved(-0.02, -0.06, 0.0),
+            head=(2, 9, -3),
+            spine=(0, 2, -1.5),
+            overshoot=0.05,
+        ),
         home(0.80),
         tags="contrast explain",
     ),
@@ -244,10 +287,28 @@ FIDGETS = (
     fidget(
         "adjust_sleeve",
         "bt",
-        go(0.56, lf=Hand(at=(0.075, 1.085, 0.265), turn=-30, bend=2, elbow=(0.8, -0.6, -0.2)), rt=READY.moved(-0.05, 0.0, 0.03), head=(8, 5, 0), flow=0.12),
-        go(0.36, hold=0.10, rt=Hand(at=(0.015, 1.155, 0.325), turn=-58, bend=26, shape="cupped", elbow=(0.8, -0.6, 0.0)), head=(12, 6, -2), overshoot=0.02),
+        go(
+            0.56,
+            lf=Hand(at=(0.075, 1.085, 0.265), turn=-30, bend=2, elbow=(0.8, -0.6, -0.2)),
+            rt=READY.moved(-0.05, 0.0, 0.03),
+            head=(8, 5, 0),
+            flow=0.12,
+        ),
+        go(
+            0.36,
+            hold=0.10,
+            rt=Hand(at=(0.015, 1.155, 0.325), turn=-58, bend=26, shape="cupped", elbow=(0.8, -0.6, 0.0)),
+            head=(12, 6, -2),
+            overshoot=0.02,
+        ),
         go(0.22, hold=0.08, rt=Hand(at=(0.005, 1.158, 0.325), turn=-56, bend=30, shape="pinch", elbow=(0.8, -0.6, 0.0)), overshoot=0.0),
-        go(0.30, hold=0.14, rt=Hand(at=(-0.035, 1.170, 0.305), turn=-54, bend=34, shape="pinch", elbow=(0.8, -0.6, 0.0)), spine=(1, 1, 0), overshoot=0.03),
+        go(
+            0.30,
+            hold=0.14,
+            rt=Hand(at=(-0.035, 1.170, 0.305), turn=-54, bend=34, shape="pinch", elbow=(0.8, -0.6, 0.0)),
+            spine=(1, 1, 0),
+            overshoot=0.03,
+        ),
         go(0.24, rt=READY.moved(-0.02, 0.0, 0.03, turn=-20), lf=HOME, head=(4, 2, 0), spine=(0, 0, 0), flow=0.12, overshoot=0.0),
         home(0.7),
     ),
@@ -255,10 +316,41 @@ FIDGETS = (
         "touch_neck",
         "rt",
         go(0.46, rt=Hand(at=(0.30, 1.34, 0.15), turn=-10, bend=4, elbow=(0.7, -0.6, 0.1)), head=(3, 2, 0), flow=0.26, overshoot=0.0),
-        go(0.44, hold=0.06, rt=Hand(at=(0.122, 1.415, 0.105), fingers=(-0.38, 0.60, -0.74), palm=(-0.85, 0.1, 0.50), shape="cupped", elbow=(0.75, -0.45, 0.5)), head=(7, 6, -5), spine=(1, 1, 0), overshoot=0.0),
-        go(0.26, rt=Hand(at=(0.124, 1.392, 0.112), fingers=(-0.38, 0.47, -0.74), palm=(-0.85, 0.1, 0.50), shape="cupped", elbow=(0.75, -0.45, 0.5)), head=(8, 7, -7), overshoot=0.0),
-        go(0.26, hold=0.08, rt=Hand(at=(0.122, 1.410, 0.107), fingers=(-0.38, 0.57, -0.74), palm=(-0.85, 0.1, 0.50), shape="relaxed", elbow=(0.75, -0.45, 0.5)), head=(6, 5, -5), overshoot=0.0),
-        go(0.40, rt=Hand(at=(0.33, 1.30, 0.15), turn=-6, bend=8, elbow=(0.7, -0.6, 0.1)), head=(2, 1, 0), spine=(0, 0, 0), flow=0.22, overshoot=0.0),
+        go(
+            0.44,
+            hold=0.06,
+            rt=Hand(
+                at=(0.122, 1.415, 0.105), fingers=(-0.38, 0.60, -0.74), palm=(-0.85, 0.1, 0.50), shape="cupped", elbow=(0.75, -0.45, 0.5)
+            ),
+            head=(7, 6, -5),
+            spine=(1, 1, 0),
+            overshoot=0.0,
+        ),
+        go(
+            0.26,
+            rt=Hand(
+                at=(0.124, 1.392, 0.112), fingers=(-0.38, 0.47, -0.74), palm=(-0.85, 0.1, 0.50), shape="cupped", elbow=(0.75, -0.45, 0.5)
+            ),
+            head=(8, 7, -7),
+            overshoot=0.0,
+        ),
+        go(
+            0.26,
+            hold=0.08,
+            rt=Hand(
+                at=(0.122, 1.410, 0.107), fingers=(-0.38, 0.57, -0.74), palm=(-0.85, 0.1, 0.50), shape="relaxed", elbow=(0.75, -0.45, 0.5)
+            ),
+            head=(6, 5, -5),
+            overshoot=0.0,
+        ),
+        go(
+            0.40,
+            rt=Hand(at=(0.33, 1.30, 0.15), turn=-6, bend=8, elbow=(0.7, -0.6, 0.1)),
+            head=(2, 1, 0),
+            spine=(0, 0, 0),
+            flow=0.22,
+            overshoot=0.0,
+        ),
         home(0.66),
         tags="unsure",
         drag=0.6,

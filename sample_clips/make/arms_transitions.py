@@ -51,11 +51,11 @@ def way(leaves: str, arrives: str) -> Recipe:
         steps.append(go(across * 1.15, lf=last[0], rt=last[1], spine=spine, head=head, overshoot=0.0, flow=0.2, peak=0.46))
     else:
         if leaves == "arms_crossed":  # the arm on top goes first
-            steps.append(go(out * 0.7, rt=first[1], overshoot=0.0, flow=0.3))
+            steps.append(go(out * 0.7, rt=first[1], overshoot=0.0, flow=0.5))
         if leaves == "hand_to_chin" and arrives == "arms_crossed":
             steps.append(go(out, rt=first[1], spine=spine, head=head, overshoot=0.0, flow=0.3))
         else:
-            steps.append(go(out, lf=first[0], rt=first[1], spine=spine, head=head, overshoot=0.0, flow=0.34))
+            steps.append(go(out, lf=first[0], rt=first[1], spine=spine, head=head, overshoot=0.0, flow=0.4))
         if arrives != "hands_at_sides":
             steps.append(go(across, lf=last[0], rt=last[1], overshoot=0.0, flow=0.24))
     if arrives in ("arms_crossed", "hand_to_chin"):  # and the arm beneath arrives first

@@ -54,7 +54,7 @@ BOTH = (
         "gesture",
         "bow",
         go(0.30, **off("weight_both", (0, 0.002, 0.004), (-1, 0, 0), (-1.5, 0, 0), (-1, 0, 0)), overshoot=0.0, flow=0.06),
-        go(0.52, hold=0.32, **off("weight_both", (0, -0.008, -0.045), (11, 0, 0), (15, 0, 0), (4, 0, 0)), overshoot=0.02),
+        go(0.52, hold=0.32, **off("weight_both", (0, -0.008, -0.045), (9, 0, 0), (13, 0, 0), (5, 0, 0)), overshoot=0.02),
         home(0.95),
         tags="greeting polite",
         likelihood=0.4,
@@ -76,7 +76,15 @@ BOTH = (
         go(
             0.44,
             hold=0.42,
-            **off("weight_both", (0, 0.0075, 0.012), (-2, 0, 0), (-5, 0, 0), (1, 0, 0), left_foot=replace(PLAIN, heel=3.0), right_foot=replace(PLAIN, heel=2.4)),
+            **off(
+                "weight_both",
+                (0, 0.0075, 0.012),
+                (-2, 0, 0),
+                (-5, 0, 0),
+                (1, 0, 0),
+                left_foot=replace(PLAIN, heel=3.0),
+                right_foot=replace(PLAIN, heel=2.4),
+            ),
             overshoot=0.04,
         ),
         home(0.85),
@@ -115,7 +123,13 @@ BOTH = (
                     overshoot=0.0,
                     flow=0.02,
                 ),
-                go(0.17, **off("weight_both", (0.022, -0.003, 0), (0, 1, 1.5), (0, 0, -2), (0, 0, 0.8)), right_foot=PLAIN, overshoot=0.0, flow=0.02),
+                go(
+                    0.17,
+                    **off("weight_both", (0.022, -0.003, 0), (0, 1, 1.5), (0, 0, -2), (0, 0, 0.8)),
+                    right_foot=PLAIN,
+                    overshoot=0.0,
+                    flow=0.02,
+                ),
             )
         ),
         home(0.55),
@@ -186,9 +200,27 @@ LEANING = (
         "weight_left",
         "fidget",
         "heel_lift",
-        go(0.34, **off("weight_left", (0.008, -0.003, 0), (0, 2, 0), (0, -1, -0.5), (0, 0, 0)), right_foot=replace(LEFT.right_foot, heel=16), overshoot=0.0, flow=0.02),
-        go(0.36, right_foot=replace(LEFT.right_foot, heel=20, turn=25), **off("weight_left", (0.009, -0.003, 0), (0, 0, 0), (0, 0, -0.5), NONE), overshoot=0.0, flow=0.02),
-        go(0.34, right_foot=replace(LEFT.right_foot, heel=14, turn=15), **off("weight_left", (0.008, -0.003, 0), (0, 2, 0), (0, -1, -0.5), NONE), overshoot=0.0, flow=0.04),
+        go(
+            0.34,
+            **off("weight_left", (0.008, -0.003, 0), (0, 2, 0), (0, -1, -0.5), (0, 0, 0)),
+            right_foot=replace(LEFT.right_foot, heel=16),
+            overshoot=0.0,
+            flow=0.02,
+        ),
+        go(
+            0.36,
+            right_foot=replace(LEFT.right_foot, heel=20, turn=25),
+            **off("weight_left", (0.009, -0.003, 0), (0, 0, 0), (0, 0, -0.5), NONE),
+            overshoot=0.0,
+            flow=0.02,
+        ),
+        go(
+            0.34,
+            right_foot=replace(LEFT.right_foot, heel=14, turn=15),
+            **off("weight_left", (0.008, -0.003, 0), (0, 2, 0), (0, -1, -0.5), NONE),
+            overshoot=0.0,
+            flow=0.04,
+        ),
         home(0.6),
         likelihood=0.6,
     ),
@@ -198,7 +230,13 @@ LEANING = (
         "gesture",
         "dip",
         go(0.28, **off("weight_right", (-0.002, 0.003, 0), (-0.5, 0, 0.5), (-2, 0, 0), (-1, 0, 0)), overshoot=0.0, flow=0.06),
-        go(0.27, hold=0.34, **off("weight_right", (-0.002, -0.013, 0.006), (2, 2, -0.5), (5.5, 2, 0), (0, -2, 0)), peak=0.52, overshoot=0.07),
+        go(
+            0.27,
+            hold=0.34,
+            **off("weight_right", (-0.002, -0.013, 0.006), (2, 2, -0.5), (5.5, 2, 0), (0, -2, 0)),
+            peak=0.52,
+            overshoot=0.07,
+        ),
         home(0.8),
         tags="emphasis",
         likelihood=1.2,
@@ -227,7 +265,13 @@ LEANING = (
             step
             for heel in (13, 11, 13)
             for step in (
-                go(0.18, left_foot=replace(RIGHT.left_foot, heel=heel), **off("weight_right", (-0.002, 0, 0), (0, -1.2, 0), (0, 0.8, 0), NONE), overshoot=0.0, flow=0.02),
+                go(
+                    0.18,
+                    left_foot=replace(RIGHT.left_foot, heel=heel),
+                    **off("weight_right", (-0.002, 0, 0), (0, -1.2, 0), (0, 0.8, 0), NONE),
+                    overshoot=0.0,
+                    flow=0.02,
+                ),
                 go(0.17, hold=0.06, left_foot=RIGHT.left_foot, **off("weight_right"), overshoot=0.0),
             )
         ),
@@ -271,7 +315,7 @@ def _feet_back(posture: Posture) -> list[Step]:
         foot = getattr(posture, side)
         if foot != PLAIN:
             up = {side: lifted(foot, PLAIN)}
-            return [go(0.17, **up, overshoot=0.0, flow=0.02), go(0.18, **{side: PLAIN}, overshoot=0.0, flow=0.06)]
+            return [go(0.16, **up, overshoot=0.0, flow=0.1), go(0.17, **{side: PLAIN}, overshoot=0.0, flow=0.4)]
     return []
 
 
@@ -281,7 +325,7 @@ def _feet_out(posture: Posture) -> list[Step]:
         foot = getattr(posture, side)
         if foot != PLAIN:
             up = {side: lifted(PLAIN, foot)}
-            return [go(0.17, **up, overshoot=0.0, flow=0.02), go(0.18, **{side: foot}, overshoot=0.0)]
+            return [go(0.16, **up, overshoot=0.0, flow=0.1), go(0.17, **{side: foot}, overshoot=0.0, flow=0.5)]
     return []
 
 
@@ -292,12 +336,14 @@ def way(leaves: str, arrives: str) -> Recipe:
     middle = tuple((np.array(a.head) + b.head) / 2 + (2.5 if away > 0.05 else 0.0, 0, 0))
     low = (np.array(a.shift) + b.shift) / 2 + (0, -0.006, 0)
     steps = _feet_back(a)
-    seconds = 0.40 + 2.0 * away
+    seconds = 0.52 + 1.6 * away
     across = {k: tuple((np.array(getattr(a, k)) + getattr(b, k)) / 2) for k in ("hips", "spine")}
     steps.append(go(seconds * 0.6, shift=tuple(low), head=middle, **across, overshoot=0.0, flow=seconds * 0.25))
-    steps.append(go(seconds * 0.7, shift=b.shift, hips=b.hips, spine=b.spine, head=b.head, overshoot=0.04, flow=0.12 if _feet_out(b) else 0.0))
+    steps.append(
+        go(seconds * 0.7, shift=b.shift, hips=b.hips, spine=b.spine, head=b.head, overshoot=0.04, flow=0.35 if _feet_out(b) else 0.0)
+    )
     steps += _feet_out(b)
-    steps.append(home(0.3, overshoot=0.0))
+    steps.append(home(0.1, overshoot=0.0))
     return Recipe(f"body_{leaves}__to__{arrives}", "body", "transition", leaves, arrives, tuple(steps))
 
 

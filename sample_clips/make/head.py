@@ -11,7 +11,9 @@ from sample_clips.make.stances import HEAD
 from sample_clips.make.tracks import Step
 
 
-def head_clip(stance: str, kind: str, action: str, *steps: Step, number: int = 1, limb: str = "both", tags: str = "", **more: Any) -> Recipe:
+def head_clip(
+    stance: str, kind: str, action: str, *steps: Step, number: int = 1, limb: str = "both", tags: str = "", **more: Any
+) -> Recipe:
     """Return a recipe named `stance__action_01`."""
     return Recipe(f"{stance}__{action}_{number:02d}", "head", kind, stance, stance, steps, limb, tuple(tags.split()), **more)
 
@@ -24,12 +26,16 @@ def to(stance: str, seconds: float, pitch: float = 0.0, turn: float = 0.0, lean:
     return go(seconds, head=head, spine=tuple(np.array(posture.spine) + spine), **more)
 
 
-def nod(stance: str, depths: tuple[float, ...], quick: float = 0.19, rise: float = 2.5, turn: float = 0.0, lean: float = 0.0, **more: Any) -> list[Step]:
+def nod(
+    stance: str, depths: tuple[float, ...], quick: float = 0.19, rise: float = 2.5, turn: float = 0.0, lean: float = 0.0, **more: Any
+) -> list[Step]:
     """Return a nod's steps: a small lift, then down and up once for each depth (degrees), each less quick than the last."""
     steps = [to(stance, 0.20, -rise, 0.3 * turn, 0.3 * lean, overshoot=0.0, flow=0.03, brows=more.get("brows", 0.0))]
     for i, depth in enumerate(depths):
         slow = 1 + 0.14 * i
-        steps.append(to(stance, quick * slow, depth, turn, lean, hold=more.get("hold", 0.0), overshoot=0.04, peak=0.46, lids=more.get("lids", 6.0)))
+        steps.append(
+            to(stance, quick * slow, depth, turn, lean, hold=more.get("hold", 0.0), overshoot=0.04, peak=0.46, lids=more.get("lids", 6.0))
+        )
         if i + 1 < len(depths):
             steps.append(to(stance, quick * slow * 1.1, -0.25 * depth, turn * 0.6, lean * 0.6, overshoot=0.0, flow=0.02, lids=1.0))
     return [*steps, to(stance, quick * 1.5, -0.16 * depths[-1], 0.2 * turn, 0.3 * lean, overshoot=0.0, flow=0.10, lids=0.0), home(0.42)]
@@ -40,7 +46,18 @@ def shake(stance: str, sizes: tuple[float, ...], quick: float = 0.20, pitch: flo
     steps = []
     for i, size in enumerate(sizes):
         first = 0.75 if i == 0 else 1.0
-        steps.append(to(stance, quick * (1.2 - 0.4 * (1 - first)) * (1 + 0.06 * i), pitch, size, lean - 0.12 * size, overshoot=0.0, flow=0.015, lids=3.0))
+        steps.append(
+            to(
+                stance,
+                quick * (1.2 - 0.4 * (1 - first)) * (1 + 0.06 * i),
+                pitch,
+                size,
+                lean - 0.12 * size,
+                overshoot=0.0,
+                flow=0.015,
+                lids=3.0,
+            )
+        )
     return [*steps, home(0.46, overshoot=0.04)]
 
 
@@ -111,8 +128,18 @@ STRAIGHT = (
         tags="stretch",
         likelihood=0.4,
     ),
-    head_clip(S, "fidget", "glance", to(S, 0.26, 2.0, 15.0, -2.0, hold=0.34, lids=2.0), to(S, 0.24, 2.5, 7, 0, overshoot=0.0, flow=0.1), home(0.40), limb="left"),
-    head_clip(S, "fidget", "settle", to(S, 0.42, 3.5, -3.0, 3.0, overshoot=0.0, flow=0.1), to(S, 0.44, -1.5, 1.5, -2.0, hold=0.1), home(0.55)),
+    head_clip(
+        S,
+        "fidget",
+        "glance",
+        to(S, 0.26, 2.0, 15.0, -2.0, hold=0.34, lids=2.0),
+        to(S, 0.24, 2.5, 7, 0, overshoot=0.0, flow=0.1),
+        home(0.40),
+        limb="left",
+    ),
+    head_clip(
+        S, "fidget", "settle", to(S, 0.42, 3.5, -3.0, 3.0, overshoot=0.0, flow=0.1), to(S, 0.44, -1.5, 1.5, -2.0, hold=0.1), home(0.55)
+    ),
 )
 
 
@@ -121,7 +148,9 @@ def tilted(stance: str, sign: int) -> tuple[Recipe, ...]:
     t = stance
     return (
         Recipe(f"{t}__stance", "head", "stance", t, t, seconds=5.6 if sign > 0 else 6.2),
-        head_clip(t, "gesture", "nod_single", *nod(t, (8.5,), 0.21, 2.0, turn=2.0 * sign, lean=-2.0 * sign), tags="positive agree", likelihood=1.3),
+        head_clip(
+            t, "gesture", "nod_single", *nod(t, (8.5,), 0.21, 2.0, turn=2.0 * sign, lean=-2.0 * sign), tags="positive agree", likelihood=1.3
+        ),
         head_clip(t, "gesture", "nod_double", *nod(t, (8.0, 5.5), 0.18, 1.5, lean=-1.5 * sign), tags="positive listen", likelihood=1.2),
         head_clip(t, "gesture", "shake_small", *shake(t, (6.5 * sign, -8.0 * sign, 5.0 * sign), 0.19, 1.5), tags="negative doubt"),
         head_clip(
@@ -142,7 +171,14 @@ def tilted(stance: str, sign: int) -> tuple[Recipe, ...]:
             home(0.42),
             limb="left" if sign > 0 else "right",
         ),
-        head_clip(t, "fidget", "settle", to(t, 0.42, 2.5, 2.0 * sign, -4.5 * sign, overshoot=0.0, flow=0.1), to(t, 0.42, -1.0, 0.0, 1.5 * sign), home(0.5)),
+        head_clip(
+            t,
+            "fidget",
+            "settle",
+            to(t, 0.42, 2.5, 2.0 * sign, -4.5 * sign, overshoot=0.0, flow=0.1),
+            to(t, 0.42, -1.0, 0.0, 1.5 * sign),
+            home(0.5),
+        ),
     )
 
 

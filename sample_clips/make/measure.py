@@ -27,7 +27,6 @@ TORSO = (
 )
 
 
-
 @dataclass(frozen=True)
 class Measures:
     """hand_speed: m/s, peak of either wrist. turn_speed, turn_jerkiness: deg/s peak of any joint, and the largest change of it

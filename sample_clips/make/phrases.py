@@ -21,7 +21,7 @@ def arms_clip(stance: str, kind: str, action: str, limb: str, *steps: Step, tags
 def beat(limb: str, ready: Hand, low: Hand, times: int = 1, quick: float = 0.24) -> list[Step]:
     """Raise the hand (or both), strike `times` times, hold. The first strike is the strongest."""
     which = {"lf": ("left",), "rt": ("right",), "bt": ("left", "right")}[limb]
-    up = {side: ready for side in which}
+    up = dict.fromkeys(which, ready)
     steps = [go(0.46, **up, head=(-1.5, 0, 0), flow=0.12, overshoot=0.0)]
     for i in range(times):
         last = i == times - 1

@@ -38,9 +38,9 @@ WATCHED = Hand(at=(0.005, 1.195, 0.270), turn=-48, bend=-6, shape="soft_fist", e
 
 
 def lifted(shape: str, fingers: dict[int, float]) -> tuple[hands.Finger, ...]:
-    """Return a hand shape with some fingers' knuckles raised by degrees (0 thumb ... 4 little)."""
+    """Return a hand shape with some fingers' knuckles raised by degrees (1 index ... 4 little)."""
     rows = list(hands.SHAPES[shape])
     for i, degrees in fingers.items():
         a, b, c, d = rows[i]
-        rows[i] = (a, b, c - 0, d) if i == 0 and degrees == 0 else (a - degrees, b - 0.25 * degrees, c, d)
+        rows[i] = (a - degrees, b - 0.25 * degrees, c, d)
     return tuple(rows)

@@ -69,7 +69,7 @@ class Posture:
     spine: Angles = (0.0, 0.0, 0.0)
     head: Angles = (0.0, 0.0, 0.0)
     hips: Angles = (0.0, 0.0, 0.0)
-    shift: tuple[float, float, float] = (0.0, -0.009, 0.0)
+    shift: tuple[float, float, float] = (0.0, -0.0035, 0.0)
     left_foot: Foot = field(default_factory=Foot)
     right_foot: Foot = field(default_factory=Foot)
     brows: float = 0.0

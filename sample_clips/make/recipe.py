@@ -55,7 +55,7 @@ def go(seconds: float, hold: float = 0.0, **change: Any) -> Step:
 
 def home(seconds: float = 0.75, **timing: Any) -> Step:
     """Return the step back to the stance, everything at once."""
-    return Step(seconds, {f.name: HOME for f in fields(Posture)}, **{"peak": 0.4, "overshoot": 0.02, **timing})
+    return Step(seconds, {f.name: HOME for f in fields(Posture)}, **{"peak": 0.44, "overshoot": 0.02, **timing})
 
 
 def counter(posture: Posture, stance: Posture) -> Posture:
@@ -86,7 +86,7 @@ def postures_of(recipe: Recipe) -> list[Posture]:
 
 
 LIFE = {  # degrees of drift in a stance, by layer; gestures drift a little less
-    "arms": {"Spine": 0.25, "Chest": 0.3, "UpperChest": 0.35, "Neck": 0.4, "Head": 0.6}
+    "arms": {"Spine": 0.35, "Chest": 0.45, "UpperChest": 0.5, "Neck": 0.5, "Head": 0.8}
     | {s + j: d for s in SIDES for j, d in (("Shoulder", 0.35), ("UpperArm", 0.45), ("LowerArm", 0.55), ("Hand", 1.1))},
     "head": {"Chest": 0.12, "UpperChest": 0.2, "Neck": 0.7, "Head": 1.0},
     "body": {"Hips": 0.35, "Spine": 0.45, "Chest": 0.5, "UpperChest": 0.5, "Neck": 0.4, "Head": 0.55},
@@ -106,7 +106,11 @@ def drifts(recipe: Recipe) -> dict[str, float]:
         elif recipe.kind == "stance":
             sizes |= FINGER_LIFE
         else:
-            sizes |= {k: v * 0.7 for k, v in FINGER_LIFE.items() if k.endswith("1") and recipe.limb in ("both", ("left" if k.startswith("Left") else "right"))}
+            sizes |= {
+                k: v * 0.7
+                for k, v in FINGER_LIFE.items()
+                if k.endswith("1") and recipe.limb in ("both", ("left" if k.startswith("Left") else "right"))
+            }
     scale = recipe.life * (1.0 if recipe.kind == "stance" else 0.6)
     return {k: v * scale for k, v in sizes.items()}
 
@@ -132,7 +136,7 @@ def animate(recipe: Recipe) -> Clip:
     if recipe.layer == "body":
         if recipe.kind == "stance":
             sway = tracks.wander(np.random.default_rng(seed + 1), frames, 0.9, 3, True)
-            numbers[:, :3] += sway * (0.0045, 0.0012, 0.0035) * recipe.life
+            numbers[:, :3] += sway * (0.0065, 0.0012, 0.0045) * recipe.life
         rotations, root = poses.legs(rotations, numbers)
     only = [at(name) for name in REACH[recipe.layer]]
     out = np.broadcast_to(base, (frames, len(SKELETON), 4)).copy()

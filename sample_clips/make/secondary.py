@@ -7,7 +7,7 @@ import numpy as np
 from metagraph.motion import rotation
 from metagraph.motion.skeleton import Pose
 from sample_clips.make import ik
-from sample_clips.make.rig import ARM_AXIS, FPS, JOINTS, PALM, SIDES, SKELETON, THUMB_SIDE, Array, about, at, flipped, mirrored
+from sample_clips.make.rig import ARM_AXIS, FPS, PALM, SIDES, SKELETON, THUMB_SIDE, Array, about, at, flipped, mirrored
 from sample_clips.make.skeleton import FINGERS
 from sample_clips.make.tracks import ease, wander
 
@@ -49,9 +49,9 @@ def drag(rotations: Array, amount: float = 1.0) -> Array:
     turns, places = globals_of(rotations)
     window = _window(len(rotations))[:, None]
     for side in SIDES:
-        hand, forearm = at(side + "Hand"), at(side + "LowerArm")
+        hand = at(side + "Hand")
         velocity = np.gradient(places[:, hand], 1 / FPS, axis=0)
-        # In the hand's own axes; the speed of turning counts as well, or a waving forearm would carry a stiff hand.
+        # In the hand's own axes: backwards and forwards of the palm it flaps, towards the thumb it hardly gives.
         local = rotation.rotate(rotation.conjugate(turns[:, hand]), velocity)
         local = local if side == "Left" else flipped(local)
         curl_way, side_way = local @ PALM, local @ THUMB_SIDE
@@ -59,7 +59,6 @@ def drag(rotations: Array, amount: float = 1.0) -> Array:
         if np.abs(lag).max() < 0.05:
             continue
         q = rotation.multiply(about(np.cross(ARM_AXIS, PALM), lag[:, 0]), about(PALM, lag[:, 1] * 0.7))
-        del forearm
         out[:, hand] = rotation.multiply(out[:, hand], q if side == "Left" else mirrored(q))
         curl = about(np.cross(ARM_AXIS, PALM), lag[:, 0] * FINGER_DRAG)
         for finger in FINGERS[1:]:
@@ -112,5 +111,4 @@ def life(rotations: Array, seed: int, sizes: dict[str, float], loop: bool, every
     for i, (name, size) in enumerate(sizes.items()):
         joint = at(name)
         out[:, joint] = rotation.multiply(out[:, joint], rotation.exp(np.radians(size) * drifts[:, i]))
-    assert out.shape[1] == JOINTS
     return out

@@ -87,7 +87,9 @@ def draw(image: Any, rotations: Array, root: Array, box: tuple[int, int, int, in
     image.paste(cell, box[:2])
 
 
-def sheet(clip: Any, path: Path | str, columns: int = 10, views: tuple[str, ...] = ("front", "left"), size: tuple[int, int] = (190, 230)) -> None:
+def sheet(
+    clip: Any, path: Path | str, columns: int = 10, views: tuple[str, ...] = ("front", "left"), size: tuple[int, int] = (190, 230)
+) -> None:
     """Write a PNG of the clip: a row for each view, a column for each time."""
     from PIL import Image, ImageDraw
 
@@ -98,7 +100,15 @@ def sheet(clip: Any, path: Path | str, columns: int = 10, views: tuple[str, ...]
     frames = np.round(np.linspace(0, clip.frames - 1, columns)).astype(int)
     for c, frame in enumerate(frames):
         for r, view in enumerate(views):
-            draw(image, np.asarray(clip.rotations[frame], float), clip.root[frame], (c * width, 14 + r * height, width, height), view, low, high)
+            draw(
+                image,
+                np.asarray(clip.rotations[frame], float),
+                clip.root[frame],
+                (c * width, 14 + r * height, width, height),
+                view,
+                low,
+                high,
+            )
         pen.text((c * width + 4, 1), f"{clip.name if c == 0 else ''} {frame / clip.fps:.2f}", fill=(0, 0, 0))
     image.save(path)
 

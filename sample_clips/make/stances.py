@@ -17,17 +17,21 @@ HIP = Hand(at=(0.214, 1.045, -0.005), fingers=(-0.42, -0.58, 0.70), palm=(-0.86,
 
 # Right forearm above and in front, its hand on the left upper arm; left forearm beneath, its hand under the right arm.
 CROSS_OVER = Hand(
-    at=(-0.015, 1.165, 0.205), fingers=(-0.93, 0.18, -0.32), palm=(-0.30, -0.10, -0.95), shape="hold_arm", elbow=(0.75, -0.6, -0.1)
+    at=(-0.015, 1.182, 0.205), fingers=(-0.93, 0.18, -0.32), palm=(-0.30, -0.10, -0.95), shape="hold_arm", elbow=(0.75, -0.6, -0.1)
 )
 CROSS_UNDER = Hand(
-    at=(-0.005, 1.125, 0.150), fingers=(-0.96, 0.20, -0.16), palm=(-0.15, 0.05, -0.98), shape="cupped", elbow=(0.75, -0.6, -0.1)
+    at=(-0.005, 1.142, 0.150), fingers=(-0.96, 0.20, -0.16), palm=(-0.15, 0.05, -0.98), shape="cupped", elbow=(0.75, -0.6, -0.1)
 )
 
 CHIN = Hand(at=(0.035, 1.375, 0.165), fingers=(-0.35, 0.90, -0.22), palm=(-0.35, -0.30, -0.88), shape="chin", elbow=(0.3, -0.95, 0.1))
 SUPPORT = Hand(at=(-0.02, 1.125, 0.165), fingers=(-0.95, 0.12, 0.28), palm=(-0.2, 0.55, -0.8), shape="cupped", elbow=(0.75, -0.65, -0.1))
 
-CLASP_OVER = Hand(at=(0.072, 1.005, 0.205), fingers=(-0.80, -0.48, 0.35), palm=(-0.42, 0.02, -0.9), shape="clasp_over", elbow=(0.8, -0.3, -0.5))
-CLASP_UNDER = Hand(at=(0.062, 0.985, 0.175), fingers=(-0.75, -0.58, 0.30), palm=(-0.40, 0.05, -0.9), shape="clasp_under", elbow=(0.8, -0.3, -0.5))
+CLASP_OVER = Hand(
+    at=(0.072, 1.005, 0.205), fingers=(-0.80, -0.48, 0.35), palm=(-0.42, 0.02, -0.9), shape="clasp_over", elbow=(0.8, -0.3, -0.5)
+)
+CLASP_UNDER = Hand(
+    at=(0.062, 0.985, 0.175), fingers=(-0.75, -0.58, 0.30), palm=(-0.40, 0.05, -0.9), shape="clasp_under", elbow=(0.8, -0.3, -0.5)
+)
 
 ARMS = {
     "hands_at_sides": BASE,
@@ -41,7 +45,7 @@ BODY = {
     "weight_both": BASE,
     "weight_left": replace(
         BASE,
-        shift=(0.062, -0.017, 0.004),
+        shift=(0.060, -0.009, 0.004),
         hips=(0.0, 4.0, 4.5),
         spine=(0.5, -2.5, -6.5),
         head=(0.0, -1.0, 2.5),
@@ -50,14 +54,14 @@ BODY = {
     ),
     "weight_right": replace(
         BASE,
-        shift=(-0.060, -0.018, 0.002),
+        shift=(-0.058, -0.010, 0.002),
         hips=(0.5, -5.0, -4.2),
         spine=(0.0, 3.0, 6.0),
         head=(0.0, 1.5, -2.0),
         left_foot=Foot(out=0.022, forwards=0.016, turn=19),
         right_foot=Foot(),
     ),
-    "lean_forward": replace(BASE, shift=(0.0, -0.018, -0.042), hips=(7.0, 0.0, 0.0), spine=(9.0, 0.0, 0.0), head=(-11.0, 0.0, 0.0)),
+    "lean_forward": replace(BASE, shift=(0.0, -0.011, -0.042), hips=(7.0, 0.0, 0.0), spine=(9.0, 0.0, 0.0), head=(-11.0, 0.0, 0.0)),
 }
 
 HEAD = {

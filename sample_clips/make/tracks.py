@@ -22,7 +22,7 @@ from sample_clips.make.rig import FPS, JOINTS, SIDES, Array, arm_joints, at
 from sample_clips.make.skeleton import FINGERS
 
 LEAD_IN = 0.05  # seconds every clip rests in its first posture, so that a blend has something to hold on to
-REST_OUT = 0.04  # and in its last
+REST_OUT = 0.02  # and in its last
 
 
 @dataclass(frozen=True)
@@ -90,7 +90,7 @@ def progress(move: Move, t: Array) -> Array:
 
 def settling(step: Step) -> float:
     """Return the seconds an overshoot takes to come back after the step's end."""
-    return min(0.5 * step.seconds, 0.25)
+    return min(0.36 * step.seconds, 0.2)
 
 
 def schedule(steps: Sequence[Step], lead: float) -> tuple[list[Move], float]:
