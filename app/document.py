@@ -5,10 +5,11 @@ Every change - drop, menu, paste, undo, load - ends in `changed(before, after)`;
 
 from __future__ import annotations
 
+import os
 from collections.abc import Callable
 from pathlib import Path
 
-from PySide6.QtCore import QObject, QStandardPaths, Signal
+from PySide6.QtCore import QLockFile, QObject, QStandardPaths, Signal
 from PySide6.QtGui import QUndoCommand, QUndoStack
 
 from metagraph.errors import FileError
@@ -53,7 +54,6 @@ class Document(QObject):
         super().__init__(parent)
         self.project = Project()
         self.path: Path | None = None
-        self.read_only = False  # the sample project: saving asks for a place of one's own
         self.undo_stack = QUndoStack(self)
         self.undo_stack.cleanChanged.connect(lambda _: self.state_changed.emit())
         self.undo_stack.indexChanged.connect(lambda _: self.state_changed.emit())
@@ -107,11 +107,11 @@ class Document(QObject):
 
     # --- files
 
-    def load(self, project: Project, path: Path | None, read_only: bool = False, recovered: bool = False) -> None:
-        """Show another project. recovered: it holds edits that are not in its file."""
+    def load(self, project: Project, path: Path | None, recovered: bool = False) -> None:
+        """Show another project; without a path its clip paths are absolute. recovered: it holds edits that are not in its file."""
         self.close_journal()
         before, self.project = self.project, project
-        self.path, self.read_only = path, read_only
+        self.path = path
         self.undo_stack.clear()
         if recovered:
             self.undo_stack.resetClean()
@@ -132,7 +132,7 @@ class Document(QObject):
             before, self.project = self.project, after
             # Steps back would bring paths relative to the old place; a new place begins a new history.
             self.undo_stack.clear()
-            self.path, self.read_only = target, False
+            self.path = target
             self.changed.emit(before, after)
         self.undo_stack.setClean()
         self._begin_journal(None)
@@ -143,11 +143,11 @@ class Document(QObject):
     def _begin_journal(self, base: Project | None) -> None:
         if self._journal is not None:
             self._journal.remove()
-        place = untitled_journal() if self.path is None or self.read_only else journal_path(self.path)
-        self._journal = Journal(place, None if self.read_only else self.path)
-        if base is not None or self.read_only:
+        place = untitled_journal() if self.path is None else journal_path(self.path)
+        self._journal = Journal(place, self.path)
+        if base is not None:
             try:
-                self._journal.begin(base or self.project)
+                self._journal.begin(base)
             except (FileError, OSError) as error:
                 self._journal = None
                 self.failed.emit(f"Autosave is off: {error}")
@@ -166,5 +166,15 @@ def state_folder() -> Path:
     return folder
 
 
+_lock: QLockFile | None = None
+
+
 def untitled_journal() -> Path:
-    return state_folder() / "untitled.journal"
+    """Return where edits of a project without a file are kept; a second window at the same time has a place of its own."""
+    global _lock
+    if _lock is None:
+        _lock = QLockFile(str(state_folder() / "untitled.lock"))
+        _lock.setStaleLockTime(0)
+        _lock.tryLock(0)
+    name = "untitled.journal" if _lock.isLocked() else f"untitled-{os.getpid()}.journal"
+    return state_folder() / name

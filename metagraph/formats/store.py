@@ -186,6 +186,13 @@ def moved(project: Project, old: Path | None, new: Path) -> Project:
     return replace(project, clips=clips, character=character)
 
 
+def absolute(project: Project, folder: Path) -> Project:
+    """Return the project with its paths, relative to `folder`, made absolute: for a project without a file."""
+    clips = {i: replace(e, path=(folder / e.path).resolve().as_posix()) for i, e in project.clips.items()}
+    character = (folder / project.character).resolve().as_posix() if project.character else None
+    return replace(project, clips=clips, character=character)
+
+
 def relative(path: Path, folder: Path) -> str:
     """Return `path` relative to `folder` with `/` between parts; absolute where there is no way (another drive)."""
     try:
@@ -252,6 +259,21 @@ def load_motions(project: Project, folder: Path, progress: Callable[[int, int], 
     return Opened(replace(project, clips=clips, skeleton=skeleton), tuple(dict.fromkeys(notes)))
 
 
+def relocate(project: Project, folder: Path | None, where: Path, progress: Callable[[int, int], None] | None = None) -> Project:
+    """Return the project with missing clips loaded from anywhere below `where`, their paths corrected; found by name or content."""
+    lost: dict[str, list[ClipEntry]] = {}
+    for entry in project.clips.values():
+        if entry.motion is None:
+            lost.setdefault(entry.path, []).append(entry)
+    found = _find(lost, where)
+    base = folder or Path()
+    clips = dict(project.clips)
+    for path, place in found.items():
+        name = relative(place, base) if folder is not None else place.as_posix()
+        clips.update({e.id: replace(e, path=name) for e in lost[path]})
+    return load_motions(replace(project, clips=clips), base, progress).project
+
+
 def _adopted(clip: Clip, skeleton: Any) -> Clip:
     try:
         return adopt(clip, skeleton)
@@ -286,7 +308,7 @@ def _find(lost: Mapping[str, Iterable[ClipEntry]], folder: Path) -> dict[str, Pa
     for candidate in others:
         if len(found) == len(lost):
             break
-        path = by_digest.get(digest(candidate))
-        if path is not None:
-            found.setdefault(path, candidate)
+        same = by_digest.get(digest(candidate))
+        if same is not None:
+            found.setdefault(same, candidate)
     return found

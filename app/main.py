@@ -1,0 +1,45 @@
+"""Starts the window. Heavy imports wait until the first picture is there."""
+
+from __future__ import annotations
+
+import os
+import sys
+from pathlib import Path
+
+from PySide6.QtCore import QCoreApplication, Qt, QTimer
+from PySide6.QtGui import QSurfaceFormat
+from PySide6.QtWidgets import QApplication
+
+
+def prepare() -> QApplication:
+    """Return the application, its OpenGL format set; made once."""
+    found = QApplication.instance()
+    if isinstance(found, QApplication):
+        return found
+    surface = QSurfaceFormat()
+    surface.setVersion(3, 3)
+    surface.setProfile(QSurfaceFormat.OpenGLContextProfile.CoreProfile)
+    surface.setDepthBufferSize(24)
+    surface.setSwapInterval(0 if os.environ.get("CI") else 1)
+    QSurfaceFormat.setDefaultFormat(surface)
+    # A dock that is floated or docked keeps its context.
+    QCoreApplication.setAttribute(Qt.ApplicationAttribute.AA_ShareOpenGLContexts)
+    QCoreApplication.setApplicationName("Metagraph")
+    QCoreApplication.setOrganizationName("Metagraph")
+    return QApplication(sys.argv[:1])
+
+
+def run_window(path: Path | None, sample: bool = False) -> int:
+    """Open the window on a project, the sample project, or nothing; return the exit status."""
+    app = prepare()
+    from app.files import SAMPLE
+    from app.window import Window
+
+    window = Window()
+    window.show()
+    if path is not None:
+        window.files.open(path)
+    elif not window.files.recover_untitled() and sample:
+        window.files.open(SAMPLE, template=True)
+    QTimer.singleShot(0, window.make_late_panels)
+    return app.exec()

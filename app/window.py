@@ -1,0 +1,573 @@
+"""The main window: docks round the canvas, one table of commands, a status bar with the running job."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+from PySide6.QtCore import QByteArray, QSettings, QSize, Qt, QTimer
+from PySide6.QtGui import QCloseEvent, QDragEnterEvent, QDropEvent, QKeySequence
+from PySide6.QtWidgets import (
+    QApplication,
+    QButtonGroup,
+    QDockWidget,
+    QFileDialog,
+    QHBoxLayout,
+    QLabel,
+    QMainWindow,
+    QMessageBox,
+    QProgressBar,
+    QPushButton,
+    QSizePolicy,
+    QToolBar,
+    QToolButton,
+    QWidget,
+)
+
+from app import icons
+from app.actions import Actions, Command, Standard
+from app.canvas.canvas import Canvas
+from app.canvas.drops import Drop, load_of
+from app.document import Document
+from app.figures import Figures
+from app.files import PRACTICE, SAMPLE, Files
+from app.jobs import Jobs
+from app.panels.library import LibraryPanel
+from app.panels.preview import PreviewPanel
+from app.performance import Performance
+from app.session import Session
+from app.theme import KIND_MARKS, apply, theme
+from app.thumbnails import Thumbnails
+from metagraph.formats.imports import Imported
+from metagraph.graph import edits
+from metagraph.graph.check import Problem, check
+from metagraph.graph.model import KINDS, LAYERS, Layer, Project
+
+LAYER_KEYS = {"body": "Alt+1", "arms": "Alt+2", "head": "Alt+3"}
+CHECK_AFTER = 250  # milliseconds of quiet after an edit before problems are looked for
+
+
+class Window(QMainWindow):
+    """Owns document, session, jobs and panels, and nothing else: what they do is theirs."""
+
+    def __init__(self) -> None:
+        super().__init__()
+        self.setWindowTitle("Metagraph")
+        self.setAcceptDrops(True)
+        self.document = Document(self)
+        self.session = Session(self.document, self)
+        self.jobs = Jobs(self)
+        self.figures = Figures(self.document, self.jobs, self)
+        self.performance = Performance(self.document, self.session, self.jobs, self)
+        self.thumbnails = Thumbnails(self.document, self.session, self.figures, self)
+        self.files = Files(self.document, self.jobs, self)
+        self.problems: tuple[Problem, ...] = ()
+        settings = QSettings()
+        if settings.value("theme") in ("dark", "light"):
+            self.session.theme = str(settings.value("theme"))  # type: ignore[assignment]
+        self.preview = PreviewPanel(self.session, self.performance, self.figures, self)
+        self.library = LibraryPanel(self.document, self.session, self.thumbnails, self)
+        self.canvas = Canvas(self.document, self.session, self.performance, self.thumbnails, self)
+        self.setCentralWidget(self.canvas)
+        self.setDockOptions(
+            QMainWindow.DockOption.AnimatedDocks | QMainWindow.DockOption.AllowNestedDocks | QMainWindow.DockOption.AllowTabbedDocks
+        )
+        self.docks: dict[str, QDockWidget] = {}
+        self._add_dock("library", "Clips", self.library, Qt.DockWidgetArea.LeftDockWidgetArea)
+        self._add_dock("preview", "Character", self.preview, Qt.DockWidgetArea.RightDockWidgetArea)
+        self._late_panels()
+        self.actions = Actions(self, self._commands())
+        self._menus()
+        self._toolbar()
+        self._status()
+        self._wire()
+        self._arrange()
+        self._restore()
+        self.restyle()
+        self.refresh()
+
+    # --- building
+
+    def _add_dock(self, key: str, title: str, panel: QWidget, area: Qt.DockWidgetArea) -> QDockWidget:
+        dock = QDockWidget(title, self)
+        dock.setObjectName(key)
+        dock.setWidget(panel)
+        self.addDockWidget(area, dock)
+        self.docks[key] = dock
+        return dock
+
+    def _late_panels(self) -> None:
+        """Docks whose panels are made after the first paint, since pyqtgraph takes its time to import."""
+        for key, title, area in (
+            ("properties", "Properties", Qt.DockWidgetArea.RightDockWidgetArea),
+            ("timeline", "Performance", Qt.DockWidgetArea.BottomDockWidgetArea),
+            ("problems", "Problems", Qt.DockWidgetArea.BottomDockWidgetArea),
+            ("machine", "Machine", Qt.DockWidgetArea.BottomDockWidgetArea),
+        ):
+            self._add_dock(key, title, QWidget(self), area)
+
+    def make_late_panels(self) -> None:
+        """Fill the docks that were left empty for a fast start."""
+        from app.panels.machine import MachinePanel
+        from app.panels.problems import ProblemsPanel
+        from app.panels.properties import PropertiesPanel
+        from app.panels.timeline import TimelinePanel
+
+        self.properties = PropertiesPanel(self.document, self.session, self.performance, self)
+        self.timeline = TimelinePanel(self.document, self.session, self.performance, self)
+        self.problems_panel = ProblemsPanel(self.session, self)
+        self.machine = MachinePanel(self.document, self.session, self)
+        for key, panel in (
+            ("properties", self.properties),
+            ("timeline", self.timeline),
+            ("problems", self.problems_panel),
+            ("machine", self.machine),
+        ):
+            old = self.docks[key].widget()
+            self.docks[key].setWidget(panel)
+            old.deleteLater()
+        self.problems_panel.show_problems(self.problems)
+        self.ready = True
+
+    ready = False
+
+    def _commands(self) -> tuple[Command, ...]:
+        s, d, f, c = self.session, self.document, self.files, self.canvas
+        some = lambda: bool(s.clips or s.actions)  # noqa: E731
+        out = [
+            Command("new", "&File", "&New project", f.new, (Standard.New,)),
+            Command("open", "&File", "&Open…", f.ask_open, (Standard.Open,)),
+            Command("sample", "&File", "Open the &sample project", lambda: f.open(SAMPLE, template=True)),
+            Command("practice", "&File", "Open the &practice project", lambda: f.open(PRACTICE, template=True), tip="152 clips to label"),
+            Command("save", "&File", "&Save", f.save, (Standard.Save,), line=True),
+            Command("save_as", "&File", "Save &as…", f.save_as, (Standard.SaveAs,)),
+            Command("import", "&File", "&Import folder…", f.ask_import_folder, ("Ctrl+I",), line=True, icon="folder"),
+            Command("import_files", "&File", "Import &files…", f.ask_import_files, ("Ctrl+Shift+I",)),
+            Command("find_missing", "&File", "Find missing files…", f.find_missing),
+            Command("character", "&File", "Choose &character…", self.choose_character, line=True, tip="The GLB that is drawn"),
+            Command("no_character", "&File", "Draw a stick figure", lambda: d.edit("Draw a stick figure", lambda p: edits.set_character(p, None)),
+                    enabled=lambda: d.project.character is not None),
+            Command("export", "&File", "&Export…", self.export, ("Ctrl+E",), line=True, icon="export", tip="JSON and GLB for engines",
+                    enabled=lambda: any(True for _ in d.project.actions())),
+            Command("quit", "&File", "&Quit", self.close, (Standard.Quit, "Ctrl+Q"), line=True),
+            Command("undo", "&Edit", "&Undo", d.undo, (Standard.Undo,), icon="undo", enabled=d.undo_stack.canUndo),
+            Command("redo", "&Edit", "&Redo", d.redo, (Standard.Redo, "Ctrl+Y"), icon="redo", enabled=d.undo_stack.canRedo),
+            Command("delete", "&Edit", "&Remove", self.remove, (Standard.Delete,), enabled=some, line=True),
+            Command("rename", "&Edit", "Re&name…", self.rename, ("F2",)),
+            Command("select_all", "&Edit", "Select &all", self.select_all, (Standard.SelectAll,), line=True),
+            Command("find", "&Edit", "&Find clip", self.library.search.setFocus, (Standard.Find,)),
+            Command("new_stance", "&Graph", "&New stance…", c.new_stance, ("Ctrl+Shift+N",)),
+        ]  # fmt: skip
+        for number, kind in enumerate(KINDS, 1):
+            text = f"Label as &{number} {kind}"
+            out.append(
+                Command(
+                    f"label_{kind}", "&Graph", text, lambda k=kind: c.place_selection(k), (str(number),), enabled=some, line=number == 1
+                )
+            )
+        for layer in LAYERS:
+            out.append(
+                Command(f"layer_{layer}", "&Graph", f"{layer.capitalize()} layer", lambda x=layer: s.set_layer(x), (LAYER_KEYS[layer],),
+                        checked=lambda x=layer: s.layer == x, line=layer == "body")
+            )  # fmt: skip
+        for number in range(1, 10):
+            out.append(
+                Command(f"stance_{number}", "&Graph", f"Stance {number}", lambda n=number: self.choose_stance(n - 1), (f"Ctrl+{number}",),
+                        line=number == 1, enabled=lambda n=number: len(d.project.graphs[s.layer].stances) >= n)
+            )  # fmt: skip
+        out += [
+            Command("skeleton", "&Graph", "S&keleton…", self.show_skeleton, line=True, tip="Roles and body parts of the joints",
+                    enabled=lambda: d.project.skeleton is not None),
+            Command("play", "&Play", "Play or &pause", lambda: s.set_playing(not s.playing), ("Space",)),
+            Command("to_start", "&Play", "Back to the &start", lambda: s.seek(0.0), ("Home",)),
+            Command("back", "&Play", "A frame back", lambda: self.step(-1), (",",)),
+            Command("forward", "&Play", "A frame forward", lambda: self.step(1), (".",)),
+            Command("loop", "&Play", "&Loop", self.preview.toggle_loop, ("L",), checked=lambda: s.loop),
+            Command("show_plan", "&Play", "The whole &performance", s.show_plan, ("Escape",), line=True, checked=lambda: s.show == "plan"),
+            Command("alone", "&Play", "The clip &alone", self.play_alone, ("Ctrl+Return",), enabled=some),
+            Command("in_context", "&Play", "In &context", self.play_in_context, ("Shift+Return",), enabled=some),
+            Command("frame", "&View", "&Frame the character", self.preview.frame_all, ("F",)),
+            Command("face", "&View", "Close-up of the &face", self.preview.frame_face, ("Shift+F",)),
+            Command("bones", "&View", "Show the &skeleton", self.preview.toggle_bones, ("B",), checked=lambda: self.preview.bones),
+            Command("big", "&View", "Only the &character", self.only_character, ("F11",), line=True),
+            Command("arrange", "&View", "&Put the panels back", self._arrange),
+            Command("theme", "&View", "&Light theme", self.toggle_theme, checked=lambda: s.theme == "light", line=True, icon="theme"),
+            Command("keys", "&Help", "&Keyboard shortcuts", self.show_keys, ("F1",)),
+            Command("about", "&Help", "&About Metagraph", self.about),
+        ]  # fmt: skip
+        return tuple(out)
+
+    def _menus(self) -> None:
+        self.menus = self.actions.fill(self.menuBar())
+        view = self.menus["&View"]
+        panels = view.addMenu("Panels")
+        for dock in self.docks.values():
+            panels.addAction(dock.toggleViewAction())
+        file = self.menus["&File"]
+        self.recent_menu = file.addMenu("Open &recent")
+        file.insertMenu(self.actions["sample"], self.recent_menu)
+        self.recent_menu.aboutToShow.connect(self._fill_recent)
+
+    def _fill_recent(self) -> None:
+        self.recent_menu.clear()
+        for path in self.files.recent():
+            self.recent_menu.addAction(f"{path.name.split('.')[0]}   {path.parent}", lambda p=path: self.files.open(p))
+        if self.recent_menu.isEmpty():
+            self.recent_menu.addAction("None yet").setEnabled(False)
+
+    def _toolbar(self) -> None:
+        bar = QToolBar("Main", self)
+        bar.setObjectName("toolbar")
+        bar.setMovable(False)
+        bar.setIconSize(QSize(18, 18))
+        self.addToolBar(bar)
+        self.name = QLabel(self)
+        self.name.setMinimumWidth(170)
+        self.name.setTextFormat(Qt.TextFormat.RichText)
+        bar.addWidget(self.name)
+        for ident in ("import", "undo", "redo"):
+            bar.addAction(self.actions[ident])
+        bar.addWidget(_stretch(self))
+        self.layer_buttons = QButtonGroup(self)
+        tabs = QWidget(self)
+        row = QHBoxLayout(tabs)
+        row.setContentsMargins(0, 0, 0, 0)
+        row.setSpacing(2)
+        for layer in LAYERS:
+            button = QToolButton(tabs, text=layer.capitalize(), checkable=True, toolTip=f"The {layer} layer ({LAYER_KEYS[layer]})")
+            button.setMinimumWidth(72)
+            button.clicked.connect(lambda _=False, x=layer: self.session.set_layer(x))
+            self.layer_buttons.addButton(button, LAYERS.index(layer))
+            row.addWidget(button)
+        bar.addWidget(tabs)
+        bar.addWidget(_stretch(self))
+        self.problem_button = QToolButton(self, toolTip="Problems of the project")
+        self.problem_button.setToolButtonStyle(Qt.ToolButtonStyle.ToolButtonTextBesideIcon)
+        self.problem_button.clicked.connect(lambda: self.show_dock("problems"))
+        bar.addWidget(self.problem_button)
+        self.machine_button = QPushButton("Machine", self, toolTip="The state machine the meta-graph stands for")
+        self.machine_button.clicked.connect(lambda: self.show_dock("machine"))
+        bar.addWidget(self.machine_button)
+        self.export_button = QPushButton("Export", self, toolTip="JSON and GLB for engines (Ctrl+E)")
+        self.export_button.setProperty("strong", True)
+        self.export_button.clicked.connect(self.export)
+        bar.addWidget(self.export_button)
+
+    def _status(self) -> None:
+        self.job_label, self.job_bar = QLabel(self), QProgressBar(self)
+        self.job_bar.setFixedWidth(180)
+        self.job_cancel = QToolButton(self, text="Cancel", toolTip="Cancel this job")
+        self.job_cancel.clicked.connect(self._cancel_job)
+        for widget in (self.job_label, self.job_bar, self.job_cancel):
+            self.statusBar().addPermanentWidget(widget)
+            widget.hide()
+
+    def _wire(self) -> None:
+        d, s = self.document, self.session
+        d.changed.connect(self._edited)
+        d.state_changed.connect(self.refresh)
+        d.failed.connect(self.tell)
+        for signal in (s.layer_changed, s.selection_changed, s.show_changed, s.playing_changed, s.stance_changed):
+            signal.connect(self.refresh)
+        s.theme_changed.connect(self.restyle)
+        self.library.import_wanted.connect(self.files.ask_import_folder)
+        self.library.files_dropped.connect(lambda paths: self.files.import_paths(list(paths)))
+        self.canvas.files_dropped.connect(lambda paths, drop: self.files.import_paths(list(paths), drop))
+        self.canvas.refused.connect(self.tell)
+        self.preview.view.failed.connect(self.tell)
+        self.files.told.connect(self.tell)
+        self.files.report.connect(self._report)
+        self.files.imported.connect(self._imported)
+        self.files.opened.connect(self._opened)
+        self.jobs.changed.connect(self._show_job)
+        self._check_timer = QTimer(self, singleShot=True, interval=CHECK_AFTER)
+        self._check_timer.timeout.connect(self._check)
+        self._checking = False
+
+    # --- layout of the docks
+
+    def _arrange(self) -> None:
+        """Put every dock where it belongs."""
+        for key, area in (
+            ("library", Qt.DockWidgetArea.LeftDockWidgetArea), ("preview", Qt.DockWidgetArea.RightDockWidgetArea),
+            ("properties", Qt.DockWidgetArea.RightDockWidgetArea), ("timeline", Qt.DockWidgetArea.BottomDockWidgetArea),
+            ("problems", Qt.DockWidgetArea.BottomDockWidgetArea), ("machine", Qt.DockWidgetArea.BottomDockWidgetArea),
+        ):  # fmt: skip
+            self.docks[key].setFloating(False)
+            self.addDockWidget(area, self.docks[key])
+            self.docks[key].show()
+        self.tabifyDockWidget(self.docks["timeline"], self.docks["problems"])
+        self.tabifyDockWidget(self.docks["problems"], self.docks["machine"])
+        self.docks["timeline"].raise_()
+        self.setCorner(Qt.Corner.BottomLeftCorner, Qt.DockWidgetArea.BottomDockWidgetArea)
+        self.setCorner(Qt.Corner.BottomRightCorner, Qt.DockWidgetArea.BottomDockWidgetArea)
+        self.resizeDocks([self.docks["library"], self.docks["preview"]], [300, 400], Qt.Orientation.Horizontal)
+        self.resizeDocks([self.docks["preview"], self.docks["properties"]], [400, 380], Qt.Orientation.Vertical)
+        self.resizeDocks([self.docks["timeline"]], [214], Qt.Orientation.Vertical)
+        self.canvas.show()
+
+    def _restore(self) -> None:
+        settings = QSettings()
+        self.resize(1680, 1020)
+        for key, restore in (("geometry", self.restoreGeometry), ("state", self.restoreState)):
+            saved = settings.value(key)
+            if isinstance(saved, QByteArray):
+                restore(saved)
+
+    def show_dock(self, key: str) -> None:
+        self.docks[key].show()
+        self.docks[key].raise_()
+
+    def only_character(self) -> None:
+        """Give the character the whole window, or put everything back."""
+        if self.canvas.isVisible():
+            self._before = self.saveState()
+            self.canvas.hide()
+            for key, dock in self.docks.items():
+                dock.setVisible(key == "preview")
+        else:
+            self.canvas.show()
+            self.restoreState(self._before)
+
+    _before = QByteArray()
+
+    # --- looks
+
+    def restyle(self) -> None:
+        look = theme(self.session.theme)
+        apply(QApplication.instance(), look)  # type: ignore[arg-type]
+        for command in self.actions.commands:
+            if command.icon:
+                self.actions[command.id].setIcon(icons.icon(command.icon, look.text))
+        self.library.restyle()
+        QSettings().setValue("theme", look.name)
+        self._show_problems()
+        self.canvas.update()
+
+    def toggle_theme(self) -> None:
+        self.session.set_theme("light" if self.session.theme == "dark" else "dark")
+        self.refresh()
+
+    def refresh(self) -> None:
+        """Show the state of document and session in title, toolbar and menus."""
+        d = self.document
+        self.actions.refresh()
+        undo, redo = d.undo_stack.undoText(), d.undo_stack.redoText()
+        self.actions["undo"].setText(f"&Undo {undo}".strip())
+        self.actions["redo"].setText(f"&Redo {redo}".strip())
+        saved = "not saved yet" if d.path is None else "edited" if d.dirty else "saved"
+        dim = theme(self.session.theme).dim
+        self.name.setText(f"<b>{d.project.name}</b>&nbsp;&nbsp;<span style='color:{dim}'>{saved}</span>")
+        self.setWindowTitle(f"{d.project.name}{'[*]'} - Metagraph")
+        self.setWindowModified(d.dirty)
+        button = self.layer_buttons.button(LAYERS.index(self.session.layer))
+        button.setChecked(True)
+        for layer in LAYERS:
+            count = len(d.project.graphs[layer].actions)
+            self.layer_buttons.button(LAYERS.index(layer)).setText(f"{layer.capitalize()}  {count}" if count else layer.capitalize())
+        self.export_button.setEnabled(self.actions["export"].isEnabled())
+        places = list(d.project.graphs[self.session.layer].stances.values())
+        for number in range(1, 10):
+            name = places[number - 1].name if number <= len(places) else f"Stance {number}"
+            self.actions[f"stance_{number}"].setText(name)
+            self.actions[f"stance_{number}"].setVisible(number <= len(places))
+
+    def tell(self, words: str) -> None:
+        self.statusBar().showMessage(words.replace("*", ""), 8000)
+
+    # --- following
+
+    def _edited(self, before: Project, after: Project) -> None:
+        self._check_timer.start()
+        if before.graphs is not after.graphs or before.name != after.name or before.character != after.character:
+            self.refresh()
+
+    def _check(self) -> None:
+        if self._checking:
+            self._check_timer.start()
+            return
+        self._checking = True
+        project = self.document.project
+        self.jobs.start("check", lambda _: check(project), self._checked, lambda e: self._checked([]), quick=True)
+
+    def _checked(self, problems: list[Problem]) -> None:
+        self._checking = False
+        self.problems = tuple(problems)
+        self.canvas.set_misfits({p.action: f"{p.message}. {p.remedy}" for p in problems if p.action and p.severity != "hint"})
+        if self.ready:
+            self.problems_panel.show_problems(self.problems)
+        self._show_problems()
+
+    def _show_problems(self) -> None:
+        look = theme(self.session.theme)
+        grave = [p for p in self.problems if p.severity != "hint"]
+        hints = len(self.problems) - len(grave)
+        color = look.error if any(p.severity == "error" for p in grave) else look.warning if grave else look.dim
+        text = _many(len(grave), "problem") if grave else _many(hints, "hint") if hints else "No problems"
+        self.problem_button.setText(text)
+        self.problem_button.setIcon(icons.icon("warning", color))
+        self.problem_button.setStyleSheet(f"color: {color}")
+
+    def _opened(self) -> None:
+        self.session.stances.clear()
+        self.session.others.clear()
+        self.session.select_clips(())
+        project = self.document.project
+        if not project.graphs[self.session.layer].actions:
+            layer: Layer | None = next((x for x in ("arms", "body", "head") if project.graphs[x].actions), None)  # type: ignore[index]
+            if layer is not None:
+                self.session.set_layer(layer)
+        self.session.stance_changed.emit()
+        self.session.show_plan()
+        self.session.seek(0.0)
+        self.preview.frame_all()
+        self.refresh()
+
+    def _imported(self, result: Imported, drop: Drop | None) -> None:
+        load = self.files.load_for(result)
+        if drop is not None and load.clips:
+            self.canvas.do(drop, load)
+        elif load.clips:
+            self.session.select_clips(load.clips if len(load.clips) < 2 else ())
+
+    def _report(self, title: str, lines: list[str]) -> None:
+        box = QMessageBox(QMessageBox.Icon.Information, "Metagraph", title, QMessageBox.StandardButton.Ok, self)
+        box.setInformativeText("\n".join(lines[:6]) + (f"\n… and {len(lines) - 6} more" if len(lines) > 6 else ""))
+        if len(lines) > 6:
+            box.setDetailedText("\n".join(lines))
+        box.setAttribute(Qt.WidgetAttribute.WA_DeleteOnClose)
+        box.open()
+
+    def _show_job(self) -> None:
+        job = self.jobs.running[-1] if self.jobs.running else None
+        for widget in (self.job_label, self.job_bar, self.job_cancel):
+            widget.setVisible(job is not None)
+        if job is not None:
+            self.job_label.setText(job.title)
+            self.job_bar.setRange(0, 0)
+            job.progress.connect(self._progress, Qt.ConnectionType.UniqueConnection)
+
+    def _progress(self, done: int, total: int, words: str = "") -> None:
+        self.job_bar.setRange(0, max(1, total))
+        self.job_bar.setValue(done)
+        if self.jobs.running and words:
+            self.job_label.setText(f"{self.jobs.running[-1].title}: {words}")
+
+    def _cancel_job(self) -> None:
+        if self.jobs.running:
+            self.jobs.running[-1].cancel()
+            self.tell("Cancelled.")
+
+    # --- commands
+
+    def choose_stance(self, place: int) -> None:
+        stances = list(self.document.project.graphs[self.session.layer].stances)
+        if place < len(stances):
+            self.session.set_stance(stances[place])
+
+    def remove(self) -> None:
+        if self.session.actions:
+            self.canvas.remove_selection()
+        else:
+            self.library.remove(self.session.clips)
+
+    def rename(self) -> None:
+        if len(self.session.clips) == 1:
+            self.library.rename(self.session.clips[0])
+        else:
+            self.canvas.rename_stance()
+
+    def select_all(self) -> None:
+        if self.library.isAncestorOf(QApplication.focusWidget() or self):
+            self.library.list.selectAll()
+        else:
+            self.session.select_actions(tuple(a.id for a in self.canvas._listed()))
+
+    def step(self, frames: int) -> None:
+        self.session.set_playing(False)
+        self.session.seek(self.session.seconds + frames / 30)
+
+    def play_alone(self) -> None:
+        clip = self.session.clips[0] if self.session.clips else next((a.clip for a in self.session.selected_actions()), None)
+        if clip is not None:
+            self.session.show_clip(clip)
+
+    def play_in_context(self) -> None:
+        ident = self.session.actions[0] if self.session.actions else self.session.clips[0] if self.session.clips else None
+        if ident is not None:
+            self.session.show_context(ident)
+
+    def choose_character(self) -> None:
+        start = str(self.document.folder or Path.home())
+        name, _ = QFileDialog.getOpenFileName(self, "Choose the character to draw", start, "Characters (*.glb *.gltf *.vrm)")
+        if name:
+            from metagraph.formats.store import relative
+
+            folder = self.document.folder
+            path = relative(Path(name), folder) if folder is not None else Path(name).as_posix()
+            self.document.edit("Choose character", lambda p: edits.set_character(p, path))
+
+    def show_skeleton(self) -> None:
+        from app.panels.skeleton import SkeletonDialog
+
+        SkeletonDialog(self.document, self.session, self).open()
+
+    def export(self) -> None:
+        from app.panels.export import ExportDialog
+
+        ExportDialog(self.document, self.jobs, self).open()
+
+    def show_keys(self) -> None:
+        rows = []
+        for command in self.actions.commands:
+            keys = ", ".join(k.toString(QKeySequence.SequenceFormat.NativeText) for k in self.actions[command.id].shortcuts())
+            if keys and not command.id.startswith("stance_"):
+                rows.append(f"<tr><td style='padding-right:24px'>{command.text.replace('&', '')}</td><td><b>{keys}</b></td></tr>")
+        rows.append("<tr><td>Stance 1 to 9</td><td><b>Ctrl+1 … Ctrl+9</b></td></tr>")
+        box = QMessageBox(
+            QMessageBox.Icon.NoIcon, "Keyboard shortcuts", f"<table>{''.join(rows)}</table>", QMessageBox.StandardButton.Ok, self
+        )
+        box.open()
+
+    def about(self) -> None:
+        from metagraph import __version__
+
+        kinds = " &nbsp; ".join(f"{KIND_MARKS[k]} {k}" for k in KINDS)
+        text = f"<h3>Metagraph {__version__}</h3><p>Drop clips; the state machine draws itself.</p><p>{kinds}</p>"
+        QMessageBox.about(self, "About Metagraph", text)
+
+    # --- the window itself
+
+    def dragEnterEvent(self, event: QDragEnterEvent) -> None:
+        if load_of(event.mimeData()).files:
+            event.acceptProposedAction()
+
+    def dropEvent(self, event: QDropEvent) -> None:
+        files = load_of(event.mimeData()).files
+        if files:
+            event.acceptProposedAction()
+            self.files.import_paths(list(files))
+
+    def closeEvent(self, event: QCloseEvent) -> None:
+        if not self.files.may_leave():
+            event.ignore()
+            return
+        settings = QSettings()
+        if self.canvas.isVisible():
+            settings.setValue("geometry", self.saveGeometry())
+            settings.setValue("state", self.saveState())
+        self.document.close_journal()
+        self.preview._timer.stop()
+        self.canvas._hero_timer.stop()
+        self.jobs.stop()
+        self.thumbnails.stop()
+        event.accept()
+
+
+def _many(count: int, noun: str) -> str:
+    return f"{count} {noun}{'s' if count != 1 else ''}"
+
+
+def _stretch(parent: QWidget) -> QWidget:
+    out = QWidget(parent)
+    out.setSizePolicy(QSizePolicy.Policy.Expanding, QSizePolicy.Policy.Preferred)
+    return out

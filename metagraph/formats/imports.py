@@ -1,0 +1,75 @@
+"""Importing into a project: files and folders in, clips on the project's skeleton out, one bad file failing alone."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterable
+from dataclasses import dataclass
+from pathlib import Path
+
+from metagraph.formats.clips import digest, find_clip_files, import_clips
+from metagraph.formats.store import relative
+from metagraph.graph.edits import add_clips
+from metagraph.graph.model import Project
+from metagraph.motion.adopt import SkeletonMismatchError, adopt
+from metagraph.motion.clip import Clip
+
+
+@dataclass(frozen=True)
+class Imported:
+    """loaded: what `add_clips` takes. failures: why files were left out, in words. notes: what readers changed."""
+
+    loaded: tuple[tuple[str, int, str, Clip], ...]
+    failures: tuple[str, ...] = ()
+    notes: tuple[str, ...] = ()
+    cancelled: bool = False
+
+    def into(self, project: Project) -> Project:
+        """The edit: `project` with the clips added."""
+        return add_clips(project, self.loaded)
+
+
+def gather(paths: Iterable[str | Path]) -> list[Path]:
+    """Return the clip files among files and folders, folders searched to the bottom, each file once."""
+    out: dict[Path, None] = {}
+    for path in map(Path, paths):
+        found = find_clip_files(path) if path.is_dir() else [path]
+        out.update(dict.fromkeys(p.resolve() for p in found))
+    return list(out)
+
+
+def import_files(
+    project: Project,
+    folder: Path | None,
+    paths: Iterable[str | Path],
+    progress: Callable[[int, int, Path], None] | None = None,
+    cancelled: Callable[[], bool] | None = None,
+) -> Imported:
+    """Read files and folders for a project; nothing is changed yet.
+
+    folder: what paths are made relative to, None for absolute ones. The project's skeleton decides what fits; in an
+    empty project the skeleton of the first clip that has most joints of all does. A clip of another character is
+    left out, with its reason.
+    """
+    report = import_clips(gather(paths), progress, cancelled)
+    failures = [str(error) for error in report.failures]
+    skeleton = project.skeleton
+    if skeleton is None and report.clips:
+        skeleton = max((clip.skeleton for _, _, clip in report.clips), key=len)
+    loaded: list[tuple[str, int, str, Clip]] = []
+    refused: dict[tuple[Path, str], int] = {}
+    digests: dict[Path, str] = {}
+    for path, take, clip in report.clips:
+        assert skeleton is not None
+        try:
+            fitted = adopt(clip, skeleton)
+        except SkeletonMismatchError as error:
+            refused[(path, str(error))] = refused.get((path, str(error)), 0) + 1
+            continue
+        if path not in digests:
+            digests[path] = digest(path)
+        name = relative(path, folder) if folder is not None else path.as_posix()
+        loaded.append((name, take, digests[path], fitted))
+    for (path, why), count in refused.items():
+        clips = f"{count} clips are" if count > 1 else "its clip is"
+        failures.append(f"{path.name}: {clips} of another character: {why}. Import it into a project of its own.")
+    return Imported(tuple(loaded), tuple(failures), tuple(report.notes), report.cancelled)
