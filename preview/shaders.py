@@ -228,7 +228,7 @@ void main() {
     float shine = v_color.a;
     float nh = clamp(dot(n, h), 0.0, 1.0);
     float gloss = pow(nh, 8.0 + 240.0 * shine * shine) * (0.03 + 0.9 * shine * shine) * light;
-    vec3 color = base * (u_key * light + fill) + u_rim * rim * (0.25 + base) + u_key * gloss;
+    vec3 color = base * (u_key * light + fill) + u_rim * rim * (0.14 + base) + u_key * gloss;
     color = color / (1.0 + 0.18 * max(color.r, max(color.g, color.b)));  // roll highlights off
     o_color = vec4(pow(color, vec3(1.0 / 2.2)), 1.0) * u_opacity;
 }
