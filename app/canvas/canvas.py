@@ -510,6 +510,9 @@ class Canvas(QWidget):
             menu.addAction("New stance…", self.new_stance)
         menu.exec(event.globalPos())
 
+    def _remove_stance(self, stance: str) -> None:
+        self.document.edit("Remove stance", lambda p: edits.remove_stance(p, stance))
+
     def _move_to(self, stance: str) -> None:
         chosen = self.session.selected_actions()
         try:

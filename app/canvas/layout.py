@@ -15,7 +15,7 @@ CHIP_HEIGHT, CHIP_TOP = 34, 12
 HEADER, ROW, PAD = 38, 24, 8
 BAR = 44  # width of a likelihood bar
 FOOT = 40  # the sentence at the bottom
-CHIP_MIN, CHIP_MAX = 108, 190
+CHIP_MIN, CHIP_MAX = 108, 230
 
 Area = Literal["chip", "add", "card", "loop", "node", "row", "bar", "other", "start", "nothing"]
 
@@ -133,7 +133,7 @@ def arrange(
         text = (
             widths.get(s.name, 7.2 * len(s.name)) + widths.get(str(count), 16.0) + (widths.get(words, 7 * len(words)) + 8 if words else 0)
         )
-        w = min(max(text + 44, CHIP_MIN), CHIP_MAX + (80 if words else 0))
+        w = min(max(text + 74, CHIP_MIN), CHIP_MAX + (80 if words else 0))
         if x + w > width - 56 and x > 2 * GRID:
             x, y = 2.0 * GRID, y + CHIP_HEIGHT + GRID
         chips.append(Chip(ident, QRectF(x, y, w, CHIP_HEIGHT), s.name, count, words))

@@ -14,6 +14,7 @@ from app.theme import KIND_MARKS, KIND_TITLES, Theme
 from metagraph.graph.model import Action, Kind, Project
 
 RADIUS = 8.0
+NOWHERE = Hit("nothing")
 TEACH = {
     "gesture": "Drop clips that mean something\nor beat time: a shrug, a point.",
     "fidget": "Drop small habits here:\na scratch, tapping fingers.",
@@ -28,7 +29,7 @@ class Look:
     theme: Theme
     project: Project
     selected: Collection[str] = ()
-    hover: Hit = Hit("nothing")
+    hover: Hit = NOWHERE
     focus: str | None = None
     playing: Collection[str] = ()  # actions under the playhead
     misfits: dict[str, str] = field(default_factory=dict)  # action -> what is wrong with its ends
@@ -36,7 +37,7 @@ class Look:
     chip_pictures: dict[str, QImage] = field(default_factory=dict)
     other: str | None = None
     drop: Drop | None = None
-    drop_hit: Hit = Hit("nothing")
+    drop_hit: Hit = NOWHERE
     sentence: str = ""
 
 

@@ -94,8 +94,10 @@ class Performer:
             return self._way(meta, request.stance)
         found = [a for a in graph.of(self.stance, request.kind) if self._usable(a) and set(request.tags) <= set(a.tags)]
         exact = [a for a in found if request.limb is None or a.limb == request.limb]
-        if not exact and meta.written:  # the model's limb and tags are wishes, not orders
-            exact = found or [a for a in graph.of(self.stance, request.kind) if self._usable(a)]
+        if meta.written:  # the model's limb and tags are wishes, not orders, nor worth playing the same again
+            again = self.last.get((self.stance, request.kind))
+            wider = (exact, found, [a for a in graph.of(self.stance, request.kind) if self._usable(a)])
+            exact = next((some for some in wider if any(a.id != again for a in some)), wider[-1])
         if not exact:
             name = graph.stances[self.stance].name
             asked = " ".join(x for x in (request.limb or "", *request.tags, request.kind) if x)

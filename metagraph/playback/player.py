@@ -100,7 +100,8 @@ def _groups(numbers: Array) -> Iterator[tuple[int, Any]]:
         yield int(number), np.flatnonzero(numbers == number)
 
 
-Sample = tuple[Array, Array]
+Sample = tuple[Array, Array]  # rotations, translations
+Weight = tuple[Array, Array | None]  # how much at each time, and of which joints
 
 
 def _layer(plan: LayerPlan, project: Project, ground: Ground, times: Array) -> Sample:
@@ -147,11 +148,11 @@ def _layer(plan: LayerPlan, project: Project, ground: Ground, times: Array) -> S
             )
         return found
 
-    def rest_weight(place: int, at: Array) -> tuple[Array, Array | None]:
+    def rest_weight(place: int, at: Array) -> Weight:
         rest = rests[place]
         return ease((at - rest.fade_start) / rest.fade) if rest.fade > 0 and place > 0 else np.ones(len(at)), None
 
-    def whole(place: int, at: Array) -> tuple[Array, Array | None]:
+    def whole(place: int, at: Array) -> Weight:
         return np.ones(len(at)), None
 
     each(before, rest_sample, whole)
@@ -166,7 +167,7 @@ def _layer(plan: LayerPlan, project: Project, ground: Ground, times: Array) -> S
             motion = _motion(project, cues[place].action)
             return _sample(ground, motion, cues[place].entry + at - cues[place].start) if motion is not None else None
 
-        def weigh(place: int, at: Array) -> tuple[Array, Array | None]:
+        def weigh(place: int, at: Array) -> Weight:
             return cue_weight(cues[place], at), anatomy.mask(project, cues[place].action)
 
         each(playing, cue_sample, weigh)

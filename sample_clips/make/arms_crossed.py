@@ -9,8 +9,8 @@ from sample_clips.make.recipe import HOME, Recipe, go, home
 from sample_clips.make.stances import CROSS_OVER, CROSS_UNDER
 
 S = "arms_crossed"
-OUT = Hand(at=(0.095, 1.185, 0.290), turn=8, bend=4, shape="relaxed", elbow=WIDE)  # the right hand lifted off the left arm
-LEFT_OUT = Hand(at=(0.085, 1.125, 0.245), turn=2, bend=4, shape="relaxed", elbow=WIDE)
+OUT = Hand(at=(0.060, 1.225, 0.300), turn=8, bend=4, shape="relaxed", elbow=WIDE, reach=5)  # the right hand lifted off the left arm
+LEFT_OUT = Hand(at=(0.060, 1.135, 0.235), turn=2, bend=4, shape="relaxed", elbow=WIDE, reach=5)
 BACK = go(0.40, rt=OUT, spine=(1, -1, 0.5), head=(-1, 1, 0), flow=0.18, overshoot=0.0)
 
 CLIPS = (

@@ -69,13 +69,18 @@ def arm(wrist: Any, pole: Any, collar: Any) -> tuple[Array, Array, Array]:
     return rotation.multiply(rotation.conjugate(collar), upper), rotation.multiply(rotation.conjugate(upper), lower), lower
 
 
-def collarbone(upper: Any, collar: Any, shrug: float = 0.0) -> Array:
+def raised(lift: Any, forwards: Any) -> Array:
+    """Return the left collarbone's rotation `[..., 4]` that raises the shoulder and brings it forwards by degrees."""
+    return rotation.multiply(about((0, 1, 0), -np.asarray(forwards, float)), about((0, 0, 1), lift))
+
+
+def collarbone(upper: Any, collar: Any, shrug: float = 0.0, reach: float = 0.0) -> Array:
     """Return how the left collarbone follows an upper arm: it rises with it and comes forwards when it reaches across."""
     direction = rotation.rotate(rotation.multiply(collar, upper), ARM_AXIS)
-    raised = np.degrees(np.arccos(np.clip(-direction[..., 1], -1, 1)))
-    lift = shrug + 0.16 * np.maximum(0, raised - 32)
-    forwards = 5.0 * np.maximum(0, direction[..., 2]) - 9.0 * np.minimum(0, direction[..., 0] - 0.1)
-    return rotation.multiply(about((0, 1, 0), -forwards), about((0, 0, 1), lift))
+    angle = np.degrees(np.arccos(np.clip(-direction[..., 1], -1, 1)))  # of the upper arm from hanging
+    lift = shrug + 0.16 * np.maximum(0, angle - 32)
+    forwards = reach + 5.0 * np.maximum(0, direction[..., 2]) - 9.0 * np.minimum(0, direction[..., 0] - 0.1)
+    return raised(lift, forwards)
 
 
 def twist_of(q: Any, axis: Any) -> Array:

@@ -28,7 +28,7 @@ class Hand:
     at: the wrist's (out, up, forwards), metres. turn: degrees the palm turns up from thumb-up (minus: down).
     bend: degrees the wrist bends to the palm (minus: back). side: degrees towards the thumb (minus: the little finger).
     fingers, palm: directions (out, up, forwards) that replace turn, bend and side. elbow: where the elbow points.
-    shape: of the fingers. shrug: degrees the shoulder is raised.
+    shape: of the fingers. shrug, reach: degrees the shoulder is raised, and brought forwards.
     """
 
     at: tuple[float, float, float]
@@ -38,12 +38,13 @@ class Hand:
     shape: str | tuple[hands.Finger, ...] = "relaxed"
     elbow: tuple[float, float, float] = (0.45, -0.75, -0.5)
     shrug: float = 0.0
+    reach: float = 0.0
     fingers: tuple[float, float, float] | None = None
     palm: tuple[float, float, float] | None = None
 
     def moved(self, out: float = 0.0, up: float = 0.0, forwards: float = 0.0, **changes: Any) -> Hand:
-        """Return the hand moved by metres, with other fields changed; turn, bend, side and shrug are added to."""
-        added = {k: getattr(self, k) + v for k, v in changes.items() if k in ("turn", "bend", "side", "shrug")}
+        """Return the hand moved by metres, with other fields changed; turn, bend, side, shrug and reach are added to."""
+        added = {k: getattr(self, k) + v for k, v in changes.items() if k in ("turn", "bend", "side", "shrug", "reach")}
         x, y, z = self.at
         return replace(self, at=(x + out, y + up, z + forwards), **{**changes, **added})
 
@@ -79,10 +80,10 @@ class Posture:
 def arm_rotations(hand: Hand) -> dict[str, Array]:
     """Return the left arm's local rotations by joint name without its side."""
     wrist = np.array(hand.at) - CHEST
-    collar = about((0, 0, 1), hand.shrug)
+    collar = ik.raised(hand.shrug, hand.reach)
     for _ in range(3):  # the collarbone follows the arm, which moves the shoulder the arm hangs from
         upper, lower, forearm = ik.arm(wrist, hand.elbow, collar)
-        collar = ik.collarbone(upper, collar, hand.shrug)
+        collar = ik.collarbone(upper, collar, hand.shrug, hand.reach)
     upper, lower, forearm = ik.arm(wrist, hand.elbow, collar)
     if hand.fingers is not None and hand.palm is not None:
         aim = rotation.multiply(ik.frame(np.array(hand.fingers), np.array(hand.palm)), rotation.conjugate(ik.frame(ARM_AXIS, PALM)))

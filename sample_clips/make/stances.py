@@ -13,24 +13,36 @@ from sample_clips.make.poses import Foot, Hand, Posture
 SIDE = Hand(at=(0.236, 0.893, 0.012), turn=-16, bend=6, shape="hanging", elbow=(0.35, -0.2, -0.9))
 BASE = Posture(left=SIDE, right=SIDE)
 
-HIP = Hand(at=(0.214, 1.045, -0.005), fingers=(-0.42, -0.58, 0.70), palm=(-0.86, 0.05, -0.48), shape="on_hip", elbow=(0.9, -0.05, -0.55))
+HIP = Hand(at=(0.2040, 1.0220, -0.0220), fingers=(-0.365, -0.68, 0.627), palm=(-0.75, -0.188, -0.635), shape="on_hip", elbow=(0.9, -0.05, -0.55))
 
 # Right forearm above and in front, its hand on the left upper arm; left forearm beneath, its hand under the right arm.
 CROSS_OVER = Hand(
-    at=(-0.015, 1.182, 0.205), fingers=(-0.93, 0.18, -0.32), palm=(-0.30, -0.10, -0.95), shape="hold_arm", elbow=(0.75, -0.6, -0.1)
+    at=(-0.076, 1.244, 0.221),
+    fingers=(-0.765, 0.266, -0.587),
+    palm=(-0.175, 0.018, -0.984),
+    shape="hold_arm",
+    elbow=(0.893, -0.434, -0.116),
+    reach=14,
 )
 CROSS_UNDER = Hand(
-    at=(-0.005, 1.142, 0.150), fingers=(-0.96, 0.20, -0.16), palm=(-0.15, 0.05, -0.98), shape="cupped", elbow=(0.75, -0.6, -0.1)
+    at=(-0.033, 1.164, 0.142),
+    fingers=(-0.729, 0.392, -0.561),
+    palm=(0.082, 0.319, -0.944),
+    shape="tucked",
+    elbow=(0.569, -0.634, 0.523),
+    reach=12,
 )
 
-CHIN = Hand(at=(0.035, 1.375, 0.165), fingers=(-0.35, 0.90, -0.22), palm=(-0.35, -0.30, -0.88), shape="chin", elbow=(0.3, -0.95, 0.1))
-SUPPORT = Hand(at=(-0.02, 1.125, 0.165), fingers=(-0.95, 0.12, 0.28), palm=(-0.2, 0.55, -0.8), shape="cupped", elbow=(0.75, -0.65, -0.1))
+CHIN = Hand(at=(0.034, 1.398, 0.134), fingers=(-0.595, 0.801, -0.072), palm=(-0.326, -0.281, -0.903), shape="chin", elbow=(0.3, -0.95, 0.1))
+SUPPORT = Hand(
+    at=(-0.026, 1.124, 0.165), fingers=(-0.951, 0.111, 0.288), palm=(-0.168, 0.377, -0.911), shape="cradle", elbow=(0.75, -0.65, -0.1)
+)
 
 CLASP_OVER = Hand(
-    at=(0.072, 1.005, 0.205), fingers=(-0.80, -0.48, 0.35), palm=(-0.42, 0.02, -0.9), shape="clasp_over", elbow=(0.8, -0.3, -0.5)
+    at=(0.080, 1.017, 0.223), fingers=(-0.663, -0.739, 0.124), palm=(-0.371, 0.034, -0.928), shape="clasp_over", elbow=(0.8, -0.3, -0.5)
 )
 CLASP_UNDER = Hand(
-    at=(0.062, 0.985, 0.175), fingers=(-0.75, -0.58, 0.30), palm=(-0.40, 0.05, -0.9), shape="clasp_under", elbow=(0.8, -0.3, -0.5)
+    at=(0.071, 1.010, 0.178), fingers=(-0.671, -0.644, 0.368), palm=(-0.415, 0.146, -0.898), shape="clasp_under", elbow=(0.8, -0.3, -0.5)
 )
 
 ARMS = {

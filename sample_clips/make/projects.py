@@ -1,0 +1,84 @@
+"""The two sample projects: a finished one, and one whose clips wait to be labelled. `python -m sample_clips.make.projects`."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import cast
+
+from metagraph.formats.imports import import_files
+from metagraph.formats.store import SUFFIX, save_project
+from metagraph.graph import edits
+from metagraph.graph.model import LAYERS, Kind, Layer, Limb, Project, Timing
+from sample_clips.make.catalogue import BASE, Entry, catalogue
+
+HERE = Path(__file__).resolve().parents[1]
+STARTS = {"body": "weight both", "arms": "hands at sides", "head": "straight"}
+
+
+def practice() -> Project:
+    """Return a project of all clips, none of them placed; its base pose is chosen, since practice is about dropping."""
+    empty = Project(name="practice")
+    imported = import_files(empty, HERE, [HERE / "clips"])
+    if imported.failures:
+        raise RuntimeError("\n".join(imported.failures))
+    project = imported.into(empty)
+    base = next(c.id for c in project.clips.values() if c.name == BASE[0])
+    project = edits.set_base(project, base, BASE[1])
+    return edits.set_character(project, "mannequin.glb")
+
+
+def sample() -> Project:
+    """Return the finished project: every clip of the catalogue placed with its timing, tags and likelihood."""
+    project = edits.rename_project(practice(), "sample")
+    clips = {c.name: c.id for c in project.clips.values()}
+    entries = catalogue()
+    ids: dict[tuple[str, str], str] = {}
+    for layer in LAYERS:
+        loops = [e for e in entries if e.layer == layer and e.kind == "stance"]
+        names = sorted(dict.fromkeys(_words(e.stance) for e in loops), key=lambda n: (n != STARTS[layer], 0))
+        for name in names:
+            project = edits.add_stance(project, layer, name)
+            ids[(layer, name)] = list(project.graphs[layer].stances)[-1]
+    for entry in sorted(entries, key=lambda e: ("stance", "gesture", "fidget", "transition").index(e.kind)):
+        project = _place(project, entry, clips[entry.name], ids)
+    return project
+
+
+def _words(name: str) -> str:
+    return name.replace("_", " ")
+
+
+def _place(project: Project, entry: Entry, clip: str, ids: dict[tuple[str, str], str]) -> Project:
+    layer, kind = cast(Layer, entry.layer), cast(Kind, entry.kind)
+    stance = ids[(entry.layer, _words(entry.stance))]
+    end = ids[(entry.layer, _words(entry.end_stance))] if entry.kind == "transition" else None
+    before = set(project.graphs[layer].actions)
+    project = edits.place(project, [clip], layer, kind, stance, end)
+    made = next(i for i in project.graphs[layer].actions if i not in before)
+    length = project.clips[clip].duration
+    if kind == "stance":
+        timing = Timing(loop=True, blend_in=0.0, blend_out=0.0)
+    else:
+        last = None if entry.end >= length - 1e-3 else round(entry.end, 3)
+        timing = Timing(round(entry.start, 3), last, entry.blend_in, entry.blend_out)
+    name = entry.name.split("__", 1)[-1]
+    return edits.update_actions(
+        project,
+        [made],
+        name=entry.name.split("__")[0] if name == "stance" else name,
+        timing=timing,
+        limb=cast(Limb, entry.limb),
+        tags=tuple(entry.tags),
+        likelihood=entry.likelihood,
+    )
+
+
+def main() -> None:
+    for name, project in (("practice", practice()), ("sample", sample())):
+        path = HERE / f"{name}{SUFFIX}"
+        save_project(project, path, path)
+        print(path.name, f"{path.stat().st_size / 1e3:.0f} kB")
+
+
+if __name__ == "__main__":
+    main()
