@@ -69,7 +69,7 @@ def parse(data: Any, at: int, end: int, out: Any) -> tuple[int, int]:
             power = 0
             while at < end and 48 <= data[at] <= 57:
                 if power < 9999:
-                    power = power * 10 + (np.int64(data[at]) - 48)
+                    power = power * 10 + int(data[at]) - 48
                 at += 1
             shift += -power if down else power
         if at < end and not (data[at] == 32 or 9 <= data[at] <= 13):

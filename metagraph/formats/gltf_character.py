@@ -24,8 +24,7 @@ class _Part:
     uvs: Array
     joints: Array
     weights: Array
-    triangles: Array
-    material: int
+    mirrored: bool
     morphs: dict[str, Array] = field(default_factory=dict)
 
 
@@ -34,19 +33,32 @@ def character_of(gltf: Gltf, rig: Rig) -> Character:
     doc = gltf.json
     notes = list(rig.notes)
     parts: list[_Part] = []
+    runs: list[tuple[int, Array, int]] = []  # (part, triangles, material): primitives may share their vertices
     for node in _scene_nodes(gltf, rig):
         index = doc.nodes[node].mesh
         if index is None:
             continue
         mesh = gltf.item(doc.meshes, index, "mesh", f"node {node} '{doc.nodes[node].name}'")
+        shared: dict[tuple[Any, ...], int | None] = {}
         for p, primitive in enumerate(mesh.primitives):
             where = f"mesh {index} '{mesh.name}', primitive {p}"
             if primitive.mode not in (4, 5, 6) or "POSITION" not in primitive.attributes:
                 notes.append(f"{where} is not made of triangles and was left out")
                 continue
-            part = _part(gltf, rig, node, primitive, where, notes)
-            if part is not None:
-                parts.append(part)
+            count = len(gltf.array(primitive.attributes["POSITION"], where, "VEC3"))
+            triangles = _triangles(gltf, primitive, count, where)
+            if not len(triangles):
+                continue
+            key = (*sorted(primitive.attributes.items()), *(tuple(sorted(t.items())) for t in primitive.targets))
+            if key not in shared or "NORMAL" not in primitive.attributes:
+                part = _part(gltf, rig, node, primitive, triangles, where, notes)
+                shared[key] = None if part is None else len(parts)
+                if part is not None:
+                    parts.append(part)
+            place = shared[key]
+            if place is not None:
+                turned = triangles[:, ::-1] if parts[place].mirrored else triangles
+                runs.append((place, turned, -1 if primitive.material is None else primitive.material))
     if not parts:
         gltf.fail("it holds no mesh", "", "Choose a file with a character, or import this one as clips.")
     names = tuple(dict.fromkeys(name for part in parts for name in part.morphs))
@@ -58,11 +70,11 @@ def character_of(gltf: Gltf, rig: Rig) -> Character:
         for part, start in zip(parts, starts, strict=False):
             for name, offsets in part.morphs.items():
                 morphs[names.index(name), start : start + len(offsets)] = offsets
-    materials, places = _materials(gltf, [p.material for p in parts], notes)
+    materials, places = _materials(gltf, [material for _, _, material in runs], notes)
     surfaces, first = [], 0
-    for part in parts:
-        surfaces.append(Surface(first, len(part.triangles), places[part.material]))
-        first += len(part.triangles)
+    for _, triangles, material in runs:
+        surfaces.append(Surface(first, len(triangles), places[material]))
+        first += len(triangles)
     return Character(
         gltf.path.stem,
         rig.skeleton,
@@ -71,7 +83,7 @@ def character_of(gltf: Gltf, rig: Rig) -> Character:
         np.concatenate([p.uvs for p in parts]).astype(np.float32),
         np.concatenate([p.joints for p in parts]).astype(np.uint16),
         np.concatenate([p.weights for p in parts]).astype(np.float32),
-        np.concatenate([p.triangles + s for p, s in zip(parts, starts, strict=False)]).astype(np.uint32),
+        np.concatenate([triangles + starts[place] for place, triangles, _ in runs]).astype(np.uint32),
         materials,
         tuple(surfaces),
         names,
@@ -101,16 +113,13 @@ def _scene_nodes(gltf: Gltf, rig: Rig) -> list[int]:
     return out
 
 
-def _part(gltf: Gltf, rig: Rig, node: int, primitive: Primitive, where: str, notes: list[str]) -> _Part | None:
-    """Return one primitive in the rest pose, in metres, or None when there is nothing of it to see."""
+def _part(gltf: Gltf, rig: Rig, node: int, primitive: Primitive, triangles: Array, where: str, notes: list[str]) -> _Part | None:
+    """Return one primitive's vertices in the rest pose, in metres, or None when they are scaled to nothing."""
     attributes = primitive.attributes
     positions = _floats(gltf, attributes["POSITION"], "VEC3", None, where)
     count = len(positions)
     normals = _floats(gltf, attributes["NORMAL"], "VEC3", count, where) if "NORMAL" in attributes else None
     uvs = _floats(gltf, attributes["TEXCOORD_0"], "VEC2", count, where) if "TEXCOORD_0" in attributes else np.zeros((count, 2))
-    triangles = _triangles(gltf, primitive, count, where)
-    if not count or not len(triangles):
-        return None
     skin = gltf.json.nodes[node].skin
     if skin is not None and "JOINTS_0" in attributes and "WEIGHTS_0" in attributes:
         matrices, joints, weights = _skinned(gltf, rig, skin, attributes, count, where)
@@ -125,9 +134,7 @@ def _part(gltf: Gltf, rig: Rig, node: int, primitive: Primitive, where: str, not
         joints[:, 0] = joint
         weights = np.tile([1.0, 0, 0, 0], (count, 1))
     linear = matrices[:, :3, :3]
-    mirrored = np.linalg.det(linear[0]) < 0
-    if mirrored:
-        triangles = triangles[:, ::-1]
+    mirrored = bool(np.linalg.det(linear[0]) < 0)
     moved = np.einsum("vab,vb->va", linear, positions) + matrices[:, :3, 3]
     morphs = {}
     for name, target in zip(morph_names(gltf, node), primitive.targets, strict=False):
@@ -135,7 +142,7 @@ def _part(gltf: Gltf, rig: Rig, node: int, primitive: Primitive, where: str, not
             offsets = _floats(gltf, target["POSITION"], "VEC3", count, f"{where}, target '{name}'")
             morphs[name] = np.einsum("vab,vb->va", linear, offsets)
     if normals is None:
-        normals = _smooth_normals(moved, triangles)
+        normals = _smooth_normals(moved, triangles[:, ::-1] if mirrored else triangles)
     else:
         # The cofactor matrix turns normals rightly under uneven scale and never needs an inverse.
         a, b, c = linear[:, :, 0], linear[:, :, 1], linear[:, :, 2]
@@ -145,7 +152,7 @@ def _part(gltf: Gltf, rig: Rig, node: int, primitive: Primitive, where: str, not
         normals = np.where(length > 1e-30, normals / np.maximum(length, 1e-30), [0.0, 1.0, 0.0])
     if not all(np.isfinite(a).all() for a in (moved, normals, uvs, weights, *morphs.values())) or np.abs(moved).max() > 1e9:
         gltf.fail("it holds a value that is not a sensible number", where)
-    return _Part(moved, normals, uvs, joints, weights, triangles, -1 if primitive.material is None else primitive.material, morphs)
+    return _Part(moved, normals, uvs, joints, weights, mirrored, morphs)
 
 
 def _floats(gltf: Gltf, accessor: int, kind: str, count: int | None, where: str) -> Array:

@@ -226,7 +226,7 @@ def _without_skin(nodes: list[Node], parents: list[int], order: list[int], anima
     kept: set[int] = set()
     for i in reversed(order):
         below = any(c in kept for c in nodes[i].children)
-        scenery = nodes[i].mesh is not None or nodes[i].camera is not None or bool(nodes[i].children)
+        scenery = nodes[i].mesh is not None or nodes[i].camera is not None
         if i in animated or below or not scenery:
             kept.add(i)
     live: set[int] = set()
@@ -243,7 +243,8 @@ def _without_skin(nodes: list[Node], parents: list[int], order: list[int], anima
     for top in tops:
         while top in inside and top not in animated:
             children = [c for c in nodes[top].children if c in inside]
-            if len(children) != 1 or not animated:
+            wrapper = not any(nodes[top].translation or ()) or nodes[top].scale is not None  # a bone has a place of its own
+            if len(children) != 1 or not animated or not wrapper:
                 break
             inside.discard(top)
             top = children[0]
