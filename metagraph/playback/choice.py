@@ -9,26 +9,28 @@ import math
 from collections.abc import Mapping
 
 _MASK = 0xFFFFFFFF
+OFFSET, PRIME = 0x811C9DC5, 0x01000193  # FNV-1a's, 32 bits
+MIX = (0x85EBCA6B, 0xC2B2AE35)  # MurmurHash3's finaliser
 
 
 def mix(value: int) -> int:
     """Scramble 32 bits: two rounds of shift-xor and odd multiplication (MurmurHash3's finaliser)."""
     value &= _MASK
     value ^= value >> 16
-    value = (value * 0x85EBCA6B) & _MASK
+    value = (value * MIX[0]) & _MASK
     value ^= value >> 13
-    value = (value * 0xC2B2AE35) & _MASK
+    value = (value * MIX[1]) & _MASK
     return value ^ (value >> 16)
 
 
 def _absorb(value: int, word: str) -> int:
     for byte in word.encode():
-        value = ((value ^ byte) * 0x01000193) & _MASK
-    return (value * 0x01000193) & _MASK  # the closing zero byte
+        value = ((value ^ byte) * PRIME) & _MASK
+    return (value * PRIME) & _MASK  # the closing zero byte
 
 
 def _begin(seed: int, words: tuple[str, ...]) -> int:
-    value = (0x811C9DC5 ^ mix(seed)) & _MASK
+    value = (OFFSET ^ mix(seed)) & _MASK
     for word in words:
         value = _absorb(value, word)
     return value

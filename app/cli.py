@@ -1,0 +1,113 @@
+"""The `metagraph` command: the window by default, and the same work without one."""
+
+from __future__ import annotations
+
+import argparse
+import json
+import sys
+from collections.abc import Sequence
+from pathlib import Path
+from typing import Any
+
+from metagraph import __version__
+
+ERROR, PROBLEMS, USAGE = 1, 3, 2
+
+DESCRIPTION = """\
+Drop motion clips onto stance, gesture, fidget and transition; the state machine draws itself.
+
+Without a command the window opens. A project is a file ending in .metagraph.yaml."""
+
+EXAMPLES = """\
+examples:
+  metagraph                                   open the window
+  metagraph my.metagraph.yaml                 open a project in the window
+  metagraph import my.metagraph.yaml clips/   add all clips of a folder (the project is made if need be)
+  metagraph check my.metagraph.yaml           list what is wrong, and what to do about it
+  metagraph plan my.metagraph.yaml -s 20      print a performance of 20 seconds
+  metagraph render my.metagraph.yaml -o show.mp4 -s 20
+  metagraph export my.metagraph.yaml -o game/
+
+exit codes: 0 done, 1 an error, 2 wrong usage, 3 done but with problems"""
+
+
+def _parser() -> argparse.ArgumentParser:
+    parser = argparse.ArgumentParser(
+        prog="metagraph", description=DESCRIPTION, epilog=EXAMPLES, formatter_class=argparse.RawDescriptionHelpFormatter
+    )
+    parser.add_argument("--version", action="version", version=f"metagraph {__version__}")
+    commands = parser.add_subparsers(dest="command", metavar="command")
+
+    def command(name: str, words: str, project: bool = True) -> argparse.ArgumentParser:
+        out = commands.add_parser(name, help=words, description=words[:1].upper() + words[1:] + ".")
+        if project:
+            out.add_argument("project", type=Path, help="the project file")
+        out.add_argument("--json", action="store_true", help="print what a program can read")
+        return out
+
+    window = command("window", "open the window", project=False)
+    window.add_argument("project", type=Path, nargs="?", help="a project file")
+    window.add_argument("--sample", action="store_true", help="open the sample project")
+    clips = command("import", "add clips to a project, made if it is not there")
+    clips.add_argument("paths", type=Path, nargs="+", help="clip files and folders: BVH, GLB, glTF, VRM animation, FBX")
+    checked = command("check", "list the problems of a project")
+    checked.add_argument("--strict", action="store_true", help="warnings count as problems for the exit code, too")
+    planned = command("plan", "plan a performance and print its actions")
+    _performance(planned, 20.0)
+    rendered = command("render", "draw a performance, or one clip: a contact sheet (.png) or a video (.mp4)")
+    _performance(rendered, 10.0)
+    rendered.add_argument("-o", "--out", type=Path, required=True, help="a .png or .mp4 file")
+    rendered.add_argument("--clip", help="draw this clip of the project alone")
+    rendered.add_argument("--size", default="960x540", help="width x height in pixels (default: 960x540)")
+    rendered.add_argument("--fps", type=float, default=30.0, help="pictures a second of a video (default: 30)")
+    rendered.add_argument("--frames", type=int, default=24, help="pictures on a contact sheet (default: 24)")
+    rendered.add_argument("--theme", choices=("dark", "light"), default="dark")
+    exported = command("export", "write JSON and GLB for engines")
+    exported.add_argument("-o", "--out", type=Path, required=True, help="a folder")
+    exported.add_argument("--expanded", action="store_true", help="list the expanded state machine as well")
+    exported.add_argument("--no-mesh", action="store_true", help="leave the character's mesh out of the GLB")
+    info = command("info", "tell what is in a project, an export or a clip file", project=False)
+    info.add_argument("path", type=Path, help="a project, an exported JSON, or a clip file")
+    demo = command("demo", "the main job without a window: sample project to performance, pictures, video and export", project=False)
+    demo.add_argument("-o", "--out", type=Path, default=Path("out"), help="a folder (default: out)")
+    _performance(demo, 60.0)
+    return parser
+
+
+def _performance(parser: argparse.ArgumentParser, seconds: float) -> None:
+    parser.add_argument("-s", "--seconds", type=float, default=seconds, help=f"length of the performance (default: {seconds:g})")
+    parser.add_argument("--seed", type=int, help="another performance of the same project (default: the project's seed)")
+
+
+def main(arguments: Sequence[str] | None = None) -> int:
+    """Run a command line; return the exit code."""
+    given = list(sys.argv[1:] if arguments is None else arguments)
+    known = {"window", "import", "check", "plan", "render", "export", "info", "demo", "-h", "--help", "--version"}
+    if not given or given[0] not in known:
+        given = ["window", *given]
+    options = _parser().parse_args(given)
+    from metagraph.errors import FileError
+
+    try:
+        from app import headless
+
+        run: Any = getattr(headless, options.command if options.command != "import" else "import_clips")
+        return int(run(options))
+    except FileError as error:
+        return _fail(options, str(error))
+    except (ValueError, RuntimeError) as error:
+        return _fail(options, str(error))
+    except KeyboardInterrupt:
+        return _fail(options, "stopped")
+
+
+def _fail(options: argparse.Namespace, words: str) -> int:
+    if options.json:
+        print(json.dumps({"error": words}))
+    else:
+        print(f"metagraph: {words}", file=sys.stderr)
+    return ERROR
+
+
+if __name__ == "__main__":
+    sys.exit(main())

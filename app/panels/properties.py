@@ -1,0 +1,9 @@
+from PySide6.QtWidgets import QWidget
+
+
+class PropertiesPanel(QWidget):
+    def __init__(self, *a):
+        super().__init__(a[-1])
+
+    def show_problems(self, p):
+        pass

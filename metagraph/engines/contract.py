@@ -1,0 +1,190 @@
+"""The exported JSON, field by field. These types write it, read it and publish its JSON Schema (draft 2020-12).
+
+Times are seconds, lengths metres, Y up, right-handed; quaternions xyzw. An id is never a name and never changes.
+"""
+
+from __future__ import annotations
+
+from typing import Annotated, Any, Literal
+
+import msgspec
+from msgspec import Meta, Struct
+
+FORMAT = 1
+
+Id = Annotated[str, Meta(min_length=1)]
+Seconds = Annotated[float, Meta(ge=0)]
+Quaternion = Annotated[list[float], Meta(min_length=4, max_length=4, description="xyzw, unit length")]
+Vector = Annotated[list[float], Meta(min_length=3, max_length=3, description="metres")]
+LayerName = Literal["body", "arms", "head"]
+KindName = Literal["stance", "gesture", "fidget", "transition"]
+LimbName = Literal["left", "right", "both"]
+PartName = Literal["legs", "spine", "arms", "head", "face"]
+
+
+class Joint(Struct, omit_defaults=True, forbid_unknown_fields=True):
+    """A joint; parents come before their children. translation, rotation: local, of the rest pose."""
+
+    name: str
+    parent: str | None
+    part: PartName
+    side: Literal["left", "right", "centre"]
+    translation: Vector
+    rotation: Quaternion
+
+
+class ExportedClip(Struct, forbid_unknown_fields=True):
+    """A clip. animation: its place in the GLB's list of animations, where it bears the same name. sha256: of the file it came from."""
+
+    id: Id
+    name: str
+    animation: Annotated[int, Meta(ge=0)]
+    fps: Annotated[float, Meta(gt=0)]
+    frames: Annotated[int, Meta(ge=1)]
+    duration: Seconds
+    sha256: str
+
+
+class ExportedStance(Struct, forbid_unknown_fields=True):
+    """A stance; its loops are the actions of kind "stance" under it in the index."""
+
+    id: Id
+    name: str
+
+
+class ExportedAction(Struct, forbid_unknown_fields=True):
+    """One use of a clip. start, end: the part of the clip that plays (whole_end: the end is the clip's own). blend_in and
+    blend_out lie inside it; a stance's blend_in is the overlap at its loop's seam. earliest_exit: clip time from which it
+    may be left, or null. joints: the only ones it moves, all when empty."""
+
+    id: Id
+    name: str
+    clip: Id
+    kind: KindName
+    stance: Id
+    end_stance: str | None
+    start: Seconds
+    end: Seconds
+    whole_end: bool
+    blend_in: Seconds
+    blend_out: Seconds
+    loop: bool
+    earliest_exit: float | None
+    stroke: float | None
+    limb: LimbName
+    joints: list[str]
+    tags: list[str]
+    likelihood: Annotated[float, Meta(gt=0)]
+
+
+class Transition(Struct, rename={"source": "from", "target": "to"}, forbid_unknown_fields=True):
+    """The actions that lead from one stance straight to another."""
+
+    source: Id
+    target: Id
+    actions: list[Id]
+
+
+class ExportedMarkov(Struct, forbid_unknown_fields=True):
+    """states: (limb, kind). matrix: rows of probabilities. gap: mean seconds of rest between meta actions. positive,
+    negative: the share of gestures asked for with that tag."""
+
+    states: list[tuple[LimbName, KindName]]
+    matrix: list[list[Annotated[float, Meta(ge=0, le=1)]]]
+    gap: Annotated[float, Meta(gt=0)]
+    positive: Annotated[float, Meta(ge=0, le=1)]
+    negative: Annotated[float, Meta(ge=0, le=1)]
+
+
+class ExportedLayer(Struct, forbid_unknown_fields=True):
+    """One layer's meta-graph. weights: how strongly it moves each body part. index: the multi-index, stance -> kind -> action
+    ids in the order they were placed. own_markov: the model was edited; otherwise it is the default."""
+
+    start: str | None
+    weights: dict[PartName, Annotated[float, Meta(ge=0, le=2)]]
+    own_weights: list[PartName]
+    stances: list[ExportedStance]
+    actions: list[ExportedAction]
+    index: dict[str, dict[KindName, list[Id]]]
+    transitions: list[Transition]
+    markov: ExportedMarkov
+    own_markov: bool
+
+
+class Base(Struct, forbid_unknown_fields=True):
+    """The pose all offsets are taken against. clip, frame: where it came from; null for the rest pose. rotations and
+    translations: local, one per joint."""
+
+    clip: str | None
+    frame: int
+    rotations: list[Quaternion]
+    translations: list[Vector]
+
+
+class Planner(Struct, forbid_unknown_fields=True):
+    """Constants of planning. alpha: added to an action's count when it is used; an action is drawn with probability
+    likelihood / max(count, 1). never_twice: not the same in a row where there is another. shortest: seconds below which what is
+    left of a cut request is dropped. wait: how late a request may start. window: seconds a request may use that does
+    not say how long. blend: the curve of a blend's weight over its time x."""
+
+    seed: Annotated[int, Meta(ge=0, le=0xFFFFFFFF)]
+    alpha: float
+    never_twice: bool
+    shortest: Seconds
+    wait: Seconds
+    window: Seconds
+    loop_fade: Seconds
+    blend: Literal["3x^2-2x^3"]
+
+
+class Randomness(Struct, forbid_unknown_fields=True):
+    """How draws are keyed. hash: FNV-1a over the words' UTF-8 bytes, each word closed by a zero byte, begun at
+    offset xor mix(seed), then mixed; all in 32 bits. uniform: (hash + 0.5) / 2^32. pick: the candidate with the smallest
+    -ln(uniform(seed, key, purpose, id)) / weight. test: the hash of seed 1 and the words "a", "b"."""
+
+    hash: Literal["fnv1a32-mix"]
+    offset: int
+    prime: int
+    mix: list[int]
+    test: int
+
+
+class Expanded(Struct, rename={"targets": "to", "sources": "from"}, forbid_unknown_fields=True):
+    """The ordinary state machine of a layer, in columns: connection n leads from `states[from[n]]` to `states[to[n]]`.
+    leave: clip seconds at which the source may be left, -1 for at any time. blend: seconds."""
+
+    states: list[Id]
+    sources: list[int]
+    targets: list[int]
+    leave: list[float]
+    blend: list[float]
+
+
+class Export(Struct, omit_defaults=True, forbid_unknown_fields=True):
+    """A Metagraph export: this JSON and the GLB it names."""
+
+    metagraph: Annotated[int, Meta(ge=1, le=FORMAT, description="version of this format")]
+    name: str
+    glb: str
+    height: Annotated[float, Meta(gt=0, description="of the skeleton's rest pose, metres")]
+    order: Annotated[list[LayerName], Meta(description="in which layers' offsets are multiplied onto the base pose, from the left")]
+    joints: list[Joint]
+    base: Base
+    clips: list[ExportedClip]
+    layers: dict[LayerName, ExportedLayer]
+    planner: Planner
+    randomness: Randomness
+    roles: dict[str, str] = {}
+    parts: dict[str, PartName] = {}
+    expanded: dict[LayerName, Expanded] | None = None
+
+
+def schema() -> dict[str, Any]:
+    """Return the JSON Schema of an export."""
+    out = msgspec.json.schema(Export)
+    return {
+        "$schema": "https://json-schema.org/draft/2020-12/schema",
+        "title": "Metagraph export",
+        "description": "Times are seconds, lengths metres, Y up, right-handed; quaternions are xyzw.",
+        **out,
+    }

@@ -1,0 +1,281 @@
+"""Export: one JSON and one GLB that hold all a runtime needs, and their reading back."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Callable
+from dataclasses import dataclass, replace
+from pathlib import Path
+
+import msgspec
+
+from metagraph.engines import contract as c
+from metagraph.errors import FileError
+from metagraph.formats.store import write_atomically
+from metagraph.graph import anatomy
+from metagraph.graph.check import check
+from metagraph.graph.expand import connections
+from metagraph.graph.model import LAYERS, REACH, Action, BasePose, ClipEntry, Layer, Markov, MetaGraph, Project, Settings, Stance, Timing
+from metagraph.motion.clip import Clip
+from metagraph.motion.skeleton import Skeleton, unique_names
+from metagraph.playback import choice, markov
+from metagraph.playback.pick import LOOP_FADE
+from metagraph.playback.planner import WINDOW
+
+
+class ExportError(ValueError):
+    """The project cannot be exported; the message says what to mend first."""
+
+
+@dataclass(frozen=True)
+class Exported:
+    """What was written. warnings: problems that do not stop an export, in words."""
+
+    json: Path
+    glb: Path
+    clips: int
+    warnings: tuple[str, ...] = ()
+
+
+def export(
+    project: Project,
+    folder: str | Path,
+    expanded: bool = False,
+    mesh: bool = True,
+    character: Path | None = None,
+    progress: Callable[[int, int, str], None] | None = None,
+) -> Exported:
+    """Write `<name>.json` and `<name>.glb` into a folder.
+
+    expanded: list the expanded state machine as well. mesh: put the character's mesh into the GLB; `character` is its
+    file. Raises ExportError while the project has errors, FileError when a file cannot be written.
+    """
+    problems = check(project)
+    errors = [p for p in problems if p.severity == "error"]
+    if errors:
+        more = f" (and {len(errors) - 1} more)" if len(errors) > 1 else ""
+        raise ExportError(f"{errors[0].message}. {errors[0].remedy}{more}")
+    tell = progress or (lambda done, total, words: None)
+    used = _used(project)
+    if project.skeleton is None or not used:
+        raise ExportError("no action is placed yet: there is nothing to export")
+    stem = re.sub(r"[^\w.-]+", "_", project.name).strip("._") or "metagraph"
+    target = Path(folder)
+    glb, json = target / f"{stem}.glb", target / f"{stem}.json"
+    names = unique_names([entry.name for entry in used])
+    tell(0, 3, "clips")
+    clips = [e.motion.renamed(name) for e, name in zip(used, names, strict=True) if e.motion is not None]
+    _write_glb(glb, clips, project.skeleton, character if mesh else None)
+    tell(1, 3, "graph")
+    document = to_document(project, glb.name, names, expanded)
+    tell(2, 3, "writing")
+    write_atomically(json, msgspec.json.format(msgspec.json.encode(document), indent=1))
+    tell(3, 3, "done")
+    return Exported(json, glb, len(used), tuple(f"{p.message}. {p.remedy}" for p in problems if p.severity == "warning"))
+
+
+def _write_glb(path: Path, clips: list[Clip], skeleton: Skeleton, character: Path | None) -> None:
+    from metagraph.formats.gltf import read_character
+    from metagraph.formats.gltf_writer import write_glb
+
+    path.parent.mkdir(parents=True, exist_ok=True)
+    body = read_character(character) if character is not None else None
+    if body is not None and body.skeleton != skeleton:
+        body = None  # a mesh on another skeleton would not move with these clips
+    write_glb(path, [replace(clip, skeleton=skeleton) for clip in clips], body)
+
+
+def _used(project: Project) -> list[ClipEntry]:
+    """Return the clips that are placed, and the base pose's, in the project's order."""
+    return [e for e in project.clips.values() if e.id in project.uses or e.id == project.base.clip]
+
+
+def to_document(project: Project, glb: str, names: tuple[str, ...], expanded: bool = False) -> c.Export:
+    """Return the JSON's content; `names`: of the used clips' animations in the GLB."""
+    skeleton = project.skeleton
+    assert skeleton is not None
+    parts, sides = anatomy.parts(project), anatomy.sides(project)
+    joints = [
+        c.Joint(
+            name,
+            skeleton.names[skeleton.parents[i]] if skeleton.parents[i] >= 0 else None,
+            parts[i],
+            sides[i],  # type: ignore[arg-type]
+            [float(x) for x in skeleton.rest_translations[i]],
+            [float(x) for x in skeleton.rest_rotations[i]],
+        )
+        for i, name in enumerate(skeleton.names)
+    ]
+    pose = anatomy.base_pose(project)
+    base = c.Base(project.base.clip, project.base.frame, pose.rotations.tolist(), pose.translations.tolist())
+    clips = [
+        c.ExportedClip(e.id, name, n, e.fps, e.frames, e.duration, e.digest)
+        for n, (e, name) in enumerate(zip(_used(project), names, strict=True))
+    ]
+    s = project.settings
+    return c.Export(
+        metagraph=c.FORMAT,
+        name=project.name,
+        glb=glb,
+        height=skeleton.height,
+        order=list(LAYERS),
+        joints=joints,
+        base=base,
+        clips=clips,
+        layers={layer: _layer(project, project.graphs[layer]) for layer in LAYERS},
+        planner=c.Planner(s.seed, s.alpha, s.never_twice, s.shortest, s.wait, WINDOW, LOOP_FADE, "3x^2-2x^3"),
+        randomness=c.Randomness(
+            "fnv1a32-mix", choice.OFFSET, choice.PRIME, [16, choice.MIX[0], 13, choice.MIX[1], 16], choice.key32(1, "a", "b")
+        ),
+        roles=dict(project.roles),
+        parts=dict(project.parts),
+        expanded={layer: _expanded(project, project.graphs[layer]) for layer in LAYERS} if expanded else None,
+    )
+
+
+def _layer(project: Project, graph: MetaGraph) -> c.ExportedLayer:
+    index: dict[str, dict[c.KindName, list[str]]] = {}
+    for (stance, kind), actions in graph.index.items():
+        index.setdefault(stance, {})[kind] = [a.id for a in actions]
+    ways: dict[tuple[str, str], list[str]] = {}
+    for action in graph.actions.values():
+        if action.kind == "transition" and action.end_stance is not None:
+            ways.setdefault((action.stance, action.end_stance), []).append(action.id)
+    model = markov.model(project, graph.layer)
+    return c.ExportedLayer(
+        start=graph.start,
+        weights={part: graph.weight(part) for part in REACH[graph.layer]},
+        own_weights=list(graph.weights),
+        stances=[c.ExportedStance(s.id, s.name) for s in graph.stances.values()],
+        actions=[_action(project, a) for a in graph.actions.values()],
+        index=index,
+        transitions=[c.Transition(a, b, ids) for (a, b), ids in ways.items()],
+        markov=c.ExportedMarkov(list(model.states), [list(row) for row in model.matrix], model.gap, model.positive, model.negative),
+        own_markov=graph.layer in project.markov,
+    )
+
+
+def _action(project: Project, action: Action) -> c.ExportedAction:
+    start, end = project.span(action)
+    t = action.timing
+    return c.ExportedAction(
+        action.id,
+        action.name,
+        action.clip,
+        action.kind,
+        action.stance,
+        action.end_stance,
+        start,
+        end,
+        t.end is None,
+        t.blend_in,
+        t.blend_out,
+        t.loop,
+        t.earliest_exit,
+        t.stroke,
+        action.limb,
+        list(action.joints),
+        list(action.tags),
+        action.likelihood,
+    )
+
+
+def _expanded(project: Project, graph: MetaGraph) -> c.Expanded:
+    states = list(graph.actions)
+    place = {ident: n for n, ident in enumerate(states)}
+    rows = list(connections(project, graph))
+    return c.Expanded(
+        states,
+        [place[r.source] for r in rows],
+        [place[r.target] for r in rows],
+        [-1.0 if r.leave is None else r.leave for r in rows],
+        [r.blend for r in rows],
+    )
+
+
+def read_export(path: str | Path, motions: bool = True) -> Project:
+    """Read an export back into a project with the same graph, ids and constants. motions: load the clips from its GLB.
+
+    Raises FileError naming the field that is wrong.
+    """
+    path = Path(path)
+    try:
+        document = msgspec.json.decode(path.read_bytes(), type=c.Export)
+    except OSError as error:
+        raise FileError(path, f"cannot be read ({error.strerror})", "", "Check that it is there.") from None
+    except (msgspec.MsgspecError, RecursionError) as error:
+        cause, _, where = str(error).partition(" - at ")
+        raise FileError(path, cause[:1].lower() + cause[1:], where.strip("`"), "Export it again.") from None
+    names = [j.name for j in document.joints]
+    places = {name: n for n, name in enumerate(names)}
+    try:
+        skeleton = Skeleton(
+            tuple(names),
+            [-1 if j.parent is None else places[j.parent] for j in document.joints],  # type: ignore[arg-type]
+            [j.rotation for j in document.joints],  # type: ignore[arg-type]
+            [j.translation for j in document.joints],  # type: ignore[arg-type]
+        )
+    except (ValueError, KeyError) as error:
+        raise FileError(path, f"its joints are no skeleton ({error})", "joints", "Export it again.") from None
+    takes: list[Clip] = []
+    if motions:
+        from metagraph.formats.gltf import read_gltf_clips
+
+        takes = read_gltf_clips(path.parent / document.glb)
+    clips = {}
+    for clip in document.clips:
+        if motions and clip.animation >= len(takes):
+            raise FileError(
+                path, f"clip '{clip.name}' is animation {clip.animation}, the GLB has {len(takes)}", "clips", "Export it again."
+            )
+        motion = takes[clip.animation] if motions else None
+        motion = replace(motion, skeleton=skeleton) if motion is not None and motion.skeleton.names == skeleton.names else motion
+        clips[clip.id] = ClipEntry(clip.id, clip.name, document.glb, clip.animation, clip.sha256, clip.frames, clip.fps, motion)
+    p = document.planner
+    return Project(
+        name=document.name,
+        skeleton=skeleton,
+        clips=clips,
+        graphs={layer: _graph(layer, document.layers[layer]) for layer in LAYERS},
+        base=BasePose(document.base.clip, document.base.frame),
+        roles=dict(document.roles),
+        parts=dict(document.parts),
+        markov={layer: _markov(layer, document.layers[layer].markov) for layer in LAYERS if document.layers[layer].own_markov},
+        settings=Settings(p.alpha, p.seed, p.never_twice, p.shortest, p.wait),
+        next_id=1 + max((int(i[1:]) for layer in document.layers.values() for i in _ids(layer) if i[1:].isdigit()), default=0),
+    )
+
+
+def _ids(layer: c.ExportedLayer) -> list[str]:
+    return [*(s.id for s in layer.stances), *(a.id for a in layer.actions), *(a.clip for a in layer.actions)]
+
+
+def _markov(layer: Layer, model: c.ExportedMarkov) -> Markov:
+    return Markov(layer, tuple(model.states), tuple(tuple(row) for row in model.matrix), model.gap, model.positive, model.negative)
+
+
+def _graph(layer: Layer, data: c.ExportedLayer) -> MetaGraph:
+    actions = {
+        a.id: Action(
+            a.id,
+            a.clip,
+            a.kind,
+            layer,
+            a.stance,
+            a.name,
+            a.end_stance,
+            Timing(a.start, None if a.whole_end else a.end, a.blend_in, a.blend_out, a.loop, a.earliest_exit, a.stroke),
+            a.limb,
+            tuple(a.joints),
+            tuple(a.tags),
+            a.likelihood,
+        )
+        for a in data.actions
+    }
+    stances = {s.id: Stance(s.id, layer, s.name) for s in data.stances}
+    return MetaGraph(layer, stances, actions, data.start, {part: data.weights[part] for part in data.own_weights})
+
+
+def schema_text() -> bytes:
+    """Return the published schema's text."""
+    return msgspec.json.format(msgspec.json.encode(c.schema()), indent=1) + b"\n"
