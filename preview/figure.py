@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from functools import cached_property
 from typing import Any
 
 import numpy as np
@@ -11,7 +12,7 @@ from metagraph.motion import rotation
 from metagraph.motion.character import Character, Material
 from metagraph.motion.skeleton import Skeleton
 from preview import joints as rules
-from preview.mesh import VERTEX, Batch, Mesh, ball, capsule, egg
+from preview.mesh import VERTEX, Batch, Mesh, ball, capsule, coarse, egg
 
 Array = NDArray[Any]
 
@@ -36,6 +37,11 @@ class Figure:
         self.shadow = (self.lines[body], self.line_starts[body])
         self._head = rules.head(skeleton)
 
+    @cached_property
+    def coarse(self) -> Mesh:
+        """The mesh for shadows and for figures small in the picture."""
+        return coarse(self.mesh)
+
     def _above(self, joint: int) -> int:
         """The nearest drawn joint above, or -1."""
         parent = int(self.skeleton.parents[joint])
@@ -49,12 +55,39 @@ class Figure:
 
     def bounds(self, positions: Array) -> tuple[Array, Array]:
         """Return the lowest and highest corner of a box round the figure in all poses `positions [..., J, 3]`."""
-        points = np.asarray(positions, float)[..., self.drawn, :].reshape(-1, 3)
-        points = points[np.isfinite(points).all(1)]
-        if not len(points):
+        joints, radii = self._reach
+        points = np.asarray(positions, float)[..., joints, :]
+        low, high = (points - radii[:, None]).reshape(-1, 3), (points + radii[:, None]).reshape(-1, 3)
+        whole = np.isfinite(low).all(1)
+        if not whole.any():
             return np.zeros(3), np.ones(3)
-        skin, crown = 0.045 * self.height, 0.11 * self.height
-        return points.min(0) - skin, points.max(0) + [skin, crown, skin]
+        return low[whole].min(0), high[whole].max(0)
+
+    @cached_property
+    def _reach(self) -> tuple[Array, Array]:
+        """Joints `[N]` and how far the mesh stands off them `[N]`, metres: off the bones below them where there are any."""
+        _, rest = self.skeleton.globals(self.skeleton.rest)
+        vertices = self.mesh.vertices
+        main = np.take_along_axis(vertices["bones"], vertices["weights"].argmax(1)[:, None], 1)[:, 0] if len(vertices) else np.zeros(0, int)
+        owner = self.sources[main]
+        for joint in reversed(range(len(self.skeleton))):  # what is not drawn counts for the joint above
+            if not self.drawn[joint]:
+                owner[owner == joint] = self._above(joint)
+        radii = np.zeros(len(self.skeleton))
+        for joint in np.flatnonzero(self.drawn).tolist():
+            points = vertices["position"][owner == joint].astype(float)
+            if not len(points):
+                continue
+            away = np.linalg.norm(points - rest[joint], axis=1)
+            ends = self.lines[self.line_starts == joint]
+            for end in ends:
+                bone = rest[end] - rest[joint]
+                along = np.clip((points - rest[joint]) @ bone / max(float(bone @ bone), 1e-12), 0, 1)
+                away = np.minimum(away, np.linalg.norm(points - rest[joint] - along[:, None] * bone, axis=1))
+            radii[joint] = away.max()
+            radii[ends] = np.maximum(radii[ends], np.minimum(away.max(), 0.05 * self.height))
+        joints = np.flatnonzero(self.drawn)
+        return joints, radii[joints]
 
     def head(self, rotations: Array, positions: Array) -> Array:
         """Return the middle of the head `[..., 3]`: a little above its joint, else the top of the figure."""

@@ -80,13 +80,17 @@ class Store:
         self.palette.release()
         self.marks.release()
 
-    def prepare(self, actors: Sequence[Actor]) -> list[int]:
-        """Load meshes, palettes (all in one texture) and marks; return each actor's first row in the palette texture."""
+    def prepare(self, actors: Sequence[Actor], meshes: Sequence[Mesh]) -> list[int]:
+        """Load meshes, palettes (all in one texture) and marks; return each actor's first row in the palette texture.
+
+        meshes: one for each actor, in order, then any others the frame draws.
+        """
         for loaded in self._meshes.values():
             loaded.idle += 1
         rows, row = [], 0
+        for i, mesh in enumerate(meshes):
+            self._load(mesh, actors[i].morphs if i < len(actors) else None)
         for actor in actors:
-            self._load(actor.figure.mesh, actor.morphs)
             rows.append(row)
             row += actor.count
         crowded = len(self._meshes) > KEEP_MESHES

@@ -48,6 +48,37 @@ class Mesh:
     morphs: Array | None = None
 
 
+def coarse(mesh: Mesh, cells: int = 84) -> Mesh:
+    """Return a mesh with vertices merged that share a cell (height / `cells`), a bone and a batch: for shadows and crowds."""
+    if not len(mesh.triangles):
+        return mesh
+    position = mesh.vertices["position"]
+    low, high = position.min(0), position.max(0)
+    size = max(float((high - low).max()) / cells, 1e-9)
+    cell = ((position - low) / size).astype(np.int64)
+    bone = np.take_along_axis(mesh.vertices["bones"], mesh.vertices["weights"].argmax(1)[:, None], 1)[:, 0].astype(np.int64)
+    batch = np.zeros(len(position), np.int64)
+    for i, b in enumerate(mesh.batches):
+        batch[mesh.triangles[b.first : b.first + b.count]] = i
+    key = (((batch * (mesh.matrices + 1) + bone) * (cells + 2) + cell[:, 0]) * (cells + 2) + cell[:, 1]) * (cells + 2) + cell[:, 2]
+    _, first, group, count = np.unique(key, return_index=True, return_inverse=True, return_counts=True)
+    middle = np.zeros((len(first), 3))
+    np.add.at(middle, group, position)
+    middle /= count[:, None]
+    # The vertex nearest to the middle stands for its cell, with its own weights and normal.
+    order = np.lexsort((np.linalg.norm(position - middle[group], axis=1), group))
+    chosen = order[np.searchsorted(group[order], np.arange(len(first)))]
+    vertices = mesh.vertices[chosen]
+    triangles, batches, at = [], [], 0
+    for b in mesh.batches:
+        t = group[mesh.triangles[b.first : b.first + b.count]]
+        t = t[(t[:, 0] != t[:, 1]) & (t[:, 1] != t[:, 2]) & (t[:, 2] != t[:, 0])]
+        triangles.append(t)
+        batches.append(Batch(at, len(t), b.image, b.double_sided))
+        at += len(t)
+    return Mesh(vertices, np.concatenate(triangles).astype(np.uint32), tuple(batches), mesh.matrices)
+
+
 def lathe(profile: Sequence[tuple[float, float]], sides: int) -> tuple[Array, Array, Array]:
     """Turn a profile of `(y, radius)` pairs, from low to high, round the Y axis: positions, normals `[V, 3]`, triangles."""
     p = np.asarray(profile, float)

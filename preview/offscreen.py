@@ -66,6 +66,12 @@ class Offscreen:
             data = self._fbo.read(components=4, alignment=1)
         return np.ascontiguousarray(np.frombuffer(data, np.uint8).reshape(height, width, 4)[::-1])
 
+    def draw(self, scene: Scene, camera: Camera, theme: Theme = DARK) -> None:
+        """Draw to the end without reading the picture: what a window's frame costs."""
+        with self._ctx:
+            self.renderer.draw(scene, camera, self.size, self._fbo, theme)
+            self._ctx.finish()
+
     def resize(self, width: int, height: int) -> None:
         self.size = (max(1, width), max(1, height))
         with self._ctx:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Any
 
 import moderngl
@@ -13,6 +13,7 @@ from numpy.typing import NDArray
 from preview import shaders
 from preview.camera import Camera
 from preview.gpu import Store
+from preview.mesh import Mesh
 from preview.scene import DARK, Actor, Scene, Theme
 
 Array = NDArray[Any]
@@ -21,7 +22,7 @@ TO_LIGHT = np.array([-0.42, 0.80, 0.62]) / np.linalg.norm([-0.42, 0.80, 0.62])
 SHADOW_SIZE = 512
 SHADOW_LIMIT = 8  # instances; a crowd has only the soft spots under it
 SHADE = 0.8  # how dark the figure's shadow on itself is
-LIFT = 0.0015  # metres by which the shadow lies above the ground
+COARSE_BELOW = 150  # pixels of height under which a figure is drawn with its coarse mesh
 _SOFTWARE = ("llvmpipe", "softpipe", "swiftshader", "software", "basic render")
 
 
@@ -42,7 +43,13 @@ class _Frame:
     theme: Theme
     matrix: Array
     bounds: tuple[Array, Array]
-    light: Array | None
+    meshes: list[Mesh]
+    light: Array | None = None
+
+    @property
+    def floor(self) -> bool:
+        """Whether the ground is seen, from above."""
+        return self.scene.ground and self.scene.background is None and float(self.camera.eye[1]) > 0
 
     def which(self, solid: bool) -> list[int]:
         return [i for i, actor in enumerate(self.actors) if (actor.opacity >= 1) == solid]
@@ -86,26 +93,29 @@ class Renderer:
         width, height = max(1, int(size[0])), max(1, int(size[1]))
         actors = [a for a in scene.actors if _drawable(a)]
         self._resize(width, height)
-        rows = self.store.prepare(actors)
-        matrix = camera.projection(width / height) @ camera.view()
         solid = [a for a in actors if a.opacity >= 1]
-        frame = _Frame(scene, actors, rows, camera, (width, height), theme, matrix, Scene(tuple(solid)).bounds(), None)
-        if scene.shadow and 0 < sum(a.count for a in solid) <= SHADOW_LIMIT:
-            frame = _Frame(scene, actors, rows, camera, (width, height), theme, matrix, frame.bounds, self._cast(frame))
+        cast = scene.shadow and 0 < sum(a.count for a in solid) <= SHADOW_LIMIT
+        meshes = [a.figure.coarse if _tall(a, camera, height) < COARSE_BELOW else a.figure.mesh for a in actors]
+        rows = self.store.prepare(actors, meshes + ([a.figure.coarse for a in solid] if cast else []))
+        matrix = camera.projection(width / height) @ camera.view()
+        frame = _Frame(scene, actors, rows, camera, (width, height), theme, matrix, Scene(tuple(solid)).bounds(), meshes)
+        if cast:
+            frame = replace(frame, light=self._cast(frame))
 
-        self._state(self._main, (0, 0, width, height), moderngl.DEPTH_TEST)
-        self._main.clear(*(scene.background or (0.0, 0.0, 0.0, 0.0)), depth=1.0)
-        # Front to back, so that software does not paint what is covered later: figures, ground, sky.
-        self._bodies(frame, frame.which(solid=True))
-        if scene.background is None:
-            if scene.ground and camera.eye[1] > 0:
-                self._ground(frame)
-                if scene.shadow and solid:
-                    self._shadows(frame, solid)
-            self._sky(frame)
-        self._ghosts(frame)
+        # The ground and the sky need no smoothing and go to the target; figures are drawn apart and laid over them.
+        covered = _covered(frame)
+        self._state(target, (0, 0, width, height), moderngl.NOTHING)
+        if scene.background is not None:
+            target.clear(*scene.background, viewport=(0, 0, width, height))
+        else:
+            self._backdrop(frame, target, [a for a in solid if scene.shadow])
+        if covered[2] and covered[3]:
+            self._state(self._main, (0, 0, width, height), moderngl.DEPTH_TEST)
+            self._main.clear(0.0, 0.0, 0.0, 0.0, depth=1.0)
+            self._bodies(frame, frame.which(solid=True))
+            self._ghosts(frame)
+            self._compose(frame, target, covered)
         self._overlay(frame)
-        self._finish(frame, target)
 
     # --- passes
 
@@ -121,18 +131,18 @@ class Renderer:
         matrix[:3, 3] = -axes @ centre / radius
         self._state(self._shadow_fbo, (0, 0, SHADOW_SIZE, SHADOW_SIZE), moderngl.DEPTH_TEST)
         self._shadow_fbo.clear(depth=1.0)
-        self._depths(frame, frame.which(solid=True), matrix)
+        self._depths(frame, frame.which(solid=True), matrix, coarse=True)
         half = np.eye(4) * 0.5
         half[:3, 3], half[3, 3] = 0.5, 1
         return np.asarray(half @ matrix)
 
-    def _depths(self, frame: _Frame, which: Sequence[int], matrix: Array) -> None:
+    def _depths(self, frame: _Frame, which: Sequence[int], matrix: Array, coarse: bool) -> None:
         program = self._program("depth", shaders.DEPTH_VERTEX, shaders.DEPTH)
         _set(program, u_matrix=matrix, u_palette=0)
         self.store.palette.use(0)
         for i in which:
             _set(program, u_row=frame.rows[i])
-            self._triangles(frame.actors[i], program, "depth")
+            self._triangles(frame.actors[i].figure.coarse if coarse else frame.meshes[i], frame.actors[i], program, "depth")
 
     def _bodies(self, frame: _Frame, which: Sequence[int]) -> None:
         theme = frame.theme
@@ -143,9 +153,11 @@ class Renderer:
             actor = frame.actors[i]
             cast = frame.light is not None and actor.opacity >= 1
             for kind in ("plain", "textured"):
-                if not any((b.image is not None) == (kind == "textured") for b in actor.figure.mesh.batches):
+                if not any((b.image is not None) == (kind == "textured") for b in frame.meshes[i].batches):
                     continue
-                words = [w for w, on in (("TEXTURED", kind == "textured"), ("MARKED", bool(actor.marks)), ("SHADOWED", cast)) if on]
+                sunk = frame.floor and float(np.min(actor.positions[..., 1])) < 0
+                flags = (("TEXTURED", kind == "textured"), ("MARKED", bool(actor.marks)), ("SHADOWED", cast), ("SUNK", sunk))
+                words = [w for w, on in flags if on]
                 head = "#version 330 core\n" + "".join(f"#define {w}\n" for w in words)
                 program = self._program("body " + " ".join(words), head + shaders.BODY_VERTEX, head + shaders.BODY)
                 _set(program, u_matrix=frame.matrix, u_eye=frame.camera.eye, u_to_light=TO_LIGHT, u_opacity=actor.opacity)
@@ -153,7 +165,7 @@ class Renderer:
                 _set(program, u_key=theme.key, u_above=theme.above, u_below=theme.below, u_rim=theme.rim, u_shade=SHADE)
                 if frame.light is not None:
                     _set(program, u_light=frame.light)
-                self._triangles(actor, program, kind)
+                self._triangles(frame.meshes[i], actor, program, kind)
 
     def _ghosts(self, frame: _Frame) -> None:
         """Depth first, so that a ghost shows its nearest surface only, then colour."""
@@ -161,49 +173,59 @@ class Renderer:
         if not which:
             return
         self._main.color_mask = (False, False, False, False)
-        self._depths(frame, which, frame.matrix)
+        self._depths(frame, which, frame.matrix, coarse=False)
         self._main.color_mask = (True, True, True, True)
         self.ctx.blend_func = moderngl.ONE, moderngl.ONE_MINUS_SRC_ALPHA
         self._bodies(frame, which)
 
-    def _ground(self, frame: _Frame) -> None:
-        self.ctx.enable_only(moderngl.DEPTH_TEST)
-        camera, theme = frame.camera, frame.theme
-        reach = min(60.0, max(7.0, 2.2 * camera.distance))
-        spacing = 0.5 if camera.distance < 14 else 1.0 if camera.distance < 40 else 5.0
+    def _backdrop(self, frame: _Frame, target: Any, casters: Sequence[Actor]) -> None:
+        """Ground with its shadows up to its far edge, sky above: no point is painted twice."""
+        camera, (width, height) = frame.camera, frame.size
+        sky_from = 0
+        if frame.scene.ground and camera.eye[1] > 0:
+            reach = min(60.0, max(7.0, 2.2 * camera.distance))
+            x, z = camera.target[0], camera.target[2]
+            right = camera.axes[0]
+            edge = camera.project((x + 4 * reach * right[2], 0.0, z - 4 * reach * right[0]), width / height)[1]
+            sky_from = int(np.clip((1 - edge) * height - 1, 0, height)) if np.isfinite(edge) else 0
+            self._ground(frame, (x, z, 4 * reach, 4 * reach), (right[0], right[2]), reach)
+            if casters:
+                self._shadows(frame, casters)
+        if sky_from < height:
+            self.ctx.enable_only(moderngl.NOTHING)
+            target.scissor = (0, sky_from, width, height - sky_from)
+            self._sky("sky", self._program("sky", shaders.COVER, shaders.SKY), frame, moderngl.TRIANGLES, 3)
+            target.scissor = None
+
+    def _ground(self, frame: _Frame, patch: tuple[float, ...], turn: tuple[float, float], reach: float) -> None:
+        theme, distance = frame.theme, frame.camera.distance
+        spacing = 0.5 if distance < 14 else 1.0 if distance < 40 else 5.0
         program = self._program("ground", shaders.GROUND_VERTEX, shaders.GROUND)
-        _set(program, u_matrix=frame.matrix, u_centre=(camera.target[0], camera.target[2], reach), u_reach=reach)
+        _set(program, u_matrix=frame.matrix, u_patch=patch, u_turn=turn, u_reach=reach)
         _set(program, u_floor=theme.floor, u_line=theme.line, u_spacing=(spacing, theme.line_strength))
-        self._backdrop("ground", program, frame, moderngl.TRIANGLE_STRIP, 4)
+        self._sky("ground", program, frame, moderngl.TRIANGLE_STRIP, 4)
 
     def _shadows(self, frame: _Frame, solid: Sequence[Actor]) -> None:
-        """What darkens the ground lies a hair above it and multiplies."""
-        lifted = frame.matrix.copy()
-        lifted[:, 3] += frame.matrix[:, 1] * LIFT
-        self.ctx.enable_only(moderngl.DEPTH_TEST | moderngl.BLEND)
+        """What darkens the ground multiplies what is there."""
+        self.ctx.enable_only(moderngl.BLEND)
         self.ctx.blend_func = moderngl.ZERO, moderngl.SRC_COLOR
         if frame.light is not None:
             low, high = frame.bounds
             thrown = -TO_LIGHT / TO_LIGHT[1] * max(0.0, float(high[1]))
             low, high = np.minimum(low, low + thrown), np.maximum(high, high + thrown)
-            middle, half = (low + high) / 2, float(np.max((high - low)[[0, 2]])) / 2 * 1.1
+            middle, half = (low + high) / 2, (high - low) / 2 * 1.05
+            patch = (middle[0], middle[2], half[0], half[2])
             program = self._program("cast", shaders.GROUND_VERTEX, shaders.CAST)
             self._shadow_map.use(1)
-            _set(
-                program, u_matrix=lifted, u_centre=(middle[0], middle[2], half), u_dark=frame.theme.shadow, u_shadow=1, u_light=frame.light
-            )
+            _set(program, u_matrix=frame.matrix, u_patch=patch, u_turn=(1.0, 0.0))
+            _set(program, u_dark=frame.theme.shadow, u_shadow=1, u_light=frame.light)
             self._bare("cast", program).render(moderngl.TRIANGLE_STRIP, 4)
         program = self._program("spots", shaders.SPOT_VERTEX, shaders.SPOT)
-        _set(program, u_matrix=lifted, u_dark=frame.theme.shadow)
+        _set(program, u_matrix=frame.matrix, u_dark=frame.theme.shadow)
         self._squares("spots", program, np.concatenate([_spots(a) for a in solid]), "4f/i", "in_spot")
 
-    def _sky(self, frame: _Frame) -> None:
-        self.ctx.enable_only(moderngl.DEPTH_TEST)
-        program = self._program("sky", shaders.COVER, shaders.SKY)
-        _set(program, u_depth=1.0)
-        self._backdrop("sky", program, frame, moderngl.TRIANGLES, 3)
-
-    def _backdrop(self, key: str, program: moderngl.Program, frame: _Frame, mode: int, count: int) -> None:
+    def _sky(self, key: str, program: moderngl.Program, frame: _Frame, mode: int, count: int) -> None:
+        """Draw with a program that ends in the sky's colours."""
         _set(program, u_pixel=(1 / frame.size[0], 1 / frame.size[1]), u_top=frame.theme.top, u_bottom=frame.theme.bottom)
         self._bare(key, program).render(mode, count)
 
@@ -226,25 +248,18 @@ class Renderer:
             _set(program, u_matrix=frame.matrix, u_size=frame.size, u_width=width, u_ink=frame.theme.ink)
             self._squares("lines", program, data, "3f 3f/i", "in_start", "in_end")
 
-    def _finish(self, frame: _Frame, target: Any) -> None:
-        """Bring the picture to the target; without multisampling, smooth the edges where there are figures."""
+    def _compose(self, frame: _Frame, target: Any, covered: tuple[int, int, int, int]) -> None:
+        """Lay the figures over the target; without multisampling, smooth their edges on the way."""
         if self._resolved is not None:
             self.ctx.copy_framebuffer(self._resolved, self._main)
-        width, height = frame.size
-        self._state(target, (0, 0, width, height), moderngl.NOTHING)
+        self._state(target, (0, 0, *frame.size), moderngl.BLEND)
+        self.ctx.blend_func = moderngl.ONE, moderngl.ONE_MINUS_SRC_ALPHA
         self._picture.use(0)
-        copy = self._program("copy", shaders.COVER, shaders.COPY)
-        _set(copy, u_picture=0, u_depth=0.0)
-        x, y, w, h = (0, 0, 0, 0) if self.samples else _covered(frame)
-        for piece in ((0, 0, width, y), (0, y + h, width, height - y - h), (0, y, x, h), (x + w, y, width - x - w, h)):
-            if piece[2] > 0 and piece[3] > 0:
-                target.scissor = piece
-                self._bare("copy", copy).render(moderngl.TRIANGLES, 3)
-        if w and h:
-            smooth = self._program("smooth", shaders.COVER, shaders.SMOOTH)
-            _set(smooth, u_picture=0, u_depth=0.0, u_pixel=(1 / width, 1 / height))
-            target.scissor = (x, y, w, h)
-            self._bare("smooth", smooth).render(moderngl.TRIANGLES, 3)
+        name, source = ("copy", shaders.COPY) if self.samples else ("smooth", shaders.SMOOTH)
+        program = self._program(name, shaders.COVER, source)
+        _set(program, u_picture=0, u_pixel=(1 / frame.size[0], 1 / frame.size[1]))
+        target.scissor = covered
+        self._bare(name, program).render(moderngl.TRIANGLES, 3)
         target.scissor = None
 
     # --- helpers
@@ -284,13 +299,15 @@ class Renderer:
             self._targets = [self._picture, depth, self._main]
         self._size = size
 
-    def _triangles(self, actor: Actor, program: moderngl.Program, kind: str) -> None:
+    def _triangles(self, mesh: Mesh, actor: Actor, program: moderngl.Program, kind: str) -> None:
         """Draw the actor's batches that `program` is for: all (kind depth), the plain ones or the textured ones."""
-        loaded = self.store[actor.figure.mesh]
+        loaded = self.store[mesh]
         array = loaded.array(self.ctx, program, kind)
         flags = moderngl.DEPTH_TEST | (moderngl.BLEND if actor.opacity < 1 and kind != "depth" else moderngl.NOTHING)
-        for batch in actor.figure.mesh.batches:
+        for batch in mesh.batches:
             if kind != "depth" and (batch.image is not None) != (kind == "textured"):
+                continue
+            if not batch.count:
                 continue
             if kind == "textured" and batch.image is not None:
                 loaded.images[batch.image].use(2)
@@ -325,6 +342,12 @@ def _drawable(actor: Actor) -> bool:
     return bool(
         actor.count and len(actor.figure.mesh.vertices) and np.isfinite(actor.positions).all() and np.isfinite(actor.rotations).all()
     )
+
+
+def _tall(actor: Actor, camera: Camera, height: int) -> float:
+    """How many pixels tall the nearest instance is, about."""
+    away = np.linalg.norm(np.asarray(actor.positions)[..., 0, :].reshape(-1, 3) - camera.eye, axis=1).min()
+    return float(actor.figure.height / (2 * np.tan(camera.fov / 2) * max(float(away), 1e-3)) * height)
 
 
 def _covered(frame: _Frame) -> tuple[int, int, int, int]:

@@ -5,10 +5,9 @@ from __future__ import annotations
 # A triangle that covers the picture.
 COVER = """#version 330 core
 out vec2 v_at;
-uniform float u_depth;
 void main() {
     v_at = vec2((gl_VertexID << 1) & 2, gl_VertexID & 2);
-    gl_Position = vec4(v_at * 2.0 - 1.0, u_depth, 1.0);
+    gl_Position = vec4(v_at * 2.0 - 1.0, 0.0, 1.0);
 }
 """
 
@@ -29,11 +28,12 @@ SKY = "#version 330 core\n" + _SKY + "out vec4 o_color;\nvoid main() { o_color =
 
 GROUND_VERTEX = """#version 330 core
 uniform mat4 u_matrix;
-uniform vec3 u_centre;  // x, z, half the side
+uniform vec4 u_patch;  // x, z, half the width, half the depth
+uniform vec2 u_turn;   // the direction of the width
 out vec2 v_at;
 void main() {
-    vec2 corner = vec2(gl_VertexID & 1, gl_VertexID >> 1) * 2.0 - 1.0;
-    v_at = u_centre.xy + corner * u_centre.z;
+    vec2 corner = (vec2(gl_VertexID & 1, gl_VertexID >> 1) * 2.0 - 1.0) * u_patch.zw;
+    v_at = u_patch.xy + corner.x * u_turn + corner.y * vec2(-u_turn.y, u_turn.x);
     gl_Position = u_matrix * vec4(v_at.x, 0.0, v_at.y, 1.0);
 }
 """
@@ -42,14 +42,15 @@ GROUND = (
     "#version 330 core\n"
     + _SKY
     + """
-uniform vec3 u_centre, u_floor, u_line;
+uniform vec3 u_floor, u_line;
+uniform vec4 u_patch;
 uniform vec2 u_spacing;  // metres between lines; strength of the lines
 uniform float u_reach;   // metres after which the ground has become sky
 in vec2 v_at;
 out vec4 o_color;
 void main() {
     vec3 back = sky();
-    vec2 away = (v_at - u_centre.xy) / u_reach;
+    vec2 away = (v_at - u_patch.xy) / u_reach;
     float near = clamp(1.0 - dot(away, away), 0.0, 1.0);
     near *= near;
     vec2 p = v_at / u_spacing.x;
@@ -68,12 +69,13 @@ void main() {
 _SHADOW = """
 uniform sampler2DShadow u_shadow;
 uniform mat4 u_light;
+float tap(vec3 p) { return textureLod(u_shadow, p, 0.0); }
 float lit(vec3 world, float radius, float bias) {
     vec4 p = u_light * vec4(world, 1.0);
     p.z -= bias;
     vec2 r = vec2(radius, radius * 0.45);
-    return 0.25 * (texture(u_shadow, p.xyz + vec3(r.x, r.y, 0.0)) + texture(u_shadow, p.xyz + vec3(-r.y, r.x, 0.0))
-                 + texture(u_shadow, p.xyz + vec3(-r.x, -r.y, 0.0)) + texture(u_shadow, p.xyz + vec3(r.y, -r.x, 0.0)));
+    return 0.25 * (tap(p.xyz + vec3(r.x, r.y, 0.0)) + tap(p.xyz + vec3(-r.y, r.x, 0.0))
+                 + tap(p.xyz + vec3(-r.x, -r.y, 0.0)) + tap(p.xyz + vec3(r.y, -r.x, 0.0)));
 }
 """
 
@@ -82,13 +84,14 @@ CAST = (
     "#version 330 core\n"
     + _SHADOW
     + """
-uniform vec3 u_centre, u_dark;
+uniform vec3 u_dark;
+uniform vec4 u_patch;
 in vec2 v_at;
 out vec4 o_color;
 void main() {
     vec3 world = vec3(v_at.x, 0.0, v_at.y);
-    float light = 0.5 * (lit(world, 0.0045, 0.002) + lit(world, 0.0110, 0.002));
-    vec2 off = (v_at - u_centre.xy) / u_centre.z;
+    float light = lit(world, 0.0080, 0.002);
+    vec2 off = (v_at - u_patch.xy) / max(u_patch.z, u_patch.w);
     float near = clamp(1.15 - dot(off, off), 0.0, 1.0);
     o_color = vec4(mix(vec3(1.0), u_dark, (1.0 - light) * near * 0.7), 1.0);
 }
@@ -202,6 +205,9 @@ in vec4 v_mark;
 #endif
 out vec4 o_color;
 void main() {
+#ifdef SUNK
+    if (v_world.y < -0.004) discard;  // the ground hides what is below it
+#endif
     vec3 n = normalize(v_normal) * (gl_FrontFacing ? 1.0 : -1.0);
     vec3 v = normalize(u_eye - v_world);
     vec3 base = v_color.rgb;
@@ -288,19 +294,19 @@ uniform sampler2D u_picture;
 uniform vec2 u_pixel;
 in vec2 v_at;
 out vec4 o_color;
-float luma(vec4 c) { return dot(c.rgb, vec3(0.30, 0.59, 0.11)) + 0.3 * c.a; }
+float luma(vec4 c) { return dot(c, vec4(0.30, 0.59, 0.11, 0.30)); }
+vec4 at(vec2 p) { return textureLod(u_picture, p, 0.0); }
 void main() {
-    vec4 here = texture(u_picture, v_at);
+    ivec2 p = ivec2(gl_FragCoord.xy);
+    vec4 here = texelFetch(u_picture, p, 0);
     float m = luma(here);
-    float a = luma(texture(u_picture, v_at + vec2(-0.5, -0.5) * u_pixel)), b = luma(texture(u_picture, v_at + vec2(0.5, -0.5) * u_pixel));
-    float c = luma(texture(u_picture, v_at + vec2(-0.5, 0.5) * u_pixel)), d = luma(texture(u_picture, v_at + vec2(0.5, 0.5) * u_pixel));
+    float a = luma(at(v_at + vec2(-0.5, -0.5) * u_pixel)), b = luma(at(v_at + vec2(0.5, -0.5) * u_pixel));
+    float c = luma(at(v_at + vec2(-0.5, 0.5) * u_pixel)), d = luma(at(v_at + vec2(0.5, 0.5) * u_pixel));
     float low = min(m, min(min(a, b), min(c, d))), high = max(m, max(max(a, b), max(c, d)));
     vec2 along = vec2((c + d) - (a + b), (a + c) - (b + d));
     float least = 1.0 / (min(abs(along.x), abs(along.y)) + max((a + b + c + d) * 0.03, 0.008));
-    along = clamp(along * least, -6.0, 6.0) * u_pixel;
-    vec4 near = 0.5 * (texture(u_picture, v_at - along / 6.0) + texture(u_picture, v_at + along / 6.0));
-    vec4 wide = 0.5 * near + 0.25 * (texture(u_picture, v_at - along * 0.5) + texture(u_picture, v_at + along * 0.5));
-    float w = luma(wide);
-    o_color = high - low < 0.03 ? here : (w < low || w > high) ? near : wide;
+    along = clamp(along * least, -3.0, 3.0) * u_pixel;
+    vec4 mean = 0.5 * (at(v_at - along * 0.4) + at(v_at + along * 0.4));
+    o_color = high - low < 0.03 ? here : mean;
 }
 """

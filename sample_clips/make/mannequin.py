@@ -87,10 +87,10 @@ def _rigid(shape: tuple[Array, Array, Array], joint: str, row: str | Array) -> P
 def _eye() -> list[Piece]:
     """The left eyeball looking along +Z; each colour has its own triangles, so that the iris has a crisp edge."""
     out = []
-    for row, first, last, rings in (("pupil", 0.0, 13.5, 2), ("iris", 13.5, 30.0, 3), ("white", 30.0, 84.0, 5)):
+    for row, first, last, rings in (("pupil", 0.0, 13.5, 2), ("iris", 13.5, 30.0, 2), ("white", 30.0, 80.0, 4)):
         angles = np.radians(np.linspace(last, first, rings + 1))
         profile = [(EYE_RADIUS * np.cos(a), EYE_RADIUS * np.sin(a) if a > 0 else 0.0) for a in angles]
-        positions, _, triangles = lathe(profile, 20)
+        positions, _, triangles = lathe(profile, 18)
         positions = positions[:, [0, 2, 1]] * [1, -1, 1]
         normals = positions / EYE_RADIUS
         out.append(_rigid((positions + JOINT["LeftEye"], normals, triangles), "LeftEye", row))
@@ -99,8 +99,8 @@ def _eye() -> list[Piece]:
 
 def _lid(joint: str, edge: float, back: float) -> Piece:
     """A shell round the eye between the angles `edge` and `back` (degrees up from forwards, about X), with a dark rim."""
-    along = np.radians(np.linspace(4, 176, 13))  # from corner to corner
-    turn = np.radians(np.concatenate([[edge, edge, edge + 0.04 * (back - edge)], np.linspace(edge, back, 7)[1:]]))
+    along = np.radians(np.linspace(4, 176, 12))  # from corner to corner
+    turn = np.radians(np.concatenate([[edge, edge, edge + 0.04 * (back - edge)], np.linspace(edge, back, 6)[1:]]))
     radius = np.concatenate([[EYE_RADIUS + 0.0001, LID_RADIUS + 0.0001], np.full(len(turn) - 2, LID_RADIUS)])
     shape = np.stack(
         [
@@ -227,9 +227,9 @@ def _finger(name: str) -> Piece:
     axis = (points[3] - points[0]) / np.linalg.norm(points[3] - points[0])
     one, two, tip = (float((q - points[0]) @ axis) for q in points[1:])
     end = shapes.finger_radius(name)
-    heights = [-0.004, 0.5 * one, one - 0.0065, one - 0.001, one + 0.0055, two - 0.0060, two - 0.0005, two + 0.0055]
+    heights = [-0.004, 0.5 * one, one - 0.0065, one + 0.0055, two - 0.0060, two + 0.0055]
     heights += [tip + end * h for h in (0.0, 0.55, 0.86, 0.995)]
-    ring = _ring(shapes.finger(name), points[0], axis, [(h, 0.0) for h in heights], 9, "skin")
+    ring = _ring(shapes.finger(name), points[0], axis, [(h, 0.0) for h in heights], 8, "skin")
     return replace(ring, normals=gradient(shapes.hand(), ring.positions), weights=_hand_weights(ring.positions))
 
 

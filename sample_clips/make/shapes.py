@@ -312,9 +312,9 @@ def _head_size(p: Array) -> Array:
     eye = np.linalg.norm(q - JOINT["LeftEye"], axis=1) / 0.022
     nose = np.linalg.norm((q - [0, 1.573, 0.097]) / [0.017, 0.014, 0.02], axis=1)
     ear = np.linalg.norm((q - [0.078, 1.5965, -0.013]) / [0.02, 0.034, 0.026], axis=1)
-    out = 0.0115 + 0.008 * step(0.03, -0.05, p[:, 2])
-    for near, fine in ((mouth, 0.0028), (eye, 0.0065), (nose, 0.0046), (ear, 0.0058)):
-        out = np.minimum(out, fine + (0.0115 - fine) * step(0.9, 2.8, near))
+    out = 0.0135 + 0.009 * step(0.03, -0.05, p[:, 2])
+    for near, fine in ((mouth, 0.0031), (eye, 0.0070), (nose, 0.0052), (ear, 0.0070)):
+        out = np.minimum(out, fine + (0.0135 - fine) * step(0.9, 2.8, near))
     return np.asarray(out)
 
 
@@ -329,24 +329,24 @@ def _sweater_size(p: Array) -> Array:
     edge = np.minimum(np.abs((q - CUFF) @ ARM) / 0.03, np.abs(p[:, 1] - HEM) / 0.03)
     edge = np.minimum(edge, np.linalg.norm((q - COLLAR_AT) / [0.07, 0.03, 0.07], axis=1))
     bend = np.minimum(np.linalg.norm(q - shoulder, axis=1) / 0.09, np.linalg.norm(q - elbow, axis=1) / 0.06)
-    out = 0.0275 - 0.0075 * step(1.2, 0.5, bend)
-    return np.asarray(out - (out - 0.0145) * step(1.2, 0.6, edge))
+    out = 0.0330 - 0.0110 * step(1.2, 0.5, bend)
+    return np.asarray(out - (out - 0.0165) * step(1.2, 0.6, edge))
 
 
 def _trouser_size(p: Array) -> Array:
     q = np.stack([np.abs(p[:, 0]), p[:, 1], p[:, 2]], 1)
     knee = np.linalg.norm(q - JOINT["LeftLowerLeg"], axis=1) / 0.09
     crotch = np.linalg.norm((q - [0, 0.84, 0]) / [0.05, 0.06, 0.12], axis=1)
-    return np.asarray(0.0305 - 0.0075 * step(1.2, 0.5, knee) - 0.012 * step(1.3, 0.6, crotch))
+    return np.asarray(0.0340 - 0.0095 * step(1.2, 0.5, knee) - 0.012 * step(1.3, 0.6, crotch))
 
 
 def _shoe_size(p: Array) -> Array:
-    return np.full(len(p), 0.0145)
+    return np.full(len(p), 0.0170)
 
 
 def _hair_size(p: Array) -> Array:
     edge = np.abs(_hairline(p))
-    return np.asarray(0.0080 + 0.0080 * step(0.006, 0.030, edge))
+    return np.asarray(0.0090 + 0.0090 * step(0.006, 0.030, edge))
 
 
 PARTS: tuple[Part, ...] = (
