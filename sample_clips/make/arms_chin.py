@@ -2,14 +2,32 @@
 
 from __future__ import annotations
 
+from typing import Any
+
+import numpy as np
+
 from sample_clips.make.phrases import arms_clip
-from sample_clips.make.places import LOW, OPEN_PALM, lifted
-from sample_clips.make.poses import Hand
+from sample_clips.make.places import lifted
+from sample_clips.make.poses import Hand, elbow_of
 from sample_clips.make.recipe import Recipe, go, home
+from sample_clips.make.rig import REST, at
 from sample_clips.make.stances import CHIN
 
 S = "hand_to_chin"
-OUT = Hand(at=(0.085, 1.335, 0.245), turn=-8, bend=2, shape="relaxed", elbow=(0.35, -0.9, 0.0))  # the hand come away from the chin
+SHOULDER = REST[at("LeftUpperArm")]
+ELBOW, FOREARM = elbow_of(CHIN)
+
+
+def over_elbow(out: float, up: float, forwards: float, **held: Any) -> Hand:
+    """Return the hand in a direction from the elbow, which stays in the hand that carries it."""
+    along = np.array([out, up, forwards])
+    wrist = ELBOW + along / np.linalg.norm(along) * FOREARM
+    pole = ELBOW - (wrist + SHOULDER) / 2
+    return Hand(at=tuple(wrist.tolist()), elbow=tuple(pole.tolist()), **held)
+
+
+OUT = over_elbow(-0.10, 0.85, 0.52, turn=-8, bend=2, shape="relaxed")  # the hand come away from the chin
+STROKED = over_elbow(*(np.array(CHIN.at) - ELBOW + (0.012, 0.0, 0.030)).tolist(), fingers=CHIN.fingers, palm=CHIN.palm, shape="cupped")
 BACK = go(0.38, rt=OUT, spine=(3, -2, 1.5), head=(3, 2, 2), flow=0.17, overshoot=0.0)
 
 CLIPS = (
@@ -19,11 +37,11 @@ CLIPS = (
         "gesture",
         "point_up",
         "rt",
-        go(0.30, rt=OUT.moved(0.0, -0.01, 0.0, shape="loose_point", bend=10), head=(1, 1, 1), flow=0.1, overshoot=0.0),
+        go(0.30, rt=over_elbow(-0.05, 0.80, 0.60, turn=-12, bend=12, shape="loose_point"), head=(1, 1, 1), flow=0.1, overshoot=0.0),
         go(
             0.26,
             hold=0.42,
-            rt=OUT.moved(0.035, 0.055, 0.015, shape="count_one", turn=-40, bend=-14),
+            rt=over_elbow(0.06, 0.95, 0.30, turn=-46, bend=-12, shape="count_one"),
             head=(-4, 0, -1),
             spine=(0, -2, 1),
             peak=0.5,
@@ -39,8 +57,22 @@ CLIPS = (
         "open_palm",
         "rt",
         go(0.34, rt=OUT, flow=0.18, overshoot=0.0),
-        go(0.38, hold=0.40, rt=OPEN_PALM.moved(-0.03, 0.06, 0.01), head=(3, 0, 6), spine=(1, -1, 0), overshoot=0.05),
-        go(0.40, rt=OUT.moved(0.03, -0.05, 0.02), spine=(3, -2, 1.5), head=(3, 2, 2), flow=0.24, overshoot=0.0),
+        go(
+            0.38,
+            hold=0.40,
+            rt=over_elbow(0.44, 0.66, 0.62, turn=60, bend=-24, side=-6, shape="open"),
+            head=(3, 0, 6),
+            spine=(1, -1, 0),
+            overshoot=0.05,
+        ),
+        go(
+            0.40,
+            rt=over_elbow(0.05, 0.72, 0.66, turn=10, bend=2, shape="relaxed"),
+            spine=(3, -2, 1.5),
+            head=(3, 2, 2),
+            flow=0.24,
+            overshoot=0.0,
+        ),
         home(0.52),
         tags="explain open",
     ),
@@ -49,18 +81,18 @@ CLIPS = (
         "gesture",
         "beat_small",
         "rt",
-        go(0.36, rt=OUT.moved(0.02, 0.02, 0.0, shape="pinch", turn=-8, bend=-8), head=(1, 1, 1), flow=0.08, overshoot=0.0),
+        go(0.36, rt=over_elbow(-0.02, 0.80, 0.60, turn=-16, bend=-8, shape="pinch"), head=(1, 1, 1), flow=0.08, overshoot=0.0),
         go(
             0.22,
             hold=0.12,
-            rt=OUT.moved(0.035, -0.055, 0.035, shape="pinch", turn=-6, bend=12),
+            rt=over_elbow(0.08, 0.70, 0.70, turn=-14, bend=12, shape="pinch"),
             head=(6, 1, 1),
             spine=(4, -2, 1),
             peak=0.55,
             overshoot=0.08,
         ),
-        go(0.22, rt=OUT.moved(0.035, -0.005, 0.02, shape="pinch", turn=-6), head=(2, 1, 1), overshoot=0.0, flow=0.07),
-        go(0.20, hold=0.24, rt=OUT.moved(0.045, -0.05, 0.04, shape="pinch", turn=-4, bend=10), head=(6, 0, 1), peak=0.55, overshoot=0.08),
+        go(0.22, rt=over_elbow(0.06, 0.78, 0.62, turn=-14, bend=0, shape="pinch"), head=(2, 1, 1), overshoot=0.0, flow=0.07),
+        go(0.20, hold=0.24, rt=over_elbow(0.11, 0.70, 0.69, turn=-12, bend=10, shape="pinch"), head=(6, 0, 1), peak=0.55, overshoot=0.08),
         BACK,
         home(0.46),
         tags="beat detail",
@@ -73,16 +105,14 @@ CLIPS = (
         "rt",
         go(
             0.42,
-            rt=Hand(at=(0.115, 1.235, 0.330), turn=-72, bend=-4, shape="spread", elbow=LOW),
+            rt=over_elbow(0.06, 0.70, 0.71, turn=-66, bend=18, shape="spread"),
             head=(2, 0, 3),
             spine=(2, -1, 1),
             flow=0.06,
         ),
-        go(0.20, rt=Hand(at=(0.120, 1.232, 0.332), turn=-38, bend=-2, shape="spread", elbow=LOW), head=(2, 0, 5), overshoot=0.0, flow=0.05),
-        go(0.20, rt=Hand(at=(0.112, 1.232, 0.332), turn=-84, bend=-6, shape="spread", elbow=LOW), head=(2, 0, 0), overshoot=0.0, flow=0.05),
-        go(
-            0.22, hold=0.14, rt=Hand(at=(0.117, 1.230, 0.334), turn=-52, bend=-2, shape="spread", elbow=LOW), head=(2, 0, 4), overshoot=0.08
-        ),
+        go(0.20, rt=over_elbow(0.08, 0.69, 0.72, turn=-34, bend=20, shape="spread"), head=(2, 0, 5), overshoot=0.0, flow=0.05),
+        go(0.20, rt=over_elbow(0.04, 0.69, 0.72, turn=-80, bend=16, shape="spread"), head=(2, 0, 0), overshoot=0.0, flow=0.05),
+        go(0.22, hold=0.14, rt=over_elbow(0.07, 0.68, 0.73, turn=-50, bend=20, shape="spread"), head=(2, 0, 4), overshoot=0.08),
         BACK,
         home(0.46),
         tags="unsure",
@@ -93,10 +123,10 @@ CLIPS = (
         "fidget",
         "stroke_chin",
         "rt",
-        go(0.34, rt=CHIN.moved(0.006, -0.020, 0.010, shape="cupped"), head=(2, 3, 3), overshoot=0.0, flow=0.05),
-        go(0.34, rt=CHIN.moved(0.002, 0.004, 0.004), overshoot=0.0, flow=0.05),
-        go(0.34, rt=CHIN.moved(0.006, -0.022, 0.010, shape="cupped"), head=(3, 1, 3), overshoot=0.0, flow=0.05),
-        go(0.34, hold=0.2, rt=CHIN.moved(0.002, 0.002, 0.002), overshoot=0.0),
+        go(0.34, rt=STROKED, head=(2, 3, 3), overshoot=0.0, flow=0.05),
+        go(0.34, rt=CHIN, overshoot=0.0, flow=0.05),
+        go(0.34, rt=STROKED, head=(3, 1, 3), overshoot=0.0, flow=0.05),
+        go(0.34, hold=0.2, rt=CHIN, overshoot=0.0),
         home(0.5),
         tags="thinking",
         drag=0.4,

@@ -11,10 +11,16 @@ from sample_clips.make.stances import CLASP_OVER, CLASP_UNDER
 
 S = "hands_clasped"
 APART = Hand(at=(0.130, 1.035, 0.245), turn=-14, bend=6, shape="relaxed", elbow=(0.6, -0.6, -0.4))
-CLOSE = APART.moved(-0.025, -0.012, -0.015, shape="cupped")
+CLOSE = APART.moved(-0.015, -0.010, -0.012, shape="open")
 CLASPED = (("Right", "LeftHand"),)  # one hand carries the other
 BACK = go(
-    0.46, lf=CLOSE.moved(0.0, -0.01, -0.01), rt=CLOSE.moved(0.0, 0.012, 0.012), spine=(1, 0, 0), head=(-0.5, 0, 0), flow=0.2, overshoot=0.0
+    0.46,
+    lf=CLOSE.moved(0.012, -0.016, -0.028),
+    rt=CLOSE.moved(0.014, 0.024, 0.036),
+    spine=(1, 0, 0),
+    head=(-0.5, 0, 0),
+    flow=0.2,
+    overshoot=0.0,
 )
 
 
@@ -25,11 +31,12 @@ def both(up: float, forwards: float) -> dict[str, Hand]:
 
 def rubbing(slide: float, up: float = 0.035) -> dict[str, Hand]:
     """Return flat hands, palm on palm, one slid forwards by metres and the other back."""
-    left = Hand(at=(0.070, 1.05 + up, 0.215 - slide), fingers=(-0.62, 0.10, 0.78), palm=(-0.78, -0.05, -0.62), shape="flat", elbow=LOW)
-    right = Hand(at=(0.070, 1.06 + up, 0.222 + slide), fingers=(-0.62, 0.14, 0.78), palm=(-0.78, -0.05, -0.62), shape="flat", elbow=LOW)
+    left = Hand(at=(0.099, 1.05 + up, 0.215 - slide), fingers=(-0.62, 0.10, 0.78), palm=(-0.78, -0.05, -0.62), shape="flat", elbow=LOW)
+    right = Hand(at=(0.099, 1.056 + up, 0.222 + slide), fingers=(-0.62, 0.14, 0.78), palm=(-0.78, -0.05, -0.62), shape="flat", elbow=LOW)
     return {"lf": left, "rt": right}
 
 
+UNCLASP = go(0.20, rt=CLASP_OVER.moved(0.016, 0.014, 0.040, shape="open"), overshoot=0.0, flow=0.5)  # the hand on top lifts first
 THUMB_ROUND = (  # the thumbs chase each other
     ((44, -12, 14, 10), (20, 22, 4, 4)),
     ((34, 8, 4, 2), (44, 2, 22, 20)),
@@ -63,7 +70,8 @@ CLIPS = (
         "gesture",
         "open_palms",
         "bt",
-        go(0.32, lf=APART, rt=APART.moved(0, 0.01), flow=0.18, overshoot=0.0),
+        UNCLASP,
+        go(0.34, lf=APART.moved(0.02, 0.0, -0.02), rt=APART.moved(0.02, 0.02, 0.025), flow=0.18, overshoot=0.0),
         go(
             0.36,
             hold=0.42,
@@ -128,12 +136,14 @@ CLIPS = (
         "fidget",
         "rub_hands",
         "bt",
-        go(0.38, **rubbing(0.0), head=(2, 0, 0), overshoot=0.0, flow=0.05),
+        go(0.24, lf=CLOSE.moved(0.02, 0.0, -0.01), rt=CLOSE.moved(0.02, 0.02, 0.02), flow=0.35, overshoot=0.0),
+        go(0.34, **rubbing(0.0), head=(2, 0, 0), overshoot=0.0, flow=0.05),
         go(0.22, **rubbing(0.030), overshoot=0.0, flow=0.04),
         go(0.24, **rubbing(-0.028), head=(3, 1, 1), overshoot=0.0, flow=0.04),
         go(0.23, **rubbing(0.026), overshoot=0.0, flow=0.04),
         go(0.24, **rubbing(-0.018), head=(1, 0, 0), overshoot=0.0, flow=0.04),
-        home(0.55),
+        go(0.26, lf=CLOSE.moved(0.018, -0.016, -0.026), rt=CLOSE.moved(0.020, 0.026, 0.036), head=(0, 0, 0), overshoot=0.0, flow=0.25),
+        home(0.44),
         tags="eager positive",
         together=True,
         drag=0.3,

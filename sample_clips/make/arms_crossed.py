@@ -11,7 +11,9 @@ from sample_clips.make.stances import CROSS_OVER, CROSS_UNDER
 S = "arms_crossed"
 OUT = Hand(at=(0.060, 1.225, 0.300), turn=8, bend=4, shape="relaxed", elbow=WIDE, reach=5)  # the right hand lifted off the left arm
 LEFT_OUT = Hand(at=(0.060, 1.135, 0.235), turn=2, bend=4, shape="relaxed", elbow=WIDE, reach=5)
+ABOVE = CROSS_OVER.moved(0.062, 0.006, 0.030)  # about to slip between the left arm and the ribs
 BACK = go(0.40, rt=OUT, spine=(1, -1, 0.5), head=(-1, 1, 0), flow=0.18, overshoot=0.0)
+LANDING = go(0.26, rt=ABOVE, flow=0.3, overshoot=0.0)
 
 CLIPS = (
     Recipe("arms_crossed__stance", "arms", "stance", S, S, seconds=6.8),
@@ -31,7 +33,8 @@ CLIPS = (
             overshoot=0.09,
         ),
         BACK,
-        home(0.46),
+        LANDING,
+        home(0.42),
         tags="beat",
         likelihood=1.3,
     ),
@@ -43,7 +46,8 @@ CLIPS = (
         go(0.36, rt=OUT.moved(0.02, -0.01, 0.0), flow=0.2, overshoot=0.0),
         go(0.36, hold=0.42, rt=OPEN_PALM.moved(-0.02, 0.055, 0.0), head=(1, 1, 6), spine=(1, -1, 0), overshoot=0.06),
         BACK,
-        home(0.48),
+        LANDING,
+        home(0.42),
         tags="explain open",
     ),
     arms_clip(
@@ -73,7 +77,8 @@ CLIPS = (
         go(0.40, rt=POINT_COCKED.moved(-0.05, -0.02, 0.04), spine=(0, -2, 0.5), flow=0.14, overshoot=0.0),
         go(0.25, hold=0.40, rt=POINT_YOU, spine=(3, 1, 0), head=(3, 0, 1), peak=0.55, overshoot=0.06),
         BACK,
-        home(0.48),
+        LANDING,
+        home(0.42),
         tags="you",
     ),
     arms_clip(
@@ -93,8 +98,9 @@ CLIPS = (
             overshoot=0.05,
         ),
         go(0.42, lf=LEFT_OUT, rt=OUT.moved(0.07, 0.02, 0.01), spine=(1, -1, 0.5), head=(-1, 1, 0), flow=0.2, overshoot=0.0),
-        go(0.34, lf=HOME, rt=OUT.moved(0.01), flow=0.2, overshoot=0.0),
-        home(0.44),
+        go(0.34, lf=HOME, rt=OUT.moved(0.01), flow=0.25, overshoot=0.0),
+        go(0.30, rt=ABOVE, flow=0.3, overshoot=0.0),
+        home(0.40),
         tags="explain open",
         later="Left",
     ),
@@ -126,15 +132,24 @@ CLIPS = (
         tags="beat emphasis",
         together=True,
     ),
-    arms_clip(S, "fidget", "tap_fingers", "rt", *finger_roll("rt", CROSS_OVER, "hold_arm"), home(0.4), tags="impatient", likelihood=0.6),
+    arms_clip(
+        S,
+        "fidget",
+        "tap_fingers",
+        "rt",
+        *finger_roll("rt", CROSS_OVER.moved(0.003, 0.0, 0.003), "hold_arm", size=0.4),
+        home(0.4),
+        tags="impatient",
+        likelihood=0.6,
+    ),
     arms_clip(
         S,
         "fidget",
         "rub_arm",
         "rt",
-        go(0.32, rt=CROSS_OVER.moved(-0.012, 0.035, 0.010), head=(2, 4, 0), overshoot=0.0, flow=0.04),
-        go(0.34, rt=CROSS_OVER.moved(0.008, -0.012, 0.012), overshoot=0.0, flow=0.04),
-        go(0.32, rt=CROSS_OVER.moved(-0.012, 0.030, 0.010), head=(1, 3, 0), overshoot=0.0, flow=0.04),
+        go(0.32, rt=CROSS_OVER.moved(0.010, 0.030, 0.008), head=(2, 4, 0), overshoot=0.0, flow=0.04),
+        go(0.34, rt=CROSS_OVER.moved(0.010, -0.010, 0.006), overshoot=0.0, flow=0.04),
+        go(0.32, rt=CROSS_OVER.moved(0.010, 0.026, 0.008), head=(1, 3, 0), overshoot=0.0, flow=0.04),
         home(0.5),
         tags="cold unsure",
         likelihood=0.5,
@@ -156,8 +171,8 @@ CLIPS = (
         go(
             0.36,
             hold=0.16,
-            lf=CROSS_UNDER.moved(-0.006, -0.010, 0.004),
-            rt=CROSS_OVER.moved(-0.008, -0.010, 0.004),
+            lf=CROSS_UNDER.moved(0.002, -0.008, 0.004),
+            rt=CROSS_OVER.moved(0.006, -0.008, 0.004),
             spine=(3, -1, 0.5),
             head=(1, 2, 0),
         ),

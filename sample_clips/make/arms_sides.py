@@ -107,7 +107,7 @@ GESTURES = (
         "count_three",
         "rt",
         go(0.48, hold=0.02, rt=COUNTING, head=(-1, 0, 1), overshoot=0.02),
-        go(0.20, hold=0.22, rt=COUNTING.moved(0.01, -0.025, 0.03, shape="count_one", bend=6), head=(4, 0, 0), peak=0.52, overshoot=0.08),
+        go(0.27, hold=0.20, rt=COUNTING.moved(0.01, -0.025, 0.03, shape="count_one", bend=6), head=(4, 0, 0), peak=0.52, overshoot=0.08),
         go(0.12, rt=COUNTING.moved(0.012, 0.0, 0.01, shape="count_one", turn=4), head=(1, 0, 0), flow=0.05, overshoot=0.0),
         go(
             0.18,
@@ -118,7 +118,7 @@ GESTURES = (
             overshoot=0.08,
         ),
         go(0.12, rt=COUNTING.moved(0.03, 0.0, 0.015, shape="count_two", turn=6), head=(1, 0, -1), flow=0.05, overshoot=0.0),
-        go(0.18, hold=0.32, rt=COUNTING.moved(0.045, -0.03, 0.045, shape="count_three", bend=8, turn=9), head=(5, -2, 0), overshoot=0.08),
+        go(0.25, hold=0.30, rt=COUNTING.moved(0.045, -0.03, 0.045, shape="count_three", bend=8, turn=9), head=(5, -2, 0), overshoot=0.08),
         home(0.76),
         tags="enumerate",
         likelihood=0.7,
@@ -126,7 +126,15 @@ GESTURES = (
     gesture(
         "wave_hello",
         "rt",
-        go(0.62, rt=WAVING.moved(-0.02, 0.0, 0.0, side=12), head=(-3, -3, 4), spine=(-1, 0, 0), overshoot=0.02, flow=0.08),
+        go(
+            0.62,
+            rt=WAVING.moved(-0.02, 0.0, 0.0, side=12),
+            head=(-3, -3, 4),
+            lf=SIDE.moved(0.012),
+            spine=(-1, 0, 0),
+            overshoot=0.02,
+            flow=0.08,
+        ),
         go(0.19, rt=WAVING.moved(0.075, -0.02, 0.0, side=-20), overshoot=0.0, flow=0.06),
         go(0.19, rt=WAVING.moved(-0.045, 0.0, 0.0, side=16), overshoot=0.0, flow=0.06),
         go(0.19, rt=WAVING.moved(0.07, -0.02, 0.0, side=-18), head=(-2, -2, 6), overshoot=0.0, flow=0.06),
@@ -166,7 +174,7 @@ GESTURES = (
         go(
             0.46,
             lf=SWEEP_IN.moved(0.0, 0.0, -0.012),
-            rt=SWEEP_IN.moved(0.0, 0.055, 0.055),
+            rt=SWEEP_IN.moved(0.0, 0.062, 0.068),
             head=(4, 0, 0),
             spine=(1, 0, 0),
             flow=0.08,
@@ -198,7 +206,7 @@ GESTURES = (
     gesture(
         "size_big",
         "bt",
-        go(0.42, lf=CLOSE_TOGETHER, rt=CLOSE_TOGETHER.moved(0.0, 0.01), head=(4, 0, 0), flow=0.1, overshoot=0.0),
+        go(0.42, lf=CLOSE_TOGETHER.moved(0.012), rt=CLOSE_TOGETHER.moved(0.012, 0.01), head=(4, 0, 0), flow=0.1, overshoot=0.0),
         go(0.42, hold=0.42, lf=WIDE_APART, rt=WIDE_APART.moved(0.0, 0.015), head=(-3, 0, 2), spine=(-2.5, 0, 0), overshoot=0.06),
         home(0.82),
         tags="size big",
@@ -255,6 +263,10 @@ GESTURES = (
     ),
 )
 
+NECK = Hand(
+    at=(0.160, 1.472, 0.096), fingers=(-0.333, 0.587, -0.738), palm=(-0.754, 0.237, 0.612), shape="cupped", elbow=(0.74, -0.45, 0.5)
+)
+
 FIDGETS = (
     fidget(
         "flick_fingers",
@@ -269,8 +281,10 @@ FIDGETS = (
     fidget(
         "swing_arms",
         "bt",
-        go(0.46, lf=SIDE.moved(0.0, 0.03, 0.10), rt=SIDE.moved(0.0, 0.025, -0.07, bend=6), spine=(0, -1.5, 0), overshoot=0.0, flow=0.06),
-        go(0.54, lf=SIDE.moved(0.0, 0.02, -0.07, bend=6), rt=SIDE.moved(0.0, 0.035, 0.11), spine=(0, 1.5, 0), overshoot=0.0, flow=0.06),
+        go(
+            0.46, lf=SIDE.moved(0.012, 0.03, 0.10), rt=SIDE.moved(0.022, 0.025, -0.07, bend=6), spine=(0, -1.5, 0), overshoot=0.0, flow=0.06
+        ),
+        go(0.54, lf=SIDE.moved(0.022, 0.02, -0.07, bend=6), rt=SIDE.moved(0.012, 0.035, 0.11), spine=(0, 1.5, 0), overshoot=0.0, flow=0.06),
         go(0.52, lf=SIDE.moved(0.0, 0.01, 0.05), rt=SIDE.moved(0.0, 0.01, -0.035), spine=(0, -0.8, 0), overshoot=0.0, flow=0.06),
         home(0.55),
         drag=1.4,
@@ -297,15 +311,15 @@ FIDGETS = (
         go(
             0.36,
             hold=0.10,
-            rt=Hand(at=(0.015, 1.155, 0.325), turn=-58, bend=26, shape="cupped", elbow=(0.8, -0.6, 0.0)),
+            rt=Hand(at=(0.015, 1.165, 0.342), turn=-58, bend=26, shape="cupped", elbow=(0.8, -0.6, 0.0)),
             head=(12, 6, -2),
             overshoot=0.02,
         ),
-        go(0.22, hold=0.08, rt=Hand(at=(0.005, 1.158, 0.325), turn=-56, bend=30, shape="pinch", elbow=(0.8, -0.6, 0.0)), overshoot=0.0),
+        go(0.22, hold=0.08, rt=Hand(at=(0.005, 1.168, 0.340), turn=-56, bend=30, shape="pinch", elbow=(0.8, -0.6, 0.0)), overshoot=0.0),
         go(
             0.30,
             hold=0.14,
-            rt=Hand(at=(-0.035, 1.170, 0.305), turn=-54, bend=34, shape="pinch", elbow=(0.8, -0.6, 0.0)),
+            rt=Hand(at=(-0.035, 1.182, 0.322), turn=-54, bend=34, shape="pinch", elbow=(0.8, -0.6, 0.0)),
             spine=(1, 1, 0),
             overshoot=0.03,
         ),
@@ -315,37 +329,13 @@ FIDGETS = (
     fidget(
         "touch_neck",
         "rt",
-        go(0.46, rt=Hand(at=(0.30, 1.34, 0.15), turn=-10, bend=4, elbow=(0.7, -0.6, 0.1)), head=(3, 2, 0), flow=0.26, overshoot=0.0),
+        go(0.50, rt=Hand(at=(0.315, 1.340, 0.165), turn=-30, bend=4, elbow=(0.7, -0.6, 0.1)), head=(3, 2, 0), flow=0.26, overshoot=0.0),
+        go(0.44, hold=0.06, rt=NECK, head=(7, 6, -5), spine=(1, 1, 0), overshoot=0.0),
+        go(0.26, rt=NECK.moved(0.004, -0.020, 0.014), head=(8, 7, -7), overshoot=0.0),
+        go(0.26, hold=0.08, rt=NECK.moved(0.001, -0.003, 0.002), head=(6, 5, -5), overshoot=0.0),
         go(
-            0.44,
-            hold=0.06,
-            rt=Hand(
-                at=(0.122, 1.415, 0.105), fingers=(-0.38, 0.60, -0.74), palm=(-0.85, 0.1, 0.50), shape="cupped", elbow=(0.75, -0.45, 0.5)
-            ),
-            head=(7, 6, -5),
-            spine=(1, 1, 0),
-            overshoot=0.0,
-        ),
-        go(
-            0.26,
-            rt=Hand(
-                at=(0.124, 1.392, 0.112), fingers=(-0.38, 0.47, -0.74), palm=(-0.85, 0.1, 0.50), shape="cupped", elbow=(0.75, -0.45, 0.5)
-            ),
-            head=(8, 7, -7),
-            overshoot=0.0,
-        ),
-        go(
-            0.26,
-            hold=0.08,
-            rt=Hand(
-                at=(0.122, 1.410, 0.107), fingers=(-0.38, 0.57, -0.74), palm=(-0.85, 0.1, 0.50), shape="relaxed", elbow=(0.75, -0.45, 0.5)
-            ),
-            head=(6, 5, -5),
-            overshoot=0.0,
-        ),
-        go(
-            0.40,
-            rt=Hand(at=(0.33, 1.30, 0.15), turn=-6, bend=8, elbow=(0.7, -0.6, 0.1)),
+            0.42,
+            rt=Hand(at=(0.335, 1.300, 0.160), turn=-26, bend=8, elbow=(0.7, -0.6, 0.1)),
             head=(2, 1, 0),
             spine=(0, 0, 0),
             flow=0.22,

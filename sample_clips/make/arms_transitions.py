@@ -9,7 +9,7 @@ from __future__ import annotations
 from sample_clips.make import arms_chin, arms_clasped, arms_crossed, arms_hips
 from sample_clips.make.poses import Hand
 from sample_clips.make.recipe import HOME, Recipe, go, home
-from sample_clips.make.stances import ARMS, SIDE
+from sample_clips.make.stances import ARMS, SIDE, SUPPORT
 from sample_clips.make.tracks import Step
 
 # Where both hands (left, right) are just before they arrive in a stance and just after they leave it.
@@ -17,8 +17,8 @@ NEAR: dict[str, tuple[Hand, Hand]] = {
     "hands_at_sides": (SIDE.moved(0.02, 0.09, 0.09, shape="relaxed"), SIDE.moved(0.02, 0.10, 0.10, shape="relaxed")),
     "on_hips": (arms_hips.OFF.moved(0.03), arms_hips.OFF.moved(0.028, 0.01, 0.005)),
     "arms_crossed": (arms_crossed.LEFT_OUT, arms_crossed.OUT),
-    "hand_to_chin": (arms_crossed.LEFT_OUT.moved(-0.03), arms_chin.OUT.moved(0.03, -0.09, 0.02)),
-    "hands_clasped": (arms_clasped.CLOSE.moved(0.01, 0.0, 0.0), arms_clasped.CLOSE.moved(0.015, 0.014, 0.015)),
+    "hand_to_chin": (SUPPORT.moved(0.03, -0.045, 0.03, shape="relaxed"), arms_chin.over_elbow(0.0, 0.62, 0.78, bend=4, shape="relaxed")),
+    "hands_clasped": (arms_clasped.CLOSE.moved(0.015, -0.014, -0.026), arms_clasped.CLOSE.moved(0.018, 0.022, 0.034)),
 }
 # (leaves, arrives): seconds out, across, in; and how the head goes along (pitch, turn, lean).
 WAYS: dict[tuple[str, str], tuple[float, float, float, tuple[float, float, float]]] = {
@@ -30,14 +30,14 @@ WAYS: dict[tuple[str, str], tuple[float, float, float, tuple[float, float, float
     ("hand_to_chin", "hands_at_sides"): (0.30, 0.42, 0.54, (-1, -1, 0)),
     ("hands_at_sides", "hands_clasped"): (0.32, 0.36, 0.38, (3, 0, 0)),
     ("hands_clasped", "hands_at_sides"): (0.28, 0.34, 0.52, (1, 0, 1)),
-    ("on_hips", "arms_crossed"): (0.28, 0.42, 0.42, (2, -1, 0)),
+    ("on_hips", "arms_crossed"): (0.28, 0.40, 0.36, (2, -1, 0)),
     ("arms_crossed", "on_hips"): (0.30, 0.42, 0.42, (-2, 0, 0)),
     ("on_hips", "hands_clasped"): (0.28, 0.40, 0.40, (2, 1, 0)),
     ("hands_clasped", "on_hips"): (0.30, 0.38, 0.42, (-2, 0, 1)),
     ("arms_crossed", "hand_to_chin"): (0.30, 0.34, 0.40, (3, 2, 1)),
-    ("hand_to_chin", "arms_crossed"): (0.30, 0.36, 0.40, (0, 0, 0)),
+    ("hand_to_chin", "arms_crossed"): (0.26, 0.34, 0.36, (0, 0, 0)),
     ("arms_crossed", "hands_clasped"): (0.30, 0.38, 0.42, (2, 0, 0)),
-    ("hands_clasped", "arms_crossed"): (0.28, 0.40, 0.42, (-1, 1, 0)),
+    ("hands_clasped", "arms_crossed"): (0.26, 0.40, 0.36, (-1, 1, 0)),
 }
 
 
@@ -52,14 +52,16 @@ def way(leaves: str, arrives: str) -> Recipe:
     else:
         if leaves == "arms_crossed":  # the arm on top goes first
             steps.append(go(out * 0.7, rt=first[1], overshoot=0.0, flow=0.5))
-        if leaves == "hand_to_chin" and arrives == "arms_crossed":
-            steps.append(go(out, rt=first[1], spine=spine, head=head, overshoot=0.0, flow=0.3))
-        else:
-            steps.append(go(out, lf=first[0], rt=first[1], spine=spine, head=head, overshoot=0.0, flow=0.4))
+        if leaves == "hand_to_chin":  # the hand that carries lets go first
+            steps.append(go(out * 0.7, lf=first[0], overshoot=0.0, flow=0.55))
+        steps.append(go(out, lf=first[0], rt=first[1], spine=spine, head=head, overshoot=0.0, flow=0.4))
         if arrives != "hands_at_sides":
             steps.append(go(across, lf=last[0], rt=last[1], overshoot=0.0, flow=0.24))
-    if arrives in ("arms_crossed", "hand_to_chin"):  # and the arm beneath arrives first
-        steps.append(go(into * 0.8, lf=HOME, overshoot=0.0, flow=0.45))
+    if arrives == "arms_crossed":  # and the arm beneath arrives first
+        steps.append(go(into * 0.7, lf=HOME, overshoot=0.0, flow=0.6))
+        steps.append(go(0.24, rt=arms_crossed.ABOVE, overshoot=0.0, flow=0.36))
+    if arrives == "hand_to_chin":  # while the elbow is there before the hand that carries it
+        steps.append(go(into * 0.8, rt=HOME, overshoot=0.0, flow=0.5))
     steps.append(home(into * (1.25 if arrives == "hands_at_sides" else 1.0), overshoot=0.025))
     return Recipe(f"{leaves}__to__{arrives}", "arms", "transition", leaves, arrives, tuple(steps), later="Left")
 

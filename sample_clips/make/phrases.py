@@ -36,11 +36,13 @@ def beat(limb: str, ready: Hand, low: Hand, times: int = 1, quick: float = 0.24)
 _TAP = ({1: 14.0}, {2: 14.0}, {3: 12.0}, {4: 12.0})
 
 
-def finger_roll(side: str, hand: Hand, shape: str, rounds: int = 2) -> list[Step]:
-    """Drum the fingers, the little one first, each up and down while the next is rising."""
+def finger_roll(side: str, hand: Hand, shape: str, rounds: int = 2, size: float = 1.0) -> list[Step]:
+    """Drum the fingers, the little one first, each up and down while the next is rising; `size` scales how far."""
     steps = []
     for _ in range(rounds):
         for lifts in reversed(_TAP):
-            steps.append(go(0.13, **{side: hand.moved(shape=lifted(shape, lifts))}, overshoot=0.0, flow=0.045))
+            steps.append(
+                go(0.13, **{side: hand.moved(shape=lifted(shape, {k: v * size for k, v in lifts.items()}))}, overshoot=0.0, flow=0.045)
+            )
         steps.append(go(0.16, hold=0.10, **{side: hand}, overshoot=0.0))
     return steps

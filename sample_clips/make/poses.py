@@ -77,6 +77,15 @@ class Posture:
     lids: float = 0.0
 
 
+def elbow_of(hand: Hand) -> tuple[Array, float]:
+    """Return where a hand's elbow is, (out, up, forwards) in metres, and how far the wrist is from it."""
+    collar, upper, _ = (arm_rotations(hand)[name] for name in ("Shoulder", "UpperArm", "LowerArm"))
+    shoulder = REST[at("LeftShoulder")] + rotation.rotate(collar, REST[at("LeftUpperArm")] - REST[at("LeftShoulder")])
+    bone = REST[at("LeftLowerArm")] - REST[at("LeftUpperArm")]
+    elbow = shoulder + rotation.rotate(rotation.multiply(collar, upper), bone)
+    return elbow, float(np.linalg.norm(np.array(hand.at) - elbow))
+
+
 def arm_rotations(hand: Hand) -> dict[str, Array]:
     """Return the left arm's local rotations by joint name without its side."""
     wrist = np.array(hand.at) - CHEST

@@ -13,23 +13,25 @@ from sample_clips.make.poses import Foot, Hand, Posture
 SIDE = Hand(at=(0.236, 0.893, 0.012), turn=-16, bend=6, shape="hanging", elbow=(0.35, -0.2, -0.9))
 BASE = Posture(left=SIDE, right=SIDE)
 
-HIP = Hand(at=(0.2040, 1.0220, -0.0220), fingers=(-0.365, -0.68, 0.627), palm=(-0.75, -0.188, -0.635), shape="on_hip", elbow=(0.9, -0.05, -0.55))
+HIP = Hand(
+    at=(0.2040, 1.0220, -0.0220), fingers=(-0.365, -0.68, 0.627), palm=(-0.75, -0.188, -0.635), shape="on_hip", elbow=(0.9, -0.05, -0.55)
+)
 
 # Right forearm above and in front, its hand on the left upper arm; left forearm beneath, its hand under the right arm.
 CROSS_OVER = Hand(
-    at=(-0.076, 1.244, 0.221),
-    fingers=(-0.765, 0.266, -0.587),
-    palm=(-0.175, 0.018, -0.984),
+    at=(-0.071, 1.227, 0.167),
+    fingers=(-0.893, 0.163, -0.421),
+    palm=(-0.365, -0.135, -0.921),
     shape="hold_arm",
-    elbow=(0.893, -0.434, -0.116),
+    elbow=(0.230, -0.928, 0.294),
     reach=14,
 )
 CROSS_UNDER = Hand(
-    at=(-0.033, 1.164, 0.142),
-    fingers=(-0.729, 0.392, -0.561),
-    palm=(0.082, 0.319, -0.944),
+    at=(0.006, 1.103, 0.125),
+    fingers=(-0.896, 0.163, -0.413),
+    palm=(-0.131, 0.066, -0.989),
     shape="tucked",
-    elbow=(0.569, -0.634, 0.523),
+    elbow=(-0.028, -0.935, 0.355),
     reach=12,
 )
 

@@ -98,13 +98,13 @@ def test_a_clip_moves_as_a_person_could(name: str) -> None:
     assert max(m.wrist[2:]) < 42
     assert m.turned[0] < 95
     assert m.turned[1] < 92
-    assert m.elbow[0] > 2  # never straight, never the wrong way
+    assert m.elbow[0] > 8  # never straight, never the wrong way
     assert m.elbow[1] < 152
 
 
 @pytest.mark.parametrize("name", NAMES)
 def test_hands_and_forearms_stay_outside_the_body_and_of_each_other(name: str) -> None:
-    assert measured(name).inside < 0.02  # flesh gives a little where a hand rests
+    assert measured(name).inside < 0.03  # the torso here is a rough one, and flesh gives a little where a hand rests
     assert measured(name).together > 0.045
 
 

@@ -1,0 +1,117 @@
+"""The toolkit the clips are made with: limbs that reach, steps that add up, hands that mirror."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from metagraph.motion import rotation
+from sample_clips.make import ik, poses, secondary, tracks
+from sample_clips.make.hands import SHAPES, finger_rotations
+from sample_clips.make.recipe import Recipe, animate, go, home
+from sample_clips.make.rig import REST, SIDES, SKELETON, at
+from sample_clips.make.stances import BASE, HIP
+from sample_clips.make.tracks import Move, Step
+
+
+def ends(first: np.ndarray, second: np.ndarray, upper: float, lower: float) -> np.ndarray:
+    return first * upper + second * lower
+
+
+def test_two_bones_reach_a_target_within_reach() -> None:
+    target = np.array([[0.2, -0.3, 0.1], [0.0, 0.4, 0.05]])
+    first, second, _ = ik.two_bones(np.zeros(3), target, np.array([0.0, 0, 1.0]), 0.3, 0.25)
+    assert np.allclose(ends(first, second, 0.3, 0.25), target, atol=1e-9)
+
+
+def test_two_bones_stretch_towards_a_target_out_of_reach_without_becoming_quite_straight() -> None:
+    first, second, hinge = ik.two_bones(np.zeros(3), np.array([0.0, -2.0, 0.0]), np.array([0.0, 0, 1.0]), 0.3, 0.25)
+    end = ends(first, second, 0.3, 0.25)
+    assert end[1] < -0.54
+    assert 0.9 < first @ second < 1
+    assert np.allclose(np.abs(hinge), [1, 0, 0])
+
+
+def test_two_bones_bear_a_target_at_their_own_root() -> None:
+    first, second, _ = ik.two_bones(np.zeros(3), np.zeros(3), np.array([0.0, 0, 1.0]), 0.3, 0.25)
+    assert np.isfinite(first).all()
+    assert np.isfinite(second).all()
+
+
+def test_an_arm_s_wrist_is_where_the_posture_says_and_both_sides_mirror() -> None:
+    posture = replace(BASE, left=HIP, right=HIP)
+    turns = poses.solve(posture)
+    _, places = SKELETON.globals(type(SKELETON.rest)(turns, SKELETON.rest_translations))
+    assert np.allclose(places[at("LeftHand")], HIP.at, atol=1e-6)
+    assert np.allclose(places[at("RightHand")], np.array(HIP.at) * [-1, 1, 1], atol=1e-6)
+
+
+def test_feet_stay_where_they_are_while_the_hips_move() -> None:
+    numbers = np.tile(poses.channels(BASE), (5, 1))
+    numbers[:, 0] = np.linspace(-0.05, 0.05, 5)
+    turns, root = poses.legs(np.tile(poses.solve(BASE), (5, 1, 1)), numbers)
+    translations = np.tile(SKELETON.rest_translations, (5, 1, 1))
+    translations[:, 0] = root
+    _, places = SKELETON.globals(type(SKELETON.rest)(turns, translations))
+    for side in SIDES:
+        assert np.ptp(places[:, at(side + "Toes")], axis=0).max() < 1e-6
+    assert places[0, at("LeftToes"), 1] == pytest.approx(REST[at("LeftToes"), 1], abs=1e-6)
+
+
+@pytest.mark.parametrize("shape", sorted(SHAPES))
+def test_every_hand_shape_turns_all_fifteen_finger_joints(shape: str) -> None:
+    turns = finger_rotations(shape)
+    assert len(turns) == 15
+    assert all(np.isclose(np.linalg.norm(q), 1) for q in turns.values())
+
+
+@pytest.mark.parametrize("peak", [0.3, 0.42, 0.5, 0.65])
+def test_an_ease_goes_from_nothing_to_all_without_turning_back_and_is_fastest_at_its_peak(peak: float) -> None:
+    u = np.linspace(0, 1, 401)
+    w = tracks.ease(u, peak)
+    assert w[0] == 0
+    assert w[-1] == pytest.approx(1)
+    assert (np.diff(w) >= 0).all()
+    assert u[np.argmax(np.diff(w))] == pytest.approx(peak, abs=0.02)
+    assert tracks.ease(-1.0, peak) == 0
+    assert tracks.ease(2.0, peak) == pytest.approx(1)
+
+
+def test_a_step_with_anticipation_and_overshoot_dips_back_runs_over_and_ends_at_one() -> None:
+    move = Move(Step(0.5, hold=0.3, overshoot=0.08, anticipation=0.06), 1.0, 1.5, 2.2)
+    w = tracks.progress(move, np.linspace(0, 3, 301))
+    assert w[0] == 0
+    assert w[-1] == pytest.approx(1)
+    assert w.min() < -0.01
+    assert w.max() > 1.03
+
+
+@pytest.mark.parametrize("loop", [True, False])
+@pytest.mark.parametrize("frames", [2, 10, 200])
+def test_drifts_are_nothing_on_the_first_and_last_frame(frames: int, loop: bool) -> None:
+    out = tracks.wander(np.random.default_rng(1), frames, 0.5, 3, loop)
+    assert out.shape == (frames, 3)
+    assert np.allclose(out[[0, -1]], 0)
+
+
+def test_a_recipe_that_does_not_come_home_is_refused_by_name() -> None:
+    recipe = Recipe("lost", "arms", "gesture", "hands_at_sides", "hands_at_sides", (go(0.4, rt=HIP),))
+    with pytest.raises(ValueError, match="lost does not end in its stance"):
+        animate(recipe)
+
+
+def test_a_recipe_of_one_step_home_stands_still_but_for_its_life() -> None:
+    clip = animate(Recipe("still", "arms", "gesture", "hands_at_sides", "hands_at_sides", (home(0.8),), life=0.0))
+    turns = rotation.angle_between(clip.rotations.astype(float), clip.rotations[:1].astype(float))
+    assert np.degrees(turns.max()) < 0.1
+
+
+def test_a_pinned_hand_stays_where_it_was_while_the_torso_bends() -> None:
+    turns = np.tile(poses.solve(replace(BASE, left=HIP, right=HIP)), (4, 1, 1))
+    turns[:, at("Chest")] = rotation.from_axis_angle(np.array([1.0, 0, 0]), np.radians([0.0, 2, 4, 6]))
+    _, loose = secondary.globals_of(turns)
+    _, held = secondary.globals_of(secondary.pin(turns, "Left", "Hips"))
+    assert np.ptp(loose[:, at("LeftHand")], axis=0).max() > 0.005
+    assert np.ptp(held[:, at("LeftHand")], axis=0).max() < 1e-6
