@@ -30,7 +30,7 @@ class Thumbnails(QObject):
     """ready: clip id; a picture that was asked for is there. Without OpenGL no picture ever comes, and none is missed."""
 
     ready = Signal(str)
-    _drawn = Signal(object, object, object)
+    _drawn = Signal(int, object, object, object)
 
     def __init__(self, document: Document, session: Session, figures: Figures, parent: QObject | None = None) -> None:
         super().__init__(parent)
@@ -80,7 +80,9 @@ class Thumbnails(QObject):
         if before.skeleton is not after.skeleton and before.skeleton != after.skeleton:
             self.forget()
 
-    def _keep(self, key: Key, motion: Clip, pictures: list[QImage]) -> None:
+    def _keep(self, generation: int, key: Key, motion: Clip, pictures: list[QImage]) -> None:
+        if generation != self._generation:
+            return  # drawn with the figure before
         self._pictures[key] = (motion, pictures)
         self.ready.emit(key[0])
 
@@ -111,7 +113,7 @@ class Thumbnails(QObject):
                 generation, key, motion, figure = item
                 if generation == self._generation:
                     pictures = draw(offscreen, figure, motion, key[1], key[2])
-                    self._send(key, motion, pictures)
+                    self._send(generation, key, motion, pictures)
 
     def _send(self, *values: Any) -> None:
         try:

@@ -127,6 +127,8 @@ class Window(QMainWindow):
             old.deleteLater()
         self.problems_panel.show_problems(self.problems)
         self.ready = True
+        if not isinstance(QSettings().value("state"), QByteArray):
+            self._sizes()
 
     ready = False
 
@@ -300,10 +302,13 @@ class Window(QMainWindow):
         self.docks["timeline"].raise_()
         self.setCorner(Qt.Corner.BottomLeftCorner, Qt.DockWidgetArea.BottomDockWidgetArea)
         self.setCorner(Qt.Corner.BottomRightCorner, Qt.DockWidgetArea.BottomDockWidgetArea)
-        self.resizeDocks([self.docks["library"], self.docks["preview"]], [300, 400], Qt.Orientation.Horizontal)
-        self.resizeDocks([self.docks["preview"], self.docks["properties"]], [400, 380], Qt.Orientation.Vertical)
-        self.resizeDocks([self.docks["timeline"]], [214], Qt.Orientation.Vertical)
+        self._sizes()
         self.canvas.show()
+
+    def _sizes(self) -> None:
+        self.resizeDocks([self.docks["library"], self.docks["preview"]], [300, 420], Qt.Orientation.Horizontal)
+        self.resizeDocks([self.docks["preview"], self.docks["properties"]], [430, 350], Qt.Orientation.Vertical)
+        self.resizeDocks([self.docks["timeline"]], [226], Qt.Orientation.Vertical)
 
     def _restore(self) -> None:
         settings = QSettings()

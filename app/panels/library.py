@@ -18,7 +18,20 @@ from PySide6.QtCore import (
     Qt,
     Signal,
 )
-from PySide6.QtGui import QColor, QContextMenuEvent, QDrag, QDragEnterEvent, QDragMoveEvent, QDropEvent, QFont, QKeyEvent, QPainter, QPen
+from PySide6.QtGui import (
+    QColor,
+    QContextMenuEvent,
+    QDrag,
+    QDragEnterEvent,
+    QDragMoveEvent,
+    QDropEvent,
+    QFont,
+    QFontMetrics,
+    QKeyEvent,
+    QPainter,
+    QPen,
+    QResizeEvent,
+)
 from PySide6.QtWidgets import (
     QAbstractItemView,
     QHBoxLayout,
@@ -49,7 +62,7 @@ from metagraph.graph.model import KINDS, LAYERS, ClipEntry, Kind, Project
 
 Index = QModelIndex | QPersistentModelIndex
 ENTRY = Qt.ItemDataRole.UserRole
-CARD = QSize(124, 158)
+CARD_WIDTH, CARD_HEIGHT = 124, 176
 PICTURE = 108
 
 
@@ -155,7 +168,7 @@ class CardDelegate(QStyledItemDelegate):
         self.panel = panel
 
     def sizeHint(self, option: QStyleOptionViewItem, index: Index) -> QSize:
-        return CARD
+        return self.panel.list.gridSize()
 
     def paint(self, painter: QPainter, option: QStyleOptionViewItem, index: Index) -> None:
         entry: ClipEntry = index.data(ENTRY)
@@ -189,11 +202,12 @@ class CardDelegate(QStyledItemDelegate):
         font.setPixelSize(12)
         painter.setFont(font)
         painter.setPen(QColor(t.text))
-        line = QRect(rect.left() + 11, rect.bottom() - 38, rect.width() - 16, 17)
-        metrics = painter.fontMetrics()
-        painter.drawText(line, Qt.AlignmentFlag.AlignVCenter, metrics.elidedText(entry.name, Qt.TextElideMode.ElideMiddle, line.width()))
+        line = QRect(rect.left() + 11, rect.bottom() - 53, rect.width() - 16, 16)
+        for part in two_lines(entry.name, painter.fontMetrics(), line.width()):
+            painter.drawText(line, Qt.AlignmentFlag.AlignVCenter, part)
+            line.translate(0, 16)
         painter.setPen(QColor(t.dim))
-        line.translate(0, 17)
+        line.moveTop(rect.bottom() - 20)
         painter.drawText(line, Qt.AlignmentFlag.AlignVCenter, f"{entry.duration:.1f} s")
         right = line.right()
         for kind in reversed(kinds):
@@ -206,6 +220,16 @@ class CardDelegate(QStyledItemDelegate):
                 line.adjusted(0, 0, right - line.right() - 2, 0), Qt.AlignmentFlag.AlignRight | Qt.AlignmentFlag.AlignVCenter, "base"
             )
         painter.restore()
+
+
+def two_lines(name: str, metrics: QFontMetrics, width: int) -> tuple[str, ...]:
+    """Break a name over at most two lines, after a separator where there is one; names tell clips apart by their ends."""
+    if metrics.horizontalAdvance(name) <= width:
+        return (name,)
+    fits = max((n for n in range(1, len(name)) if metrics.horizontalAdvance(name[:n]) <= width), default=1)
+    cuts = [n for n in range(fits, fits // 2, -1) if name[n - 1] in "_- .@"]
+    cut = cuts[0] if cuts else fits
+    return name[:cut], metrics.elidedText(name[cut:], Qt.TextElideMode.ElideMiddle, width)
 
 
 class ClipList(QListView):
@@ -221,16 +245,16 @@ class ClipList(QListView):
         self.setResizeMode(QListView.ResizeMode.Adjust)
         self.setMovement(QListView.Movement.Static)
         self.setUniformItemSizes(True)
-        self.setGridSize(CARD)
+        self.setGridSize(QSize(CARD_WIDTH, CARD_HEIGHT))
         self.setSelectionMode(QAbstractItemView.SelectionMode.ExtendedSelection)
         self.setDragEnabled(True)
         self.setAcceptDrops(True)
         self.setDragDropMode(QAbstractItemView.DragDropMode.DragDrop)
         self.setMouseTracking(True)
         self.setVerticalScrollMode(QAbstractItemView.ScrollMode.ScrollPerPixel)
+        self.setVerticalScrollBarPolicy(Qt.ScrollBarPolicy.ScrollBarAlwaysOn)
         self.setHorizontalScrollBarPolicy(Qt.ScrollBarPolicy.ScrollBarAlwaysOff)
         self.setAccessibleName("Clips")
-        self._again: str | None = None
 
     def startDrag(self, actions: Qt.DropAction) -> None:
         chosen = [i.data(ENTRY) for i in self.selectedIndexes()]
@@ -241,8 +265,11 @@ class ClipList(QListView):
         drag.setPixmap(drag_picture(chosen[0].name if len(chosen) == 1 else f"{len(chosen)} clips", self))
         drag.exec(Qt.DropAction.CopyAction)
 
-    def mousePressEvent(self, event: object) -> None:
-        super().mousePressEvent(event)  # type: ignore[arg-type]
+    def resizeEvent(self, event: QResizeEvent) -> None:
+        """Fill the width with as many columns as fit."""
+        width = self.viewport().width() - 2
+        self.setGridSize(QSize(max(CARD_WIDTH, width // max(1, width // CARD_WIDTH)), CARD_HEIGHT))
+        super().resizeEvent(event)
 
     def mouseReleaseEvent(self, event: object) -> None:
         super().mouseReleaseEvent(event)  # type: ignore[arg-type]

@@ -1,0 +1,205 @@
+"""Timing seen, not typed: the speed of the hands or head over the clip, with handles for start, end, blends and exit."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+import pyqtgraph as pg
+from PySide6.QtCore import Qt, Signal
+from PySide6.QtGui import QColor
+from PySide6.QtWidgets import QVBoxLayout, QWidget
+
+from app.document import Document
+from app.session import Session
+from app.theme import Theme, theme
+from metagraph.graph import anatomy
+from metagraph.graph.model import Action, Project
+from metagraph.motion import features
+
+HANDLES = ("start", "end", "in", "out", "exit", "stroke")
+WORDS = {"start": "start", "end": "end", "in": "blend in", "out": "blend out", "exit": "earliest exit", "stroke": "stroke"}
+
+
+def speed_of(project: Project, action: Action) -> tuple[np.ndarray, str]:
+    """Return the speed over an action's clip `[F]`, metres a second, and in words what of."""
+    entry = project.clips.get(action.clip)
+    motion = entry.motion if entry is not None else None
+    if motion is None or motion.skeleton != project.skeleton:
+        return np.zeros(0), ""
+    roles = anatomy.roles(project)
+    if action.layer == "arms":
+        sides = ("left", "right") if action.limb == "both" else (action.limb,)
+        joints = [roles[f"{s}_hand"] for s in sides if f"{s}_hand" in roles]
+        return features.speed(motion, joints, roles.get("upper_chest", roles.get("chest", roles.get("spine")))), "hand speed"
+    if action.layer == "head":
+        joints = [roles["head"]] if "head" in roles else []
+        # A turning head's joint stays in place: its eyes or what else hangs on it tell.
+        ends = [i for i in range(len(motion.skeleton)) if joints and motion.skeleton.parents[i] == joints[0]]
+        return features.speed(motion, ends or joints, roles.get("neck")), "head speed"
+    joints = [roles[r] for r in ("hips", "head", "left_foot", "right_foot") if r in roles]
+    return features.speed(motion, joints), "body speed"
+
+
+def times_of(project: Project, action: Action) -> dict[str, float | None]:
+    """Return where each handle stands, seconds of the clip; None for one that is not set."""
+    start, end = project.span(action)
+    t = action.timing
+    return {
+        "start": start,
+        "end": end,
+        "in": min(end, start + t.blend_in),
+        "out": max(start, end - t.blend_out),
+        "exit": t.earliest_exit,
+        "stroke": t.stroke,
+    }
+
+
+def moved(project: Project, action: Action, handle: str, seconds: float) -> dict[str, Any]:
+    """Return the Timing fields that dragging a handle to `seconds` changes; a pure function of where it is dropped."""
+    entry = project.clips[action.clip]
+    start, end = project.span(action)
+    shortest = 1 / entry.fps
+    at = round(min(max(0.0, seconds), entry.duration), 3)
+    if handle == "start":
+        return {"start": min(at, round(end - shortest, 3))}
+    if handle == "end":
+        at = max(at, round(start + shortest, 3))
+        return {"end": None if at >= entry.duration - shortest / 2 else at}
+    if handle == "in":
+        return {"blend_in": round(min(max(0.0, at - start), end - start), 3)}
+    if handle == "out":
+        return {"blend_out": round(min(max(0.0, end - at), end - start), 3)}
+    if handle == "exit":
+        return {"earliest_exit": min(max(at, start), end)}
+    return {"stroke": min(max(at, start), end)}
+
+
+class TimingPlot(QWidget):
+    """Emits changed(fields) while a handle is dragged and finished when it is let go."""
+
+    changed = Signal(object)
+    finished = Signal()
+
+    def __init__(self, document: Document, session: Session, parent: QWidget | None = None) -> None:
+        super().__init__(parent)
+        self.document, self.session = document, session
+        self.action: Action | None = None
+        self._setting = False
+        self.plot = pg.PlotWidget(self)
+        self.plot.setMenuEnabled(False)
+        self.plot.setMouseEnabled(False, False)
+        self.plot.hideButtons()
+        self.plot.setFixedHeight(132)
+        self.plot.getAxis("left").setWidth(30)
+        self.curve = self.plot.plot(antialias=True)
+        self.blends = [pg.LinearRegionItem(movable=False) for _ in range(2)]
+        for blend in self.blends:
+            blend.setZValue(-5)
+            self.plot.addItem(blend)
+        self.lines: dict[str, pg.InfiniteLine] = {}
+        for name in HANDLES:
+            line = pg.InfiniteLine(movable=True, label=WORDS[name])
+            line.setCursor(Qt.CursorShape.SizeHorCursor)
+            line.sigDragged.connect(lambda item, n=name: self._dragged(n, item.value()))
+            line.sigPositionChangeFinished.connect(lambda _: self._let_go())
+            self.plot.addItem(line)
+            self.lines[name] = line
+        self.playhead = pg.InfiniteLine(movable=False)
+        self.plot.addItem(self.playhead)
+        self.plot.scene().sigMouseClicked.connect(self._clicked)
+        layout = QVBoxLayout(self)
+        layout.setContentsMargins(0, 0, 0, 0)
+        layout.addWidget(self.plot)
+        session.moved.connect(self._playhead)
+        session.theme_changed.connect(self._restyle)
+        self._restyle()
+
+    def _restyle(self) -> None:
+        t = theme(self.session.theme)
+        self.plot.setBackground(t.panel)
+        for name in ("left", "bottom"):
+            axis = self.plot.getAxis(name)
+            axis.setPen(t.line)
+            axis.setTextPen(t.dim)
+        self.playhead.setPen(pg.mkPen(t.text, width=1, style=Qt.PenStyle.DotLine))
+        if self.action is not None:
+            self.show_action(self.action)
+
+    def show_action(self, action: Action) -> None:
+        """Show an action's timing."""
+        t = theme(self.session.theme)
+        project = self.document.project
+        fresh = self.action is None or self.action.id != action.id or self.action.clip != action.clip or self.action.limb != action.limb
+        self.action = action
+        entry = project.clips.get(action.clip)
+        if entry is None:
+            return
+        color = t.kind(action.kind)
+        if fresh:
+            speeds, words = speed_of(project, action)
+            self.curve.setData(np.arange(len(speeds)) / entry.fps, speeds)
+            self.plot.setXRange(-0.02 * entry.duration, max(entry.duration, 0.1) * 1.02, padding=0)
+            self.plot.setYRange(0, max(0.2, float(speeds.max()) * 1.15 if len(speeds) else 1.0), padding=0)
+            self.plot.setToolTip(f"{words}, m/s. Drag the lines; a click moves the playhead.")
+        self.curve.setPen(pg.mkPen(color, width=2))
+        self._place(project, action, t, color)
+
+    def _place(self, project: Project, action: Action, t: Theme, color: QColor) -> None:
+        self._setting = True
+        at = times_of(project, action)
+        for name, line in self.lines.items():
+            value = at[name]
+            loop = action.kind == "stance"
+            line.setVisible(value is not None and not (loop and name in ("out", "exit", "stroke")))
+            if value is not None:
+                line.setValue(value)
+            strong = name in ("start", "end")
+            style = Qt.PenStyle.SolidLine if strong else Qt.PenStyle.DashLine
+            line.setPen(pg.mkPen(t.text if strong else color, width=2 if strong else 1.4, style=style))
+            line.setHoverPen(pg.mkPen(t.text, width=3))
+            line.label.setColor(t.dim)
+            line.label.setPosition({"start": 0.92, "end": 0.92, "in": 0.76, "out": 0.76, "exit": 0.6, "stroke": 0.44}[name])
+        fill = QColor(color)
+        fill.setAlpha(46)
+        for blend, (a, b) in zip(self.blends, ((at["start"], at["in"]), (at["out"], at["end"])), strict=True):
+            blend.setRegion((a, b))
+            blend.setBrush(fill)
+            for line in blend.lines:
+                line.setPen(pg.mkPen(None))
+        self.blends[1].setVisible(action.kind != "stance")
+        self._setting = False
+
+    def _dragged(self, name: str, seconds: float) -> None:
+        if self._setting or self.action is None:
+            return
+        fields = moved(self.document.project, self.action, name, seconds)
+        # The character follows the handle.
+        self.session.show_clip(self.action.clip)
+        self.session.set_playing(False)
+        self.session.seek(min(max(0.0, seconds), self.document.project.clips[self.action.clip].duration))
+        self._moving = True
+        self.changed.emit(fields)
+
+    _moving = False
+
+    def _let_go(self) -> None:
+        if self._moving and self.action is not None:
+            self._moving = False
+            self.finished.emit()
+            self.show_action(self.document.project.action(self.action.id) or self.action)
+            self.session.show_context(self.action.id)
+
+    def _clicked(self, event: Any) -> None:
+        if self.action is None or event.button() != Qt.MouseButton.LeftButton or event.isAccepted():
+            return
+        seconds = self.plot.plotItem.vb.mapSceneToView(event.scenePos()).x()
+        self.session.show_clip(self.action.clip)
+        self.session.set_playing(False)
+        self.session.seek(max(0.0, float(seconds)))
+
+    def _playhead(self, seconds: float) -> None:
+        mine = self.action is not None and self.session.show == "clip" and self.session.shown == self.action.clip
+        self.playhead.setVisible(mine)
+        if mine:
+            self.playhead.setValue(seconds)
