@@ -1,0 +1,165 @@
+#!/usr/bin/env python3
+"""Set up and start Metagraph: `python3 run.py`. Test it: `python3 run.py test`. Needs Python 3.11 to 3.13 and nothing else.
+
+Makes `.venv`, installs the pinned dependencies into it, installs missing system libraries on Debian and Ubuntu (at
+once as root, through sudo after asking otherwise), then runs. Whatever follows is passed on: `python3 run.py check my.metagraph.yaml`.
+"""
+
+import ctypes
+import hashlib
+import os
+import shutil
+import subprocess
+import sys
+from pathlib import Path
+
+ROOT = Path(__file__).resolve().parent
+VENV = ROOT / ".venv"
+WINDOWS = os.name == "nt"
+PYTHON = VENV / ("Scripts/python.exe" if WINDOWS else "bin/python")
+
+# Library or program -> Debian package. Drawing without a screen needs the first group, a window the second, tests the third.
+DRAWING = {"libEGL.so.1": "libegl1", "libGL.so.1": "libgl1"}
+WINDOW = {
+    "libglib-2.0.so.0": "libglib2.0-0",
+    "libxkbcommon.so.0": "libxkbcommon0",
+    "libdbus-1.so.3": "libdbus-1-3",
+    "libfontconfig.so.1": "libfontconfig1",
+    "libxcb-cursor.so.0": "libxcb-cursor0",
+    "libxcb-icccm.so.4": "libxcb-icccm4",
+    "libxcb-keysyms.so.1": "libxcb-keysyms1",
+    "libxcb-shape.so.0": "libxcb-shape0",
+    "libxkbcommon-x11.so.0": "libxkbcommon-x11-0",
+}
+TESTING = {"Xvfb": "xvfb", "xauth": "xauth", "xdotool": "xdotool"}
+
+
+def main(arguments):
+    if not (3, 11) <= sys.version_info[:2] <= (3, 13):
+        return "Python 3.11, 3.12 or 3.13 is needed, this is %d.%d." % sys.version_info[:2]
+    testing = arguments[:1] == ["test"]
+    screen = not sys.platform.startswith("linux") or bool(os.environ.get("DISPLAY") or os.environ.get("WAYLAND_DISPLAY"))
+    trouble = system_libraries(screen, testing) if sys.platform.startswith("linux") else None
+    trouble = trouble or environment(testing)
+    if trouble:
+        return trouble
+    if testing:
+        return run_tests(arguments[1:])
+    return subprocess.call([str(PYTHON), "-m", "app.cli", *(arguments or (["window", "--sample"] if screen else ["demo"]))], cwd=ROOT)
+
+
+# --- system libraries
+
+
+def missing(screen, testing):
+    """Return the Debian packages that are not there."""
+    wanted = {**DRAWING, **(WINDOW if screen or testing else {})}
+    out = [package for library, package in wanted.items() if not loads(library)]
+    if testing:
+        out += [package for program, package in TESTING.items() if shutil.which(program) is None]
+    return out
+
+
+def loads(library):
+    try:
+        ctypes.CDLL(library)
+    except OSError:
+        return False
+    return True
+
+
+def system_libraries(screen, testing):
+    packages = missing(screen, testing)
+    if not packages:
+        return None
+    install = ["apt-get", "install", "-y", "--no-install-recommends", *packages]
+    line = "sudo apt-get update && sudo " + " ".join(install)
+    if shutil.which("apt-get") is None:
+        return "System libraries are missing. On Debian or Ubuntu this installs them; other systems have them under similar names:\n  " + line
+    if os.geteuid() == 0:
+        prefix = []
+    elif shutil.which("sudo") and sys.stdin.isatty():
+        print("System libraries are missing: " + " ".join(packages))
+        if input("Install them now with sudo? [Y/n] ").strip().lower() not in ("", "y", "yes"):
+            return "Then install them yourself and start again:\n  " + line
+        prefix = ["sudo"]
+    else:
+        return "System libraries are missing. Install them and start again:\n  " + line
+    print("Installing system libraries: " + " ".join(packages), flush=True)
+    environ = {**os.environ, "DEBIAN_FRONTEND": "noninteractive"}
+    for command in (["apt-get", "update", "-qq"], install):
+        if subprocess.call([*prefix, *command], env=environ, stdout=subprocess.DEVNULL) != 0:
+            return "That failed. Install them yourself and start again:\n  " + line
+    left = missing(screen, testing)
+    return f"Still missing after the installation: {' '.join(left)}" if left else None
+
+
+# --- the environment
+
+
+def environment(testing):
+    """Make .venv and install what is pinned; nothing to do when that was done before."""
+    files = [ROOT / "requirements.txt", *([ROOT / "requirements-test.txt"] if testing else [])]
+    want = hashlib.sha256(b"".join(f.read_bytes() for f in [*files, ROOT / "pyproject.toml"])).hexdigest()
+    stamp = VENV / (".installed-test" if testing else ".installed")
+    if PYTHON.exists() and stamp.exists() and stamp.read_text() == want:
+        return None
+    if not PYTHON.exists() or not pip("--version", quiet=True):
+        print("Making the environment in .venv (once, about a minute) ...", flush=True)
+        shutil.rmtree(VENV, ignore_errors=True)
+        made = subprocess.run([sys.executable, "-m", "venv", str(VENV)], capture_output=True, text=True)
+        if made.returncode != 0:
+            shutil.rmtree(VENV, ignore_errors=True)
+            hint = " On Debian or Ubuntu: sudo apt-get install -y python3-venv" if sys.platform.startswith("linux") else ""
+            return f"The environment could not be made: {(made.stdout + made.stderr).strip().splitlines()[-1]}.{hint}"
+    print("Installing dependencies ...", flush=True)
+    if not pip("install", "--disable-pip-version-check", "-q", *(x for f in files for x in ("-r", str(f)))):
+        return "The dependencies could not be installed; what pip said is above. Check the network and start again."
+    if not pip("install", "--disable-pip-version-check", "-q", "--no-deps", "--no-build-isolation", "-e", str(ROOT)):
+        return "Metagraph could not be installed into its environment; what pip said is above."
+    # FBX is an extra with no wheel for every system: welcome where it installs, not missed where it does not.
+    if not pip("install", "--disable-pip-version-check", "-q", "--only-binary", ":all:", "ufbx==0.0.5", quiet=True):
+        print("(FBX files cannot be read on this system; BVH and glTF can.)")
+    stamp.write_text(want)
+    return None
+
+
+def pip(*arguments, quiet=False):
+    options = {"stdout": subprocess.DEVNULL, "stderr": subprocess.DEVNULL} if quiet else {}
+    environ = {**os.environ, "PIP_ROOT_USER_ACTION": "ignore"}
+    return subprocess.call([str(PYTHON), "-m", "pip", *arguments], env=environ, cwd=ROOT, **options) == 0
+
+
+# --- tests
+
+
+def run_tests(arguments):
+    """Lint, types, import rules, then the tests; with arguments, only pytest with those."""
+    def tool(name):
+        return str(PYTHON.with_name(name + (".exe" if WINDOWS else "")))
+
+    validator = ROOT / "tests" / "node_modules" / "gltf-validator"
+    npm = shutil.which("npm")
+    if npm and not validator.exists():
+        # The Khronos validator checks every GLB we write; its tests skip where there is no Node.
+        install = [npm, "install", "--prefix", str(ROOT / "tests"), "--no-save", "--no-package-lock", "--silent", "gltf-validator@2.0.0-dev.3.10"]
+        subprocess.call(install, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
+    steps = [] if arguments else [
+        [tool("ruff"), "check", "."],
+        [tool("ruff"), "format", "--check", "."],
+        [tool("mypy")],
+        [tool("lint-imports")],
+    ]
+    steps.append([str(PYTHON), "-m", "pytest", *arguments])
+    failed = 0
+    for step in steps:
+        print("$ " + " ".join([Path(step[0]).name, *step[1:]]), flush=True)
+        failed = subprocess.call(step, cwd=ROOT) or failed
+    return failed
+
+
+if __name__ == "__main__":
+    try:
+        sys.exit(main(sys.argv[1:]))
+    except KeyboardInterrupt:
+        sys.exit(130)
