@@ -208,4 +208,3 @@ def recover(journal: Path, saved: Path | None) -> tuple[Project, int] | None:
 def journal_path(saved: Path) -> Path:
     """Return where the journal of a project file lies: beside it, hidden."""
     return saved.with_name(f".{saved.name}.journal")
-

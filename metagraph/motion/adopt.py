@@ -14,7 +14,7 @@ LENGTH_TOLERANCE = 0.02  # of the skeleton's height: files of one character diff
 MOVED = 1e-4  # metres: below this a joint keeps its rest translation
 
 
-class SkeletonMismatch(ValueError):
+class SkeletonMismatchError(ValueError):
     """The clip belongs to another skeleton; the message says how they differ."""
 
 
@@ -50,7 +50,7 @@ def difference(clip: Skeleton, project: Skeleton) -> str | None:
 def adopt(clip: Clip, skeleton: Skeleton) -> Clip:
     """Return the clip expressed on `skeleton`: joints reordered by name, missing ones at rest, bones as the clip has them.
 
-    Raises SkeletonMismatch when the skeletons are not of the same character.
+    Raises SkeletonMismatchError when the skeletons are not of the same character.
     """
     if clip.skeleton is skeleton:
         return clip
@@ -58,7 +58,7 @@ def adopt(clip: Clip, skeleton: Skeleton) -> Clip:
         return replace(clip, skeleton=skeleton)
     why = difference(clip.skeleton, skeleton)
     if why is not None:
-        raise SkeletonMismatch(why)
+        raise SkeletonMismatchError(why)
     places = np.array([skeleton.index(name) for name in clip.skeleton.names])
     source = clip.poses()
     rotations = np.broadcast_to(skeleton.rest_rotations, (clip.frames, len(skeleton), 4)).astype(np.float32)
