@@ -49,7 +49,10 @@ class Mesh:
 
 
 def coarse(mesh: Mesh, cells: int = 84) -> Mesh:
-    """Return a mesh with vertices merged that share a cell (height / `cells`), a bone and a batch: for shadows and crowds."""
+    """Return a mesh with vertices merged that share a cell (height / `cells`), a bone and a piece: for shadows and crowds.
+
+    A piece is what triangles connect; pieces stay apart since their places in a texture have nothing in common.
+    """
     if not len(mesh.triangles):
         return mesh
     position = mesh.vertices["position"]
@@ -57,10 +60,9 @@ def coarse(mesh: Mesh, cells: int = 84) -> Mesh:
     size = max(float((high - low).max()) / cells, 1e-9)
     cell = ((position - low) / size).astype(np.int64)
     bone = np.take_along_axis(mesh.vertices["bones"], mesh.vertices["weights"].argmax(1)[:, None], 1)[:, 0].astype(np.int64)
-    batch = np.zeros(len(position), np.int64)
-    for i, b in enumerate(mesh.batches):
-        batch[mesh.triangles[b.first : b.first + b.count]] = i
-    key = (((batch * (mesh.matrices + 1) + bone) * (cells + 2) + cell[:, 0]) * (cells + 2) + cell[:, 1]) * (cells + 2) + cell[:, 2]
+    paint = np.clip(mesh.vertices["uv"] % 1.0, 0, 0.999) @ np.array([0, 16.0])  # nor do far places of one piece
+    piece = _pieces(len(position), mesh.triangles) * 16 + paint.astype(np.int64)
+    key = (((piece * (mesh.matrices + 1) + bone) * (cells + 2) + cell[:, 0]) * (cells + 2) + cell[:, 1]) * (cells + 2) + cell[:, 2]
     _, first, group, count = np.unique(key, return_index=True, return_inverse=True, return_counts=True)
     middle = np.zeros((len(first), 3))
     np.add.at(middle, group, position)
@@ -77,6 +79,20 @@ def coarse(mesh: Mesh, cells: int = 84) -> Mesh:
         batches.append(Batch(at, len(t), b.image, b.double_sided))
         at += len(t)
     return Mesh(vertices, np.concatenate(triangles).astype(np.uint32), tuple(batches), mesh.matrices)
+
+
+def _pieces(count: int, triangles: Array) -> Array:
+    """For each vertex the least vertex it is connected to by triangles, `[V]`."""
+    label = np.arange(count, dtype=np.int64)
+    while True:
+        least = label[triangles].min(1)
+        after = label.copy()
+        for k in range(3):
+            np.minimum.at(after, triangles[:, k], least)
+        after = after[after]
+        if np.array_equal(after, label):
+            return label
+        label = after
 
 
 def lathe(profile: Sequence[tuple[float, float]], sides: int) -> tuple[Array, Array, Array]:

@@ -7,6 +7,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from metagraph.motion import rotation
 from metagraph.motion.clip import Clip
 from metagraph.motion.skeleton import Pose
 from preview import joints as rules
@@ -55,8 +56,10 @@ def thumbnail(
         share = 0.0 if tint is None else 0.16
         r, g, b = (p * (1 - share) + t * share for p, t in zip(paper, tint or paper, strict=True))
         background = (r, g, b, 1.0)
-    root = positions[0] * [1, 0, 1]
-    actor = Actor(figure, rotations, positions - root)
+    # The figure is turned to the lamp, not the camera round it: all thumbnails are in the same light.
+    turn = rotation.from_axis_angle(np.array([0.0, 1, 0]), np.array(-_heading(figure, positions)))
+    centred = rotation.rotate(turn, positions - positions[0] * [1, 0, 1])
+    actor = Actor(figure, rotation.multiply(turn, rotations), centred)
     low, high = figure.bounds(actor.positions)
     # The box of a person with half-raised arms, turned as the character is.
     reach, top = 0.42 * figure.height, 1.1 * figure.height
@@ -64,7 +67,7 @@ def thumbnail(
     half = np.array([reach, 0, reach * 0.4])
     low = np.minimum(low, [centre[0] - half[0], 0, centre[2] - half[2]])
     high = np.maximum(high, [centre[0] + half[0], min(top, max(high[1], top * 0.9)), centre[2] + half[2]])
-    camera = Camera().facing(_heading(figure, actor) + np.radians(22), np.radians(6)).frame((low, high), 1.0, margin=1.02)
+    camera = Camera().facing(np.radians(22), np.radians(6)).frame((low, high), 1.0, margin=1.02)
     return offscreen.render(Scene((actor,), background=background), camera, theme, (pixels, pixels))
 
 
@@ -74,12 +77,12 @@ def clip_thumbnail(offscreen: Offscreen, figure: Figure, clip: Clip, **options: 
     return thumbnail(offscreen, figure, rotations, positions, **options)
 
 
-def _heading(figure: Figure, actor: Actor) -> float:
+def _heading(figure: Figure, positions: Array) -> float:
     """Where the hips face, radians about +Y: across the line from the right limbs to the left ones."""
     side = rules.sides(figure.skeleton) * figure.drawn
     if not ((side > 0).any() and (side < 0).any()):
         return 0.0
-    p = np.asarray(actor.positions, float)
+    p = np.asarray(positions, float)
     near = np.array([rules.is_finger(n) for n in figure.skeleton.names])
     upper = [i for i in range(len(side)) if side[i] and not near[i] and side[figure.skeleton.parents[i]] == 0]
     left, right = [i for i in upper if side[i] > 0], [i for i in upper if side[i] < 0]

@@ -230,7 +230,7 @@ def _finger(name: str) -> Piece:
     heights = [-0.004, 0.5 * one, one - 0.0065, one + 0.0055, two - 0.0060, two + 0.0055]
     heights += [tip + end * h for h in (0.0, 0.55, 0.86, 0.995)]
     ring = _ring(shapes.finger(name), points[0], axis, [(h, 0.0) for h in heights], 8, "skin")
-    return replace(ring, normals=gradient(shapes.hand(), ring.positions), weights=_hand_weights(ring.positions))
+    return replace(ring, normals=gradient(shapes.hand(), ring.positions), weights=_hand_weights(ring.positions, (name,)))
 
 
 def _collar() -> Piece:
@@ -316,16 +316,16 @@ def _trouser_weights(p: Array) -> dict[str, Array]:
     # The leg takes over from the hips below the joint; a soft field keeps the crease of the hip round when sitting.
     above = np.maximum(0, (p[:, 1] - 0.930) * 0.9)
     groups = [(shapes.pelvis()(p), hips), (leg(p) + above, _leg(p)), (leg(p * [-1, 1, 1]) + above, _other_side(_leg, p))]
-    return _mixed(groups, 0.016)
+    return _mixed(groups, 0.014)
 
 
 def _shoe_weights(p: Array) -> dict[str, Array]:
     return _chain(p, ("LeftLowerLeg", "LeftFoot", "LeftToes"), (0.030, 0.035), (np.array([0.0, -1, 0.3]), np.array([0.0, 0, 1])))
 
 
-def _hand_weights(p: Array) -> dict[str, Array]:
+def _hand_weights(p: Array, fingers: tuple[str, ...] = FINGERS) -> dict[str, Array]:
     groups = [(shapes.palm()(p), _chain(p, ("LeftLowerArm", "LeftHand"), (0.022,), (ARM,)))]
-    for name in FINGERS:
+    for name in fingers:
         points = shapes.finger_points(name)
         axis = points[2] - points[1]
         half = (0.010, 0.0065, 0.006)
@@ -442,7 +442,7 @@ def mannequin_character(sculpt: Callable[[shapes.Part], tuple[Array, Array]] = s
             dense[start : start + len(piece.positions), SKELETON.index(joint)] += weight
     joints = np.argsort(-dense, axis=1, kind="stable")[:, :4]
     weights = np.take_along_axis(dense, joints, 1)
-    weights = np.where(weights < 0.004 * weights[:, :1], 0, weights)
+    weights = np.where(weights < 0.03 * weights[:, :1], 0, weights)  # a whiff of the other leg only costs time
     weights /= weights.sum(1, keepdims=True)
     joints = np.where(weights > 0, joints, 0)
     light = _open_light(positions.astype(float), normals.astype(float))

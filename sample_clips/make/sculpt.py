@@ -191,7 +191,9 @@ def polygonise(field: Field, low: Sequence[float], high: Sequence[float], cell: 
         q = np.stack(quad, -1)
         q = np.where(inside[tuple(edges.T)][:, None], q, q[:, ::-1])
         triangles += [q[:, [0, 1, 2]], q[:, [0, 2, 3]]]
-    return positions, np.concatenate(triangles)
+    # Where the box cuts the form, cells at its sides have a vertex but no triangle.
+    used, corners_of = np.unique(np.concatenate(triangles), return_inverse=True)
+    return positions[used], corners_of.reshape(-1, 3)
 
 
 def remesh(field: Field, positions: Array, triangles: Array, size: Callable[[Array], Array], rounds: int = 3) -> tuple[Array, Array]:
@@ -299,11 +301,8 @@ def _collapse(positions: Array, triangles: Array, size: Array) -> tuple[Array, A
         for w in sorted(neighbours(u)):
             if (r := ratio(u, w)) < limit:
                 heapq.heappush(heap, (r, min(u, w), max(u, w)))
-    kept = np.flatnonzero(~np.array(gone))
-    renumber = np.full(len(place), -1)
-    renumber[kept] = np.arange(len(kept))
-    left = np.array([t for t in corners if t is not None])
-    return np.array(place)[kept], renumber[left]
+    kept, left = np.unique(np.array([t for t in corners if t is not None]), return_inverse=True)
+    return np.array(place)[kept], left.reshape(-1, 3)
 
 
 def _flip(positions: Array, triangles: Array) -> Array:

@@ -1,7 +1,8 @@
 """Milliseconds a frame of the preview draws, without a display: python tests/benchmarks/bench_preview.py [frames]
 
-Each frame has its own pose, background, grid, shadow and smoothed edges; `glFinish` ends it. "read" adds the copy of the
-picture to the processor, which a window does not need. Median and quickest of the frames.
+Each frame has its own pose, background, grid, shadow and smoothed edges; `glFinish` ends it. Median and quickest of the
+frames. "cpu" is the processor time of all threads: what stays the same when the machine is busy with other things (divide
+it by the cores software rendering has). "with read" adds the copy of the picture that a window does not need.
 """
 
 from __future__ import annotations
@@ -42,19 +43,20 @@ def main() -> None:
     character = read_character(ROOT / "sample_clips" / "mannequin.glb")
     skeleton = character.skeleton
     figures = {"mannequin": SkinnedFigure(character), "sticks": StickFigure(skeleton)}
-    print(f"{'figure':10} {'people':>6} {'size':>10} {'draw median':>12} {'quickest':>9} {'with read':>10}  ms")
+    print(f"{'figure':10} {'people':>6} {'size':>10} {'draw median':>12} {'quickest':>9} {'cpu':>7} {'with read':>10}  ms")
     for size in ((960, 540), (1280, 720)):
         with Offscreen(*size) as offscreen:
             for name, figure in figures.items():
                 for count in (1, 10, 100):
                     rounds = max(5, frames // (1 if count == 1 else 2 if count == 10 else 5))
                     camera = Camera().frame(Scene((Actor(figure, *crowd(skeleton, count, 0)),)).bounds(), size[0] / size[1])
-                    drawn, read = [], []
+                    drawn, read, used = [], [], []
                     for i in range(rounds + 2):
                         scene = Scene((Actor(figure, *crowd(skeleton, count, i / 30)),))
-                        start = time.perf_counter()
+                        start, busy = time.perf_counter(), time.process_time()
                         offscreen.draw(scene, camera)
                         middle = time.perf_counter()
+                        used.append(time.process_time() - busy)
                         offscreen.render(scene, camera)
                         drawn.append(middle - start)
                         read.append(time.perf_counter() - middle)

@@ -1,0 +1,177 @@
+"""Figures: palettes at rest and posed, and a character on a skeleton that is not its own."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+from metagraph.motion import rotation
+from metagraph.motion.character import Character, Material, Surface
+from metagraph.motion.skeleton import Pose, Skeleton
+from preview.figure import SkinnedFigure, StickFigure
+from preview.mesh import ball, capsule, coarse
+from sample_clips.make.skeleton import mannequin_skeleton
+from tests.preview.conftest import chain
+
+UNIT = np.eye(3, 4)
+
+
+def character(skeleton: Skeleton, **changes) -> Character:
+    """One vertex for each joint, at the joint."""
+    _, positions = skeleton.globals(skeleton.rest)
+    count = len(skeleton)
+    joints = np.zeros((count, 4), int)
+    joints[:, 0] = np.arange(count)
+    weights = np.tile([1.0, 0, 0, 0], (count, 1))
+    triangles = np.array([[0, min(1, count - 1), min(2, count - 1)]])
+    values = {
+        "positions": positions, "normals": np.tile([0.0, 0, 1], (count, 1)), "uvs": np.zeros((count, 2)), "joints": joints,
+        "weights": weights, "triangles": triangles, "materials": (Material("m"),), "surfaces": (Surface(0, 1, 0),),
+    }  # fmt: skip
+    return Character("c", skeleton, **{**values, **changes})
+
+
+def bent(skeleton: Skeleton, joint: str) -> tuple[np.ndarray, np.ndarray]:
+    rotations = skeleton.rest_rotations.copy()
+    rotations[skeleton.index(joint)] = rotation.from_axis_angle(np.array([0.0, 0, 1]), np.pi / 2)
+    return skeleton.globals(Pose(rotations, skeleton.rest_translations))
+
+
+def moved(palette: np.ndarray, matrix: int, point: np.ndarray) -> np.ndarray:
+    return palette[matrix, :, :3] @ point + palette[matrix, :, 3]
+
+
+def test_at_rest_every_matrix_is_the_unit():
+    skeleton = mannequin_skeleton()
+    pose = skeleton.globals(skeleton.rest)
+    assert np.allclose(SkinnedFigure(character(skeleton)).palette(*pose), UNIT, atol=1e-6)
+    assert np.allclose(StickFigure(skeleton).palette(*pose), UNIT, atol=1e-5)
+
+
+def test_matrices_carry_rest_points_to_posed_joints():
+    skeleton = chain("a", "b", "c")
+    _, rest = skeleton.globals(skeleton.rest)
+    rotations, positions = bent(skeleton, "b")
+    for figure in (SkinnedFigure(character(skeleton)), StickFigure(skeleton)):
+        palette = figure.palette(rotations, positions)
+        assert palette.dtype == np.float32
+        assert np.allclose(moved(palette, 1, rest[2]), positions[2], atol=1e-6)
+
+
+def test_palettes_take_any_leading_dimensions():
+    skeleton = chain("a", "b", "c")
+    rotations, positions = bent(skeleton, "b")
+    many = np.tile(rotations, (2, 5, 1, 1)), np.tile(positions, (2, 5, 1, 1))
+    for figure in (SkinnedFigure(character(skeleton)), StickFigure(skeleton)):
+        assert figure.palette(*many).shape == (2, 5, figure.mesh.matrices, 3, 4)
+        assert np.allclose(figure.palette(*many)[1, 3], figure.palette(rotations, positions))
+
+
+def test_a_missing_joint_follows_its_nearest_matched_ancestor():
+    own, project = chain("a", "b", "twist", "c"), chain("a", "b", "c")
+    figure = SkinnedFigure(character(own), project)
+    palette = figure.palette(*bent(project, "b"))
+    assert figure.matched == 3
+    assert np.allclose(palette[2], palette[1])
+    assert not np.allclose(palette[2], UNIT)
+
+
+def test_joints_in_another_order_are_matched_by_name():
+    own = chain("a", "b", "c")
+    project = Skeleton(
+        ("z", "a", "b", "c"),
+        np.array([-1, 0, 1, 2]),
+        np.tile([0.0, 0, 0, 1], (4, 1)),
+        np.array([[0, 0, 0], [0, 0, 0], [0, 0.3, 0], [0, 0.3, 0.0]]),
+    )
+    figure = SkinnedFigure(character(own), project)
+    assert np.allclose(figure.palette(*bent(project, "b")), SkinnedFigure(character(own)).palette(*bent(own, "b")), atol=1e-6)
+
+
+def test_a_character_without_any_joint_of_the_skeleton_stands_in_its_rest_pose():
+    figure = SkinnedFigure(character(chain("x", "y")), chain("a", "b"))
+    assert figure.matched == 0
+    assert np.allclose(figure.palette(*bent(chain("a", "b"), "a")), UNIT)
+
+
+def test_a_root_above_the_skeletons_own_follows_the_first_matched_joint():
+    own, project = chain("Armature", "a", "b"), chain("a", "b")
+    rotations, positions = project.globals(project.rest)
+    palette = SkinnedFigure(character(own), project).palette(rotations, positions + [1.0, 0, 0])
+    assert np.allclose(palette[0, :, 3], palette[1, :, 3])
+
+
+def test_stick_bones_stretch_to_joints_a_file_has_moved():
+    skeleton = chain("a", "b", "c")
+    rotations, positions = skeleton.globals(skeleton.rest)
+    positions = positions.copy()
+    positions[2] += [0.2, 0.4, 0.0]
+    figure = StickFigure(skeleton)
+    palette = figure.palette(rotations, positions)
+    assert np.allclose(moved(palette, len(skeleton) + 2, np.array([0, 0.6, 0])), positions[2], atol=1e-5)
+
+
+def test_bones_of_no_length_give_numbers():
+    skeleton = chain("a", "b", "c", length=0.0)
+    assert np.isfinite(StickFigure(skeleton).palette(*skeleton.globals(skeleton.rest))).all()
+    upside_down = chain("a", "b")
+    rotations, positions = bent(upside_down, "a")
+    assert np.isfinite(StickFigure(upside_down).palette(rotations, -positions)).all()
+
+
+def test_one_joint_is_drawn_as_a_ball():
+    figure = StickFigure(chain("only"))
+    assert len(figure.mesh.triangles) > 50
+    low, high = figure.bounds(np.zeros((1, 3)))
+    assert (high > low).all()
+
+
+def test_bounds_hold_all_poses_and_ignore_what_is_not_a_number():
+    skeleton = mannequin_skeleton()
+    _, positions = skeleton.globals(skeleton.rest)
+    figure = StickFigure(skeleton)
+    low, high = figure.bounds(np.stack([positions, positions + [5.0, 0, 0], np.full_like(positions, np.nan)]))
+    assert high[0] > 5 and low[0] < 0 and np.isfinite([low, high]).all()
+
+
+def test_the_head_is_found_above_its_joint():
+    skeleton = mannequin_skeleton()
+    rotations, positions = skeleton.globals(skeleton.rest)
+    head = StickFigure(skeleton).head(rotations, positions)
+    assert head[1] == pytest.approx(1.515 + 0.05 * StickFigure(skeleton).height, abs=0.01)
+
+
+def test_weights_that_do_not_add_up_are_mended_and_materials_of_one_texture_are_one_batch():
+    skeleton = chain("a", "b", "c")
+    weights = np.array([[0.5, 0, 0, 0], [0, 0, 0, 0], [np.nan, 0, 0, 0]])
+    made = character(
+        skeleton, weights=weights, triangles=np.array([[0, 1, 2], [2, 1, 0]]),
+        materials=(Material("m", (1, 0, 0, 1)), Material("n", (0, 1, 0, 1))), surfaces=(Surface(0, 1, 0), Surface(1, 1, 1)),
+    )  # fmt: skip
+    mesh = SkinnedFigure(made).mesh
+    assert np.allclose(mesh.vertices["weights"].sum(1), 1)
+    assert len(mesh.batches) == 1
+    assert len(np.unique(mesh.vertices["color"], axis=0)) == 2
+
+
+def test_morphs_follow_vertices_into_the_mesh():
+    skeleton = chain("a", "b", "c")
+    made = character(skeleton, morphs=("smile",), morph_positions=np.arange(9.0).reshape(1, 3, 3))
+    assert SkinnedFigure(made).mesh.morphs is not None
+    assert np.allclose(SkinnedFigure(made).mesh.morphs, made.morph_positions)
+
+
+def test_shapes_are_closed_and_face_outwards():
+    for positions, normals, triangles in (ball(0.5), capsule(1.0, 0.2, 0.1)):
+        corner = positions[triangles]
+        face = np.cross(corner[:, 1] - corner[:, 0], corner[:, 2] - corner[:, 0])
+        assert (np.einsum("ij,ij->i", face, normals[triangles].sum(1)) > 0).all()
+        assert np.allclose(face.sum(0), 0, atol=1e-9)
+
+
+def test_a_coarse_mesh_keeps_the_extent_and_its_batches():
+    mesh = StickFigure(mannequin_skeleton()).mesh
+    less = coarse(mesh, 40)
+    assert len(less.triangles) < len(mesh.triangles)
+    assert sum(b.count for b in less.batches) == len(less.triangles)
+    assert np.ptp(less.vertices["position"], axis=0) == pytest.approx(np.ptp(mesh.vertices["position"], axis=0), rel=0.08)

@@ -1,0 +1,36 @@
+"""Pictures without a display."""
+
+from __future__ import annotations
+
+import moderngl
+import pytest
+
+from preview.camera import Camera
+from preview.offscreen import Offscreen, OpenGLError, standalone_context
+from preview.scene import Scene
+
+
+def test_without_opengl_the_message_says_what_to_install(monkeypatch):
+    def fail(**_):
+        raise Exception("cannot load libEGL")
+
+    monkeypatch.setattr(moderngl, "create_context", fail)
+    monkeypatch.setattr("sys.platform", "linux")
+    with pytest.raises(OpenGLError, match=r"libEGL.*apt install libegl1"):
+        standalone_context()
+
+
+@pytest.mark.gl
+def test_releasing_twice_is_fine():
+    with Offscreen(8, 8) as offscreen:
+        assert offscreen.render(Scene(), Camera()).shape == (8, 8, 4)
+        assert offscreen.description
+        offscreen.release()
+
+
+@pytest.mark.gl
+def test_the_first_row_is_the_top():
+    with Offscreen(32, 32) as offscreen:
+        picture = offscreen.render(Scene(), Camera(pitch=0.3)).astype(int)
+    top, bottom = picture[:8, :, :3].std(), picture[-16:, :, :3].std()
+    assert bottom > top  # the grid's lines are below, the sky above

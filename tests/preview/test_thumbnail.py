@@ -1,0 +1,63 @@
+"""Thumbnails: the telling frame and the picture."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+from metagraph.motion import rotation
+from metagraph.motion.clip import Clip
+from preview.figure import StickFigure
+from preview.thumbnail import clip_thumbnail, telling_frame, thumbnail
+from sample_clips.make.skeleton import mannequin_skeleton
+
+SKELETON = mannequin_skeleton()
+
+
+def clip(angles, joint="LeftUpperArm", walk=0.0):
+    rotations = np.tile(SKELETON.rest_rotations, (len(angles), 1, 1))
+    rotations[:, SKELETON.index(joint)] = rotation.from_axis_angle(np.array([0.0, 0, 1]), np.array(angles))
+    root = SKELETON.rest_translations[0] + np.linspace(0, walk, len(angles))[:, None, None] * [0, 0, 1.0]
+    return Clip("c", SKELETON, 30, rotations, root)
+
+
+def test_one_frame_is_the_telling_one():
+    assert telling_frame(clip([0.0])) == 0
+
+
+def test_the_telling_frame_is_where_the_arm_is_farthest_from_the_start():
+    assert telling_frame(clip([0.0, 0.4, 1.2, 0.5, 0.1])) == 2
+
+
+def test_walking_away_does_not_make_a_frame_telling():
+    assert telling_frame(clip([0.0, 0.0, 0.9, 0.0, 0.0], walk=9.0)) == 2
+
+
+def test_long_clips_are_looked_at_here_and_there():
+    angles = np.zeros(3000)
+    angles[1400:1600] = 1.0
+    assert 1400 <= telling_frame(clip(angles)) < 1600
+
+
+@pytest.mark.gl
+def test_a_thumbnail_shows_the_figure_on_tinted_paper(offscreen):
+    figure = StickFigure(SKELETON)
+    plain = clip_thumbnail(offscreen, figure, clip([0.0, 1.0]), size=40)
+    tinted = clip_thumbnail(offscreen, figure, clip([0.0, 1.0]), size=40, tint=(0.94, 0.65, 0.24))
+    clear = clip_thumbnail(offscreen, figure, clip([0.0, 1.0]), size=40, paper=None)
+    assert plain.shape == (80, 80, 4)
+    assert plain[0, 0].tolist() == [28, 29, 33, 255]
+    assert tinted[0, 0, 0] > tinted[0, 0, 2] + 10
+    assert clear[0, 0, 3] == 0
+    assert plain[..., :3].max() > 150
+
+
+@pytest.mark.gl
+def test_the_figure_is_seen_from_the_front_wherever_it_stands_and_faces(offscreen):
+    figure = StickFigure(SKELETON)
+    rotations, positions = SKELETON.globals(SKELETON.rest)
+    turn = rotation.from_axis_angle(np.array([0.0, 1, 0]), np.array(2.0))
+    there = rotation.rotate(turn, positions) + [7.0, 0, -3.0]
+    first = thumbnail(offscreen, figure, rotations, positions, size=40).astype(int)
+    second = thumbnail(offscreen, figure, rotation.multiply(turn, rotations), there, size=40)
+    assert np.abs(first - second).mean() < 0.5

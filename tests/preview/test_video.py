@@ -1,0 +1,78 @@
+"""MP4 files."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+from metagraph.errors import FileError
+from preview.video import Cancelled, write_video
+
+
+def frames(count, size=(48, 64), value=None):
+    for i in range(count):
+        yield np.full((*size, 4), 20 * i % 255 if value is None else value, np.uint8)
+
+
+def decoded(path):
+    import av
+
+    with av.open(str(path)) as container:
+        return [f.to_ndarray(format="rgb24") for f in container.decode(video=0)], float(container.streams.video[0].average_rate)
+
+
+def test_every_frame_comes_back_at_its_rate_and_brightness(tmp_path):
+    told = []
+    assert write_video(tmp_path / "a.mp4", frames(9, value=180), 29.97, progress=told.append) == 9
+    pictures, fps = decoded(tmp_path / "a.mp4")
+    assert len(pictures) == 9 and told == list(range(1, 10))
+    assert fps == pytest.approx(29.97, abs=0.01)
+    assert pictures[4].shape == (48, 64, 3)
+    assert abs(int(pictures[4].mean()) - 180) < 6
+
+
+def test_one_frame_of_odd_size_becomes_even(tmp_path):
+    write_video(tmp_path / "a.mp4", frames(1, (33, 51)), 30)
+    assert decoded(tmp_path / "a.mp4")[0][0].shape == (34, 52, 3)
+
+
+def test_a_size_can_be_asked_for(tmp_path):
+    write_video(tmp_path / "a.mp4", frames(3), 30, size=(32, 24))
+    assert decoded(tmp_path / "a.mp4")[0][0].shape == (24, 32, 3)
+
+
+def test_no_frames_are_refused_and_leave_no_file(tmp_path):
+    with pytest.raises(FileError, match="no frames"):
+        write_video(tmp_path / "a.mp4", [], 30)
+    assert list(tmp_path.iterdir()) == []
+
+
+@pytest.mark.parametrize("fps", [0, -1, float("nan")])
+def test_an_impossible_rate_is_refused(tmp_path, fps):
+    with pytest.raises(FileError, match="frame rate"):
+        write_video(tmp_path / "a.mp4", frames(1), fps)
+
+
+def test_cancelling_leaves_no_file(tmp_path):
+    with pytest.raises(Cancelled):
+        write_video(tmp_path / "a.mp4", frames(50), 30, cancelled=lambda: True)
+    assert list(tmp_path.iterdir()) == []
+
+
+def test_a_failed_frame_leaves_the_old_file_alone(tmp_path):
+    path = tmp_path / "a.mp4"
+    path.write_bytes(b"old")
+
+    def broken():
+        yield from frames(2)
+        raise RuntimeError("drawing failed")
+
+    with pytest.raises(RuntimeError):
+        write_video(path, broken(), 30)
+    assert path.read_bytes() == b"old"
+    assert len(list(tmp_path.iterdir())) == 1
+
+
+def test_a_folder_that_is_not_there_is_named(tmp_path):
+    with pytest.raises(FileError, match="folder"):
+        write_video(tmp_path / "none" / "a.mp4", frames(2), 30)
