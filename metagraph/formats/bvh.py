@@ -13,6 +13,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from metagraph.errors import FileError
+from metagraph.formats.gltf_skeleton import MOST_JOINTS
 from metagraph.formats.takes import without_bind_pose
 from metagraph.motion import rotation
 from metagraph.motion.clip import Clip
@@ -46,6 +47,7 @@ class _Joint:
     channels: list[str] = field(default_factory=list)
 
 
+@np.errstate(all="ignore")  # what a broken file makes overflow is refused by the checks, without a warning
 def read_bvh(path: str | Path, scale: float | None = None) -> Clip:
     """Return the motion of a BVH file in metres, Y up.
 
@@ -58,7 +60,9 @@ def read_bvh(path: str | Path, scale: float | None = None) -> Clip:
     try:
         data = path.read_bytes()
     except OSError as error:
-        raise FileError(path, f"it cannot be read ({error.strerror})", "", "Check that it exists and that you may read it.") from error
+        raise FileError(
+            path, f"it cannot be read ({error.strerror})", "on opening it", "Check that it exists and that you may read it."
+        ) from error
     head = data[:4096].lstrip(b"\xef\xbb\xbf \t\r\n")
     if head[:9].upper() != b"HIERARCHY":
         raise FileError(path, "it does not begin with HIERARCHY", "line 1", "Check that it is a BVH file.")
@@ -144,6 +148,8 @@ class _Header:
                 self._channels(out, stack, line)
             else:
                 self.fail(f"'{word[:40]}' is not expected here", line)
+        if len(out) > MOST_JOINTS:
+            self.fail(f"{len(out)} joints are more than the {MOST_JOINTS} of any character", out[MOST_JOINTS].line)
         if stack:
             self.fail(f"{len(stack)} '}}' are missing", self.words[-1][1])
         if not out:

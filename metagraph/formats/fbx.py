@@ -8,6 +8,8 @@ import subprocess
 import sys
 from pathlib import Path
 
+import numpy as np
+
 from metagraph.errors import FileError
 from metagraph.formats import fbx_child
 from metagraph.formats.gltf_clips import read_clip
@@ -28,17 +30,20 @@ def read_fbx_clips(path: str | Path, timeout: float = TIMEOUT) -> list[Clip]:
     """
     path = Path(path)
     if not path.is_file():
-        raise FileError(path, "it cannot be read (no such file)", "", "Check that it exists and that you may read it.")
+        raise FileError(path, "it cannot be read (no such file)", "on opening it", "Check that it exists and that you may read it.")
     if importlib.util.find_spec("ufbx") is None:
-        raise FileError(path, "reading FBX needs the ufbx library, which is not installed", "", "Run: pip install metagraph[fbx]")
+        raise FileError(
+            path, "reading FBX needs the ufbx library, which is not installed", "on opening it", "Run: pip install metagraph[fbx]"
+        )
     data = _converted(path, timeout)
     gltf = parse_gltf(path, data)
     if not gltf.json.animations:
-        raise FileError(path, "it holds no animation", "", "Export it with its animation baked.")
-    rig = build_rig(gltf)
-    clips = [clip for i in range(len(gltf.json.animations)) if (clip := read_clip(gltf, rig, i)) is not None]
+        raise FileError(path, "it holds no animation", "its animations", "Export it with its animation baked.")
+    with np.errstate(all="ignore"):
+        rig = build_rig(gltf)
+        clips = [clip for i in range(len(gltf.json.animations)) if (clip := read_clip(gltf, rig, i)) is not None]
     if not clips:
-        raise FileError(path, "none of its takes moves the skeleton", "", "Export it with its animation baked.")
+        raise FileError(path, "none of its takes moves the skeleton", "its animations", "Export it with its animation baked.")
     return unique_takes(clips)
 
 
@@ -51,14 +56,18 @@ def _converted(path: Path, timeout: float) -> bytes:
     try:
         done = subprocess.run(command, capture_output=True, timeout=timeout, env=environment, stdin=subprocess.DEVNULL, check=False)
     except subprocess.TimeoutExpired:
-        raise FileError(path, f"it could not be read within {timeout:.0f} s", "", _AGAIN) from None
+        raise FileError(path, f"it could not be read within {timeout:.0f} s", "on reading it", _AGAIN) from None
     except OSError as error:
-        raise FileError(path, f"the reader of FBX files did not start ({error.strerror})", "", "Install Metagraph again.") from error
+        raise FileError(
+            path, f"the reader of FBX files did not start ({error.strerror})", "on opening it", "Install Metagraph again."
+        ) from error
     if done.returncode == 0:
         return done.stdout
     said = done.stderr.decode("utf-8", "replace").strip().splitlines()
     if done.returncode == fbx_child.MISSING:
-        raise FileError(path, "the ufbx library is installed but does not load", "", "Run: pip install --force-reinstall metagraph[fbx]")
+        raise FileError(
+            path, "the ufbx library is installed but does not load", "on opening it", "Run: pip install --force-reinstall metagraph[fbx]"
+        )
     if done.returncode == fbx_child.REFUSED:
         raise FileError(
             path, f"it is not a sound FBX file ({said[-1].strip(chr(34)) if said else 'no reason given'})", "its content", _AGAIN

@@ -4,6 +4,8 @@ from __future__ import annotations
 
 from pathlib import Path
 
+import numpy as np
+
 from metagraph.errors import FileError
 from metagraph.formats.gltf_character import character_of
 from metagraph.formats.gltf_clips import read_clip
@@ -14,9 +16,13 @@ from metagraph.formats.takes import unique_takes
 from metagraph.motion.character import Character
 from metagraph.motion.clip import Clip
 
+# Numbers out of a broken file overflow on their way to the check that refuses them; that is no reason to warn.
+_QUIET = np.errstate(all="ignore")
+
 __all__ = ["read_character", "read_gltf_clips", "vrm_roles", "write_glb"]
 
 
+@_QUIET
 def read_gltf_clips(path: str | Path) -> list[Clip]:
     """Return every animation of a file as a clip; all share one Skeleton.
 
@@ -26,20 +32,22 @@ def read_gltf_clips(path: str | Path) -> list[Clip]:
     """
     gltf = open_gltf(path)
     if not gltf.json.animations:
-        raise FileError(path, "it holds no animation", "", "Export it with its animation, or open it as a character.")
+        raise FileError(path, "it holds no animation", "its animations", "Export it with its animation, or open it as a character.")
     rig = build_rig(gltf)
     clips = [clip for i in range(len(gltf.json.animations)) if (clip := read_clip(gltf, rig, i)) is not None]
     if not clips:
-        raise FileError(path, "none of its animations moves the skeleton", "", "Export it with its animation.")
+        raise FileError(path, "none of its animations moves the skeleton", "its animations", "Export it with its animation.")
     return unique_takes(clips)
 
 
+@_QUIET
 def read_character(path: str | Path) -> Character:
     """Return all meshes of the default scene as one skinned character in its skeleton's rest pose. Raises FileError."""
     gltf = open_gltf(path)
     return character_of(gltf, build_rig(gltf))
 
 
+@_QUIET
 def vrm_roles(path: str | Path) -> dict[str, int]:
     """Return role -> joint as a VRM 0.x, VRM 1.0 or VRMA file states it; empty for other files. Raises FileError."""
     gltf = open_gltf(path)

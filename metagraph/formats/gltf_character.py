@@ -60,7 +60,7 @@ def character_of(gltf: Gltf, rig: Rig) -> Character:
                 turned = triangles[:, ::-1] if parts[place].mirrored else triangles
                 runs.append((place, turned, -1 if primitive.material is None else primitive.material))
     if not parts:
-        gltf.fail("it holds no mesh", "", "Choose a file with a character, or import this one as clips.")
+        gltf.fail("it holds no mesh", "its meshes", "Choose a file with a character, or import this one as clips.")
     names = tuple(dict.fromkeys(name for part in parts for name in part.morphs))
     starts = np.cumsum([0] + [len(p.positions) for p in parts])
     morphs = None
@@ -97,7 +97,7 @@ def _scene_nodes(gltf: Gltf, rig: Rig) -> list[int]:
     doc = gltf.json
     if not doc.scenes:
         return list(range(len(doc.nodes)))
-    scene = gltf.item(doc.scenes, doc.scene, "scene", "")
+    scene = gltf.item(doc.scenes, doc.scene, "scene", "its default scene")
     out: list[int] = []
     stack = list(reversed(scene.nodes))
     seen: set[int] = set()
@@ -258,7 +258,7 @@ def _materials(gltf: Gltf, used: list[int], notes: list[str]) -> tuple[tuple[Mat
         if index < 0:
             out.append(Material("default"))
             continue
-        value = gltf.item(gltf.json.materials, index, "material", "")
+        value = gltf.item(gltf.json.materials, index, "material", "a primitive")
         name = value.name or f"material_{index}"
         pbr = value.pbr_metallic_roughness
         if pbr is None:
@@ -282,7 +282,7 @@ def _materials(gltf: Gltf, used: list[int], notes: list[str]) -> tuple[tuple[Mat
 
 def _image(gltf: Gltf, index: int, notes: list[str]) -> bytes | None:
     """Return PNG or JPEG bytes; a texture that cannot be had is a note, not an error."""
-    value = gltf.item(gltf.json.images, index, "image", "")
+    value = gltf.item(gltf.json.images, index, "image", "a texture")
     try:
         if value.buffer_view is not None:
             data = bytes(gltf.view(value.buffer_view, f"image {index}")[0])

@@ -199,10 +199,12 @@ class Gltf:
         for name in document.extensions_required:
             if not name.startswith(_KNOWN):
                 self.fail(
-                    f"it needs the glTF extension {name}, which is not supported", "", _REMEDIES.get(name, "Export it again without it.")
+                    f"it needs the glTF extension {name}, which is not supported",
+                    "its required extensions",
+                    _REMEDIES.get(name, "Export it again without it."),
                 )
 
-    def fail(self, cause: str, where: str = "", remedy: str = "The file is damaged: export it again.") -> NoReturn:
+    def fail(self, cause: str, where: str, remedy: str = "The file is damaged: export it again.") -> NoReturn:
         raise FileError(self.path, cause, where, remedy)
 
     def spend(self, size: int, where: str) -> None:
@@ -313,7 +315,9 @@ def open_gltf(path: str | Path) -> Gltf:
     try:
         data = path.read_bytes()
     except OSError as error:
-        raise FileError(path, f"it cannot be read ({error.strerror})", "", "Check that it exists and that you may read it.") from error
+        raise FileError(
+            path, f"it cannot be read ({error.strerror})", "on opening it", "Check that it exists and that you may read it."
+        ) from error
     return parse_gltf(path, data)
 
 

@@ -14,6 +14,7 @@ from metagraph.motion.skeleton import Skeleton, unique_names
 
 Array = NDArray[Any]
 
+MOST_JOINTS = 4096
 _TALL, _TINY = 20.0, 0.05  # metres: nothing that talks is taller or smaller, so the file is in other units
 _LARGEST = 1e7  # a translation or scale beyond this is damage
 
@@ -66,11 +67,13 @@ def build_rig(gltf: Gltf) -> Rig:
     """Return the one skeleton of the file. Raises FileError."""
     nodes = gltf.json.nodes
     if not nodes:
-        gltf.fail("it holds no nodes", "", "Export it with its skeleton.")
+        gltf.fail("it holds no nodes", "its nodes", "Export it with its skeleton.")
     parents, order = _tree(gltf, nodes)
     translations, rotations, scales = _transforms(gltf, nodes)
     members = _members(gltf, nodes, parents, order)
     joints = _in_order(gltf, members, parents, order)
+    if len(joints) > MOST_JOINTS:
+        gltf.fail(f"it has {len(joints)} joints, more than the {MOST_JOINTS} of any character", "its nodes", "Export the character alone.")
     places = {node: i for i, node in enumerate(joints)}
     above = np.array([places.get(parents[n], -1) for n in joints])
     locals_ = compose(translations, rotations, scales)

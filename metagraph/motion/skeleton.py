@@ -166,13 +166,15 @@ class Pose:
 def unique_names(names: Sequence[str]) -> tuple[str, ...]:
     """Return the names with `_2`, `_3` ... appended where one repeats, and empty ones called `joint`."""
     seen: set[str] = set()
+    last: dict[str, int] = {}
     out = []
     for raw in names:
         name = raw.strip() or "joint"
-        candidate, n = name, 1
+        candidate, n = name, last.get(name, 1)
         while candidate in seen:
             n += 1
             candidate = f"{name}_{n}"
+        last[name] = n
         seen.add(candidate)
         out.append(candidate)
     return tuple(out)

@@ -1,0 +1,135 @@
+"""Reading files of any format, one by one and in bulk."""
+
+from __future__ import annotations
+
+import hashlib
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from metagraph.errors import FileError
+from metagraph.formats.bvh import write_bvh
+from metagraph.formats.clips import SUFFIXES, digest, find_clip_files, import_clips, read_clips
+from metagraph.formats.gltf import write_glb
+from metagraph.motion import rotation
+from metagraph.motion.clip import Clip
+from sample_clips.make.skeleton import mannequin_skeleton
+
+SKELETON = mannequin_skeleton()
+
+
+def clip(name: str = "wave", frames: int = 8) -> Clip:
+    rotations = rotation.identity((frames, len(SKELETON)))
+    rotations[:, 3] = rotation.from_axis_angle(np.tile([0, 1.0, 0], (frames, 1)), 0.1 * np.arange(frames))
+    return Clip(name, SKELETON, 30, rotations, np.tile(SKELETON.rest_translations[:1], (frames, 1, 1)))
+
+
+def test_every_format_reads_through_one_door(tmp_path: Path) -> None:
+    write_glb(tmp_path / "a.GLB", [clip("one"), clip("two")])
+    write_bvh(clip(), tmp_path / "b.bvh")
+    assert [c.name for c in read_clips(tmp_path / "a.GLB")] == ["one", "two"]
+    assert [c.name for c in read_clips(tmp_path / "b.bvh")] == ["b"]
+
+
+def test_takes_of_one_frame_beside_longer_ones_are_skipped_with_a_note(tmp_path: Path) -> None:
+    write_glb(tmp_path / "a.glb", [clip("walk"), clip("junk", 1)])
+    clips = read_clips(tmp_path / "a.glb")
+    assert [c.name for c in clips] == ["walk"]
+    assert any("'junk'" in note for note in clips[0].notes)
+
+
+def test_a_file_of_nothing_but_poses_keeps_them(tmp_path: Path) -> None:
+    write_glb(tmp_path / "a.glb", [clip("sit", 1), clip("stand", 1)])
+    assert len(read_clips(tmp_path / "a.glb")) == 2
+
+
+@pytest.mark.parametrize(
+    ("name", "content", "words"),
+    [
+        ("a.fbx", b"HIERARCHY\nROOT", ("BVH", "Rename")),
+        ("a.bvh", b"glTF\2\0\0\0", ("glTF", "Rename")),
+        ("a.glb", b"Kaydara FBX Binary  \0", ("FBX", "Rename")),
+        ("a.bvh", b"", ("empty",)),
+        ("a.glb", b"version https://git-lfs.github.com/spec/v1\n", ("LFS",)),
+        ("a.glb", b"<!DOCTYPE html>", ("web page",)),
+        ("a.bvh", b"\xff\xfb\x90\x44", ("something else",)),
+        ("a.txt", b"hello", ("ending", ".bvh")),
+        ("a", b"hello", ("ending",)),
+    ],
+)
+def test_a_file_that_is_not_what_its_ending_says_is_refused_with_a_remedy(
+    tmp_path: Path, name: str, content: bytes, words: tuple[str, ...]
+) -> None:
+    (tmp_path / name).write_bytes(content)
+    with pytest.raises(FileError) as caught:
+        read_clips(tmp_path / name)
+    assert caught.value.remedy
+    for word in words:
+        assert word in str(caught.value)
+
+
+def test_a_missing_file_and_a_folder_are_refused(tmp_path: Path) -> None:
+    (tmp_path / "folder.bvh").mkdir()
+    for name in ("none.bvh", "folder.bvh"):
+        with pytest.raises(FileError, match="cannot be read"):
+            read_clips(tmp_path / name)
+
+
+def test_clip_files_are_found_below_a_folder_in_a_stable_order(tmp_path: Path) -> None:
+    for name in ("b.bvh", "A.glb", "sub/c.FBX", ".hidden/d.bvh", "e.txt", ".f.glb"):
+        (tmp_path / name).parent.mkdir(exist_ok=True)
+        (tmp_path / name).write_bytes(b"")
+    assert [p.relative_to(tmp_path).as_posix() for p in find_clip_files(tmp_path)] == ["A.glb", "b.bvh", "sub/c.FBX"]
+    assert ".vrm" in SUFFIXES
+
+
+def test_a_bad_file_among_many_fails_alone_with_its_reason(tmp_path: Path) -> None:
+    for i in range(5):
+        write_bvh(clip(), tmp_path / f"{i}.bvh")
+    (tmp_path / "2.bvh").write_text("HIERARCHY\n")
+    steps: list[tuple[int, int, str]] = []
+    report = import_clips(find_clip_files(tmp_path), lambda done, total, path: steps.append((done, total, path.name)))
+    assert [p.name for p, _, _ in report.clips] == ["0.bvh", "1.bvh", "3.bvh", "4.bvh"]
+    assert [f.path.name for f in report.failures] == ["2.bvh"]
+    assert steps == [(i, 5, f"{i}.bvh") for i in range(5)] + [(5, 5, "4.bvh")]
+    assert len({id(c.skeleton) for _, _, c in report.clips}) == 1
+    assert any(note.startswith("0.bvh: units") for note in report.notes)
+    assert not report.cancelled
+
+
+def test_an_import_stops_when_asked_and_keeps_what_it_has(tmp_path: Path) -> None:
+    for i in range(5):
+        write_bvh(clip(), tmp_path / f"{i}.bvh")
+    asked = iter([False, False, True, True])
+    report = import_clips(find_clip_files(tmp_path), cancelled=lambda: next(asked))
+    assert report.cancelled and len(report.clips) == 2
+
+
+def test_importing_nothing_gives_an_empty_report() -> None:
+    report = import_clips([])
+    assert report.clips == () and report.failures == () and not report.cancelled
+
+
+def test_takes_are_numbered_within_their_file(tmp_path: Path) -> None:
+    write_glb(tmp_path / "a.glb", [clip("one"), clip("two")])
+    assert [(n, c.name) for _, n, c in import_clips([tmp_path / "a.glb"]).clips] == [(0, "one"), (1, "two")]
+
+
+def test_the_digest_is_the_sha_256_of_the_content(tmp_path: Path) -> None:
+    (tmp_path / "a.bvh").write_bytes(b"content")
+    assert digest(tmp_path / "a.bvh") == hashlib.sha256(b"content").hexdigest()
+    with pytest.raises(FileError):
+        digest(tmp_path / "none")
+
+
+def test_all_real_files_are_read_or_refused_in_words(shared_data: Path) -> None:
+    files = [f for f in find_clip_files(shared_data) if f.suffix != ".fbx" and ("bandai" not in str(f) or "_sad_" in f.name)]
+    report = import_clips(files)
+    assert len(report.clips) > 250
+    # Four files hold a mesh and no motion.
+    assert sorted(f.path.name for f in report.failures) == ["alien.gltf", "fox.glb", "human-mannequin.glb", "seagull.glb"]
+    assert all("no animation" in f.cause for f in report.failures)
+    animals = {c.skeleton.fingerprint for p, _, c in report.clips if p.name in ("bird-animations.glb", "quad-creature-animations.glb")}
+    people = {c.skeleton.fingerprint for p, _, c in report.clips if p.name == "human-addon-animations.glb"}
+    assert len(animals) == 2 and not animals & people
