@@ -55,8 +55,8 @@ class Document(QObject):
         self.project = Project()
         self.path: Path | None = None
         self.undo_stack = QUndoStack(self)
-        self.undo_stack.cleanChanged.connect(lambda _: self.state_changed.emit())
-        self.undo_stack.indexChanged.connect(lambda _: self.state_changed.emit())
+        self.undo_stack.cleanChanged.connect(self.state_changed)
+        self.undo_stack.indexChanged.connect(self.state_changed)
         self._journal: Journal | None = None
 
     # --- editing

@@ -1,0 +1,146 @@
+"""The real window on a virtual screen, driven by real mouse and key events."""
+
+from __future__ import annotations
+
+import shutil
+import subprocess
+import sys
+import time
+from collections.abc import Callable, Iterator
+from pathlib import Path
+
+import pytest
+from PySide6.QtCore import QPoint, QSettings, Qt
+from PySide6.QtGui import QGuiApplication
+from PySide6.QtTest import QTest
+from PySide6.QtWidgets import QMessageBox, QWidget
+
+from app.main import prepare
+
+
+@pytest.fixture(scope="session")
+def qapp() -> object:
+    """The application as the program makes it: OpenGL format and shared contexts set before."""
+    app = prepare()
+    yield app
+
+
+@pytest.fixture(autouse=True)
+def own_settings(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """Nothing of the user's settings is read or written."""
+    monkeypatch.setenv("XDG_DATA_HOME", str(tmp_path / "data"))
+    monkeypatch.setenv("XDG_CONFIG_HOME", str(tmp_path / "config"))
+    QSettings.setDefaultFormat(QSettings.Format.IniFormat)
+    QSettings.setPath(QSettings.Format.IniFormat, QSettings.Scope.UserScope, str(tmp_path / "settings"))
+
+
+class Driver:
+    """The window and a hand. Points are given as (widget, point in it)."""
+
+    def __init__(self, window: object, qtbot: object) -> None:
+        self.window, self.bot = window, qtbot
+        self.told: list[str] = []
+        window.canvas.refused.connect(self.told.append)  # type: ignore[attr-defined]
+        window.document.failed.connect(self.told.append)  # type: ignore[attr-defined]
+
+    def __getattr__(self, name: str) -> object:
+        return getattr(self.window, name)
+
+    def wait(self, until: Callable[[], bool], seconds: float = 20) -> None:
+        self.bot.waitUntil(until, timeout=int(seconds * 1000))  # type: ignore[attr-defined]
+
+    def pause(self, milliseconds: int) -> None:
+        self.bot.wait(milliseconds)  # type: ignore[attr-defined]
+
+    # --- where things are
+
+    def card(self, clip: str) -> tuple[QWidget, QPoint]:
+        """The library card of a clip, by name; scrolled into sight."""
+        from app.panels.library import ENTRY
+
+        view, proxy = self.library.list, self.library.proxy  # type: ignore[attr-defined]
+        for row in range(proxy.rowCount()):
+            index = proxy.index(row, 0)
+            if index.data(ENTRY).name == clip:
+                view.scrollTo(index)
+                self.pause(30)
+                return view.viewport(), view.visualRect(index).center()
+        raise AssertionError(f"no card of clip {clip!r} is in sight")
+
+    def node(self, kind: str) -> tuple[QWidget, QPoint]:
+        rect = self.canvas.layout_now().nodes[kind].rect  # type: ignore[attr-defined]
+        return self.canvas, (rect.center() if kind != "transition" else rect.center()).toPoint()  # type: ignore[attr-defined]
+
+    def middle(self) -> tuple[QWidget, QPoint]:
+        """The upper part of the stance card: a new stance."""
+        card = self.canvas.layout_now().card  # type: ignore[attr-defined]
+        return self.canvas, QPoint(round(card.center().x()), round(card.top() + card.height() * 0.25))  # type: ignore[attr-defined]
+
+    def row(self, action: str) -> tuple[QWidget, QPoint]:
+        rect = self.canvas.layout_now().row(action).rect  # type: ignore[attr-defined]
+        return self.canvas, QPoint(round(rect.left() + 30), round(rect.center().y()))  # type: ignore[attr-defined]
+
+    # --- the hand
+
+    def click(self, place: tuple[QWidget, QPoint], modifier: Qt.KeyboardModifier = Qt.KeyboardModifier.NoModifier) -> None:
+        widget, point = place
+        QTest.mouseClick(widget, Qt.MouseButton.LeftButton, modifier, point)
+
+    def drag(self, start: tuple[QWidget, QPoint], end: tuple[QWidget, QPoint], until: Callable[[], bool]) -> None:
+        """A true drag through the X server, from press to release, until something has come of it."""
+        a, b = start[0].mapToGlobal(start[1]), end[0].mapToGlobal(end[1])
+        words = ["xdotool", "mousemove", str(a.x()), str(a.y()), "sleep", ".08", "mousedown", "1", "sleep", ".08"]
+        for n in range(1, 9):
+            x, y = a.x() + (b.x() - a.x()) * n / 8, a.y() + (b.y() - a.y()) * n / 8
+            words += ["mousemove", str(round(x)), str(round(y)), "sleep", ".04"]
+        process = subprocess.Popen([*words, "sleep", ".12", "mouseup", "1"])
+        try:
+            self.wait(until, 15)
+        finally:
+            deadline = time.monotonic() + 10
+            while process.poll() is None and time.monotonic() < deadline:
+                self.pause(20)
+            process.wait(5)
+
+    def key(self, key: Qt.Key, modifier: Qt.KeyboardModifier = Qt.KeyboardModifier.NoModifier, widget: QWidget | None = None) -> None:
+        QTest.keyClick(widget or self.window, key, modifier)  # type: ignore[call-overload]
+
+    def names(self, kind: str | None = None, layer: str | None = None) -> list[str]:
+        """Names of the actions in the graph."""
+        found = self.document.project.actions()  # type: ignore[attr-defined]
+        return [a.name for a in found if kind in (None, a.kind) and layer in (None, a.layer)]
+
+
+@pytest.fixture
+def drive(qapp: object, qtbot: object, monkeypatch: pytest.MonkeyPatch) -> Iterator[Driver]:
+    """A window with nothing in it."""
+    if sys.platform.startswith("linux"):
+        if QGuiApplication.platformName() != "xcb":
+            pytest.skip("needs an X screen (Xvfb): real drags and OpenGL widgets do not work on others")
+        if shutil.which("xdotool") is None:
+            pytest.skip("needs xdotool to move the real pointer")
+    else:
+        pytest.skip("real drags are driven on X11 only")
+    from app.window import Window
+
+    def unexpected(*args: object, **kwargs: object) -> object:
+        raise AssertionError(f"an unexpected question: {args[1:3]}")
+
+    monkeypatch.setattr(QMessageBox, "question", unexpected)
+    monkeypatch.setattr(QMessageBox, "warning", unexpected)
+    window = Window()
+    window.resize(1680, 1020)
+    window.show()
+    qtbot.waitExposed(window)  # type: ignore[attr-defined]
+    window.make_late_panels()
+    window.activateWindow()
+    # Without a window manager a click gives the window the keyboard.
+    corner = window.statusBar().mapToGlobal(QPoint(300, 8))
+    subprocess.run(["xdotool", "mousemove", str(corner.x()), str(corner.y()), "click", "1"], check=True, timeout=10)
+    qtbot.waitUntil(window.isActiveWindow, timeout=5000)  # type: ignore[attr-defined]
+    qtbot.wait(100)  # type: ignore[attr-defined]
+    yield Driver(window, qtbot)
+    window.document.undo_stack.setClean()
+    window.close()
+    window.deleteLater()
+    qtbot.wait(20)  # type: ignore[attr-defined]
