@@ -22,7 +22,7 @@ TO_LIGHT = np.array([-0.42, 0.80, 0.62]) / np.linalg.norm([-0.42, 0.80, 0.62])
 SHADOW_SIZE = 512
 SHADOW_LIMIT = 8  # instances; a crowd has only the soft spots under it
 SHADE = 0.8  # how dark the figure's shadow on itself is
-COARSE_BELOW = 240  # pixels of height under which a figure is drawn with its coarse mesh
+COARSE_BELOW, COARSE_CROWD_BELOW = 90, 240  # pixels of height under which figures are drawn with their coarse mesh
 _SOFTWARE = ("llvmpipe", "softpipe", "swiftshader", "software", "basic render")
 
 
@@ -95,7 +95,8 @@ class Renderer:
         self._resize(width, height)
         solid = [a for a in actors if a.opacity >= 1]
         cast = scene.shadow and 0 < sum(a.count for a in solid) <= SHADOW_LIMIT
-        meshes = [a.figure.coarse if a.morphs is None and _tall(a, camera, height) < COARSE_BELOW else a.figure.mesh for a in actors]
+        small = COARSE_BELOW if sum(a.count for a in actors) <= SHADOW_LIMIT else COARSE_CROWD_BELOW
+        meshes = [a.figure.coarse if a.morphs is None and _tall(a, camera, height) < small else a.figure.mesh for a in actors]
         rows = self.store.prepare(actors, meshes + ([a.figure.coarse for a in solid] if cast else []))
         matrix = camera.projection(width / height) @ camera.view()
         frame = _Frame(scene, actors, rows, camera, (width, height), theme, matrix, Scene(tuple(solid)).bounds(), meshes)

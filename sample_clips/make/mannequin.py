@@ -41,10 +41,10 @@ COLORS = {
     "teeth": (232, 229, 222),
     "hair": (82, 76, 73),
     "lash": (58, 52, 50),
-    "sweater": (139, 143, 151),
+    "sweater": (146, 150, 158),
     "band": (112, 116, 124),
-    "trousers": (82, 86, 95),
-    "shoe": (58, 60, 66),
+    "trousers": (98, 102, 112),
+    "shoe": (72, 74, 80),
     "sole": (206, 204, 199),
     "white": (238, 237, 234),
     "iris": (104, 92, 80),
@@ -158,7 +158,7 @@ def _tube(path: Array, wide: Array, tall: Array, across: Array, sides: int = 8) 
 
 def _brow(face: Field) -> Piece:
     t = np.linspace(0, 1, 11)
-    path = np.stack([0.0145 + 0.0365 * t, 1.6272 + 0.0076 * np.sin(np.pi * (0.06 + 0.76 * t)), np.full(11, 0.085)], 1)
+    path = np.stack([0.0145 + 0.0365 * t, 1.6278 + 0.0068 * np.sin(np.pi * (0.13 + 0.74 * t)), np.full(11, 0.085)], 1)
     for _ in range(8):  # onto the face, straight back
         path[:, 2] -= face(path)
     normal = gradient(face, path)

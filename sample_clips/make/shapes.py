@@ -312,9 +312,9 @@ def _head_size(p: Array) -> Array:
     eye = np.linalg.norm(q - JOINT["LeftEye"], axis=1) / 0.022
     nose = np.linalg.norm((q - [0, 1.573, 0.097]) / [0.017, 0.014, 0.02], axis=1)
     ear = np.linalg.norm((q - [0.078, 1.5965, -0.013]) / [0.02, 0.034, 0.026], axis=1)
-    out = 0.0135 + 0.009 * step(0.03, -0.05, p[:, 2])
+    out = 0.0108 + 0.009 * step(0.03, -0.05, p[:, 2])
     for near, fine in ((mouth, 0.0031), (eye, 0.0070), (nose, 0.0052), (ear, 0.0070)):
-        out = np.minimum(out, fine + (0.0135 - fine) * step(0.9, 2.8, near))
+        out = np.minimum(out, fine + (0.0108 - fine) * step(0.9, 2.8, near))
     return np.asarray(out)
 
 
@@ -329,7 +329,7 @@ def _sweater_size(p: Array) -> Array:
     edge = np.minimum(np.abs((q - CUFF) @ ARM) / 0.03, np.abs(p[:, 1] - HEM) / 0.03)
     edge = np.minimum(edge, np.linalg.norm((q - COLLAR_AT) / [0.07, 0.03, 0.07], axis=1))
     bend = np.minimum(np.linalg.norm(q - shoulder, axis=1) / 0.09, np.linalg.norm(q - elbow, axis=1) / 0.06)
-    out = 0.0330 - 0.0110 * step(1.2, 0.5, bend)
+    out = 0.0320 - 0.0120 * step(1.2, 0.5, bend)
     return np.asarray(out - (out - 0.0165) * step(1.2, 0.6, edge))
 
 
@@ -346,7 +346,7 @@ def _shoe_size(p: Array) -> Array:
 
 def _hair_size(p: Array) -> Array:
     edge = np.abs(_hairline(p))
-    return np.asarray(0.0090 + 0.0090 * step(0.006, 0.030, edge))
+    return np.asarray(0.0085 + 0.0060 * step(0.006, 0.030, edge))
 
 
 PARTS: tuple[Part, ...] = (
