@@ -118,7 +118,7 @@ class Performance(QObject):
     def advance(self, elapsed: float) -> None:
         """Move the playhead by `elapsed` seconds of wall clock; called before each frame."""
         session = self.session
-        if not session.playing or elapsed <= 0:
+        if not session.playing or elapsed <= 0 or self.skeleton() is None:
             return
         seconds = session.seconds + elapsed * session.speed
         length = self.shown.length

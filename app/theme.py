@@ -79,6 +79,7 @@ def style_sheet(look: Theme) -> str:
     """Return the style of the whole window; 8 px grid, 6 px radius, no gradients."""
     t = look
     return f"""
+    * {{ font-size: 13px; }}
     QMainWindow, QMainWindow::separator {{ background: {t.ground}; }}
     QMainWindow::separator {{ width: 6px; height: 6px; }}
     QMainWindow::separator:hover {{ background: {t.line}; }}
@@ -104,10 +105,13 @@ def style_sheet(look: Theme) -> str:
     QToolButton:disabled, QPushButton:disabled {{ color: {t.dim}; }}
     QToolButton:focus, QPushButton:focus {{ border-color: {t.dim}; }}
     QPushButton[strong="true"] {{ background: {t.strong}; color: {t.on_strong}; border-color: {t.strong}; font-weight: 600; }}
+    QPushButton[strong="true"]:hover {{ background: {t.text}; }}
+    QPushButton[strong="true"]:disabled {{ background: {t.card}; color: {t.dim}; border-color: {t.line}; font-weight: 400; }}
+    QAbstractSpinBox {{ padding-left: 6px; }}
     QLineEdit, QDoubleSpinBox, QSpinBox, QComboBox, QPlainTextEdit {{ background: {t.field}; color: {t.text};
         border: 1px solid {t.line}; border-radius: 6px; padding: 4px 8px; selection-background-color: {t.dim}; selection-color: {t.ground}; }}
     QLineEdit:focus, QDoubleSpinBox:focus, QSpinBox:focus, QComboBox:focus {{ border-color: {t.dim}; }}
-    QDoubleSpinBox::up-button, QDoubleSpinBox::down-button, QSpinBox::up-button, QSpinBox::down-button {{ width: 0; border: none; }}
+    QAbstractSpinBox::up-button, QAbstractSpinBox::down-button {{ width: 0; border: none; }}
     QComboBox::drop-down {{ border: none; width: 20px; }}
     QComboBox QAbstractItemView {{ background: {t.card}; border: 1px solid {t.line}; outline: none; }}
     QListView, QTreeView, QTableView, QScrollArea, QGraphicsView {{ background: {t.panel}; border: none; outline: none; }}
@@ -136,8 +140,8 @@ def style_sheet(look: Theme) -> str:
 def apply(app: QApplication, look: Theme) -> None:
     """Give the application a theme's style."""
     app.setStyle("Fusion")
-    app.setPalette(palette(look))
-    app.setStyleSheet(style_sheet(look))
     font = QFont(app.font())
     font.setPixelSize(13)
     app.setFont(font)
+    app.setPalette(palette(look))
+    app.setStyleSheet(style_sheet(look))

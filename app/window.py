@@ -18,6 +18,7 @@ from PySide6.QtWidgets import (
     QProgressBar,
     QPushButton,
     QSizePolicy,
+    QSplitter,
     QToolBar,
     QToolButton,
     QWidget,
@@ -25,7 +26,7 @@ from PySide6.QtWidgets import (
 
 from app import icons
 from app.actions import Actions, Command, Standard
-from app.canvas.canvas import Canvas
+from app.canvas.canvas import Canvas, many
 from app.canvas.drops import Drop, load_of
 from app.document import Document
 from app.figures import Figures
@@ -64,10 +65,14 @@ class Window(QMainWindow):
         settings = QSettings()
         if settings.value("theme") in ("dark", "light"):
             self.session.theme = str(settings.value("theme"))  # type: ignore[assignment]
+        apply(QApplication.instance(), theme(self.session.theme))  # type: ignore[arg-type]
         self.preview = PreviewPanel(self.session, self.performance, self.figures, self)
         self.library = LibraryPanel(self.document, self.session, self.thumbnails, self)
         self.canvas = Canvas(self.document, self.session, self.performance, self.thumbnails, self)
-        self.setCentralWidget(self.canvas)
+        self.centre = QSplitter(Qt.Orientation.Horizontal, self)
+        self.centre.addWidget(self.canvas)
+        self.centre.setChildrenCollapsible(False)
+        self.setCentralWidget(self.centre)
         self.setDockOptions(
             QMainWindow.DockOption.AnimatedDocks | QMainWindow.DockOption.AllowNestedDocks | QMainWindow.DockOption.AllowTabbedDocks
         )
@@ -101,7 +106,6 @@ class Window(QMainWindow):
             ("properties", "Properties", Qt.DockWidgetArea.RightDockWidgetArea),
             ("timeline", "Performance", Qt.DockWidgetArea.BottomDockWidgetArea),
             ("problems", "Problems", Qt.DockWidgetArea.BottomDockWidgetArea),
-            ("machine", "Machine", Qt.DockWidgetArea.BottomDockWidgetArea),
         ):
             self._add_dock(key, title, QWidget(self), area)
 
@@ -116,11 +120,12 @@ class Window(QMainWindow):
         self.timeline = TimelinePanel(self.document, self.session, self.performance, self)
         self.problems_panel = ProblemsPanel(self.session, self)
         self.machine = MachinePanel(self.document, self.session, self)
+        self.centre.addWidget(self.machine)
+        self.machine.setVisible(self._machine_wanted)
         for key, panel in (
             ("properties", self.properties),
             ("timeline", self.timeline),
             ("problems", self.problems_panel),
-            ("machine", self.machine),
         ):
             old = self.docks[key].widget()
             self.docks[key].setWidget(panel)
@@ -131,6 +136,7 @@ class Window(QMainWindow):
             self._sizes()
 
     ready = False
+    _machine_wanted = False
 
     def _commands(self) -> tuple[Command, ...]:
         s, d, f, c = self.session, self.document, self.files, self.canvas
@@ -190,7 +196,9 @@ class Window(QMainWindow):
             Command("frame", "&View", "&Frame the character", self.preview.frame_all, ("F",)),
             Command("face", "&View", "Close-up of the &face", self.preview.frame_face, ("Shift+F",)),
             Command("bones", "&View", "Show the &skeleton", self.preview.toggle_bones, ("B",), checked=lambda: self.preview.bones),
-            Command("big", "&View", "Only the &character", self.only_character, ("F11",), line=True),
+            Command("machine", "&View", "The &machine beside the graph", self.show_machine, ("M",), line=True,
+                    checked=lambda: self._machine_wanted),
+            Command("big", "&View", "Only the &character", self.only_character, ("F11",)),
             Command("arrange", "&View", "&Put the panels back", self._arrange),
             Command("theme", "&View", "&Light theme", self.toggle_theme, checked=lambda: s.theme == "light", line=True, icon="theme"),
             Command("keys", "&Help", "&Keyboard shortcuts", self.show_keys, ("F1",)),
@@ -223,7 +231,8 @@ class Window(QMainWindow):
         bar.setIconSize(QSize(18, 18))
         self.addToolBar(bar)
         self.name = QLabel(self)
-        self.name.setMinimumWidth(170)
+        self.name.setMinimumWidth(190)
+        self.name.setContentsMargins(6, 0, 12, 0)
         self.name.setTextFormat(Qt.TextFormat.RichText)
         bar.addWidget(self.name)
         for ident in ("import", "undo", "redo"):
@@ -246,8 +255,9 @@ class Window(QMainWindow):
         self.problem_button.setToolButtonStyle(Qt.ToolButtonStyle.ToolButtonTextBesideIcon)
         self.problem_button.clicked.connect(lambda: self.show_dock("problems"))
         bar.addWidget(self.problem_button)
-        self.machine_button = QPushButton("Machine", self, toolTip="The state machine the meta-graph stands for")
-        self.machine_button.clicked.connect(lambda: self.show_dock("machine"))
+        self.machine_button = QToolButton(self, text="Machine", toolTip="The state machine you did not have to draw (M)")
+        self.machine_button.setCheckable(True)
+        self.machine_button.clicked.connect(self.show_machine)
         bar.addWidget(self.machine_button)
         self.export_button = QPushButton("Export", self, toolTip="JSON and GLB for engines (Ctrl+E)")
         self.export_button.setProperty("strong", True)
@@ -292,18 +302,17 @@ class Window(QMainWindow):
         for key, area in (
             ("library", Qt.DockWidgetArea.LeftDockWidgetArea), ("preview", Qt.DockWidgetArea.RightDockWidgetArea),
             ("properties", Qt.DockWidgetArea.RightDockWidgetArea), ("timeline", Qt.DockWidgetArea.BottomDockWidgetArea),
-            ("problems", Qt.DockWidgetArea.BottomDockWidgetArea), ("machine", Qt.DockWidgetArea.BottomDockWidgetArea),
+            ("problems", Qt.DockWidgetArea.BottomDockWidgetArea),
         ):  # fmt: skip
             self.docks[key].setFloating(False)
             self.addDockWidget(area, self.docks[key])
             self.docks[key].show()
         self.tabifyDockWidget(self.docks["timeline"], self.docks["problems"])
-        self.tabifyDockWidget(self.docks["problems"], self.docks["machine"])
         self.docks["timeline"].raise_()
         self.setCorner(Qt.Corner.BottomLeftCorner, Qt.DockWidgetArea.BottomDockWidgetArea)
         self.setCorner(Qt.Corner.BottomRightCorner, Qt.DockWidgetArea.BottomDockWidgetArea)
         self._sizes()
-        self.canvas.show()
+        self.centre.show()
 
     def _sizes(self) -> None:
         self.resizeDocks([self.docks["library"], self.docks["preview"]], [300, 420], Qt.Orientation.Horizontal)
@@ -322,15 +331,25 @@ class Window(QMainWindow):
         self.docks[key].show()
         self.docks[key].raise_()
 
+    def show_machine(self, on: bool | None = None) -> None:
+        """Show or hide the expanded graph beside the meta-graph."""
+        self._machine_wanted = not self._machine_wanted if on is None else on
+        self.machine_button.setChecked(self._machine_wanted)
+        if self.ready:
+            self.machine.setVisible(self._machine_wanted)
+            width = self.centre.width()
+            self.centre.setSizes([width * 6 // 10, width * 4 // 10])
+        self.actions.refresh()
+
     def only_character(self) -> None:
         """Give the character the whole window, or put everything back."""
-        if self.canvas.isVisible():
+        if self.centre.isVisible():
             self._before = self.saveState()
-            self.canvas.hide()
+            self.centre.hide()
             for key, dock in self.docks.items():
                 dock.setVisible(key == "preview")
         else:
-            self.canvas.show()
+            self.centre.show()
             self.restoreState(self._before)
 
     _before = QByteArray()
@@ -407,7 +426,7 @@ class Window(QMainWindow):
         grave = [p for p in self.problems if p.severity != "hint"]
         hints = len(self.problems) - len(grave)
         color = look.error if any(p.severity == "error" for p in grave) else look.warning if grave else look.dim
-        text = _many(len(grave), "problem") if grave else _many(hints, "hint") if hints else "No problems"
+        text = many(len(grave), "problem") if grave else many(hints, "hint") if hints else "No problems"
         self.problem_button.setText(text)
         self.problem_button.setIcon(icons.icon("warning", color))
         self.problem_button.setStyleSheet(f"color: {color}")
@@ -557,7 +576,7 @@ class Window(QMainWindow):
             event.ignore()
             return
         settings = QSettings()
-        if self.canvas.isVisible():
+        if self.centre.isVisible():
             settings.setValue("geometry", self.saveGeometry())
             settings.setValue("state", self.saveState())
         self.document.close_journal()
@@ -566,10 +585,6 @@ class Window(QMainWindow):
         self.jobs.stop()
         self.thumbnails.stop()
         event.accept()
-
-
-def _many(count: int, noun: str) -> str:
-    return f"{count} {noun}{'s' if count != 1 else ''}"
 
 
 def _stretch(parent: QWidget) -> QWidget:

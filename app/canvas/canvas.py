@@ -570,7 +570,10 @@ def sentence(project: Project) -> str:
         return "Drop clips on the nodes; every connection between them is implied."
     layers = sum(1 for layer in LAYERS if project.graphs[layer].actions)
     over = f" over {layers} layers" if layers > 1 else ""
-    return (
-        f"You placed {whole.clips} clip{'s' if whole.clips != 1 else ''}{over}. This is the machine you did not have to draw: "
-        f"{whole.states:,} state{'s' if whole.states != 1 else ''}, {whole.connections:,} connection{'s' if whole.connections != 1 else ''}."
-    )
+    clips, states, links = many(whole.clips, "clip"), many(whole.states, "state"), many(whole.connections, "connection")
+    return f"You placed {clips}{over}. This is the machine you did not have to draw: {states}, {links}."
+
+
+def many(count: int, noun: str) -> str:
+    """Return "1 clip", "2,328 connections"."""
+    return f"{count:,} {noun}{'s' if count != 1 else ''}"

@@ -143,8 +143,9 @@ def arrange(
     top = y + CHIP_HEIGHT + 2 * GRID
     bottom = height - FOOT
     usable = max(bottom - top, 200.0)
-    side = min(max(width * 0.285, 176.0), 300.0)
-    card_w = min(max(width - 2 * side - 2 * 56, 128.0), 240.0)
+    gap = min(max(width * 0.045, 16.0), 56.0)
+    side = min(300.0, (width - 4 * GRID - max(width * 0.2, 112.0) - 2 * gap) / 2)
+    card_w = min(width - 4 * GRID - 2 * side - 2 * gap, 240.0)
     transitions = graph.of(stance, "transition") if stance else ()
     wide = min(max(width * 0.56, 300.0), 520.0)
     columns = 2 if wide > 400 else 1

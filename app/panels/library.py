@@ -420,7 +420,10 @@ class LibraryPanel(QWidget):
         self._refilter()
 
     def _narrow(self, layer: str | None, kind: Kind | None) -> None:
-        self.more.setText((layer or kind or "any kind").capitalize())
+        word = layer or kind
+        self.more.setText((word or "any kind").capitalize())
+        beside = Qt.ToolButtonStyle.ToolButtonTextBesideIcon
+        self.more.setToolButtonStyle(beside if word else Qt.ToolButtonStyle.ToolButtonIconOnly)
         self._refilter(layer=layer, kind=kind)
 
     def _refilter(self, *_: object, **more: str | None) -> None:

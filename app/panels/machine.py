@@ -20,20 +20,21 @@ MOST = 6000  # connections drawn; more would be one solid disc
 def places(graph: MetaGraph, area: QRectF) -> dict[str, QPointF]:
     """Return where each state is: stances on a ring, their actions on rings round them."""
     stances = list(graph.stances)
-    centre, out = area.center(), {}
-    wide = area.width() / 2 - 70
-    high = area.height() / 2 - 46
+    out: dict[str, QPointF] = {}
+    centre = area.center() + QPointF(0, 24)
+    wide, high = area.width() / 2 - 60, area.height() / 2 - 60
     for n, stance in enumerate(stances):
         turn = 2 * math.pi * n / max(1, len(stances)) - math.pi / 2
-        middle = centre if len(stances) == 1 else centre + QPointF(math.cos(turn) * wide * 0.72, math.sin(turn) * high * 0.62)
+        middle = centre if len(stances) == 1 else centre + QPointF(math.cos(turn) * wide * 0.66, math.sin(turn) * high * 0.66)
         loops = graph.of(stance, "stance")
         for k, loop in enumerate(loops):
             out[loop.id] = middle + QPointF((k - (len(loops) - 1) / 2) * 14, 0)
         around = [*graph.of(stance, "gesture"), *graph.of(stance, "fidget")]
-        reach = min(46.0, max(24.0, high * 0.3)) + len(around) * 0.4
+        room = min(wide, high) * (0.30 if len(stances) > 1 else 0.7)
+        reach = max(24.0, min(room, 26.0 + 2.2 * len(around)))
         for k, action in enumerate(around):
             a = 2 * math.pi * k / max(1, len(around)) + turn
-            out[action.id] = middle + QPointF(math.cos(a) * reach * 1.5, math.sin(a) * reach)
+            out[action.id] = middle + QPointF(math.cos(a) * reach, math.sin(a) * reach)
     spread: dict[tuple[str, str], int] = {}
     for action in graph.actions.values():
         if action.kind == "transition" and action.id not in out:
@@ -57,7 +58,7 @@ class MachinePanel(QWidget):
         self.document, self.session = document, session
         self._picture: QPixmap | None = None
         self._places: dict[str, QPointF] = {}
-        self.setMinimumHeight(120)
+        self.setMinimumSize(280, 240)
         self.setMouseTracking(True)
         self.setAccessibleName("Expanded state machine")
         document.changed.connect(self._edited)

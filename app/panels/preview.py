@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 from PySide6.QtCore import QElapsedTimer, Qt, QTimer
-from PySide6.QtWidgets import QComboBox, QHBoxLayout, QLabel, QSlider, QToolButton, QVBoxLayout, QWidget
+from PySide6.QtWidgets import QComboBox, QHBoxLayout, QLabel, QSizePolicy, QSlider, QToolButton, QVBoxLayout, QWidget
 
 from app import icons
 from app.figures import Figures
@@ -19,6 +19,7 @@ from preview.camera import close_up, whole_figure
 from preview.scene import THEMES, Actor, Scene
 
 SPEEDS = (0.1, 0.25, 0.5, 1.0, 1.5, 2.0)
+BASE_TIP = "The pose all layers are added to. Right-click a clip in the library to take it from there."
 FRAME = 16  # milliseconds between frames
 
 
@@ -107,13 +108,15 @@ class PreviewPanel(QWidget):
         row = QHBoxLayout()
         row.setContentsMargins(12, 0, 12, 8)
         self.caption = QLabel("", self)
-        self.base = QLabel("", self, toolTip="The pose all layers are added to. Right-click a clip in the library to take it from there.")
+        self.base = QLabel("", self, toolTip=BASE_TIP)
         for label in (self.caption, self.base):
             label.setProperty("dim", True)
             label.setTextInteractionFlags(Qt.TextInteractionFlag.NoTextInteraction)
         self.base.setAlignment(Qt.AlignmentFlag.AlignRight)
-        row.addWidget(self.caption, 1)
-        row.addWidget(self.base)
+        for label, share in ((self.caption, 3), (self.base, 2)):
+            label.setMinimumWidth(60)
+            label.setSizePolicy(QSizePolicy.Policy.Ignored, QSizePolicy.Policy.Preferred)
+            row.addWidget(label, share)
         return row
 
     def _restyle(self) -> None:
@@ -245,4 +248,5 @@ class PreviewPanel(QWidget):
             self.base.setText("Base pose: rest pose")
         else:
             self.base.setText(f"Base pose: {entry.name}, frame {base.frame}")
+        self.base.setToolTip(f"{self.base.text()}\n{BASE_TIP}")
         self.view.update()
