@@ -78,6 +78,8 @@ def with_motions(project: Project, motions: Mapping[str, Clip]) -> Project:
 
 
 def rename_clip(project: Project, clip: str, name: str) -> Project:
+    if clip not in project.clips:
+        raise EditError("that clip is no longer in the project")
     return replace(project, clips={**project.clips, clip: replace(project.clips[clip], name=_clean(name))})
 
 
@@ -98,7 +100,7 @@ def add_stance(project: Project, layer: Layer, name: str, clips: Sequence[str] =
     graph = project.graphs[layer]
     name = _free_name(_clean(name), {s.name for s in graph.stances.values()})
     stance = Stance(f"s{project.next_id}", layer, name)
-    graph = replace(graph, stances={**graph.stances, stance.id: stance}, start=graph.start or stance.id)
+    graph = graph.but(stances={**graph.stances, stance.id: stance}, start=graph.start or stance.id)
     project = project.with_graph(graph, next_id=project.next_id + 1)
     return place(project, clips, layer, "stance", stance.id) if clips else project
 
@@ -106,7 +108,7 @@ def add_stance(project: Project, layer: Layer, name: str, clips: Sequence[str] =
 def rename_stance(project: Project, stance: str, name: str) -> Project:
     found = _stance(project, stance)
     graph = project.graphs[found.layer]
-    return project.with_graph(replace(graph, stances={**graph.stances, stance: replace(found, name=_clean(name))}))
+    return project.with_graph(graph.but(stances={**graph.stances, stance: replace(found, name=_clean(name))}))
 
 
 def remove_stance(project: Project, stance: str) -> Project:
@@ -117,13 +119,13 @@ def remove_stance(project: Project, stance: str) -> Project:
     graph = graph.with_actions(dict.fromkeys(gone))
     stances = {i: s for i, s in graph.stances.items() if i != stance}
     start = graph.start if graph.start != stance else next(iter(stances), None)
-    return project.with_graph(replace(graph, stances=stances, start=start))
+    return project.with_graph(graph.but(stances=stances, start=start))
 
 
 def set_start(project: Project, stance: str) -> Project:
     """Let performances begin in this stance."""
     found = _stance(project, stance)
-    return project.with_graph(replace(project.graphs[found.layer], start=stance))
+    return project.with_graph(project.graphs[found.layer].but(start=stance))
 
 
 # --- actions ---------------------------------------------------------------------------------------------------------
@@ -195,7 +197,10 @@ def default_timing(entry: ClipEntry, kind: Kind) -> Timing:
 
 
 def update_actions(project: Project, actions: Collection[str], **changes: Any) -> Project:
-    """Set fields of actions; `timing` takes a mapping of the Timing fields to change, or a whole Timing."""
+    """Set fields of actions; `timing` takes a mapping of the Timing fields to change, or a whole Timing.
+
+    Returns the same project when nothing differs.
+    """
     graphs = dict(project.graphs)
     for layer, graph in project.graphs.items():
         edits: dict[str, Action | None] = {}
@@ -206,10 +211,12 @@ def update_actions(project: Project, actions: Collection[str], **changes: Any) -
             fields = dict(changes)
             if isinstance(fields.get("timing"), Mapping):
                 fields["timing"] = replace(action.timing, **fields["timing"])
-            edits[ident] = replace(action, **fields)
+            after = replace(action, **fields)
+            if after != action:
+                edits[ident] = after
         if edits:
             graphs[layer] = graph.with_actions(edits)
-    return replace(project, graphs=graphs)
+    return project if graphs == project.graphs else replace(project, graphs=graphs)
 
 
 def move_actions(project: Project, actions: Collection[str], kind: Kind, stance: str, end_stance: str | None = None) -> Project:
@@ -238,7 +245,7 @@ def remove_actions(project: Project, actions: Collection[str]) -> Project:
         gone = dict.fromkeys(i for i in actions if i in graph.actions)
         if gone:
             graphs[layer] = graph.with_actions(gone)
-    return replace(project, graphs=graphs)
+    return project if graphs == project.graphs else replace(project, graphs=graphs)
 
 
 # --- the rest --------------------------------------------------------------------------------------------------------
@@ -259,7 +266,7 @@ def set_weight(project: Project, layer: Layer, part: Part, weight: float) -> Pro
     if part not in PARTS:
         raise EditError(f"there is no body part '{part}'; there are {', '.join(PARTS)}")
     graph = project.graphs[layer]
-    return project.with_graph(replace(graph, weights={**graph.weights, part: min(2.0, max(0.0, weight))}))
+    return project.with_graph(graph.but(weights={**graph.weights, part: min(2.0, max(0.0, weight))}))
 
 
 def set_role(project: Project, role: str, joint: str | None) -> Project:

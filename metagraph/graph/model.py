@@ -5,7 +5,7 @@ Ids are made once from the project's counter and never change; names are free te
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping
+from collections.abc import Callable, Iterable, Iterator, Mapping
 from dataclasses import dataclass, field, replace
 from functools import cached_property
 from types import MappingProxyType
@@ -100,63 +100,113 @@ class MetaGraph:
     @cached_property
     def index(self) -> Index:
         """The multi-index of this layer: (stance, kind) -> actions, in the order they were placed."""
-        buckets: dict[tuple[str, Kind], list[Action]] = {}
-        for action in self.actions.values():
-            buckets.setdefault((action.stance, action.kind), []).append(action)
-        return MappingProxyType({key: tuple(bucket) for key, bucket in buckets.items()})
+        return _grouped(self.actions.values(), _node)
 
     def of(self, stance: str, kind: Kind) -> tuple[Action, ...]:
         """Return the actions of a kind placed on a stance."""
         return self.index.get((stance, kind), ())
 
     @cached_property
+    def uses(self) -> Mapping[str, tuple[Action, ...]]:
+        """Clip id -> the actions of this layer that use it, in the order they were placed."""
+        return _grouped(self.actions.values(), _clip)
+
+    @cached_property
     def into(self) -> Mapping[str, tuple[Action, ...]]:
         """Transitions by the stance they end in."""
-        out: dict[str, list[Action]] = {}
-        for (_, kind), bucket in self.index.items():
-            for action in bucket if kind == "transition" else ():
-                if action.end_stance is not None:
-                    out.setdefault(action.end_stance, []).append(action)
-        return {stance: tuple(actions) for stance, actions in out.items()}
+        arriving = (a for (_, kind), bucket in self.index.items() if kind == "transition" for a in bucket)
+        return _grouped((a for a in arriving if a.end_stance is not None), lambda a: a.end_stance)
+
+    def but(self, **changes: Any) -> MetaGraph:
+        """Return the graph with fields other than its actions replaced, keeping what was derived from the actions."""
+        out = replace(self, **changes)
+        out.__dict__.update({name: self.__dict__[name] for name in ("index", "uses", "into") if name in self.__dict__})
+        return out
 
     def with_actions(self, changes: Mapping[str, Action | None]) -> MetaGraph:
         """Return the graph with actions added, replaced (in place) or, for None, removed.
 
-        The index is patched rather than rebuilt, so that an edit costs the same in a graph of ten thousand.
+        Index and uses are patched rather than rebuilt, so that an edit costs the same in a graph of ten thousand.
         """
         actions = dict(self.actions)
-        touched: dict[tuple[str, Kind], dict[str, Action]] = {}
-
-        def bucket(action: Action) -> dict[str, Action]:
-            key = (action.stance, action.kind)
-            if key not in touched:
-                touched[key] = {a.id: a for a in self.index.get(key, ())}
-            return touched[key]
-
-        resort: set[tuple[str, Kind]] = set()
         for ident, action in changes.items():
-            before = actions.get(ident)
-            if action is None:
-                if before is not None:
-                    bucket(before).pop(ident)
-                    del actions[ident]
-                continue
-            if before is not None and (before.stance, before.kind) != (action.stance, action.kind):
-                bucket(before).pop(ident)
-                resort.add((action.stance, action.kind))
-            bucket(action)[ident] = action
-            actions[ident] = action
-        out = replace(self, actions=actions)
-        index = dict(self.index)
-        order = {ident: n for n, ident in enumerate(actions)} if resort else {}
-        for key, kept in touched.items():
-            rows = sorted(kept.values(), key=lambda a: order[a.id]) if key in resort else list(kept.values())
-            if rows:
-                index[key] = tuple(rows)
+            if action is not None:
+                actions[ident] = action
             else:
-                index.pop(key, None)
-        out.__dict__["index"] = MappingProxyType(index)
+                actions.pop(ident, None)
+        out = replace(self, actions=actions)
+        out.__dict__["index"] = _patched(self.index, self.actions, actions, changes, _node)
+        if "uses" in self.__dict__:
+            out.__dict__["uses"] = _patched(self.uses, self.actions, actions, changes, _clip)
         return out
+
+
+def _node(action: Action) -> tuple[str, Kind]:
+    return action.stance, action.kind
+
+
+def _clip(action: Action) -> str:
+    return action.clip
+
+
+def _grouped(actions: Iterable[Action], key: Callable[[Action], Any]) -> Mapping[Any, tuple[Action, ...]]:
+    buckets: dict[Any, list[Action]] = {}
+    for action in actions:
+        buckets.setdefault(key(action), []).append(action)
+    return MappingProxyType({k: tuple(bucket) for k, bucket in buckets.items()})
+
+
+def _patched(
+    groups: Mapping[Any, tuple[Action, ...]],
+    before: Mapping[str, Action],
+    after: Mapping[str, Action],
+    changes: Mapping[str, Action | None],
+    key: Callable[[Action], Any],
+) -> Mapping[Any, tuple[Action, ...]]:
+    """Return the groups after changes, in the order in which `after` has the actions."""
+    touched: dict[Any, dict[str, Action]] = {}
+    moved: set[Any] = set()
+
+    def bucket(action: Action) -> dict[str, Action]:
+        return touched.setdefault(key(action), {a.id: a for a in groups.get(key(action), ())})
+
+    for ident, new in changes.items():
+        old = before.get(ident)
+        if old is not None and (new is None or key(new) != key(old)):
+            bucket(old).pop(ident)
+        if new is not None:
+            bucket(new)[ident] = new
+            if old is not None and key(new) != key(old):
+                moved.add(key(new))  # an action that moves in keeps its place among all
+    out = dict(groups)
+    for k, kept in touched.items():
+        if kept:
+            out[k] = tuple(after[i] for i in after if i in kept) if k in moved else tuple(kept.values())
+        else:
+            out.pop(k, None)
+    return MappingProxyType(out)
+
+
+class Uses(Mapping[str, tuple[Action, ...]]):
+    """Clip id -> the actions of any layer that use it: a view of the graphs' own."""
+
+    def __init__(self, graphs: Iterable[MetaGraph]) -> None:
+        self._graphs = tuple(graph.uses for graph in graphs)
+
+    def __getitem__(self, clip: str) -> tuple[Action, ...]:
+        found = tuple(action for uses in self._graphs for action in uses.get(clip, ()))
+        if not found:
+            raise KeyError(clip)
+        return found
+
+    def __contains__(self, clip: object) -> bool:
+        return any(clip in uses for uses in self._graphs)
+
+    def __iter__(self) -> Iterator[str]:
+        return iter(dict.fromkeys(clip for uses in self._graphs for clip in uses))
+
+    def __len__(self) -> int:
+        return sum(1 for _ in self)
 
 
 @dataclass(frozen=True)
@@ -274,10 +324,7 @@ class Project:
     @cached_property
     def uses(self) -> Mapping[str, tuple[Action, ...]]:
         """Clip id -> the actions that use it."""
-        out: dict[str, list[Action]] = {}
-        for action in self.actions():
-            out.setdefault(action.clip, []).append(action)
-        return {clip: tuple(actions) for clip, actions in out.items()}
+        return Uses(self.graphs[layer] for layer in LAYERS)
 
     def with_graph(self, graph: MetaGraph, **more: Any) -> Project:
         """Return the project with one layer's graph replaced."""

@@ -8,7 +8,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass
-from functools import lru_cache
+from functools import cached_property, lru_cache
 from typing import Any
 from weakref import WeakKeyDictionary
 
@@ -26,11 +26,26 @@ Array = NDArray[Any]
 
 @dataclass(frozen=True, eq=False)
 class Offsets:
-    """A clip relative to the base pose. rotations `[F, J, 4]`, translations `[F, T, 3]` for the joints in `moved` `[T]`, float32."""
+    """A clip relative to the base pose, for the joints a layer reaches.
+
+    rotations `[F, n, 4]`, neighbours on the same side; translations `[F, m, 3]` for the places `moved` `[m]` among them; float32.
+    """
 
     rotations: Array
     translations: Array
     moved: Array
+
+
+@dataclass(frozen=True, eq=False)
+class Reach:
+    """The joints a layer moves `[n]` and its weights on them `[n, 1]`, None where all are 1."""
+
+    joints: Array
+    weights: Array | None
+
+    @cached_property
+    def key(self) -> bytes:
+        return self.joints.tobytes()
 
 
 class Ground:
@@ -39,42 +54,44 @@ class Ground:
     def __init__(self, skeleton: Skeleton, base: Pose) -> None:
         self.skeleton, self.base = skeleton, base
         self._inverse = rotation.conjugate(base.rotations)
-        self._offsets: WeakKeyDictionary[Clip, Offsets] = WeakKeyDictionary()
+        self._offsets: WeakKeyDictionary[Clip, dict[bytes, Offsets]] = WeakKeyDictionary()
 
-    def offsets(self, clip: Clip) -> Offsets:
-        """Return a clip's offsets. Raises ValueError when the clip has another skeleton."""
-        found = self._offsets.get(clip)
-        if found is None:
+    def offsets(self, clip: Clip, reach: Reach) -> Offsets:
+        """Return a clip's offsets on the joints of a layer. Raises ValueError when the clip has another skeleton."""
+        known = self._offsets.get(clip)
+        if known is None:
             if clip.skeleton != self.skeleton:
                 raise ValueError(f"clip '{clip.name}' has another skeleton")
-            away = clip.poses().translations - self.base.translations
-            moved = np.flatnonzero(np.abs(away).max(axis=(0, 2)) > 1e-7)
-            turned = rotation.continuous(rotation.multiply(self._inverse, clip.rotations))
-            found = Offsets(turned, np.ascontiguousarray(away[:, moved]), moved)
-            self._offsets[clip] = found
+            known = self._offsets.setdefault(clip, {})
+        found = known.get(reach.key)
+        if found is None:
+            joints = reach.joints
+            away = clip.poses().translations[:, joints] - self.base.translations[joints]
+            moved = np.flatnonzero(np.abs(away).max(axis=(0, 2), initial=0) > 1e-7)
+            turned = rotation.continuous(rotation.multiply(self._inverse[joints], clip.rotations[:, joints]))
+            found = known[reach.key] = Offsets(turned, np.ascontiguousarray(away[:, moved]), moved)
         return found
 
 
 @dataclass(frozen=True, eq=False)
 class Rig:
-    """How layers reach joints: for each layer the joints it moves `[n]` and its weights on them `[n]`, None where all are 1."""
+    """How layers reach joints."""
 
     ground: Ground
-    reach: Mapping[Layer, tuple[Array, Array | None]]
+    reach: Mapping[Layer, Reach]
 
-    def compose(self, layers: Mapping[Layer, tuple[Array, Array]]) -> Pose:
-        """Add layers' offsets, each rotations `[N, J, 4]` and translations `[N, J, 3]`, to the base pose."""
+    def compose(self, layers: Mapping[Layer, tuple[Array, Array]], count: int) -> Pose:
+        """Add layers' offsets, each rotations `[count, n, 4]` and translations `[count, n, 3]`, to the base pose."""
         base = self.ground.base
-        count = next(len(r) for r, _ in layers.values()) if layers else 1
-        rotations = np.broadcast_to(base.rotations, (count, *base.rotations.shape)).copy()
-        translations = np.broadcast_to(base.translations, (count, *base.translations.shape)).copy()
+        rotations = np.repeat(base.rotations[None], count, 0)
+        translations = np.repeat(base.translations[None], count, 0)
         for layer in LAYERS:
             if layer not in layers:
                 continue
-            joints, weights = self.reach[layer]
-            turned, away = (a[:, joints] for a in layers[layer])
+            joints, weights = self.reach[layer].joints, self.reach[layer].weights
+            turned, away = layers[layer]
             if weights is not None:
-                turned, away = rotation.power(turned, weights), away * weights[:, None]
+                turned, away = rotation.power(turned, weights[:, 0]), away * weights
             rotations[:, joints] = rotation.multiply(rotations[:, joints], turned)
             translations[:, joints] += away
         return Pose(rotation.normalize(rotations), translations)
@@ -90,13 +107,13 @@ def _ground(skeleton: Skeleton, clip: Clip | None, frame: int) -> Ground:
 
 @lru_cache(maxsize=16)
 def _rig(ground: Ground, parts: tuple[Part, ...], weights: tuple[tuple[float, ...], ...], order: tuple[Part, ...]) -> Rig:
-    reach: dict[Layer, tuple[Array, Array | None]] = {}
+    reach: dict[Layer, Reach] = {}
     for layer, row in zip(LAYERS, weights, strict=True):
         by_part = dict(zip(order, row, strict=True))
         each = np.array([by_part[part] for part in parts], np.float32)
         joints = np.flatnonzero(each > 0)
-        chosen = each[joints]
-        reach[layer] = (joints, None if np.all(chosen == 1) else chosen)
+        chosen = each[joints, None]
+        reach[layer] = Reach(joints, None if np.all(chosen == 1) else chosen)
     return Rig(ground, reach)
 
 

@@ -9,10 +9,18 @@ from typing import Any
 from metagraph.graph.expand import chain
 from metagraph.graph.model import Action, MetaGraph, Project
 from metagraph.playback.choice import pick
-from metagraph.playback.plan import Cue, MetaAction, Outcome, Report, Rest
+from metagraph.playback.plan import Cue, MetaAction, Outcome, Report, Request, Rest
 
 FITS = 1e-6  # seconds by which sums of times may be off
 LOOP_FADE = 0.6  # seconds of crossfade when a long rest changes from one loop of its stance to another
+
+
+@dataclass(frozen=True, slots=True)
+class Step:
+    """One action of a chain: who may play it, and for a transition on the way the stance it leads to."""
+
+    candidates: Sequence[Action]
+    hop: str = ""
 
 
 @dataclass
@@ -20,6 +28,7 @@ class Performer:
     """One layer being planned, cue after cue. Mutable while planning; nothing of it leaves the planner.
 
     counts: how often each action was used, times alpha. last: the action used last, by (stance, kind).
+    begun: keys of meta actions whose chain of transitions plays already.
     """
 
     project: Project
@@ -32,6 +41,7 @@ class Performer:
     cues: list[Cue] = field(default_factory=list)
     rests: list[Rest] = field(default_factory=list)
     reports: list[Report] = field(default_factory=list)
+    begun: frozenset[str] = frozenset()
 
     def begin(self) -> bool:
         """Lay the first loop down; return whether the layer can perform at all."""
@@ -41,12 +51,14 @@ class Performer:
         self.rests.append(Rest(self.stance, loop, 0.0, 0.0, 0.0))
         return True
 
-    def perform(self, metas: Sequence[MetaAction]) -> None:
-        """Realise a conflict-free meta plan, in order."""
+    def perform(self, metas: Sequence[MetaAction], end: float) -> None:
+        """Realise what starts before `end` of a conflict-free meta plan, in order."""
         for meta, limit, wish in _bounds(metas):
-            if meta.end <= self.free + FITS:
-                running = self.cues[-1].action.name if self.cues else "the running action"
-                self._tell(meta, "covered", f"wholly covered by '{running}', which plays until {self.free:.2f} s")
+            if meta.start >= end:
+                return
+            if meta.end <= self.free + FITS and meta.start < self.free and meta.key not in self.begun:
+                running = f"'{self.cues[-1].action.name}'" if self.cues else "the running action"
+                self._tell(meta, "covered", f"wholly covered by {running}, which plays until {self.free:.2f} s")
                 continue
             self._realise(meta, max(self.free, meta.start), limit, wish)
 
@@ -56,24 +68,21 @@ class Performer:
             return
         cues: list[Cue] = []
         stance = self.stance
-        for number, candidates in enumerate(steps):
-            final = number == len(steps) - 1
-            fitting = {a.id: a for a in candidates if now + self._shortest(a) <= limit + FITS}
+        for step in steps:
+            fitting = [a for a in step.candidates if now + self._shortest(a) <= limit + FITS]
             if not fitting:
-                if meta.written:
-                    self._tell(meta, "no-room", f"nothing fits into {limit - now:.2f} s")
-                else:
-                    self._tell(meta, "no-room", f"nothing fits into the {limit - now:.2f} s before something more important")
+                before = "" if meta.written else " before something more important"
+                self._tell(meta, "no-room", f"nothing fits into the {max(0.0, limit - now):.2f} s{before}")
                 return
-            action = self._draw(list(fitting.values()), f"{meta.key}" if final else f"{meta.key}/{number}")
-            cue = self._cue(action, now, limit, wish if final else float("inf"), stance, meta.key)
+            action = self._draw(fitting, f"{meta.key}/{step.hop}" if step.hop else meta.key)
+            cue = self._cue(action, now, limit, float("inf") if step.hop else wish, stance, meta.key)
             cues.append(cue)
             now, stance = cue.end, cue.then
         for cue in cues:
             self._keep(cue)
 
-    def _steps(self, meta: MetaAction) -> list[list[Action]] | None:
-        """Return the candidates of each action in turn: the transitions to get there, then the action; None if impossible."""
+    def _steps(self, meta: MetaAction) -> list[Step] | None:
+        """Return each action in turn: the transitions to get there, then the action itself; None if impossible or needless."""
         request, graph = meta.request, self.graph
         if request.action is not None:
             action = graph.actions.get(request.action)
@@ -82,53 +91,62 @@ class Performer:
                 return None
             if action.kind == "stance":
                 return self._way(meta, action.stance)
-            if action.kind == "transition" and not self._usable(action):
+            if not self._arrives(action):
                 self._tell(meta, "no-stance", f"'{action.name}' ends in a stance that has no loop")
                 return None
-            way = self._way(meta, action.stance)
-            return None if way is None else [*way, [action]]
+            way = () if action.stance == self.stance else self._way(meta, action.stance)
+            return None if way is None else [*way, Step([action])]
         if request.stance is not None and request.kind in ("transition", "stance"):
             if request.stance not in graph.stances:
                 self._tell(meta, "no-stance", f"there is no stance '{request.stance}' in the {graph.layer} layer")
                 return None
             return self._way(meta, request.stance)
-        found = [a for a in graph.of(self.stance, request.kind) if self._usable(a) and set(request.tags) <= set(a.tags)]
-        exact = [a for a in found if request.limb is None or a.limb == request.limb]
+        every = [a for a in graph.of(self.stance, request.kind) if self._usable(a)]
+        found = [a for a in every if all(tag in a.tags for tag in request.tags)] if request.tags else every
+        exact = [a for a in found if a.limb == request.limb] if request.limb is not None else found
         if meta.written:  # the model's limb and tags are wishes, not orders, nor worth playing the same again
             again = self.last.get((self.stance, request.kind))
-            wider = (exact, found, [a for a in graph.of(self.stance, request.kind) if self._usable(a)])
+            wider = (exact, found, every)
             exact = next((some for some in wider if any(a.id != again for a in some)), wider[-1])
         if not exact:
             name = graph.stances[self.stance].name
             asked = " ".join(x for x in (request.limb or "", *request.tags, request.kind) if x)
-            others = sorted(
-                {graph.stances[a.stance].name for a in graph.actions.values() if a.kind == request.kind and set(request.tags) <= set(a.tags)
-                 and a.stance in graph.stances and (request.limb is None or a.limb == request.limb)}
-            )  # fmt: skip
-            hint = f"; there is one in '{others[0]}'" if others else ""
+            hint = "" if meta.written else self._elsewhere(request)
             self._tell(meta, "no-candidate", f"stance '{name}' has no {asked}{hint}")
             return None
-        return [exact]
+        return [Step(exact)]
 
-    def _way(self, meta: MetaAction, goal: str) -> list[list[Action]] | None:
-        """Return the transitions' candidates hop by hop from the current stance to `goal`; [] when already there."""
+    def _elsewhere(self, request: Request) -> str:
+        for action in self.graph.actions.values():
+            fits = action.kind == request.kind and set(request.tags) <= set(action.tags) and request.limb in (None, action.limb)
+            if fits and action.stance in self.graph.stances:
+                return f"; there is one in '{self.graph.stances[action.stance].name}'"
+        return ""
+
+    def _way(self, meta: MetaAction, goal: str) -> list[Step] | None:
+        """Return the transitions hop by hop from the current stance to `goal`."""
+        if goal == self.stance:
+            self._tell(meta, "already-there", f"the layer is in '{self.graph.stances[goal].name}' already", played=True)
+            return None
         stances = chain(_usable_graph(self.graph), self.stance, goal)
         if stances is None:
             a, b = self.graph.stances[self.stance].name, self.graph.stances[goal].name
             self._tell(meta, "no-way", f"no chain of transitions leads from '{a}' to '{b}'")
             return None
-        hops, at = [], self.stance
+        steps, at = [], self.stance
         for following in stances:
-            hops.append([a for a in self.graph.of(at, "transition") if a.end_stance == following])
+            hops = [a for a in self.graph.of(at, "transition") if a.end_stance == following and self._usable(a)]
+            steps.append(Step(hops, following))
             at = following
-        return hops
+        return steps
+
+    def _arrives(self, action: Action) -> bool:
+        """Whether an action leaves the layer in a stance that can rest."""
+        end = action.end_stance
+        return action.kind != "transition" or (end in self.graph.stances and bool(self.graph.of(end or "", "stance")))
 
     def _usable(self, action: Action) -> bool:
-        if action.likelihood <= 0:
-            return False
-        return action.kind != "transition" or (
-            action.end_stance in self.graph.stances and bool(self.graph.of(action.end_stance or "", "stance"))
-        )
+        return action.likelihood > 0 and self._arrives(action)
 
     def _shortest(self, action: Action) -> float:
         """Seconds an action needs at the least: to its earliest exit and its blend out, or all of it."""
@@ -164,9 +182,12 @@ class Performer:
         count(self.counts, self.last, cue, self.project.settings.alpha)
         loop = self._loop(cue.then, cue.meta)
         if loop is not None:
-            # The loop begins anew under the action, so that the action's last pose meets the loop's first.
-            middle = cue.start + cue.blend_in
-            self.rests.append(Rest(cue.then, loop, cue.end - cue.blend_out, middle, cue.end - cue.blend_out - middle))
+            # The loop begins anew under the action, so that the action's last pose meets the loop's first. Where the
+            # action leaves joints alone the change shows, and takes its time.
+            partial = cue.action.limb != "both" or bool(cue.action.joints)
+            begin, until = cue.start + cue.blend_in, cue.end - cue.blend_out
+            fade_start, fade_end = (cue.start, cue.end) if partial else (begin, until)
+            self.rests.append(Rest(cue.then, loop, until, fade_start, max(0.0, fade_end - fade_start)))
 
     def _loop(self, stance: str, key: str) -> Action | None:
         loops = self.graph.of(stance, "stance")
@@ -185,14 +206,13 @@ class Performer:
             if len(loops) < 2:
                 continue
             until = self.rests[place + 1].fade_start if place + 1 < len(self.rests) else end
-            current, change, number = rest, rest.start, 0
+            current, change = rest, rest.start
             while True:
                 start, stop = self.project.span(current.action)
                 change += max(1.0, stop - start - current.action.timing.blend_in)
                 if change > until:
                     break
-                number += 1
-                loop = self._loop(rest.stance, f"{self.graph.layer}/{rest.start:.3f}/{number}")
+                loop = self._loop(rest.stance, f"{self.graph.layer}/{change:.3f}")
                 if loop is not None and loop.id != current.action.id:
                     current = Rest(rest.stance, loop, change, change - LOOP_FADE, LOOP_FADE)
                     out.append(current)
@@ -222,6 +242,8 @@ def count(counts: dict[str, float], last: dict[tuple[str, str], str], cue: Cue, 
 
 
 def _usable_graph(graph: MetaGraph) -> MetaGraph:
-    """Return the graph without transitions into stances that have no loop."""
-    lost: Mapping[str, None] = {a.id: None for end, actions in graph.into.items() if not graph.of(end, "stance") for a in actions}
+    """Return the graph without transitions that cannot play or lead into stances that have no loop."""
+    lost: Mapping[str, None] = {
+        a.id: None for end, actions in graph.into.items() for a in actions if a.likelihood <= 0 or not graph.of(end, "stance")
+    }
     return graph.with_actions(lost) if lost else graph

@@ -2,13 +2,18 @@
 
 from __future__ import annotations
 
-from bisect import bisect_right
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 from functools import cached_property
-from typing import Literal
+from math import isfinite
+from typing import Any, Literal
+
+import numpy as np
+from numpy.typing import NDArray
 
 from metagraph.graph.model import LAYERS, Action, Kind, Layer, Limb
+
+Array = NDArray[Any]
 
 ASKED = 1  # default priority of a request
 WRITTEN = 0  # priority of what the Markov model writes
@@ -35,6 +40,10 @@ class Request:
     stance: str | None = None
     priority: int = ASKED
     resume: bool = False
+
+    def __post_init__(self) -> None:
+        if not (isfinite(self.start) and isfinite(self.duration or 0.0)):
+            raise ValueError(f"request '{self.id}': start and duration must be finite numbers of seconds")
 
 
 @dataclass(frozen=True, slots=True)
@@ -88,7 +97,10 @@ class Rest:
     fade: float
 
 
-Outcome = Literal["late", "cut", "resumed", "covered", "no-room", "no-candidate", "no-way", "no-stance", "unknown-action", "past"]
+Outcome = Literal[
+    "late", "cut", "resumed", "covered", "no-room", "no-candidate", "no-way", "no-stance", "unknown-action", "past", "already-there"
+]
+TEMPORAL: frozenset[Outcome] = frozenset(("late", "cut", "resumed", "past"))  # told by temporal replanning, once
 
 
 @dataclass(frozen=True, slots=True)
@@ -114,17 +126,43 @@ class LayerPlan:
     rests: tuple[Rest, ...] = ()
 
     @cached_property
-    def starts(self) -> list[float]:
-        return [cue.start for cue in self.cues]
+    def starts(self) -> Array:
+        """When each cue starts, `[C]`."""
+        return np.array([cue.start for cue in self.cues])
+
+    @cached_property
+    def ends(self) -> Array:
+        """When each cue ends, `[C]`."""
+        return np.array([cue.end for cue in self.cues])
+
+    @cached_property
+    def full_from(self) -> Array:
+        """When each cue has blended in, `[C]`."""
+        return np.array([cue.start + cue.blend_in for cue in self.cues])
+
+    @cached_property
+    def full_to(self) -> Array:
+        """When each cue begins to blend out, `[C]`."""
+        return np.array([cue.end - cue.blend_out for cue in self.cues])
+
+    @cached_property
+    def fade_starts(self) -> Array:
+        """When each rest begins to take over, `[R]`."""
+        return np.array([rest.fade_start for rest in self.rests])
+
+    @cached_property
+    def fade_ends(self) -> Array:
+        """When each rest has taken over, `[R]`."""
+        return np.array([rest.fade_start + rest.fade for rest in self.rests])
 
     def cue_at(self, seconds: float) -> Cue | None:
         """Return the cue playing at a time, or None while the stance rests."""
-        place = bisect_right(self.starts, seconds) - 1
+        place = int(self.starts.searchsorted(seconds, "right")) - 1
         return self.cues[place] if place >= 0 and seconds < self.cues[place].end else None
 
     def stance_at(self, seconds: float) -> str | None:
         """Return the stance the layer rests in or, during a transition, leaves."""
-        place = bisect_right(self.starts, seconds) - 1
+        place = int(self.starts.searchsorted(seconds, "right")) - 1
         if place >= 0:
             cue = self.cues[place]
             return cue.stance if seconds < cue.end else cue.then

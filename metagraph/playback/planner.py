@@ -11,8 +11,8 @@ from collections.abc import Iterable, Mapping
 from metagraph.graph.model import LAYERS, Layer, MetaGraph, Project
 from metagraph.playback import markov
 from metagraph.playback.pick import Performer, count
-from metagraph.playback.plan import LayerPlan, MetaAction, Plan, Report, Request
-from metagraph.playback.replan import replan
+from metagraph.playback.plan import TEMPORAL, LayerPlan, MetaAction, Plan, Report, Request
+from metagraph.playback.replan import delay, replan
 
 WINDOW = 1.0  # seconds a request may use when it does not say how long
 
@@ -48,14 +48,16 @@ def extend(
     What starts before `now` stays exactly as it was. What was planned for later is taken back to its meta actions,
     merged with the new ones and planned again.
     """
-    fresh = tuple(requests)
-    reports: list[Report] = [r for r in plan.reports if r.at < now]
+    fresh = tuple({r.id: r for r in requests}.values())  # of two with one id the later counts
+    again = {r.id for r in fresh}
     layers: dict[Layer, LayerPlan] = {}
+    reports: list[Report] = []
     for layer in LAYERS:
         asked = [_meta(r) for r in fresh if r.layer == layer]
-        layers[layer] = _extend_layer(project, plan, layer, now, asked, end, (stances or {}).get(layer), idle, reports)
-    known = {r.id for r in fresh}
-    kept = tuple(r for r in plan.requests if r.id not in known)
+        begin = _begin(project.graphs[layer], plan.layers[layer], (stances or {}).get(layer))
+        layers[layer], told = _extend_layer(project, plan, layer, now, asked, again, end, begin, idle)
+        reports += told
+    kept = tuple(r for r in plan.requests if r.id not in again)
     return Plan(plan.seed, end, layers, tuple(sorted(reports, key=lambda r: r.at)), kept + fresh)
 
 
@@ -70,40 +72,46 @@ def _extend_layer(
     layer: Layer,
     now: float,
     asked: list[MetaAction],
+    again: set[str],
     end: float,
-    stance: str | None,
+    begin: str | None,
     idle: bool,
-    reports: list[Report],
-) -> LayerPlan:
-    graph = project.graphs[layer]
-    old = plan.layers[layer]
-    performer = Performer(project, graph, plan.seed, _begin(graph, old, stance) or "")
-    if not performer.stance or not performer.begin():
-        why = f"the {layer} layer has no stance with a loop to begin in"
-        reports += [Report(m.request.id, "no-stance", why, layer, m.start) for m in asked]
-        return LayerPlan(layer)
+) -> tuple[LayerPlan, list[Report]]:
+    """Return a layer's plan and its reports, old and new. again: requests that replace what was asked before."""
+    graph, old = project.graphs[layer], plan.layers[layer]
+    performer = Performer(project, graph, plan.seed, begin or "")
     kept = [cue for cue in old.cues if cue.start < now]
+    played = {cue.meta for cue in kept}
+    waiting = {cue.meta for cue in old.cues[len(kept) :]}  # also those whose chain of transitions has begun
+    future = [m for m in old.metas if m.request.id not in again and (m.key in waiting or (m.start >= now and m.key not in played))]
+    done = tuple(m for m in old.metas if m.key in played or (m.start < now and m.key not in waiting))
+    # What was told about time still holds; the rest will be told again by those that are planned again.
+    planned_again = {(m.request.id, m.start) for m in future}
+    reports = [
+        r for r in plan.reports
+        if r.layer == layer and r.request not in again and (r.outcome in TEMPORAL or (r.request, r.at) not in planned_again)
+    ]  # fmt: skip
+    if not begin or not performer.begin():
+        why = f"the {layer} layer has no stance with a loop to begin in"
+        reports += [Report(m.request.id, "no-stance", why, layer, m.start) for m in (*future, *asked) if not m.written]
+        return LayerPlan(layer, (*done, *future, *asked)), reports
     if old.rests and now > 0:
         begun = {cue.end - cue.blend_out for cue in kept}
         performer.rests = [r for r in old.rests if r.fade_start < now or r.start in begun]
     for cue in kept:
         performer.cues.append(cue)
-        performer.free, performer.stance = cue.end, cue.then
+        performer.free, performer.stance = cue.end, cue.then if cue.then in graph.stances else begin
         count(performer.counts, performer.last, cue, project.settings.alpha)
-    played = {cue.meta for cue in kept}
-    future = [m for m in old.metas if m.start >= now and m.key not in played]
+    performer.begun = frozenset(played & waiting)
+    performer.free = max(now, performer.free)
     if idle:
         future += [m for m in markov.write(markov.model(project, layer), plan.seed, end) if m.start >= max(plan.end, now)]
-    replaced = {m.request.id for m in asked}
-    metas = [m for m in future if m.request.id not in replaced] + asked
-    floor = max(now, performer.free)
-    placed, told = replan(metas, floor, project.settings)
-    performer.free = floor
-    performer.perform([m for m in placed if m.start < end])
+    asked, delayed = delay(asked, performer.free, project.settings)
+    placed, told = replan([*future, *asked], project.settings)
+    performer.perform(placed, end)
     performer.vary_rests(end)
-    reports += [*told, *performer.reports]
-    done = tuple(m for m in old.metas if m.start < now or m.key in played)
-    return LayerPlan(layer, done + tuple(placed), tuple(performer.cues), tuple(performer.rests))
+    whole = LayerPlan(layer, (*done, *placed), tuple(performer.cues), tuple(performer.rests))
+    return whole, [*reports, *delayed, *told, *performer.reports]
 
 
 def _begin(graph: MetaGraph, old: LayerPlan, stance: str | None) -> str | None:

@@ -5,7 +5,6 @@ Preview, video, export and tests all come here, so scrubbing, live play and a ba
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator
 from typing import Any
 
 import numpy as np
@@ -16,8 +15,8 @@ from metagraph.graph.model import LAYERS, Action, Project
 from metagraph.motion import rotation
 from metagraph.motion.clip import Clip
 from metagraph.motion.skeleton import Pose
-from metagraph.playback.composer import Ground, rig
-from metagraph.playback.plan import Cue, LayerPlan, Plan
+from metagraph.playback.composer import Ground, Reach, rig
+from metagraph.playback.plan import Cue, LayerPlan, Plan, Rest
 
 Array = NDArray[Any]
 
@@ -39,11 +38,9 @@ def pose_at(plan: Plan, project: Project, seconds: Any) -> Pose:
     frame = rig(project)
     layers = {}
     for layer in LAYERS:
-        if plan.layers[layer].rests:
-            layers[layer] = _layer(plan.layers[layer], project, frame.ground, times)
-    pose = frame.compose(layers)
-    if len(pose.rotations) != len(times):  # no layer performs: the base pose, for every time
-        pose = Pose(np.repeat(pose.rotations, len(times), 0), np.repeat(pose.translations, len(times), 0))
+        if plan.layers[layer].rests and len(times):
+            layers[layer] = _layer(plan.layers[layer], project, frame.ground, frame.reach[layer], times)
+    pose = frame.compose(layers, len(times))
     shape = at.shape
     return Pose(pose.rotations.reshape(*shape, -1, 4), pose.translations.reshape(*shape, -1, 3))
 
@@ -66,7 +63,8 @@ def cue_weight(cue: Cue, times: Array) -> Array:
 def loop_seconds(project: Project, action: Action, elapsed: Array) -> tuple[Array, Array, Array]:
     """Return for seconds since a loop began: clip seconds, clip seconds of the seam's other side, and how much of that shows.
 
-    With a seam of x seconds the loop's last x seconds fade into its first, and its period is x shorter.
+    With a seam of x seconds the loop's last x seconds fade into its first, and its period is x shorter. Before its beginning
+    a loop runs as if it had gone on for ever; one with a seam waits in its first pose, so that it starts without a jump.
     """
     start, end = project.span(action)
     length = end - start
@@ -75,7 +73,7 @@ def loop_seconds(project: Project, action: Action, elapsed: Array) -> tuple[Arra
     if period <= 0:
         zero = np.zeros_like(elapsed)
         return zero + start, zero + start, zero
-    phase = np.mod(elapsed, period)
+    phase = np.mod(np.maximum(elapsed, 0.0) if seam > 0 else elapsed, period)
     if seam <= 0:
         return start + phase, start + phase, np.zeros_like(phase)
     old = np.where(elapsed >= period, 1 - ease(phase / seam), 0.0)
@@ -88,102 +86,117 @@ def _motion(project: Project, action: Action) -> Clip | None:
     return motion if motion is not None and motion.skeleton == project.skeleton else None
 
 
-def _groups(numbers: Array) -> Iterator[tuple[int, Any]]:
-    """Yield each number that occurs and where: a slice when it is everywhere, else places."""
-    if not len(numbers):
-        return
-    first = numbers[0]
-    if (numbers == first).all():
-        yield int(first), slice(None)
-        return
-    for number in np.unique(numbers):
-        yield int(number), np.flatnonzero(numbers == number)
+Sample = tuple[Array, Array]  # offsets on the joints a layer reaches: rotations [N, n, 4], translations [N, n, 3]
+
+_RESTING, _ENTERING, _FULL, _LEAVING = range(4)  # a cue's phases
 
 
-Sample = tuple[Array, Array]  # rotations, translations
-Weight = tuple[Array, Array | None]  # how much at each time, and of which joints
-
-
-def _layer(plan: LayerPlan, project: Project, ground: Ground, times: Array) -> Sample:
-    """Return a layer's offsets at `times [N]`: rotations `[N, J, 4]`, translations `[N, J, 3]`."""
-    joints = len(ground.skeleton)
-    rotations = rotation.identity((len(times), joints), np.float32)
-    translations = np.zeros((len(times), joints, 3), np.float32)
-
-    def each(
-        places: Array, sample: Callable[[int, Array], Sample | None], weight: Callable[[int, Array], tuple[Array, Array | None]]
-    ) -> None:
-        """Blend samples over what is there, for the times whose place is not -1."""
-        for place, where in _groups(places):
-            found = sample(place, times[where]) if place >= 0 else None
-            if found is None:
-                continue
-            amount, mask = weight(place, times[where])
-            w = amount[:, None].astype(np.float32)
-            if mask is not None:
-                w = w * mask
-            if mask is None and (amount == 1).all():
-                rotations[where], translations[where] = found
-            else:
-                rotations[where] = rotation.nlerp(rotations[where], found[0], np.broadcast_to(w, found[0].shape[:-1]))
-                translations[where] = translations[where] * (1 - w[..., None]) + found[1] * w[..., None]
-
-    rests, cues = plan.rests, plan.cues
-    current = np.maximum(np.searchsorted([r.fade_start for r in rests], times, "right") - 1, 0)
-    fading = np.array([r.fade_start + r.fade for r in rests])[current] > times
-    before = np.where(fading & (current > 0), current - 1, current)
-
-    def rest_sample(place: int, at: Array) -> Sample | None:
-        motion = _motion(project, rests[place].action)
-        if motion is None:
-            return None
-        seconds, other, old = loop_seconds(project, rests[place].action, at - rests[place].start)
-        found = _sample(ground, motion, seconds)
-        if old.any():
-            seam = _sample(ground, motion, other)
-            w = old.astype(np.float32)
-            return (
-                rotation.nlerp(found[0], seam[0], np.broadcast_to(w[:, None], found[0].shape[:-1])),
-                found[1] * (1 - w[:, None, None]) + seam[1] * w[:, None, None],
-            )
-        return found
-
-    def rest_weight(place: int, at: Array) -> Weight:
-        rest = rests[place]
-        return ease((at - rest.fade_start) / rest.fade) if rest.fade > 0 and place > 0 else np.ones(len(at)), None
-
-    def whole(place: int, at: Array) -> Weight:
-        return np.ones(len(at)), None
-
-    each(before, rest_sample, whole)
-    if (before != current).any():
-        each(np.where(before != current, current, -1), rest_sample, rest_weight)
-    if cues:
-        playing = np.searchsorted(plan.starts, times, "right") - 1
-        ends = np.array([cue.end for cue in cues])
-        playing = np.where((playing >= 0) & (times < ends[playing]), playing, -1)
-
-        def cue_sample(place: int, at: Array) -> Sample | None:
-            motion = _motion(project, cues[place].action)
-            return _sample(ground, motion, cues[place].entry + at - cues[place].start) if motion is not None else None
-
-        def weigh(place: int, at: Array) -> Weight:
-            return cue_weight(cues[place], at), anatomy.mask(project, cues[place].action)
-
-        each(playing, cue_sample, weigh)
+def _layer(plan: LayerPlan, project: Project, ground: Ground, reach: Reach, times: Array) -> Sample:
+    """Return a layer's offsets at `times [N]`."""
+    current = np.maximum(plan.fade_starts.searchsorted(times, "right") - 1, 0)
+    fading = (plan.fade_ends[current] > times) & (current > 0)
+    playing = plan.starts.searchsorted(times, "right") - 1
+    phase = np.zeros(len(times), np.int64)
+    if plan.cues:
+        on = (playing >= 0) & (times < plan.ends[playing])
+        entering, leaving = times < plan.full_from[playing], times >= plan.full_to[playing]
+        phase = np.where(on, np.where(entering, _ENTERING, np.where(leaving, _LEAVING, _FULL)), _RESTING)
+    # Times that meet the same rest, cue and phase are worked out together.
+    group = ((current * 2 + fading) * (len(plan.cues) + 1) + playing + 1) * 4 + phase
+    if (group == group[0]).all():
+        return _together(plan, project, ground, reach, times, int(current[0]), bool(fading[0]), int(playing[0]), int(phase[0]))
+    rotations = np.empty((len(times), len(reach.joints), 4), np.float32)
+    translations = np.empty((len(times), len(reach.joints), 3), np.float32)
+    for number in np.unique(group):
+        here = np.flatnonzero(group == number)
+        k = here[0]
+        found = _together(plan, project, ground, reach, times[here], int(current[k]), bool(fading[k]), int(playing[k]), int(phase[k]))
+        rotations[here], translations[here] = found
     return rotations, translations
 
 
-def _sample(ground: Ground, clip: Clip, seconds: Array) -> Sample:
-    """Return a clip's offsets at clip seconds `[n]`, on all joints."""
-    offsets = ground.offsets(clip)
+def _together(
+    plan: LayerPlan, project: Project, ground: Ground, reach: Reach, times: Array, current: int, fading: bool, playing: int, phase: int
+) -> Sample:
+    """Return offsets at `times [N]` that all meet the same rest and the same phase of the same cue."""
+    cue = plan.cues[playing] if phase != _RESTING else None
+    motion = _motion(project, cue.action) if cue is not None else None
+    if cue is None or motion is None:
+        return _stance(plan, project, ground, reach, times, current, fading)
+    shown = _sample(ground, reach, motion, cue.entry + times - cue.start)
+    mask = anatomy.mask(project, cue.action)
+    still = np.flatnonzero(mask[reach.joints] == 0) if mask is not None else ()
+    if phase == _FULL and len(still) == 0:
+        return shown
+    stance = _stance(plan, project, ground, reach, times, current, fading)
+    if phase != _FULL:
+        edge = cue.entry if phase == _ENTERING else cue.entry + cue.end - cue.start
+        shown = _lead(shown, stance, _sample(ground, reach, motion, np.array([edge])), 1 - cue_weight(cue, times))
+    for part, rest in zip(shown, stance, strict=True):
+        part[:, still] = rest[:, still]
+    return shown
+
+
+def _lead(shown: Sample, stance: Sample, edge: Sample, weight: Array) -> Sample:
+    """Lead a clip in from, or out to, its stance: add `weight [N]` of what the stance differs from the clip's pose at that edge.
+
+    A plain crossfade would hold the clip back and then hurry it, up to 1.7 times as fast as it was made; this way the
+    clip keeps its own speed, and where it begins in its stance there is next to nothing to add.
+    """
+    w = weight.astype(np.float32)[:, None, None]
+    apart = rotation.multiply(rotation.conjugate(edge[0]), stance[0])
+    return rotation.multiply(shown[0], _part(apart, w)), shown[1] + (stance[1] - edge[1]) * w
+
+
+def _part(turn: Array, weight: Array) -> Array:
+    """Return part of a turn: the normalised straight line from no rotation."""
+    out = turn * np.where(turn[..., 3:] < 0, -weight, weight)
+    out[..., 3:] += 1 - weight
+    return _unit(out)
+
+
+def _unit(q: Array) -> Array:
+    q /= np.sqrt(np.maximum(np.einsum("...i,...i->...", q, q), 1e-20))[..., None]
+    return q
+
+
+def _mix(a: Sample, b: Sample, weight: Array) -> Sample:
+    """Crossfade two samples, `weight [N]` of the second."""
+    w = weight.astype(np.float32)[:, None]
+    return rotation.nlerp(a[0], b[0], np.broadcast_to(w, b[0].shape[:-1])), a[1] + (b[1] - a[1]) * w[..., None]
+
+
+def _stance(plan: LayerPlan, project: Project, ground: Ground, reach: Reach, times: Array, current: int, fading: bool) -> Sample:
+    """Return the offsets of the stance that lies under the cues."""
+    rest = plan.rests[current]
+    found = _rest(rest, project, ground, reach, times)
+    if not fading:
+        return found
+    before = _rest(plan.rests[current - 1], project, ground, reach, times)
+    return _mix(before, found, ease((times - rest.fade_start) / rest.fade))
+
+
+def _rest(rest: Rest, project: Project, ground: Ground, reach: Reach, times: Array) -> Sample:
+    motion = _motion(project, rest.action)
+    if motion is None:
+        count, joints = len(times), len(reach.joints)
+        return rotation.identity((count, joints), np.float32), np.zeros((count, joints, 3), np.float32)
+    seconds, other, old = loop_seconds(project, rest.action, times - rest.start)
+    found = _sample(ground, reach, motion, seconds)
+    return _mix(found, _sample(ground, reach, motion, other), old) if old.any() else found
+
+
+def _sample(ground: Ground, reach: Reach, clip: Clip, seconds: Array) -> Sample:
+    """Return a clip's offsets at clip seconds `[N]`; the arrays are the caller's."""
+    offsets = ground.offsets(clip, reach)
     low, high, part = clip.locate(seconds)
     w = part[:, None, None]
-    a, b = offsets.rotations[low], offsets.rotations[high]
-    mixed = a * (1 - w) + b * w  # neighbours are on the same side
-    mixed /= np.sqrt(np.einsum("...i,...i->...", mixed, mixed))[..., None]
-    away = np.zeros((len(low), len(ground.skeleton), 3), np.float32)
-    away[:, offsets.moved] = offsets.translations[low] * (1 - w) + offsets.translations[high] * w
+    a = offsets.rotations[low]
+    mixed = _unit(a + (offsets.rotations[high] - a) * w)  # neighbours are on the same side
+    away = np.zeros((len(low), len(reach.joints), 3), np.float32)
+    if len(offsets.moved):
+        a = offsets.translations[low]
+        away[:, offsets.moved] = a + (offsets.translations[high] - a) * w
     return mixed, away
 
 

@@ -9,71 +9,82 @@ from __future__ import annotations
 import heapq
 from collections.abc import Iterable
 from dataclasses import replace
+from itertools import count
 
 from metagraph.graph.model import Settings
-from metagraph.playback.plan import MetaAction, Report
+from metagraph.playback.plan import MetaAction, Outcome, Report
 
 
-def replan(metas: Iterable[MetaAction], free: float, settings: Settings) -> tuple[list[MetaAction], list[Report]]:
+def delay(asked: Iterable[MetaAction], free: float, settings: Settings) -> tuple[list[MetaAction], list[Report]]:
+    """Let new requests wait until `free` seconds, the end of the running action; what would wait too long is past."""
+    metas: list[MetaAction] = []
+    reports: list[Report] = []
+    for meta in asked:
+        late = free - meta.start
+        if late <= 0:
+            metas.append(meta)
+        elif late > settings.wait:
+            reports.append(_told(meta, "past", f"asked for at {meta.start:.2f} s, {late:.1f} s before anything could start"))
+        else:
+            metas.append(replace(meta, start=free, end=free + (meta.end - meta.start)))
+            reports.append(_told(meta, "late", f"waits {late:.2f} s for the running action", True))
+    return metas, reports
+
+
+def replan(metas: Iterable[MetaAction], settings: Settings) -> tuple[list[MetaAction], list[Report]]:
     """Return the meta plan, ascending and without overlaps, and what became of the rest.
 
-    free: seconds before which nothing may start (the end of the running action). A meta action asked for at or after
-    `free - settings.wait` is delayed to it; an older one is reported as past.
+    Meta actions that do not overlap come back as they are. Of equal start and priority, the id that sorts first goes first.
     """
-    queue: list[tuple[float, int, str, int, MetaAction]] = []
+    serial = count()  # so that equal entries never compare further
+    queue: list[tuple[float, int, str, int, int, MetaAction]] = []
     reports: list[Report] = []
 
     def push(meta: MetaAction) -> None:
-        heapq.heappush(queue, (meta.start, -meta.request.priority, meta.request.id, meta.part, meta))
-
-    def tell(meta: MetaAction, outcome: str, message: str, played: bool = False) -> None:
-        reports.append(
-            Report(meta.request.id, outcome, message, meta.request.layer, meta.start, played, meta.written)  # type: ignore[arg-type]
-        )
+        heapq.heappush(queue, (meta.start, -meta.request.priority, meta.request.id, meta.part, next(serial), meta))
 
     for meta in metas:
         push(meta)
     placed: list[MetaAction] = []
     while queue:
         meta = heapq.heappop(queue)[-1]
-        if meta.start < free:
-            late = free - meta.request.start
-            if late > settings.wait:
-                tell(meta, "past", f"asked for at {meta.request.start:.2f} s, {late:.1f} s before anything could start")
-                continue
-            length = meta.end - meta.start
-            push(replace(meta, start=free, end=free + length))
-            if not meta.written:
-                tell(meta, "late", f"waits {free - meta.start:.2f} s for the running action", True)
-            continue
         last = placed[-1] if placed else None
         if last is None or last.end <= meta.start:
             placed.append(meta)
             continue
         if meta.request.priority > last.request.priority:
             placed.pop()
-            rest = replace(last, start=meta.end, end=last.end, part=last.part + 1)
-            resumes = last.request.resume and rest.end - rest.start >= settings.shortest
             kept = meta.start - last.start >= settings.shortest
             if kept:
                 placed.append(replace(last, end=meta.start))
+            # What was never begun goes on as itself, so that its draws stay the same.
+            rest = replace(last, start=meta.end, part=last.part + 1 if kept else last.part)
+            resumes = last.request.resume and rest.end - rest.start >= settings.shortest
             if resumes:
-                # What was never begun goes on as itself, so that its draws stay the same.
-                push(rest if kept else replace(rest, part=last.part))
+                push(rest)
             word = "is cut" if kept else "gives way"
             after = f" and goes on at {meta.end:.2f} s" if resumes else ""
-            outcome = "resumed" if resumes else "cut" if kept else "covered"
-            tell(last, outcome, f"{word} at {meta.start:.2f} s for '{meta.request.id}', which is more important{after}", kept or resumes)
+            outcome: Outcome = "resumed" if resumes else "cut" if kept else "covered"
+            message = f"{word} at {meta.start:.2f} s for '{meta.request.id}', which is more important{after}"
+            reports.append(_told(last, outcome, message, kept or resumes))
             push(meta)  # it may reach back over what was placed before, too
-            continue
-        late = last.end - meta.request.start
-        if meta.written or late > settings.wait:
-            # What nobody asked for is not worth shifting; neither is what would come much too late.
-            if meta.end - last.end >= settings.shortest and meta.written:
+        elif meta.written:
+            # What nobody asked for is not worth shifting: it keeps what is left of its time, if that is enough.
+            if meta.end - last.end >= settings.shortest:
                 push(replace(meta, start=last.end))
             else:
-                tell(meta, "covered", f"no time left beside '{last.request.id}' ({last.start:.2f}-{last.end:.2f} s)")
-            continue
-        push(replace(meta, start=last.end, end=last.end + (meta.end - meta.start)))
-        tell(meta, "late", f"waits {last.end - meta.start:.2f} s for '{last.request.id}'", True)
+                reports.append(_told(meta, "covered", _no_time(last)))
+        elif last.end - meta.request.start > settings.wait:
+            reports.append(_told(meta, "covered", _no_time(last)))
+        else:
+            push(replace(meta, start=last.end, end=last.end + (meta.end - meta.start)))
+            reports.append(_told(meta, "late", f"waits {last.end - meta.start:.2f} s for '{last.request.id}'", True))
     return placed, reports
+
+
+def _no_time(other: MetaAction) -> str:
+    return f"no time left beside '{other.request.id}' ({other.start:.2f}-{other.end:.2f} s)"
+
+
+def _told(meta: MetaAction, outcome: Outcome, message: str, played: bool = False) -> Report:
+    return Report(meta.request.id, outcome, message, meta.request.layer, meta.start, played, meta.written)
