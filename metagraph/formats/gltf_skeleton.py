@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Any
 
@@ -86,44 +87,45 @@ def build_rig(gltf: Gltf) -> Rig:
     for i in roots:
         if parents[joints[i]] >= 0:
             base[i] = worlds[parents[joints[i]]]
-    rest_t, rest_r, rest_s = _rest_pose(gltf, joints, places, above, base, worlds, still)
+    rest_t, rest_r, rest_s = _rest_pose(gltf, places, above, base, locals_, worlds, still)
 
     spread = np.abs(rest_s).max(-1) > np.abs(rest_s).min(-1) * 1.01
     if spread.any():
         notes.append(f"{int(spread.sum())} joints are scaled unevenly; their rotation is kept, their scale is not")
-    chain = np.argsort(_depths(above), kind="stable")
     size = np.abs(np.cbrt(np.prod(rest_s, -1)))
     lift, shift, turn = np.zeros((len(joints), 3, 3)), np.zeros((len(joints), 3)), rotation.identity((len(joints),))
-    total = np.ones(len(joints))
     _, base_r, base_s = decompose(base[roots])
     carrying = [int(p) for p in above if p >= 0]  # a mirrored tip changes nothing
     if (base_s[:, 0] < 0).any() or (rest_s[carrying] < 0).any():
         notes.append("the file mirrors a part of its scene with a negative scale; that part may look turned")
     lift[roots], shift[roots], turn[roots] = base[roots, :3, :3], base[roots, :3, 3], base_r
-    total[roots] = np.abs(np.cbrt(np.prod(base_s, -1))) * size[roots]
-    for i in chain:
-        if above[i] >= 0:
-            p = above[i]
-            lift[i] = np.diag(rest_s[p] * (total[p] / (size[p] or 1)))
-            total[i] = total[p] * size[i]
+    total = size.tolist()  # the scale that a joint hands down; parents come first
+    for i, scale in zip(roots.tolist(), np.abs(np.cbrt(np.prod(base_s, -1))).tolist(), strict=True):
+        total[i] *= scale
+    inner = np.flatnonzero(above >= 0)
+    for i, p in zip(inner.tolist(), above[inner].tolist(), strict=True):
+        total[i] *= total[p]
+    own = above[inner]
+    lift[inner[:, None], range(3), range(3)] = rest_s[own] * (np.array(total)[own] / np.where(size[own] > 0, size[own], 1))[:, None]
     rest_translations = np.einsum("jab,jb->ja", lift, rest_t) + shift
     rest_rotations = rotation.normalize(rotation.multiply(turn, rest_r))
     names = unique_names([nodes[n].name or f"node_{n}" for n in joints])
     if len(set(names) - {nodes[n].name.strip() for n in joints if nodes[n].name}):
         notes.append("joints without a name or with a repeated one were given names of their own")
 
-    skeleton = Skeleton(names, above, rest_rotations, rest_translations)
-    unit = 0.01 if skeleton.height > _TALL else 100.0 if 1e-3 < skeleton.height < _TINY and len(joints) > 3 else 1.0
-    if unit != 1.0:
-        notes.append(
-            f"its skeleton is {skeleton.height:.3g} m long: read {'100 times smaller (centimetres)' if unit < 1 else '100 times larger'}"
-        )
-        lift, shift = lift * unit, shift * unit
-        skeleton = Skeleton(names, above, rest_rotations, rest_translations * unit)
     rest_locals = compose(rest_t, rest_r, rest_s)
     rest_locals[roots] = base[roots] @ rest_locals[roots]
-    rest_matrices = _globals(rest_locals, above, list(chain))
-    rest_matrices[:, :3] *= unit
+    rest_matrices = _globals(rest_locals, above, range(len(joints)))
+    if not (np.isfinite(rest_matrices).all() and np.isfinite(rest_translations).all() and np.abs(rest_translations).max() < 1e9):
+        gltf.fail("its joints are scaled beyond all bounds", "its nodes")
+    height = float(np.ptp(rest_matrices[:, :3, 3], axis=0).max())
+    unit = 0.01 if height > _TALL else 100.0 if 1e-3 < height < _TINY and len(joints) > 3 else 1.0
+    if unit != 1.0:
+        larger = "100 times smaller (centimetres)" if unit < 1 else "100 times larger"
+        notes.append(f"its skeleton is {height:.3g} m long: read {larger}")
+        lift, shift, rest_translations = lift * unit, shift * unit, rest_translations * unit
+        rest_matrices[:, :3] *= unit
+    skeleton = Skeleton(names, above, rest_rotations, rest_translations)
     return Rig(
         skeleton, tuple(joints), places, tuple(parents), lift, shift, turn, *still, rest_matrices, worlds, unit, tuple(notes)
     )  # fmt: skip
@@ -269,30 +271,25 @@ def _in_order(gltf: Gltf, members: set[int], parents: list[int], order: list[int
     return out
 
 
-def _depths(parents: Array) -> Array:
-    depths = np.full(len(parents), -1)
-    for i in range(len(parents)):
-        line = [i]
-        while depths[line[-1]] < 0 and parents[line[-1]] >= 0:
-            line.append(int(parents[line[-1]]))
-        start = max(0, int(depths[line[-1]]))
-        for k, j in enumerate(reversed(line)):
-            depths[j] = start + k
-    return depths
-
-
-def _globals(locals_: Array, parents: Array, order: list[int]) -> Array:
-    """Return model-space matrices of local ones, walking level by level."""
+def _globals(locals_: Array, parents: Array, order: Sequence[int]) -> Array:
+    """Return model-space matrices of local ones, walking level by level; in `order` parents come first."""
+    above = parents.tolist()
+    levels: list[list[int]] = []
+    depths = [0] * len(above)
+    for i in order:
+        depth = depths[above[i]] + 1 if above[i] >= 0 else 0
+        depths[i] = depth
+        if depth == len(levels):
+            levels.append([])
+        levels[depth].append(i)
     out = locals_.copy()
-    depths = _depths(parents)
-    for depth in range(1, int(depths.max()) + 1):
-        here = np.flatnonzero(depths == depth)
-        out[here] = out[parents[here]] @ locals_[here]
+    for level in levels[1:]:
+        out[level] = out[parents[level]] @ locals_[level]
     return out
 
 
 def _rest_pose(
-    gltf: Gltf, joints: list[int], places: dict[int, int], above: Array, base: Array, worlds: Array, still: tuple[Array, Array, Array]
+    gltf: Gltf, places: dict[int, int], above: Array, base: Array, locals_: Array, worlds: Array, still: tuple[Array, Array, Array]
 ) -> tuple[Array, Array, Array]:
     """Return the rest translations, rotations and scales of the joints, in the file's own local terms.
 
@@ -319,6 +316,11 @@ def _rest_pose(
         free = [k for k in tops if above[own[k]] < 0]
         local = np.tile(np.eye(4), (len(own), 1, 1))
         local[inner] = inverse[parent[inner]] @ bind[inner]
+        seen = np.array(skin.joints)
+        apart = [local[inner] - locals_[seen[inner]], bind[free] - worlds[seen[free]]]
+        reach = max(1e-9, float(np.abs(translations[own]).max()))
+        if all(not len(d) or (np.abs(d[:, :3, 3]).max() < 2e-6 * reach and np.abs(d[:, :3, :3]).max() < 1e-5) for d in apart):
+            continue  # as in most files, nodes and bind matrices agree
         believable = True
         for k in free:
             world, j = worlds[skin.joints[k]], own[k]
@@ -336,7 +338,6 @@ def _rest_pose(
         ratio_s = size[use] / np.where(np.abs(scales[own[use]]) > 1e-9, scales[own[use]], 1)
         if not believable or not rigid[use].all() or (ratio_s < 0.5).any() or (ratio_s > 2).any():
             continue
-        reach = max(1e-9, float(np.abs(translations[own]).max()))
         differs |= bool(np.abs(t[use] - still[1][own[use]]).max() > 2e-6 * reach) if len(use) else False
         differs |= bool(rotation.angle_between(r[use], still[0][own[use]]).max() > 1e-4) if len(use) else False
         translations[own[use]], rotations[own[use]], scales[own[use]] = t[use], r[use], size[use]
