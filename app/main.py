@@ -41,5 +41,5 @@ def run_window(path: Path | None, sample: bool = False) -> int:
         window.files.open(path)
     elif not window.files.recover_untitled() and sample:
         window.files.open(SAMPLE, template=True)
-    QTimer.singleShot(0, window.make_late_panels)
+    QTimer.singleShot(0, window.load_late_panels)
     return app.exec()

@@ -109,6 +109,10 @@ class Window(QMainWindow):
         ):
             self._add_dock(key, title, QWidget(self), area)
 
+    def load_late_panels(self) -> None:
+        """Import what the late panels need on a thread, then make them, one at a time."""
+        self.jobs.start("panels", lambda _: late_modules(), lambda _: self.make_late_panels(), quick=True)
+
     def make_late_panels(self) -> None:
         """Fill the docks that were left empty for a fast start."""
         from app.panels.machine import MachinePanel
@@ -116,6 +120,8 @@ class Window(QMainWindow):
         from app.panels.properties import PropertiesPanel
         from app.panels.timeline import TimelinePanel
 
+        if self.ready:
+            return
         self.properties = PropertiesPanel(self.document, self.session, self.performance, self)
         self.timeline = TimelinePanel(self.document, self.session, self.performance, self)
         self.problems_panel = ProblemsPanel(self.session, self)
@@ -585,6 +591,14 @@ class Window(QMainWindow):
         self.jobs.stop()
         self.thumbnails.stop()
         event.accept()
+
+
+def late_modules() -> None:
+    """Import what takes long and is not in the first picture."""
+    import app.panels.machine
+    import app.panels.problems
+    import app.panels.properties
+    import app.panels.timeline  # noqa: F401
 
 
 def _stretch(parent: QWidget) -> QWidget:

@@ -42,7 +42,7 @@ class Look:
 
 
 def paint(painter: QPainter, layout: Layout, look: Look, font: QFont) -> None:
-    painter.setRenderHint(QPainter.RenderHint.Antialiasing)
+    painter.setRenderHints(QPainter.RenderHint.Antialiasing | QPainter.RenderHint.SmoothPixmapTransform)
     painter.fillRect(QRectF(QPointF(0, 0), layout.size), QColor(look.theme.ground))
     painter.setFont(font)
     _curves(painter, layout, look)
@@ -133,7 +133,8 @@ def _chip(painter: QPainter, chip: Chip, layout: Layout, look: Look, font: QFont
     picture = look.chip_pictures.get(chip.stance)
     if picture is not None:
         size = chip.rect.height() - 6
-        painter.drawImage(QRectF(chip.rect.left() + 5, chip.rect.top() + 3, size, size), picture)
+        half = QRectF(picture.width() * 0.24, picture.height() * 0.03, picture.width() * 0.52, picture.height() * 0.52)
+        painter.drawImage(QRectF(chip.rect.left() + 5, chip.rect.top() + 3, size, size), picture, half)
     else:
         painter.setPen(Qt.PenStyle.NoPen)
         painter.setBrush(t.fill("stance"))
@@ -194,7 +195,8 @@ def _card(painter: QPainter, layout: Layout, look: Look, font: QFont) -> None:
         painter.setFont(font)
         painter.setPen(QColor(t.dim if loops else t.warning))
         foot = QRectF(card.left() + 12, card.bottom() - 26, card.width() - 24, 20)
-        painter.drawText(foot, Qt.AlignmentFlag.AlignCenter, words + ("  ·  starts here" if start else ""))
+        words += "  ·  starts here" if start and card.width() > 150 else ""
+        painter.drawText(foot, Qt.AlignmentFlag.AlignCenter, _elided(font, words, foot.width()))
     if dragging and look.drop is not None and look.drop_hit.area in ("card", "loop"):
         zone = layout.loops if look.drop_hit.area == "loop" else QRectF(card.topLeft(), QPointF(card.right(), layout.loops.top()))
         if stance is None:

@@ -117,8 +117,9 @@ class MachinePanel(QWidget):
             painter.drawEllipse(at, radius, radius)
             if action.kind == "stance":
                 stance = graph.stances.get(action.stance)
+                below = max((self._places[a.id].y() for a in graph.of(action.stance, "gesture") if a.id in self._places), default=at.y())
+                box = QRectF(at.x() - 70, max(below, at.y() + 4) + 7, 140, 18)
                 painter.setPen(QColor(t.text))
-                box = QRectF(at.x() - 70, at.y() + 9, 140, 18)
                 painter.drawText(box, Qt.AlignmentFlag.AlignCenter, stance.name if stance else "")
         self._words(painter, whole.clips, whole.states, whole.connections)
         painter.end()
