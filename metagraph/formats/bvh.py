@@ -13,12 +13,13 @@ import numpy as np
 from numpy.typing import NDArray
 
 from metagraph.errors import FileError
+from metagraph.formats.bvh_space import stand, unit, z_up
 from metagraph.formats.gltf_skeleton import MOST_JOINTS
 from metagraph.formats.takes import without_bind_pose
 from metagraph.motion import rotation
 from metagraph.motion.clip import Clip
 from metagraph.motion.roles import find_roles
-from metagraph.motion.skeleton import Pose, Skeleton, unique_names
+from metagraph.motion.skeleton import Skeleton, unique_names
 
 Array = NDArray[Any]
 
@@ -26,15 +27,6 @@ Array = NDArray[Any]
 # count as one large one.
 _COMPILED_FROM = 24 << 20
 _read_so_far = [0]  # bytes of motion this process has read
-_HUMAN = (1.2, 2.5)  # metres from sole to the base of the head's top; what a unit must make of the skeleton
-_UNITS = (
-    (1.0, "metres"),
-    (0.01, "centimetres"),
-    (0.0254, "inches"),
-    (0.001, "millimetres"),
-    (0.0254 / 0.45, "the CMU database's units (5.64 cm)"),
-    (0.1, "decimetres"),
-)
 _DAMAGED = "The file is damaged: export it again."
 
 
@@ -347,13 +339,13 @@ def _clip(path: Path, joints: list[_Joint], values: Array, fps: float, scale: fl
     roles = find_roles(skeleton)
 
     if scale is None:
-        scale, told = _unit(skeleton, roles)
+        scale, told = unit(skeleton, roles)
         notes.append(told)
     elif not (scale > 0 and np.isfinite(scale)):
         raise ValueError(f"a scale of {scale} metres per unit")
     offsets = offsets * scale
     placed = {i: p * scale for i, p in placed.items()}
-    up, rest_too = _z_up(skeleton, roles, rotations, placed, offsets)
+    up, rest_too = z_up(skeleton, roles, rotations, placed, offsets)
     rest_rotations = rotation.identity((len(joints),))
     if up:
         notes.append("its Z axis points up: turned to Y up")
@@ -366,85 +358,12 @@ def _clip(path: Path, joints: list[_Joint], values: Array, fps: float, scale: fl
                 placed[i] = rotation.rotate(turn, placed[i])
         if rest_too:
             rest_rotations[roots] = turn
-    _stand(offsets, parents, rest_rotations, {i for i, p in placed.items() if i == 0 or np.abs(p - offsets[i]).max() > 1e-4})
+    stand(offsets, parents, rest_rotations, {i for i, p in placed.items() if i == 0 or np.abs(p - offsets[i]).max() > 1e-4})
     skeleton = Skeleton(names, parents, rest_rotations, offsets)
     moving = [i for i, p in sorted(placed.items()) if i == 0 or np.abs(p - offsets[i]).max() > 1e-5]
     translations = np.stack([placed[i] for i in moving], 1)
     clip = Clip(path.stem, skeleton, fps, rotations, translations, tuple(moving), notes=tuple(notes))
     return without_bind_pose(clip)
-
-
-def _stand(offsets: Array, parents: Array, rest_rotations: Array, placed: set[int]) -> None:
-    """Give the rest pose a place of its own, in place: over the origin, its lowest joint on the ground.
-
-    Exporters leave the first frame's position in the OFFSET of a root, so that files of one actor would all seem to
-    have different skeletons.
-    """
-    line, joint = [0], 0
-    while True:
-        children = np.flatnonzero(parents == joint)
-        if len(children) != 1 or int(children[0]) not in placed:
-            break
-        joint = int(children[0])
-        line.append(joint)
-    if (parents < 0).sum() > 1:
-        return
-    offsets[line] = 0
-    unplaced = Skeleton(tuple(map(str, range(len(parents)))), parents.copy(), rest_rotations.copy(), offsets.copy())
-    _, positions = unplaced.globals(unplaced.rest)
-    # The lift must survive the turns above the last joint of the line, which are the rest rotation of the root.
-    lift = np.array([0.0, -float(positions[:, 1].min()), 0.0])
-    offsets[line[-1]] = rotation.rotate(rotation.conjugate(rest_rotations[0]), lift) if len(line) > 1 else lift
-
-
-def _unit(skeleton: Skeleton, roles: dict[str, int]) -> tuple[float, str]:
-    """Return metres per unit and a note that says how it was found."""
-    bones = np.linalg.norm(skeleton.rest_translations, axis=1)
-
-    def length(top: int, bottom: int) -> float:
-        chain = skeleton.chain(bottom)
-        return float(sum(bones[j] for j in chain if j not in skeleton.chain(top)))
-
-    tall = 0.0
-    if "hips" in roles and "head" in roles:
-        legs = [length(roles["hips"], roles[r]) for r in ("left_foot", "right_foot") if r in roles]
-        if legs:
-            tall = (max(legs) + length(roles["hips"], roles["head"])) * 1.12  # soles and the top of the head lie beyond
-    known = tall > 0
-    tall = tall or skeleton.height
-    for scale, name in _UNITS if known else _UNITS[:4]:
-        if _HUMAN[0] <= tall * scale <= _HUMAN[1]:
-            return scale, f"units taken for {name}: the {'figure' if known else 'skeleton'} is then {tall * scale:.2f} m tall"
-    return 0.01, f"units taken for centimetres, though the skeleton is then {tall * 0.01:.3g} m tall; give the scale to change it"
-
-
-def _z_up(skeleton: Skeleton, roles: dict[str, int], rotations: Array, placed: dict[int, Array], offsets: Array) -> tuple[bool, bool]:
-    """Return whether Z points up, and whether it does so in the rest pose too. offsets, placed: metres."""
-    feet = [roles[r] for r in ("left_foot", "right_foot") if r in roles]
-    if "head" not in roles or not feet:
-        return False, False
-    some = np.unique(np.linspace(0, len(rotations) - 1, 24).astype(int))
-    translations = np.tile(offsets, (len(some), 1, 1))
-    for i, p in placed.items():
-        translations[:, i] = p[some]
-    _, moving = skeleton.globals(Pose(rotations[some].astype(float), translations))
-    _, resting = skeleton.globals(Pose(skeleton.rest_rotations, offsets))
-
-    def upward(positions: Array) -> Array:
-        way = positions[..., roles["head"], :] - positions[..., feet, :].mean(-2)
-        return np.asarray(way / np.maximum(np.linalg.norm(way, axis=-1, keepdims=True), 1e-9))
-
-    now = upward(moving).mean(0)
-    rest = upward(resting)
-    if now[2] < 0.8 or np.abs(now[1]) > 0.5:
-        return False, bool(rest[2] > 0.8)
-    if rest[2] > 0.8:
-        return True, True
-    # A Y-up figure whose head lies towards Z: either it lies on its back, or the world has Z up. Standing hips tell.
-    tall = float(np.linalg.norm(resting[roles["head"]] - resting[feet].mean(0)))
-    hips = moving[:, roles.get("hips", 0)]
-    ground = hips[:, 2].mean() / max(tall, 1e-9)
-    return bool(0.3 < ground < 0.85 and hips[:, 2].std() < 0.2 * tall), False
 
 
 def write_bvh(clip: Clip, path: str | Path) -> None:

@@ -100,11 +100,11 @@ def build_rig(gltf: Gltf) -> Rig:
         notes.append("the file mirrors a part of its scene with a negative scale; that part may look turned")
     lift[roots], shift[roots], turn[roots] = base[roots, :3, :3], base[roots, :3, 3], base_r
     total = size.tolist()  # the scale that a joint hands down; parents come first
-    for i, scale in zip(roots.tolist(), np.abs(np.cbrt(np.prod(base_s, -1))).tolist(), strict=True):
-        total[i] *= scale
+    for root, scale in zip(roots.tolist(), np.abs(np.cbrt(np.prod(base_s, -1))).tolist(), strict=True):
+        total[root] *= scale
     inner = np.flatnonzero(above >= 0)
-    for i, p in zip(inner.tolist(), above[inner].tolist(), strict=True):
-        total[i] *= total[p]
+    for joint, parent in zip(inner.tolist(), above[inner].tolist(), strict=True):
+        total[joint] *= total[parent]
     own = above[inner]
     lift[inner[:, None], range(3), range(3)] = rest_s[own] * (np.array(total)[own] / np.where(size[own] > 0, size[own], 1))[:, None]
     rest_translations = np.einsum("jab,jb->ja", lift, rest_t) + shift

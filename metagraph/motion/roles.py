@@ -7,12 +7,11 @@ never wins. Where names say nothing, the shape of the rest pose does.
 
 from __future__ import annotations
 
-import re
 from collections.abc import Iterable, Mapping, Sequence
-from dataclasses import dataclass
 
 import numpy as np
 
+from metagraph.motion.joint_names import ARM, FACE, HELPERS, kind_of, take_apart
 from metagraph.motion.skeleton import Skeleton
 
 _CENTRE = ("hips", "spine", "chest", "upper_chest", "neck", "head", "jaw")
@@ -40,91 +39,16 @@ REQUIRED: tuple[str, ...] = (
 )
 
 
-def _words(text: str) -> frozenset[str]:
-    return frozenset(text.split())
-
-
-_LEFT, _RIGHT = {"left", "l", "lft", "lf"}, {"right", "r", "rgt", "rt"}
-# Joints that serve the animator or the skin, not the body.
-_HELPERS = _words(
-    "ik fk pole target ctrl control controller twist roll helper end nub effector goal slot aux adjust adj dummy socket prop"
-    " weapon mch org tweak mid handle locator footsteps offset driver jiggle volume corrective bulge muscle"
-)
-_FOUR_LEGGED = {"front", "hind", "rear", "back"}
-_FACE = _words(
-    "eye eyes eyeball eyebrow brow lid eyelid lids jaw mouth lip lips tongue cheek nose nostril chin teeth tooth temple zygomatic"
-    " squint sneer crease face facial corner gum forehead"
-)
-_ARM = _words(
-    "hand wrist elbow arm forearm upperarm lowerarm shoulder clav clavicle collar thumb index middle ring pinky little"
-    " finger fingers fng palm"
-)
-
-
-@dataclass(frozen=True)
-class _Words:
-    """A joint's name taken apart: words without side and digits, run together, and the side it names."""
-
-    words: tuple[str, ...]
-    joined: str
-    side: str
-    number: int
-
-
-def _take_apart(name: str) -> _Words:
-    bare = re.split(r"[:|]", name)[-1]
-    pieces = [p.lower() for p in re.findall(r"[A-Z]+(?=[A-Z][a-z])|[A-Z]?[a-z]+|[A-Z]+|\d+|[^\W\d_a-zA-Z]+", bare)]
-    words: list[str] = []
-    side, number = "centre", 0
-    for piece in pieces:
-        glued = re.fullmatch(r"(left|right)(\w+)", piece)
-        for word in (glued[1], glued[2]) if glued else (piece,):
-            if word in _LEFT:
-                side = "left"
-            elif word in _RIGHT:
-                side = "right"
-            elif word.isdigit():
-                number = int(word)
-            elif word not in ("c", "m"):
-                words.append(word)
-    return _Words(tuple(words), "".join(words), side, number)
-
-
-def _kind(words: _Words) -> str:
-    """Return what a name alone says of a limb's joint; "" when it says nothing, or nothing certain."""
-    own, joined = set(words.words), words.joined
-    if own & _FOUR_LEGGED and ("leg" in joined or "foot" in joined or "paw" in joined or "toe" in joined):
-        return ""
-    for kind, tests in (
-        ("lower_arm", ("forearm", "lowerarm", "lowarm", "armlower", "elbow", "ulna")),
-        ("upper_arm", ("upperarm", "uparm", "armupper", "humerus")),
-        ("lower_leg", ("lowerleg", "lowleg", "leglower", "knee", "calf", "shin")),
-        ("upper_leg", ("upperleg", "upleg", "legupper", "thigh", "femur")),
-        ("shoulder", ("clav", "collar", "scapula")),
-    ):
-        if any(test in joined for test in tests):
-            return kind
-    for kind, exact in (
-        ("hand", {"hand", "wrist", "palm"}),
-        ("foot", {"foot", "ankle", "feet"}),
-        ("toes", {"toe", "toes", "ball", "toebase"}),
-        ("upper_arm", {"arm"}),
-    ):
-        if own & exact:
-            return kind
-    return ""
-
-
 class _Reader:
     """One skeleton's names and tree, and the roles found so far."""
 
     def __init__(self, skeleton: Skeleton) -> None:
         self.skeleton = skeleton
-        self.words = [_take_apart(name) for name in skeleton.names]
-        helpers = [bool(_HELPERS & set(w.words)) for w in self.words]
+        self.words = [take_apart(name) for name in skeleton.names]
+        helpers = [bool(HELPERS & set(w.words)) for w in self.words]
         common = sum(helpers) > len(helpers) / 2  # a word that most joints bear says nothing
         self.helper = [False] * len(helpers) if common else helpers
-        self.kinds = ["" if h else _kind(w) for w, h in zip(self.words, self.helper, strict=True)]
+        self.kinds = ["" if h else kind_of(w) for w, h in zip(self.words, self.helper, strict=True)]
         self.parents = [int(p) for p in skeleton.parents]
         self.roles: dict[str, int] = {}
 
@@ -146,7 +70,7 @@ class _Reader:
         wanted = set(names)
         return self.topmost(i for i, w in enumerate(self.words) if w.side == side and wanted & set(w.words) and not self.helper[i])
 
-    def of_kind(self, kind: str, side: str) -> list[int]:
+    def ofkind_of(self, kind: str, side: str) -> list[int]:
         return self.topmost(i for i, k in enumerate(self.kinds) if k == kind and self.words[i].side == side)
 
     def biggest(self, joints: Sequence[int]) -> int:
@@ -155,7 +79,7 @@ class _Reader:
 
     def limb(self, side: str, end: str, lower: str, upper: str, collar: str | None) -> None:
         """Name the joints of an arm or a leg from its end upwards."""
-        ends = self.of_kind(end, side)
+        ends = self.ofkind_of(end, side)
         if end == "hand" and len(ends) > 1:  # several palms: the one that carries the middle finger
             middle = [e for e in ends if any("middle" in self.words[d].joined for d in self.skeleton.descendants(e))]
             ends = middle or ends
@@ -164,8 +88,8 @@ class _Reader:
             tip = self.biggest(ends)
             self.roles[f"{side}_{end}"] = tip
             line = [j for j in reversed(self.above(tip)) if self.words[j].side == side and not self.helper[j]]
-        elif self.of_kind(lower, side):
-            line = [self.biggest(self.of_kind(lower, side))]
+        elif self.ofkind_of(lower, side):
+            line = [self.biggest(self.ofkind_of(lower, side))]
             line = [*(j for j in reversed(self.above(line[0])) if self.words[j].side == side and not self.helper[j]), *line]
             below = [c for c in self.skeleton.children[line[-1]] if not self.helper[c]]
             if below:
@@ -184,7 +108,7 @@ class _Reader:
         if collar:
             take(collar, collar, True)
         for role in (lower, upper):  # limbs cut into separate trees, as IK rigs are
-            if f"{side}_{role}" not in self.roles and (named := self.of_kind(role, side)):
+            if f"{side}_{role}" not in self.roles and (named := self.ofkind_of(role, side)):
                 self.roles[f"{side}_{role}"] = self.biggest(named)
 
     def toes(self, side: str) -> None:
@@ -192,7 +116,7 @@ class _Reader:
         if foot is None:
             return
         below = set(self.skeleton.descendants(foot)) - {foot}
-        named = [j for j in self.of_kind("toes", side) if j in below]
+        named = [j for j in self.ofkind_of("toes", side) if j in below]
         free = named or [c for c in self.skeleton.children[foot] if not self.helper[c] and self.words[c].side == side]
         if free:
             self.roles[f"{side}_toes"] = self.biggest(free)
@@ -423,9 +347,9 @@ def body_parts(skeleton: Skeleton, roles: Mapping[str, int] | None = None) -> tu
         parent = reader.parents[i]
         part = known.get(i)
         if part is None and i in inside:
-            facial = _FACE & set(words.words) or words.joined.endswith(("lip", "lid", "brow", "eye"))
+            facial = FACE & set(words.words) or words.joined.endswith(("lip", "lid", "brow", "eye"))
             part = "face" if facial or out[parent] == "face" else "head"
-        if part is None and words.side != "centre" and _ARM & set(words.words) and (parent < 0 or out[parent] in ("legs", "spine")):
+        if part is None and words.side != "centre" and ARM & set(words.words) and (parent < 0 or out[parent] in ("legs", "spine")):
             foot = {"foot", "toe", "leg"} & set(words.words)  # "LeftFootThumb" is a toe
             part = None if foot else "arms"
         out.append(part or (out[parent] if parent >= 0 else "legs"))
