@@ -5,13 +5,23 @@ Left drag orbits, right or middle drag (or Shift + left) pans, the wheel zooms, 
 
 from __future__ import annotations
 
+import sys
 from collections.abc import Callable
 from typing import Any
 
 import moderngl
 import numpy as np
 from PySide6.QtCore import QPointF, Qt, Signal
-from PySide6.QtGui import QGuiApplication, QImage, QMouseEvent, QPainter, QPaintEvent, QWheelEvent
+from PySide6.QtGui import (
+    QGuiApplication,
+    QImage,
+    QMouseEvent,
+    QOffscreenSurface,
+    QOpenGLContext,
+    QPainter,
+    QPaintEvent,
+    QWheelEvent,
+)
 from PySide6.QtOpenGLWidgets import QOpenGLWidget
 from PySide6.QtWidgets import QWidget
 
@@ -20,6 +30,7 @@ from preview.renderer import Renderer
 from preview.scene import DARK, Scene, Theme
 
 Compose = Callable[[], Scene]
+GL_RENDERER = 0x1F01
 
 
 class CameraMouse:
@@ -148,9 +159,27 @@ class ImageView(CameraMouse, QWidget):
 
 
 def make_view(compose: Compose, parent: QWidget | None = None) -> GLView | ImageView:
-    """Return the host that works on this platform."""
+    """Return the host that is right here: OpenGL in the widget on a graphics card, a drawn image elsewhere.
+
+    An OpenGL widget makes Qt compose the whole window through OpenGL; in software that costs more than the picture.
+    """
     without = {"offscreen", "minimal", "vnc", "linuxfb", "minimalegl", "eglfs"}
-    return (ImageView if QGuiApplication.platformName() in without else GLView)(compose, parent)
+    image = QGuiApplication.platformName() in without or (sys.platform.startswith("linux") and _in_software())
+    return (ImageView if image else GLView)(compose, parent)
+
+
+def _in_software() -> bool:
+    """Return whether the window system's OpenGL has no graphics card behind it."""
+    context, surface = QOpenGLContext(), QOffscreenSurface()
+    if not context.create():
+        return True
+    surface.setFormat(context.format())
+    surface.create()
+    if not context.makeCurrent(surface):
+        return True
+    name = str(context.functions().glGetString(GL_RENDERER)).lower()
+    context.doneCurrent()
+    return any(word in name for word in ("llvmpipe", "softpipe", "swrast", "software"))
 
 
 def to_image(picture: np.ndarray) -> QImage:
