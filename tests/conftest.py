@@ -4,7 +4,13 @@ from __future__ import annotations
 
 from pathlib import Path
 
+import numpy as np
 import pytest
+
+from metagraph.graph import edits
+from metagraph.graph.model import LAYERS, Layer, Project
+from metagraph.motion import rotation
+from metagraph.motion.clip import Clip
 
 ROOT = Path(__file__).resolve().parents[1]
 
@@ -16,3 +22,86 @@ def shared_data() -> Path:
     if not folder.is_dir():
         pytest.skip("the folder of real clips (../shared/data) is not here")
     return folder
+
+
+class Toy:
+    """Builds small projects whose motion is known: arms that swing and a head that turns, on sixteen joints."""
+
+    def __init__(self) -> None:
+        from metagraph.motion.skeleton import Skeleton
+
+        rows = [
+            ("Hips", -1, (0, 1.0, 0)), ("Spine", 0, (0, 0.2, 0)), ("Neck", 1, (0, 0.3, 0)), ("Head", 2, (0, 0.1, 0)),
+            ("LeftUpperArm", 1, (0.2, 0.25, 0)), ("LeftLowerArm", 4, (0.3, 0, 0)), ("LeftHand", 5, (0.25, 0, 0)),
+            ("RightUpperArm", 1, (-0.2, 0.25, 0)), ("RightLowerArm", 7, (-0.3, 0, 0)), ("RightHand", 8, (-0.25, 0, 0)),
+            ("LeftUpperLeg", 0, (0.1, -0.05, 0)), ("LeftLowerLeg", 10, (0, -0.45, 0)), ("LeftFoot", 11, (0, -0.45, 0)),
+            ("RightUpperLeg", 0, (-0.1, -0.05, 0)), ("RightLowerLeg", 13, (0, -0.45, 0)), ("RightFoot", 14, (0, -0.45, 0)),
+        ]  # fmt: skip
+        names, parents, offsets = zip(*rows, strict=True)
+        self.skeleton = Skeleton(names, np.array(parents), np.tile([0.0, 0, 0, 1], (len(rows), 1)), np.array(offsets, float))
+
+    def clip(
+        self, name: str, seconds: float = 1.0, start: float = 0.0, end: float | None = None, swing: float = 0.6, fps: float = 30
+    ) -> Clip:
+        """A clip in which the arms go from angle `start` to `end` by way of `swing` more radians; head and hips sway along."""
+        frames = round(seconds * fps) + 1
+        x = np.linspace(0, 1, frames)
+        angle = start + ((start if end is None else end) - start) * (3 * x**2 - 2 * x**3) + swing * np.sin(np.pi * x) ** 2
+        rotations = np.tile(self.skeleton.rest_rotations, (frames, 1, 1))
+        for joint, axis, share in (("LeftUpperArm", (0, 0, 1.0), 1), ("RightUpperArm", (0, 0, -1.0), 0.8), ("Head", (1.0, 0, 0), 0.3)):
+            rotations[:, self.skeleton.index(joint)] = rotation.from_axis_angle(np.array(axis), angle * share)
+        translations = np.tile(self.skeleton.rest_translations[:1], (frames, 1, 1))
+        translations[:, 0, 0] += 0.02 * np.sin(np.pi * x) ** 2
+        return Clip(name, self.skeleton, fps, rotations, translations)
+
+    def project(self, layer: Layer = "arms", loop: float = 2.0) -> Project:
+        """Stances rest, up, far on one layer, joined rest <-> up <-> far; gestures, fidgets and transitions named after themselves."""
+        angles = {"rest": 0.0, "up": 0.8, "far": 1.4}
+        clips = [self.clip(f"{name} loop", loop, angle, swing=0.05) for name, angle in angles.items()]
+        clips += [
+            self.clip(n, s, angles[n.split()[0]])
+            for n, s in (("rest short", 0.6), ("rest beat lf", 0.9), ("rest wave rt", 1.2), ("rest long", 2.4), ("rest scratch", 1.0), ("rest cough", 0.8),
+                         ("up beat", 0.7), ("up point", 1.1), ("up yawn", 1.0))
+        ]  # fmt: skip
+        clips += [
+            self.clip(f"{a} to {b}", 0.8, angles[a], angles[b]) for a, b in (("rest", "up"), ("up", "rest"), ("up", "far"), ("far", "up"))
+        ]
+        project = edits.add_clips(Project("toy"), [(f"{c.name}.glb", 0, "", c) for c in clips])
+        clip = {entry.name: entry.id for entry in project.clips.values()}
+        for name in angles:
+            project = edits.add_stance(project, layer, name, [clip[f"{name} loop"]])
+        stance = {s.name: s.id for s in project.graphs[layer].stances.values()}
+        for kind, names in (
+            ("gesture", ("rest short", "rest beat lf", "rest wave rt", "rest long", "up beat", "up point")),
+            ("fidget", ("rest scratch", "rest cough", "up yawn")),
+        ):
+            for name in names:
+                project = edits.place(project, [clip[name]], layer, kind, stance[name.split()[0]])  # type: ignore[arg-type]
+        for a, b in (("rest", "up"), ("up", "rest"), ("up", "far"), ("far", "up")):
+            project = edits.place(project, [clip[f"{a} to {b}"]], layer, "transition", stance[a], stance[b])
+        return edits.set_base(project, clip["rest loop"])
+
+    @staticmethod
+    def id(project: Project, name: str) -> str:
+        """The id of the stance, else the action, else the clip of that name."""
+        for layer in LAYERS:
+            for stance in project.graphs[layer].stances.values():
+                if stance.name == name:
+                    return stance.id
+        for action in project.actions():
+            if action.name == name:
+                return action.id
+        return next(entry.id for entry in project.clips.values() if entry.name == name)
+
+
+@pytest.fixture(scope="session")
+def toy() -> Toy:
+    return Toy()
+
+
+@pytest.fixture(scope="session")
+def sample() -> Project:
+    """The sample project, its clips loaded."""
+    from metagraph.formats.store import open_project
+
+    return open_project(ROOT / "sample_clips" / "sample.metagraph.yaml").project

@@ -80,7 +80,8 @@ def loop_seconds(project: Project, action: Action, elapsed: Array) -> tuple[Arra
     return start + phase, start + np.minimum(period + phase, length), old
 
 
-def _motion(project: Project, action: Action) -> Clip | None:
+def playable(project: Project, action: Action) -> Clip | None:
+    """Return the motion of an action, None where its clip is missing or has another skeleton."""
     entry = project.clips.get(action.clip)
     motion = entry.motion if entry is not None else None
     return motion if motion is not None and motion.skeleton == project.skeleton else None
@@ -120,7 +121,7 @@ def _together(
 ) -> Sample:
     """Return offsets at `times [N]` that all meet the same rest and the same phase of the same cue."""
     cue = plan.cues[playing] if phase != _RESTING else None
-    motion = _motion(project, cue.action) if cue is not None else None
+    motion = playable(project, cue.action) if cue is not None else None
     if cue is None or motion is None:
         return _stance(plan, project, ground, reach, times, current, fading)
     shown = _sample(ground, reach, motion, cue.entry + times - cue.start)
@@ -177,7 +178,7 @@ def _stance(plan: LayerPlan, project: Project, ground: Ground, reach: Reach, tim
 
 
 def _rest(rest: Rest, project: Project, ground: Ground, reach: Reach, times: Array) -> Sample:
-    motion = _motion(project, rest.action)
+    motion = playable(project, rest.action)
     if motion is None:
         count, joints = len(times), len(reach.joints)
         return rotation.identity((count, joints), np.float32), np.zeros((count, joints, 3), np.float32)
@@ -214,7 +215,7 @@ def morphs_at(plan: Plan, project: Project, seconds: float) -> dict[str, float]:
         if rest is not None:
             shares.append((rest.action, float(loop_seconds(project, rest.action, np.array([seconds - rest.start]))[0][0]), 1 - weight))
         for action, at, share in shares:
-            motion = _motion(project, action)
+            motion = playable(project, action)
             if motion is None or not motion.morphs or motion.weights is None or share <= 0:
                 continue
             low, high, part = motion.locate(at)

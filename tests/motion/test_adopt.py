@@ -1,0 +1,94 @@
+"""Bringing a clip onto the project's skeleton, and saying why it cannot be."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from metagraph.motion import rotation
+from metagraph.motion.adopt import SkeletonMismatchError, adopt, difference
+from metagraph.motion.clip import Clip
+from metagraph.motion.skeleton import Skeleton
+
+NAMES = ("hips", "spine", "head", "arm", "hand", "leg")
+PARENTS = [-1, 0, 1, 1, 3, 0]
+OFFSETS = np.array([[0, 1.0, 0], [0, 0.3, 0], [0, 0.3, 0], [0.2, 0.2, 0], [0.3, 0, 0], [0.1, -0.5, 0]])
+
+
+def skeleton(names: tuple[str, ...] = NAMES, parents: list[int] = PARENTS, scale: float = 1.0, offsets: np.ndarray = OFFSETS) -> Skeleton:
+    return Skeleton(names, np.array(parents), np.tile([0.0, 0, 0, 1], (len(names), 1)), offsets[: len(names)] * scale)
+
+
+def clip(on: Skeleton, angle: float = 0.5) -> Clip:
+    rotations = np.tile([0.0, 0, 0, 1], (4, len(on), 1))
+    rotations[:, -1] = rotation.from_axis_angle(np.array([0.0, 0, 1]), np.linspace(0, angle, 4))
+    return Clip("c", on, 30.0, rotations, np.tile(on.rest_translations[:1], (4, 1, 1)))
+
+
+def test_the_same_skeleton_needs_nothing() -> None:
+    ours, c = skeleton(), clip(skeleton())
+    assert adopt(c, c.skeleton) is c
+    adopted = adopt(c, ours)
+    assert adopted.skeleton is ours and adopted.rotations is c.rotations
+
+
+def test_joints_in_another_order_find_their_places() -> None:
+    order = [0, 5, 1, 3, 4, 2]
+    parents = [-1, 0, 0, 2, 3, 2]
+    other = Skeleton(tuple(NAMES[i] for i in order), np.array(parents), np.tile([0.0, 0, 0, 1], (6, 1)), OFFSETS[order])
+    adopted = adopt(clip(other), skeleton())
+    assert np.allclose(adopted.rotations[:, 2], clip(other).rotations[:, -1])
+    assert np.allclose(adopted.rotations[:, 5], [0, 0, 0, 1])
+
+
+def test_joints_the_clip_lacks_stay_at_rest() -> None:
+    fewer = skeleton(NAMES[:4], PARENTS[:4])
+    adopted = adopt(clip(fewer), skeleton())
+    assert adopted.rotations.shape == (4, 6, 4)
+    assert np.allclose(adopted.rotations[:, 4:], [0, 0, 0, 1])
+    assert np.allclose(adopted.pose_at(0).translations, OFFSETS, atol=1e-6)
+
+
+def test_bones_as_the_clip_has_them_are_kept() -> None:
+    longer = OFFSETS.copy()
+    longer[4] *= 1.05
+    adopted = adopt(clip(skeleton(offsets=longer)), skeleton())
+    assert adopted.translated == (0, 4)
+    assert np.allclose(adopted.poses().translations[0, 4], longer[4])
+
+
+@pytest.mark.parametrize("scale", [100.0, 0.01, 1.5])
+def test_another_scale_is_named(scale: float) -> None:
+    with pytest.raises(SkeletonMismatchError, match="bones are .* times as long"):
+        adopt(clip(skeleton(scale=scale)), skeleton())
+
+
+def test_a_joint_of_its_own_is_named() -> None:
+    more = Skeleton((*NAMES, "tail"), np.array([*PARENTS, 0]), np.tile([0.0, 0, 0, 1], (7, 1)), np.concatenate([OFFSETS, [[0, 0, -0.3]]]))
+    assert difference(more, skeleton()) == "the project's skeleton has no joint 'tail'"
+
+
+def test_other_names_are_said_to_be_other_names() -> None:
+    strange = skeleton(tuple(f"bone{i}" for i in range(6)))
+    assert difference(strange, skeleton()) == "its joints have other names (it has 'bone0', the project has 'hips')"
+
+
+def test_another_hierarchy_is_said_with_both_parents() -> None:
+    assert difference(skeleton(parents=[-1, 0, 1, 1, 2, 0]), skeleton()) == "joint 'hand' hangs on 'head' instead of 'arm'"
+    assert difference(skeleton(), skeleton(parents=[-1, 0, 1, 1, -1, 0])) == "joint 'hand' hangs on 'arm' instead of 'nothing'"
+
+
+def test_one_joint_can_be_adopted_by_one_joint() -> None:
+    one = skeleton(("hips",), [-1])
+    other = replace(clip(one), skeleton=skeleton(("hips",), [-1], scale=1.5))
+    assert adopt(other, one).rotations.shape == (4, 1, 4)
+
+
+def test_both_signs_of_a_rotation_stay_on_one_side() -> None:
+    fewer = skeleton(NAMES[:4], PARENTS[:4])
+    c = clip(fewer)
+    flipped = replace(c, rotations=c.rotations * np.array([1, -1, 1, -1], np.float32)[:, None, None])
+    adopted = adopt(flipped, skeleton())
+    assert np.all(np.einsum("fji,fji->fj", adopted.rotations[1:], adopted.rotations[:-1]) > 0)
