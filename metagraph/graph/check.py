@@ -199,7 +199,8 @@ def _action(project: Project, graph: MetaGraph, action: Action) -> Iterator[Prob
         return
     end = entry.duration if timing.end is None else timing.end
     tolerance = 0.5 / entry.fps
-    if timing.start < 0 or end > entry.duration + tolerance:
+    latest = entry.duration + tolerance
+    if not (0 <= timing.start <= latest and end <= latest):  # also where one of them is not a number
         yield at(
             "error",
             "trim",
@@ -208,7 +209,7 @@ def _action(project: Project, graph: MetaGraph, action: Action) -> Iterator[Prob
         )
     elif end <= timing.start and entry.frames > 1:
         yield at("error", "empty", f"ends at {end:.2f} s, not after its start at {timing.start:.2f} s", "Move its end behind its start.")
-    elif min(timing.blend_in, timing.blend_out) < 0 or (
+    elif not (timing.blend_in >= 0 and timing.blend_out >= 0) or (
         action.kind != "stance" and timing.blend_in + timing.blend_out > end - timing.start + tolerance
     ):
         yield at(

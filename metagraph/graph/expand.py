@@ -47,7 +47,7 @@ def size(project: Project, layer: Layer | None = None, stance: str | None = None
         states += len(actions)
         arriving = Counter(e for a in actions if (e := ends_in(a)) is not None and e in graph.stances)
         leaving = Counter(a.stance for a in actions)
-        itself = len([a for a in actions if a.kind != "transition" and a.stance in graph.stances])
+        itself = sum(1 for a in actions if ends_in(a) == a.stance and a.stance in graph.stances)
         connections += sum(n * leaving[s] for s, n in arriving.items()) - itself
     return Size(len(clips), states, connections)
 

@@ -113,9 +113,9 @@ class MetaGraph:
 
     @cached_property
     def into(self) -> Mapping[str, tuple[Action, ...]]:
-        """Transitions by the stance they end in."""
-        arriving = (a for (_, kind), bucket in self.index.items() if kind == "transition" for a in bucket)
-        return _grouped((a for a in arriving if a.end_stance is not None), lambda a: a.end_stance)
+        """Transitions by the stance they end in, in the order they were placed."""
+        arriving = (a for a in self.actions.values() if a.kind == "transition" and a.end_stance is not None)
+        return _grouped(arriving, lambda a: a.end_stance)
 
     def but(self, **changes: Any) -> MetaGraph:
         """Return the graph with fields other than its actions replaced, keeping what was derived from the actions."""

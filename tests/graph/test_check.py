@@ -1,0 +1,247 @@
+"""Problems: one test for each code; each says where it is, what is wrong and what to do."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from typing import Any
+
+import numpy as np
+import pytest
+
+from metagraph.graph import edits
+from metagraph.graph.check import Problem, check
+from metagraph.graph.model import BasePose, Project
+from metagraph.motion import rotation
+from metagraph.motion.clip import Clip
+from metagraph.motion.skeleton import Skeleton
+
+
+def codes(project: Project) -> list[str]:
+    return [p.code for p in check(project)]
+
+
+def only(project: Project, code: str) -> Problem:
+    found = [p for p in check(project) if p.code == code]
+    assert len(found) == 1, [(p.code, p.message) for p in check(project)]
+    assert found[0].message and found[0].remedy.endswith(".")
+    return found[0]
+
+
+def entry(project: Project, name: str) -> str:
+    return next(e.id for e in project.clips.values() if e.name == name)
+
+
+@pytest.fixture
+def healthy(toy: Any) -> Project:
+    """The toy project with its one missing part: something to fidget and gesture with in "far"."""
+    project = toy.project()
+    project = edits.add_clips(
+        project, [("far.glb", 0, "", toy.clip("far beat", 1.0, 1.4)), ("f.glb", 0, "", toy.clip("far fidget", 1.0, 1.4))]
+    )
+    far = toy.id(project, "far")
+    project = edits.place(project, [entry(project, "far beat")], "arms", "gesture", far)
+    return edits.place(project, [entry(project, "far fidget")], "arms", "fidget", far)
+
+
+def test_an_empty_project_has_no_problems() -> None:
+    assert check(Project()) == []
+
+
+def test_a_healthy_project_has_no_problems(healthy: Project, sample: Project) -> None:
+    assert check(healthy) == []
+    assert check(sample) == []
+
+
+def test_checking_changes_nothing(healthy: Project) -> None:
+    before = repr(healthy)
+    check(healthy)
+    assert repr(healthy) == before
+
+
+def test_errors_come_first_hints_last(healthy: Project, toy: Any) -> None:
+    project = edits.add_stance(healthy, "arms", "bare")
+    project = edits.update_actions(project, [toy.id(project, "far beat")], likelihood=0)
+    severities = [p.severity for p in check(project)]
+    assert severities == sorted(severities, key=["error", "warning", "hint"].index) and set(severities) == {"error", "warning", "hint"}
+
+
+def test_no_stance(toy: Any) -> None:
+    problem = only(edits.add_clips(Project(), [("a.glb", 0, "", toy.clip("a"))]), "no-stance")
+    assert problem.severity == "hint" and "first stance" in problem.remedy
+
+
+@pytest.mark.parametrize(("name", "severity"), [("rest short", "error"), ("spare", "warning")])
+def test_file_missing(healthy: Project, toy: Any, name: str, severity: str) -> None:
+    project = edits.add_clips(healthy, [("spare.glb", 0, "", toy.clip("spare"))])
+    ident = entry(project, name)
+    project = replace(project, clips={**project.clips, ident: replace(project.clips[ident], motion=None)})
+    problem = only(project, "file-missing")
+    assert (problem.severity, problem.clip) == (severity, ident) and project.clips[ident].path in problem.message
+
+
+def test_other_skeleton(healthy: Project, toy: Any) -> None:
+    s = toy.skeleton
+    other = replace(toy.clip("big"), skeleton=Skeleton(s.names, s.parents, s.rest_rotations, s.rest_translations * 2))
+    project = edits.add_clips(healthy, [("big.glb", 0, "", other)])
+    problem = only(project, "other-skeleton")
+    assert problem.severity == "warning" and problem.clip == entry(project, "big") and "'big'" in problem.message
+    used = edits.with_motions(healthy, {entry(healthy, "rest short"): other})
+    assert only(used, "other-skeleton").severity == "error"
+
+
+def test_base_missing(healthy: Project) -> None:
+    assert only(replace(healthy, base=BasePose("c999")), "base-missing").severity == "error"
+
+
+def test_base_frame(healthy: Project) -> None:
+    problem = only(replace(healthy, base=BasePose(healthy.base.clip, 61)), "base-frame")
+    assert "frame 61 of 'rest loop', which ends at 60" in problem.message
+    assert "base-frame" not in codes(replace(healthy, base=BasePose(healthy.base.clip, 60)))
+
+
+def lying(toy: Any, turn: float, up: float = 0.0, facing: float = 0.0) -> Clip:
+    """One frame with the arms turned, the hips lifted, or the whole body facing elsewhere."""
+    s = toy.skeleton
+    rotations = s.rest_rotations.copy()[None]
+    for name in ("LeftUpperArm", "RightUpperArm"):
+        rotations[:, s.index(name)] = rotation.from_axis_angle(np.array([0, 0, 1.0]), turn)
+    rotations[:, 0] = rotation.from_axis_angle(np.array([0, 1.0, 0]), facing)
+    translations = s.rest_translations[None, :1] + np.array([0, up, 0])
+    return Clip("base", s, 30.0, rotations, translations)
+
+
+def test_base_rest(healthy: Project, toy: Any) -> None:
+    far = edits.set_start(edits.set_base(healthy, None), toy.id(healthy, "far"))
+    assert only(far, "base-rest").severity == "warning"
+    assert "base-rest" not in codes(edits.set_base(healthy, None))  # this character stands as it rests
+
+
+@pytest.mark.parametrize(("up", "way"), [(0.3, "above"), (-0.3, "below")])
+def test_base_floats(healthy: Project, toy: Any, up: float, way: str) -> None:
+    project = edits.add_stance(healthy, "body", "stand", [healthy.base.clip])
+    project = edits.add_clips(project, [("base.glb", 0, "", lying(toy, 0, up))])
+    problem = only(edits.set_base(project, entry(project, "base")), "base-floats")
+    assert f"30 cm {way} stance 'stand'" in problem.message
+
+
+def test_base_twisted(healthy: Project, toy: Any) -> None:
+    project = edits.add_stance(healthy, "body", "stand", [healthy.base.clip])
+    project = edits.add_clips(project, [("base.glb", 0, "", lying(toy, 0, 0, np.radians(90)))])
+    assert "turned 90 degrees from stance 'stand'" in only(edits.set_base(project, entry(project, "base")), "base-twisted").message
+
+
+def test_no_part(healthy: Project) -> None:
+    project = edits.set_part(healthy, healthy.skeleton.names, "spine")
+    found = [p for p in check(project) if p.code == "no-part"]
+    assert [p.message.split()[-1] for p in found] == ["arms", "head", "legs"]
+
+
+def test_no_loop(healthy: Project, toy: Any) -> None:
+    problem = only(edits.remove_actions(healthy, [toy.id(healthy, "far loop")]), "no-loop")
+    assert (problem.severity, problem.layer, problem.stance) == ("error", "arms", toy.id(healthy, "far"))
+
+
+@pytest.mark.parametrize(("name", "code"), [("far beat", "no-gestures"), ("far fidget", "no-fidgets")])
+def test_no_gestures_and_no_fidgets(healthy: Project, toy: Any, name: str, code: str) -> None:
+    problem = only(edits.remove_actions(healthy, [toy.id(healthy, name)]), code)
+    assert problem.severity == "hint" and "'far'" in problem.message
+
+
+def test_dead_end_and_unreachable(healthy: Project, toy: Any) -> None:
+    problem = only(edits.remove_actions(healthy, [toy.id(healthy, "far to up")]), "dead-end")
+    assert problem.stance == toy.id(healthy, "far") and problem.severity == "warning"
+    problem = only(edits.remove_actions(healthy, [toy.id(healthy, "up to far")]), "unreachable")
+    assert problem.stance == toy.id(healthy, "far")
+
+
+def test_a_single_stance_is_no_dead_end(toy: Any) -> None:
+    project = edits.add_stance(edits.add_clips(Project(), [("a.glb", 0, "", toy.clip("a", swing=0.1))]), "head", "still", ["c1"])
+    assert set(codes(project)) == {"no-gestures", "no-fidgets"}
+
+
+def test_no_start(healthy: Project) -> None:
+    graph = healthy.graphs["arms"]
+    assert only(healthy.with_graph(graph.but(start=None)), "no-start").layer == "arms"
+    assert only(healthy.with_graph(graph.but(start="s999")), "no-start").severity == "error"
+
+
+@pytest.mark.parametrize("weight", [-0.1, 2.1, float("nan")])
+def test_weight(healthy: Project, weight: float) -> None:
+    problem = only(healthy.with_graph(healthy.graphs["arms"].but(weights={"spine": weight})), "weight")
+    assert "arms layer's weight on spine" in problem.message
+
+
+def test_lost_stance(healthy: Project, toy: Any) -> None:
+    ident = toy.id(healthy, "far beat")
+    problem = only(edits.update_actions(healthy, [ident], stance="s999"), "lost-stance")
+    assert (problem.action, problem.severity) == (ident, "error")
+
+
+def test_no_end_lost_end_and_circle(healthy: Project, toy: Any) -> None:
+    project = edits.place(healthy, [entry(healthy, "rest to up")], "arms", "transition", toy.id(healthy, "rest"), toy.id(healthy, "up"))
+    ident = f"a{project.next_id - 1}"
+    assert only(edits.update_actions(project, [ident], end_stance=None), "no-end").action == ident
+    assert only(edits.update_actions(project, [ident], end_stance="s999"), "lost-end").action == ident
+    assert only(edits.update_actions(project, [ident], end_stance=toy.id(healthy, "rest")), "circle").severity == "warning"
+
+
+@pytest.mark.parametrize("likelihood", [0.0, -1.0, float("nan"), float("inf")])
+def test_likelihood(healthy: Project, toy: Any, likelihood: float) -> None:
+    problem = only(edits.update_actions(healthy, [toy.id(healthy, "far beat")], likelihood=likelihood), "likelihood")
+    assert problem.action == toy.id(healthy, "far beat")
+
+
+def test_mask(healthy: Project, toy: Any) -> None:
+    assert "'Tail'" in only(edits.update_actions(healthy, [toy.id(healthy, "far beat")], joints=("Head", "Tail")), "mask").message
+
+
+def test_lost_clip(healthy: Project, toy: Any) -> None:
+    assert only(edits.update_actions(healthy, [toy.id(healthy, "far beat")], clip="c999"), "lost-clip").clip == "c999"
+
+
+@pytest.mark.parametrize(
+    ("timing", "code"),
+    [
+        ({"start": -0.1}, "trim"),
+        ({"end": 1.1}, "trim"),
+        ({"start": 1.2}, "trim"),
+        ({"start": 0.5, "end": 0.5, "blend_in": 0.0, "blend_out": 0.0}, "empty"),
+        ({"start": 0.8, "end": 0.2}, "empty"),
+        ({"blend_in": 0.6, "blend_out": 0.6}, "blend"),
+        ({"blend_in": -0.1}, "blend"),
+        ({"blend_out": float("nan")}, "blend"),
+        ({"earliest_exit": 1.2}, "exit"),
+        ({"earliest_exit": 0.1, "start": 0.2}, "exit"),
+        ({"start": float("nan")}, "trim"),
+        ({"end": float("nan")}, "trim"),
+    ],
+)
+def test_trim_empty_blend_and_exit(healthy: Project, toy: Any, timing: dict[str, float], code: str) -> None:
+    ident = toy.id(healthy, "far beat")
+    found = [p for p in check(edits.update_actions(healthy, [ident], timing=timing)) if not p.code.startswith("far")]
+    assert [(p.code, p.action) for p in found] == [(code, ident)]
+
+
+def test_half_a_frame_beyond_the_end_is_rounding(healthy: Project, toy: Any) -> None:
+    assert codes(edits.update_actions(healthy, [toy.id(healthy, "far beat")], timing={"end": 1.01})) == []
+
+
+def test_open_loop(healthy: Project, toy: Any) -> None:
+    project = edits.add_clips(healthy, [("open.glb", 0, "", toy.clip("open", 2.0, 0.0, 0.5))])
+    project = edits.place(project, [entry(project, "open")], "arms", "stance", toy.id(project, "rest"))
+    ident = f"a{project.next_id - 1}"
+    assert codes(project) == []  # its seam is blended
+    assert only(edits.update_actions(project, [ident], timing={"blend_in": 0.0}), "open-loop").action == ident
+
+
+def test_far_start_and_far_end(healthy: Project, toy: Any) -> None:
+    project = edits.move_actions(healthy, [toy.id(healthy, "up beat")], "gesture", toy.id(healthy, "rest"))
+    found = [p for p in check(project) if p.code.startswith("far")]
+    assert [p.code for p in found] == ["far-start", "far-end"]
+    assert "cm from stance 'rest'" in found[0].message and found[0].severity == "warning"
+
+
+def test_joints_an_action_leaves_alone_may_be_far_from_the_stance(healthy: Project, toy: Any) -> None:
+    ident = toy.id(healthy, "up beat")
+    project = edits.move_actions(healthy, [ident], "gesture", toy.id(healthy, "rest"))
+    assert codes(edits.update_actions(project, [ident], joints=("Head",))) == []
