@@ -2,10 +2,12 @@
 
 from __future__ import annotations
 
+import hashlib
 from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Any
 
+import msgspec
 import numpy as np
 from numpy.typing import NDArray
 
@@ -64,14 +66,32 @@ def decompose(matrices: Array) -> tuple[Array, Array, Array]:
     return matrices[..., :3, 3], rotation.from_matrix(linear / safe[..., None, :]), scales
 
 
+_CACHED = 16  # rigs remembered: the files of a folder mostly share one
+_rigs: dict[bytes, Rig] = {}
+
+
 def build_rig(gltf: Gltf) -> Rig:
-    """Return the one skeleton of the file. Raises FileError."""
+    """Return the one skeleton of the file; the same object for files whose nodes and skins are the same. Raises FileError."""
     nodes = gltf.json.nodes
     if not nodes:
         gltf.fail("it holds no nodes", "its nodes", "Export it with its skeleton.")
     parents, order = _tree(gltf, nodes)
-    translations, rotations, scales = _transforms(gltf, nodes)
     members = _members(gltf, nodes, parents, order)
+    key = hashlib.sha256(msgspec.json.encode((nodes, gltf.json.skins, sorted(members))))
+    for s, skin in enumerate(gltf.json.skins):
+        if skin.inverse_bind_matrices is not None:
+            key.update(np.ascontiguousarray(gltf.array(skin.inverse_bind_matrices, f"skin {s}", "MAT4")))
+    found = _rigs.get(key.digest())
+    if found is None:
+        found = _build(gltf, nodes, parents, order, members)
+        while len(_rigs) >= _CACHED:
+            _rigs.pop(next(iter(_rigs)))
+        _rigs[key.digest()] = found
+    return found
+
+
+def _build(gltf: Gltf, nodes: list[Node], parents: list[int], order: list[int], members: set[int]) -> Rig:
+    translations, rotations, scales = _transforms(gltf, nodes)
     joints = _in_order(gltf, members, parents, order)
     if len(joints) > MOST_JOINTS:
         gltf.fail(f"it has {len(joints)} joints, more than the {MOST_JOINTS} of any character", "its nodes", "Export the character alone.")
