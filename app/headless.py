@@ -204,10 +204,10 @@ def draw_to(
         from preview.sheet import contact_sheet, write_png
 
         times = np.linspace(0, seconds, max(2, frames))
-        small = (max(16, size[0] // 4), max(16, size[1] // 2))
+        small = (max(16, size[0] * 2 // 9), max(16, size[1] * 5 // 9))
         images = list(pictures(project, figure, times, made, clip, small, look))
         labels = [f"{t:.2f} s" + (f"  {_doing(made, t)}" if made is not None else "") for t in times]
-        write_png(out, contact_sheet(images, 6, labels))
+        write_png(out, contact_sheet(images, 8, labels))
     else:
         raise ValueError(f"pictures are written as .png, videos as .mp4, not '{out.suffix}'")
 

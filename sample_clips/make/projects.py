@@ -61,11 +61,11 @@ def _place(project: Project, entry: Entry, clip: str, ids: dict[tuple[str, str],
     else:
         last = None if entry.end >= length - 1e-3 else round(entry.end, 3)
         timing = Timing(round(entry.start, 3), last, entry.blend_in, entry.blend_out)
-    name = entry.name.split("__", 1)[-1]
+    name = f"to {_words(entry.end_stance)}" if kind == "transition" else entry.name.split("__", 1)[-1]
     return edits.update_actions(
         project,
         [made],
-        name=entry.name.split("__")[0] if name == "stance" else name,
+        name=_words(entry.stance) if kind == "stance" else name,
         timing=timing,
         limb=cast(Limb, entry.limb),
         tags=tuple(entry.tags),
