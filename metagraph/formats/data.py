@@ -6,8 +6,9 @@ Fields at their default are left out, floats are rounded to microseconds, so tha
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping
+from collections.abc import Collection, Mapping
 from dataclasses import MISSING, fields
+from functools import cache
 from typing import Any
 
 import numpy as np
@@ -34,6 +35,9 @@ FORMAT = 1  # of the project file; older ones are upgraded when read
 Data = dict[str, Any]
 
 
+LARGEST = 1e15  # no number in a project is larger; up to here whole numbers are exact
+
+
 class DataError(ValueError):
     """The data is not a project: `where` names the field, the message says what is wrong with it."""
 
@@ -43,12 +47,17 @@ class DataError(ValueError):
 
 
 def _number(value: float) -> float | int:
-    rounded = round(float(value), 6)
-    return int(rounded) if rounded == int(rounded) and abs(rounded) < 1e15 else rounded
+    """Return a number rounded to six decimals, or to six digits where nothing else would be left. Raises ValueError."""
+    if not abs(value) <= LARGEST:
+        raise ValueError(f"{value!r} is not a number that can be saved")
+    rounded = round(float(value), 6) or float(f"{value:.6g}")
+    return int(rounded) if rounded == int(rounded) else rounded
 
 
 def _plain(value: Any) -> Any:
     if isinstance(value, bool) or value is None or isinstance(value, str):
+        return value
+    if isinstance(value, int) and abs(value) <= LARGEST:
         return value
     if isinstance(value, int | float):
         return _number(value)
@@ -65,7 +74,10 @@ def _sparse(value: Any, skip: tuple[str, ...] = ()) -> Data:
             continue
         v = getattr(value, f.name)
         if f.default is MISSING or v != f.default:
-            out[f.name] = _plain(v)
+            try:
+                out[f.name] = _plain(v)
+            except ValueError as error:
+                raise DataError(f"{type(value).__name__.lower()} {getattr(value, 'name', '')!r}, {f.name}", str(error)) from None
     return out
 
 
@@ -82,28 +94,46 @@ def clip_data(entry: ClipEntry) -> Data:
 
 
 def skeleton_data(skeleton: Skeleton) -> list[Data]:
-    """Return one dict a joint: name, parent (its name), at (local rest translation, metres), turn (local rest rotation, xyzw)."""
+    """Return one dict a joint: name, parent (its name), at (local rest translation, metres), turn (local rest rotation, xyzw).
+
+    These numbers are not rounded: skeletons are compared to 0.1 mm, and a rounded one may fall on the other side.
+    """
     out: list[Data] = []
     for i, name in enumerate(skeleton.names):
         joint: Data = {"name": name}
         if skeleton.parents[i] >= 0:
             joint["parent"] = skeleton.names[skeleton.parents[i]]
-        joint["at"] = [_number(x) for x in skeleton.rest_translations[i]]
-        if abs(skeleton.rest_rotations[i][3]) < 1 - 1e-12:
-            joint["turn"] = [round(float(x), 9) for x in skeleton.rest_rotations[i]]
+        joint["at"] = [_whole(x) for x in skeleton.rest_translations[i]]
+        if skeleton.rest_rotations[i].tolist() != [0, 0, 0, 1]:
+            joint["turn"] = [_whole(x) for x in skeleton.rest_rotations[i]]
         out.append(joint)
     return out
 
 
+def _whole(value: float) -> float | int:
+    return int(value) if value == int(value) else float(value)
+
+
+def stance_data(stance: Stance) -> Data:
+    return {"id": stance.id, "name": stance.name}
+
+
+def weights_data(graph: MetaGraph) -> Data:
+    return {p: _number(graph.weights[p]) for p in PARTS if p in graph.weights}
+
+
 def to_data(project: Project) -> Data:
-    """Return the whole project; inverse of `from_data` but for the motion of clips."""
+    """Return the whole project; inverse of `from_data` but for the motion of clips and what lies below a microsecond.
+
+    Raises DataError when a number is not finite.
+    """
     layers: Data = {}
     for layer in LAYERS:
         graph = project.graphs[layer]
         layers[layer] = {
             "start": graph.start,
-            "weights": {p: _number(graph.weights[p]) for p in PARTS if p in graph.weights},
-            "stances": [{"id": s.id, "name": s.name} for s in graph.stances.values()],
+            "weights": weights_data(graph),
+            "stances": [stance_data(s) for s in graph.stances.values()],
             "actions": [action_data(a) for a in graph.actions.values()],
         }
     return {
@@ -126,38 +156,55 @@ def markov_data(model: Markov) -> Data:
     return {
         **_sparse(model, ("layer", "states", "matrix")),
         "states": [f"{limb} {kind}" for limb, kind in model.states],
-        "matrix": [[round(float(p), 9) for p in row] for row in model.matrix],
+        "matrix": [[_whole(p) for p in row] for row in model.matrix],
     }
 
 
 # --- reading ---------------------------------------------------------------------------------------------------------
 
-
-def _get(data: Any, key: str, kind: Any, where: str, default: Any = MISSING) -> Any:
-    """Return a field checked for its type; numbers must be finite."""
-    if not isinstance(data, Mapping):
-        raise DataError(where, f"expected fields, found {_named(data)}")
-    value = data.get(key, default)
-    place = f"{where}.{key}" if where else key
-    if value is MISSING:
-        raise DataError(place, "is missing")
-    if value is None and (default is None or (default is MISSING and kind is dict)):
-        return default if default is not MISSING else {}
-    if kind is float and isinstance(value, int) and not isinstance(value, bool):
-        value = float(value)
-    if not isinstance(value, kind) or (isinstance(value, bool) and kind is not bool):
-        raise DataError(place, f"should be {_WORDS[kind]}, found {_named(value)}")
-    if kind is float and not math.isfinite(value):
-        raise DataError(place, "should be a finite number")
-    return value
-
-
 _WORDS = {str: "text", int: "a whole number", float: "a number", bool: "true or false", list: "a list", dict: "fields"}
 
 
 def _named(value: Any) -> str:
+    if value is None:
+        return "nothing"
+    if isinstance(value, list | dict):
+        return "a list" if isinstance(value, list) else "fields"
+    if isinstance(value, int) and abs(value) > LARGEST:
+        return "a huge number"
     text = repr(value)
-    return "nothing" if value is None else text if len(text) <= 40 else text[:37] + "..."
+    return text if len(text) <= 40 else text[:37] + "..."
+
+
+def _get(data: Any, key: str, kind: Any, where: str, default: Any = MISSING) -> Any:
+    """Return a field checked for its type, `default` where it is missing or empty; numbers are finite and not beyond `LARGEST`."""
+    if not isinstance(data, Mapping):
+        raise DataError(where, f"should be fields, found {_named(data)}")
+    value = data.get(key, MISSING)
+    place = f"{where}.{key}" if where else key
+    if value is MISSING and default is MISSING:
+        raise DataError(place, "is missing")
+    if default is not MISSING and (value is None or value is MISSING):
+        return default
+    wrong = isinstance(value, bool) and kind is not bool
+    if wrong or not isinstance(value, (int, float) if kind is float else kind):
+        raise DataError(place, f"should be {_WORDS[kind]}, found {_named(value)}")
+    if kind in (int, float) and not abs(value) <= LARGEST:
+        raise DataError(place, f"should be a finite number, found {_named(value)}")
+    if isinstance(value, dict) and not all(isinstance(k, str) for k in value):
+        raise DataError(place, "should be fields with names")
+    return float(value) if kind is float else value
+
+
+def _known(data: Data, allowed: Collection[str], where: str) -> None:
+    """Refuse fields nobody reads: what a slip of the pen was meant to say would be lost."""
+    for key in data:
+        if key not in allowed:
+            from difflib import get_close_matches
+
+            near = get_close_matches(str(key), allowed, 1)
+            hint = f"; did you mean '{near[0]}'?" if near else ""
+            raise DataError(f"{where}.{key}" if where else str(key), f"is not a field known here{hint}")
 
 
 def _one_of(value: Any, allowed: tuple[str, ...], where: str) -> Any:
@@ -166,42 +213,67 @@ def _one_of(value: Any, allowed: tuple[str, ...], where: str) -> Any:
     return value
 
 
+_RANGES = {  # field -> least and greatest value of what no check of the graph looks at
+    "fps": (1e-3, 1e6), "frames": (0, 1e9), "take": (0, 1e6), "frame": (0, 1e9), "seed": (0, 0xFFFFFFFF), "alpha": (0, LARGEST),
+    "shortest": (0, LARGEST), "wait": (0, LARGEST), "gap": (1e-3, LARGEST), "positive": (0, 1), "negative": (0, 1),
+}  # fmt: skip
+
+
 def _fill(cls: Any, data: Data, where: str, skip: tuple[str, ...] = ()) -> dict[str, Any]:
     """Return a dataclass's simple fields read from data, those that are there."""
     out: dict[str, Any] = {}
-    for f in fields(cls):
-        if f.name in skip or f.name not in data:
+    for name, kind in _kinds(cls).items():
+        if name in skip or name not in data:
             continue
-        text = str(f.type)
-        value = data[f.name]
-        if value is None and "None" in text:
-            out[f.name] = None
-        elif text.startswith("tuple[str"):
-            items = _get(data, f.name, list, where)
+        if kind is tuple:
+            items = _get(data, name, list, where)
             if not all(isinstance(x, str) for x in items):
-                raise DataError(f"{where}.{f.name}", "should be a list of texts")
-            out[f.name] = tuple(items)
+                raise DataError(f"{where}.{name}", "should be a list of texts")
+            out[name] = tuple(items)
+        elif isinstance(kind, tuple):
+            out[name] = _get(data, name, kind[0], where, None)
         else:
-            kind = {"bool": bool, "int": int, "float": float}.get(text.split(" ")[0], str)
-            out[f.name] = _get(data, f.name, kind, where)
+            out[name] = _get(data, name, kind, where)
+            if name in _RANGES and not _RANGES[name][0] <= out[name] <= _RANGES[name][1]:
+                low, high = _RANGES[name]
+                limit = f"{low:g} or more" if high in (1e9, LARGEST) else f"between {low:g} and {high:.10g}"
+                raise DataError(f"{where}.{name}", f"should be {limit}, found {_named(data[name])}")
     return out
 
 
-def _items(data: Data, key: str, where: str) -> list[tuple[str, Data]]:
-    """Return a list of dicts with ids, each with words for where it stands; ids must be unique."""
+@cache
+def _kinds(cls: Any) -> dict[str, Any]:
+    """Return field -> type; (type,) where None is a value, too; `tuple` for a list of texts."""
+    out: dict[str, Any] = {}
+    for f in fields(cls):
+        text = str(f.type)
+        plain = {"bool": bool, "int": int, "float": float}.get(text.split(" ")[0], str)
+        out[f.name] = tuple if text.startswith("tuple[str") else (plain,) if "None" in text else plain
+    return out
+
+
+def _items(data: Data, key: str, where: str, seen: set[str]) -> list[tuple[str, Data]]:
+    """Return a list of dicts with ids, each with words for where it stands; `seen` are ids already taken."""
     out: list[tuple[str, Data]] = []
-    seen: set[str] = set()
-    for n, item in enumerate(_get(data, key, list, where, []) or []):
+    for n, item in enumerate(_get(data, key, list, where, ())):
         place = f"{where}.{key}[{n}]" if where else f"{key}[{n}]"
         ident = _get(item, "id", str, place)
+        if not ident:
+            raise DataError(f"{place}.id", "should not be empty")
         if ident in seen:
-            raise DataError(place, f"id '{ident}' is used twice")
+            raise DataError(f"{place}.id", f"'{ident}' is used twice")
         seen.add(ident)
-        out.append((f"{place} '{ident}'", item))
+        out.append((place, item))
     return out
+
+
+_ACTION_FIELDS = ({f.name for f in fields(Action)} | {f.name for f in fields(Timing)}) - {"layer", "timing"}
+_CLIP_FIELDS = ({f.name for f in fields(ClipEntry)} | {"sha256"}) - {"motion", "digest"}
+_PROJECT_FIELDS = ({f.name for f in fields(Project)} | {"metagraph", "layers"}) - {"graphs"}
 
 
 def action_from(data: Data, layer: Layer, where: str) -> Action:
+    _known(data, _ACTION_FIELDS, where)
     values = _fill(Action, data, where, ("timing", "layer"))
     for key in ("id", "clip", "kind", "stance", "name"):
         if key not in values:
@@ -211,7 +283,17 @@ def action_from(data: Data, layer: Layer, where: str) -> Action:
     return Action(layer=layer, timing=Timing(**_fill(Timing, data, where)), **values)
 
 
+def _clip_from(data: Data, where: str) -> ClipEntry:
+    _known(data, _CLIP_FIELDS, where)
+    values = _fill(ClipEntry, data, where, ("motion", "digest"))
+    for key in ("name", "path"):
+        if key not in values:
+            raise DataError(f"{where}.{key}", "is missing")
+    return ClipEntry(digest=_get(data, "sha256", str, where, ""), **values)
+
+
 def skeleton_from(joints: list[Any], where: str = "skeleton") -> Skeleton | None:
+    """Return the skeleton of `skeleton_data`, None for an empty list."""
     if not joints:
         return None
     names, parents, at, turn = [], [], [], []
@@ -219,24 +301,46 @@ def skeleton_from(joints: list[Any], where: str = "skeleton") -> Skeleton | None
     for n, joint in enumerate(joints):
         place = f"{where}[{n}]"
         name = _get(joint, "name", str, place)
+        _known(joint, ("name", "parent", "at", "turn"), place)
         parent = _get(joint, "parent", str, place, None)
         if parent is not None and parent not in places:
-            raise DataError(place, f"parent '{parent}' does not come before joint '{name}'")
+            raise DataError(f"{place}.parent", f"'{parent}' does not come before joint '{name}'")
+        if name in places:
+            raise DataError(f"{place}.name", f"'{name}' is used twice")
         places[name] = n
         names.append(name)
         parents.append(-1 if parent is None else places[parent])
-        at.append(_floats(_get(joint, "at", list, place), 3, f"{place}.at"))
-        turn.append(_floats(_get(joint, "turn", list, place, [0.0, 0.0, 0.0, 1.0]), 4, f"{place}.turn"))
+        at.append(_floats(_get(joint, "at", list, place), 3, f"{place}.at", 1e6))
+        turn.append(_floats(_get(joint, "turn", list, place, [0.0, 0.0, 0.0, 1.0]), 4, f"{place}.turn", 2.0))
+        if not 0.9 < math.hypot(*turn[-1]) < 1.1:
+            raise DataError(f"{place}.turn", "should be a quaternion of length 1")
     try:
         return Skeleton(tuple(names), np.array(parents), np.array(turn), np.array(at))
     except ValueError as error:
         raise DataError(where, str(error)) from None
 
 
-def _floats(values: list[Any], count: int, where: str) -> list[float]:
-    if len(values) != count or not all(isinstance(x, int | float) and not isinstance(x, bool) and math.isfinite(x) for x in values):
+def _floats(values: list[Any], count: int, where: str, largest: float = LARGEST) -> list[float]:
+    numbers = [x for x in values if isinstance(x, int | float) and not isinstance(x, bool) and abs(x) <= largest]
+    if not len(numbers) == len(values) == count:
         raise DataError(where, f"should be {count} numbers")
     return [float(x) for x in values]
+
+
+def _graph_from(layer: Layer, data: Any, stance_ids: set[str], action_ids: set[str]) -> MetaGraph:
+    where = f"layers.{layer}"
+    start = _get(data, "start", str, where, None)
+    _known(data, ("start", "weights", "stances", "actions"), where)
+    stances: dict[str, Stance] = {}
+    for place, item in _items(data, "stances", where, stance_ids):
+        _known(item, ("id", "name"), place)
+        stances[item["id"]] = Stance(item["id"], layer, _get(item, "name", str, place))
+    actions = {item["id"]: action_from(item, layer, place) for place, item in _items(data, "actions", where, action_ids)}
+    weights = _get(data, "weights", dict, where, {})
+    for part in weights:
+        _one_of(part, PARTS, f"{where}.weights")
+        _get(weights, part, float, f"{where}.weights")
+    return MetaGraph(layer, stances, actions, start, {p: float(w) for p, w in weights.items()})
 
 
 def from_data(data: Any) -> Project:
@@ -244,68 +348,51 @@ def from_data(data: Any) -> Project:
     if not isinstance(data, Mapping) or "metagraph" not in data:
         raise DataError("metagraph", "is missing: this is not a Metagraph project")
     data = dict(data)
-    clips: dict[str, ClipEntry] = {}
-    for where, item in _items(data, "clips", ""):
-        values = _fill(ClipEntry, item, where, ("motion", "digest"))
-        for key in ("name", "path"):
-            if key not in values:
-                raise DataError(f"{where}.{key}", "is missing")
-        if values.get("fps", 30.0) <= 0:
-            raise DataError(f"{where}.fps", "should be above 0")
-        clips[values["id"]] = ClipEntry(digest=_get(item, "sha256", str, where, ""), **values)
-    graphs: dict[Layer, MetaGraph] = {}
+    _known(data, _PROJECT_FIELDS, "")
+    clips = {item["id"]: _clip_from(item, where) for where, item in _items(data, "clips", "", set())}
     layers = _get(data, "layers", dict, "", {})
-    for layer in LAYERS:
-        content = _get(layers, layer, dict, "layers", {})
-        where = f"layers.{layer}"
-        stances = {
-            item["id"]: Stance(item["id"], layer, _get(item, "name", str, place)) for place, item in _items(content, "stances", where)
-        }
-        actions = {item["id"]: action_from(item, layer, place) for place, item in _items(content, "actions", where)}
-        weights = _get(content, "weights", dict, where, {})
-        for part in weights:
-            _one_of(part, PARTS, f"{where}.weights")
-            _get(weights, part, float, f"{where}.weights")
-        start = _get(content, "start", str, where, None)
-        graphs[layer] = MetaGraph(layer, stances, actions, start, {p: float(w) for p, w in weights.items()})
-    parts = _get(data, "parts", dict, "", {})
+    _known(layers, LAYERS, "layers")
+    stance_ids: set[str] = set()
+    action_ids: set[str] = set()
+    graphs = {layer: _graph_from(layer, _get(layers, layer, dict, "layers", {}), stance_ids, action_ids) for layer in LAYERS}
+    parts, roles = _get(data, "parts", dict, "", {}), _get(data, "roles", dict, "", {})
     for joint, part in parts.items():
         _one_of(part, PARTS, f"parts.{joint}")
-    markov = {
-        _one_of(layer, LAYERS, "markov"): markov_from(layer, model, f"markov.{layer}")
-        for layer, model in _get(data, "markov", dict, "", {}).items()
-    }
-    base = _get(data, "base", dict, "", {})
-    settings = _get(data, "settings", dict, "", {})
+    models = _get(data, "markov", dict, "", {})
+    _known(models, LAYERS, "markov")
+    base, settings = _get(data, "base", dict, "", {}), _get(data, "settings", dict, "", {})
+    _known(base, [f.name for f in fields(BasePose)], "base")
+    _known(settings, [f.name for f in fields(Settings)], "settings")
     return Project(
         name=_get(data, "name", str, "", "untitled"),
         skeleton=skeleton_from(_get(data, "skeleton", list, "", [])),
         clips=clips,
         graphs=graphs,
         base=BasePose(**_fill(BasePose, base, "base")),
-        roles={r: _get(data["roles"], r, str, "roles") for r in _get(data, "roles", dict, "", {})},
+        roles={r: _get(roles, r, str, "roles") for r in roles},
         parts=dict(parts),
-        markov=markov,
+        markov={layer: markov_from(layer, models[layer], f"markov.{layer}") for layer in LAYERS if layer in models},
         settings=Settings(**_fill(Settings, settings, "settings")),
         character=_get(data, "character", str, "", None),
-        next_id=max(_get(data, "next_id", int, "", 1), _above(clips, graphs)),
+        next_id=max(_get(data, "next_id", int, "", 1), above(*clips, *stance_ids, *action_ids)),
     )
 
 
-def _above(clips: Mapping[str, ClipEntry], graphs: Mapping[Layer, MetaGraph]) -> int:
-    """Return a number above every id's, so that ids made by hand are never made again."""
-    idents = [*clips, *(i for g in graphs.values() for i in (*g.stances, *g.actions))]
-    return 1 + max((int(i[1:]) for i in idents if i[1:].isdigit()), default=0)
+def above(*idents: str) -> int:
+    """Return a number above every id's, so that an id is never made twice, whoever made it."""
+    numbers = (i[1:] for i in idents)
+    return 1 + max((int(n) for n in numbers if n.isascii() and n.isdigit() and len(n) < 15), default=0)
 
 
 def markov_from(layer: Layer, data: Any, where: str) -> Markov:
     states = []
     for text in _get(data, "states", list, where):
-        limb, _, kind = str(text).partition(" ")
+        limb, _, kind = text.partition(" ") if isinstance(text, str) else ("", "", "")
         states.append((_one_of(limb, LIMBS, f"{where}.states"), _one_of(kind, KINDS, f"{where}.states")))
+    _known(data, [f.name for f in fields(Markov) if f.name != "layer"], where)
     rows = _get(data, "matrix", list, where)
-    if len(rows) != len(states):
-        raise DataError(f"{where}.matrix", f"should have {len(states)} rows")
+    if not rows or len(rows) != len(states):
+        raise DataError(f"{where}.matrix", f"should have {max(1, len(states))} rows, one for each state")
     matrix = tuple(tuple(_floats(row if isinstance(row, list) else [], len(states), f"{where}.matrix[{n}]")) for n, row in enumerate(rows))
     for n, row in enumerate(matrix):
         if min(row) < 0 or not 0.99 < sum(row) < 1.01:

@@ -2,16 +2,18 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable
+from collections.abc import Callable, Iterable, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
+from metagraph.errors import FileError
 from metagraph.formats.clips import digest, find_clip_files, import_clips
 from metagraph.formats.store import relative
 from metagraph.graph.edits import add_clips
 from metagraph.graph.model import Project
-from metagraph.motion.adopt import SkeletonMismatchError, adopt
+from metagraph.motion.adopt import SkeletonMismatchError, adopt, difference
 from metagraph.motion.clip import Clip
+from metagraph.motion.skeleton import Skeleton
 
 
 @dataclass(frozen=True)
@@ -33,7 +35,7 @@ def gather(paths: Iterable[str | Path]) -> list[Path]:
     out: dict[Path, None] = {}
     for path in map(Path, paths):
         found = find_clip_files(path) if path.is_dir() else [path]
-        out.update(dict.fromkeys(p.resolve() for p in found))
+        out.update(dict.fromkeys(p.parent.resolve() / p.name for p in found))
     return list(out)
 
 
@@ -47,14 +49,11 @@ def import_files(
     """Read files and folders for a project; nothing is changed yet.
 
     folder: what paths are made relative to, None for absolute ones. The project's skeleton decides what fits; in an
-    empty project the skeleton of the first clip that has most joints of all does. A clip of another character is
-    left out, with its reason.
+    empty project the skeleton on which most of the clips can play does. A clip of another character is left out, with its reason.
     """
     report = import_clips(gather(paths), progress, cancelled)
     failures = [str(error) for error in report.failures]
-    skeleton = project.skeleton
-    if skeleton is None and report.clips:
-        skeleton = max((clip.skeleton for _, _, clip in report.clips), key=len)
+    skeleton = project.skeleton or _skeleton_of_most([clip for _, _, clip in report.clips])
     loaded: list[tuple[str, int, str, Clip]] = []
     refused: dict[tuple[Path, str], int] = {}
     digests: dict[Path, str] = {}
@@ -62,14 +61,36 @@ def import_files(
         assert skeleton is not None
         try:
             fitted = adopt(clip, skeleton)
+            if path not in digests:
+                str(path).encode()  # a name in no known encoding could not be written down
+                digests[path] = digest(path)
         except SkeletonMismatchError as error:
             refused[(path, str(error))] = refused.get((path, str(error)), 0) + 1
             continue
-        if path not in digests:
-            digests[path] = digest(path)
+        except FileError as error:
+            failures.append(str(error))
+            continue
+        except UnicodeEncodeError:
+            failures.append(str(FileError(path, "has a name that is no text", "its name", "Rename it.")))
+            continue
         name = relative(path, folder) if folder is not None else path.as_posix()
         loaded.append((name, take, digests[path], fitted))
     for (path, why), count in refused.items():
         clips = f"{count} clips are" if count > 1 else "its clip is"
         failures.append(f"{path.name}: {clips} of another character: {why}. Import it into a project of its own.")
-    return Imported(tuple(loaded), tuple(failures), tuple(report.notes), report.cancelled)
+    return Imported(tuple(loaded), tuple(dict.fromkeys(failures)), tuple(report.notes), report.cancelled)
+
+
+def _skeleton_of_most(clips: Sequence[Clip]) -> Skeleton | None:
+    """Return the skeleton that most clips can play on; of equal ones the one with most joints, then the first."""
+    groups: dict[tuple[str, ...], list[Clip]] = {}  # files of one character seldom differ in more than bone lengths
+    for clip in clips:
+        groups.setdefault(clip.skeleton.names, []).append(clip)
+    best: tuple[int, int] = (0, 0)
+    found = None
+    for group in groups.values():
+        skeleton = group[0].skeleton
+        fitting = sum(len(g) for g in groups.values() if g is group or difference(g[0].skeleton, skeleton) is None)
+        if (fitting, len(skeleton)) > best:
+            best, found = (fitting, len(skeleton)), skeleton
+    return found

@@ -8,9 +8,9 @@ from __future__ import annotations
 
 import hashlib
 import json
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping, Sequence
 from pathlib import Path
-from typing import Any, TextIO
+from typing import Any, BinaryIO
 
 from metagraph.errors import FileError
 from metagraph.formats.data import (
@@ -21,12 +21,18 @@ from metagraph.formats.data import (
     from_data,
     markov_data,
     skeleton_data,
+    stance_data,
     to_data,
+    weights_data,
 )
 from metagraph.formats.store import read_project
-from metagraph.graph.model import LAYERS, MetaGraph, Project, Stance
+from metagraph.graph.model import LAYERS, MetaGraph, Project
 
 _KEYED = ("clips", "stances", "actions")
+_KEPT = "It is kept; rename it to look into it."
+
+
+# --- what changed ----------------------------------------------------------------------------------------------------
 
 
 def changes(before: Project, after: Project) -> Data:
@@ -39,8 +45,7 @@ def changes(before: Project, after: Project) -> Data:
         out["markov"] = {layer: markov_data(m) for layer, m in after.markov.items()}
     if before.skeleton is not after.skeleton:
         out["skeleton"] = skeleton_data(after.skeleton) if after.skeleton is not None else []
-    if before.clips is not after.clips:
-        _keyed(out, "clips", before.clips, after.clips, clip_data)
+    _keyed(out, "clips", before.clips, after.clips, clip_data)
     layers: Data = {}
     for layer in LAYERS:
         old, new = before.graphs[layer], after.graphs[layer]
@@ -50,18 +55,14 @@ def changes(before: Project, after: Project) -> Data:
         if old.start != new.start:
             part["start"] = new.start
         if old.weights != new.weights:
-            part["weights"] = dict(new.weights)
-        _keyed(part, "stances", old.stances, new.stances, _stance_data)
+            part["weights"] = weights_data(new)
+        _keyed(part, "stances", old.stances, new.stances, stance_data)
         _keyed(part, "actions", old.actions, new.actions, action_data)
         if part:
             layers[layer] = part
     if layers:
         out["layers"] = layers
     return out
-
-
-def _stance_data(stance: Stance) -> Data:
-    return {"id": stance.id, "name": stance.name}
 
 
 def _bare(project: Project) -> Project:
@@ -77,77 +78,161 @@ def _bare(project: Project) -> Project:
     )
 
 
-def _keyed(out: Data, key: str, before: Mapping[str, Any], after: Mapping[str, Any], data: Any) -> None:
+def _keyed(out: Data, key: str, before: Mapping[str, Any], after: Mapping[str, Any], data: Callable[[Any], Data]) -> None:
+    """Note what was added, changed and (as None) removed; `<key>_after`: what stands before those not added at the end."""
     if before is after:
         return
     part: Data = {i: data(v) for i, v in after.items() if before.get(i) is not v}
     part.update(dict.fromkeys(i for i in before if i not in after))
     if part:
         out[key] = part
+    order = list(after)
     kept = [i for i in before if i in after]
-    if [*kept, *(i for i in after if i not in before)] != list(after):
-        out[f"{key}_order"] = list(after)
+    if [i for i in order if i in before] != kept:
+        out[f"{key}_order"] = order
+    elif len(kept) < len(order) and order[: len(kept)] != kept:
+        out[f"{key}_after"] = {i: order[n - 1] if n else None for n, i in enumerate(order) if i not in before}
 
 
-def apply(data: Data, change: Data) -> Data:
-    """Return project data with one change worked in."""
-    out = dict(data)
+# --- and back --------------------------------------------------------------------------------------------------------
+
+
+class _Replay:
+    """Project data that changes are worked into; lists are held by id, so that a change costs what it is large."""
+
+    def __init__(self, data: Data) -> None:
+        self.top = _opened(data)
+        self.layers = {layer: _opened(data["layers"][layer]) for layer in LAYERS}
+
+    def apply(self, change: Data) -> None:
+        for layer, part in change.get("layers", {}).items():
+            _work_in(self.layers[layer], part)
+        _work_in(self.top, {key: value for key, value in change.items() if key != "layers"})
+
+    def data(self) -> Data:
+        return {**_closed(self.top), "layers": {layer: _closed(part) for layer, part in self.layers.items()}}
+
+
+def _opened(data: Data) -> Data:
+    return {key: {item["id"]: item for item in value} if key in _KEYED else value for key, value in data.items()}
+
+
+def _closed(data: Data) -> Data:
+    return {key: list(value.values()) if key in _KEYED else value for key, value in data.items()}
+
+
+def _work_in(data: Data, change: Data) -> None:
     for key, value in change.items():
-        if key == "layers":
-            out["layers"] = {
-                layer: apply(data["layers"][layer], value[layer]) if layer in value else data["layers"][layer] for layer in LAYERS
-            }
-        elif key in _KEYED:
-            items = {item["id"]: item for item in data.get(key, [])}
+        if key in _KEYED:
+            items = data.setdefault(key, {})
             for ident, item in value.items():
                 if item is None:
                     items.pop(ident, None)
                 else:
                     items[ident] = item
-            out[key] = list(items.values())
-        elif not key.endswith("_order"):
-            out[key] = value
+        elif not key.endswith(("_order", "_after")):
+            data[key] = value
     for key in _KEYED:
         if f"{key}_order" in change:
-            items = {item["id"]: item for item in out[key]}
-            out[key] = [items[i] for i in change[f"{key}_order"] if i in items]
-    return out
+            data[key] = {i: data[key][i] for i in change[f"{key}_order"]}
+        elif f"{key}_after" in change:
+            data[key] = _inserted(data[key], change[f"{key}_after"])
+
+
+def _inserted(items: Data, places: Mapping[str, str | None]) -> Data:
+    """Return items in the order that puts each of `places` right behind another item, None being the beginning."""
+    following: dict[str | None, list[str]] = {}
+    for ident, before in places.items():
+        following.setdefault(before, []).append(ident)
+    out: Data = {}
+    queue: list[str] = following.pop(None, [])[::-1]
+    rest = iter([i for i in items if i not in places])
+    while True:
+        if not queue:
+            following_one = next(rest, None)
+            if following_one is None:
+                break
+            queue.append(following_one)
+        ident = queue.pop()
+        out[ident] = items[ident]
+        queue.extend(reversed(following.pop(ident, ())))
+    return {**out, **items}
+
+
+def apply(data: Data, change: Data) -> Data:
+    """Return project data with one change worked in. Raises KeyError, TypeError or AttributeError when they do not fit."""
+    replay = _Replay(data)
+    replay.apply(change)
+    return replay.data()
+
+
+# --- the file --------------------------------------------------------------------------------------------------------
 
 
 class Journal:
-    """Appends edits to a file. Opening truncates: whoever opens it has taken over what was in it, or declined it."""
+    """Appends edits to a file, begun with the first. Beginning truncates: whoever does has taken over what was in it, or declined it.
+
+    saved: the project file as it is now, which the edits build on.
+    """
 
     def __init__(self, path: Path, saved: Path | None) -> None:
         self.path = path
-        self._file: TextIO | None = None
-        self._saved = saved
+        self._file: BinaryIO | None = None
+        self._head: Data = {"saved": _digest(saved), "file": str(saved) if saved else None}
+        self._behind: Project | None = None  # the project before the first edit that could not be written
 
     def begin(self, base: Project | None = None) -> None:
-        """Start anew from the saved file, or from `base` written into the journal when there is none."""
+        """Start anew from the saved file, or from `base` written into the journal when there is none. Raises FileError."""
         self.close()
-        self.path.parent.mkdir(parents=True, exist_ok=True)
-        self._file = self.path.open("w", encoding="utf-8")
-        head: Data = {"saved": _digest(self._saved), "file": str(self._saved) if self._saved else None}
-        if base is not None:
-            head["base"] = to_data(base)
+        try:
+            head = self._head if base is None else {**self._head, "base": to_data(base)}
+        except DataError as error:
+            raise FileError(self.path, f"cannot be written ({error})", error.where, "Correct that value.") from None
+        try:
+            self.path.parent.mkdir(parents=True, exist_ok=True)
+            self._file = self.path.open("wb")
+        except OSError as error:
+            raise FileError(
+                self.path, f"cannot be written ({error.strerror})", "on beginning it", "Save the project now and then."
+            ) from None
         self._write(head)
 
     def edit(self, before: Project, after: Project) -> None:
-        """Append one finished edit. A full disk is told as FileError; the edit itself stands."""
-        change = changes(before, after)
-        if not change:
-            return
-        if self._file is None:
-            self.begin()
-        self._write(change)
+        """Append one finished edit. Raises FileError when it cannot be written; the edit itself stands, and is written with the next."""
+        before = self._behind or before
+        self._behind = before
+        try:
+            change = changes(before, after)
+        except DataError as error:
+            raise FileError(self.path, f"cannot be written ({error})", error.where, "Correct that value.") from None
+        if change:
+            if self._file is None:
+                self.begin()
+            self._write(change)
+        self._behind = None
 
     def _write(self, record: Data) -> None:
         assert self._file is not None
+        start = self._file.tell()
         try:
-            self._file.write(json.dumps(record, ensure_ascii=False, separators=(",", ":")) + "\n")
+            self._file.write(json.dumps(record, separators=(",", ":"), allow_nan=False).encode() + b"\n")
             self._file.flush()
         except OSError as error:
-            raise FileError(self.path, f"cannot be written ({error.strerror})", "", "Make room on the disk and save the project.") from None
+            self._cut(start)
+            raise FileError(
+                self.path, f"cannot be written ({error.strerror})", "on adding to it", "Make room on the disk and save the project."
+            ) from None
+
+    def _cut(self, size: int) -> None:
+        """Forget half a record: what is written later must not stand behind it."""
+        try:
+            if self._file is not None:
+                self._file.close()
+            self._file = self.path.open("r+b")
+            self._file.truncate(size)
+            self._file.seek(size)
+        except OSError:
+            self._file = None
 
     def close(self) -> None:
         if self._file is not None:
@@ -169,40 +254,54 @@ def _digest(path: Path | None) -> str | None:
 def recover(journal: Path, saved: Path | None) -> tuple[Project, int] | None:
     """Return the project with the journal's edits worked in, without motion, and how many there were; None if there is nothing.
 
-    Raises FileError when the journal belongs to another state of the file.
+    Raises FileError when the journal belongs to another state of the file, or nothing in it can be used.
     """
     try:
-        lines = journal.read_text(encoding="utf-8").split("\n")
-    except (OSError, UnicodeDecodeError):
+        lines = journal.read_bytes().split(b"\n")[:-1]  # what follows the last newline was torn
+    except OSError:
+        return None
+    if len(lines) < 2:
         return None
     records: list[Data] = []
-    for line in lines[:-1]:  # what follows the last newline was torn
+    for line in lines:
         try:
             record = json.loads(line)
-        except ValueError:
+        except (ValueError, RecursionError):
             break
         if not isinstance(record, dict):
             break
         records.append(record)
-    if len(records) < 2:
+    if not records or "saved" not in records[0]:
+        raise FileError(journal, "is damaged", "line 1", _KEPT)
+    if records[0]["saved"] != _digest(saved):
+        raise FileError(journal, "belongs to another state of the project file", "line 1", _KEPT)
+    base = records[0].get("base")
+    if not isinstance(base, dict):
+        base = to_data(read_project(saved) if saved is not None and saved.is_file() else Project())
+    # Usually all are good; else the longest beginning that is.
+    good, bad = 0, len(records)
+    count = len(records) - 1
+    found: Project | None = None
+    while count > good:
+        project = _replayed(base, records[1 : count + 1])
+        if project is not None:
+            good, found = count, project
+        else:
+            bad = count
+        count = (good + bad) // 2
+    if found is None:
+        raise FileError(journal, "is damaged", "line 2", _KEPT)
+    return found, good
+
+
+def _replayed(base: Data, records: Sequence[Data]) -> Project | None:
+    try:
+        replay = _Replay(base)
+        for record in records:
+            replay.apply(record)
+        return from_data(replay.data())
+    except (DataError, KeyError, TypeError, AttributeError):
         return None
-    head = records[0]
-    if head.get("saved") != _digest(saved):
-        raise FileError(journal, "belongs to another state of the project file", "", "It is kept; rename it to look into it.")
-    base = head.get("base")
-    data = base if isinstance(base, dict) else to_data(read_project(saved) if saved is not None and saved.is_file() else Project())
-    states = [data]
-    for record in records[1:]:
-        try:
-            states.append(apply(states[-1], record))
-        except (KeyError, TypeError, AttributeError):
-            break
-    while len(states) > 1:  # usually the last one is good at once
-        try:
-            return from_data(states[-1]), len(states) - 1
-        except DataError:
-            states.pop()
-    return None
 
 
 def journal_path(saved: Path) -> Path:

@@ -5,7 +5,7 @@ Clip paths are relative to the project file and carry the file's SHA-256, so a m
 
 from __future__ import annotations
 
-import json
+import errno
 import os
 import re
 import tempfile
@@ -14,18 +14,17 @@ from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any
 
-import yaml
-
 from metagraph.errors import FileError
 from metagraph.formats.clips import digest, read_clips
 from metagraph.formats.data import FORMAT, Data, DataError, from_data, to_data
+from metagraph.formats.text import TextError, parse, to_text
 from metagraph.graph.model import ClipEntry, Project
 from metagraph.motion.adopt import SkeletonMismatchError, adopt
 from metagraph.motion.clip import Clip
 
 SUFFIX = ".metagraph.yaml"
-HEADER = "# A Metagraph project. One line a clip, stance or action; times in seconds.\n"
 SEARCHED = 20_000  # files looked at when a clip has moved
+COMPARED = 2 << 30  # bytes of them that are compared by content
 
 # Upgrades of the plain data, from the version they are listed under to the next.
 UPGRADES: dict[int, Callable[[Data], Data]] = {}
@@ -41,69 +40,19 @@ class Opened:
 
 # --- text ------------------------------------------------------------------------------------------------------------
 
-_PLAIN = re.compile(r"[A-Za-z_][A-Za-z0-9_ ./()+-]*\Z")
-_WORDS = {"y", "n", "yes", "no", "on", "off", "true", "false", "null", "none", "nan", "inf"}
-
-
-def _scalar(value: Any) -> str:
-    if isinstance(value, str):
-        plain = _PLAIN.match(value) and not value.endswith(" ") and value.lower() not in _WORDS
-        return value if plain else json.dumps(value, ensure_ascii=False).replace("\x7f", "\\x7f").replace("\u0085", "\\x85")
-    if isinstance(value, list):
-        return "[" + ", ".join(map(_scalar, value)) + "]"
-    if isinstance(value, dict):
-        return "{" + ", ".join(f"{_scalar(k)}: {_scalar(v)}" for k, v in value.items()) + "}"
-    if value is None:
-        return "null"
-    if isinstance(value, bool):
-        return "true" if value else "false"
-    if isinstance(value, float):
-        text = repr(value)
-        return re.sub(r"^(-?\d+)e", r"\1.0e", text)  # YAML wants the point
-    return str(value)
-
-
-def to_text(data: Data) -> str:
-    """Return the canonical YAML text of plain project data."""
-    lines = [HEADER.rstrip("\n")]
-
-    def section(key: str, value: Any, indent: str) -> None:
-        if isinstance(value, list) and value and isinstance(value[0], dict | list):
-            lines.append(f"{indent}{key}:")
-            lines.extend(f"{indent}- {_scalar(item)}" for item in value)
-        elif isinstance(value, dict) and value and indent == "":
-            lines.append(f"{key}:")
-            for inner, content in value.items():
-                if isinstance(content, dict) and key in ("layers", "markov"):
-                    lines.append(f"  {_scalar(inner)}:")
-                    for name, part in content.items():
-                        section(name, part, "    ")
-                else:
-                    lines.append(f"  {_scalar(inner)}: {_scalar(content)}")
-        else:
-            lines.append(f"{indent}{key}: {_scalar(value)}")
-
-    for key, value in data.items():
-        section(key, value, "")
-    return "\n".join(lines) + "\n"
-
 
 def from_text(text: str, path: Path) -> Project:
-    """Return the project written in a file's text, its clips without motion. Raises FileError."""
-    loader = getattr(yaml, "CSafeLoader", yaml.SafeLoader)
+    """Return the project written in a file's text, its clips without motion. Raises FileError with the line and the field."""
     try:
-        data = yaml.load(text, Loader=loader)
-    except yaml.MarkedYAMLError as error:
-        line = f"line {error.problem_mark.line + 1}" if error.problem_mark else ""
-        raise FileError(
-            path, f"not valid YAML ({error.problem})", line, "Undo the last change made by hand, or restore a backup."
-        ) from None
-    except (yaml.YAMLError, RecursionError, ValueError) as error:
-        raise FileError(path, f"not valid YAML ({str(error).splitlines()[0]})", "", "Restore a backup.") from None
+        data, lines = parse(text)
+    except TextError as error:
+        line = f"line {error.line}" if error.line else "its text"
+        raise FileError(path, f"not valid YAML ({error})", line, "Undo the last change made by hand, or restore a backup.") from None
     try:
         return from_data(_upgraded(data, path))
     except DataError as error:
-        raise FileError(path, f"{error.where} {error}", _line_of(text, error.where), "Correct the line, or restore a backup.") from None
+        cause = f"{error.where} {error}".strip()
+        raise FileError(path, cause, _line_of(lines, error.where), "Correct it, or restore a backup.") from None
 
 
 def _upgraded(data: Any, path: Path) -> Any:
@@ -111,65 +60,71 @@ def _upgraded(data: Any, path: Path) -> Any:
     if version is None:
         return data
     if not isinstance(version, int) or isinstance(version, bool) or version < 1:
-        raise DataError("metagraph", f"should be the format's version, found {version!r}")
+        raise DataError("metagraph", "should be the version of the format, a whole number from 1")
     if version > FORMAT:
-        raise FileError(
-            path, f"was written by a newer Metagraph (format {version}, this one reads up to {FORMAT})", "", "Update Metagraph."
-        )
+        cause = f"was written by a newer Metagraph (format {version}, this one reads up to {FORMAT})"
+        raise FileError(path, cause, "metagraph", "Update Metagraph.")
     while version < FORMAT:
         data = {**UPGRADES[version](dict(data)), "metagraph": version + 1}
         version += 1
     return data
 
 
-def _line_of(text: str, where: str) -> str:
-    """Return "line n" for a field named like `layers.arms.actions[3] 'a7'.kind`, found by its id."""
-    ident = re.search(r"'([^']+)'", where)
-    if ident:
-        for n, line in enumerate(text.splitlines(), 1):
-            if re.search(rf"\bid: [\"']?{re.escape(ident.group(1))}\b", line):
-                return f"line {n}"
-    key = where.split(".")[-1].split("[")[0]
-    for n, line in enumerate(text.splitlines(), 1):
-        if re.match(rf"\s*{re.escape(key)}:", line):
-            return f"line {n}"
-    return ""
+def _line_of(lines: Mapping[str, int], where: str) -> str:
+    """Return "line n" of a field, or of what it is in."""
+    while where not in lines and where:
+        where = where[: max(where.rfind("."), where.rfind("["), 0)]
+    return f"line {lines.get(where, 1)}"
 
 
 # --- files -----------------------------------------------------------------------------------------------------------
 
 
 def write_atomically(path: Path, content: bytes) -> None:
-    """Write a file whole or not at all. Raises FileError."""
+    """Write a file whole or not at all; a link is kept, its target written. Raises FileError."""
     temporary = None
     try:
         path.parent.mkdir(parents=True, exist_ok=True)
-        handle, name = tempfile.mkstemp(prefix=f".{path.name}.", dir=path.parent)
+        path = path.resolve()
+        exists = path.exists()
+        if exists and not os.access(path, os.W_OK):
+            raise PermissionError(errno.EACCES, "it is read-only")
+        handle, name = tempfile.mkstemp(prefix=".saving-", dir=path.parent)
         temporary = Path(name)
         with os.fdopen(handle, "wb") as file:
             file.write(content)
             file.flush()
             os.fsync(file.fileno())
-        if path.exists():
+        if exists:
             temporary.chmod(path.stat().st_mode & 0o777)
         else:
             mask = os.umask(0)
             os.umask(mask)
             temporary.chmod(0o666 & ~mask)
         temporary.replace(path)
+        temporary = None
     except OSError as error:
+        raise FileError(
+            path, f"cannot be written ({error.strerror or error})", "on saving it", "Choose a place you may write to, with space left."
+        ) from None
+    finally:
         if temporary is not None:
             temporary.unlink(missing_ok=True)
-        raise FileError(
-            path, f"cannot be written ({error.strerror or error})", "", "Choose a folder you may write to, with space left."
-        ) from None
 
 
 def save_project(project: Project, path: str | Path, was_at: Path | None = None) -> Project:
-    """Save; return the project with its paths relative to the new place when `was_at`, the old file, is elsewhere."""
+    """Save; return the project as it was saved. Raises FileError.
+
+    was_at: the project file its paths are relative to, when that is another one; they are then made relative to `path`.
+    """
     path = Path(path)
-    project = moved(project, was_at, path)
-    write_atomically(path, to_text(to_data(project)).encode())
+    if was_at is not None:
+        project = moved(project, was_at, path)
+    try:
+        text = to_text(to_data(project))
+    except DataError as error:
+        raise FileError(path, f"cannot be saved: {error}", error.where, "Correct that value.") from None
+    write_atomically(path, text.encode())
     return project
 
 
@@ -194,11 +149,15 @@ def absolute(project: Project, folder: Path) -> Project:
 
 
 def relative(path: Path, folder: Path) -> str:
-    """Return `path` relative to `folder` with `/` between parts; absolute where there is no way (another drive)."""
+    """Return `path` relative to `folder` with `/` between parts; absolute where there is no way (another drive).
+
+    Links among the folders are followed first, since `..` out of a linked folder leads elsewhere; a linked file keeps its name.
+    """
+    path = path.parent.resolve() / path.name
     try:
-        return Path(os.path.relpath(path, folder)).as_posix()
+        return Path(os.path.relpath(path, folder.resolve())).as_posix()
     except ValueError:
-        return path.resolve().as_posix()
+        return path.as_posix()
 
 
 def read_project(path: str | Path) -> Project:
@@ -207,9 +166,9 @@ def read_project(path: str | Path) -> Project:
     try:
         text = path.read_bytes().decode("utf-8-sig")
     except OSError as error:
-        raise FileError(path, f"cannot be read ({error.strerror or error})", "", "Check that it is there.") from None
+        raise FileError(path, f"cannot be read ({error.strerror or error})", "on opening it", "Check that it is there.") from None
     except UnicodeDecodeError as error:
-        raise FileError(path, f"is not text (byte {error.start})", "", "Choose a Metagraph project file.") from None
+        raise FileError(path, "is not text", f"byte {error.start}", "Choose a Metagraph project file.") from None
     return from_text(text, path)
 
 
@@ -219,23 +178,62 @@ def open_project(path: str | Path, progress: Callable[[int, int], None] | None =
     return load_motions(read_project(path), path.parent, progress)
 
 
-def load_motions(project: Project, folder: Path, progress: Callable[[int, int], None] | None = None) -> Opened:
-    """Load the motion of every clip that has none; `folder` is what paths are relative to."""
+def load_motions(project: Project, folder: Path | None, progress: Callable[[int, int], None] | None = None) -> Opened:
+    """Load the motion of every clip that has none. folder: what paths are relative to, None when all are absolute."""
+    if folder is not None and folder.parent == folder:
+        folder = None  # the root of all files is nobody's project: nothing is searched there
+    return _load(project, folder, _find(_lost(project, folder), folder) if folder is not None else {}, progress)
+
+
+def relocate(project: Project, folder: Path | None, where: Path, progress: Callable[[int, int], None] | None = None) -> Project:
+    """Return the project with missing clips loaded from anywhere below `where`, their paths corrected.
+
+    They are found by content, or by name where the content has changed.
+    """
+    lost = _lost(project, folder)
+    return _load(project, folder, _find(lost, where, by_name=True), progress, only=lost).project
+
+
+def _place(entry: ClipEntry, folder: Path | None) -> Path:
+    """Return where a clip's file should be. Paths written on Windows by hand are understood, too."""
+    place = (folder or Path()) / entry.path
+    return place if "\\" not in entry.path or place.is_file() else (folder or Path()) / entry.path.replace("\\", "/")
+
+
+def _lost(project: Project, folder: Path | None) -> dict[str, list[ClipEntry]]:
+    """Return the clips whose file is not where it should be, by path."""
+    out: dict[str, list[ClipEntry]] = {}
+    for entry in project.clips.values():
+        if entry.motion is None and not _place(entry, folder).is_file():
+            out.setdefault(entry.path, []).append(entry)
+    return out
+
+
+def _load(
+    project: Project,
+    folder: Path | None,
+    found: Mapping[str, Path],
+    progress: Callable[[int, int], None] | None,
+    only: Mapping[str, object] | None = None,
+) -> Opened:
+    """Load the clips without motion, from `found` those that are elsewhere."""
     notes: list[str] = []
     clips = dict(project.clips)
     by_path: dict[str, list[ClipEntry]] = {}
     for entry in clips.values():
-        if entry.motion is None:
+        if entry.motion is None and (only is None or entry.path in only):
             by_path.setdefault(entry.path, []).append(entry)
-    lost = {p: e for p, e in by_path.items() if not (folder / p).is_file()}
-    found = _find(lost, folder) if lost else {}
     skeleton = project.skeleton
     for n, (name, entries) in enumerate(by_path.items()):
         if progress is not None:
             progress(n, len(by_path))
-        place = found.get(name, folder / name)
+        place = found.get(name) or _place(entries[0], folder)
+        path = name
+        if name in found or "\\" in name:
+            absolute_path = folder is None or Path(name).is_absolute()
+            path = place.resolve().as_posix() if absolute_path or folder is None else relative(place, folder)
         if name in found:
-            notes.append(f"'{name}' has moved to '{relative(place, folder)}'")
+            notes.append(f"'{name}' has moved to '{path}'")
         if not place.is_file():
             notes.append(f"'{name}' is missing")
             continue
@@ -245,33 +243,18 @@ def load_motions(project: Project, folder: Path, progress: Callable[[int, int], 
         except FileError as error:
             notes.append(str(error))
             continue
+        if any(e.digest and now != e.digest for e in entries):
+            notes.append(f"'{path}' has changed since it was imported")
         for entry in entries:
-            if entry.take >= len(takes):
-                notes.append(f"'{name}' no longer has take {entry.take + 1}")
+            if not 0 <= entry.take < len(takes):
+                notes.append(f"'{path}' no longer has take {entry.take + 1} ('{entry.name}')")
                 continue
-            if entry.digest and now != entry.digest:
-                notes.append(f"'{name}' has changed since it was imported")
             motion = takes[entry.take].renamed(entry.name)
             if skeleton is None:
                 skeleton = motion.skeleton
             motion = _adopted(motion, skeleton)
-            clips[entry.id] = replace(entry, path=relative(place, folder), digest=now, frames=motion.frames, fps=motion.fps, motion=motion)
+            clips[entry.id] = replace(entry, path=path, digest=now, frames=motion.frames, fps=motion.fps, motion=motion)
     return Opened(replace(project, clips=clips, skeleton=skeleton), tuple(dict.fromkeys(notes)))
-
-
-def relocate(project: Project, folder: Path | None, where: Path, progress: Callable[[int, int], None] | None = None) -> Project:
-    """Return the project with missing clips loaded from anywhere below `where`, their paths corrected; found by name or content."""
-    lost: dict[str, list[ClipEntry]] = {}
-    for entry in project.clips.values():
-        if entry.motion is None:
-            lost.setdefault(entry.path, []).append(entry)
-    found = _find(lost, where)
-    base = folder or Path()
-    clips = dict(project.clips)
-    for path, place in found.items():
-        name = relative(place, base) if folder is not None else place.as_posix()
-        clips.update({e.id: replace(e, path=name) for e in lost[path]})
-    return load_motions(replace(project, clips=clips), base, progress).project
 
 
 def _adopted(clip: Clip, skeleton: Any) -> Clip:
@@ -281,34 +264,59 @@ def _adopted(clip: Clip, skeleton: Any) -> Clip:
         return clip  # `check` says so
 
 
-def _find(lost: Mapping[str, Iterable[ClipEntry]], folder: Path) -> dict[str, Path]:
-    """Look for moved files below the project's folder: same name first, any name with the same content after that."""
-    by_digest = {e.digest: path for path, entries in lost.items() for e in entries if e.digest}
-    suffixes = {Path(p).suffix.lower() for p in lost}
+def _find(lost: Mapping[str, Iterable[ClipEntry]], folder: Path, by_name: bool = False) -> dict[str, Path]:
+    """Look below a folder for files with the content of lost ones, those of the same name first.
+
+    by_name: take a file of the same name where none has the content; of several the one whose folders agree longest.
+    """
+    paths: dict[str, list[str]] = {}  # by content
     names: dict[str, list[str]] = {}
-    for path in lost:
-        names.setdefault(Path(path).name.lower(), []).append(path)
-    found: dict[str, Path] = {}
-    others: list[Path] = []
+    for path, entries in lost.items():
+        names.setdefault(_parts(path)[-1], []).append(path)
+        for wanted in {e.digest for e in entries if e.digest}:
+            paths.setdefault(wanted, []).append(path)
+    if not lost:
+        return {}
+    suffixes = {Path(name).suffix for name in names}
+    candidates: list[Path] = []
     seen = 0
     for top, folders, files in os.walk(folder):
         folders[:] = sorted(f for f in folders if not f.startswith("."))
-        for file in sorted(files):
-            seen += 1
-            candidate = Path(top) / file
-            if candidate.suffix.lower() not in suffixes:
-                continue
-            wanted = names.get(file.lower())
-            if wanted and digest(candidate) in by_digest:
-                found[by_digest[digest(candidate)]] = candidate
-            else:
-                others.append(candidate)
+        candidates += [Path(top) / f for f in sorted(files) if Path(f).suffix.lower() in suffixes]
+        seen += len(files)
         if seen > SEARCHED:
             break
-    for candidate in others:
-        if len(found) == len(lost):
+    candidates.sort(key=lambda p: p.name.lower() not in names)
+    found: dict[str, Path] = {}
+    read = 0
+    for candidate in candidates:
+        if len(found) == len(lost) or read > COMPARED:
             break
-        same = by_digest.get(digest(candidate))
-        if same is not None:
-            found.setdefault(same, candidate)
+        try:
+            read += candidate.stat().st_size
+            same = paths.get(digest(candidate), [])
+        except (OSError, FileError):
+            continue
+        for path in same:
+            if path not in found or _alike(candidate, path) > _alike(found[path], path):
+                found[path] = candidate
+    for name, missing in names.items() if by_name else ():
+        called = [c for c in candidates if c.name.lower() == name]
+        for path in missing:
+            if path not in found and called:
+                found[path] = max(called, key=lambda c: _alike(c, path))
     return found
+
+
+def _parts(path: str) -> list[str]:
+    return re.split(r"[\\/]+", path.lower())
+
+
+def _alike(place: Path, path: str) -> int:
+    """Return how many names of two paths agree, counted from the end."""
+    same = 0
+    for a, b in zip(reversed(place.parts), reversed(_parts(path)), strict=False):
+        if a.lower() != b:
+            break
+        same += 1
+    return same

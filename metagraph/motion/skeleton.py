@@ -33,9 +33,12 @@ class Skeleton:
 
     def __post_init__(self) -> None:
         parents = np.asarray(self.parents, np.int32)
-        rotations = rotation.normalize(np.asarray(self.rest_rotations, np.float64))
-        translations = np.asarray(self.rest_translations, np.float64)
+        rotations = np.array(self.rest_rotations, np.float64)
         count = len(self.names)
+        if rotations.shape == (count, 4):
+            unit = np.abs(np.einsum("ji,ji->j", rotations, rotations) - 1) <= 1e-12  # these stay as they are, to the bit
+            rotations[~unit] = rotation.normalize(rotations[~unit])
+        translations = np.asarray(self.rest_translations, np.float64)
         if count == 0:
             raise ValueError("a skeleton needs at least one joint")
         if parents.shape != (count,) or rotations.shape != (count, 4) or translations.shape != (count, 3):

@@ -1,0 +1,186 @@
+"""Random projects for tests: built by the edits an animator makes, so that whatever can be made is made."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import replace
+from typing import Any
+
+import numpy as np
+from hypothesis import strategies as st
+
+from metagraph.graph import edits
+from metagraph.graph.model import KINDS, LAYERS, LIMBS, PARTS, Markov, Project
+from metagraph.motion.clip import Clip
+from metagraph.motion.skeleton import Skeleton
+
+NASTY = (
+    "yes", "no", "Off", "null", "~", "1e3", "1_000", "0x1F", "12:30:00", "2024-01-01", ".inf", "NaN", "=", "<<", "true", "y", "None",
+    "#hash", "a #b", "a: b", "a:b", "- a", "-", "?", "[x]", "{x}", "*a", "&a", "!tag", "!!python/object", "%d", "@a", "`a", "a\tb",
+    "'single'", '"double"', "back\\slash", "new\nline", "\r\n", "trailing ", " leading", "Größe", "日本語", "🙂", "a\u2028b", "\u0085",
+    "\x7f", "\ufeff", "\x00", "...", "---", "|", ">", "a,b", "nod_01 (v2)", "e1", "x" * 300, "\ud83d",
+)  # fmt: skip
+
+times = st.floats(0, 30).map(lambda x: round(x, 3))
+words = st.one_of(
+    st.sampled_from([n for n in NASTY if n != "\ud83d"]), st.text(st.characters(exclude_categories=["Cs"]), min_size=1, max_size=12)
+)
+
+
+def named(text: str) -> bool:
+    return bool(text.split())
+
+
+names = words.filter(named)
+
+SKELETON = Skeleton(
+    ("Hips", "Spine", "Head", "LeftArm"),
+    np.array([-1, 0, 1, 1]),
+    np.array([[0, 0, 0, 1.0], [0.1, 0.2, 0.3, 0.4], [0, 0.7071, 0, 0.7071], [0, 0, 0, 1]]),
+    np.array([[0, 1, 0], [0, 0.12345, 1 / 3], [0, 0.1, 0], [0.2, 0, 1e-9]]),
+)
+_STILL = np.tile(SKELETON.rest_rotations, (2, 1, 1))
+
+
+def clip(name: str, frames: int = 31) -> Clip:
+    """A clip that does not move."""
+    still = np.broadcast_to(SKELETON.rest_rotations, (frames, 4, 4))
+    return Clip(name, SKELETON, 30, still, np.broadcast_to(SKELETON.rest_translations[:1], (frames, 1, 3)))
+
+
+def _import(draw: Any, project: Project) -> Project:
+    count = draw(st.integers(1, 3))
+    return edits.add_clips(
+        project,
+        [
+            (f"clips/{draw(names)}.glb", n, draw(st.sampled_from(["", "ab" * 32])), clip(draw(names), draw(st.integers(1, 90))))
+            for n in range(count)
+        ],
+    )
+
+
+def _stance(draw: Any, project: Project) -> Project:
+    return edits.add_stance(
+        project,
+        draw(st.sampled_from(LAYERS)),
+        draw(names),
+        draw(st.lists(st.sampled_from([*project.clips]), max_size=2)) if project.clips else (),
+    )
+
+
+def _place(draw: Any, project: Project) -> Project:
+    layer = draw(st.sampled_from(LAYERS))
+    stances = [*project.graphs[layer].stances]
+    if not project.clips or not stances:
+        return project
+    chosen = draw(st.lists(st.sampled_from([*project.clips]), min_size=1, max_size=3))
+    try:
+        return edits.place(
+            project, chosen, layer, draw(st.sampled_from(KINDS)), draw(st.sampled_from(stances)), draw(st.sampled_from(stances))
+        )
+    except edits.EditError:
+        return project
+
+
+def _update(draw: Any, project: Project) -> Project:
+    ids = [a.id for a in project.actions()]
+    if not ids:
+        return project
+    changes = draw(
+        st.fixed_dictionaries(
+            {},
+            optional={
+                "name": names,
+                "likelihood": st.sampled_from([0.5, 2.0, 1e-7, 123456.789]),
+                "limb": st.sampled_from(LIMBS),
+                "tags": st.lists(words, max_size=3).map(tuple),
+                "joints": st.lists(st.sampled_from(SKELETON.names), max_size=2).map(tuple),
+                "timing": st.fixed_dictionaries(
+                    {},
+                    optional={
+                        "start": times, "end": st.none() | times, "blend_in": times, "blend_out": times, "loop": st.booleans(),
+                        "earliest_exit": st.none() | times, "stroke": st.none() | times,
+                    },
+                ),
+            },
+        )
+    )  # fmt: skip
+    return edits.update_actions(project, draw(st.lists(st.sampled_from(ids), min_size=1, max_size=3)), **changes)
+
+
+def _remove(draw: Any, project: Project) -> Project:
+    ids = [a.id for a in project.actions()]
+    return edits.remove_actions(project, draw(st.lists(st.sampled_from(ids), max_size=3))) if ids else project
+
+
+def _remove_stance(draw: Any, project: Project) -> Project:
+    ids = [s for layer in LAYERS for s in project.graphs[layer].stances]
+    return edits.remove_stance(project, draw(st.sampled_from(ids))) if ids else project
+
+
+def _remove_clips(draw: Any, project: Project) -> Project:
+    return edits.remove_clips(project, [draw(st.sampled_from([*project.clips]))]) if project.clips else project
+
+
+def _move(draw: Any, project: Project) -> Project:
+    ids = [a.id for a in project.actions()]
+    stances = [s for layer in LAYERS for s in project.graphs[layer].stances]
+    if not ids:
+        return project
+    try:
+        return edits.move_actions(
+            project,
+            [draw(st.sampled_from(ids))],
+            draw(st.sampled_from(KINDS)),
+            draw(st.sampled_from(stances)),
+            draw(st.sampled_from(stances)),
+        )
+    except edits.EditError:
+        return project
+
+
+def _rest(draw: Any, project: Project) -> Project:
+    layer = draw(st.sampled_from(LAYERS))
+    third = 1 / 3
+    return draw(
+        st.sampled_from(
+            [
+                lambda p: edits.set_weight(p, layer, draw(st.sampled_from(PARTS)), draw(st.sampled_from([0.0, 0.35, 2.0]))),
+                lambda p: edits.set_settings(p, seed=draw(st.integers(0, 2**32 - 1)), alpha=draw(st.sampled_from([0.0, 2.5]))),
+                lambda p: edits.set_settings(p, never_twice=draw(st.booleans())),
+                lambda p: edits.set_role(p, draw(names), draw(st.none() | st.sampled_from(SKELETON.names))),
+                lambda p: edits.set_part(p, [draw(st.sampled_from(SKELETON.names))], draw(st.none() | st.sampled_from(PARTS))),
+                lambda p: edits.set_character(p, draw(st.none() | words)),
+                lambda p: edits.rename_project(p, draw(names)),
+                lambda p: edits.set_base(p, draw(st.sampled_from([None, *p.clips])), draw(st.integers(0, 40))),
+                lambda p: edits.set_markov(
+                    p,
+                    Markov(
+                        layer, (("left", "gesture"), ("both", "fidget"), ("both", "transition")), ((third, third, third),) * 3, 1.5, 0.25
+                    ),
+                ),
+                lambda p: replace(p, graphs={**p.graphs, layer: replace(p.graphs[layer], start=next(iter(p.graphs[layer].stances), None))}),
+            ]
+        )
+    )(project)
+
+
+EDITS: tuple[Callable[[Any, Project], Project], ...] = (
+    _import, _stance, _stance, _place, _place, _place, _update, _update, _remove, _remove_stance, _remove_clips, _move, _rest,
+)  # fmt: skip
+
+
+@st.composite
+def histories(draw: Any, most: int = 12) -> list[Project]:
+    """Every state of a project that somebody edits, with some steps taken back and done again."""
+    states = [Project(draw(names))]
+    for _ in range(draw(st.integers(0, most))):
+        if len(states) > 1 and draw(st.integers(0, 5)) == 0:
+            states.append(draw(st.sampled_from(states)))
+        else:
+            states.append(draw(st.sampled_from(EDITS))(draw, states[-1]))
+    return states
+
+
+def projects(most: int = 12) -> st.SearchStrategy[Project]:
+    return histories(most).map(lambda states: states[-1])
