@@ -22,6 +22,7 @@ from metagraph.graph.expand import size
 from metagraph.graph.model import KINDS, LAYERS, Project
 from metagraph.playback.plan import Plan
 from metagraph.playback.planner import make_plan
+from metagraph.playback.bake import bake
 from metagraph.playback.player import pose_at
 
 SAMPLE = Path(__file__).resolve().parents[1] / "sample_clips" / f"sample{SUFFIX}"
@@ -184,7 +185,10 @@ def render(options: Namespace) -> int:
             raise ValueError(f"there is no clip '{options.clip}' in the project")
         seconds = project.clips[clip].duration
     made = _plan(project, options) if clip is None else None
-    draw_to(options.out, project, figure, made, clip, seconds, _size(options.size), options.fps, options.frames, options.theme)
+    if options.out.suffix in (".glb", ".bvh"):
+        bake_to(options.out, project, made, clip, seconds, options.fps)
+    else:
+        draw_to(options.out, project, figure, made, clip, seconds, _size(options.size), options.fps, options.frames, options.theme)
     _say(options, f"{options.out}", {"written": str(options.out)})
     return 0
 
@@ -210,6 +214,24 @@ def draw_to(
         write_png(out, contact_sheet(images, 8, labels))
     else:
         raise ValueError(f"pictures are written as .png, videos as .mp4, not '{out.suffix}'")
+
+
+def bake_to(out: Path, project: Project, made: Plan | None, clip: str | None, seconds: float, fps: float) -> None:
+    """Write a performance, or a clip, as plain motion: what an engine or an animation program plays without a planner."""
+    from metagraph.formats.bvh import write_bvh
+    from metagraph.formats.gltf_writer import write_glb
+
+    if clip is not None and project.clips[clip].motion is not None:
+        motion = project.clips[clip].motion
+    else:
+        assert made is not None
+        motion = bake(made, project, seconds, fps)
+    assert motion is not None
+    out.parent.mkdir(parents=True, exist_ok=True)
+    if out.suffix == ".bvh":
+        write_bvh(motion, out)
+    else:
+        write_glb(out, [motion])
 
 
 def _doing(made: Plan, seconds: float) -> str:

@@ -19,7 +19,7 @@ from metagraph.motion.clip import Clip
 # Numbers out of a broken file overflow on their way to the check that refuses them; that is no reason to warn.
 _QUIET = np.errstate(all="ignore")
 
-__all__ = ["read_character", "read_gltf_clips", "vrm_roles", "write_glb"]
+__all__ = ["has_skinned_mesh", "read_character", "read_gltf_clips", "vrm_roles", "write_glb"]
 
 
 @_QUIET
@@ -45,6 +45,12 @@ def read_character(path: str | Path) -> Character:
     """Return all meshes of the default scene as one skinned character in its skeleton's rest pose. Raises FileError."""
     gltf = open_gltf(path)
     return character_of(gltf, build_rig(gltf))
+
+
+def has_skinned_mesh(path: str | Path) -> bool:
+    """Return whether a file holds a mesh on a skeleton: something to draw. Raises FileError."""
+    nodes = open_gltf(path).json.nodes
+    return any(node.mesh is not None and node.skin is not None for node in nodes)
 
 
 @_QUIET

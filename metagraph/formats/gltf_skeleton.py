@@ -80,7 +80,7 @@ def build_rig(gltf: Gltf) -> Rig:
     key = hashlib.sha256(msgspec.json.encode((nodes, gltf.json.skins, sorted(members))))
     for s, skin in enumerate(gltf.json.skins):
         if skin.inverse_bind_matrices is not None:
-            key.update(np.ascontiguousarray(gltf.array(skin.inverse_bind_matrices, f"skin {s}", "MAT4")))
+            key.update(np.asarray(gltf.array(skin.inverse_bind_matrices, f"skin {s}", "MAT4")).tobytes())
     found = _rigs.get(key.digest())
     if found is None:
         found = _build(gltf, nodes, parents, order, members)

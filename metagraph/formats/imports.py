@@ -8,8 +8,9 @@ from pathlib import Path
 
 from metagraph.errors import FileError
 from metagraph.formats.clips import digest, find_clip_files, import_clips
+from metagraph.formats.gltf import has_skinned_mesh
 from metagraph.formats.store import relative
-from metagraph.graph.edits import add_clips
+from metagraph.graph.edits import add_clips, set_character
 from metagraph.graph.model import Project
 from metagraph.motion.adopt import SkeletonMismatchError, adopt, difference
 from metagraph.motion.clip import Clip
@@ -18,16 +19,21 @@ from metagraph.motion.skeleton import Skeleton
 
 @dataclass(frozen=True)
 class Imported:
-    """loaded: what `add_clips` takes. failures: why files were left out, in words. notes: what readers changed."""
+    """loaded: what `add_clips` takes. failures: why files were left out, in words. notes: what readers changed.
+
+    character: the first of the files that also holds a mesh, written as clip paths are, for a project that draws none yet.
+    """
 
     loaded: tuple[tuple[str, int, str, Clip], ...]
     failures: tuple[str, ...] = ()
     notes: tuple[str, ...] = ()
     cancelled: bool = False
+    character: str | None = None
 
     def into(self, project: Project) -> Project:
-        """The edit: `project` with the clips added."""
-        return add_clips(project, self.loaded)
+        """The edit: `project` with the clips added, and with the character that came with them if it had none."""
+        project = add_clips(project, self.loaded)
+        return set_character(project, self.character) if project.character is None and self.character else project
 
 
 def gather(paths: Iterable[str | Path]) -> list[Path]:
@@ -78,7 +84,21 @@ def import_files(
     for (path, why), count in refused.items():
         clips = f"{count} clips are" if count > 1 else "its clip is"
         failures.append(f"{path.name}: {clips} of another character: {why}. Import it into a project of its own.")
-    return Imported(tuple(loaded), tuple(dict.fromkeys(failures)), tuple(report.notes), report.cancelled)
+    character = _character(loaded, folder) if project.character is None else None
+    return Imported(tuple(loaded), tuple(dict.fromkeys(failures)), tuple(report.notes), report.cancelled, character)
+
+
+def _character(loaded: Sequence[tuple[str, int, str, Clip]], folder: Path | None) -> str | None:
+    """Return the first imported file that holds a skinned mesh."""
+    for name in dict.fromkeys(name for name, _, _, _ in loaded):
+        path = (folder or Path()) / name
+        if path.suffix.lower() in (".glb", ".gltf", ".vrm"):
+            try:
+                if has_skinned_mesh(path):
+                    return name
+            except FileError:
+                continue  # its clips were read; what is wrong with its meshes the preview says if it is chosen
+    return None
 
 
 def _skeleton_of_most(clips: Sequence[Clip]) -> Skeleton | None:
