@@ -1,0 +1,108 @@
+"""The Markov model: the paper's matrix, and meta actions that only append as the horizon moves."""
+
+from __future__ import annotations
+
+import itertools
+from collections import Counter
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from metagraph.graph import edits
+from metagraph.graph.model import LAYERS, Markov, Project
+from metagraph.playback import markov
+from metagraph.playback.markov import ARMS, DEFAULTS, write
+
+# Borer et al., figure 11, in percent, typed in once more from the paper.
+FIGURE_11 = {
+    "left gesture": (25, 37.5, 12.5, 12.5, 0, 0, 12.5, 0, 0),
+    "left fidget": (26.7, 33.3, 6.7, 13.3, 20, 0, 0, 0, 0),
+    "left transition": (20, 20, 0, 0, 60, 0, 0, 0, 0),
+    "right gesture": (0, 28.6, 0, 42.9, 0, 0, 14.3, 0, 14.3),
+    "right fidget": (0, 42.9, 14.3, 0, 0, 0, 14.3, 14.3, 14.3),
+    "right transition": (0, 0, 100, 0, 0, 0, 0, 0, 0),
+    "both gesture": (25, 0, 0, 25, 25, 0, 0, 25, 0),
+    "both fidget": (0, 33.3, 33.3, 0, 0, 0, 33.3, 0, 0),
+    "both transition": (0, 0, 0, 0, 20, 20, 0, 0, 60),
+}
+
+
+def test_the_arms_matrix_is_the_papers_figure_11() -> None:
+    assert [f"{limb} {kind}" for limb, kind in ARMS.states] == list(FIGURE_11)
+    for row, printed in zip(ARMS.matrix, FIGURE_11.values(), strict=True):
+        assert np.allclose(np.array(row) * 100, printed, atol=0.1)  # printed to 0.1 %
+
+
+@pytest.mark.parametrize("layer", LAYERS)
+def test_every_row_of_every_model_sums_to_1(layer: str) -> None:
+    model = DEFAULTS[layer]  # type: ignore[index]
+    assert np.allclose(np.sum(model.matrix, axis=1), 1, atol=1e-12)
+    assert np.shape(model.matrix) == (len(model.states), len(model.states)) and model.layer == layer
+
+
+def test_a_projects_own_model_comes_before_the_default() -> None:
+    own = Markov("arms", (("both", "gesture"),), ((1.0,),))
+    assert markov.model(edits.set_markov(Project(), own), "arms") is own
+    assert markov.model(Project(), "arms") is ARMS
+
+
+def test_nothing_is_written_for_no_time() -> None:
+    assert list(write(ARMS, 1, 0)) == []
+
+
+@pytest.mark.parametrize("seed", [0, 1, 99])
+def test_a_longer_horizon_only_appends(seed: int) -> None:
+    short, long = list(write(ARMS, seed, 60)), list(write(ARMS, seed, 300))
+    assert long[: len(short)] == short and len(long) > len(short)
+    assert all(m.start < 60 for m in short) and long[len(short)].start >= 60
+
+
+def test_what_is_written_ascends_without_overlaps_and_says_it_was_written() -> None:
+    metas = list(write(ARMS, 5, 600))
+    assert all(a.end < b.start for a, b in itertools.pairwise(metas))
+    assert all(m.written and m.request.priority == 0 and 1 <= m.end - m.start <= 3 for m in metas)
+    assert len({m.key for m in metas}) == len(metas)
+
+
+def test_rests_are_as_long_on_average_as_the_model_says() -> None:
+    metas = list(write(ARMS, 3, 20000))
+    gaps = np.array([b.start - a.end for a, b in itertools.pairwise(metas)])
+    assert gaps.min() >= ARMS.gap * 0.35 and gaps.max() <= ARMS.gap * 1.65
+    assert abs(gaps.mean() - ARMS.gap) < 4 * gaps.std() / np.sqrt(len(gaps))
+
+
+@pytest.mark.parametrize("layer", LAYERS)
+def test_observed_transitions_are_within_sampling_error_of_the_matrix(layer: str) -> None:
+    model = DEFAULTS[layer]  # type: ignore[index]
+    states = [(m.request.limb, m.request.kind) for m in write(model, 11, 40000)]
+    pairs = Counter(itertools.pairwise(states))
+    for i, source in enumerate(model.states):
+        seen = np.array([pairs[source, target] for target in model.states], float)
+        expected = seen.sum() * np.array(model.matrix[i])
+        assert not seen[expected == 0].any()
+        inner = expected > 0
+        degrees = inner.sum() - 1
+        chi = ((seen - expected)[inner] ** 2 / expected[inner]).sum()
+        assert chi < degrees + 4 * np.sqrt(2 * degrees) + 6, (source, seen, expected)
+
+
+def test_tags_are_asked_for_as_often_as_the_model_says() -> None:
+    model = replace(DEFAULTS["head"], positive=0.3, negative=0.2)
+    tags = Counter(m.request.tags for m in write(model, 2, 20000) if m.request.kind == "gesture")
+    total = sum(tags.values())
+    for tag, share in ((("positive",), 0.3), (("negative",), 0.2)):
+        assert abs(tags[tag] / total - share) < 4 * np.sqrt(share * (1 - share) / total)
+    assert all(not m.request.tags for m in write(model, 2, 500) if m.request.kind != "gesture")
+
+
+def test_a_row_of_zeros_starts_again_from_any_state() -> None:
+    stuck = Markov("head", (("both", "gesture"), ("both", "fidget")), ((0.0, 0.0), (1.0, 0.0)))
+    kinds = {m.request.kind for m in write(stuck, 1, 200)}
+    assert kinds == {"gesture", "fidget"}
+
+
+def test_layers_and_seeds_draw_apart() -> None:
+    a, b = list(write(ARMS, 1, 60)), list(write(ARMS, 2, 60))
+    assert [m.start for m in a] != [m.start for m in b]
+    assert [m.start for m in write(DEFAULTS["head"], 1, 60)] != [m.start for m in write(DEFAULTS["body"], 1, 60)]
