@@ -71,5 +71,10 @@ class Figures(QObject):
 def load_figure(path: Path, skeleton: Skeleton) -> Figure:
     """Return a character's figure bound to a skeleton. Raises FileError."""
     from metagraph.formats.gltf import read_character
+    from preview.gpu import decoded
 
-    return SkinnedFigure(read_character(path), skeleton)
+    figure = SkinnedFigure(read_character(path), skeleton)
+    for batch in figure.mesh.batches:
+        if batch.image is not None:
+            decoded(batch.image)  # here, on a thread, rather than when it is first drawn
+    return figure

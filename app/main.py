@@ -5,10 +5,14 @@ from __future__ import annotations
 import os
 import sys
 from pathlib import Path
+from typing import TYPE_CHECKING
 
-from PySide6.QtCore import QCoreApplication, Qt, QTimer
+from PySide6.QtCore import QCoreApplication, Qt
 from PySide6.QtGui import QSurfaceFormat
 from PySide6.QtWidgets import QApplication
+
+if TYPE_CHECKING:
+    from app.window import Window
 
 
 def prepare() -> QApplication:
@@ -16,6 +20,8 @@ def prepare() -> QApplication:
     found = QApplication.instance()
     if isinstance(found, QApplication):
         return found
+    # Planning and checking run on threads; the window's own must get its turn well within a frame.
+    sys.setswitchinterval(0.001)
     surface = QSurfaceFormat()
     surface.setVersion(3, 3)
     surface.setProfile(QSurfaceFormat.OpenGLContextProfile.CoreProfile)
@@ -29,9 +35,8 @@ def prepare() -> QApplication:
     return QApplication(sys.argv[:1])
 
 
-def run_window(path: Path | None, sample: bool = False) -> int:
-    """Open the window on a project, the sample project, or nothing; return the exit status."""
-    app = prepare()
+def open_window(path: Path | None, sample: bool = False) -> Window:
+    """Show a window on a project, the sample project, or nothing."""
     from app.files import SAMPLE
     from app.window import Window
 
@@ -41,5 +46,12 @@ def run_window(path: Path | None, sample: bool = False) -> int:
         window.files.open(path)
     elif not window.files.recover_untitled() and sample:
         window.files.open(SAMPLE, template=True)
-    QTimer.singleShot(0, window.load_late_panels)
+    window.load_late_panels_soon()
+    return window
+
+
+def run_window(path: Path | None, sample: bool = False) -> int:
+    """Open the window and stay until it is closed; return the exit status."""
+    app = prepare()
+    window = open_window(path, sample)  # noqa: F841 - lives as long as the program
     return app.exec()

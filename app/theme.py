@@ -139,9 +139,11 @@ def style_sheet(look: Theme) -> str:
 
 def apply(app: QApplication, look: Theme) -> None:
     """Give the application a theme's style."""
-    app.setStyle("Fusion")
-    font = QFont(app.font())
-    font.setPixelSize(13)
-    app.setFont(font)
+    if app.style().name() != "fusion":  # each of these polishes every widget anew
+        app.setStyle("Fusion")
+    if app.font().pixelSize() != 13:
+        font = QFont(app.font())
+        font.setPixelSize(13)
+        app.setFont(font)
     app.setPalette(palette(look))
     app.setStyleSheet(style_sheet(look))

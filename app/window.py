@@ -44,6 +44,7 @@ from metagraph.graph.check import Problem, check
 from metagraph.graph.model import KINDS, LAYERS, Layer, Project
 
 LAYER_KEYS = {"body": "Alt+1", "arms": "Alt+2", "head": "Alt+3"}
+LATE = 4000  # milliseconds after which the late panels are made whatever else is going on
 CHECK_AFTER = 250  # milliseconds of quiet after an edit before problems are looked for
 
 
@@ -109,9 +110,21 @@ class Window(QMainWindow):
         ):
             self._add_dock(key, title, QWidget(self), area)
 
+    def load_late_panels_soon(self) -> None:
+        """Load them once the first picture is painted and the project is open, which must not wait for them."""
+        self.preview.view.painted.connect(self._late_now)
+        QTimer.singleShot(LATE, self.load_late_panels)  # the character may be hidden
+
+    def _late_now(self) -> None:
+        if not self.jobs.running:
+            self.preview.view.painted.disconnect(self._late_now)
+            self.load_late_panels()
+
     def load_late_panels(self) -> None:
         """Import what the late panels need on a thread, then make them, one at a time."""
-        self.jobs.start("panels", lambda _: late_modules(), lambda _: self.make_late_panels(), quick=True)
+        if not self._loading:
+            self._loading = True
+            self.jobs.start("panels", lambda _: late_modules(), lambda _: self.make_late_panels(), quick=True)
 
     def make_late_panels(self) -> None:
         """Fill the docks that were left empty for a fast start."""
@@ -142,6 +155,7 @@ class Window(QMainWindow):
             self._sizes()
 
     ready = False
+    _loading = False
     _machine_wanted = False
 
     def _commands(self) -> tuple[Command, ...]:

@@ -5,6 +5,7 @@ from __future__ import annotations
 import io
 from collections.abc import Sequence
 from dataclasses import dataclass, field
+from functools import lru_cache
 from typing import Any
 
 import moderngl
@@ -148,15 +149,24 @@ class Store:
             loaded.morphs = wanted.tobytes()
 
     def _image(self, encoded: bytes) -> moderngl.Texture:
-        """Decode a texture; one that cannot be read becomes white, as the figure is worth more than its paint."""
-        from PIL import Image
-
-        try:
-            picture = Image.open(io.BytesIO(encoded)).convert("RGBA")
-        except Exception:  # Pillow raises many kinds on broken files
-            picture = Image.new("RGBA", (1, 1), "white")
-        picture.thumbnail((TEXTURE_LIMIT, TEXTURE_LIMIT))
-        texture = self._ctx.texture(picture.size, 4, picture.tobytes())
+        size, pixels = decoded(encoded)
+        texture = self._ctx.texture(size, 4, pixels)
         texture.build_mipmaps()
         texture.filter = moderngl.LINEAR_MIPMAP_LINEAR, moderngl.LINEAR
         return texture
+
+
+@lru_cache(maxsize=32)
+def decoded(encoded: bytes) -> tuple[tuple[int, int], bytes]:
+    """Return a texture's size and RGBA pixels; one that cannot be read becomes white, as the figure is worth more than its paint.
+
+    Kept, so that whoever loads a figure on a thread can decode there and drawing need not wait.
+    """
+    from PIL import Image
+
+    try:
+        picture = Image.open(io.BytesIO(encoded)).convert("RGBA")
+    except Exception:  # Pillow raises many kinds on broken files
+        picture = Image.new("RGBA", (1, 1), "white")
+    picture.thumbnail((TEXTURE_LIMIT, TEXTURE_LIMIT))
+    return picture.size, picture.tobytes()

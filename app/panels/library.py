@@ -76,11 +76,10 @@ class Filter:
     kind: str | None = None
 
     def takes(self, project: Project, entry: ClipEntry) -> bool:
-        uses = project.uses.get(entry.id, ())
-        if self.labelled is not None and bool(uses) != self.labelled:
+        if self.labelled is not None and (entry.id in project.uses) != self.labelled:
             return False
         if (self.layer or self.kind) and not any(
-            (not self.layer or a.layer == self.layer) and (not self.kind or a.kind == self.kind) for a in uses
+            (not self.layer or a.layer == self.layer) and (not self.kind or a.kind == self.kind) for a in project.uses.get(entry.id, ())
         ):
             return False
         name = f"{entry.name} {entry.path}".lower()

@@ -42,12 +42,24 @@ def size(project: Project, layer: Layer | None = None, stance: str | None = None
     clips: set[str] = set()
     states = connections = 0
     for graph in (project.graphs[layer],) if layer else tuple(project.graphs[x] for x in LAYERS):
-        actions = [a for a in graph.actions.values() if stance is None or stance in (a.stance, ends_in(a))]
-        clips.update(a.clip for a in actions)
-        states += len(actions)
-        arriving = Counter(e for a in actions if (e := ends_in(a)) is not None and e in graph.stances)
-        leaving = Counter(a.stance for a in actions)
-        itself = sum(1 for a in actions if ends_in(a) == a.stance and a.stance in graph.stances)
+        arriving: Counter[str] = Counter()
+        leaving: Counter[str] = Counter()
+        itself = 0
+        # Whole nodes are counted rather than their actions: the window asks after each edit.
+        for (start, kind), bucket in graph.index.items():
+            if kind == "transition" or stance is not None:
+                bucket = tuple(a for a in bucket if stance is None or stance in (a.stance, ends_in(a)))
+            if stance is not None:
+                clips.update(a.clip for a in bucket)
+            states += len(bucket)
+            leaving[start] += len(bucket)
+            ends = Counter(e for a in bucket if (e := ends_in(a)) is not None) if kind == "transition" else Counter({start: len(bucket)})
+            for end, count in ends.items():
+                if end in graph.stances:
+                    arriving[end] += count
+                    itself += count if end == start else 0
+        if stance is None:
+            clips.update(graph.uses)
         connections += sum(n * leaving[s] for s, n in arriving.items()) - itself
     return Size(len(clips), states, connections)
 

@@ -1,0 +1,242 @@
+"""How the window feels, in figures: python tests/benchmarks/bench_window.py [cold] [stalls] [edits]
+
+cold: seconds from starting the process to the first painted window, and to the first painted character of the sample project.
+stalls: the longest time the window's thread did not come round while the sample project is opened, edited and looked at, and
+pictures a second in the preview. edits: milliseconds from an edit to the last view that followed it, and to the painted window,
+in the sample project and in one of 10,000 actions. Without a screen everything runs in Xvfb. Nothing of the user's is touched.
+"""
+
+from __future__ import annotations
+
+import os
+import shutil
+import statistics
+import subprocess
+import sys
+import tempfile
+import time
+from collections.abc import Callable
+from pathlib import Path
+
+ROOT = Path(__file__).resolve().parents[2]
+sys.path.insert(0, str(ROOT))
+ACTIONS = 10_000
+COLD = """
+import sys, time
+started = float(sys.argv[1])
+from app.main import prepare
+app = prepare()
+from app.main import open_window
+from app.files import SAMPLE
+window = open_window(None, sample=True)
+window.resize(1680, 1020)
+seen = []
+def painted(_):
+    now = time.time() - started
+    if not seen:
+        seen.append(now)
+    if window.performance.skeleton() is not None:
+        print(seen[0], now, len(sys.modules), flush=True)
+        window.close()
+        app.quit()
+window.preview.view.painted.connect(painted)
+app.exec()
+"""
+
+
+def cold(rounds: int = 5) -> None:
+    found = []
+    for _ in range(rounds + 1):
+        out = subprocess.run(
+            [sys.executable, "-c", COLD, str(time.time())], cwd=ROOT, capture_output=True, text=True, check=True, timeout=60
+        )
+        found.append([float(x) for x in out.stdout.split()[-3:]])
+    window, character, modules = zip(*found[1:], strict=True)  # the first one compiled the modules
+    print(f"cold start to the first painted window      median {statistics.median(window):.2f} s, quickest {min(window):.2f} s")
+    print(f"cold start to the first painted character   median {statistics.median(character):.2f} s, quickest {min(character):.2f} s")
+    print(f"modules then {modules[0]:.0f}\n")
+
+
+def wait(until: Callable[[], bool], seconds: float = 30) -> None:
+    from PySide6.QtWidgets import QApplication
+
+    end = time.monotonic() + seconds
+    while not until():
+        QApplication.processEvents()
+        if time.monotonic() > end:
+            raise TimeoutError(str(until))
+
+
+def linger(seconds: float) -> None:
+    end = time.monotonic() + seconds
+    wait(lambda: time.monotonic() > end, seconds + 5)
+
+
+def opened(window: object) -> None:
+    """Open the sample project and wait until everything has settled."""
+    from app.files import SAMPLE
+
+    window.files.open(SAMPLE, template=True)
+    wait(lambda: bool(window.document.project.clips) and window.performance.skeleton() is not None and not window.jobs.running)
+
+
+def stalls() -> None:
+    from PySide6.QtCore import Qt, QTimer
+
+    from app.main import prepare
+
+    prepare()
+    from app.window import Window
+    from metagraph.graph import edits
+
+    window = Window()
+    window.resize(1680, 1020)
+    window.show()
+    gaps: dict[str, list[float]] = {}
+    state = {"phase": "start", "last": time.perf_counter()}
+
+    def beat() -> None:
+        now = time.perf_counter()
+        gaps.setdefault(str(state["phase"]), []).append((now - float(state["last"])) * 1e3)
+        state["last"] = now
+
+    timer = QTimer(timerType=Qt.TimerType.PreciseTimer)
+    timer.timeout.connect(beat)
+    timer.start(2)
+    rate = 0.0
+
+    def phase(name: str, seconds: float, what: Callable[[], object] = lambda: None) -> None:
+        state["phase"] = name
+        what()
+        linger(seconds)
+
+    def select() -> None:
+        window.session.jump(action=next(a.id for a in window.document.project.actions() if a.kind == "gesture"))
+
+    def timing() -> None:
+        window.document.edit("Change timing", lambda p: edits.update_actions(p, window.session.actions, timing={"blend_in": 0.33}))
+
+    phase("first paint", 1.0)
+    phase("late panels", 2.0, window.load_late_panels)
+    phase("open the sample", 4.0, lambda: opened(window))
+    before, start = window.preview.frames, time.perf_counter()
+    phase("playing", 4.0)
+    rate = (window.preview.frames - before) / (time.perf_counter() - start)
+    phase("select an action", 1.5, select)
+    phase("edit its timing", 1.0, timing)
+    phase("undo", 1.0, window.document.undo)
+    phase("another layer", 1.0, lambda: window.session.set_layer("head"))
+    phase("another stance", 1.0, lambda: window.choose_stance(1))
+    phase("the machine", 1.5, lambda: window.show_machine(True))
+    phase("light theme", 2.0, window.toggle_theme)
+    phase("import 152 clips", 4.0, lambda: window.files.import_paths([str(ROOT / "sample_clips" / "clips")]))
+    phase("save", 1.0, lambda: window.document.save(Path(tempfile.mkdtemp()) / "saved.metagraph.yaml"))
+    timer.stop()
+    print(f"{'phase':18} {'longest gap':>12} {'over 50 ms':>11}")
+    for name, found in gaps.items():
+        print(f"{name:18} {max(found):9.1f} ms {sum(g > 50 for g in found):11}")
+    print(f"preview in the window ({window.preview.view.width()} x {window.preview.view.height()}): {rate:.1f} pictures a second\n")
+    _close(window)
+
+
+def large(project: object, count: int) -> object:
+    """The project with the clips of its actions placed again and again, until there are `count` actions."""
+    from metagraph.graph import edits
+
+    graphs = {layer: list(graph.actions.values()) for layer, graph in project.graphs.items()}
+    while sum(len(g.actions) for g in project.graphs.values()) < count:
+        for layer, actions in graphs.items():
+            for stance in project.graphs[layer].stances:
+                for kind in ("gesture", "fidget"):
+                    clips = [a.clip for a in actions if a.stance == stance and a.kind == kind]
+                    if clips:
+                        project = edits.place(project, clips, layer, kind, stance)
+    return project
+
+
+def changes(action: str, stance: str, layer: str, clips: list[str]) -> list[tuple[str, Callable[[object], object] | None]]:
+    """Return edits by name, each different every time it is made; None stands for undo."""
+    from metagraph.graph import edits
+
+    numbers = iter(range(1, 1000))
+    return [
+        ("timing", lambda p: edits.update_actions(p, (action,), timing={"blend_in": 0.1 + next(numbers) / 1000})),
+        ("likelihood", lambda p: edits.update_actions(p, (action,), likelihood=1 + next(numbers) / 1000)),
+        ("drop 20 clips", lambda p: edits.place(p, clips, layer, "fidget", stance)),
+        ("rename a stance", lambda p: edits.rename_stance(p, stance, f"stance {next(numbers)}")),
+        ("base pose", lambda p: edits.set_base(p, clips[0], next(numbers))),
+        ("undo", None),
+    ]
+
+
+def edit_latency() -> None:
+    from PySide6.QtWidgets import QApplication
+
+    from app.main import prepare
+
+    prepare()
+    from app.window import Window
+
+    window = Window()
+    window.resize(1680, 1020)
+    window.show()
+    window.make_late_panels()
+    opened(window)
+    small = window.document.project
+    window.session.set_playing(False)
+    for project in (small, large(small, ACTIONS)):
+        if project is not small:
+            window.document.load(project, None)
+            linger(3)
+        count = sum(1 for _ in project.actions())
+        action = next(a.id for a in project.actions() if a.kind == "gesture")
+        clips = list(project.clips)[:20]
+        stance = project.action(action).stance
+        layer = project.action(action).layer
+        window.session.jump(action=action)
+        for name, what in changes(action, stance, layer, clips):
+            followed, painted = [], []
+            for _ in range(8):
+                linger(0.4)  # the last edit's plan and check are done
+                start = time.perf_counter()
+                if what is None:
+                    window.document.undo()
+                else:
+                    window.document.edit(name, what)
+                followed.append((time.perf_counter() - start) * 1e3)
+                QApplication.processEvents()
+                painted.append((time.perf_counter() - start) * 1e3)
+            print(
+                f"{count:6} actions  {name:16} edit and slots: median {statistics.median(followed):6.1f}, longest {max(followed):6.1f} ms;"
+                f"  painted: median {statistics.median(painted):6.1f}, longest {max(painted):6.1f} ms"
+            )
+    _close(window)
+
+
+def _close(window: object) -> None:
+    window.document.undo_stack.setClean()
+    window.close()
+
+
+def main() -> None:
+    chosen = sys.argv[1:] or ["cold", "stalls", "edits"]
+    if sys.platform.startswith("linux") and not os.environ.get("DISPLAY") and shutil.which("xvfb-run"):
+        os.execvp("xvfb-run", ["xvfb-run", "-a", "-s", "-screen 0 1920x1200x24", sys.executable, __file__, *chosen])
+    if "METAGRAPH_BENCH" in os.environ:
+        {"stalls": stalls, "edits": edit_latency}[chosen[0]]()
+        return
+    with tempfile.TemporaryDirectory() as folder:
+        os.environ.update(XDG_DATA_HOME=folder, XDG_CONFIG_HOME=folder, PYTHONPYCACHEPREFIX=f"{folder}/cache", METAGRAPH_BENCH="1")
+        os.environ.pop("PYTHONDONTWRITEBYTECODE", None)  # modules are compiled once, as they are for people
+        subprocess.run(
+            [sys.executable, "-c", "import app.window; from app.window import late_modules; late_modules()"], check=True, cwd=ROOT
+        )
+        for name in chosen:
+            if name == "cold":
+                cold()
+            else:  # a process each: a second window in one process would find everything loaded
+                subprocess.run([sys.executable, __file__, name], check=True)
+
+
+if __name__ == "__main__":
+    main()
