@@ -41,7 +41,7 @@ def changes(before: Project, after: Project) -> Data:
     for key in ("name", "character", "next_id", "base", "settings", "roles", "parts"):
         if getattr(before, key) is not getattr(after, key) and getattr(before, key) != getattr(after, key):
             out[key] = to_data(_bare(after))[key]
-    if before.markov is not after.markov:
+    if before.markov is not after.markov and before.markov != after.markov:
         out["markov"] = {layer: markov_data(m) for layer, m in after.markov.items()}
     if before.skeleton is not after.skeleton:
         out["skeleton"] = skeleton_data(after.skeleton) if after.skeleton is not None else []
@@ -82,7 +82,7 @@ def _keyed(out: Data, key: str, before: Mapping[str, Any], after: Mapping[str, A
     """Note what was added, changed and (as None) removed; `<key>_after`: what stands before those not added at the end."""
     if before is after:
         return
-    part: Data = {i: data(v) for i, v in after.items() if before.get(i) is not v}
+    part: Data = {i: data(v) for i, v in after.items() if before.get(i) is not v and before.get(i) != v}
     part.update(dict.fromkeys(i for i in before if i not in after))
     if part:
         out[key] = part

@@ -1,0 +1,350 @@
+"""The autosave journal: whatever was finished is there after a crash, whatever the crash left of the file."""
+
+from __future__ import annotations
+
+import json
+import os
+import random
+import signal
+import subprocess
+import sys
+from dataclasses import replace
+from itertools import pairwise
+from pathlib import Path
+from typing import Any
+
+import pytest
+from hypothesis import HealthCheck, given, settings
+from hypothesis import strategies as st
+
+from metagraph.errors import FileError
+from metagraph.formats.data import from_data, to_data
+from metagraph.formats.journal import Journal, apply, changes, journal_path, recover
+from metagraph.formats.store import SUFFIX, save_project
+from metagraph.graph import edits
+from metagraph.graph.model import Project
+from tests.projects import clip, histories
+
+ROOT = Path(__file__).resolve().parents[2]
+
+
+def large(count: int) -> Project:
+    project = edits.add_clips(Project("large"), [(f"clips/{n}.glb", 0, "ab" * 32, clip(f"clip {n}")) for n in range(20)])
+    project = edits.add_stance(project, "arms", "rest", ["c1"])
+    return edits.place(project, [f"c{1 + n % 20}" for n in range(count)], "arms", "gesture", "s21")
+
+
+# --- changes
+
+
+@settings(max_examples=120, deadline=None)
+@given(histories())
+def test_changes_worked_into_the_old_data_give_the_new(states: list[Project]) -> None:
+    data = to_data(states[0])
+    for before, after in pairwise(states):
+        change = json.loads(json.dumps(changes(before, after)))
+        data = apply(data, change)
+        assert data == to_data(after)
+        for layer in ("body", "arms", "head"):  # order counts where it is order
+            assert [a["id"] for a in data["layers"][layer]["actions"]] == list(after.graphs[layer].actions)
+
+
+@settings(max_examples=40, deadline=None)
+@given(histories(6), st.data())
+def test_changes_lead_from_any_state_to_any_other(states: list[Project], data: Any) -> None:
+    a, b = data.draw(st.sampled_from(states)), data.draw(st.sampled_from(states))
+    assert from_data(apply(to_data(a), changes(a, b))) == from_data(to_data(b))
+
+
+def test_the_same_project_has_no_changes() -> None:
+    project = large(3)
+    assert changes(project, project) == {}
+    assert changes(project, replace(project, clips=dict(project.clips))) == {}
+
+
+@pytest.mark.parametrize(
+    "edit",
+    [
+        lambda p: edits.update_actions(p, ["a50"], likelihood=2.0),
+        lambda p: edits.remove_actions(p, ["a50", "a7000"]),
+        lambda p: edits.place(p, ["c1"], "arms", "fidget", "s21"),
+        lambda p: edits.rename_stance(p, "s21", "at ease"),
+        lambda p: edits.set_weight(p, "arms", "head", 0.5),
+        lambda p: edits.rename_clip(p, "c7", "other"),
+    ],
+)
+def test_a_record_is_small_in_a_large_project_also_when_the_edit_is_undone(edit: Any) -> None:
+    before = large(10_000)
+    after = edit(before)
+    assert len(json.dumps(changes(before, after))) < 400
+    assert len(json.dumps(changes(after, before))) < 800
+
+
+def test_what_was_removed_comes_back_to_its_place() -> None:
+    before = large(6)
+    after = edits.remove_actions(before, [a.id for a in list(before.graphs["arms"].actions.values())[:4]])
+    change = changes(after, before)
+    assert "actions_order" not in change["layers"]["arms"]
+    assert [a["id"] for a in apply(to_data(after), change)["layers"]["arms"]["actions"]] == list(before.graphs["arms"].actions)
+
+
+# --- the file
+
+
+@pytest.fixture
+def saved(tmp_path: Path) -> Path:
+    path = tmp_path / f"show{SUFFIX}"
+    save_project(large(5), path)
+    return path
+
+
+def written(saved: Path | None, path: Path, count: int) -> list[Project]:
+    """Write a journal of `count` edits; return every state."""
+    states = [large(5)]
+    journal = Journal(path, saved)
+    if saved is None:
+        journal.begin(states[0])
+    for n in range(count):
+        states.append(edits.rename_clip(states[-1], "c1", f"name {n}"))
+        journal.edit(states[-2], states[-1])
+    journal.close()
+    return states
+
+
+def same(project: Project, other: Project) -> bool:
+    return to_data(project) == to_data(other)
+
+
+def test_every_finished_edit_is_there_at_once(saved: Path) -> None:
+    path = journal_path(saved)
+    journal = Journal(path, saved)
+    project = large(5)
+    assert recover(path, saved) is None
+    for n in range(3):
+        after = edits.rename_clip(project, "c1", f"name {n}")
+        journal.edit(project, after)
+        project = after
+        found = recover(path, saved)
+        assert found is not None
+        assert found[1] == n + 1
+        assert same(found[0], project)
+    journal.remove()
+    assert recover(path, saved) is None
+    assert not path.exists()
+
+
+def test_nothing_is_written_before_the_first_edit_or_for_no_change(saved: Path) -> None:
+    path = journal_path(saved)
+    journal = Journal(path, saved)
+    journal.edit(large(5), large(5).with_graph(large(5).graphs["arms"]))
+    assert not path.exists()
+    journal.remove()
+
+
+def test_a_project_never_saved_is_recovered_from_the_journal_alone(tmp_path: Path) -> None:
+    states = written(None, tmp_path / "j", 3)
+    found = recover(tmp_path / "j", None)
+    assert found is not None
+    assert same(found[0], states[-1])
+
+
+def test_undone_edits_are_recovered_undone(saved: Path) -> None:
+    path = journal_path(saved)
+    a = large(5)
+    b = edits.remove_actions(a, ["a23", "a24"])
+    journal = Journal(path, saved)
+    for before, after in ((a, b), (b, a), (a, b), (b, a)):
+        journal.edit(before, after)
+    journal.close()
+    found = recover(path, saved)
+    assert found is not None
+    assert same(found[0], a)
+    assert list(found[0].graphs["arms"].actions) == list(a.graphs["arms"].actions)
+
+
+def test_a_torn_file_gives_every_edit_before_the_tear(saved: Path) -> None:
+    path = journal_path(saved)
+    states = written(saved, path, 6)
+    whole = path.read_bytes()
+    for length in range(0, len(whole) + 1, 7):
+        path.write_bytes(whole[:length])
+        edits_left = max(0, whole[:length].count(b"\n") - 1)
+        found = recover(path, saved)
+        assert (found is None) == (edits_left == 0)
+        if found is not None:
+            assert found[1] == edits_left
+            assert same(found[0], states[edits_left])
+
+
+@pytest.mark.parametrize(
+    "tail",
+    [
+        b"\x00" * 500 + b"\n",
+        b"garbage\n",
+        b"[1]\n",
+        b'{"clips": {"c1": {"id": 7}}}\n',
+        b"\xff\xfe\n",
+        b"[" * 9999 + b"\n",
+        b'{"layers": 3}\n',
+    ],
+)
+def test_garbage_behind_good_edits_takes_nothing_of_them_away(saved: Path, tail: bytes) -> None:
+    path = journal_path(saved)
+    states = written(saved, path, 3)
+    path.write_bytes(path.read_bytes() + tail + b'{"name": "after the garbage"}\n')
+    found = recover(path, saved)
+    assert found is not None
+    assert found[1] == 3
+    assert same(found[0], states[-1])
+
+
+@pytest.mark.parametrize("content", [b"", b"x", b"\n", b"{}\n"])
+def test_a_file_with_no_edit_is_nothing_to_recover(saved: Path, content: bytes) -> None:
+    path = journal_path(saved)
+    path.write_bytes(content)
+    assert recover(path, saved) is None
+
+
+@pytest.mark.parametrize("content", [b"\x00\n\x00\n", b"{}\n{}\n", b"[]\n{}\n"])
+def test_a_journal_nobody_can_read_is_kept_and_told(saved: Path, content: bytes) -> None:
+    path = journal_path(saved)
+    path.write_bytes(content)
+    with pytest.raises(FileError, match=r"is damaged.*It is kept"):
+        recover(path, saved)
+    assert path.read_bytes() == content
+
+
+def test_a_journal_of_which_no_edit_is_good_is_kept_and_told(saved: Path) -> None:
+    path = journal_path(saved)
+    written(saved, path, 0)
+    journal = Journal(path, saved)
+    journal.begin()
+    journal.close()
+    path.write_bytes(path.read_bytes() + b'{"clips": 3}\n')
+    with pytest.raises(FileError, match=r"is damaged"):
+        recover(path, saved)
+
+
+def test_a_journal_of_another_state_of_the_file_is_refused_and_kept(saved: Path) -> None:
+    path = journal_path(saved)
+    written(saved, path, 3)
+    content = path.read_bytes()
+    save_project(edits.rename_project(large(5), "other"), saved)
+    with pytest.raises(FileError, match=r"belongs to another state of the project file.*It is kept"):
+        recover(path, saved)
+    assert path.read_bytes() == content
+
+
+def test_a_journal_knows_the_file_as_it_was_when_the_edits_began(saved: Path) -> None:
+    path = journal_path(saved)
+    journal = Journal(path, saved)
+    save_project(edits.rename_project(large(5), "changed by somebody else"), saved)
+    journal.edit(large(5), edits.rename_clip(large(5), "c1", "x"))
+    journal.close()
+    with pytest.raises(FileError, match="another state"):
+        recover(path, saved)
+
+
+def test_there_is_no_journal_where_there_is_no_file(tmp_path: Path) -> None:
+    assert recover(tmp_path / "none", None) is None
+    assert recover(tmp_path, None) is None
+
+
+class Full:
+    """A disk with room for so many bytes."""
+
+    def __init__(self, file: Any, room: int) -> None:
+        self.file, self.room = file, room
+
+    def write(self, data: bytes) -> None:
+        self.file.write(data[: self.room])
+        self.room -= len(data)
+        if self.room < 0:
+            self.file.flush()
+            raise OSError(28, "No space left on device")
+
+    def __getattr__(self, name: str) -> Any:
+        return getattr(self.file, name)
+
+
+def test_an_edit_that_found_no_room_is_written_with_the_next(saved: Path) -> None:
+    path = journal_path(saved)
+    states = [large(5)]
+    for n in range(4):
+        states.append(edits.rename_clip(states[-1], f"c{n + 1}", f"name {n}"))
+    journal = Journal(path, saved)
+    journal.edit(states[0], states[1])
+    journal._file = Full(journal._file, 10)  # type: ignore[assignment]
+    with pytest.raises(FileError, match="No space left"):
+        journal.edit(states[1], states[2])
+    found = recover(path, saved)
+    assert found is not None
+    assert same(found[0], states[1])
+    journal.edit(states[2], states[3])  # there is room again
+    journal.edit(states[3], states[4])
+    journal.close()
+    found = recover(path, saved)
+    assert found is not None
+    assert same(found[0], states[4])
+
+
+def test_a_folder_that_cannot_be_written_is_told_in_words(tmp_path: Path) -> None:
+    (tmp_path / "file").write_text("")
+    journal = Journal(tmp_path / "file" / "j", None)
+    with pytest.raises(FileError, match="cannot be written"):
+        journal.edit(large(1), large(2))
+
+
+@settings(max_examples=60, deadline=None, suppress_health_check=[HealthCheck.function_scoped_fixture])
+@given(st.randoms(use_true_random=False))
+def test_a_journal_with_bytes_changed_gives_a_project_or_an_error_in_words(saved: Path, chance: random.Random) -> None:
+    path = journal_path(saved)
+    written(saved, path, 3)
+    content = bytearray(path.read_bytes())
+    for _ in range(chance.randint(1, 4)):
+        content[chance.randrange(len(content))] = chance.randrange(256)
+    path.write_bytes(content)
+    try:
+        recover(path, saved)
+    except FileError as error:
+        assert error.cause and error.where and error.remedy
+
+
+CHILD = """
+import sys
+from pathlib import Path
+from metagraph.formats.journal import Journal, journal_path
+from metagraph.formats.store import read_project
+from metagraph.graph import edits
+
+saved = Path(sys.argv[1])
+project = read_project(saved)
+journal = Journal(journal_path(saved), saved)
+n = 0
+while True:
+    after = edits.rename_clip(project, "c1", f"name {n}")
+    journal.edit(project, after)
+    project = after
+    print(n, flush=True)
+    n += 1
+"""
+
+
+@pytest.mark.skipif(os.name == "nt", reason="there is no kill -9 on Windows")
+def test_a_process_killed_between_edits_loses_none_that_was_finished(saved: Path) -> None:
+    child = subprocess.Popen([sys.executable, "-c", CHILD, str(saved)], cwd=ROOT, stdout=subprocess.PIPE, text=True)
+    assert child.stdout is not None
+    finished = -1
+    for line in child.stdout:
+        finished = int(line)
+        if finished >= 25:
+            break
+    os.kill(child.pid, signal.SIGKILL)
+    rest = child.stdout.read().split()
+    child.stdout.close()
+    child.wait()
+    finished = int(rest[-1]) if rest else finished
+    found = recover(journal_path(saved), saved)
+    assert found is not None
+    assert found[1] >= finished + 1  # at most one more, whose number was not printed yet
+    assert found[0].clips["c1"].name == f"name {found[1] - 1}"
