@@ -55,13 +55,28 @@ class Figure:
 
     def bounds(self, positions: Array) -> tuple[Array, Array]:
         """Return the lowest and highest corner of a box round the figure in all poses `positions [..., J, 3]`."""
+        box = self._balls(positions)
+        if box is None:
+            return np.zeros(3), np.ones(3)
+        below, above = self._slack
+        return np.minimum(box[0] + below, box[1]), np.maximum(box[1] - above, box[0])
+
+    def _balls(self, positions: Array) -> tuple[Array, Array] | None:
+        """Return the box round balls about the joints, None when no position is a number."""
         joints, radii = self._reach
         points = np.asarray(positions, float)[..., joints, :]
         low, high = (points - radii[:, None]).reshape(-1, 3), (points + radii[:, None]).reshape(-1, 3)
         whole = np.isfinite(low).all(1)
-        if not whole.any():
-            return np.zeros(3), np.ones(3)
-        return low[whole].min(0), high[whole].max(0)
+        return (low[whole].min(0), high[whole].max(0)) if whole.any() else None
+
+    @cached_property
+    def _slack(self) -> tuple[Array, Array]:
+        """How much the box of balls is too large at rest, below and above: large ears make a large ball round the head."""
+        _, rest = self.skeleton.globals(self.skeleton.rest)
+        box, mesh = self._balls(rest), self.mesh.vertices["position"]
+        if box is None or not len(mesh):
+            return np.zeros(3), np.zeros(3)
+        return np.maximum(mesh.min(0) - box[0], 0), np.maximum(box[1] - mesh.max(0), 0)
 
     @cached_property
     def _reach(self) -> tuple[Array, Array]:
