@@ -51,21 +51,18 @@ class Toy:
         for joint, axis, share in (("LeftUpperArm", (0, 0, 1.0), 1), ("RightUpperArm", (0, 0, -1.0), 0.8), ("Head", (1.0, 0, 0), 0.3)):
             rotations[:, self.skeleton.index(joint)] = rotation.from_axis_angle(np.array(axis), angle * share)
         translations = np.tile(self.skeleton.rest_translations[:1], (frames, 1, 1))
-        translations[:, 0, 0] += 0.02 * np.sin(np.pi * x) ** 2
+        translations[:, 0, 0] += 0.03 * swing * np.sin(np.pi * x) ** 2
         return Clip(name, self.skeleton, fps, rotations, translations)
 
     def project(self, layer: Layer = "arms", loop: float = 2.0) -> Project:
         """Stances rest, up, far on one layer, joined rest <-> up <-> far; gestures, fidgets and transitions named after themselves."""
         angles = {"rest": 0.0, "up": 0.8, "far": 1.4}
         clips = [self.clip(f"{name} loop", loop, angle, swing=0.05) for name, angle in angles.items()]
-        clips += [
-            self.clip(n, s, angles[n.split()[0]])
-            for n, s in (("rest short", 0.6), ("rest beat lf", 0.9), ("rest wave rt", 1.2), ("rest long", 2.4), ("rest scratch", 1.0), ("rest cough", 0.8),
-                         ("up beat", 0.7), ("up point", 1.1), ("up yawn", 1.0))
-        ]  # fmt: skip
-        clips += [
-            self.clip(f"{a} to {b}", 0.8, angles[a], angles[b]) for a, b in (("rest", "up"), ("up", "rest"), ("up", "far"), ("far", "up"))
-        ]
+        lengths = {"rest short": 0.6, "rest beat lf": 0.9, "rest wave rt": 1.2, "rest long": 2.4, "up beat": 0.7, "up point": 1.1}
+        lengths |= {"rest scratch": 1.0, "rest cough": 0.8, "up yawn": 1.0}
+        clips += [self.clip(name, seconds, angles[name.split()[0]]) for name, seconds in lengths.items()]
+        ways = (("rest", "up"), ("up", "rest"), ("up", "far"), ("far", "up"))
+        clips += [self.clip(f"{a} to {b}", 0.8, angles[a], angles[b]) for a, b in ways]
         project = edits.add_clips(Project("toy"), [(f"{c.name}.glb", 0, "", c) for c in clips])
         clip = {entry.name: entry.id for entry in project.clips.values()}
         for name in angles:
@@ -77,7 +74,7 @@ class Toy:
         ):
             for name in names:
                 project = edits.place(project, [clip[name]], layer, kind, stance[name.split()[0]])  # type: ignore[arg-type]
-        for a, b in (("rest", "up"), ("up", "rest"), ("up", "far"), ("far", "up")):
+        for a, b in ways:
             project = edits.place(project, [clip[f"{a} to {b}"]], layer, "transition", stance[a], stance[b])
         return edits.set_base(project, clip["rest loop"])
 

@@ -51,7 +51,7 @@ class Crowd:
         """Return each character's pose at its time, `seconds [C]` or one for all: rotations `[C, J, 4]`, translations `[C, J, 3]`."""
         from metagraph.playback.crowd_kernels import evaluate
 
-        times = np.ascontiguousarray(np.broadcast_to(np.asarray(seconds, np.float64), (len(self),)))
+        times = np.array(np.broadcast_to(np.asarray(seconds, np.float64), (len(self),)))
         base = self._rig.ground.base
         count, joints = len(self), len(base.rotations)
         pose = Pose(np.empty((count, joints, 4), np.float32), np.empty((count, joints, 3), np.float32))

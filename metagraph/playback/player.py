@@ -41,8 +41,8 @@ def pose_at(plan: Plan, project: Project, seconds: Any) -> Pose:
         if plan.layers[layer].rests and len(times):
             layers[layer] = _layer(plan.layers[layer], project, frame.ground, frame.reach[layer], times)
     pose = frame.compose(layers, len(times))
-    shape = at.shape
-    return Pose(pose.rotations.reshape(*shape, -1, 4), pose.translations.reshape(*shape, -1, 3))
+    shape = (*at.shape, len(frame.ground.skeleton))
+    return Pose(pose.rotations.reshape(*shape, 4), pose.translations.reshape(*shape, 3))
 
 
 def clip_pose_at(project: Project, action: Action, seconds: Any) -> Pose:

@@ -1,0 +1,78 @@
+"""The crowd: compiled loops that agree with the player."""
+
+from __future__ import annotations
+
+import subprocess
+import sys
+from dataclasses import replace
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+
+from metagraph.graph import edits
+from metagraph.graph.model import Project
+from metagraph.playback.crowd import Crowd
+from metagraph.playback.plan import Plan, Request
+from metagraph.playback.planner import make_plan
+from metagraph.playback.player import pose_at
+
+ROOT = Path(__file__).parents[2]
+
+
+def assert_agrees(project: Project, plans: list[Plan], times: np.ndarray) -> None:
+    crowd = Crowd(project, plans)
+    pose = crowd.poses(times)
+    for n, plan in enumerate(plans):
+        one = pose_at(plan, project, times[n])
+        assert np.abs(one.rotations - pose.rotations[n]).max() < 1e-5, (n, times[n])
+        assert np.abs(one.translations - pose.translations[n]).max() < 1e-5
+    for ours, theirs in zip(crowd.globals(times), project.skeleton.globals(pose), strict=True):
+        assert np.abs(ours - theirs).max() < 1e-5
+
+
+def test_nobody_is_a_crowd_too(toy: Any) -> None:
+    crowd = Crowd(toy.project(), [])
+    assert len(crowd) == 0 and crowd.poses(np.zeros(0)).rotations.shape == (0, 16, 4)
+
+
+def test_a_project_without_a_skeleton_has_no_crowd() -> None:
+    with pytest.raises(ValueError, match="cannot be posed"):
+        Crowd(Project(), [])
+
+
+def test_a_crowd_on_the_sample_agrees_with_the_player(sample: Project) -> None:
+    plans = [make_plan(sample, 20, seed=seed) for seed in range(8)] * 40  # enough for several threads
+    assert_agrees(sample, plans, np.random.default_rng(1).uniform(-1, 22, len(plans)))
+
+
+def test_weights_masks_seams_early_exits_and_missing_clips_agree_too(toy: Any) -> None:
+    project = toy.project()
+    opened = edits.add_clips(project, [("open.glb", 0, "", toy.clip("open", 2.0, 0.0, 0.5))])
+    clip = list(opened.clips)[-1]
+    project = edits.update_actions(opened, [toy.id(project, "rest loop")], clip=clip, timing={"blend_in": 0.4})
+    project = edits.update_actions(project, [toy.id(project, "rest long")], timing={"earliest_exit": 0.5, "blend_out": 0.3})
+    project = edits.update_actions(project, [toy.id(project, "rest scratch")], joints=("Head", "LeftHand"))
+    project = edits.set_weight(edits.set_weight(project, "arms", "arms", 0.5), "arms", "legs", 1.7)
+    missing = project.action(toy.id(project, "rest short")).clip
+    project = replace(project, clips={**project.clips, missing: replace(project.clips[missing], motion=None)})
+    busy = [Request(f"r{n}", "arms", ("gesture", "fidget", "transition")[n % 3], n * 1.1, 0.4) for n in range(30)]
+    plans = [make_plan(project, 40, busy, seed) for seed in range(150)] + [Plan(1, 0.0)]
+    assert_agrees(project, plans, np.random.default_rng(2).uniform(-1, 42, len(plans)))
+
+
+def test_one_time_serves_all(toy: Any) -> None:
+    project = toy.project()
+    crowd = Crowd(project, [make_plan(project, 10)] * 3)
+    pose = crowd.poses(2.5)
+    assert np.array_equal(pose.rotations[0], pose.rotations[2])
+    assert np.array_equal(pose.rotations, crowd.poses(np.full(3, 2.5)).rotations)
+
+
+def test_making_a_crowd_and_importing_it_do_not_load_numba() -> None:
+    code = (
+        "import sys; import metagraph.playback.crowd, metagraph.playback.player;"
+        "assert not {'numba', 'scipy', 'torch', 'trimesh'} & set(sys.modules)"
+    )
+    subprocess.run([sys.executable, "-c", code], cwd=ROOT, check=True)
