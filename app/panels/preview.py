@@ -30,7 +30,7 @@ class PreviewPanel(QWidget):
         super().__init__(parent)
         self.session, self.performance, self.figures = session, performance, figures
         self.bones = False
-        self._framed = ""  # what the camera was last framed on
+        self._framed: object = None  # the figure the camera was last framed on
         self._last: tuple[Pose, np.ndarray, np.ndarray] | None = None
         self.view = make_view(self._scene, self)
         self.view.frame_wanted.connect(self.frame_all)
@@ -104,20 +104,17 @@ class PreviewPanel(QWidget):
         self.bones_button = button("Show the skeleton (B)", self._set_bones, checkable=True)
         return row
 
-    def _captions(self) -> QHBoxLayout:
-        row = QHBoxLayout()
-        row.setContentsMargins(12, 0, 12, 8)
-        self.caption = QLabel("", self)
-        self.base = QLabel("", self, toolTip=BASE_TIP)
+    def _captions(self) -> QVBoxLayout:
+        """What plays, and the base pose below it; long names are cut, not the window widened."""
+        lines = QVBoxLayout()
+        lines.setContentsMargins(12, 0, 12, 8)
+        lines.setSpacing(2)
+        self.caption, self.base = QLabel("", self), QLabel("", self, toolTip=BASE_TIP)
         for label in (self.caption, self.base):
             label.setProperty("dim", True)
-            label.setTextInteractionFlags(Qt.TextInteractionFlag.NoTextInteraction)
-        self.base.setAlignment(Qt.AlignmentFlag.AlignRight)
-        for label, share in ((self.caption, 3), (self.base, 2)):
-            label.setMinimumWidth(60)
             label.setSizePolicy(QSizePolicy.Policy.Ignored, QSizePolicy.Policy.Preferred)
-            row.addWidget(label, share)
-        return row
+            lines.addWidget(label)
+        return lines
 
     def _restyle(self) -> None:
         look = theme(self.session.theme)
@@ -137,11 +134,13 @@ class PreviewPanel(QWidget):
         pose, skeleton = self.performance.pose(), self.performance.skeleton()
         if pose is None or skeleton is None:
             return Scene()
-        rotations, positions = skeleton.globals(pose)
         figure = self.figures.figure(skeleton)
+        if figure is None:
+            return Scene()
+        rotations, positions = skeleton.globals(pose)
         self._last = (pose, rotations, positions)
-        if self._framed != skeleton.fingerprint and not self.view.moved_by_hand:
-            self._framed = skeleton.fingerprint
+        if self._framed is not figure and not self.view.moved_by_hand:
+            self._framed = figure
             self._frame(figure, positions)
         return Scene((Actor(figure, rotations, positions, self._morphs(figure), self._marks(), self.bones),))
 
@@ -194,7 +193,7 @@ class PreviewPanel(QWidget):
 
     def frame_all(self) -> None:
         self.view.moved_by_hand = False
-        self._framed = ""
+        self._framed = None
         self.view.update()
 
     def frame_face(self) -> None:
@@ -202,6 +201,8 @@ class PreviewPanel(QWidget):
         if self._last is None or skeleton is None:
             return
         figure = self.figures.figure(skeleton)
+        if figure is None:
+            return
         head = figure.head(self._last[1], self._last[2])
         self.view.camera = close_up(head, figure.height, self.view.width() / max(1, self.view.height()))
         self.view.moved_by_hand = True

@@ -158,7 +158,8 @@ def refusal(project: Project, clips: Sequence[str], layer: Layer, kind: Kind, st
 def place(project: Project, clips: Sequence[str], layer: Layer, kind: Kind, stance: str | None, end_stance: str | None = None) -> Project:
     """Drop clips on a meta node. Dropped on "stance" with no stance given, the first clip makes a new one.
 
-    Raises EditError with the words of `refusal`.
+    The first loop of the whole project also gives the base pose, unless one was chosen: offsets taken against an
+    arms-out rest pose are what twists a character. Raises EditError with the words of `refusal`.
     """
     why = refusal(project, clips, layer, kind, stance, end_stance)
     if why is not None:
@@ -184,7 +185,9 @@ def place(project: Project, clips: Sequence[str], layer: Layer, kind: Kind, stan
             timing=default_timing(entry, kind),
             limb=limb_of(entry.name) if layer == "arms" and kind in ("gesture", "fidget") else "both",
         )
-    return project.with_graph(graph.with_actions(changes), next_id=next_id)
+    first = kind == "stance" and project.base.clip is None and not any(k == "stance" for g in project.graphs.values() for _, k in g.index)
+    base = BasePose(clips[0], 0) if first else project.base
+    return project.with_graph(graph.with_actions(changes), next_id=next_id, base=base)
 
 
 def default_timing(entry: ClipEntry, kind: Kind) -> Timing:
@@ -201,14 +204,19 @@ def update_actions(project: Project, actions: Collection[str], **changes: Any) -
 
     Returns the same project when nothing differs.
     """
+    return update_each(project, dict.fromkeys(actions, changes))
+
+
+def update_each(project: Project, changes: Mapping[str, Mapping[str, Any]]) -> Project:
+    """Set other fields for each action, by id; otherwise as `update_actions`."""
     graphs = dict(project.graphs)
     for layer, graph in project.graphs.items():
         edits: dict[str, Action | None] = {}
-        for ident in actions:
+        for ident, wanted in changes.items():
             action = graph.actions.get(ident)
             if action is None:
                 continue
-            fields = dict(changes)
+            fields = dict(wanted)
             if isinstance(fields.get("timing"), Mapping):
                 fields["timing"] = replace(action.timing, **fields["timing"])
             after = replace(action, **fields)
@@ -236,6 +244,30 @@ def move_actions(project: Project, actions: Collection[str], kind: Kind, stance:
             action, kind=kind, layer=target.layer, stance=stance, end_stance=end_stance if kind == "transition" else None, timing=timing
         )
     return project.with_graph(project.graphs[target.layer].with_actions(changes))
+
+
+def to_stance(project: Project, actions: Collection[str], stance: str) -> Project:
+    """Move actions to another stance, each keeping its kind and transitions their ends. Raises EditError."""
+    groups: dict[tuple[Kind, str | None], list[str]] = {}
+    for ident in actions:
+        action = project.action(ident)
+        if action is not None:
+            groups.setdefault((action.kind, action.end_stance), []).append(ident)
+    for (kind, end), idents in groups.items():
+        project = move_actions(project, idents, kind, stance, end)
+    return project
+
+
+def set_ends(project: Project, actions: Collection[str], end_stance: str) -> Project:
+    """Let transitions end in a stance; other kinds stay as they are. Raises EditError when one would end where it starts."""
+    groups: dict[str, list[str]] = {}
+    for ident in actions:
+        action = project.action(ident)
+        if action is not None and action.kind == "transition":
+            groups.setdefault(action.stance, []).append(ident)
+    for start, idents in groups.items():
+        project = move_actions(project, idents, "transition", start, end_stance)
+    return project
 
 
 def remove_actions(project: Project, actions: Collection[str]) -> Project:

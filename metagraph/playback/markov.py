@@ -7,7 +7,7 @@ the body mostly rests, shifts and fidgets.
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Collection, Iterator, Mapping
 
 from metagraph.graph.model import Kind, Layer, Limb, Markov, Project
 from metagraph.playback.choice import pick, uniform
@@ -53,19 +53,22 @@ def model(project: Project, layer: Layer) -> Markov:
     return project.markov.get(layer, DEFAULTS[layer])
 
 
-def write(chain: Markov, seed: int, until: float) -> Iterator[MetaAction]:
+def write(chain: Markov, seed: int, until: float, kinds: Collection[Kind] | None = None) -> Iterator[MetaAction]:
     """Yield meta actions from 0 to `until` seconds: rests drawn between 0.35 and 1.65 times the mean gap, windows of 1 to 3 s.
+
+    kinds: what the graph has; states of other kinds are passed over, so that half-filled graphs perform too.
 
     Each draw is keyed by the meta action's number, so a longer horizon only appends. A chain that cannot leave a row
     of zeros starts again from any state.
     """
     time, state, number = 0.0, -1, 0
+    open_to = [1.0 if kinds is None or kind in kinds else 0.0 for _, kind in chain.states]
+    if not any(open_to):
+        return
     while True:
         key = f"auto/{chain.layer}/{number}"
-        row = chain.matrix[state] if state >= 0 else [1.0] * len(chain.states)
-        weights = {str(i): p for i, p in enumerate(row)}
-        if not any(p > 0 for p in row):
-            weights = dict.fromkeys(weights, 1.0)
+        row = [p * may for p, may in zip(chain.matrix[state] if state >= 0 else open_to, open_to, strict=True)]
+        weights = {str(i): p for i, p in enumerate(row if any(row) else open_to)}
         state = int(pick(seed, key, "state", weights))
         limb, kind = chain.states[state]
         time += chain.gap * (0.35 + 1.3 * uniform(seed, key, "gap"))

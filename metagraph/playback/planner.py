@@ -105,7 +105,9 @@ def _extend_layer(
     performer.begun = frozenset(played & waiting)
     performer.free = max(now, performer.free)
     if idle:
-        future += [m for m in markov.write(markov.model(project, layer), plan.seed, end) if m.start >= max(plan.end, now)]
+        kinds = {kind for _, kind in graph.index}
+        written = markov.write(markov.model(project, layer), plan.seed, end, kinds)
+        future += [m for m in written if m.start >= max(plan.end, now)]
     asked, delayed = delay(asked, performer.free, project.settings)
     placed, told = replan([*future, *asked], project.settings)
     performer.perform(placed, end)
