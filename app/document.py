@@ -7,6 +7,7 @@ from __future__ import annotations
 
 import os
 from collections.abc import Callable
+from dataclasses import replace
 from pathlib import Path
 
 from PySide6.QtCore import QLockFile, QObject, QStandardPaths, Signal
@@ -14,7 +15,7 @@ from PySide6.QtGui import QUndoCommand, QUndoStack
 
 from metagraph.errors import FileError
 from metagraph.formats.journal import Journal, journal_path
-from metagraph.formats.store import moved, save_project
+from metagraph.formats.store import SUFFIX, moved, save_project
 from metagraph.graph.model import Project
 
 Edit = Callable[[Project], Project]
@@ -77,17 +78,21 @@ class Document(QObject):
         if isinstance(top, _Change):
             top.merge = None
 
-    def refresh(self, function: Edit) -> None:
-        """Change what is not saved (loaded motion); no undo step, not dirty."""
-        self._set(function(self.project), quiet=True)
+    def cancel_merging(self, merge: str) -> None:
+        """Take back a run of merged edits that has not ended: the mouse's drag was cancelled."""
+        count = self.undo_stack.count()
+        top = self.undo_stack.command(count - 1) if count else None
+        if isinstance(top, _Change) and top.merge == merge and self.undo_stack.index() == count:
+            top.setObsolete(True)  # undone, it leaves no step to redo
+            self.undo_stack.undo()
 
-    def _set(self, project: Project, quiet: bool = False) -> None:
+    def _set(self, project: Project) -> None:
         before, self.project = self.project, project
-        if not quiet and self._journal is not None:
+        if self._journal is not None:
             try:
                 self._journal.edit(before, project)
-            except FileError as error:
-                self.failed.emit(str(error))
+            except (FileError, OSError) as error:
+                self.failed.emit(f"This edit was not autosaved: {error}")
         self.changed.emit(before, project)
 
     def undo(self) -> None:
@@ -120,14 +125,14 @@ class Document(QObject):
         self.state_changed.emit()
 
     def save(self, path: Path | None = None) -> None:
-        """Write the project, to its own file or another. Raises FileError."""
+        """Write the project, to its own file or another; in a new place it is named after its file. Raises FileError."""
         target = path or self.path
         if target is None:
             raise ValueError("a project that was never saved needs a path")
         if target == self.path:
             save_project(self.project, target)
         else:
-            after = moved(self.project, self.path, target)
+            after = replace(moved(self.project, self.path, target), name=project_name(target))
             save_project(after, target, target)
             before, self.project = self.project, after
             # Steps back would bring paths relative to the old place; a new place begins a new history.
@@ -157,6 +162,15 @@ class Document(QObject):
         if self._journal is not None:
             self._journal.remove()
             self._journal = None
+
+
+def project_name(path: Path) -> str:
+    """Return what a project saved as `path` is called: the file's name without `.metagraph.yaml`."""
+    name = path.name
+    for suffix in (SUFFIX, ".yaml", ".yml"):
+        if name.lower().endswith(suffix) and len(name) > len(suffix):
+            return name[: -len(suffix)]
+    return name
 
 
 def state_folder() -> Path:

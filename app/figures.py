@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from pathlib import Path
-from typing import Any
 
 from PySide6.QtCore import QObject, Signal
 
@@ -13,21 +12,24 @@ from metagraph.graph.model import Project
 from metagraph.motion.skeleton import Skeleton
 from preview.figure import Figure, SkinnedFigure, StickFigure
 
+Key = tuple[str, str]  # the character's file, the skeleton it is bound to
+
 
 class Figures(QObject):
-    """changed: another figure is to be drawn. A character is read on a thread; until it is there a stick figure stands in."""
+    """changed: another figure is to be drawn. Figures are read and built on a thread."""
 
     changed = Signal()
 
     def __init__(self, document: Document, jobs: Jobs, parent: QObject | None = None) -> None:
         super().__init__(parent)
         self.document, self.jobs = document, jobs
-        self._sticks: dict[str, Figure] = {}
-        self._skinned: tuple[tuple[Any, ...], Figure] | None = None
-        self._wanted: tuple[Any, ...] | None = None
+        self._sticks: dict[str, Figure | None] = {}  # None while it is being built
+        self._skinned: tuple[Key, Figure] | None = None
+        self._wanted: Key | None = None
+        self._unreadable: Key | None = None
         document.changed.connect(self._follow)
 
-    def _key(self, project: Project) -> tuple[Any, ...] | None:
+    def _key(self, project: Project) -> Key | None:
         if project.character is None or project.skeleton is None:
             return None
         path = (self.document.folder or Path()) / project.character
@@ -37,44 +39,64 @@ class Figures(QObject):
         key = self._key(after)
         if key == self._wanted:
             return
-        self._wanted = key
+        self._wanted, self._unreadable = key, None
         if key is None or after.skeleton is None:
             self.changed.emit()
             return
         skeleton = after.skeleton
+        self.jobs.start(
+            "character",
+            lambda _: (key, load_figure(Path(key[0]), skeleton)),
+            self._read,
+            lambda error: self._refused(key, error),
+            quick=True,
+        )
 
-        def read(_: object) -> tuple[tuple[Any, ...], Figure]:
-            return key, load_figure(Path(key[0]), skeleton)
-
-        self.jobs.start("character", read, self._read, self._unreadable, quick=True)
-
-    def _read(self, result: tuple[tuple[Any, ...], Figure]) -> None:
+    def _read(self, result: tuple[Key, Figure]) -> None:
         if result[0] == self._wanted:
             self._skinned = result
             self.changed.emit()
 
-    def _unreadable(self, error: Exception) -> None:
-        self.document.failed.emit(f"The character cannot be drawn: {error}")
-        self.changed.emit()
+    def _refused(self, key: Key, error: Exception) -> None:
+        if key == self._wanted:
+            self._unreadable = key
+            self.document.failed.emit(f"The character cannot be drawn: {error}")
+            self.changed.emit()
 
-    def figure(self, skeleton: Skeleton) -> Figure:
-        """Return the figure for a skeleton: the project's character on the project's skeleton, else a stick figure."""
+    def figure(self, skeleton: Skeleton) -> Figure | None:
+        """Return the figure for a skeleton: the project's character on the project's skeleton, else a stick figure.
+
+        None while it is being made; `changed` tells when it is there.
+        """
         project = self.document.project
-        if self._skinned is not None and self._skinned[0] == self._key(project) and skeleton == project.skeleton:
-            return self._skinned[1]
-        found = self._sticks.get(skeleton.fingerprint)
-        if found is None:
-            found = self._sticks[skeleton.fingerprint] = StickFigure(skeleton)
-        return found
+        key = self._key(project)
+        if key is not None and key != self._unreadable and skeleton == project.skeleton:
+            return self._skinned[1] if self._skinned is not None and self._skinned[0] == key else None
+        if skeleton.fingerprint not in self._sticks:
+            self._sticks[skeleton.fingerprint] = None
+            self.jobs.start("figure", lambda _: _ready(StickFigure(skeleton)), self._built, quick=True)
+        return self._sticks[skeleton.fingerprint]
+
+    def _built(self, figure: Figure) -> None:
+        self._sticks[figure.skeleton.fingerprint] = figure
+        self.changed.emit()
 
 
 def load_figure(path: Path, skeleton: Skeleton) -> Figure:
     """Return a character's figure bound to a skeleton. Raises FileError."""
     from metagraph.formats.gltf import read_character
+
+    return _ready(SkinnedFigure(read_character(path), skeleton))
+
+
+def _ready(figure: Figure) -> Figure:
+    """Work out on this thread what would otherwise be worked out while the first picture is drawn."""
     from preview.gpu import decoded
 
-    figure = SkinnedFigure(read_character(path), skeleton)
     for batch in figure.mesh.batches:
         if batch.image is not None:
-            decoded(batch.image)  # here, on a thread, rather than when it is first drawn
+            decoded(batch.image)
+    _, rest = figure.skeleton.globals(figure.skeleton.rest)
+    figure.bounds(rest)
+    _ = figure.coarse
     return figure

@@ -7,7 +7,7 @@ import traceback
 from collections.abc import Callable
 from typing import Any
 
-from PySide6.QtCore import QObject, QRunnable, QThreadPool, Signal, Slot
+from PySide6.QtCore import QObject, QRunnable, Qt, QThreadPool, Signal
 
 
 class Job(QObject):
@@ -20,15 +20,26 @@ class Job(QObject):
     done = Signal(object)
     failed = Signal(object)
     ended = Signal()
+    _over = Signal(object, object)  # result, error; from the thread
 
     def __init__(self, title: str, work: Callable[[Job], Any]) -> None:
         super().__init__()
         self.title = title
         self._work = work
         self.cancelled = False
+        self._over.connect(self._deliver, Qt.ConnectionType.QueuedConnection)
 
     def cancel(self) -> None:
         self.cancelled = True
+
+    def _deliver(self, result: Any, error: Exception | None) -> None:
+        """Hand the result over on the window's thread, unless it was cancelled while it was on its way."""
+        if not self.cancelled:
+            if error is None:
+                self.done.emit(result)
+            else:
+                self.failed.emit(error)
+        self.ended.emit()
 
     def tell(self, done: int, total: int, words: str = "") -> None:
         """Report progress; called by the work, on its own thread."""
@@ -41,23 +52,15 @@ class _Runner(QRunnable):
         self.job = job
         self.setAutoDelete(True)
 
-    @Slot()
     def run(self) -> None:
+        result, problem = None, None
         try:
             result = self.job._work(self.job)
         except Exception as error:
-            if not self.job.cancelled:
-                error.__notes__ = [*getattr(error, "__notes__", []), traceback.format_exc()]
-                self._send(self.job.failed, error)
-        else:
-            if not self.job.cancelled:
-                self._send(self.job.done, result)
-        self._send(self.job.ended)
-
-    @staticmethod
-    def _send(signal: Any, *values: Any) -> None:
+            error.__notes__ = [*getattr(error, "__notes__", []), traceback.format_exc()]
+            problem = error
         with contextlib.suppress(RuntimeError):  # the window is gone; nobody wants the result
-            signal.emit(*values)
+            self.job._over.emit(result, problem)
 
 
 class Jobs(QObject):
@@ -72,7 +75,7 @@ class Jobs(QObject):
         self._pool = QThreadPool(self)
         self._pool.setMaxThreadCount(2)  # long jobs must not starve the short ones the preview needs
         self._quick = QThreadPool(self)
-        self._quick.setMaxThreadCount(1)
+        self._quick.setMaxThreadCount(2)  # a large plan must not hold up a figure
 
     def start(
         self,

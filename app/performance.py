@@ -61,7 +61,7 @@ class Performance(QObject):
 
     def _edited(self, before: Project, after: Project) -> None:
         if before.skeleton is not after.skeleton or after.skeleton is None:
-            self.requests = ()
+            self.requests, self.length = (), LENGTH
             self.shown = Shown(after, Plan(1, 0.0), LENGTH)
             self.changed.emit()
         self.replan()
@@ -94,6 +94,8 @@ class Performance(QObject):
 
     def _failed(self, error: Exception) -> None:
         self._busy = False
+        if self._again:
+            self.replan()
         self.document.failed.emit(f"The plan could not be made: {error}")
 
     # --- requests

@@ -9,7 +9,6 @@ import subprocess
 import sys
 import threading
 from pathlib import Path
-from typing import Any
 
 from PySide6.QtCore import QObject, Qt, Signal
 from PySide6.QtGui import QImage
@@ -81,10 +80,10 @@ class Thumbnails(QObject):
         if before.skeleton is not after.skeleton and before.skeleton != after.skeleton:
             self.forget()
 
-    def _keep(self, number: int, pictures: list[Any]) -> None:
+    def _keep(self, number: int, pictures: list[QImage]) -> None:
         key, motion = self._orders.pop(number, (None, None))
         if key is not None and motion is not None:  # else it was forgotten meanwhile
-            self._pictures[key] = (motion, [to_image(p) for p in pictures])
+            self._pictures[key] = (motion, pictures)
             self.ready.emit(key[0])
 
     # --- the other process
@@ -126,7 +125,7 @@ class Thumbnails(QObject):
         with contextlib.suppress(EOFError, OSError, RuntimeError, pickle.UnpicklingError), process.stdout as pipe:
             while True:
                 number, pictures = pickle.load(pipe)
-                self._drawn.emit(number, pictures)
+                self._drawn.emit(number, [to_image(p) for p in pictures])
 
     def stop(self) -> None:
         """End the process; at closing."""

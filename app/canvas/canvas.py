@@ -31,6 +31,7 @@ from app.performance import Performance
 from app.session import Session
 from app.theme import theme
 from app.thumbnails import Thumbnails
+from app.words import many
 from metagraph.graph import edits
 from metagraph.graph.expand import size
 from metagraph.graph.model import KINDS, LAYERS, Action, Kind, Project
@@ -69,7 +70,7 @@ class LikelihoodDrag:
         self.canvas.document.finish_merging()
 
     def cancel(self) -> None:
-        self.canvas.document.finish_merging()
+        self.canvas.document.cancel_merging("likelihood")
 
 
 class RowDrag:
@@ -141,6 +142,7 @@ class Canvas(QWidget):
         self._drop: Drop | None = None
         self._drop_hit = NOTHING
         self._layout: Layout | None = None
+        self._counted: tuple[object, str] | None = None  # the graphs, and the sentence about them
         self._beat = 0
         self.setMouseTracking(True)
         self.setAcceptDrops(True)
@@ -207,11 +209,21 @@ class Canvas(QWidget):
                 other=self.session.other(),
                 drop=self._drop,
                 drop_hit=self._drop_hit,
-                sentence=sentence(project),
+                sentence=self._sentence(),
             ),
             self.font(),
         )
         painter.end()
+
+    def _sentence(self) -> str:
+        """What a drop outside the nodes would do, else how large the machine is."""
+        if self._drop is not None and self._drop_hit.area in ("chip", "add", "nothing"):
+            words = self._drop.words.replace("*", "")
+            return words[:1].upper() + words[1:]
+        graphs = self.document.project.graphs
+        if self._counted is None or self._counted[0] is not graphs:
+            self._counted = graphs, sentence(self.document.project)
+        return self._counted[1]
 
     def _playing(self) -> frozenset[str]:
         plan = self.performance.shown.plan
@@ -293,6 +305,7 @@ class Canvas(QWidget):
             hit = self.layout_now().hit(event.position())
             plain = not event.modifiers() & (Qt.KeyboardModifier.ControlModifier | Qt.KeyboardModifier.ShiftModifier)
             if isinstance(gesture, RowDrag) and plain and hit.ident == gesture.action:
+                self._hover_shown = False  # asked for: it goes on when the pointer leaves
                 self.session.select_actions((gesture.action,))
                 self.session.show_context(gesture.action)
 
@@ -341,6 +354,9 @@ class Canvas(QWidget):
         event.ignore()
 
     def event(self, event: QEvent) -> bool:
+        if event.type() == QEvent.Type.ShortcutOverride and self.gesture is not None and event.key() == Qt.Key.Key_Escape:  # type: ignore[attr-defined]
+            event.accept()  # cancels the drag rather than what the preview shows
+            return True
         if event.type() == QEvent.Type.ToolTip and isinstance(event, QHelpEvent):
             hit = self.layout_now().hit(QPointF(event.pos()))
             QToolTip.showText(event.globalPos(), self._tip(hit), self)
@@ -421,7 +437,7 @@ class Canvas(QWidget):
             self.refused.emit(str(error))
             return
         made = tuple(a.id for a in self.document.project.actions() if a.id not in before) or load.actions
-        if drop.kind == "stance" and made:
+        if drop.kind in ("stance", None) and made:
             action = self.document.project.action(made[0])
             if action is not None:
                 self.session.set_stance(action.stance)
@@ -463,13 +479,19 @@ class Canvas(QWidget):
             likelihood = next(a for a in listed if a.id == self.focus).likelihood
             value = round(min(3.0, max(0.1, likelihood + (0.1 if key == Qt.Key.Key_Right else -0.1))), 1)
             chosen = self.session.actions or (self.focus,)
-            self.document.edit("Change likelihood", lambda p: edits.update_actions(p, chosen, likelihood=value))
+            self.document.edit("Change likelihood", lambda p: edits.update_actions(p, chosen, likelihood=value), merge="likelihood keys")
         elif key in (Qt.Key.Key_Return, Qt.Key.Key_Enter) and self.focus in ids:
             self.session.show_context(str(self.focus))
-        elif key == Qt.Key.Key_Escape:
-            self.session.show_plan()
+        elif key == Qt.Key.Key_Escape and self.gesture is not None:
+            self.gesture.cancel()
+            self.gesture = None
         else:
             super().keyPressEvent(event)
+
+    def keyReleaseEvent(self, event: QKeyEvent) -> None:
+        if event.key() in (Qt.Key.Key_Left, Qt.Key.Key_Right) and not event.isAutoRepeat():
+            self.document.finish_merging()  # a key held down is one step
+        super().keyReleaseEvent(event)
 
     def _focus_on(self, action: str, extend: bool) -> None:
         self.focus = action
@@ -510,20 +532,12 @@ class Canvas(QWidget):
             menu.addAction("New stance…", self.new_stance)
         menu.exec(event.globalPos())
 
-    def _remove_stance(self, stance: str) -> None:
-        self.document.edit("Remove stance", lambda p: edits.remove_stance(p, stance))
-
     def _move_to(self, stance: str) -> None:
-        chosen = self.session.selected_actions()
+        chosen = self.session.actions
         try:
-            for action in chosen:
-                end = action.end_stance if action.end_stance != stance else None
-                self.document.edit(
-                    "Move actions", lambda p, a=action, e=end: edits.move_actions(p, (a.id,), a.kind, stance, e), merge=f"move {stance}"
-                )
+            self.document.edit("Move actions", lambda p: edits.to_stance(p, chosen, stance))
         except edits.EditError as error:
             self.refused.emit(str(error))
-        self.document.finish_merging()
 
     def _show_clip(self) -> None:
         actions = self.session.selected_actions()
@@ -572,8 +586,3 @@ def sentence(project: Project) -> str:
     over = f" over {layers} layers" if layers > 1 else ""
     clips, states, links = many(whole.clips, "clip"), many(whole.states, "state"), many(whole.connections, "connection")
     return f"You placed {clips}{over}. This is the machine you did not have to draw: {states}, {links}."
-
-
-def many(count: int, noun: str) -> str:
-    """Return "1 clip", "2,328 connections"."""
-    return f"{count:,} {noun}{'s' if count != 1 else ''}"

@@ -9,7 +9,7 @@ from PySide6.QtCore import QMimeData
 
 from app.canvas.layout import Hit
 from metagraph.formats.clips import SUFFIXES
-from metagraph.graph.edits import move_actions, place, refusal
+from metagraph.graph.edits import EditError, move_actions, place, refusal, to_stance
 from metagraph.graph.model import Kind, Layer, Project
 
 CLIPS = "application/x-metagraph-clips"
@@ -52,7 +52,10 @@ def load_of(data: QMimeData) -> Load:
 
 @dataclass(frozen=True)
 class Drop:
-    """kind, stance, end: where things go; stance None makes a new one. words: what will happen, or why not."""
+    """kind, stance, end: where things go; stance None makes a new one, kind None keeps each action's own.
+
+    words: what will happen, or why not.
+    """
 
     possible: bool
     words: str
@@ -65,6 +68,8 @@ def drop_at(project: Project, layer: Layer, stance: str | None, other: str | Non
     """Return what dropping `load` on `hit` does; the current stance and the other stance say where."""
     if not load:
         return Drop(False, "only clips, folders of clips and actions can be dropped here")
+    if load.actions and hit.area == "chip" and hit.ident is not None:
+        return _move(project, hit.ident, load)
     what = _count(load)
     if hit.area in ("card", "add"):
         kind: Kind = "stance"
@@ -98,12 +103,26 @@ def drop_at(project: Project, layer: Layer, stance: str | None, other: str | Non
     return Drop(True, words, kind, target, end)
 
 
+def _move(project: Project, stance: str, load: Load) -> Drop:
+    """Actions dropped on a stance's chip move there and stay what they are."""
+    name = _name(project, stance)
+    if all((a := project.action(i)) is None or a.stance == stance for i in load.actions):
+        return Drop(False, f"already in *{name}*", None, stance)
+    try:
+        to_stance(project, load.actions, stance)
+    except EditError as error:
+        return Drop(False, str(error), None, stance)
+    return Drop(True, f"move {_count(load)} to *{name}*", None, stance)
+
+
 def perform(project: Project, layer: Layer, drop: Drop, load: Load) -> Project:
     """Do what a possible drop said, for clips or actions. Raises EditError."""
-    assert drop.kind is not None
     if load.actions:
         assert drop.stance is not None
+        if drop.kind is None:
+            return to_stance(project, load.actions, drop.stance)
         return move_actions(project, load.actions, drop.kind, drop.stance, drop.end)
+    assert drop.kind is not None
     return place(project, load.clips, layer, drop.kind, drop.stance, drop.end)
 
 

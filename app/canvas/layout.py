@@ -133,7 +133,7 @@ def arrange(
         text = (
             widths.get(s.name, 7.2 * len(s.name)) + widths.get(str(count), 16.0) + (widths.get(words, 7 * len(words)) + 8 if words else 0)
         )
-        w = min(max(text + 74, CHIP_MIN), CHIP_MAX + (80 if words else 0))
+        w = min(max(text + 80, CHIP_MIN), CHIP_MAX + (80 if words else 0))
         if x + w > width - 56 and x > 2 * GRID:
             x, y = 2.0 * GRID, y + CHIP_HEIGHT + GRID
         chips.append(Chip(ident, QRectF(x, y, w, CHIP_HEIGHT), s.name, count, words))

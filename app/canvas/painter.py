@@ -139,7 +139,7 @@ def _chip(painter: QPainter, chip: Chip, layout: Layout, look: Look, font: QFont
         painter.setPen(Qt.PenStyle.NoPen)
         painter.setBrush(t.fill("stance"))
         painter.drawEllipse(QPointF(chip.rect.left() + 16, chip.rect.center().y()), 4, 4)
-    inner.setLeft(chip.rect.left() + (chip.rect.height() if picture is not None else 28))
+    inner.setLeft(chip.rect.left() + (chip.rect.height() + 8 if picture is not None else 28))
     metrics = QFontMetricsF(font)
     right = chip.words or ""
     count = str(chip.count)
