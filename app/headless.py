@@ -20,9 +20,9 @@ from metagraph.formats.store import SUFFIX, Opened, open_project, save_project
 from metagraph.graph.check import check as find_problems
 from metagraph.graph.expand import size
 from metagraph.graph.model import KINDS, LAYERS, Project
+from metagraph.playback.bake import bake
 from metagraph.playback.plan import Plan
 from metagraph.playback.planner import make_plan
-from metagraph.playback.bake import bake
 from metagraph.playback.player import pose_at
 
 SAMPLE = Path(__file__).resolve().parents[1] / "sample_clips" / f"sample{SUFFIX}"

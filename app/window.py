@@ -26,7 +26,7 @@ from PySide6.QtWidgets import (
 
 from app import icons
 from app.actions import Actions, Command, Standard
-from app.canvas.canvas import Canvas, many
+from app.canvas.canvas import Canvas
 from app.canvas.drops import Drop, load_of
 from app.document import Document
 from app.figures import Figures
@@ -38,6 +38,7 @@ from app.performance import Performance
 from app.session import Session
 from app.theme import KIND_MARKS, apply, theme
 from app.thumbnails import Thumbnails
+from app.words import many
 from metagraph.formats.imports import Imported
 from metagraph.graph import edits
 from metagraph.graph.check import Problem, check

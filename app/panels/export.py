@@ -55,7 +55,7 @@ class ExportDialog(QDialog):
         whole = size(project)
         self.words = QLabel(self, wordWrap=True)
         self.words.setText(
-            f"Writes one JSON (the graph: {whole.states} actions, its schema is docs/metagraph.schema.json) and one GLB "
+            f"Writes one JSON (the graph: {whole.states} actions, its schema is metagraph/engines/metagraph.schema.json) and one GLB "
             f"({whole.clips} clips on {len(project.skeleton) if project.skeleton else 0} joints)."
         )
         self.words.setProperty("dim", True)

@@ -3,20 +3,17 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
+from html import escape
 from typing import Any
 
 from PySide6.QtCore import Qt
 from PySide6.QtWidgets import (
     QButtonGroup,
     QCheckBox,
-    QComboBox,
-    QCompleter,
-    QDoubleSpinBox,
     QFormLayout,
     QFrame,
     QHBoxLayout,
     QLabel,
-    QLineEdit,
     QPushButton,
     QScrollArea,
     QStackedWidget,
@@ -26,63 +23,13 @@ from PySide6.QtWidgets import (
 )
 
 from app.document import Document
-from app.panels.timing import TimingPlot
+from app.panels.fields import MIXED, Chooser, Field, Mixed, Seconds, common
+from app.panels.timing import TimingPlot, retimed
 from app.performance import Performance
 from app.session import Session
 from app.theme import KIND_MARKS, KIND_TITLES, theme
 from metagraph.graph import edits
 from metagraph.graph.model import LIMBS, PARTS, REACH, Action, Project
-
-MIXED = "mixed"
-
-
-def common(values: Sequence[Any]) -> Any:
-    """Return what all values are, or the word "mixed" as a marker object when they differ."""
-    first = values[0]
-    return first if all(v == first for v in values) else _Mixed
-
-
-class _MixedType:
-    def __repr__(self) -> str:
-        return MIXED
-
-
-_Mixed = _MixedType()
-
-
-class Seconds(QDoubleSpinBox):
-    """A number that can also show that many values differ; typing or stepping then sets all."""
-
-    def __init__(self, parent: QWidget, tip: str, most: float = 1e4, suffix: str = " s", step: float = 0.05, decimals: int = 2) -> None:
-        super().__init__(parent, toolTip=tip)
-        self.setRange(-step, most)
-        self.setSpecialValueText(MIXED)
-        self.setDecimals(decimals)
-        self.setSingleStep(step)
-        self.setSuffix(suffix)
-        self.setKeyboardTracking(False)
-        self.setAccessibleName(tip)
-
-    def show_value(self, value: Any) -> None:
-        self.blockSignals(True)
-        self.setValue(self.minimum() if value is _Mixed else float(value))
-        self.blockSignals(False)
-
-    def wheelEvent(self, event: Any) -> None:
-        if self.hasFocus():
-            super().wheelEvent(event)
-        else:
-            event.ignore()  # scrolling the panel must not change numbers
-
-
-class Chooser(QComboBox):
-    """A combo box that long entries do not widen."""
-
-    def __init__(self, parent: QWidget, toolTip: str) -> None:
-        super().__init__(parent, toolTip=toolTip)
-        self.setSizeAdjustPolicy(QComboBox.SizeAdjustPolicy.AdjustToMinimumContentsLengthWithIcon)
-        self.setMinimumContentsLength(8)
-        self.setAccessibleName(toolTip)
 
 
 class PropertiesPanel(QScrollArea):
@@ -124,8 +71,7 @@ class PropertiesPanel(QScrollArea):
     def _action_page(self) -> QWidget:
         page, box = self._page()
         head = QHBoxLayout()
-        self.name = QLineEdit(page, toolTip="Name of the action")
-        self.name.setAccessibleName("Name")
+        self.name = Field(page, "Name of the action", "Name")
         self.name.editingFinished.connect(self._rename)
         self.kind = QLabel(page)
         head.addWidget(self.name, 1)
@@ -155,7 +101,9 @@ class PropertiesPanel(QScrollArea):
         self.blend_in.valueChanged.connect(lambda v: self._timing("blend_in", v))
         self.blend_out.valueChanged.connect(lambda v: self._timing("blend_out", v))
         self.leave = QCheckBox("may be left early, from", page)
-        self.leave.toggled.connect(self._leave)
+        self.leave.setAccessibleName("May be left early")
+        self.leave.setToolTip("Whether what comes next may begin before its end")
+        self.leave.clicked.connect(self._leave)
         self.earliest = Seconds(page, "Earliest exit: from here on the action may be left")
         self.earliest.valueChanged.connect(lambda v: self._timing("earliest_exit", v))
         self.leave_row = pair("Exit", self.leave, self.earliest)
@@ -177,11 +125,8 @@ class PropertiesPanel(QScrollArea):
         self.limb.idClicked.connect(lambda n: self._set("Change limb", limb=LIMBS[n]))
         form.addRow("Limb", row)
         self.limb_row = row
-        self.tags = QLineEdit(page, toolTip="Words apart by commas; requests can ask for them: positive, negative, ...")
-        self.tags.setPlaceholderText("positive, greeting, …")
-        self.tags.setAccessibleName("Tags")
+        self.tags = Field(page, "Words apart by commas; requests can ask for them: positive, negative, ...", "Tags")
         self.tags.editingFinished.connect(self._retag)
-        self.completer = QCompleter([], self.tags)
         form.addRow("Tags", self.tags)
         self.likelihood = Seconds(page, "Likelihood against the others of its node; 1 is usual", 100, "", 0.1)
         self.likelihood.valueChanged.connect(self._likely)
@@ -194,6 +139,7 @@ class PropertiesPanel(QScrollArea):
         form.addRow("Ends in", self.ends)
         self.form = form
         self.joints = QPushButton(page, toolTip="Let it move only some joints")
+        self.joints.setFocusPolicy(Qt.FocusPolicy.TabFocus)  # after a click the space bar still plays
         self.joints.clicked.connect(self._mask)
         form.addRow("Joints", self.joints)
         self.trouble = QLabel(page, wordWrap=True)
@@ -275,11 +221,11 @@ class PropertiesPanel(QScrollArea):
         one = len(actions) == 1
         kind, layer = common([a.kind for a in actions]), common([a.layer for a in actions])
         self.name.setReadOnly(not one)
-        if not self.name.hasFocus() or not one:
-            self.name.setText(actions[0].name if one else f"{len(actions)} actions")
-        title = f"{KIND_MARKS[kind]} {KIND_TITLES[kind]}" if kind is not _Mixed else "Mixed kinds"
-        self.kind.setText(f"{title} · {layer.capitalize() if layer is not _Mixed else 'layers'}")
-        self.kind.setStyleSheet(f"color: {t.kinds[kind]}" if kind is not _Mixed else "")
+        of = tuple(a.id for a in actions)
+        self.name.show_text(actions[0].name if one else f"{len(actions)} actions", of)
+        title = f"{KIND_MARKS[kind]} {KIND_TITLES[kind]}" if kind is not Mixed else "Mixed kinds"
+        self.kind.setText(f"{title} · {layer.capitalize() if layer is not Mixed else 'layers'}")
+        self.kind.setStyleSheet(f"color: {t.kinds[kind]}" if kind is not Mixed else "")
         self.plot.setVisible(one)
         if one:
             self.plot.show_action(actions[0])
@@ -294,9 +240,9 @@ class PropertiesPanel(QScrollArea):
         self.form.setRowVisible(self.leave_row, not stance)
         exits = common([a.timing.earliest_exit for a in actions])
         self.leave.blockSignals(True)
-        self.leave.setTristate(exits is _Mixed)
+        self.leave.setTristate(exits is Mixed)
         self.leave.setCheckState(
-            Qt.CheckState.PartiallyChecked if exits is _Mixed else Qt.CheckState.Unchecked if exits is None else Qt.CheckState.Checked
+            Qt.CheckState.PartiallyChecked if exits is Mixed else Qt.CheckState.Unchecked if exits is None else Qt.CheckState.Checked
         )
         self.leave.blockSignals(False)
         self.earliest.setEnabled(exits is not None)
@@ -307,15 +253,14 @@ class PropertiesPanel(QScrollArea):
         self.limb.setExclusive(False)
         for n, name in enumerate(LIMBS):
             self.limb.button(n).setChecked(limb == name)
-        self.limb.setExclusive(limb is not _Mixed)
-        if not self.tags.hasFocus():
-            tags = common([a.tags for a in actions])
-            self.tags.setText("" if tags is _Mixed else ", ".join(tags))
-            self.tags.setPlaceholderText(MIXED if tags is _Mixed else "positive, greeting, …")
+        self.limb.setExclusive(limb is not Mixed)
+        tags = common([a.tags for a in actions])
+        self.tags.show_text("" if tags is Mixed else ", ".join(tags), of)
+        self.tags.setPlaceholderText(MIXED if tags is Mixed else "positive, greeting, …")
         self.likelihood.show_value(common([a.likelihood for a in actions]))
         self._fill_stances(actions, kind)
         masks = common([a.joints for a in actions])
-        self.joints.setText(MIXED if masks is _Mixed else f"{len(masks)} joints only" if masks else "all its layer reaches")
+        self.joints.setText(MIXED if masks is Mixed else f"{len(masks)} joints only" if masks else "all its layer reaches")
         self.joints.setEnabled(project.skeleton is not None)
         wrong = self._wrong(actions) if one else ""
         self.trouble.setText(wrong)
@@ -329,18 +274,11 @@ class PropertiesPanel(QScrollArea):
     def _fill_stances(self, actions: Sequence[Action], kind: Any) -> None:
         project = self.document.project
         layer = common([a.layer for a in actions])
-        stances = list(project.graphs[layer].stances.values()) if layer is not _Mixed else []
+        stances = project.graphs[layer].stances.values() if layer is not Mixed else ()
         for box, values in ((self.stance, [a.stance for a in actions]), (self.ends, [a.end_stance for a in actions])):
-            box.blockSignals(True)
-            box.clear()
-            for s in stances:
-                box.addItem(s.name, s.id)
             shared = common(values)
-            place = next((n for n, s in enumerate(stances) if s.id == shared), -1)
-            box.setPlaceholderText(MIXED if shared is _Mixed else "choose one")
-            box.setCurrentIndex(place)
+            box.show_entries([(s.name, s.id) for s in stances], shared, MIXED if shared is Mixed else "choose one")
             box.setEnabled(bool(stances))
-            box.blockSignals(False)
         self.form.setRowVisible(self.ends, kind == "transition")
 
     def _show_clips(self, clips: Sequence[str]) -> None:
@@ -359,7 +297,7 @@ class PropertiesPanel(QScrollArea):
         for action in [a for c in clips for a in project.uses.get(c, ())][:20]:
             stance = project.stance(action.stance)
             color = t.kinds[action.kind]
-            where = f"{action.kind} of {stance.name if stance else '?'}, {action.layer}"
+            where = escape(f"{action.kind} of {stance.name if stance else '?'}, {action.layer}")
             lines.append(f"<p style='margin:2px'><span style='color:{color}'>{KIND_MARKS[action.kind]}</span> "
                          f"<a style='color:{t.text}' href='{action.id}'>{where}</a></p>")  # fmt: skip
         keys = "<p>Drag onto a node, or press <b>1</b> stance, <b>2</b> gesture, <b>3</b> fidget, <b>4</b> transition.</p>"
@@ -374,48 +312,45 @@ class PropertiesPanel(QScrollArea):
         from metagraph.playback.markov import model
 
         self.gap.show_value(model(project, layer).gap)
-        self.base.blockSignals(True)
-        self.base.clear()
-        self.base.addItem("Rest pose of the skeleton", None)
-        for e in project.clips.values():
-            self.base.addItem(e.name, e.id)
-        ids = [None, *project.clips]
-        self.base.setCurrentIndex(ids.index(project.base.clip) if project.base.clip in ids else 0)
+        clips = [("Rest pose of the skeleton", None), *((e.name, e.id) for e in project.clips.values())]
+        self.base.show_entries(clips, project.base.clip, "a clip that is gone")
         self.base.setEnabled(bool(project.clips))
-        self.base.blockSignals(False)
         self.base_frame.setEnabled(project.base.clip is not None)
         self.base_frame.show_value(project.base.frame)
 
     # --- editing
 
-    def _try(self, text: str, function: Callable[[Project], Project], merge: str | None = None) -> None:
+    def _try(self, text: str, function: Callable[[Project], Project], merge: str | None = None) -> bool:
         try:
             self.document.edit(text, function, merge)
         except edits.EditError as error:
             self.document.failed.emit(str(error))
             self.show_selection()
+            return False
+        return True
 
     def _set(self, text: str, merge: str | None = None, **changes: Any) -> None:
         chosen = self.session.actions
         self._try(text, lambda p: edits.update_actions(p, chosen, **changes), merge)
 
     def _timing(self, field: str, value: float) -> None:
-        if value < 0:
-            return  # stepped down from "mixed"
-        fields: dict[str, Any] = {field: round(value, 3)}
-        actions = self.session.selected_actions()
-        if field == "end" and len(actions) == 1:
-            entry = self.document.project.clips.get(actions[0].clip)
-            if entry is not None and value >= entry.duration - 0.5 / entry.fps:
-                fields = {"end": None}
-        self._set("Change timing", timing=fields)
-
-    def _leave(self, on: bool) -> None:
-        actions = self.session.selected_actions()
-        if not actions:
+        if value < 0:  # "mixed" was typed over with nothing
+            self.show_selection()
             return
-        _, end = self.document.project.span(actions[0])
-        self._set("Change earliest exit", timing={"earliest_exit": round(end * 0.7, 3) if on else None})
+        chosen = self.session.actions
+        self._try("Change timing", lambda p: retimed(p, chosen, field, value))
+        self.show_selection()  # what was out of the clip was clamped
+
+    def _leave(self) -> None:
+        on, project = self.leave.checkState() != Qt.CheckState.Unchecked, self.document.project
+        exits: dict[str, dict[str, Any]] = {}
+        for action in self.session.selected_actions():
+            start, end = project.span(action)
+            at = action.timing.earliest_exit
+            exits[action.id] = {
+                "timing": {"earliest_exit": None if not on else round(start + 0.7 * (end - start), 3) if at is None else at}
+            }
+        self._try("Change earliest exit", lambda p: edits.update_each(p, exits))
 
     def _rename(self) -> None:
         actions = self.session.selected_actions()
@@ -426,7 +361,7 @@ class PropertiesPanel(QScrollArea):
     def _retag(self) -> None:
         actions = self.session.selected_actions()
         tags = tuple(dict.fromkeys(w.strip().lower() for w in self.tags.text().split(",") if w.strip()))
-        mixed = actions and common([a.tags for a in actions]) is _Mixed
+        mixed = actions and common([a.tags for a in actions]) is Mixed
         if actions and not (mixed and not tags) and any(a.tags != tags for a in actions):
             self._set("Change tags", tags=tags)
 
@@ -437,18 +372,13 @@ class PropertiesPanel(QScrollArea):
             self.show_selection()
 
     def _restance(self, place: int) -> None:
-        stance = self.stance.itemData(place)
-
-        def move(project: Project) -> Project:
-            for action in self.session.selected_actions():
-                project = edits.move_actions(project, (action.id,), action.kind, stance, action.end_stance)
-            return project
-
-        self._try("Move to another stance", move)
-        self.session.set_stance(stance)
+        stance, chosen = self.stance.itemData(place), self.session.actions
+        if self._try("Move to another stance", lambda p: edits.to_stance(p, chosen, stance)):
+            self.session.set_stance(stance)
 
     def _reend(self, place: int) -> None:
-        self._set("Change end stance", end_stance=self.ends.itemData(place))
+        stance, chosen = self.ends.itemData(place), self.session.actions
+        self._try("Change end stance", lambda p: edits.set_ends(p, chosen, stance))
 
     def _mask(self) -> None:
         from app.panels.skeleton import MaskDialog
@@ -456,7 +386,9 @@ class PropertiesPanel(QScrollArea):
         MaskDialog(self.document, self.session, self).open()
 
     def _weigh(self, part: str, value: float) -> None:
-        if value >= 0:
+        if value < 0:
+            self.show_selection()
+        else:
             layer = self.session.layer
             self._try("Change layer weight", lambda p: edits.set_weight(p, layer, part, round(value, 2)))  # type: ignore[arg-type]
 
@@ -466,7 +398,9 @@ class PropertiesPanel(QScrollArea):
         from metagraph.playback.markov import model
 
         layer = self.session.layer
-        if value > 0:
+        if value <= 0:
+            self.show_selection()
+        else:
             self._try("Change rest between actions", lambda p: edits.set_markov(p, replace(model(p, layer), gap=round(value, 2))))
 
     def _set_base(self, place: int) -> None:

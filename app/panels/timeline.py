@@ -12,6 +12,7 @@ from app.document import Document
 from app.performance import Performance, Shown
 from app.session import Session
 from app.theme import KIND_MARKS, Theme, theme
+from app.words import many
 from metagraph.graph import edits
 from metagraph.graph.model import LAYERS, Layer
 from metagraph.playback.plan import Cue, Request
@@ -328,5 +329,9 @@ class TimelinePanel(QWidget):
         else:
             count = sum(len(shown.plan.layers[layer].cues) for layer in LAYERS)
             lost = sum(1 for r in shown.plan.reports if not r.played and not r.written)
-            words = f"{count} actions in {shown.length:g} s" if count else "Nothing plays yet: drop a clip on a stance and some around it."
-            self.title.setText(words + (f", {lost} requests could not be met" if lost else ""))
+            words = (
+                f"{many(count, 'action')} in {shown.length:g} s"
+                if count
+                else "Nothing plays yet: drop a clip on a stance and some around it."
+            )
+            self.title.setText(words + (f", {many(lost, 'request')} could not be met" if lost else ""))

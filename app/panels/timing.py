@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterable
 from typing import Any
 
 import numpy as np
@@ -13,7 +14,7 @@ from PySide6.QtWidgets import QVBoxLayout, QWidget
 from app.document import Document
 from app.session import Session
 from app.theme import Theme, theme
-from metagraph.graph import anatomy
+from metagraph.graph import anatomy, edits
 from metagraph.graph.model import Action, Project
 from metagraph.motion import features
 
@@ -73,6 +74,22 @@ def moved(project: Project, action: Action, handle: str, seconds: float) -> dict
     if handle == "exit":
         return {"earliest_exit": min(max(at, start), end)}
     return {"stroke": min(max(at, start), end)}
+
+
+FIELDS = {"start": "start", "end": "end", "blend_in": "in", "blend_out": "out", "earliest_exit": "exit", "stroke": "stroke"}
+
+
+def retimed(project: Project, actions: Iterable[str], name: str, value: float) -> Project:
+    """Return the project with a Timing field of actions set, each kept within its own clip as a dragged handle is."""
+    changes: dict[str, dict[str, Any]] = {}
+    for ident in actions:
+        action = project.action(ident)
+        if action is None or action.clip not in project.clips:
+            continue
+        start, end = project.span(action)
+        at = {"blend_in": start + value, "blend_out": end - value}.get(name, value)
+        changes[ident] = {"timing": moved(project, action, FIELDS[name], at)}
+    return edits.update_each(project, changes)
 
 
 class TimingPlot(QWidget):
