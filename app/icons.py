@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from functools import cache
+
 from PySide6.QtCore import QByteArray, QRectF, Qt
 from PySide6.QtGui import QIcon, QPainter, QPixmap
 from PySide6.QtSvg import QSvgRenderer
@@ -34,6 +36,7 @@ PATHS = {
 }
 
 
+@cache
 def icon(name: str, color: str, size: int = 18) -> QIcon:
     """Return an icon in a colour (#rrggbb), sharp up to 3 times its size; faded when disabled."""
     out = QIcon()

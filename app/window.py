@@ -2,13 +2,16 @@
 
 from __future__ import annotations
 
+from html import escape
 from pathlib import Path
 
-from PySide6.QtCore import QByteArray, QSettings, QSize, Qt, QTimer
+from PySide6.QtCore import QByteArray, QEvent, QSettings, QSize, Qt, QTimer
 from PySide6.QtGui import QCloseEvent, QDragEnterEvent, QDropEvent, QKeySequence
 from PySide6.QtWidgets import (
+    QAbstractButton,
     QApplication,
     QButtonGroup,
+    QComboBox,
     QDockWidget,
     QFileDialog,
     QHBoxLayout,
@@ -151,6 +154,7 @@ class Window(QMainWindow):
             self.docks[key].setWidget(panel)
             old.deleteLater()
         self.problems_panel.show_problems(self.problems)
+        self.properties.set_misfits(self.canvas.misfits)
         self.ready = True
         if not isinstance(QSettings().value("state"), QByteArray):
             self._sizes()
@@ -229,6 +233,8 @@ class Window(QMainWindow):
 
     def _menus(self) -> None:
         self.menus = self.actions.fill(self.menuBar())
+        for menu in self.menus.values():
+            menu.aboutToShow.connect(self.actions.refresh)  # panels have buttons for some of it, too
         view = self.menus["&View"]
         panels = view.addMenu("Panels")
         for dock in self.docks.values():
@@ -282,6 +288,7 @@ class Window(QMainWindow):
         bar.addWidget(self.machine_button)
         self.export_button = QPushButton("Export", self, toolTip="JSON and GLB for engines (Ctrl+E)")
         self.export_button.setProperty("strong", True)
+        self.export_button.setFocusPolicy(Qt.FocusPolicy.TabFocus)
         self.export_button.clicked.connect(self.export)
         bar.addWidget(self.export_button)
 
@@ -401,7 +408,7 @@ class Window(QMainWindow):
         self.actions["redo"].setText(f"&Redo {redo}".strip())
         saved = "not saved yet" if d.path is None else "edited" if d.dirty else "saved"
         dim = theme(self.session.theme).dim
-        self.name.setText(f"<b>{d.project.name}</b>&nbsp;&nbsp;<span style='color:{dim}'>{saved}</span>")
+        self.name.setText(f"<b>{escape(d.project.name)}</b>&nbsp;&nbsp;<span style='color:{dim}'>{saved}</span>")
         self.setWindowTitle(f"{d.project.name}{'[*]'} - Metagraph")
         self.setWindowModified(d.dirty)
         button = self.layer_buttons.button(LAYERS.index(self.session.layer))
@@ -437,8 +444,10 @@ class Window(QMainWindow):
     def _checked(self, problems: list[Problem]) -> None:
         self._checking = False
         self.problems = tuple(problems)
-        self.canvas.set_misfits({p.action: f"{p.message}. {p.remedy}" for p in problems if p.action and p.severity != "hint"})
+        misfits = {p.action: f"{p.message}. {p.remedy}" for p in problems if p.action and p.severity != "hint"}
+        self.canvas.set_misfits(misfits)
         if self.ready:
+            self.properties.set_misfits(misfits)
             self.problems_panel.show_problems(self.problems)
         self._show_problems()
 
@@ -518,6 +527,10 @@ class Window(QMainWindow):
     def rename(self) -> None:
         if len(self.session.clips) == 1:
             self.library.rename(self.session.clips[0])
+        elif len(self.session.actions) == 1 and self.ready:
+            self.show_dock("properties")
+            self.properties.name.setFocus()
+            self.properties.name.selectAll()
         else:
             self.canvas.rename_stance()
 
@@ -581,6 +594,15 @@ class Window(QMainWindow):
         QMessageBox.about(self, "About Metagraph", text)
 
     # --- the window itself
+
+    def event(self, event: QEvent) -> bool:
+        # Asked last, when what has the keyboard does not want a key for itself: the space bar presses a focused button.
+        if event.type() == QEvent.Type.ShortcutOverride and event.key() == Qt.Key.Key_Space:  # type: ignore[attr-defined]
+            focus = QApplication.focusWidget()
+            if isinstance(focus, QAbstractButton | QComboBox) and not event.modifiers():  # type: ignore[attr-defined]
+                event.accept()
+                return True
+        return super().event(event)
 
     def dragEnterEvent(self, event: QDragEnterEvent) -> None:
         if load_of(event.mimeData()).files:

@@ -7,6 +7,7 @@ from dataclasses import dataclass
 
 from PySide6.QtCore import (
     QAbstractListModel,
+    QEvent,
     QItemSelection,
     QItemSelectionModel,
     QMimeData,
@@ -231,6 +232,30 @@ def two_lines(name: str, metrics: QFontMetrics, width: int) -> tuple[str, ...]:
     return name[:cut], metrics.elidedText(name[cut:], Qt.TextElideMode.ElideMiddle, width)
 
 
+class Search(QLineEdit):
+    """left: the keyboard should go to what was found: Down or Enter. Esc clears it."""
+
+    left = Signal()
+
+    def __init__(self, parent: QWidget) -> None:
+        super().__init__(parent, clearButtonEnabled=True, toolTip="Words of a clip's name or path (Ctrl+F); Down goes to the clips")
+        self.setAccessibleName("Search clips")
+
+    def event(self, event: QEvent) -> bool:
+        if event.type() == QEvent.Type.ShortcutOverride and event.key() == Qt.Key.Key_Escape and self.text():  # type: ignore[attr-defined]
+            event.accept()
+            return True
+        return super().event(event)
+
+    def keyPressEvent(self, event: QKeyEvent) -> None:
+        if event.key() in (Qt.Key.Key_Down, Qt.Key.Key_Return, Qt.Key.Key_Enter):
+            self.left.emit()
+        elif event.key() == Qt.Key.Key_Escape:
+            self.clear()
+        else:
+            super().keyPressEvent(event)
+
+
 class ClipList(QListView):
     """files_dropped: paths. A click plays the clip alone, a second click plays it in context."""
 
@@ -288,8 +313,6 @@ class ClipList(QListView):
     def keyPressEvent(self, event: QKeyEvent) -> None:
         if event.key() in (Qt.Key.Key_Return, Qt.Key.Key_Enter) and self.currentIndex().isValid():
             self.play(self.currentIndex().data(ENTRY).id)
-        elif event.key() == Qt.Key.Key_Escape:
-            self.panel.session.show_plan()
         elif event.text() in ("1", "2", "3", "4"):
             event.ignore()  # the window's keys label the selection
         else:
@@ -330,13 +353,13 @@ class LibraryPanel(QWidget):
         self.document, self.session, self.thumbnails = document, session, thumbnails
         self.model = ClipModel(document)
         self.proxy = FilterModel(self.model)
-        self.search = QLineEdit(self, clearButtonEnabled=True)
-        self.search.setAccessibleName("Search clips")
+        self.search = Search(self)
         self.search.textChanged.connect(self._refilter)
         self.list = ClipList(self)
         self.list.setModel(self.proxy)
         self.list.setItemDelegate(CardDelegate(self))
         self.list.files_dropped.connect(self.files_dropped)
+        self.search.left.connect(self._into_list)
         self._following = False
         selection = self.list.selectionModel()
         selection.selectionChanged.connect(self._selected)
@@ -371,6 +394,7 @@ class LibraryPanel(QWidget):
         chip("unlabelled", "Unlabelled", "Clips that were not placed yet")
         chip("labelled", "Placed", "Clips that are in the graph")
         self.more = QToolButton(self, text="Any kind", toolTip="Show the clips of a layer or kind only")
+        self.more.setAccessibleName("Layer or kind")
         self.more.setPopupMode(QToolButton.ToolButtonPopupMode.InstantPopup)
         menu = QMenu(self.more)
         menu.addAction("Any kind, any layer", lambda: self._narrow(None, None))
@@ -452,6 +476,13 @@ class LibraryPanel(QWidget):
 
     # --- selection
 
+    def _into_list(self) -> None:
+        """Give the keyboard to the clips, the first one chosen unless one is already."""
+        if self.proxy.rowCount():
+            self.list.setFocus(Qt.FocusReason.TabFocusReason)
+            if not self.list.selectedIndexes():
+                self.list.setCurrentIndex(self.proxy.index(0, 0))
+
     def _selected(self, *_: QItemSelection) -> None:
         if self._following:
             return
@@ -466,6 +497,10 @@ class LibraryPanel(QWidget):
             return
         self._following = True
         wanted = set(self.session.clips)
+        if not wanted:
+            self.list.clearSelection()
+            self._following = False
+            return
         chosen = QItemSelection()
         first = None
         for row in range(self.proxy.rowCount()):

@@ -21,6 +21,7 @@ class ProblemsPanel(QWidget):
         super().__init__(parent)
         self.session = session
         self.problems: tuple[Problem, ...] = ()
+        self._shown: object = None
         self.tree = QTreeWidget(self)
         self.tree.setColumnCount(3)
         self.tree.setHeaderLabels(["Problem", "Where", "What to do"])
@@ -39,9 +40,12 @@ class ProblemsPanel(QWidget):
         session.theme_changed.connect(lambda: self.show_problems(self.problems))
 
     def show_problems(self, problems: Sequence[Problem]) -> None:
-        self.problems = tuple(problems)
-        self.tree.clear()
         look = theme(self.session.theme)
+        state = tuple(problems), look.name, self.session.document.project.graphs
+        if state == self._shown:
+            return
+        self.problems, self._shown = tuple(problems), state
+        self.tree.clear()
         colors = {"error": look.error, "warning": look.warning, "hint": look.dim}
         project = self.session.document.project
         for problem in self.problems[:MOST]:

@@ -38,6 +38,7 @@ class PropertiesPanel(QScrollArea):
     def __init__(self, document: Document, session: Session, performance: Performance, parent: QWidget | None = None) -> None:
         super().__init__(parent)
         self.document, self.session, self.performance = document, session, performance
+        self.misfits: dict[str, str] = {}
         self.setWidgetResizable(True)
         self.setHorizontalScrollBarPolicy(Qt.ScrollBarPolicy.ScrollBarAlwaysOff)
         self.pages = QStackedWidget(self)
@@ -262,14 +263,19 @@ class PropertiesPanel(QScrollArea):
         masks = common([a.joints for a in actions])
         self.joints.setText(MIXED if masks is Mixed else f"{len(masks)} joints only" if masks else "all its layer reaches")
         self.joints.setEnabled(project.skeleton is not None)
-        wrong = self._wrong(actions) if one else ""
-        self.trouble.setText(wrong)
-        self.trouble.setStyleSheet(f"color: {t.warning}")
-        self.trouble.setVisible(bool(wrong))
+        self._show_trouble()
 
-    def _wrong(self, actions: Sequence[Action]) -> str:
-        misfits = getattr(self.window(), "canvas", None)
-        return misfits.misfits.get(actions[0].id, "") if misfits is not None else ""
+    def set_misfits(self, misfits: dict[str, str]) -> None:
+        """Tell what is wrong with actions; action id -> words."""
+        self.misfits = misfits
+        self._show_trouble()
+
+    def _show_trouble(self) -> None:
+        chosen = self.session.actions
+        wrong = self.misfits.get(chosen[0], "") if len(chosen) == 1 else ""
+        self.trouble.setText(wrong)
+        self.trouble.setStyleSheet(f"color: {theme(self.session.theme).warning}")
+        self.trouble.setVisible(bool(wrong))
 
     def _fill_stances(self, actions: Sequence[Action], kind: Any) -> None:
         project = self.document.project

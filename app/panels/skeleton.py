@@ -50,6 +50,7 @@ class SkeletonDialog(QDialog):
     def __init__(self, document: Document, session: Session, parent: QWidget | None = None) -> None:
         super().__init__(parent)
         self.document, self.session = document, session
+        self.setAttribute(Qt.WidgetAttribute.WA_DeleteOnClose)
         self.setWindowTitle("Skeleton")
         self.resize(720, 680)
         layout = QVBoxLayout(self)
@@ -87,10 +88,10 @@ class SkeletonDialog(QDialog):
         close.rejected.connect(self.reject)
         row.addWidget(close)
         layout.addLayout(row)
-        document.changed.connect(lambda before, after: self._show())
+        document.changed.connect(self._show)
         self._show()
 
-    def _show(self) -> None:
+    def _show(self, *_: object) -> None:
         project = self.document.project
         if project.skeleton is None:
             self.reject()
@@ -147,6 +148,7 @@ class MaskDialog(QDialog):
     def __init__(self, document: Document, session: Session, parent: QWidget | None = None) -> None:
         super().__init__(parent)
         self.document, self.session = document, session
+        self.setAttribute(Qt.WidgetAttribute.WA_DeleteOnClose)
         self.setWindowTitle("Joints the action moves")
         self.resize(440, 620)
         layout = QVBoxLayout(self)

@@ -193,6 +193,7 @@ class Lanes(QWidget):
             self._scrub(event.position().x())
         elif event.buttons() & Qt.MouseButton.MiddleButton:
             self.first = max(0.0, self.first - (event.position().x() - self._grip) / self.each)
+            self.update()
         self._grip = event.position().x()
 
     _grip = 0.0
