@@ -11,6 +11,7 @@ from PySide6.QtGui import QColor, QFont, QFontMetricsF, QImage, QPainter, QPaint
 from app.canvas.drops import Drop
 from app.canvas.layout import GRID, Chip, Hit, Layout, Node, bar_part
 from app.theme import KIND_MARKS, KIND_TITLES, Theme
+from app.words import short
 from metagraph.graph.model import Action, Kind, Project
 
 RADIUS = 8.0
@@ -281,7 +282,8 @@ def _row(painter: QPainter, action: Action, rect: QRectF, bar: QRectF, kind: Kin
         painter.setPen(QPen(QColor(t.dim), 1) if action.id == look.focus and selected else Qt.PenStyle.NoPen)
         painter.setBrush(fill)
         painter.drawRoundedRect(rect.adjusted(0, 1, 0, -1), 5, 5)
-    text = action.name
+    stance = look.project.stance(action.stance)
+    text = short(action.name, stance.name) if stance is not None else action.name
     if kind == "transition":
         end = look.project.stance(action.end_stance)
         text = f"→ {end.name}" if end is not None else f"→ ?  {action.name}"

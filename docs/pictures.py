@@ -1,0 +1,130 @@
+"""Take the pictures of the documentation from the real window: `python docs/pictures.py` (on a screen, or under `xvfb-run`).
+
+Writes docs/window.png, practice.png, empty.png, light.png and performance.png, from our own sample clips only.
+"""
+
+from __future__ import annotations
+
+import sys
+import tempfile
+from collections.abc import Callable
+from pathlib import Path
+
+ROOT = Path(__file__).resolve().parents[1]
+sys.path.insert(0, str(ROOT))
+
+from PySide6.QtCore import QEventLoop, QSettings, QStandardPaths, QTimer  # noqa: E402
+
+from app.main import prepare  # noqa: E402
+
+
+def wait(milliseconds: int, until: Callable[[], bool] | None = None) -> None:
+    """Let the window live for a while, or until something is so."""
+    loop, timer = QEventLoop(), QTimer()
+    timer.timeout.connect(lambda: loop.quit() if until is not None and until() else None)
+    timer.start(50)
+    QTimer.singleShot(milliseconds, loop.quit)
+    loop.exec()
+
+
+def window(theme: str = "dark") -> object:
+    from app.window import Window
+
+    QSettings().clear()
+    out = Window()
+    out.resize(1680, 1020)
+    out.session.set_theme(theme)  # type: ignore[arg-type]
+    out.show()
+    out.make_late_panels()
+    wait(1500)
+    return out
+
+
+def shoot(out: object, name: str) -> None:
+    out.grab().save(str(ROOT / "docs" / name))  # type: ignore[attr-defined]
+    print(f"docs/{name}")
+
+
+def close(out: object) -> None:
+    out.document.undo_stack.setClean()  # type: ignore[attr-defined]
+    out.close()  # type: ignore[attr-defined]
+    wait(100)
+
+
+def finished(name: str, theme: str, machine: bool, action: str) -> None:
+    """The sample project with an action selected and playing."""
+    from app.files import SAMPLE
+
+    out = window(theme)
+    out.files.open(SAMPLE, template=True)  # type: ignore[attr-defined]
+    wait(20000, lambda: bool(out.document.project.clips))  # type: ignore[attr-defined]
+    wait(5000)
+    found = next(a for a in out.document.project.actions() if a.name == action)  # type: ignore[attr-defined]
+    out.session.jump(action=found.id)  # type: ignore[attr-defined]
+    out.session.show_plan()  # type: ignore[attr-defined]
+    if machine:
+        out.show_machine(True)  # type: ignore[attr-defined]
+    wait(4000)
+    out.session.set_playing(False)  # type: ignore[attr-defined]
+    cues = out.performance.shown.plan.layers[found.layer].cues  # type: ignore[attr-defined]
+    cue = next((c for c in cues if c.action.kind == "gesture" and c.end - c.start > 2), cues[0])
+    out.session.seek((cue.start + cue.end) / 2)  # type: ignore[attr-defined]
+    wait(4000)
+    shoot(out, name)
+    close(out)
+
+
+def half_labelled() -> None:
+    """The practice project with a part of its clips placed, two holes and a misfit left to see."""
+    from app.files import PRACTICE
+    from metagraph.graph import edits
+
+    out = window()
+    out.files.open(PRACTICE, template=True)  # type: ignore[attr-defined]
+    document, session = out.document, out.session  # type: ignore[attr-defined]
+    wait(20000, lambda: bool(document.project.clips))
+    ids = {e.name: e.id for e in document.project.clips.values()}
+
+    def put(kind: str, stance: str, names: list[str], end: str | None = None) -> None:
+        document.edit("Place", lambda p: edits.place(p, [ids[n] for n in names], "arms", kind, stance, end))
+
+    for name in ("hands_at_sides", "arms_crossed", "on_hips"):
+        document.edit("New stance", lambda p, n=name: edits.add_stance(p, "arms", n.replace("_", " "), [ids[f"{n}__stance"]]))
+    sides, crossed, hips = list(document.project.graphs["arms"].stances)
+    taken = [n for n in ids if n.startswith("hands_at_sides__") and not n.endswith("stance") and "__to__" not in n]
+    put("gesture", sides, taken[:9])
+    put("fidget", sides, [n for n in ids if "check_watch" in n or "flick_fingers" in n])
+    put("transition", sides, ["hands_at_sides__to__arms_crossed"], crossed)
+    put("transition", sides, ["hands_at_sides__to__on_hips"], hips)
+    put("gesture", crossed, [n for n in ids if n.startswith("arms_crossed__") and "__to__" not in n and "stance" not in n][:3])
+    put("transition", crossed, ["arms_crossed__to__hands_at_sides"], sides)
+    document.edit("Place", lambda p: edits.place(p, [ids["on_hips__to__hands_at_sides"]], "arms", "gesture", sides))  # a mistake to find
+    session.set_stance(sides)
+    out.library.chips["unlabelled"].click()  # type: ignore[attr-defined]
+    out.show_dock("problems")  # type: ignore[attr-defined]
+    wait(9000)
+    shoot(out, "practice.png")
+    close(out)
+
+
+def main() -> None:
+    QStandardPaths.setTestModeEnabled(True)
+    app = prepare()
+    with tempfile.TemporaryDirectory() as folder:
+        QSettings.setDefaultFormat(QSettings.Format.IniFormat)
+        QSettings.setPath(QSettings.Format.IniFormat, QSettings.Scope.UserScope, folder)
+        out = window()
+        shoot(out, "empty.png")
+        close(out)
+        finished("window.png", "dark", False, "shrug_bt_01")
+        finished("light.png", "light", True, "beat_large_bt_01")
+        half_labelled()
+    from app.cli import main as command
+
+    sample = str(ROOT / "sample_clips" / "sample.metagraph.yaml")
+    command(["render", sample, "-s", "46", "--seed", "7", "-o", str(ROOT / "docs" / "performance.png")])
+    app.quit()
+
+
+if __name__ == "__main__":
+    main()
