@@ -13,9 +13,11 @@ from msgspec import Meta, Struct
 FORMAT = 1
 
 Id = Annotated[str, Meta(min_length=1)]
-Seconds = Annotated[float, Meta(ge=0)]
-Quaternion = Annotated[list[float], Meta(min_length=4, max_length=4, description="xyzw, unit length")]
-Vector = Annotated[list[float], Meta(min_length=3, max_length=3, description="metres")]
+Seconds = Annotated[float, Meta(ge=0, le=1e9)]
+Number = Annotated[float, Meta(ge=-1e15, le=1e15)]
+Count = Annotated[int, Meta(ge=0, le=1_000_000_000)]
+Quaternion = Annotated[list[Annotated[float, Meta(ge=-2, le=2)]], Meta(min_length=4, max_length=4, description="xyzw, unit length")]
+Vector = Annotated[list[Annotated[float, Meta(ge=-1e6, le=1e6)]], Meta(min_length=3, max_length=3, description="metres")]
 LayerName = Literal["body", "arms", "head"]
 KindName = Literal["stance", "gesture", "fidget", "transition"]
 LimbName = Literal["left", "right", "both"]
@@ -38,9 +40,9 @@ class ExportedClip(Struct, forbid_unknown_fields=True):
 
     id: Id
     name: str
-    animation: Annotated[int, Meta(ge=0)]
-    fps: Annotated[float, Meta(gt=0)]
-    frames: Annotated[int, Meta(ge=1)]
+    animation: Count
+    fps: Annotated[float, Meta(ge=1e-3, le=1e6)]
+    frames: Annotated[int, Meta(ge=1, le=1_000_000_000)]
     duration: Seconds
     sha256: str
 
@@ -69,12 +71,12 @@ class ExportedAction(Struct, forbid_unknown_fields=True):
     blend_in: Seconds
     blend_out: Seconds
     loop: bool
-    earliest_exit: float | None
-    stroke: float | None
+    earliest_exit: Number | None
+    stroke: Number | None
     limb: LimbName
     joints: list[str]
     tags: list[str]
-    likelihood: Annotated[float, Meta(gt=0)]
+    likelihood: Annotated[float, Meta(gt=0, le=1e15)]
 
 
 class Transition(Struct, rename={"source": "from", "target": "to"}, forbid_unknown_fields=True):
@@ -91,7 +93,7 @@ class ExportedMarkov(Struct, forbid_unknown_fields=True):
 
     states: list[tuple[LimbName, KindName]]
     matrix: list[list[Annotated[float, Meta(ge=0, le=1)]]]
-    gap: Annotated[float, Meta(gt=0)]
+    gap: Annotated[float, Meta(ge=1e-3, le=1e9)]
     positive: Annotated[float, Meta(ge=0, le=1)]
     negative: Annotated[float, Meta(ge=0, le=1)]
 
@@ -116,7 +118,7 @@ class Base(Struct, forbid_unknown_fields=True):
     translations: local, one per joint."""
 
     clip: str | None
-    frame: int
+    frame: Count
     rotations: list[Quaternion]
     translations: list[Vector]
 
@@ -128,7 +130,7 @@ class Planner(Struct, forbid_unknown_fields=True):
     not say how long. blend: the curve of a blend's weight over its time x."""
 
     seed: Annotated[int, Meta(ge=0, le=0xFFFFFFFF)]
-    alpha: float
+    alpha: Annotated[float, Meta(ge=0, le=1e15)]
     never_twice: bool
     shortest: Seconds
     wait: Seconds

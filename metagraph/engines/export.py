@@ -11,6 +11,7 @@ import msgspec
 
 from metagraph.engines import contract as c
 from metagraph.errors import FileError
+from metagraph.formats.data import DataError, above, markov_from, skeleton_from
 from metagraph.formats.store import write_atomically
 from metagraph.graph import anatomy
 from metagraph.graph.check import check
@@ -57,7 +58,7 @@ def export(
         raise ExportError(f"{errors[0].message}. {errors[0].remedy}{more}")
     tell = progress or (lambda done, total, words: None)
     used = _used(project)
-    if project.skeleton is None or not used:
+    if project.skeleton is None or not any(True for _ in project.actions()):
         raise ExportError("no action is placed yet: there is nothing to export")
     stem = re.sub(r"[^\w.-]+", "_", project.name).strip("._") or "metagraph"
     target = Path(folder)
@@ -65,24 +66,33 @@ def export(
     names = unique_names([entry.name for entry in used])
     tell(0, 3, "clips")
     clips = [e.motion.renamed(name) for e, name in zip(used, names, strict=True) if e.motion is not None]
-    _write_glb(glb, clips, project.skeleton, character if mesh else None)
+    notes = _write_glb(glb, clips, project.skeleton, character if mesh else None)
     tell(1, 3, "graph")
     document = to_document(project, glb.name, names, expanded)
     tell(2, 3, "writing")
     write_atomically(json, msgspec.json.format(msgspec.json.encode(document), indent=1))
     tell(3, 3, "done")
-    return Exported(json, glb, len(used), tuple(f"{p.message}. {p.remedy}" for p in problems if p.severity == "warning"))
+    return Exported(json, glb, len(used), (*notes, *(f"{p.message}. {p.remedy}" for p in problems if p.severity == "warning")))
 
 
-def _write_glb(path: Path, clips: list[Clip], skeleton: Skeleton, character: Path | None) -> None:
+def _write_glb(path: Path, clips: list[Clip], skeleton: Skeleton, character: Path | None) -> list[str]:
+    """Write the GLB; return what is not in it, in words."""
     from metagraph.formats.gltf import read_character
     from metagraph.formats.gltf_writer import write_glb
 
-    path.parent.mkdir(parents=True, exist_ok=True)
+    try:
+        path.parent.mkdir(parents=True, exist_ok=True)
+    except OSError as error:
+        raise FileError(
+            path.parent, f"cannot be made ({error.strerror})", "on making the folder", "Choose a folder you may write to."
+        ) from None
+    notes = []
     body = read_character(character) if character is not None else None
     if body is not None and body.skeleton != skeleton:
-        body = None  # a mesh on another skeleton would not move with these clips
+        body = None  # it would not move with these clips
+        notes.append(f"the mesh of '{character.name if character else ''}' is left out: it has another skeleton than the clips")
     write_glb(path, [replace(clip, skeleton=skeleton) for clip in clips], body)
+    return notes
 
 
 def _used(project: Project) -> list[ClipEntry]:
@@ -123,7 +133,7 @@ def to_document(project: Project, glb: str, names: tuple[str, ...], expanded: bo
         base=base,
         clips=clips,
         layers={layer: _layer(project, project.graphs[layer]) for layer in LAYERS},
-        planner=c.Planner(s.seed, s.alpha, s.never_twice, s.shortest, s.wait, WINDOW, LOOP_FADE, "3x^2-2x^3"),
+        planner=c.Planner(s.seed & 0xFFFFFFFF, s.alpha, s.never_twice, s.shortest, s.wait, WINDOW, LOOP_FADE, "3x^2-2x^3"),
         randomness=c.Randomness(
             "fnv1a32-mix", choice.OFFSET, choice.PRIME, [16, choice.MIX[0], 13, choice.MIX[1], 16], choice.key32(1, "a", "b")
         ),
@@ -168,8 +178,8 @@ def _action(project: Project, action: Action) -> c.ExportedAction:
         start,
         end,
         t.end is None,
-        t.blend_in,
-        t.blend_out,
+        max(0.0, t.blend_in),
+        max(0.0, t.blend_out),
         t.loop,
         t.earliest_exit,
         t.stroke,
@@ -196,83 +206,99 @@ def _expanded(project: Project, graph: MetaGraph) -> c.Expanded:
 def read_export(path: str | Path, motions: bool = True) -> Project:
     """Read an export back into a project with the same graph, ids and constants. motions: load the clips from its GLB.
 
-    Raises FileError naming the field that is wrong.
+    Raises FileError naming the field that is wrong as a path into the JSON.
     """
     path = Path(path)
     try:
         document = msgspec.json.decode(path.read_bytes(), type=c.Export)
     except OSError as error:
-        raise FileError(path, f"cannot be read ({error.strerror})", "", "Check that it is there.") from None
-    except (msgspec.MsgspecError, RecursionError) as error:
+        raise FileError(path, f"cannot be read ({error.strerror})", "on opening it", "Check that it is there.") from None
+    except (msgspec.MsgspecError, RecursionError, UnicodeDecodeError) as error:
         cause, _, where = str(error).partition(" - at ")
-        raise FileError(path, cause[:1].lower() + cause[1:], where.strip("`"), "Export it again.") from None
-    names = [j.name for j in document.joints]
-    places = {name: n for n, name in enumerate(names)}
+        where = where.strip("`") or "$"
+        remedy = "Update Metagraph, or export it again." if where == "$.metagraph" else "Export it again."
+        raise FileError(path, cause[:1].lower() + cause[1:], where, remedy) from None
     try:
-        skeleton = Skeleton(
-            tuple(names),
-            [-1 if j.parent is None else places[j.parent] for j in document.joints],  # type: ignore[arg-type]
-            [j.rotation for j in document.joints],  # type: ignore[arg-type]
-            [j.translation for j in document.joints],  # type: ignore[arg-type]
-        )
-    except (ValueError, KeyError) as error:
-        raise FileError(path, f"its joints are no skeleton ({error})", "joints", "Export it again.") from None
+        return _project(path, document, motions)
+    except DataError as error:
+        raise FileError(path, str(error), error.where, "Export it again.") from None
+
+
+def _project(path: Path, document: c.Export, motions: bool) -> Project:
+    """Return the project of a decoded export. Raises DataError for what its types alone cannot say."""
+    if missing := [layer for layer in LAYERS if layer not in document.layers]:
+        raise DataError("$.layers", f"layer '{missing[0]}' is missing")
+    if "/" in document.glb or "\\" in document.glb:
+        raise DataError("$.glb", "should be the name of a file beside this one")
+    skeleton = _skeleton(document.joints)
     takes: list[Clip] = []
     if motions:
         from metagraph.formats.gltf import read_gltf_clips
 
         takes = read_gltf_clips(path.parent / document.glb)
-    clips = {}
-    for clip in document.clips:
+    # Clips of one frame are passed over where a file has longer ones, so they do not count as takes.
+    longer = sorted(x.animation for x in document.clips if x.frames > 1) or [x.animation for x in document.clips]
+    clips: dict[str, ClipEntry] = {}
+    for n, clip in enumerate(document.clips):
+        if clip.id in clips:
+            raise DataError(f"$.clips[{n}].id", f"'{clip.id}' is used twice")
         if motions and clip.animation >= len(takes):
-            raise FileError(
-                path, f"clip '{clip.name}' is animation {clip.animation}, the GLB has {len(takes)}", "clips", "Export it again."
-            )
+            raise DataError(f"$.clips[{n}].animation", f"the GLB has {len(takes)} animations, no number {clip.animation}")
         motion = takes[clip.animation] if motions else None
         motion = replace(motion, skeleton=skeleton) if motion is not None and motion.skeleton.names == skeleton.names else motion
-        clips[clip.id] = ClipEntry(clip.id, clip.name, document.glb, clip.animation, clip.sha256, clip.frames, clip.fps, motion)
+        take = longer.index(clip.animation) if clip.animation in longer else len(longer) + n
+        clips[clip.id] = ClipEntry(clip.id, clip.name, document.glb, take, clip.sha256, clip.frames, clip.fps, motion)
     p = document.planner
+    graphs: dict[Layer, MetaGraph] = {layer: _graph(layer, document.layers[layer]) for layer in LAYERS}
     return Project(
         name=document.name,
         skeleton=skeleton,
         clips=clips,
-        graphs={layer: _graph(layer, document.layers[layer]) for layer in LAYERS},
+        graphs=graphs,
         base=BasePose(document.base.clip, document.base.frame),
         roles=dict(document.roles),
         parts=dict(document.parts),
         markov={layer: _markov(layer, document.layers[layer].markov) for layer in LAYERS if document.layers[layer].own_markov},
         settings=Settings(p.alpha, p.seed, p.never_twice, p.shortest, p.wait),
-        next_id=1 + max((int(i[1:]) for layer in document.layers.values() for i in _ids(layer) if i[1:].isdigit()), default=0),
+        next_id=above(*clips, *(i for g in graphs.values() for i in (*g.stances, *g.actions))),
     )
 
 
-def _ids(layer: c.ExportedLayer) -> list[str]:
-    return [*(s.id for s in layer.stances), *(a.id for a in layer.actions), *(a.clip for a in layer.actions)]
+def _skeleton(joints: list[c.Joint]) -> Skeleton:
+    rows = [{"name": j.name, "parent": j.parent, "at": j.translation, "turn": j.rotation} for j in joints]
+    try:
+        found = skeleton_from(rows, "$.joints")
+    except DataError as error:
+        where = error.where.replace(".at", ".translation").replace(".turn", ".rotation")
+        raise DataError(where, str(error)) from None
+    if found is None:
+        raise DataError("$.joints", "should not be empty")
+    return found
 
 
 def _markov(layer: Layer, model: c.ExportedMarkov) -> Markov:
-    return Markov(layer, tuple(model.states), tuple(tuple(row) for row in model.matrix), model.gap, model.positive, model.negative)
+    states = [f"{limb} {kind}" for limb, kind in model.states]
+    more = {"gap": model.gap, "positive": model.positive, "negative": model.negative}
+    return markov_from(layer, {"states": states, "matrix": model.matrix, **more}, f"$.layers.{layer}.markov")
 
 
 def _graph(layer: Layer, data: c.ExportedLayer) -> MetaGraph:
-    actions = {
-        a.id: Action(
-            a.id,
-            a.clip,
-            a.kind,
-            layer,
-            a.stance,
-            a.name,
-            a.end_stance,
-            Timing(a.start, None if a.whole_end else a.end, a.blend_in, a.blend_out, a.loop, a.earliest_exit, a.stroke),
-            a.limb,
-            tuple(a.joints),
-            tuple(a.tags),
-            a.likelihood,
+    where = f"$.layers.{layer}"
+    stances: dict[str, Stance] = {}
+    for n, s in enumerate(data.stances):
+        if s.id in stances:
+            raise DataError(f"{where}.stances[{n}].id", f"'{s.id}' is used twice")
+        stances[s.id] = Stance(s.id, layer, s.name)
+    actions: dict[str, Action] = {}
+    for n, a in enumerate(data.actions):
+        if a.id in actions:
+            raise DataError(f"{where}.actions[{n}].id", f"'{a.id}' is used twice")
+        timing = Timing(a.start, None if a.whole_end else a.end, a.blend_in, a.blend_out, a.loop, a.earliest_exit, a.stroke)
+        actions[a.id] = Action(
+            a.id, a.clip, a.kind, layer, a.stance, a.name, a.end_stance, timing, a.limb, tuple(a.joints), tuple(a.tags), a.likelihood
         )
-        for a in data.actions
-    }
-    stances = {s.id: Stance(s.id, layer, s.name) for s in data.stances}
+    if unknown := [part for part in data.own_weights if part not in data.weights]:
+        raise DataError(f"{where}.own_weights", f"weights say nothing of '{unknown[0]}'")
     return MetaGraph(layer, stances, actions, data.start, {part: data.weights[part] for part in data.own_weights})
 
 

@@ -50,7 +50,7 @@ def take_apart(name: str) -> Words:
                 side = "left"
             elif word in _RIGHT:
                 side = "right"
-            elif word.isdigit():
+            elif word.isdecimal() and len(word) < 10:
                 number = int(word)
             elif word not in ("c", "m"):
                 words.append(word)

@@ -1,0 +1,428 @@
+"""Exports: they validate, they come back equal, their GLB holds every clip, and broken ones are refused with a path."""
+
+from __future__ import annotations
+
+import copy
+import json
+import random
+import shutil
+import struct
+import subprocess
+from dataclasses import replace
+from pathlib import Path
+from typing import Any
+
+import jsonschema
+import msgspec
+import numpy as np
+import pytest
+from hypothesis import HealthCheck, assume, given, settings
+from hypothesis import strategies as st
+
+from metagraph.engines import export as engine
+from metagraph.engines.contract import FORMAT, schema
+from metagraph.engines.export import ExportError, export, read_export, schema_text, to_document
+from metagraph.errors import FileError
+from metagraph.formats.gltf import read_gltf_clips
+from metagraph.formats.imports import gather, import_files
+from metagraph.formats.store import open_project, save_project
+from metagraph.graph import edits
+from metagraph.graph.check import check
+from metagraph.graph.expand import connections, size
+from metagraph.graph.model import LAYERS, Markov, Project
+from metagraph.motion.skeleton import unique_names
+from metagraph.playback import choice, markov
+from metagraph.playback.planner import make_plan
+from metagraph.playback.player import ease, pose_at
+from tests.projects import clip, projects
+
+ROOT = Path(__file__).resolve().parents[2]
+SCHEMA = ROOT / "metagraph" / "engines" / "metagraph.schema.json"
+VALIDATOR = jsonschema.Draft202012Validator(json.loads(SCHEMA.read_bytes()))
+
+
+def valid(document: Any) -> None:
+    errors = [f"{e.json_path}: {e.message}" for e in VALIDATOR.iter_errors(document)]
+    assert not errors, errors[:3]
+
+
+def same(back: Project, project: Project) -> None:
+    """Assert that the graph came back whole. Times that lie outside a clip come back as they play."""
+    for layer in LAYERS:
+        graph = project.graphs[layer]
+        shown = {}
+        for action in graph.actions.values():
+            start, end = project.span(action)
+            timing = replace(action.timing, start=start, end=None if action.timing.end is None else end)
+            shown[action.id] = replace(action, timing=timing)
+        assert back.graphs[layer].actions == shown
+        assert list(back.graphs[layer].actions) == list(shown)
+        assert back.graphs[layer].stances == graph.stances
+        assert back.graphs[layer].start == graph.start
+        assert back.graphs[layer].weights == graph.weights
+        assert back.graphs[layer].index == back.graphs[layer].with_actions({}).index
+    for field in ("name", "base", "settings", "markov", "roles", "parts", "skeleton"):
+        assert getattr(back, field) == getattr(project, field), field
+
+
+def gltf(path: Path) -> dict[str, Any]:
+    data = path.read_bytes()
+    length = struct.unpack_from("<I", data, 12)[0]
+    return json.loads(data[20 : 20 + length])
+
+
+def khronos(*files: Path) -> None:
+    """Assert that the Khronos validator finds no error."""
+    if shutil.which("node") is None or not (ROOT / "tests" / "node_modules" / "gltf-validator").is_dir():
+        pytest.skip("needs Node and the Khronos glTF validator (python3 run.py test fetches it where npm is)")
+    out = subprocess.run(
+        ["node", str(Path(__file__).with_name("validate.mjs")), *map(str, files)], capture_output=True, text=True, check=True
+    )
+    reports = [json.loads(line) for line in out.stdout.splitlines()]
+    assert len(reports) == len(files)
+    for report in reports:
+        assert report["errors"] == 0, report["messages"][:5]
+
+
+# --- the schema
+
+
+def test_the_published_schema_is_the_one_in_the_code() -> None:
+    assert SCHEMA.read_bytes() == schema_text()
+
+
+def test_the_schema_is_one_by_its_own_rules() -> None:
+    jsonschema.Draft202012Validator.check_schema(schema())
+
+
+# --- the sample project
+
+
+@pytest.fixture(scope="module")
+def exported(sample: Project, tmp_path_factory: pytest.TempPathFactory) -> Any:
+    folder = tmp_path_factory.mktemp("export")
+    return export(sample, folder, expanded=True, character=ROOT / "sample_clips" / "mannequin.glb")
+
+
+def test_the_sample_validates_and_comes_back_equal(sample: Project, exported: Any) -> None:
+    valid(json.loads(exported.json.read_bytes()))
+    back = read_export(exported.json)
+    same(back, sample)
+    assert exported.clips == len(sample.uses.keys() | {sample.base.clip})
+    assert check(back) == [p for p in check(sample) if p.clip in (None, *back.clips)]
+
+
+def test_an_export_of_what_was_read_back_says_the_same(exported: Any, tmp_path: Path) -> None:
+    again = export(read_export(exported.json), tmp_path, expanded=True)
+    ours, theirs = json.loads(again.json.read_bytes()), json.loads(exported.json.read_bytes())
+    for field in ("rotations", "translations"):  # taken from clips that were stored in 16 bits meanwhile
+        assert np.allclose(ours["base"].pop(field), theirs["base"].pop(field), atol=1e-4)
+    assert ours == theirs
+
+
+def test_the_glb_holds_every_used_clip_under_its_name_and_the_mesh(sample: Project, exported: Any) -> None:
+    document, content = json.loads(exported.json.read_bytes()), gltf(exported.glb)
+    names = [a["name"] for a in content["animations"]]
+    assert [(c["animation"], c["name"]) for c in document["clips"]] == list(enumerate(names))
+    assert names == [sample.clips[c["id"]].name for c in document["clips"]]
+    assert content["meshes"] and content["skins"]
+    khronos(exported.glb)
+
+
+def test_motion_in_the_glb_is_the_clips_motion(sample: Project, exported: Any) -> None:
+    for made, entry in zip(
+        read_gltf_clips(exported.glb), (sample.clips[c] for c in read_export(exported.json, motions=False).clips), strict=True
+    ):
+        assert entry.motion is not None
+        assert (made.frames, made.fps) == (entry.frames, entry.fps)
+        at = np.linspace(0, entry.duration, 7)
+        a, b = made.pose_at(at), entry.motion.pose_at(at)
+        assert np.abs(np.einsum("...i,...i->...", a.rotations, b.rotations)).min() > 1 - 1e-6
+        assert np.abs(a.translations - b.translations).max() < 2e-4
+
+
+def test_a_plan_of_what_was_read_back_is_the_same_and_looks_the_same(sample: Project, exported: Any) -> None:
+    back = read_export(exported.json)
+    ours, theirs = make_plan(sample, 20), make_plan(back, 20)
+    for layer in LAYERS:
+        assert [(c.action.id, round(c.start, 6)) for c in ours.layers[layer].cues] == [
+            (c.action.id, round(c.start, 6)) for c in theirs.layers[layer].cues
+        ]
+    at = np.linspace(0, 20, 40)
+    a, b = pose_at(ours, sample, at), pose_at(theirs, back, at)
+    assert np.abs(np.einsum("...i,...i->...", a.rotations, b.rotations)).min() > 1 - 1e-5
+
+
+def test_the_expanded_columns_are_the_connections_of_the_machine(sample: Project, exported: Any) -> None:
+    document = json.loads(exported.json.read_bytes())
+    total = 0
+    for layer in LAYERS:
+        columns = document["expanded"][layer]
+        rows = [
+            (columns["states"][s], columns["states"][t], leave, blend)
+            for s, t, leave, blend in zip(columns["from"], columns["to"], columns["leave"], columns["blend"], strict=True)
+        ]
+        expected = [(x.source, x.target, -1 if x.leave is None else x.leave, x.blend) for x in connections(sample, sample.graphs[layer])]
+        assert rows == expected
+        total += len(rows)
+    assert total == size(sample).connections
+
+
+def test_the_index_and_the_transitions_say_what_the_graph_says(sample: Project, exported: Any) -> None:
+    document = json.loads(exported.json.read_bytes())
+    for layer in LAYERS:
+        graph, out = sample.graphs[layer], document["layers"][layer]
+        flat = {(s, k): ids for s, kinds in out["index"].items() for k, ids in kinds.items()}
+        assert flat == {key: [a.id for a in actions] for key, actions in graph.index.items()}
+        ways = {(t["from"], t["to"]): t["actions"] for t in out["transitions"]}
+        assert sum(map(len, ways.values())) == sum(a.kind == "transition" for a in graph.actions.values())
+        assert all(graph.actions[i].end_stance == to for (_, to), ids in ways.items() for i in ids)
+        model = markov.model(sample, layer)
+        assert [tuple(s) for s in out["markov"]["states"]] == list(model.states)
+        assert np.allclose(out["markov"]["matrix"], model.matrix)
+
+
+def test_the_constants_are_those_the_planner_uses(exported: Any) -> None:
+    document = json.loads(exported.json.read_bytes())
+    numbers = document["randomness"]
+    assert (numbers["offset"], numbers["prime"], numbers["test"]) == (choice.OFFSET, choice.PRIME, choice.key32(1, "a", "b"))
+    assert document["planner"]["blend"] == "3x^2-2x^3"
+    assert np.allclose(ease(np.array([0.25])), 3 * 0.25**2 - 2 * 0.25**3)
+
+
+def test_the_same_project_gives_the_same_bytes(sample: Project, exported: Any, tmp_path: Path) -> None:
+    again = export(sample, tmp_path, expanded=True, character=ROOT / "sample_clips" / "mannequin.glb")
+    assert again.json.read_bytes() == exported.json.read_bytes()
+    assert again.glb.read_bytes() == exported.glb.read_bytes()
+
+
+def test_a_project_read_back_is_saved_and_opened_with_its_clips(sample: Project, exported: Any) -> None:
+    path = exported.json.with_name("again.metagraph.yaml")
+    save_project(read_export(exported.json), path)
+    opened = open_project(path)
+    assert all(e.motion is not None for e in opened.project.clips.values())
+    same(opened.project, sample)
+
+
+# --- any project
+
+
+def document_of(project: Project, expanded: bool = False) -> bytes:
+    used = engine._used(project)
+    return msgspec.json.encode(to_document(project, "x.glb", unique_names([e.name for e in used]), expanded))
+
+
+@settings(max_examples=60, deadline=None, suppress_health_check=[HealthCheck.function_scoped_fixture])
+@given(projects(14), st.booleans())
+def test_any_graph_validates_and_comes_back(tmp_path: Path, project: Project, expanded: bool) -> None:
+    assume(project.skeleton is not None)
+    text = document_of(project, expanded)
+    valid(json.loads(text))
+    (tmp_path / "x.json").write_bytes(text)
+    same(read_export(tmp_path / "x.json", motions=False), project)
+
+
+def small() -> Project:
+    project = edits.add_clips(Project("a/b: ü*"), [(f"{n}.glb", 0, "", clip(n)) for n in ("idle", "wave", "idle")])
+    project = edits.add_stance(project, "arms", "rest", ["c1"])
+    return edits.place(project, ["c2"], "arms", "gesture", "s4")
+
+
+def test_only_clips_that_are_placed_or_hold_the_base_pose_are_written(tmp_path: Path) -> None:
+    made = export(small(), tmp_path)
+    assert [a["name"] for a in gltf(made.glb)["animations"]] == ["idle", "wave"]
+    made = export(edits.set_base(small(), "c3", 2), tmp_path)
+    assert [a["name"] for a in gltf(made.glb)["animations"]] == ["idle", "wave", "idle_2"]
+    khronos(made.glb)
+
+
+def test_the_files_are_named_after_the_project_in_letters_every_system_takes(tmp_path: Path) -> None:
+    made = export(small(), tmp_path / "new" / "folder")
+    assert (made.json.name, made.glb.name) == ("a_b_ü.json", "a_b_ü.glb")
+    assert export(replace(small(), name="../.."), tmp_path).json == tmp_path / "metagraph.json"
+
+
+def test_clips_of_one_frame_and_long_ones_come_back_as_themselves(tmp_path: Path) -> None:
+    project = edits.add_clips(Project("p"), [("a", 0, "", clip("still", 1)), ("b", 0, "", clip("wave", 9)), ("c", 0, "", clip("nod", 12))])
+    project = edits.add_stance(project, "arms", "rest", ["c1"])
+    project = edits.place(project, ["c2", "c3"], "arms", "gesture", "s4")
+    back = read_export(export(project, tmp_path).json)
+    assert [e.motion.frames for e in back.clips.values() if e.motion] == [1, 9, 12]
+    save_project(back, tmp_path / "p.metagraph.yaml")
+    again = open_project(tmp_path / "p.metagraph.yaml").project
+    assert [again.clips[c].motion.frames if again.clips[c].motion else None for c in again.clips] == [None, 9, 12]  # never a wrong one
+
+
+@pytest.mark.parametrize(
+    ("spoil", "words"),
+    [
+        (lambda p: Project(), "nothing to export"),
+        (lambda p: edits.remove_actions(p, ["a5", "a6"]), "has no loop to rest in"),
+        (lambda p: edits.remove_stance(p, "s4"), "nothing to export"),
+        (lambda p: edits.update_actions(p, ["a6"], timing={"end": 99.0}), "'wave' plays 0.00-99.00 s"),
+        (lambda p: edits.update_actions(p, ["a6"], likelihood=0.0), "can never be chosen"),
+        (lambda p: replace(p, clips={**p.clips, "c2": replace(p.clips["c2"], motion=None)}), "the file of clip 'wave' is missing"),
+    ],
+)
+def test_errors_stop_an_export_with_the_words_of_the_problem(tmp_path: Path, spoil: Any, words: str) -> None:
+    with pytest.raises(ExportError, match=words):
+        export(spoil(small()), tmp_path)
+    assert not list(tmp_path.iterdir())
+
+
+def test_blends_that_are_only_warned_of_are_exported_as_they_play(tmp_path: Path) -> None:
+    made = export(edits.update_actions(small(), ["a6"], timing={"blend_in": -1.0}), tmp_path)
+    assert any("blends" in w for w in made.warnings)
+    document = json.loads(made.json.read_bytes())
+    valid(document)
+    assert document["layers"]["arms"]["actions"][1]["blend_in"] == 0
+
+
+def test_a_mesh_on_another_skeleton_is_left_out_and_told(tmp_path: Path) -> None:
+    made = export(small(), tmp_path, character=ROOT / "sample_clips" / "mannequin.glb")
+    assert any("mannequin.glb" in w and "another skeleton" in w for w in made.warnings)
+    assert "meshes" not in gltf(made.glb)
+    with pytest.raises(FileError, match=r"none\.glb"):
+        export(small(), tmp_path, character=tmp_path / "none.glb")
+
+
+def test_a_folder_that_cannot_be_made_is_an_error_in_words(tmp_path: Path) -> None:
+    (tmp_path / "file").write_text("")
+    with pytest.raises(FileError, match="cannot be made"):
+        export(small(), tmp_path / "file" / "x")
+
+
+# --- broken exports
+
+
+WRONG: list[tuple[tuple[Any, ...], Any, str, str]] = [
+    (("metagraph",), FORMAT + 1, "$.metagraph", "Update Metagraph"),
+    (("joints",), [], "$.joints", ""),
+    (("joints", 1, "parent"), "nobody", "$.joints[1].parent", ""),
+    (("joints", 1, "translation"), [0, 1], "$.joints[1].translation", ""),
+    (("joints", 1, "translation"), [0, 1, 1e300], "$.joints[1].translation[2]", ""),
+    (("joints", 1, "rotation"), [0, 0, 0, 0], "$.joints[1].rotation", ""),
+    (("joints", 1, "part"), "tail", "$.joints[1].part", ""),
+    (("layers",), {}, "$.layers", ""),
+    (("layers", "legs"), {}, "key` in `$.layers", ""),
+    (("layers", "arms", "actions", 0, "kind"), "dance", "$.layers[...].actions[0].kind", ""),
+    (("layers", "arms", "actions", 0, "likelihood"), 0, "$.layers[...].actions[0].likelihood", ""),
+    (("layers", "arms", "actions", 1, "id"), "a5", "$.layers.arms.actions[1].id", ""),
+    (("layers", "arms", "actions", 0, "speed"), 1, "$.layers[...].actions[0]", ""),
+    (("layers", "arms", "stances"), [{"id": "s", "name": "x"}] * 2, "$.layers.arms.stances[1].id", ""),
+    (("layers", "arms", "own_weights"), ["face", "legs"], "", ""),
+    (("layers", "arms", "weights"), {}, "", ""),
+    (("layers", "arms", "markov", "matrix"), [[1]], "$.layers.arms.markov.matrix", ""),
+    (("layers", "arms", "markov", "matrix", 0, 0), 0.9, "$.layers.arms.markov.matrix[0]", ""),
+    (("clips", 0, "animation"), 99, "$.clips[0].animation", ""),
+    (("clips", 0, "fps"), 0, "$.clips[0].fps", ""),
+    (("clips", 1, "id"), "c1", "$.clips[1].id", ""),
+    (("planner", "seed"), -1, "$.planner.seed", ""),
+    (("glb",), "../x.glb", "$.glb", ""),
+    (("base", "frame"), -1, "$.base.frame", ""),
+    (("name",), None, "$.name", ""),
+]
+
+
+@pytest.fixture(scope="module")
+def plain(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    project = edits.set_markov(small(), Markov("arms", (("both", "gesture"), ("both", "fidget")), ((0.5, 0.5), (1.0, 0.0))))
+    return export(edits.set_weight(project, "arms", "face", 0.5), tmp_path_factory.mktemp("plain")).json
+
+
+@pytest.mark.parametrize(("where", "value", "path", "remedy"), WRONG, ids=lambda x: ".".join(map(str, x)) if isinstance(x, tuple) else "")
+def test_a_wrong_field_is_named_by_its_path(plain: Path, where: tuple[Any, ...], value: Any, path: str, remedy: str) -> None:
+    document = json.loads(plain.read_bytes())
+    inside = document
+    for key in where[:-1]:
+        inside = inside[key]
+    inside[where[-1]] = value
+    if where[-1] == "own_weights":
+        document["layers"]["arms"]["weights"].pop("legs")
+        path = "$.layers.arms.own_weights"
+    elif where[-1] == "weights":
+        path = "$.layers.arms.own_weights"
+    broken = plain.with_name("broken.json")
+    broken.write_text(json.dumps(document))
+    with pytest.raises(FileError) as caught:
+        read_export(broken)
+    assert caught.value.where == path
+    assert caught.value.cause
+    assert remedy in caught.value.remedy and caught.value.remedy
+
+
+@pytest.mark.parametrize("content", [b"", b"{", b"[]", b"null", b"\xff\xfe", b"[" * 100_000, b'{"metagraph": 1}', b"glTF"])
+def test_other_files_are_refused(tmp_path: Path, content: bytes) -> None:
+    (tmp_path / "x.json").write_bytes(content)
+    with pytest.raises(FileError) as caught:
+        read_export(tmp_path / "x.json")
+    assert caught.value.where and caught.value.remedy
+
+
+def test_a_file_that_is_not_there_and_a_glb_that_is_not_there_are_told(plain: Path, tmp_path: Path) -> None:
+    with pytest.raises(FileError, match="cannot be read"):
+        read_export(tmp_path / "none.json")
+    alone = tmp_path / plain.name
+    shutil.copy(plain, alone)
+    with pytest.raises(FileError, match=r"\.glb"):
+        read_export(alone)
+    assert read_export(alone, motions=False).clips["c1"].motion is None
+
+
+JUNK = st.one_of(
+    st.none(), st.booleans(), st.integers(-3, 10**20), st.floats(allow_nan=False, allow_infinity=False), st.text(max_size=4),
+    st.just([]), st.just({}), st.just([[]]),
+)  # fmt: skip
+
+
+@settings(max_examples=200, deadline=None, suppress_health_check=[HealthCheck.function_scoped_fixture])
+@given(st.randoms(use_true_random=False), JUNK)
+def test_whatever_stands_in_a_field_an_export_is_read_or_refused(plain: Path, chance: random.Random, junk: Any) -> None:
+    document: Any = copy.deepcopy(json.loads(plain.read_bytes()))
+    inside = document
+    while True:
+        key = chance.choice(list(inside) if isinstance(inside, dict) else list(range(len(inside))))
+        if isinstance(inside[key], dict | list) and inside[key] and chance.random() < 0.85:
+            inside = inside[key]
+            continue
+        inside[key] = junk
+        break
+    broken = plain.with_name("junk.json")
+    broken.write_text(json.dumps(document))
+    try:
+        project = read_export(broken, motions=False)
+    except FileError as error:
+        assert error.where and error.cause and error.remedy
+    else:
+        check(project)
+
+
+# --- clips made by others
+
+
+@pytest.mark.parametrize(
+    ("folder", "pattern", "idle", "gestures"),
+    [
+        ("bandai-namco-1", "", 0, 6),
+        ("sumerian-hosts", "alien", 0, 6),
+        ("kaykit-rogue", "", 0, 6),
+    ],
+)
+def test_projects_of_real_clips_are_exported_and_validate(
+    shared_data: Path, tmp_path: Path, folder: str, pattern: str, idle: int, gestures: int
+) -> None:
+    files = [p for p in gather([shared_data / folder]) if pattern in p.as_posix()]
+    project = import_files(Project(folder), None, files).into(Project(folder))
+    ids = list(project.clips)
+    project = edits.add_stance(project, "body", "rest", [ids[idle]])
+    project = edits.add_stance(project, "body", "other", [ids[idle + 1]])
+    stances = list(project.graphs["body"].stances)
+    project = edits.place(project, ids[2 : 2 + gestures], "body", "gesture", stances[0])
+    project = edits.place(project, ids[10:11], "body", "transition", stances[0], stances[1])
+    made = export(project, tmp_path, expanded=True)
+    valid(json.loads(made.json.read_bytes()))
+    back = read_export(made.json)
+    same(back, project)
+    assert all(e.motion is not None and e.motion.skeleton == project.skeleton for e in back.clips.values())
+    assert len(gltf(made.glb)["animations"]) == 3 + gestures
+    khronos(made.glb)
