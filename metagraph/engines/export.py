@@ -11,8 +11,8 @@ import msgspec
 
 from metagraph.engines import contract as c
 from metagraph.errors import FileError
+from metagraph.formats.atomic import write_atomically
 from metagraph.formats.data import DataError, above, markov_from, skeleton_from
-from metagraph.formats.store import write_atomically
 from metagraph.graph import anatomy
 from metagraph.graph.check import check
 from metagraph.graph.expand import connections

@@ -13,6 +13,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from metagraph.errors import FileError
+from metagraph.formats.atomic import write_atomically
 from metagraph.formats.bvh_space import stand, unit, z_up
 from metagraph.formats.gltf_skeleton import MOST_JOINTS
 from metagraph.formats.takes import without_bind_pose
@@ -407,6 +408,4 @@ def write_bvh(clip: Clip, path: str | Path) -> None:
     rows = np.concatenate(blocks, 1)
     pattern = " ".join(["%.6f"] * rows.shape[1])
     lines.extend(pattern % tuple(row) for row in rows.tolist())
-    from metagraph.formats.store import write_atomically  # which reads clips, hence not at the top
-
     write_atomically(Path(path), ("\n".join(lines) + "\n").encode())

@@ -11,6 +11,7 @@ import msgspec
 import numpy as np
 from numpy.typing import NDArray
 
+from metagraph.formats.atomic import write_atomically
 from metagraph.motion import rotation
 from metagraph.motion.character import Character
 from metagraph.motion.clip import Clip
@@ -130,8 +131,6 @@ def write_glb(
     animations = [_animation(body, clip, quantize, tolerance, morphs, mesh_node, posed) for clip in clips]
     if animations:
         document["animations"] = animations
-    from metagraph.formats.store import write_atomically  # which reads clips, hence not at the top
-
     write_atomically(path, glb_bytes(document, body))
 
 

@@ -5,16 +5,15 @@ Clip paths are relative to the project file and carry the file's SHA-256, so a m
 
 from __future__ import annotations
 
-import errno
 import os
 import re
-import tempfile
 from collections.abc import Callable, Iterable, Mapping
 from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any
 
 from metagraph.errors import FileError
+from metagraph.formats.atomic import write_atomically
 from metagraph.formats.clips import digest, read_clips
 from metagraph.formats.data import FORMAT, Data, DataError, from_data, to_data
 from metagraph.formats.text import TextError, parse, to_text
@@ -78,38 +77,6 @@ def _line_of(lines: Mapping[str, int], where: str) -> str:
 
 
 # --- files -----------------------------------------------------------------------------------------------------------
-
-
-def write_atomically(path: Path, content: bytes) -> None:
-    """Write a file whole or not at all; a link is kept, its target written. Raises FileError."""
-    temporary = None
-    try:
-        path.parent.mkdir(parents=True, exist_ok=True)
-        path = path.resolve()
-        exists = path.exists()
-        if exists and not os.access(path, os.W_OK):
-            raise PermissionError(errno.EACCES, "it is read-only")
-        handle, name = tempfile.mkstemp(prefix=".saving-", dir=path.parent)
-        temporary = Path(name)
-        with os.fdopen(handle, "wb") as file:
-            file.write(content)
-            file.flush()
-            os.fsync(file.fileno())
-        if exists:
-            temporary.chmod(path.stat().st_mode & 0o777)
-        else:
-            mask = os.umask(0)
-            os.umask(mask)
-            temporary.chmod(0o666 & ~mask)
-        temporary.replace(path)
-        temporary = None
-    except OSError as error:
-        raise FileError(
-            path, f"cannot be written ({error.strerror or error})", "on saving it", "Choose a place you may write to, with space left."
-        ) from None
-    finally:
-        if temporary is not None:
-            temporary.unlink(missing_ok=True)
 
 
 def save_project(project: Project, path: str | Path, was_at: Path | None = None) -> Project:

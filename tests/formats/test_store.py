@@ -16,6 +16,7 @@ from hypothesis import strategies as st
 
 from metagraph.errors import FileError
 from metagraph.formats import store
+from metagraph.formats.atomic import write_atomically
 from metagraph.formats.bvh import write_bvh
 from metagraph.formats.data import to_data
 from metagraph.formats.gltf import write_glb
@@ -31,7 +32,6 @@ from metagraph.formats.store import (
     relocate,
     save_project,
     to_text,
-    write_atomically,
 )
 from metagraph.graph import edits
 from metagraph.graph.model import ClipEntry, Project
