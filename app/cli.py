@@ -6,6 +6,7 @@ import argparse
 import json
 import sys
 from collections.abc import Sequence
+from difflib import get_close_matches
 from pathlib import Path
 from typing import Any
 
@@ -79,13 +80,20 @@ def _performance(parser: argparse.ArgumentParser, seconds: float) -> None:
     parser.add_argument("--seed", type=int, help="another performance of the same project (default: the project's seed)")
 
 
+COMMANDS = ("window", "import", "check", "plan", "render", "export", "info", "demo")
+
+
 def main(arguments: Sequence[str] | None = None) -> int:
-    """Run a command line; return the exit code."""
+    """Run a command line; return the exit code. Wrong usage and --help raise SystemExit, as argparse does."""
     given = list(sys.argv[1:] if arguments is None else arguments)
-    known = {"window", "import", "check", "plan", "render", "export", "info", "demo", "-h", "--help", "--version"}
-    if not given or given[0] not in known:
+    parser = _parser()
+    if not given or given[0] not in (*COMMANDS, "-h", "--help", "--version"):
+        if given and not given[0].startswith("-") and "." not in given[0] and not Path(given[0]).exists():
+            near = get_close_matches(given[0], COMMANDS, 1)
+            hint = f"did you mean '{near[0]}'?" if near else f"the commands are {', '.join(COMMANDS)}"
+            parser.error(f"there is no command and no project '{given[0]}'; {hint}")
         given = ["window", *given]
-    options = _parser().parse_args(given)
+    options = parser.parse_args(given)
     from metagraph.errors import FileError
 
     try:
@@ -93,10 +101,16 @@ def main(arguments: Sequence[str] | None = None) -> int:
 
         run: Any = getattr(headless, options.command if options.command != "import" else "import_clips")
         return int(run(options))
-    except FileError as error:
+    except BrokenPipeError:  # whoever read our words has read enough
+        sys.stdout = None  # type: ignore[assignment]  # nothing is left to flush
+        return 0
+    except (FileError, ValueError, RuntimeError) as error:
         return _fail(options, str(error))
-    except (ValueError, RuntimeError) as error:
-        return _fail(options, str(error))
+    except OSError as error:
+        place = f"{error.filename}: " if error.filename else ""
+        return _fail(options, f"{place}{error.strerror or error}. Choose another place, or see whether you may write there.")
+    except MemoryError:
+        return _fail(options, "there is not enough memory for that")
     except KeyboardInterrupt:
         return _fail(options, "stopped")
 

@@ -27,6 +27,8 @@ from metagraph.playback.player import pose_at
 
 SAMPLE = Path(__file__).resolve().parents[1] / "sample_clips" / f"sample{SUFFIX}"
 
+LONGEST = 24 * 3600  # seconds of one performance
+
 
 def _say(options: Namespace, words: str, data: Any) -> None:
     print(json.dumps(data) if options.json else words)
@@ -45,11 +47,12 @@ def has_screen() -> bool:
 
 
 def window(options: Namespace) -> int:
-    if not has_screen() and os.environ.get("QT_QPA_PLATFORM") is None:
-        print("There is no screen here, so the same job runs without a window.\n")
-        return demo(Namespace(json=options.json, out=Path("out"), seconds=60.0, seed=None, project=options.project))
     if options.project is not None and not options.project.is_file():
-        raise FileError(options.project, "there is no such project", "", "Give a file ending in .metagraph.yaml.")
+        raise FileError(options.project, "there is no such project", "on opening it", "Give a file ending in .metagraph.yaml.")
+    if not has_screen() and os.environ.get("QT_QPA_PLATFORM") is None:
+        if not options.json:
+            print("There is no screen here, so the same job runs without a window.\n")
+        return demo(Namespace(json=options.json, out=Path("out"), seconds=60.0, seed=None, project=options.project))
     from app.main import run_window
 
     return run_window(options.project, options.sample)
@@ -77,8 +80,9 @@ def import_clips(options: Namespace) -> int:
     if not options.json:
         for note in result.notes:
             print(f"note: {note}", file=sys.stderr)
-    project = result.into(project)
-    save_project(project, path, path)
+    if result.loaded:
+        project = result.into(project)
+        save_project(project, path, path)
     data = {"project": str(path), "imported": len(result.loaded), "failures": list(result.failures), "notes": list(result.notes)}
     _say(options, f"{path}: {len(result.loaded)} clips imported, {len(result.failures)} files left out", data)
     if not result.loaded and result.failures:
@@ -100,8 +104,8 @@ def check(options: Namespace) -> int:
 
 
 def _plan(project: Project, options: Namespace) -> Plan:
-    if not options.seconds > 0:
-        raise ValueError("a performance needs a length above 0 seconds")
+    if not 0 < options.seconds <= LONGEST:
+        raise ValueError(f"a performance lasts more than 0 and at most {LONGEST} seconds")
     return make_plan(project, options.seconds, seed=options.seed)
 
 
@@ -176,6 +180,14 @@ def render(options: Namespace) -> int:
     project = _open(options.project)
     if project.skeleton is None:
         raise ValueError("the project has no clips; there is nothing to draw")
+    if not 1 <= options.fps <= 240:
+        raise ValueError("a video has 1 to 240 pictures a second")
+    if not 2 <= options.frames <= 1000:
+        raise ValueError("a contact sheet has 2 to 1000 pictures")
+    if options.out.suffix not in (".png", ".mp4", ".glb", ".bvh"):
+        name = options.out.suffix or options.out.name
+        raise ValueError(f"pictures are written as .png, videos as .mp4, motion as .glb or .bvh, not as '{name}'")
+    size = _size(options.size)
     figure = _figure(project, options.project.resolve().parent)
     clip = None
     seconds = options.seconds
@@ -188,7 +200,7 @@ def render(options: Namespace) -> int:
     if options.out.suffix in (".glb", ".bvh"):
         bake_to(options.out, project, made, clip, seconds, options.fps)
     else:
-        draw_to(options.out, project, figure, made, clip, seconds, _size(options.size), options.fps, options.frames, options.theme)
+        draw_to(options.out, project, figure, made, clip, seconds, size, options.fps, options.frames, options.theme)
     _say(options, f"{options.out}", {"written": str(options.out)})
     return 0
 
@@ -289,13 +301,12 @@ def info(options: Namespace) -> int:
         }
         for layer in LAYERS
     }
-    data = {"name": project.name, "clips": len(project.clips), "placed": whole.clips, "states": whole.states, "connections": whole.connections,
-            "joints": len(project.skeleton) if project.skeleton else 0, "layers": layers}  # fmt: skip
+    data = {"name": project.name, "clips": len(project.clips), "placed": whole.clips, "states": whole.states,
+            "connections": whole.connections, "joints": len(project.skeleton) if project.skeleton else 0, "layers": layers}  # fmt: skip
     lines = [f"{project.name}: {len(project.clips)} clips, {whole.clips} placed, {data['joints']} joints"]
     for layer, counts in layers.items():
         lines.append(
-            f"  {layer:5} "
-            + ", ".join(f"{n} {k}{'s' if n != 1 and not k.endswith('s') else ''}" for k, n in counts.items() if k != "stance")
+            f"  {layer:5} " + ", ".join(f"{n} {k.removesuffix('s')}{'s' if n != 1 else ''}" for k, n in counts.items() if k != "stance")
         )
     lines.append(f"  the machine it stands for: {whole.states} states, {whole.connections} connections")
     _say(options, "\n".join(lines), data)
@@ -316,9 +327,8 @@ def demo(options: Namespace) -> int:
     cues = sum(len(made.layers[layer].cues) for layer in LAYERS)
     quiet = options.json
     if not quiet:
-        print(
-            f"{project.name}: {whole.clips} clips placed; the machine nobody had to draw: {whole.states} states, {whole.connections:,} connections"
-        )
+        print(f"{project.name}: {whole.clips} clips placed")
+        print(f"the machine nobody had to draw: {whole.states} states, {whole.connections:,} connections")
         print(f"planned {made.end:g} s: {cues} actions on {len(LAYERS)} layers")
     figure = _figure(project, folder)
     sheet, video = out / f"{project.name}.png", out / f"{project.name}.mp4"

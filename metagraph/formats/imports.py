@@ -85,7 +85,20 @@ def import_files(
         clips = f"{count} clips are" if count > 1 else "its clip is"
         failures.append(f"{path.name}: {clips} of another character: {why}. Import it into a project of its own.")
     character = _character(loaded, folder) if project.character is None else None
-    return Imported(tuple(loaded), tuple(dict.fromkeys(failures)), tuple(report.notes), report.cancelled, character)
+    return Imported(tuple(loaded), tuple(dict.fromkeys(failures)), _together(report.clips), report.cancelled, character)
+
+
+def _together(clips: Iterable[tuple[Path, int, Clip]]) -> tuple[str, ...]:
+    """Return what readers noted, in one line for all files of which it is true."""
+    files: dict[str, dict[str, None]] = {}
+    for path, _, clip in clips:
+        for note in clip.notes:
+            files.setdefault(note, {})[path.name] = None
+    out = []
+    for note, names in files.items():
+        first = next(iter(names))
+        out.append(f"{first if len(names) == 1 else f'{len(names)} files ({first} ...)'}: {note}")
+    return tuple(out)
 
 
 def _character(loaded: Sequence[tuple[str, int, str, Clip]], folder: Path | None) -> str | None:

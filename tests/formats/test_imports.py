@@ -149,6 +149,12 @@ def test_a_file_whose_name_is_no_text_is_left_out_since_it_could_not_be_saved(fo
     assert "has a name that is no text" in result.failures[0]
 
 
+def test_what_is_true_of_many_files_is_said_once(shared_data: Path) -> None:
+    result = import_files(Project(), None, [shared_data / "bandai-namco-1"])
+    assert len(result.notes) == 1
+    assert result.notes[0].startswith("63 files (dataset-1_bow_active_001.bvh ...): units taken for centimetres")
+
+
 def test_a_bvh_and_a_glb_of_one_character_go_together(tmp_path: Path) -> None:
     straight = Skeleton(SKELETON.names, SKELETON.parents, np.tile([0, 0, 0, 1.0], (4, 1)), SKELETON.rest_translations)
     motion = Clip("a", straight, 30, np.tile(straight.rest_rotations, (9, 1, 1)), np.tile(straight.rest_translations[:1], (9, 1, 1)))
