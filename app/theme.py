@@ -45,8 +45,8 @@ DARK = Theme(
 )  # fmt: skip
 LIGHT = Theme(
     "light", ground="#e9ebee", panel="#f6f7f8", card="#ffffff", field="#ffffff", hover="#e4e7eb", line="#cdd2d8", text="#1d2126",
-    dim="#59616b", strong="#23272d", on_strong="#ffffff", warning="#8a6500", error="#b3261e",
-    kinds={"stance": "#14756a", "gesture": "#8f5a00", "fidget": "#6a45c4", "transition": "#1a63b8"}, fills=_KINDS,
+    dim="#59616b", strong="#23272d", on_strong="#ffffff", warning="#7d5b00", error="#b3261e",
+    kinds={"stance": "#127065", "gesture": "#8f5a00", "fidget": "#6a45c4", "transition": "#1a63b8"}, fills=_KINDS,
 )  # fmt: skip
 THEMES = {"dark": DARK, "light": LIGHT}
 KIND_MARKS = {"stance": "●", "gesture": "▲", "fidget": "◆", "transition": "➜"}  # never colour alone

@@ -8,7 +8,7 @@ from typing import Literal
 
 from PySide6.QtCore import QPointF, QRectF, QSizeF
 
-from metagraph.graph.model import Action, Kind, Layer, Project
+from metagraph.graph.model import Action, Kind, Layer, MetaGraph, Project
 
 GRID = 8
 CHIP_HEIGHT, CHIP_TOP = 34, 12
@@ -125,22 +125,12 @@ def arrange(
     width, height = max(size.width(), 420.0), max(size.height(), 360.0)
     graph = project.graphs[layer]
 
-    chips: list[Chip] = []
-    x, y = 2.0 * GRID, float(CHIP_TOP)
-    for ident, s in graph.stances.items():
-        count = sum(len(graph.of(ident, k)) for k in ("gesture", "fidget", "transition"))
-        words = hole(project, layer, ident)
-        text = (
-            widths.get(s.name, 7.2 * len(s.name)) + widths.get(str(count), 16.0) + (widths.get(words, 7 * len(words)) + 8 if words else 0)
-        )
-        w = min(max(text + 80, CHIP_MIN), CHIP_MAX + (80 if words else 0))
-        if x + w > width - 56 and x > 2 * GRID:
-            x, y = 2.0 * GRID, y + CHIP_HEIGHT + GRID
-        chips.append(Chip(ident, QRectF(x, y, w, CHIP_HEIGHT), s.name, count, words))
-        x += w + GRID
-    chips.append(Chip(None, QRectF(x, y, CHIP_HEIGHT, CHIP_HEIGHT), "+"))
-
-    top = y + CHIP_HEIGHT + 2 * GRID
+    # Many stances in a low window: narrower chips without words leave room for the nodes.
+    for widest in (CHIP_MAX, 150, CHIP_MIN):
+        chips = _chips(project, graph, width, widths, widest)
+        top = chips[-1].rect.bottom() + 2 * GRID
+        if top < height - FOOT - 320:
+            break
     bottom = height - FOOT
     usable = max(bottom - top, 200.0)
     gap = min(max(width * 0.045, 16.0), 56.0)
@@ -152,7 +142,7 @@ def arrange(
     lines = -(-len(transitions) // columns)
     low_h = min(HEADER + max(lines, 1) * ROW + PAD + 2, usable * 0.36)
     low_h = max(low_h, HEADER + 2 * ROW)
-    card_h = min(max(usable - low_h - 5 * GRID, 120.0), card_w * 1.15)
+    card_h = min(max(usable - low_h - 5 * GRID, 80.0), card_w * 1.15)
     slack = max(0.0, usable - low_h - card_h)
     card = QRectF((width - card_w) / 2, top + slack * 0.42, card_w, card_h)
     low_top = min(card.bottom() + max(3.0 * GRID, slack * 0.3), bottom - low_h - GRID)
@@ -169,6 +159,24 @@ def arrange(
     )
     loops = QRectF(card.left(), card.top() + card.height() * 0.58, card.width(), card.height() * 0.42)
     return Layout(QSizeF(width, height), tuple(chips), card, loops, nodes, QRectF(2 * GRID, bottom, width - 4 * GRID, FOOT), stance)
+
+
+def _chips(project: Project, graph: MetaGraph, width: float, widths: Mapping[str, float], widest: float) -> list[Chip]:
+    """Return the stances as chips in lines, and the "+" after them."""
+    chips: list[Chip] = []
+    x, y = 2.0 * GRID, float(CHIP_TOP)
+    for ident, s in graph.stances.items():
+        count = sum(len(graph.of(ident, k)) for k in ("gesture", "fidget", "transition"))
+        words = hole(project, graph.layer, ident) if widest == CHIP_MAX else ""
+        text = (
+            widths.get(s.name, 7.2 * len(s.name)) + widths.get(str(count), 16.0) + (widths.get(words, 7 * len(words)) + 8 if words else 0)
+        )
+        w = min(max(text + 80, CHIP_MIN), widest + (80 if words else 0))
+        if x + w > width - 56 and x > 2 * GRID:
+            x, y = 2.0 * GRID, y + CHIP_HEIGHT + GRID
+        chips.append(Chip(ident, QRectF(x, y, w, CHIP_HEIGHT), s.name, count, words))
+        x += w + GRID
+    return [*chips, Chip(None, QRectF(x, y, CHIP_HEIGHT, CHIP_HEIGHT), "+")]
 
 
 def _node(kind: Kind, rect: QRectF, actions: tuple[Action, ...], scroll: int, columns: int) -> Node:

@@ -69,7 +69,7 @@ class Driver:
 
     def node(self, kind: str) -> tuple[QWidget, QPoint]:
         rect = self.canvas.layout_now().nodes[kind].rect  # type: ignore[attr-defined]
-        return self.canvas, (rect.center() if kind != "transition" else rect.center()).toPoint()  # type: ignore[attr-defined]
+        return self.canvas, rect.center().toPoint()  # type: ignore[attr-defined]
 
     def middle(self) -> tuple[QWidget, QPoint]:
         """The upper part of the stance card: a new stance."""
