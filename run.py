@@ -36,7 +36,7 @@ TESTING = {"Xvfb": "xvfb", "xauth": "xauth", "xdotool": "xdotool"}
 
 def main(arguments):
     if not (3, 11) <= sys.version_info[:2] <= (3, 13):
-        return "Python 3.11, 3.12 or 3.13 is needed, this is %d.%d." % sys.version_info[:2]
+        return f"Python 3.11, 3.12 or 3.13 is needed, this is {sys.version_info[0]}.{sys.version_info[1]}."
     testing = arguments[:1] == ["test"]
     screen = not sys.platform.startswith("linux") or bool(os.environ.get("DISPLAY") or os.environ.get("WAYLAND_DISPLAY"))
     trouble = system_libraries(screen, testing) if sys.platform.startswith("linux") else None
@@ -75,7 +75,7 @@ def system_libraries(screen, testing):
     install = ["apt-get", "install", "-y", "--no-install-recommends", *packages]
     line = "sudo apt-get update && sudo " + " ".join(install)
     if shutil.which("apt-get") is None:
-        return "System libraries are missing. On Debian or Ubuntu this installs them; other systems have them under similar names:\n  " + line
+        return "System libraries are missing. This installs them on Debian and Ubuntu; elsewhere they have similar names:\n  " + line
     if os.geteuid() == 0:
         prefix = []
     elif shutil.which("sudo") and sys.stdin.isatty():
@@ -135,6 +135,7 @@ def pip(*arguments, quiet=False):
 
 def run_tests(arguments):
     """Lint, types, import rules, then the tests; with arguments, only pytest with those."""
+
     def tool(name):
         return str(PYTHON.with_name(name + (".exe" if WINDOWS else "")))
 
@@ -142,14 +143,10 @@ def run_tests(arguments):
     npm = shutil.which("npm")
     if npm and not validator.exists():
         # The Khronos validator checks every GLB we write; its tests skip where there is no Node.
-        install = [npm, "install", "--prefix", str(ROOT / "tests"), "--no-save", "--no-package-lock", "--silent", "gltf-validator@2.0.0-dev.3.10"]
-        subprocess.call(install, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
-    steps = [] if arguments else [
-        [tool("ruff"), "check", "."],
-        [tool("ruff"), "format", "--check", "."],
-        [tool("mypy")],
-        [tool("lint-imports")],
-    ]
+        options = ["--prefix", str(ROOT / "tests"), "--no-save", "--no-package-lock", "--silent", "--fetch-retries=1"]
+        subprocess.call([npm, "install", *options, "gltf-validator@2.0.0-dev.3.10"], stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
+    lint = [[tool("ruff"), "check", "."], [tool("ruff"), "format", "--check", "."], [tool("mypy")], [tool("lint-imports")]]
+    steps = [] if arguments else lint
     steps.append([str(PYTHON), "-m", "pytest", *arguments])
     failed = 0
     for step in steps:

@@ -1,0 +1,230 @@
+"""run.py: what it finds missing, what it says, what it starts. Nothing is installed here."""
+
+from __future__ import annotations
+
+import importlib.util
+import subprocess
+import sys
+from pathlib import Path
+from types import ModuleType
+from typing import Any
+
+import pytest
+
+ROOT = Path(__file__).resolve().parents[1]
+
+
+@pytest.fixture
+def run(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> ModuleType:
+    """run.py as a module, in a folder of its own, forbidden to start anything."""
+    spec = importlib.util.spec_from_file_location("run_py", ROOT / "run.py")
+    assert spec is not None and spec.loader is not None
+    module = importlib.util.module_from_spec(spec)
+    spec.loader.exec_module(module)
+    for name in ("call", "run"):
+        monkeypatch.setattr(module.subprocess, name, lambda *args, **kwargs: pytest.fail(f"started {args[0]}"))
+    monkeypatch.setattr(module, "ROOT", tmp_path)
+    monkeypatch.setattr(module, "VENV", tmp_path / ".venv")
+    monkeypatch.setattr(module, "PYTHON", tmp_path / ".venv" / "bin" / "python")
+    return module
+
+
+class Started(list[Any]):
+    """Takes the place of subprocess.call: notes what was started and answers with given exit codes."""
+
+    def __init__(self, *answers: int) -> None:
+        super().__init__()
+        self.answers = list(answers)
+
+    def __call__(self, command: list[str], **more: Any) -> int:
+        self.append([str(word) for word in command])
+        return self.answers.pop(0) if self.answers else 0
+
+
+class Terminal:
+    def __init__(self, there: bool) -> None:
+        self.there = there
+
+    def isatty(self) -> bool:
+        return self.there
+
+
+def test_it_needs_nothing_but_python() -> None:
+    code = (
+        f"import sys; sys.path.insert(0, {str(ROOT)!r}); import run; print([m for m in sys.modules if m in ('numpy', 'yaml', 'PySide6')])"
+    )
+    made = subprocess.run([sys.executable, "-S", "-c", code], cwd="/", capture_output=True, text=True, check=True)
+    assert made.stdout.strip() == "[]"
+
+
+@pytest.mark.parametrize(("version", "fits"), [((3, 10), False), ((3, 11), True), ((3, 13), True), ((3, 14), False), ((2, 7), False)])
+def test_the_wrong_python_is_refused_in_words(
+    run: ModuleType, monkeypatch: pytest.MonkeyPatch, version: tuple[int, int], fits: bool
+) -> None:
+    monkeypatch.setattr(run.sys, "version_info", (*version, 0, "final", 0))
+    monkeypatch.setattr(run, "system_libraries", lambda *args: "stopped here")
+    monkeypatch.setattr(run, "environment", lambda *args: "stopped here")
+    words = run.main([])
+    assert words == "stopped here" if fits else f"this is {version[0]}.{version[1]}." in words
+
+
+def test_a_complete_system_misses_nothing(run: ModuleType, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(run, "loads", lambda library: True)
+    monkeypatch.setattr(run.shutil, "which", lambda program: "/usr/bin/" + program)
+    assert run.missing(True, True) == []
+    assert run.system_libraries(True, True) is None
+
+
+def test_without_a_screen_only_drawing_is_needed_and_tests_need_it_all(run: ModuleType, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(run, "loads", lambda library: False)
+    monkeypatch.setattr(run.shutil, "which", lambda program: None)
+    assert run.missing(False, False) == ["libegl1", "libgl1"]
+    assert set(run.missing(True, False)) == {*run.DRAWING.values(), *run.WINDOW.values()}
+    assert set(run.missing(False, True)) == {*run.DRAWING.values(), *run.WINDOW.values(), "xvfb", "xauth", "xdotool"}
+
+
+def test_a_library_that_cannot_be_loaded_is_missing(run: ModuleType) -> None:
+    assert not run.loads("libnobody-has-this.so.9")
+
+
+LINE = "sudo apt-get update && sudo apt-get install -y --no-install-recommends libegl1 libgl1"
+
+
+@pytest.fixture
+def bare(run: ModuleType, monkeypatch: pytest.MonkeyPatch) -> ModuleType:
+    """On a Debian without the drawing libraries."""
+    monkeypatch.setattr(run, "loads", lambda library: False)
+    monkeypatch.setattr(run.shutil, "which", lambda program: program)
+    monkeypatch.setattr(run.sys, "stdin", Terminal(False))
+    monkeypatch.setattr(run.os, "geteuid", lambda: 1000, raising=False)
+    return run
+
+
+def test_without_apt_the_line_for_debian_is_printed(bare: ModuleType, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(bare.shutil, "which", lambda program: None)
+    assert bare.system_libraries(False, False).endswith(LINE)
+
+
+def test_without_a_terminal_to_ask_on_the_line_is_printed(bare: ModuleType) -> None:
+    assert bare.system_libraries(False, False) == f"System libraries are missing. Install them and start again:\n  {LINE}"
+
+
+def test_sudo_is_used_after_asking_and_not_without(bare: ModuleType, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(bare.sys, "stdin", Terminal(True))
+    monkeypatch.setattr("builtins.input", lambda words: "n")
+    assert LINE in bare.system_libraries(False, False)
+    monkeypatch.setattr("builtins.input", lambda words: "")
+    started = Started()
+    monkeypatch.setattr(bare.subprocess, "call", started)
+    assert bare.system_libraries(False, False) == "Still missing after the installation: libegl1 libgl1"
+    assert [command[:2] for command in started] == [["sudo", "apt-get"]] * 2
+
+
+def test_the_administrator_is_not_asked(bare: ModuleType, monkeypatch: pytest.MonkeyPatch) -> None:
+    started = Started()
+    monkeypatch.setattr(bare.os, "geteuid", lambda: 0, raising=False)
+    monkeypatch.setattr(
+        bare.subprocess, "call", lambda *a, **k: (monkeypatch.setattr(bare, "loads", lambda library: True), started(*a, **k))[1]
+    )
+    assert bare.system_libraries(False, False) is None
+    assert started[1] == ["apt-get", "install", "-y", "--no-install-recommends", "libegl1", "libgl1"]
+
+
+def test_a_failed_installation_says_what_to_do(bare: ModuleType, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(bare.os, "geteuid", lambda: 0, raising=False)
+    monkeypatch.setattr(bare.subprocess, "call", Started(100))
+    assert bare.system_libraries(False, False) == f"That failed. Install them yourself and start again:\n  {LINE}"
+
+
+@pytest.fixture
+def pinned(run: ModuleType, tmp_path: Path) -> ModuleType:
+    """With something to install."""
+    for name in ("requirements.txt", "requirements-test.txt", "pyproject.toml"):
+        (tmp_path / name).write_text(name)
+    return run
+
+
+def make_python(run: ModuleType) -> None:
+    run.PYTHON.parent.mkdir(parents=True, exist_ok=True)
+    run.PYTHON.write_text("")
+
+
+def test_the_environment_is_made_once_and_again_when_what_is_pinned_changes(pinned: ModuleType, monkeypatch: pytest.MonkeyPatch) -> None:
+    started = Started()
+    monkeypatch.setattr(pinned.subprocess, "call", started)
+    make_python(pinned)
+    assert pinned.environment(False) is None
+    assert any("requirements.txt" in word for word in started[1])
+    assert not any("requirements-test.txt" in word for command in started for word in command)
+    count = len(started)
+    assert pinned.environment(False) is None
+    assert len(started) == count
+    (pinned.ROOT / "requirements.txt").write_text("other")
+    assert pinned.environment(False) is None
+    assert len(started) > count
+    assert pinned.environment(True) is None
+    assert any("requirements-test.txt" in word for command in started for word in command)
+
+
+def test_an_environment_that_cannot_be_made_leaves_nothing_and_names_the_package(
+    pinned: ModuleType, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    failed = subprocess.CompletedProcess([], 1, "", "ensurepip is not available")
+    monkeypatch.setattr(pinned.subprocess, "run", lambda *args, **kwargs: failed)
+    words = pinned.environment(False)
+    assert "ensurepip is not available" in words
+    if sys.platform.startswith("linux"):
+        assert "sudo apt-get install -y python3-venv" in words
+    assert not pinned.VENV.exists()
+
+
+def test_a_failed_download_is_told_and_tried_again_next_time(pinned: ModuleType, monkeypatch: pytest.MonkeyPatch) -> None:
+    make_python(pinned)
+    monkeypatch.setattr(pinned.subprocess, "call", Started(0, 1))
+    assert "could not be installed" in pinned.environment(False)
+    assert not list(pinned.VENV.glob(".installed*"))
+
+
+def test_fbx_is_not_missed_where_it_cannot_be_installed(
+    pinned: ModuleType, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    make_python(pinned)
+    monkeypatch.setattr(pinned.subprocess, "call", Started(0, 0, 0, 1))
+    assert pinned.environment(False) is None
+    assert "FBX files cannot be read on this system" in capsys.readouterr().out
+
+
+@pytest.mark.parametrize(
+    ("screen", "arguments", "started"),
+    [
+        (True, [], ["window", "--sample"]),
+        (False, [], ["demo"]),
+        (True, ["check", "a.yaml"], ["check", "a.yaml"]),
+        (False, ["plan", "a.yaml"], ["plan", "a.yaml"]),
+    ],
+)
+def test_it_starts_the_window_or_the_same_job_without_one(
+    run: ModuleType, monkeypatch: pytest.MonkeyPatch, screen: bool, arguments: list[str], started: list[str]
+) -> None:
+    if not sys.platform.startswith("linux"):
+        pytest.skip("there is always a screen on this system")
+    monkeypatch.delenv("WAYLAND_DISPLAY", raising=False)
+    monkeypatch.setenv("DISPLAY", ":0") if screen else monkeypatch.delenv("DISPLAY", raising=False)
+    monkeypatch.setattr(run, "system_libraries", lambda *args: None)
+    monkeypatch.setattr(run, "environment", lambda *args: None)
+    calls = Started(5)
+    monkeypatch.setattr(run.subprocess, "call", calls)
+    assert run.main(arguments) == 5
+    assert calls[0][1:] == ["-m", "app.cli", *started]
+
+
+def test_the_tests_are_lint_types_imports_and_pytest_and_one_failure_is_a_failure(run: ModuleType, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(run.shutil, "which", lambda program: None)
+    calls = Started(0, 0, 1, 0, 0)
+    monkeypatch.setattr(run.subprocess, "call", calls)
+    assert run.run_tests([]) == 1
+    assert [Path(command[0]).name.removesuffix(".exe") for command in calls] == ["ruff", "ruff", "mypy", "lint-imports", "python"]
+    calls = Started(0)
+    monkeypatch.setattr(run.subprocess, "call", calls)
+    assert run.run_tests(["-k", "journal"]) == 0
+    assert [command[1:] for command in calls] == [["-m", "pytest", "-k", "journal"]]
