@@ -27,12 +27,14 @@ class _Change(QUndoCommand):
     def __init__(self, document: Document, text: str, before: Project, after: Project, merge: str | None) -> None:
         super().__init__(text)
         self.document, self.before, self.after, self.merge = document, before, after, merge
+        self.cancelled = False
 
     def redo(self) -> None:
         self.document._set(self.after)
 
     def undo(self) -> None:
         self.document._set(self.before)
+        self.setObsolete(self.cancelled)  # then it leaves no step to redo
 
     def id(self) -> int:
         return 1 if self.merge is not None else -1
@@ -45,9 +47,10 @@ class _Change(QUndoCommand):
 
 
 class Document(QObject):
-    """changed: (before, after) projects. state_changed: path, dirty mark or undo texts may differ. failed: words for the user."""
+    """changed: (before, after) projects. loaded: before that, when `after` is another project rather than an edited one. state_changed: path, dirty mark or undo texts may differ. failed: words for the user."""
 
     changed = Signal(object, object)
+    loaded = Signal()
     state_changed = Signal()
     failed = Signal(str)
 
@@ -59,6 +62,7 @@ class Document(QObject):
         self.undo_stack.cleanChanged.connect(self.state_changed)
         self.undo_stack.indexChanged.connect(self.state_changed)
         self._journal: Journal | None = None
+        self._unsafe = False  # no journal can be written; that was told
 
     # --- editing
 
@@ -83,11 +87,13 @@ class Document(QObject):
         count = self.undo_stack.count()
         top = self.undo_stack.command(count - 1) if count else None
         if isinstance(top, _Change) and top.merge == merge and self.undo_stack.index() == count:
-            top.setObsolete(True)  # undone, it leaves no step to redo
+            top.cancelled = True
             self.undo_stack.undo()
 
     def _set(self, project: Project) -> None:
         before, self.project = self.project, project
+        if self._journal is None and not self._unsafe:  # the first edit of a window that opened nothing
+            self._begin_journal(before if self.path is None else None)
         if self._journal is not None:
             try:
                 self._journal.edit(before, project)
@@ -121,6 +127,7 @@ class Document(QObject):
         if recovered:
             self.undo_stack.resetClean()
         self._begin_journal(project if recovered or path is None else None)
+        self.loaded.emit()
         self.changed.emit(before, project)
         self.state_changed.emit()
 
@@ -148,13 +155,14 @@ class Document(QObject):
     def _begin_journal(self, base: Project | None) -> None:
         if self._journal is not None:
             self._journal.remove()
+        self._unsafe = False
         place = untitled_journal() if self.path is None else journal_path(self.path)
         self._journal = Journal(place, self.path)
         if base is not None:
             try:
                 self._journal.begin(base)
             except (FileError, OSError) as error:
-                self._journal = None
+                self._journal, self._unsafe = None, True
                 self.failed.emit(f"Autosave is off: {error}")
 
     def close_journal(self) -> None:

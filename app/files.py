@@ -35,6 +35,11 @@ class Files(QObject):
     def __init__(self, document: Document, jobs: Jobs, window: QWidget) -> None:
         super().__init__(window)
         self.document, self.jobs, self.window = document, jobs, window
+        self._era = 0  # counts the projects that were shown
+        document.loaded.connect(self._next_era)
+
+    def _next_era(self) -> None:
+        self._era += 1
 
     # --- new and open
 
@@ -56,6 +61,7 @@ class Files(QObject):
         if not self.may_leave():
             return
         recovered = None if template else self._offer(journal_path(path), path)
+        left = self.document.project
 
         def work(job: Job) -> Opened:
             if recovered is not None:
@@ -63,6 +69,8 @@ class Files(QObject):
             return open_project(path, job.tell)
 
         def done(opened: Opened) -> None:
+            if self.document.project is not left and not self.may_leave():
+                return  # it was edited meanwhile
             if template:
                 self.document.load(absolute(opened.project, path.parent), None)
             else:
@@ -170,12 +178,18 @@ class Files(QObject):
 
     def import_paths(self, paths: list[str], drop: Drop | None = None) -> None:
         """Import files and folders on a thread; one undo step when it is done. drop: where to place them then."""
-        project, folder = self.document.project, self.document.folder
+        project, folder, era = self.document.project, self.document.folder, self._era
+
+        def done(result: Imported) -> None:
+            if era == self._era:
+                self._imported(result, drop)
+            else:
+                self.told.emit("The import was dropped, since another project was opened.")
 
         def work(job: Job) -> Imported:
             return import_files(project, folder, paths, lambda n, total, path: job.tell(n, total, path.name), lambda: job.cancelled)
 
-        self.jobs.start("Importing clips", work, lambda result: self._imported(result, drop), self._failed)
+        self.jobs.start("Importing clips", work, done, self._failed)
 
     def _imported(self, result: Imported, drop: Drop | None) -> None:
         count = len(result.loaded)
@@ -198,7 +212,7 @@ class Files(QObject):
 
     def find_missing(self) -> None:
         """Ask where missing clip files are now, and load them from there."""
-        project = self.document.project
+        project, era = self.document.project, self._era
         missing = [e for e in project.clips.values() if e.motion is None]
         if not missing:
             self.told.emit("No clip file is missing.")
@@ -216,6 +230,8 @@ class Files(QObject):
             return relocate(project, self.document.folder, folder, job.tell)
 
         def done(found: Project) -> None:
+            if era != self._era:
+                return
             before = {i for i, e in self.document.project.clips.items() if e.motion is None}
             self.document.edit("Find missing clips", lambda p: _take_over(p, found))
             left = sum(1 for i in before if self.document.project.clips[i].motion is None)
@@ -230,7 +246,7 @@ class Files(QObject):
         try:
             names = json.loads((state_folder() / "recent.json").read_text(encoding="utf-8"))
             return [Path(n) for n in names if isinstance(n, str) and Path(n).is_file()]
-        except (OSError, ValueError):
+        except (OSError, ValueError, TypeError):
             return []
 
     def _remember(self, path: Path) -> None:

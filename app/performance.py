@@ -50,6 +50,7 @@ class Performance(QObject):
         self._busy = self._again = False
         self._soon = QTimer(self, singleShot=True, interval=0)
         self._soon.timeout.connect(self._replan)
+        document.loaded.connect(self._loaded)
         document.changed.connect(self._edited)
         session.show_changed.connect(self.replan)
 
@@ -59,9 +60,11 @@ class Performance(QObject):
         """Plan anew, soon; many calls in a row make one plan."""
         self._soon.start()
 
+    def _loaded(self) -> None:
+        self.requests, self.length = (), LENGTH
+
     def _edited(self, before: Project, after: Project) -> None:
         if before.skeleton is not after.skeleton or after.skeleton is None:
-            self.requests, self.length = (), LENGTH
             self.shown = Shown(after, Plan(1, 0.0), LENGTH)
             self.changed.emit()
         self.replan()
