@@ -42,19 +42,23 @@ class Crowd:
         unique = {id(plan): plan for plan in plans}
         places = {ident: n for n, ident in enumerate(unique)}
         self._plan_of = np.array([places[id(plan)] for plan in plans], np.int64)
+        self._local: Pose | None = None  # memory for the poses on the way to model space
         self._tables = _Tables(project, self._rig, list(unique.values())).arrays()
 
     def __len__(self) -> int:
         return len(self._plan_of)
 
-    def poses(self, seconds: Any) -> Pose:
-        """Return each character's pose at its time, `seconds [C]` or one for all: rotations `[C, J, 4]`, translations `[C, J, 3]`."""
+    def poses(self, seconds: Any, out: Pose | None = None) -> Pose:
+        """Return each character's pose at its time, `seconds [C]` or one for all: rotations `[C, J, 4]`, translations `[C, J, 3]`.
+
+        out: float32 poses to write into, such as an earlier frame's; new memory costs as much as the poses do.
+        """
         from metagraph.playback.crowd_kernels import evaluate
 
         times = np.array(np.broadcast_to(np.asarray(seconds, np.float64), (len(self),)))
         base = self._rig.ground.base
         count, joints = len(self), len(base.rotations)
-        pose = Pose(np.empty((count, joints, 4), np.float32), np.empty((count, joints, 3), np.float32))
+        pose = out or Pose(np.empty((count, joints, 4), np.float32), np.empty((count, joints, 3), np.float32))
         base_r, base_t = base.rotations.astype(np.float32), base.translations.astype(np.float32)
 
         def some(first: int, last: int) -> None:
@@ -63,14 +67,14 @@ class Crowd:
         _share(some, count)
         return pose
 
-    def globals(self, seconds: Any) -> tuple[Array, Array]:
-        """Return model-space rotations `[C, J, 4]` and positions `[C, J, 3]`, metres."""
+    def globals(self, seconds: Any, out: tuple[Array, Array] | None = None) -> tuple[Array, Array]:
+        """Return model-space rotations `[C, J, 4]` and positions `[C, J, 3]`, metres. out: float32 arrays to write into."""
         from metagraph.playback.crowd_kernels import to_globals
 
-        pose = self.poses(seconds)
+        pose = self._local = self.poses(seconds, self._local)
         assert self.skeleton is not None
         parents = self.skeleton.parents
-        rotations, positions = np.empty_like(pose.rotations), np.empty_like(pose.translations)
+        rotations, positions = out or (np.empty_like(pose.rotations), np.empty_like(pose.translations))
 
         def some(first: int, last: int) -> None:
             to_globals(first, last, parents, pose.rotations, pose.translations, rotations, positions)

@@ -17,9 +17,9 @@ _FAST = {"contract", "arcp", "nsz"}
 
 def _compiled(function: Callable[..., Any]) -> Any:
     try:
-        return numba.njit(cache=True, nogil=True, fastmath=_FAST)(function)
+        return numba.njit(cache=True, nogil=True, fastmath=_FAST, error_model="numpy")(function)
     except RuntimeError:  # no folder to cache in
-        return numba.njit(nogil=True, fastmath=_FAST)(function)
+        return numba.njit(nogil=True, fastmath=_FAST, error_model="numpy")(function)
 
 
 @_compiled
@@ -30,46 +30,48 @@ def _ease(x: float) -> float:
 
 @_compiled
 def _sample(clip: Any, rotations: Array, translations: Array, moved: Array, n: int, seconds: float, out_r: Array, out_t: Array) -> None:
-    """Write a clip's offsets at clip seconds into `out_r [>=n, 4]`, `out_t [>=n, 3]`."""
+    """Write a clip's offsets at clip seconds into `out_r [>=n, 4]`, `out_t [>=n, 3]`; rotations are not yet of unit length."""
     frames = clip.frames
     at = min(max(seconds * clip.fps, 0.0), frames - 1.0)
     low = min(int(at), max(0, frames - 2))
     high = min(low + 1, frames - 1)
     w = np.float32(at - low)
     v = np.float32(1) - w
-    a, b = clip.rotations + low * n * 4, clip.rotations + high * n * 4
-    for i in range(n):
-        k = i * 4
-        x = rotations[a + k] * v + rotations[b + k] * w
-        y = rotations[a + k + 1] * v + rotations[b + k + 1] * w
-        z = rotations[a + k + 2] * v + rotations[b + k + 2] * w
-        s = rotations[a + k + 3] * v + rotations[b + k + 3] * w
-        scale = np.float32(1) / np.sqrt(x * x + y * y + z * z + s * s)
-        out_r[i, 0], out_r[i, 1], out_r[i, 2], out_r[i, 3] = x * scale, y * scale, z * scale, s * scale
-        out_t[i, 0], out_t[i, 1], out_t[i, 2] = np.float32(0), np.float32(0), np.float32(0)
+    a = rotations[clip.rotations + low * n * 4 : clip.rotations + (low + 1) * n * 4]
+    b = rotations[clip.rotations + high * n * 4 : clip.rotations + (high + 1) * n * 4]
+    flat = out_r.reshape(-1)
+    for i in range(len(a)):
+        flat[i] = a[i] * v + b[i] * w
+    out_t[:n] = 0
     m = clip.moves
-    a, b = clip.translations + low * m * 3, clip.translations + high * m * 3
+    c, d = clip.translations + low * m * 3, clip.translations + high * m * 3
     for i in range(m):
         j, k = moved[clip.moved + i], i * 3
         for axis in range(3):
-            out_t[j, axis] = translations[a + k + axis] * v + translations[b + k + axis] * w
+            out_t[j, axis] = translations[c + k + axis] * v + translations[d + k + axis] * w
+
+
+@_compiled
+def _normalize(n: int, r: Array) -> None:
+    """Scale to unit length: before a blend, where lengths count, and at the end; products do not mind."""
+    for i in range(n):
+        x, y, z, s = r[i, 0], r[i, 1], r[i, 2], r[i, 3]
+        scale = np.float32(1) / np.sqrt(max(x * x + y * y + z * z + s * s, np.float32(1e-20)))
+        r[i, 0], r[i, 1], r[i, 2], r[i, 3] = x * scale, y * scale, z * scale, s * scale
 
 
 @_compiled
 def _mix(n: int, r: Array, t: Array, other_r: Array, other_t: Array, weight: float) -> None:
     """Crossfade `r`, `t` in place towards the other sample."""
+    _normalize(n, r)
+    _normalize(n, other_r)
     w = np.float32(weight)
     v = np.float32(1) - w
     for i in range(n):
         dot = r[i, 0] * other_r[i, 0] + r[i, 1] * other_r[i, 1] + r[i, 2] * other_r[i, 2] + r[i, 3] * other_r[i, 3]
         u = -w if dot < 0 else w
-        length = np.float32(0)
         for k in range(4):
             r[i, k] = r[i, k] * v + other_r[i, k] * u
-            length += r[i, k] * r[i, k]
-        scale = np.float32(1) / np.sqrt(max(length, np.float32(1e-20)))
-        for k in range(4):
-            r[i, k] *= scale
         for k in range(3):
             t[i, k] = t[i, k] * v + other_t[i, k] * w
 
@@ -111,6 +113,8 @@ def _rest(
 @_compiled
 def _lead(n: int, r: Array, t: Array, stance_r: Array, stance_t: Array, edge_r: Array, edge_t: Array, weight: float) -> None:
     """Add to `r`, `t` in place `weight` of what the stance differs from the clip's edge."""
+    _normalize(n, stance_r)
+    _normalize(n, edge_r)
     w = np.float32(weight)
     for i in range(n):
         ax, ay, az, aw = -edge_r[i, 0], -edge_r[i, 1], -edge_r[i, 2], edge_r[i, 3]
@@ -120,8 +124,7 @@ def _lead(n: int, r: Array, t: Array, stance_r: Array, stance_t: Array, edge_r: 
         y = (aw * by - ax * bz + ay * bw + az * bx) * u
         z = (aw * bz + ax * by - ay * bx + az * bw) * u
         s = (aw * bw - ax * bx - ay * by - az * bz) * u + (np.float32(1) - w)
-        scale = np.float32(1) / np.sqrt(max(x * x + y * y + z * z + s * s, np.float32(1e-20)))
-        _append(r, i, x * scale, y * scale, z * scale, s * scale)
+        _append(r, i, x, y, z, s)
         for k in range(3):
             t[i, k] += (stance_t[i, k] - edge_t[i, k]) * w
 
@@ -197,7 +200,8 @@ def evaluate(
     p_r, p_t = np.empty((joints, 4), np.float32), np.empty((joints, 3), np.float32)
     for c in range(first, last):
         time = seconds[c]
-        out_r[c], out_t[c] = base_r, base_t
+        pose_r, pose_t = out_r[c], out_t[c]
+        pose_r[:], pose_t[:] = base_r, base_t
         for layer in range(3):
             row = plan_of[c] * 3 + layer
             if rest_at[row] == rest_at[row + 1]:
@@ -213,16 +217,15 @@ def evaluate(
                 masked = cue.mask >= 0
                 _sample(clips[cue.clip], rotations, translations, moved, n, cue.entry + time - cue.start, r, t)
             if not playing or rising or falling or masked:
+                under_r, under_t = (s_r, s_t) if playing else (r, t)
                 current = max(_before(rest_starts, rest_at[row], rest_at[row + 1], time), rest_at[row])
                 rest = rests[current]
                 if current > rest_at[row] and time < rest.fade_start + rest.fade:
-                    _rest(rests[current - 1], clips, rotations, translations, moved, n, time, s_r, s_t, o_r, o_t)
+                    _rest(rests[current - 1], clips, rotations, translations, moved, n, time, under_r, under_t, o_r, o_t)
                     _rest(rest, clips, rotations, translations, moved, n, time, p_r, p_t, o_r, o_t)
-                    _mix(n, s_r, s_t, p_r, p_t, _ease((time - rest.fade_start) / rest.fade))
+                    _mix(n, under_r, under_t, p_r, p_t, _ease((time - rest.fade_start) / rest.fade))
                 else:
-                    _rest(rest, clips, rotations, translations, moved, n, time, s_r, s_t, o_r, o_t)
-                if not playing:
-                    r[:n], t[:n] = s_r[:n], s_t[:n]
+                    _rest(rest, clips, rotations, translations, moved, n, time, under_r, under_t, o_r, o_t)
             if playing:
                 cue = cues[place]
                 if rising or falling:
@@ -234,38 +237,37 @@ def evaluate(
                 if masked:
                     for i in range(n):
                         if masks[cue.mask, reach[a + i]] == 0:
-                            r[i], t[i] = s_r[i], s_t[i]
+                            for k in range(4):
+                                r[i, k] = s_r[i, k]
+                            for k in range(3):
+                                t[i, k] = s_t[i, k]
             if weighed[layer]:
+                _normalize(n, r)
                 _weigh(n, r, t, weights[a : a + n])
             for i in range(n):
                 j = reach[a + i]
-                _append(out_r[c], j, r[i, 0], r[i, 1], r[i, 2], r[i, 3])
+                _append(pose_r, j, r[i, 0], r[i, 1], r[i, 2], r[i, 3])
                 for k in range(3):
-                    out_t[c, j, k] += t[i, k]
-        for j in range(joints):
-            length = np.float32(0)
-            for k in range(4):
-                length += out_r[c, j, k] * out_r[c, j, k]
-            scale = np.float32(1) / np.sqrt(length)
-            for k in range(4):
-                out_r[c, j, k] *= scale
+                    pose_t[j, k] += t[i, k]
+        _normalize(joints, pose_r)
 
 
 @_compiled
 def to_globals(first: int, last: int, parents: Array, local_r: Array, local_t: Array, out_r: Array, out_p: Array) -> None:
     """Write model-space rotations `[C, J, 4]` and positions `[C, J, 3]` of characters `first`..`last`."""
     for c in range(first, last):
+        q, v, r, o = local_r[c], local_t[c], out_r[c], out_p[c]
         for j in range(len(parents)):
             p = parents[j]
-            for k in range(4):
-                out_r[c, j, k] = local_r[c, j, k] if p < 0 else out_r[c, p, k]
-            vx, vy, vz = local_t[c, j, 0], local_t[c, j, 1], local_t[c, j, 2]
+            vx, vy, vz = v[j, 0], v[j, 1], v[j, 2]
             if p < 0:
-                out_p[c, j, 0], out_p[c, j, 1], out_p[c, j, 2] = vx, vy, vz
+                r[j, 0], r[j, 1], r[j, 2], r[j, 3] = q[j, 0], q[j, 1], q[j, 2], q[j, 3]
+                o[j, 0], o[j, 1], o[j, 2] = vx, vy, vz
                 continue
-            x, y, z, w = out_r[c, p, 0], out_r[c, p, 1], out_r[c, p, 2], out_r[c, p, 3]
+            x, y, z, w = r[p, 0], r[p, 1], r[p, 2], r[p, 3]
             tx, ty, tz = 2 * (y * vz - z * vy), 2 * (z * vx - x * vz), 2 * (x * vy - y * vx)
-            out_p[c, j, 0] = out_p[c, p, 0] + vx + w * tx + y * tz - z * ty
-            out_p[c, j, 1] = out_p[c, p, 1] + vy + w * ty + z * tx - x * tz
-            out_p[c, j, 2] = out_p[c, p, 2] + vz + w * tz + x * ty - y * tx
-            _append(out_r[c], j, local_r[c, j, 0], local_r[c, j, 1], local_r[c, j, 2], local_r[c, j, 3])
+            o[j, 0] = o[p, 0] + vx + w * tx + y * tz - z * ty
+            o[j, 1] = o[p, 1] + vy + w * ty + z * tx - x * tz
+            o[j, 2] = o[p, 2] + vz + w * tz + x * ty - y * tx
+            r[j, 0], r[j, 1], r[j, 2], r[j, 3] = x, y, z, w
+            _append(r, j, q[j, 0], q[j, 1], q[j, 2], q[j, 3])

@@ -183,11 +183,14 @@ class Performer:
         loop = self._loop(cue.then, cue.meta)
         if loop is not None:
             # The loop begins anew under the action, so that the action's last pose meets the loop's first. Where the
-            # action leaves joints alone the change shows, and takes its time.
+            # action leaves joints alone the change shows, and takes its time: a transition all of its own.
             partial = cue.action.limb != "both" or bool(cue.action.joints)
             begin, until = cue.start + cue.blend_in, cue.end - cue.blend_out
-            fade_start, fade_end = (cue.start, cue.end) if partial else (begin, until)
-            self.rests.append(Rest(cue.then, loop, until, fade_start, max(0.0, fade_end - fade_start)))
+            fade = max(0.0, until - begin)
+            if partial:
+                fade = cue.end - cue.start if cue.then != cue.stance else min(LOOP_FADE, cue.end - cue.start)
+                begin = max(cue.start, until - fade)
+            self.rests.append(Rest(cue.then, loop, until, begin, fade))
 
     def _loop(self, stance: str, key: str) -> Action | None:
         loops = self.graph.of(stance, "stance")

@@ -84,9 +84,9 @@ def _extend_layer(
     played = {cue.meta for cue in kept}
     waiting = {cue.meta for cue in old.cues[len(kept) :]}  # also those whose chain of transitions has begun
     future = [m for m in old.metas if m.request.id not in again and (m.key in waiting or (m.start >= now and m.key not in played))]
-    done = tuple(m for m in old.metas if m.key in played or (m.start < now and m.key not in waiting))
     # What was told about time still holds; the rest will be told again by those that are planned again.
     planned_again = {(m.request.id, m.start) for m in future}
+    done = tuple(m for m in old.metas if (m.request.id, m.start) not in planned_again and (m.key in played or m.start < now))
     reports = [
         r for r in plan.reports
         if r.layer == layer and r.request not in again and (r.outcome in TEMPORAL or (r.request, r.at) not in planned_again)

@@ -70,6 +70,14 @@ def test_one_time_serves_all(toy: Any) -> None:
     assert np.array_equal(pose.rotations, crowd.poses(np.full(3, 2.5)).rotations)
 
 
+def test_a_frame_can_be_written_over_the_last(toy: Any) -> None:
+    project = toy.project()
+    crowd = Crowd(project, [make_plan(project, 10, seed=n) for n in range(4)])
+    pose, model = crowd.poses(1.0), crowd.globals(1.0)
+    assert crowd.poses(2.0, pose) is pose and np.array_equal(pose.rotations, crowd.poses(2.0).rotations)
+    assert crowd.globals(3.0, model)[1] is model[1] and np.array_equal(model[1], crowd.globals(3.0)[1])
+
+
 def test_making_a_crowd_and_importing_it_do_not_load_numba() -> None:
     code = (
         "import sys; import metagraph.playback.crowd, metagraph.playback.player;"

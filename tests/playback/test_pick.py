@@ -304,4 +304,8 @@ def test_a_long_rest_changes_between_the_loops_of_its_stance(project: Project, t
 def test_an_action_that_leaves_joints_alone_changes_the_rest_below_slowly(project: Project, toy: Any) -> None:
     one_armed = arms(project, ask("a", 1, action=toy.id(project, "rest beat lf")))[0]
     cue, rest = one_armed.cues[0], one_armed.rests[-1]
+    assert cue.start <= rest.fade_start < rest.fade_start + rest.fade <= cue.end and rest.fade == 0.6
+    way = edits.update_actions(project, [toy.id(project, "rest to up")], limb="left")
+    one_armed = arms(way, ask("a", 1, action=toy.id(project, "rest to up")))[0]
+    cue, rest = one_armed.cues[0], one_armed.rests[-1]
     assert (rest.fade_start, rest.fade) == (cue.start, pytest.approx(cue.end - cue.start))

@@ -200,7 +200,7 @@ def test_any_plan_is_sound(rows: list[Any], idle: bool, seed: int) -> None:
 
 
 @given(request_rows, st.lists(st.floats(0.1, 45), max_size=4), st.integers(0, 3), st.booleans())
-@settings(max_examples=80, deadline=None)
+@settings(max_examples=100, deadline=None)
 def test_extending_with_nothing_new_is_planning_at_once(rows: list[Any], moments: list[float], seed: int, idle: bool) -> None:
     requests = build(rows)
     plan = whole = make_plan(PROJECT, 60, requests, seed, idle=idle)

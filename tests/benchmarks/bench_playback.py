@@ -1,0 +1,230 @@
+"""Planning and posing: python tests/benchmarks/bench_playback.py [characters]
+
+Plan of one hour; one pose of one character; a frame of a crowd in which everyone has a plan and a time of their own, against
+the same work in plain NumPy, batched over characters. Medians of interleaved rounds on the sample project.
+"""
+
+from __future__ import annotations
+
+import os
+import statistics
+import sys
+import time
+from collections.abc import Callable
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+ROOT = Path(__file__).resolve().parents[2]
+sys.path.insert(0, str(ROOT))
+
+from metagraph.formats.store import open_project  # noqa: E402
+from metagraph.graph import anatomy, edits  # noqa: E402
+from metagraph.graph.model import LAYERS, Layer, Project  # noqa: E402
+from metagraph.motion import rotation  # noqa: E402
+from metagraph.motion.skeleton import Pose  # noqa: E402
+from metagraph.playback.composer import rig  # noqa: E402
+from metagraph.playback.crowd import Crowd  # noqa: E402
+from metagraph.playback.plan import Plan  # noqa: E402
+from metagraph.playback.planner import extend, make_plan  # noqa: E402
+from metagraph.playback.player import ease, playable, pose_at  # noqa: E402
+
+FAR = 1e7  # seconds between the plans of two characters on the one time line on which NumPy looks them all up
+
+
+class Batched:
+    """The crowd's work as one would write it in plain NumPy: everything laid out beforehand, no loop over characters."""
+
+    def __init__(self, project: Project, plans: list[Plan]) -> None:
+        self.rig = rig(project)
+        self.count = len(plans)
+        self.layers = {layer: self._lay(project, plans, layer) for layer in LAYERS}
+
+    def _lay(self, project: Project, plans: list[Plan], layer: Layer) -> dict[str, Any]:
+        reach, ground = self.rig.reach[layer], self.rig.ground
+        first: dict[int, int] = {}
+        rotations, translations, places = [], [], 0
+
+        def frames(action: Any) -> tuple[int, int, float]:
+            nonlocal places
+            motion = playable(project, action)
+            assert motion is not None
+            if id(motion) not in first:
+                offsets = ground.offsets(motion, reach)
+                away = np.zeros((motion.frames, len(reach.joints), 3), np.float32)
+                away[:, offsets.moved] = offsets.translations
+                rotations.append(offsets.rotations)
+                translations.append(away)
+                first[id(motion)] = places
+                places += motion.frames
+            return first[id(motion)], motion.frames, motion.fps
+
+        masks = [np.ones(len(ground.skeleton), np.float32)]
+        rests, cues = [], []
+        for n, plan in enumerate(plans):
+            for rest in plan.layers[layer].rests:
+                start, end = project.span(rest.action)
+                assert rest.action.timing.blend_in == 0, "the sample's loops have no seams"
+                rests.append((n * FAR + rest.fade_start, rest.fade, rest.start, start, end - start, *frames(rest.action)))
+            for cue in plan.layers[layer].cues:
+                mask = anatomy.mask(project, cue.action)
+                if mask is not None and not any(mask is m for m in masks):
+                    masks.append(mask)
+                kept = next((i for i, m in enumerate(masks) if m is mask), 0)
+                cues.append((n * FAR + cue.start, cue.start, cue.end, cue.entry, cue.blend_in, cue.blend_out, kept, *frames(cue.action)))
+        return {
+            "joints": reach.joints,
+            "rests": np.array(rests).T,
+            "cues": np.array(cues).T,
+            "masks": np.array(masks)[:, reach.joints],
+            "rotations": np.concatenate(rotations),
+            "translations": np.concatenate(translations),
+        }
+
+    def poses(self, times: np.ndarray) -> Pose:
+        line = times + np.arange(self.count) * FAR
+        base = self.rig.ground.base
+        rotations = np.repeat(base.rotations[None], self.count, 0)
+        translations = np.repeat(base.translations[None], self.count, 0)
+        for tables in self.layers.values():
+            turned, away = self._layer(tables, times, line)
+            joints = tables["joints"]
+            rotations[:, joints] = rotation.multiply(rotations[:, joints], turned)
+            translations[:, joints] += away
+        return Pose(rotation.normalize(rotations), translations)
+
+    def _sample(self, tables: dict[str, Any], first: np.ndarray, frames: np.ndarray, fps: np.ndarray, seconds: np.ndarray) -> Any:
+        at = np.clip(seconds * fps, 0, frames - 1)
+        low = np.minimum(at.astype(np.int64), np.maximum(0, frames - 2).astype(np.int64))
+        w = (at - low).astype(np.float32)[:, None, None]
+        a = first.astype(np.int64) + low
+        b = first.astype(np.int64) + np.minimum(low + 1, frames - 1).astype(np.int64)
+        r, t = tables["rotations"], tables["translations"]
+        mixed = r[a] + (r[b] - r[a]) * w
+        mixed /= np.sqrt(np.einsum("...i,...i->...", mixed, mixed))[..., None]
+        return mixed, t[a] + (t[b] - t[a]) * w
+
+    def _layer(self, tables: dict[str, Any], times: np.ndarray, line: np.ndarray) -> Any:
+        rests, cues = tables["rests"], tables["cues"]
+        place = np.searchsorted(cues[0], line, "right") - 1
+        cue = cues[:, np.maximum(place, 0)]
+        playing = (place >= 0) & (cue[0] <= line) & (times < cue[2]) & (line - cue[0] < FAR / 2)
+        rising, falling = playing & (times < cue[1] + cue[4]), playing & (times >= cue[2] - cue[5])
+        masked = playing & (cue[6] > 0)
+        joints = len(tables["joints"])
+        rotations, translations = np.empty((len(times), joints, 4), np.float32), np.empty((len(times), joints, 3), np.float32)
+        need = np.flatnonzero(~playing | rising | falling | masked)
+        stance: Any = None
+        if len(need):
+            stance = self._stance(tables, rests, times[need], line[need])
+            rotations[need], translations[need] = stance
+        on = np.flatnonzero(playing)
+        if len(on):
+            c = cue[:, on]
+            r, t = self._sample(tables, c[7], c[8], c[9], c[3] + times[on] - c[1])
+            lead = np.flatnonzero((rising | falling)[on])
+            if len(lead):
+                k, at = c[:, lead], times[on][lead]
+                edge = np.where(rising[on][lead], k[3], k[3] + k[2] - k[1])
+                e_r, e_t = self._sample(tables, k[7], k[8], k[9], edge)
+                up = np.where(k[4] > 0, ease((at - k[1]) / np.where(k[4] > 0, k[4], 1)), 1)
+                down = np.where(k[5] > 0, ease((k[2] - at) / np.where(k[5] > 0, k[5], 1)), 1)
+                w = (1 - up * down).astype(np.float32)[:, None, None]
+                s_r, s_t = rotations[on][lead], translations[on][lead]
+                apart = rotation.multiply(rotation.conjugate(e_r), s_r)
+                part = apart * np.where(apart[..., 3:] < 0, -w, w)
+                part[..., 3:] += 1 - w
+                part /= np.sqrt(np.einsum("...i,...i->...", part, part))[..., None]
+                r[lead] = rotation.multiply(r[lead], part)
+                t[lead] += (s_t - e_t) * w
+            show = tables["masks"][c[6].astype(np.int64)][..., None] > 0
+            rotations[on] = np.where(show, r, rotations[on])
+            translations[on] = np.where(show, t, translations[on])
+        return rotations, translations
+
+    def _stance(self, tables: dict[str, Any], rests: np.ndarray, times: np.ndarray, line: np.ndarray) -> Any:
+        place = np.maximum(np.searchsorted(rests[0], line, "right") - 1, 0)
+        rest = rests[:, place]
+        r, t = self._sample(tables, rest[5], rest[6], rest[7], rest[3] + np.mod(times - rest[2], rest[4]))
+        fading = np.flatnonzero(line < rest[0] + rest[1])
+        if len(fading):
+            old, new, at = rests[:, place[fading] - 1], rest[:, fading], times[fading]
+            o_r, o_t = self._sample(tables, old[5], old[6], old[7], old[3] + np.mod(at - old[2], old[4]))
+            w = ease((line[fading] - new[0]) / new[1]).astype(np.float32)
+            r[fading] = rotation.nlerp(o_r, r[fading], np.broadcast_to(w[:, None], r[fading].shape[:-1]))
+            t[fading] = o_t + (t[fading] - o_t) * w[:, None, None]
+        return r, t
+
+
+def clock(work: Callable[[], object]) -> float:
+    """Milliseconds."""
+    start = time.perf_counter()
+    work()
+    return (time.perf_counter() - start) * 1e3
+
+
+def row(words: str, values: list[float], note: str = "") -> None:
+    print(f"  {words:46} {statistics.median(values):9.3f} {min(values):9.3f}  {note}", flush=True)
+
+
+def crowded(project: Project, copies: int) -> Project:
+    """Every gesture and fidget `copies` times: hundreds of candidates a stance."""
+    for layer in LAYERS:
+        for action in list(project.graphs[layer].actions.values()):
+            if action.kind in ("gesture", "fidget"):
+                project = edits.place(project, [action.clip] * copies, layer, action.kind, action.stance)
+    return project
+
+
+def main() -> None:
+    count = int(sys.argv[1]) if len(sys.argv) > 1 else 1000
+    sample = open_project(ROOT / "sample_clips" / "sample.metagraph.yaml").project
+    assert sample.skeleton is not None
+    joints = len(sample.skeleton)
+    print(f"sample project: {joints} joints, three layers; {os.cpu_count()} cores\n  {'':46} {'median':>9} {'best':>9}  ms")
+
+    hour = make_plan(sample, 3600)
+    cues = sum(len(lane.cues) for lane in hour.layers.values())
+    row("plan of one hour", [clock(lambda: make_plan(sample, 3600)) for _ in range(7)], f"{cues} cues")
+    many = crowded(sample, 24)
+    most = max(len(bucket) for graph in many.graphs.values() for bucket in graph.index.values())
+    row("plan of one hour, hundreds of candidates", [clock(lambda: make_plan(many, 3600)) for _ in range(3)], f"up to {most} a draw")
+    row("extend an hour's plan by a minute", [clock(lambda: extend(sample, hour, 3590, (), 3660)) for _ in range(7)])
+
+    times = np.random.default_rng(1).uniform(0, 3600, 400)
+    pose_at(hour, sample, times)
+    row("pose_at, one time", [clock(lambda t=t: pose_at(hour, sample, t)) for t in times])  # type: ignore[misc]
+    row("pose_at, one minute at 60 fps, a frame", [clock(lambda: pose_at(hour, sample, np.arange(3600) / 60)) / 3600 for _ in range(3)])
+
+    plans = [make_plan(sample, 60, seed=seed) for seed in range(count)]
+    start = time.perf_counter()
+    crowd = Crowd(sample, plans)
+    laid = (time.perf_counter() - start) * 1e3
+    first = clock(lambda: crowd.globals(0.0))
+    print(f"\n{count} characters, each its own plan and time (laid out in {laid:.0f} ms, first frame with numba's import {first:.0f} ms)")
+    batched = Batched(sample, plans)
+    moments = np.random.default_rng(2).uniform(0, 60, count)
+    ours, theirs = crowd.poses(moments), batched.poses(moments)
+    turn = rotation.angle_between(ours.rotations.astype(float), theirs.rotations.astype(float)).max()
+    print(f"  they agree to {turn:.1e} radians, {np.abs(ours.translations - theirs.translations).max():.1e} m")
+    frame, model = crowd.poses(moments), crowd.globals(moments)  # each frame is written over the last
+    compiled, plain, both, globally = [], [], [], []
+    for n in range(30):
+        at = (moments + n / 60) % 60
+        compiled.append(clock(lambda at=at: crowd.poses(at, frame)))  # type: ignore[misc]
+        plain.append(clock(lambda at=at: batched.poses(at)))  # type: ignore[misc]
+        both.append(clock(lambda at=at: crowd.globals(at, model)))  # type: ignore[misc]
+        globally.append(clock(lambda at=at: sample.skeleton.globals(batched.poses(at))))  # type: ignore[misc, union-attr]
+    row("Crowd.poses", compiled)
+    row("plain NumPy, batched", plain, f"{statistics.median(plain) / statistics.median(compiled):.1f} times as long")
+    row("Crowd.globals", both)
+    row(
+        "plain NumPy, batched, and Skeleton.globals", globally, f"{statistics.median(globally) / statistics.median(both):.1f} times as long"
+    )
+    some = [clock(lambda n=n: pose_at(plans[n], sample, moments[n])) for n in range(min(count, 300))]  # type: ignore[misc]
+    row("pose_at for each, all of them", [statistics.median(some) * count])
+
+
+if __name__ == "__main__":
+    main()
