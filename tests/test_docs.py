@@ -1,0 +1,134 @@
+"""What the documentation says is true: its code runs, its links lead somewhere, its fields are the schema's."""
+
+from __future__ import annotations
+
+import contextlib
+import io
+import json
+import re
+import shlex
+import shutil
+from pathlib import Path
+
+import pytest
+
+from app.cli import main
+from metagraph.formats.store import from_text
+
+ROOT = Path(__file__).resolve().parents[1]
+PAGES = [ROOT / "README.md", ROOT / "CONTRIBUTING.md", ROOT / "CHANGELOG.md", *sorted((ROOT / "docs").glob("*.md"))]
+BLOCK = re.compile(r"^```(\w+)\n(.*?)^```$", re.S | re.M)
+PICTURES = ("window", "practice", "empty", "performance")
+
+
+def blocks(page: Path) -> list[tuple[str, str]]:
+    """Every block of code of a page, with its language."""
+    return BLOCK.findall(page.read_text(encoding="utf-8"))
+
+
+def of(*languages: str) -> list[object]:
+    return [
+        pytest.param(page, n, id=f"{page.name}-{n}")
+        for page in PAGES
+        for n, (language, _) in enumerate(blocks(page))
+        if language in languages
+    ]
+
+
+@pytest.fixture
+def samples(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
+    """A copy of the sample projects to work in."""
+    for name in ("sample.metagraph.yaml", "practice.metagraph.yaml", "mannequin.glb", "clips"):
+        source = ROOT / "sample_clips" / name
+        shutil.copytree(source, tmp_path / name) if source.is_dir() else shutil.copy(source, tmp_path / name)
+    monkeypatch.chdir(tmp_path)
+    return tmp_path
+
+
+@pytest.mark.parametrize(("page", "n"), of("python"))
+def test_python_in_the_pages_runs_and_prints_what_follows_it(page: Path, n: int, samples: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    every = blocks(page)
+    monkeypatch.setattr(
+        Path, "write_bytes", lambda self, data: pytest.fail("wrote other bytes") if self.read_bytes() != data else len(data)
+    )
+    out = io.StringIO()
+    with contextlib.redirect_stdout(out):
+        exec(compile(every[n][1], f"{page.name} block {n}", "exec"), {"__name__": "page"})
+    if n + 1 < len(every) and every[n + 1][0] == "text":
+        assert out.getvalue() == every[n + 1][1]
+
+
+@pytest.mark.gl
+@pytest.mark.parametrize(("page", "n"), of("sh"))
+def test_commands_in_the_pages_run(page: Path, n: int, samples: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    for line in blocks(page)[n][1].splitlines():
+        program, *words = shlex.split(line)
+        assert program == "metagraph"
+        if words[0] == "render":
+            words += ["-s", "0.3", "--size", "96x64", "--frames", "2"]  # as written, but short and small
+        assert main(words) == 0, (line, capsys.readouterr().err)
+    assert (samples / "game" / "sample.glb").is_file()
+
+
+@pytest.mark.parametrize(("page", "n"), of("yaml"))
+def test_project_files_in_the_pages_can_be_read(page: Path, n: int) -> None:
+    project = from_text(blocks(page)[n][1], Path("page.metagraph.yaml"))
+    assert project.clips and project.skeleton is not None
+    assert any(a.kind == "gesture" for a in project.actions())
+
+
+def anchors(page: Path) -> set[str]:
+    """What headings of a page are called in links, as GitHub does."""
+    out: dict[str, int] = {}
+    text = BLOCK.sub("", page.read_text(encoding="utf-8"))
+    found = set()
+    for title in re.findall(r"^#+ (.+)$", text, re.M):
+        name = re.sub(r"[^\w\- ]", "", title.lower()).replace(" ", "-")
+        count = out.get(name, 0)
+        out[name] = count + 1
+        found.add(name if count == 0 else f"{name}-{count}")
+    return found
+
+
+@pytest.mark.parametrize("page", PAGES, ids=lambda page: page.name)
+def test_links_and_pictures_lead_somewhere(page: Path) -> None:
+    text = BLOCK.sub("", page.read_text(encoding="utf-8"))
+    for target in re.findall(r"\]\(([^)\s]+)\)", text):
+        if target.startswith("https://"):
+            continue
+        file, _, anchor = target.partition("#")
+        place = page if not file else page.parent / file
+        assert place.is_file(), target
+        if anchor:
+            assert anchor in anchors(place), target
+
+
+def test_the_readme_shows_the_window_and_the_pictures_are_pictures() -> None:
+    text = (ROOT / "README.md").read_text(encoding="utf-8")
+    assert "docs/window.png" in text
+    for name in PICTURES:
+        assert (ROOT / "docs" / f"{name}.png").read_bytes().startswith(b"\x89PNG"), name
+
+
+def test_every_field_of_the_schema_is_described() -> None:
+    text = (ROOT / "docs" / "format.md").read_text(encoding="utf-8")
+    schema = json.loads((ROOT / "metagraph" / "engines" / "metagraph.schema.json").read_bytes())
+    export = text[text.index("## The export") : text.index("## Composing poses")]
+    fields = {name for part in schema["$defs"].values() for name in part["properties"]}
+    assert not {f for f in fields if not re.search(rf"`{f}[\[`]", export)}
+    assert not {part for part in schema["$defs"] if part not in export}
+
+
+def test_every_field_of_a_project_file_is_described() -> None:
+    from metagraph.formats import data
+
+    text = (ROOT / "docs" / "format.md").read_text(encoding="utf-8")
+    fields = data._PROJECT_FIELDS | data._CLIP_FIELDS | data._ACTION_FIELDS
+    assert not {f for f in fields if not re.search(rf"(`{f}`|^{f}:|[{{ ]{f}: )", text, re.M)}
+
+
+@pytest.mark.parametrize("page", PAGES, ids=lambda page: page.name)
+def test_no_page_names_a_place_on_somebodys_machine(page: Path) -> None:
+    text = page.read_text(encoding="utf-8")
+    assert not re.findall(r"(?<![\w.])(?:/home/|/work/|/root/|/Users/|/tmp/|[A-Z]:\\)", text)
+    assert set(re.findall(r"https?://([^/\s)]+)", text)) <= {"keepachangelog.com", "semver.org"}
