@@ -1,6 +1,8 @@
 """Compiled loops of the crowd: the player's rules (player.py), one character after another. Importing this imports numba.
 
-Every function mirrors one of the player's; tests hold the two together.
+Rotations lie in blocks of 16 joints, `[x 16, y 16, z 16, w 16]`, so that each step below is a loop of fixed length over
+neighbours in memory, which compiles to vector instructions. Lengths of quaternions are mended only before a blend, where
+they count, and at the end; products do not mind.
 """
 
 from __future__ import annotations
@@ -12,150 +14,106 @@ import numba
 import numpy as np
 
 Array = Any
-_FAST = {"contract", "arcp", "nsz"}
+Number = Any  # float32 throughout, except for times
+Spot = tuple[int, int, Number]  # a sample's two rows of a table, and how far it is from the first to the second
+Loop = tuple[Spot, Spot, Number]  # a stance loop, the other side of its seam, and how much of that shows: -1 without a clip
+
+LANES = 16  # joints in a block
 
 
 def _compiled(function: Callable[..., Any]) -> Any:
+    options: dict[str, Any] = {"nogil": True, "fastmath": {"contract", "arcp", "nsz"}, "error_model": "numpy"}
     try:
-        return numba.njit(cache=True, nogil=True, fastmath=_FAST, error_model="numpy")(function)
+        return numba.njit(cache=True, **options)(function)
     except RuntimeError:  # no folder to cache in
-        return numba.njit(nogil=True, fastmath=_FAST, error_model="numpy")(function)
+        return numba.njit(**options)(function)
+
+
+# --- blocks `[64]` float32
 
 
 @_compiled
-def _ease(x: float) -> float:
+def _lerp(a: Array, b: Array, w: Number, out: Array) -> None:
+    v = np.float32(1) - w
+    for i in range(4 * LANES):
+        out[i] = a[i] * v + b[i] * w
+
+
+@_compiled
+def _unit(q: Array) -> None:
+    for i in range(LANES):
+        x, y, z, w = q[i], q[LANES + i], q[2 * LANES + i], q[3 * LANES + i]
+        scale = np.float32(1) / np.sqrt(x * x + y * y + z * z + w * w + np.float32(1e-30))
+        q[i], q[LANES + i], q[2 * LANES + i], q[3 * LANES + i] = x * scale, y * scale, z * scale, w * scale
+
+
+@_compiled
+def _mix(a: Array, b: Array, weight: Number) -> None:
+    """Crossfade `a` in place to `b` along the shorter arc."""
+    _unit(a)
+    _unit(b)
+    v = np.float32(1) - weight
+    for i in range(LANES):
+        dot = a[i] * b[i] + a[LANES + i] * b[LANES + i] + a[2 * LANES + i] * b[2 * LANES + i] + a[3 * LANES + i] * b[3 * LANES + i]
+        u = -weight if dot < 0 else weight
+        a[i] = a[i] * v + b[i] * u
+        a[LANES + i] = a[LANES + i] * v + b[LANES + i] * u
+        a[2 * LANES + i] = a[2 * LANES + i] * v + b[2 * LANES + i] * u
+        a[3 * LANES + i] = a[3 * LANES + i] * v + b[3 * LANES + i] * u
+
+
+@_compiled
+def _append(a: Array, b: Array) -> None:
+    """Multiply `a` in place by `b` from the right."""
+    for i in range(LANES):
+        ax, ay, az, aw = a[i], a[LANES + i], a[2 * LANES + i], a[3 * LANES + i]
+        bx, by, bz, bw = b[i], b[LANES + i], b[2 * LANES + i], b[3 * LANES + i]
+        a[i] = aw * bx + ax * bw + ay * bz - az * by
+        a[LANES + i] = aw * by - ax * bz + ay * bw + az * bx
+        a[2 * LANES + i] = aw * bz + ax * by - ay * bx + az * bw
+        a[3 * LANES + i] = aw * bw - ax * bx - ay * by - az * bz
+
+
+@_compiled
+def _lead(shown: Array, stance: Array, edge: Array, weight: Number) -> None:
+    """Add to `shown` in place part of what the stance differs from the clip's edge."""
+    _unit(stance)
+    for i in range(3 * LANES):
+        edge[i] = -edge[i]
+    _unit(edge)
+    _append(edge, stance)
+    v = np.float32(1) - weight
+    for i in range(LANES):
+        u = -weight if edge[3 * LANES + i] < 0 else weight
+        edge[i], edge[LANES + i], edge[2 * LANES + i] = edge[i] * u, edge[LANES + i] * u, edge[2 * LANES + i] * u
+        edge[3 * LANES + i] = edge[3 * LANES + i] * u + v
+    _append(shown, edge)
+
+
+@_compiled
+def _power(q: Array, weights: Array) -> None:
+    """Take each turn `weights [16]` times, the short way, in place."""
+    _unit(q)
+    for i in range(LANES):
+        sign = np.float32(-1) if q[3 * LANES + i] < 0 else np.float32(1)
+        x, y, z, w = q[i] * sign, q[LANES + i] * sign, q[2 * LANES + i] * sign, q[3 * LANES + i] * sign
+        sine = np.sqrt(x * x + y * y + z * z)
+        half = np.arctan2(sine, w) * weights[i]
+        factor = np.sin(half) / sine if sine > 1e-8 else weights[i]
+        q[i], q[LANES + i], q[2 * LANES + i], q[3 * LANES + i] = x * factor, y * factor, z * factor, np.cos(half)
+
+
+# --- where samples lie
+
+
+@_compiled
+def _ease(x: Number) -> Number:
     x = min(max(x, 0.0), 1.0)
     return x * x * (3 - 2 * x)
 
 
 @_compiled
-def _sample(clip: Any, rotations: Array, translations: Array, moved: Array, n: int, seconds: float, out_r: Array, out_t: Array) -> None:
-    """Write a clip's offsets at clip seconds into `out_r [>=n, 4]`, `out_t [>=n, 3]`; rotations are not yet of unit length."""
-    frames = clip.frames
-    at = min(max(seconds * clip.fps, 0.0), frames - 1.0)
-    low = min(int(at), max(0, frames - 2))
-    high = min(low + 1, frames - 1)
-    w = np.float32(at - low)
-    v = np.float32(1) - w
-    a = rotations[clip.rotations + low * n * 4 : clip.rotations + (low + 1) * n * 4]
-    b = rotations[clip.rotations + high * n * 4 : clip.rotations + (high + 1) * n * 4]
-    flat = out_r.reshape(-1)
-    for i in range(len(a)):
-        flat[i] = a[i] * v + b[i] * w
-    out_t[:n] = 0
-    m = clip.moves
-    c, d = clip.translations + low * m * 3, clip.translations + high * m * 3
-    for i in range(m):
-        j, k = moved[clip.moved + i], i * 3
-        for axis in range(3):
-            out_t[j, axis] = translations[c + k + axis] * v + translations[d + k + axis] * w
-
-
-@_compiled
-def _normalize(n: int, r: Array) -> None:
-    """Scale to unit length: before a blend, where lengths count, and at the end; products do not mind."""
-    for i in range(n):
-        x, y, z, s = r[i, 0], r[i, 1], r[i, 2], r[i, 3]
-        scale = np.float32(1) / np.sqrt(max(x * x + y * y + z * z + s * s, np.float32(1e-20)))
-        r[i, 0], r[i, 1], r[i, 2], r[i, 3] = x * scale, y * scale, z * scale, s * scale
-
-
-@_compiled
-def _mix(n: int, r: Array, t: Array, other_r: Array, other_t: Array, weight: float) -> None:
-    """Crossfade `r`, `t` in place towards the other sample."""
-    _normalize(n, r)
-    _normalize(n, other_r)
-    w = np.float32(weight)
-    v = np.float32(1) - w
-    for i in range(n):
-        dot = r[i, 0] * other_r[i, 0] + r[i, 1] * other_r[i, 1] + r[i, 2] * other_r[i, 2] + r[i, 3] * other_r[i, 3]
-        u = -w if dot < 0 else w
-        for k in range(4):
-            r[i, k] = r[i, k] * v + other_r[i, k] * u
-        for k in range(3):
-            t[i, k] = t[i, k] * v + other_t[i, k] * w
-
-
-@_compiled
-def _rest(
-    rest: Any,
-    clips: Array,
-    rotations: Array,
-    translations: Array,
-    moved: Array,
-    n: int,
-    time: float,
-    r: Array,
-    t: Array,
-    o_r: Array,
-    o_t: Array,
-) -> None:
-    """Write a stance loop's offsets at a time into `r`, `t`; `o_r`, `o_t` are scratch."""
-    if rest.clip < 0:
-        for i in range(n):
-            r[i, 0], r[i, 1], r[i, 2], r[i, 3] = np.float32(0), np.float32(0), np.float32(0), np.float32(1)
-            t[i, 0], t[i, 1], t[i, 2] = np.float32(0), np.float32(0), np.float32(0)
-        return
-    clip = clips[rest.clip]
-    elapsed = time - rest.start
-    if rest.period <= 0:
-        _sample(clip, rotations, translations, moved, n, rest.first, r, t)
-        return
-    if rest.seam > 0 and elapsed < 0:
-        elapsed = 0.0
-    phase = elapsed % rest.period
-    _sample(clip, rotations, translations, moved, n, rest.first + phase, r, t)
-    if rest.seam > 0 and elapsed >= rest.period and phase < rest.seam:
-        _sample(clip, rotations, translations, moved, n, rest.first + min(rest.period + phase, rest.length), o_r, o_t)
-        _mix(n, r, t, o_r, o_t, 1 - _ease(phase / rest.seam))
-
-
-@_compiled
-def _lead(n: int, r: Array, t: Array, stance_r: Array, stance_t: Array, edge_r: Array, edge_t: Array, weight: float) -> None:
-    """Add to `r`, `t` in place `weight` of what the stance differs from the clip's edge."""
-    _normalize(n, stance_r)
-    _normalize(n, edge_r)
-    w = np.float32(weight)
-    for i in range(n):
-        ax, ay, az, aw = -edge_r[i, 0], -edge_r[i, 1], -edge_r[i, 2], edge_r[i, 3]
-        bx, by, bz, bw = stance_r[i, 0], stance_r[i, 1], stance_r[i, 2], stance_r[i, 3]
-        u = -w if aw * bw - ax * bx - ay * by - az * bz < 0 else w
-        x = (aw * bx + ax * bw + ay * bz - az * by) * u
-        y = (aw * by - ax * bz + ay * bw + az * bx) * u
-        z = (aw * bz + ax * by - ay * bx + az * bw) * u
-        s = (aw * bw - ax * bx - ay * by - az * bz) * u + (np.float32(1) - w)
-        _append(r, i, x, y, z, s)
-        for k in range(3):
-            t[i, k] += (stance_t[i, k] - edge_t[i, k]) * w
-
-
-@_compiled
-def _append(r: Array, i: int, x: float, y: float, z: float, s: float) -> None:
-    """Multiply rotation `i` of `r [n, 4]` from the right."""
-    a, b, c, d = r[i, 0], r[i, 1], r[i, 2], r[i, 3]
-    r[i, 0] = d * x + a * s + b * z - c * y
-    r[i, 1] = d * y - a * z + b * s + c * x
-    r[i, 2] = d * z + a * y - b * x + c * s
-    r[i, 3] = d * s - a * x - b * y - c * z
-
-
-@_compiled
-def _weigh(n: int, r: Array, t: Array, weights: Array) -> None:
-    """Take each offset `weights [n]` times, in place."""
-    for i in range(n):
-        w, x, y, z, s = weights[i], r[i, 0], r[i, 1], r[i, 2], r[i, 3]
-        if s < 0:
-            x, y, z, s = -x, -y, -z, -s
-        sine = np.sqrt(x * x + y * y + z * z)
-        half = np.arctan2(sine, s) * w
-        factor = np.sin(half) / sine if sine > 1e-8 else w
-        r[i, 0], r[i, 1], r[i, 2], r[i, 3] = x * factor, y * factor, z * factor, np.cos(half)
-        for k in range(3):
-            t[i, k] *= w
-
-
-@_compiled
-def _before(starts: Array, low: int, high: int, time: float) -> int:
+def _last_from(starts: Array, low: int, high: int, time: Number) -> int:
     """Return the last place in low..high whose start is not after `time`; low - 1 when there is none."""
     while low < high:
         middle = (low + high) // 2
@@ -167,7 +125,62 @@ def _before(starts: Array, low: int, high: int, time: float) -> int:
 
 
 @_compiled
-def evaluate(
+def _spot(clip: Any, seconds: Number) -> Spot:
+    at = min(max(seconds * clip.fps, 0.0), clip.frames - 1.0)
+    low = min(int(at), max(0, clip.frames - 2))
+    return clip.first + low, clip.first + min(low + 1, clip.frames - 1), np.float32(at - low)
+
+
+@_compiled
+def _loop(rest: Any, clips: Array, time: Number) -> Loop:
+    nowhere = (0, 0, np.float32(0))
+    if rest.clip < 0:
+        return nowhere, nowhere, np.float32(-1)
+    clip = clips[rest.clip]
+    elapsed = time - rest.start
+    if rest.period <= 0:
+        return _spot(clip, rest.first), nowhere, np.float32(0)
+    if rest.seam > 0 and elapsed < 0:
+        elapsed = 0.0
+    phase = elapsed % rest.period
+    here = _spot(clip, rest.first + phase)
+    if rest.seam > 0 and elapsed >= rest.period and phase < rest.seam:
+        other = _spot(clip, rest.first + min(rest.period + phase, rest.length))
+        return here, other, np.float32(1 - _ease(phase / rest.seam))
+    return here, nowhere, np.float32(0)
+
+
+@_compiled
+def _loop_turns(table: Array, loop: Loop, block: int, out: Array, scratch: Array) -> None:
+    here, other, seam = loop
+    if seam < 0:
+        out[: 3 * LANES] = 0
+        out[3 * LANES :] = 1
+        return
+    _lerp(table[here[0], block], table[here[1], block], here[2], out)
+    if seam > 0:
+        _lerp(table[other[0], block], table[other[1], block], other[2], scratch)
+        _mix(out, scratch, seam)
+
+
+@_compiled
+def _way(table: Array, spot: Spot, i: int, axis: int) -> Number:
+    return table[spot[0], i, axis] * (np.float32(1) - spot[2]) + table[spot[1], i, axis] * spot[2]
+
+
+@_compiled
+def _loop_way(table: Array, loop: Loop, i: int, axis: int) -> Number:
+    here, other, seam = loop
+    if seam < 0:
+        return np.float32(0)
+    return _way(table, here, i, axis) * (np.float32(1) - max(seam, np.float32(0))) + _way(table, other, i, axis) * seam
+
+
+# --- characters
+
+
+@_compiled
+def add_layer(
     first: int,
     last: int,
     seconds: Array,
@@ -179,89 +192,114 @@ def evaluate(
     cue_starts: Array,
     cue_at: Array,
     clips: Array,
-    rotations: Array,
-    translations: Array,
-    moved: Array,
-    masks: Array,
-    reach: Array,
-    reach_at: Array,
+    turns: Array,
+    ways: Array,
+    blocks: Array,
+    movers: Array,
+    mover_weights: Array,
     weights: Array,
-    weighed: Array,
-    base_r: Array,
-    base_t: Array,
-    out_r: Array,
+    weighed: bool,
+    masks: Array,
+    mover_masks: Array,
+    out: Array,
     out_t: Array,
 ) -> None:
-    """Write the poses of characters `first`..`last` into `out_r [C, J, 4]`, `out_t [C, J, 3]`."""
-    joints = len(base_r)
-    r, t = np.empty((joints, 4), np.float32), np.empty((joints, 3), np.float32)
-    s_r, s_t = np.empty((joints, 4), np.float32), np.empty((joints, 3), np.float32)
-    o_r, o_t = np.empty((joints, 4), np.float32), np.empty((joints, 3), np.float32)
-    p_r, p_t = np.empty((joints, 4), np.float32), np.empty((joints, 3), np.float32)
+    """Add one layer's offsets for characters `first`..`last`: rotations to `out [C, B, 64]`, translations to `out_t [C, J, 3]`.
+
+    turns `[rows, b, 64]`: every clip's frames; blocks `[b]`: which of the B blocks they are. ways `[rows, m, 3]` of joints
+    `movers [m]`. weights `[b, 16]`. masks `[K, b, 16]`, mover_masks `[K, m]`: 0 where a masked action leaves a joint to its stance.
+    """
+    shown, stance, other = np.empty(4 * LANES, np.float32), np.empty(4 * LANES, np.float32), np.empty(4 * LANES, np.float32)
+    scratch = np.empty(4 * LANES, np.float32)
     for c in range(first, last):
-        time = seconds[c]
-        pose_r, pose_t = out_r[c], out_t[c]
-        pose_r[:], pose_t[:] = base_r, base_t
-        for layer in range(3):
-            row = plan_of[c] * 3 + layer
-            if rest_at[row] == rest_at[row + 1]:
-                continue
-            a = reach_at[layer]
-            n = reach_at[layer + 1] - a
-            place = _before(cue_starts, cue_at[row], cue_at[row + 1], time)
-            playing = place >= cue_at[row] and time < cues[place].end and cues[place].clip >= 0
-            rising = falling = masked = False
+        time, plan = seconds[c], plan_of[c]
+        if rest_at[plan] == rest_at[plan + 1]:
+            continue
+        place = _last_from(cue_starts, cue_at[plan], cue_at[plan + 1], time)
+        playing = place >= cue_at[plan] and time < cues[place].end and cues[place].clip >= 0
+        mask, lead, blending = -1, np.float32(0), False
+        spot = edge = (0, 0, np.float32(0))
+        if playing:
+            cue = cues[place]
+            clip, mask = clips[cue.clip], cue.mask
+            spot = _spot(clip, cue.entry + time - cue.start)
+            rising = time < cue.start + cue.blend_in
+            blending = rising or time >= cue.end - cue.blend_out
+            if blending:
+                edge = _spot(clip, cue.entry if rising else cue.entry + cue.end - cue.start)
+                up = _ease((time - cue.start) / cue.blend_in) if cue.blend_in > 0 else 1.0
+                down = _ease((cue.end - time) / cue.blend_out) if cue.blend_out > 0 else 1.0
+                lead = np.float32(1 - up * down)
+        resting = not playing or blending or mask >= 0
+        loop = before = (spot, spot, np.float32(-1))
+        fade = np.float32(1)
+        if resting:
+            current = max(_last_from(rest_starts, rest_at[plan], rest_at[plan + 1], time), rest_at[plan])
+            rest = rests[current]
+            loop = _loop(rest, clips, time)
+            if current > rest_at[plan] and time < rest.fade_start + rest.fade:
+                fade = np.float32(_ease((time - rest.fade_start) / rest.fade))
+                before = _loop(rests[current - 1], clips, time)
+
+        for b in range(len(blocks)):
+            if resting:
+                _loop_turns(turns, loop, b, stance, scratch)
+                if fade < 1:
+                    _loop_turns(turns, before, b, other, scratch)
+                    _mix(stance, other, np.float32(1) - fade)
+            result = stance
             if playing:
-                cue = cues[place]
-                rising, falling = time < cue.start + cue.blend_in, time >= cue.end - cue.blend_out
-                masked = cue.mask >= 0
-                _sample(clips[cue.clip], rotations, translations, moved, n, cue.entry + time - cue.start, r, t)
-            if not playing or rising or falling or masked:
-                under_r, under_t = (s_r, s_t) if playing else (r, t)
-                current = max(_before(rest_starts, rest_at[row], rest_at[row + 1], time), rest_at[row])
-                rest = rests[current]
-                if current > rest_at[row] and time < rest.fade_start + rest.fade:
-                    _rest(rests[current - 1], clips, rotations, translations, moved, n, time, under_r, under_t, o_r, o_t)
-                    _rest(rest, clips, rotations, translations, moved, n, time, p_r, p_t, o_r, o_t)
-                    _mix(n, under_r, under_t, p_r, p_t, _ease((time - rest.fade_start) / rest.fade))
-                else:
-                    _rest(rest, clips, rotations, translations, moved, n, time, under_r, under_t, o_r, o_t)
-            if playing:
-                cue = cues[place]
-                if rising or falling:
-                    edge = cue.entry if rising else cue.entry + cue.end - cue.start
-                    _sample(clips[cue.clip], rotations, translations, moved, n, edge, o_r, o_t)
-                    up = _ease((time - cue.start) / cue.blend_in) if cue.blend_in > 0 else 1.0
-                    down = _ease((cue.end - time) / cue.blend_out) if cue.blend_out > 0 else 1.0
-                    _lead(n, r, t, s_r, s_t, o_r, o_t, 1 - up * down)
-                if masked:
-                    for i in range(n):
-                        if masks[cue.mask, reach[a + i]] == 0:
-                            for k in range(4):
-                                r[i, k] = s_r[i, k]
-                            for k in range(3):
-                                t[i, k] = s_t[i, k]
-            if weighed[layer]:
-                _normalize(n, r)
-                _weigh(n, r, t, weights[a : a + n])
-            for i in range(n):
-                j = reach[a + i]
-                _append(pose_r, j, r[i, 0], r[i, 1], r[i, 2], r[i, 3])
-                for k in range(3):
-                    pose_t[j, k] += t[i, k]
-        _normalize(joints, pose_r)
+                result = shown
+                _lerp(turns[spot[0], b], turns[spot[1], b], spot[2], shown)
+                if blending:
+                    _lerp(turns[edge[0], b], turns[edge[1], b], edge[2], other)
+                    _lead(shown, stance, other, lead)
+                if mask >= 0:
+                    moves = masks[mask, b]
+                    for k in range(4):
+                        for i in range(LANES):
+                            shown[k * LANES + i] = shown[k * LANES + i] if moves[i] > 0 else stance[k * LANES + i]
+            if weighed:
+                _power(result, weights[b])
+            _append(out[c, blocks[b]], result)
+
+        for m in range(len(movers)):
+            moves_m = playing and (mask < 0 or mover_masks[mask, m] > 0)
+            for axis in range(3):
+                t = np.float32(0)
+                if resting:
+                    t = _loop_way(ways, loop, m, axis)
+                    if fade < 1:
+                        t = t * fade + _loop_way(ways, before, m, axis) * (np.float32(1) - fade)
+                if moves_m:
+                    away = _way(ways, spot, m, axis)
+                    t = away + (t - _way(ways, edge, m, axis)) * lead if blending else away
+                out_t[c, movers[m], axis] += t * mover_weights[m]
+
+
+@_compiled
+def to_joints(first: int, last: int, blocked: Array, places: Array, out: Array) -> None:
+    """Scale characters' rotations to unit length and write them joint by joint: `out [C, J, 4]` from places `[J]` in their blocks."""
+    for c in range(first, last):
+        for b in range(blocked.shape[1]):
+            _unit(blocked[c, b])
+        flat, pose = blocked[c].reshape(-1), out[c]
+        for j in range(len(places)):
+            p = places[j]
+            pose[j, 0], pose[j, 1], pose[j, 2], pose[j, 3] = flat[p], flat[p + LANES], flat[p + 2 * LANES], flat[p + 3 * LANES]
 
 
 @_compiled
 def to_globals(first: int, last: int, parents: Array, local_r: Array, local_t: Array, out_r: Array, out_p: Array) -> None:
     """Write model-space rotations `[C, J, 4]` and positions `[C, J, 3]` of characters `first`..`last`."""
     for c in range(first, last):
-        q, v, r, o = local_r[c], local_t[c], out_r[c], out_p[c]
+        local, v, r, o = local_r[c], local_t[c], out_r[c], out_p[c]
         for j in range(len(parents)):
             p = parents[j]
+            a, b, e, s = local[j, 0], local[j, 1], local[j, 2], local[j, 3]
             vx, vy, vz = v[j, 0], v[j, 1], v[j, 2]
             if p < 0:
-                r[j, 0], r[j, 1], r[j, 2], r[j, 3] = q[j, 0], q[j, 1], q[j, 2], q[j, 3]
+                r[j, 0], r[j, 1], r[j, 2], r[j, 3] = a, b, e, s
                 o[j, 0], o[j, 1], o[j, 2] = vx, vy, vz
                 continue
             x, y, z, w = r[p, 0], r[p, 1], r[p, 2], r[p, 3]
@@ -269,5 +307,7 @@ def to_globals(first: int, last: int, parents: Array, local_r: Array, local_t: A
             o[j, 0] = o[p, 0] + vx + w * tx + y * tz - z * ty
             o[j, 1] = o[p, 1] + vy + w * ty + z * tx - x * tz
             o[j, 2] = o[p, 2] + vz + w * tz + x * ty - y * tx
-            r[j, 0], r[j, 1], r[j, 2], r[j, 3] = x, y, z, w
-            _append(r, j, q[j, 0], q[j, 1], q[j, 2], q[j, 3])
+            r[j, 0] = w * a + x * s + y * e - z * b
+            r[j, 1] = w * b - x * e + y * s + z * a
+            r[j, 2] = w * e + x * b - y * a + z * s
+            r[j, 3] = w * s - x * a - y * b - z * e

@@ -1,7 +1,8 @@
 """Planning and posing: python tests/benchmarks/bench_playback.py [characters]
 
 Plan of one hour; one pose of one character; a frame of a crowd in which everyone has a plan and a time of their own, against
-the same work in plain NumPy, batched over characters. Medians of interleaved rounds on the sample project.
+the same work in plain NumPy, batched over characters. Medians on the sample project; crowds in interleaved runs of ten
+frames, as a crowd plays frame after frame.
 """
 
 from __future__ import annotations
@@ -209,13 +210,17 @@ def main() -> None:
     turn = rotation.angle_between(ours.rotations.astype(float), theirs.rotations.astype(float)).max()
     print(f"  they agree to {turn:.1e} radians, {np.abs(ours.translations - theirs.translations).max():.1e} m")
     frame, model = crowd.poses(moments), crowd.globals(moments)  # each frame is written over the last
-    compiled, plain, both, globally = [], [], [], []
-    for n in range(30):
-        at = (moments + n / 60) % 60
-        compiled.append(clock(lambda at=at: crowd.poses(at, frame)))  # type: ignore[misc]
-        plain.append(clock(lambda at=at: batched.poses(at)))  # type: ignore[misc]
-        both.append(clock(lambda at=at: crowd.globals(at, model)))  # type: ignore[misc]
-        globally.append(clock(lambda at=at: sample.skeleton.globals(batched.poses(at))))  # type: ignore[misc, union-attr]
+    works: list[tuple[list[float], Callable[[np.ndarray], object]]] = [
+        ([], lambda at: crowd.poses(at, frame)),
+        ([], lambda at: batched.poses(at)),
+        ([], lambda at: crowd.globals(at, model)),
+        ([], lambda at: sample.skeleton.globals(batched.poses(at))),  # type: ignore[union-attr]
+    ]
+    for n in range(0, 60, 10):
+        for taken, work in works:
+            for k in range(n, n + 10):
+                taken.append(clock(lambda at=(moments + k / 60) % 60, work=work: work(at)))  # type: ignore[misc]
+    compiled, plain, both, globally = (taken for taken, _ in works)
     row("Crowd.poses", compiled)
     row("plain NumPy, batched", plain, f"{statistics.median(plain) / statistics.median(compiled):.1f} times as long")
     row("Crowd.globals", both)
