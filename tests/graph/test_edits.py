@@ -24,6 +24,11 @@ EVERY: dict[str, Callable[[Project, Any], Project]] = {
     "place": lambda p, t: edits.place(p, ["c5", "c6"], "arms", "fidget", t.id(p, "far")),
     "update_actions": lambda p, t: edits.update_actions(p, [t.id(p, "up yawn")], timing={"start": 0.1}, tags=("bored",)),
     "move_actions": lambda p, t: edits.move_actions(p, [t.id(p, "up yawn")], "gesture", t.id(p, "rest")),
+    "update_each": lambda p, t: edits.update_each(
+        p, {t.id(p, "up yawn"): {"likelihood": 2.0}, t.id(p, "up beat"): {"timing": {"end": 0.5}}}
+    ),
+    "to_stance": lambda p, t: edits.to_stance(p, [t.id(p, "up yawn"), t.id(p, "up beat")], t.id(p, "rest")),
+    "set_ends": lambda p, t: edits.set_ends(p, [t.id(p, "rest to up"), t.id(p, "up yawn")], t.id(p, "far")),
     "remove_actions": lambda p, t: edits.remove_actions(p, [t.id(p, "up yawn")]),
     "set_base": lambda p, t: edits.set_base(p, "c2", 7),
     "set_weight": lambda p, t: edits.set_weight(p, "arms", "spine", 0.4),
@@ -225,6 +230,46 @@ def test_moved_actions_keep_their_settings_and_a_moved_gesture_becomes_a_proper_
         edits.move_actions(project, [ident], "transition", up)
     with pytest.raises(EditError, match="nothing to place"):
         edits.move_actions(project, ["a999"], "gesture", up)
+
+
+def test_each_action_can_get_values_of_its_own(toy: Any) -> None:
+    project = toy.project()
+    beat, yawn = toy.id(project, "up beat"), toy.id(project, "up yawn")
+    after = edits.update_each(project, {beat: {"likelihood": 2.0}, yawn: {"tags": ("tired",)}, "a999": {"likelihood": 3.0}})
+    assert (after.action(beat).likelihood, after.action(yawn).tags, after.action(yawn).likelihood) == (2.0, ("tired",), 1.0)
+    assert edits.update_each(project, {beat: {"likelihood": 1.0}}) is project
+
+
+def test_actions_go_to_another_stance_each_keeping_its_kind_and_end(toy: Any) -> None:
+    project = toy.project()
+    names = ("rest short", "rest cough", "rest to up")
+    after = edits.to_stance(project, [*(toy.id(project, n) for n in names), "a999"], toy.id(project, "far"))
+    far = toy.id(project, "far")
+    assert [(a.kind, a.stance, a.end_stance) for n in names if (a := after.action(toy.id(project, n)))] == [
+        ("gesture", far, None), ("fidget", far, None), ("transition", far, toy.id(project, "up")),
+    ]  # fmt: skip
+    with pytest.raises(EditError, match="must end in another stance"):
+        edits.to_stance(project, [toy.id(project, "rest to up")], toy.id(project, "up"))
+
+
+def test_transitions_get_another_end_and_other_kinds_stay(toy: Any) -> None:
+    project = toy.project()
+    rest, up, far = (toy.id(project, n) for n in ("rest", "up", "far"))
+    after = edits.set_ends(project, [toy.id(project, "rest to up"), toy.id(project, "up yawn")], far)
+    assert after.action(toy.id(project, "rest to up")).end_stance == far and after.action(toy.id(project, "up yawn")).end_stance is None
+    with pytest.raises(EditError, match="must end in another stance"):
+        edits.set_ends(project, [toy.id(project, "up to far"), toy.id(project, "rest to up")], up)
+    assert edits.set_ends(project, [toy.id(project, "up to far")], rest).action(toy.id(project, "up to far")).end_stance == rest
+
+
+def test_the_first_loop_of_all_gives_the_base_pose_unless_one_was_chosen(toy: Any) -> None:
+    project = edits.add_clips(Project(), [("a.glb", 0, "", toy.clip("a")), ("b.glb", 0, "", toy.clip("b"))])
+    first = edits.add_stance(project, "head", "still", ["c2"])
+    assert first.base == BasePose("c2", 0)
+    assert edits.add_stance(first, "arms", "rest", ["c1"]).base == BasePose("c2", 0)
+    assert edits.add_stance(edits.set_base(project, "c1", 3), "head", "still", ["c2"]).base == BasePose("c1", 3)
+    with_stance = edits.set_base(first, None)
+    assert edits.add_stance(with_stance, "arms", "rest", ["c1"]).base == BasePose(), "the rest pose was chosen after all"
 
 
 def test_actions_move_across_layers(toy: Any) -> None:

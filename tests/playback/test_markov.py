@@ -106,3 +106,9 @@ def test_layers_and_seeds_draw_apart() -> None:
     a, b = list(write(ARMS, 1, 60)), list(write(ARMS, 2, 60))
     assert [m.start for m in a] != [m.start for m in b]
     assert [m.start for m in write(DEFAULTS["head"], 1, 60)] != [m.start for m in write(DEFAULTS["body"], 1, 60)]
+
+
+def test_kinds_the_graph_has_not_are_passed_over() -> None:
+    assert {m.request.kind for m in write(ARMS, 1, 300, {"fidget", "stance"})} == {"fidget"}
+    assert list(write(ARMS, 1, 300, {"stance"})) == list(write(ARMS, 1, 300, ())) == []
+    assert list(write(ARMS, 1, 300, {"gesture", "fidget", "transition"})) == list(write(ARMS, 1, 300))
