@@ -16,7 +16,21 @@ from metagraph.formats.data import DataError, above, markov_from, skeleton_from
 from metagraph.graph import anatomy
 from metagraph.graph.check import check
 from metagraph.graph.expand import connections
-from metagraph.graph.model import LAYERS, REACH, Action, BasePose, ClipEntry, Layer, Markov, MetaGraph, Project, Settings, Stance, Timing
+from metagraph.graph.model import (
+    KINDS,
+    LAYERS,
+    REACH,
+    Action,
+    BasePose,
+    ClipEntry,
+    Layer,
+    Markov,
+    MetaGraph,
+    Project,
+    Settings,
+    Stance,
+    Timing,
+)
 from metagraph.motion.clip import Clip
 from metagraph.motion.skeleton import Skeleton, unique_names
 from metagraph.playback import choice, markov
@@ -145,8 +159,10 @@ def to_document(project: Project, glb: str, names: tuple[str, ...], expanded: bo
 
 def _layer(project: Project, graph: MetaGraph) -> c.ExportedLayer:
     index: dict[str, dict[c.KindName, list[str]]] = {}
-    for (stance, kind), actions in graph.index.items():
-        index.setdefault(stance, {})[kind] = [a.id for a in actions]
+    for stance in graph.stances:
+        for kind in KINDS:
+            if actions := graph.of(stance, kind):
+                index.setdefault(stance, {})[kind] = [a.id for a in actions]
     ways: dict[tuple[str, str], list[str]] = {}
     for action in graph.actions.values():
         if action.kind == "transition" and action.end_stance is not None:
