@@ -61,7 +61,7 @@ def test_bones_as_the_clip_has_them_are_kept() -> None:
 
 @pytest.mark.parametrize("scale", [100.0, 0.01, 1.5])
 def test_another_scale_is_named(scale: float) -> None:
-    with pytest.raises(SkeletonMismatchError, match="bones are .* times as long"):
+    with pytest.raises(SkeletonMismatchError, match=r"bones are .* times as long"):
         adopt(clip(skeleton(scale=scale)), skeleton())
 
 

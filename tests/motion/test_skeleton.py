@@ -37,8 +37,15 @@ def test_several_roots_move_on_their_own() -> None:
 
 @pytest.mark.parametrize(
     ("parents", "words"),
-    [([], "at least one joint"), ([0], "before it"), ([-1, 1], "before it"), ([-1, 2, 0], "before it"), ([-1, -2], "before it"), ([1, -1], "before")],
-)  # fmt: skip
+    [
+        ([], "at least one joint"),
+        ([0], "before it"),
+        ([-1, 1], "before it"),
+        ([-1, 2, 0], "before it"),
+        ([-1, -2], "before it"),
+        ([1, -1], "before it"),
+    ],
+)
 def test_parents_that_do_not_come_first_are_refused(parents: list[int], words: str) -> None:
     with pytest.raises(ValueError, match=words):
         skeleton(parents)
