@@ -37,7 +37,8 @@ class Actions:
             action = QAction(command.text, parent)
             action.setObjectName(command.id)
             if command.keys:
-                action.setShortcuts([QKeySequence(k) for k in command.keys])
+                # A platform's standard key may be the one that is given beside it; twice, it would be ambiguous.
+                action.setShortcuts(list(dict.fromkeys(QKeySequence(k).toString() for k in command.keys)))
             keys = action.shortcut().toString(QKeySequence.SequenceFormat.NativeText)
             tip = command.tip or command.text.replace("&", "").rstrip("…")
             action.setToolTip(f"{tip} ({keys})" if keys else tip)

@@ -240,11 +240,11 @@ class PropertiesPanel(QScrollArea):
         self.blend_out.setVisible(not stance)
         self.form.setRowVisible(self.leave_row, not stance)
         exits = common([a.timing.earliest_exit for a in actions])
+        leaves = common([a.timing.earliest_exit is not None for a in actions])
         self.leave.blockSignals(True)
-        self.leave.setTristate(exits is Mixed)
-        self.leave.setCheckState(
-            Qt.CheckState.PartiallyChecked if exits is Mixed else Qt.CheckState.Unchecked if exits is None else Qt.CheckState.Checked
-        )
+        self.leave.setTristate(leaves is Mixed)
+        state = Qt.CheckState
+        self.leave.setCheckState(state.PartiallyChecked if leaves is Mixed else state.Checked if leaves else state.Unchecked)
         self.leave.blockSignals(False)
         self.earliest.setEnabled(exits is not None)
         self.earliest.show_value(0.0 if exits is None else exits)

@@ -10,12 +10,20 @@ from collections.abc import Callable, Iterator
 from pathlib import Path
 
 import pytest
-from PySide6.QtCore import QPoint, QSettings, Qt
-from PySide6.QtGui import QGuiApplication
+from PySide6.QtCore import QMimeData, QPoint, QPointF, QSettings, Qt, QUrl
+from PySide6.QtGui import QDragEnterEvent, QDragLeaveEvent, QDragMoveEvent, QDropEvent, QGuiApplication
 from PySide6.QtTest import QTest
-from PySide6.QtWidgets import QMessageBox, QWidget
+from PySide6.QtWidgets import QApplication, QMenu, QMessageBox, QWidget
 
 from app.main import prepare
+
+
+def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
+    """A warning from Qt fails a test here, as an exception in a slot does."""
+    for item in items:
+        if Path(__file__).parent in item.path.parents:
+            item.add_marker(pytest.mark.qt_log_level_fail("WARNING"))
+            item.add_marker(pytest.mark.qt_log_ignore("root_visual"))  # Xvfb has no transparent windows for dragged pictures
 
 
 @pytest.fixture(scope="session")
@@ -104,6 +112,41 @@ class Driver:
 
     def key(self, key: Qt.Key, modifier: Qt.KeyboardModifier = Qt.KeyboardModifier.NoModifier, widget: QWidget | None = None) -> None:
         QTest.keyClick(widget or self.window, key, modifier)  # type: ignore[call-overload]
+
+    def bar(self, action: str, part: float) -> tuple[QWidget, QPoint]:
+        """A place on an action's likelihood bar, 0 at its left, 1 at its right."""
+        rect = self.canvas.layout_now().row(action).bar  # type: ignore[attr-defined]
+        return self.canvas, QPoint(round(rect.left() + part * rect.width()), round(rect.center().y()))  # type: ignore[attr-defined]
+
+    def chip(self, stance: str) -> tuple[QWidget, QPoint]:
+        rect = next(c.rect for c in self.canvas.layout_now().chips if c.stance == stance)  # type: ignore[attr-defined]
+        return self.canvas, rect.center().toPoint()  # type: ignore[attr-defined]
+
+    def drop_files(self, place: tuple[QWidget, QPoint], *paths: Path) -> bool:
+        """Drop files as a file manager would; return whether the drop was taken."""
+        widget, point = place
+        while not widget.acceptDrops() and not widget.isWindow():  # as Qt looks for who takes it
+            point, widget = widget.mapToParent(point), widget.parentWidget()
+        data = QMimeData()
+        data.setUrls([QUrl.fromLocalFile(str(p)) for p in paths])
+        more = Qt.DropAction.CopyAction, data, Qt.MouseButton.LeftButton, Qt.KeyboardModifier.NoModifier
+        for event in (QDragEnterEvent(point, *more), QDragMoveEvent(point, *more), QDropEvent(QPointF(point), *more)):
+            QApplication.sendEvent(widget, event)
+            if not event.isAccepted():
+                QApplication.sendEvent(widget, QDragLeaveEvent())
+                return False
+        return True
+
+    def pick(self, menu: QMenu, *texts: str) -> None:
+        """Choose an entry of a menu by its words, through its submenus."""
+        for text in texts:
+            action = next((a for a in menu.actions() if a.text().replace("&", "").split("\t")[0] == text), None)
+            assert action is not None, f"no {text!r} among {[a.text() for a in menu.actions()]}"
+            assert action.isEnabled(), text
+            if action.menu() is None:
+                action.trigger()
+            else:
+                menu = action.menu()
 
     def names(self, kind: str | None = None, layer: str | None = None) -> list[str]:
         """Names of the actions in the graph."""

@@ -1,0 +1,57 @@
+"""A fast start: what takes long to import waits until the first picture is there."""
+
+from __future__ import annotations
+
+import os
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+
+ROOT = Path(__file__).resolve().parents[2]
+HEAVY = ("numba", "scipy", "trimesh", "torch", "pyqtgraph", "av", "PIL", "ufbx", "jsonschema")
+START = f"""
+import sys
+from app.main import open_window, prepare
+app = prepare()
+window = open_window(None, sample=True)
+heavy = {HEAVY!r}
+
+def first(_):
+    window.preview.view.painted.disconnect(first)
+    assert not window.ready
+    print("first:", *(m for m in heavy if m in sys.modules), flush=True)
+
+def watch():
+    if window.ready and window.performance.skeleton() is not None:
+        print("ready:", *(m for m in heavy if m in sys.modules), flush=True)
+        window.close()
+        app.quit()
+
+window.preview.view.painted.connect(first)
+from PySide6.QtCore import QTimer
+timer = QTimer(interval=20)
+timer.timeout.connect(watch)
+timer.start()
+QTimer.singleShot(40000, lambda: app.exit(9))
+sys.exit(app.exec())
+"""
+
+
+@pytest.mark.window
+@pytest.mark.gl
+def test_the_first_picture_waits_for_no_heavy_import_and_the_panels_follow(qapp, tmp_path):
+    environment = {**os.environ, "XDG_DATA_HOME": str(tmp_path), "XDG_CONFIG_HOME": str(tmp_path)}
+    done = subprocess.run([sys.executable, "-c", START], cwd=ROOT, env=environment, capture_output=True, text=True, timeout=60, check=False)
+    assert done.returncode == 0, done.stderr
+    first, ready = done.stdout.splitlines()
+    assert first == "first:"
+    assert set(ready.split()[1:]) <= {"pyqtgraph", "PIL"}, "the panels' plot, and the character's textures"
+    assert "Traceback" not in done.stderr
+
+
+def test_the_domain_starts_without_a_window():
+    code = f"import metagraph, app.cli, sys; print(*(m for m in {(*HEAVY, 'PySide6', 'numpy')!r} if m in sys.modules))"
+    done = subprocess.run([sys.executable, "-c", code], cwd=ROOT, capture_output=True, text=True, timeout=60, check=True)
+    assert done.stdout.strip() == ""
