@@ -109,7 +109,8 @@ def style_sheet(look: Theme) -> str:
     QPushButton[strong="true"]:disabled {{ background: {t.card}; color: {t.dim}; border-color: {t.line}; font-weight: 400; }}
     QAbstractSpinBox {{ padding-left: 6px; }}
     QLineEdit, QDoubleSpinBox, QSpinBox, QComboBox, QPlainTextEdit {{ background: {t.field}; color: {t.text};
-        border: 1px solid {t.line}; border-radius: 6px; padding: 4px 8px; selection-background-color: {t.dim}; selection-color: {t.ground}; }}
+        border: 1px solid {t.line}; border-radius: 6px; padding: 4px 8px;
+        selection-background-color: {t.dim}; selection-color: {t.ground}; }}
     QLineEdit:focus, QDoubleSpinBox:focus, QSpinBox:focus, QComboBox:focus {{ border-color: {t.dim}; }}
     QAbstractSpinBox::up-button, QAbstractSpinBox::down-button {{ width: 0; border: none; }}
     QComboBox::drop-down {{ border: none; width: 20px; }}

@@ -468,12 +468,15 @@ class Canvas(QWidget):
         return [a for kind in KINDS[1:] for a in (graph.of(stance, kind) if stance else ())]
 
     def keyPressEvent(self, event: QKeyEvent) -> None:
-        listed = self._listed()
+        stance = self.session.stance()
+        loops = self.document.project.graphs[self.session.layer].of(stance, "stance") if stance else ()
+        listed = [*loops, *self._listed()]
         ids = [a.id for a in listed]
         key = event.key()
         step = {Qt.Key.Key_Down: 1, Qt.Key.Key_Up: -1}.get(Qt.Key(key))
         if step is not None and ids:
-            place = ids.index(self.focus) + step if self.focus in ids else (0 if step > 0 else len(ids) - 1)
+            first = min(len(loops), len(ids) - 1)  # the loops are above the first row
+            place = ids.index(self.focus) + step if self.focus in ids else (first if step > 0 else len(ids) - 1)
             self._focus_on(ids[min(len(ids) - 1, max(0, place))], bool(event.modifiers() & Qt.KeyboardModifier.ShiftModifier))
         elif key in (Qt.Key.Key_Left, Qt.Key.Key_Right) and self.focus in ids:
             likelihood = next(a for a in listed if a.id == self.focus).likelihood

@@ -166,7 +166,9 @@ def _card(painter: QPainter, layout: Layout, look: Look, font: QFont) -> None:
     dragging = look.drop is not None
     stance = look.project.stance(layout.stance)
     edge = t.fill("stance") if stance is not None or dragging else QColor(t.line)
-    _box(painter, card, QColor(t.card), edge, 2.0 if stance is not None else 1.2, dashed=stance is None)
+    loops = look.project.graphs[stance.layer].of(stance.id, "stance") if stance is not None else ()
+    chosen = any(loop.id in look.selected for loop in loops)
+    _box(painter, card, QColor(t.hover if chosen else t.card), edge, 2.0 if stance is not None else 1.2, dashed=stance is None)
     if stance is None:
         painter.setPen(QColor(t.dim))
         painter.setFont(font)
@@ -190,7 +192,6 @@ def _card(painter: QPainter, layout: Layout, look: Look, font: QFont) -> None:
         if look.picture is not None:
             size = min(area.width(), area.height())
             painter.drawImage(QRectF(area.center().x() - size / 2, area.center().y() - size / 2, size, size), look.picture)
-        loops = look.project.graphs[stance.layer].of(stance.id, "stance")
         start = look.project.graphs[stance.layer].start == stance.id
         words = f"{len(loops)} loop{'s' if len(loops) != 1 else ''}" if loops else "no loop yet"
         painter.setFont(font)

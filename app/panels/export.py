@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from pathlib import Path
 
-from PySide6.QtCore import QSettings, QUrl
+from PySide6.QtCore import QSettings, Qt, QUrl
 from PySide6.QtGui import QDesktopServices
 from PySide6.QtWidgets import (
     QCheckBox,
@@ -32,6 +32,7 @@ class ExportDialog(QDialog):
     def __init__(self, document: Document, jobs: Jobs, parent: QWidget | None = None) -> None:
         super().__init__(parent)
         self.document, self.jobs = document, jobs
+        self.setAttribute(Qt.WidgetAttribute.WA_DeleteOnClose)  # a running export goes on; the status bar shows it
         self.setWindowTitle("Export for engines")
         self.setMinimumWidth(560)
         layout = QVBoxLayout(self)
@@ -107,7 +108,11 @@ class ExportDialog(QDialog):
             return export(project, folder, expanded, mesh, character, job.tell)
 
         job = self.jobs.start("Exporting", work, self._done, self._failed)
-        job.progress.connect(lambda n, total, words: (self.progress.setRange(0, total), self.progress.setValue(n)))
+        job.progress.connect(self._tell)
+
+    def _tell(self, done: int, total: int, words: str) -> None:
+        self.progress.setRange(0, total)
+        self.progress.setValue(done)
 
     def _done(self, made: Exported) -> None:
         self.progress.hide()

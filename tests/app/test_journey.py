@@ -113,7 +113,9 @@ def test_the_alien_is_imported_dropped_timed_saved_killed_reopened_and_exported(
 
     whole = drive.document.project.span(gesture)[1]
     undone = drive.document.undo_stack.count()
-    drive.drag(at(line.value()), at(4.0), lambda: drive.document.project.action(gesture.id).timing.end is not None and not drive.window.isHidden())
+    drive.drag(
+        at(line.value()), at(4.0), lambda: drive.document.project.action(gesture.id).timing.end is not None and not drive.window.isHidden()
+    )
     drive.wait(lambda: abs((drive.document.project.action(gesture.id).timing.end or whole) - 4.0) < 0.15)
     assert drive.document.undo_stack.count() == undone + 1, "one drag is one step"
 

@@ -94,9 +94,10 @@ def test_the_whole_job_by_keyboard_alone(drive, folder, tmp_path, monkeypatch):
         drive.key(KEY.Key_Down, widget=drive.canvas)
         seen.append(drive.session.actions)
     assert {*seen} >= {(fidget.id,), (transition.id,)}
-    drive.key(KEY.Key_Up, widget=drive.canvas)
-    drive.key(KEY.Key_Up, widget=drive.canvas)
-    drive.key(KEY.Key_Up, widget=drive.canvas)
+    for _ in range(3):
+        drive.key(KEY.Key_Up, widget=drive.canvas)
+    assert drive.session.selected_actions()[0].kind == "stance", "above the rows are the stance's loops"
+    drive.key(KEY.Key_Down, widget=drive.canvas)
     assert drive.session.actions == (gesture.id,)
     steps = count(drive)
     drive.key(KEY.Key_Right, widget=drive.canvas)
