@@ -47,7 +47,10 @@ class _Change(QUndoCommand):
 
 
 class Document(QObject):
-    """changed: (before, after) projects. loaded: comes first when `after` is another project, not an edited one. state_changed: path, dirty mark or undo texts may differ. failed: words for the user."""
+    """changed: (before, after) projects. loaded: comes first when `after` is another project, not an edited one.
+
+    state_changed: path, dirty mark or undo texts may differ. failed: words for the user.
+    """
 
     changed = Signal(object, object)
     loaded = Signal()

@@ -37,8 +37,10 @@ def painted(_):
         seen.append(now)
     if window.performance.skeleton() is not None:
         print(seen[0], now, len(sys.modules), flush=True)
-        window.close()
-        app.quit()
+        window.preview.view.painted.disconnect(painted)
+        QTimer.singleShot(0, window.close)
+        QTimer.singleShot(0, app.quit)
+from PySide6.QtCore import QTimer
 window.preview.view.painted.connect(painted)
 app.exec()
 """
