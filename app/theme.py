@@ -140,9 +140,9 @@ def style_sheet(look: Theme) -> str:
 
 def apply(app: QApplication, look: Theme) -> None:
     """Give the application a theme's style."""
-    if app.style().name() != "fusion":  # each of these polishes every widget anew
+    if not app.property("styled"):  # once: each of these polishes every widget anew
+        app.setProperty("styled", True)
         app.setStyle("Fusion")
-    if app.font().pixelSize() != 13:
         font = QFont(app.font())
         font.setPixelSize(13)
         app.setFont(font)

@@ -2,38 +2,32 @@
 
 from __future__ import annotations
 
-from html import escape
 from pathlib import Path
 
-from PySide6.QtCore import QByteArray, QEvent, QSettings, QSize, Qt, QTimer
+from PySide6.QtCore import QByteArray, QEvent, QSettings, Qt, QTimer
 from PySide6.QtGui import QCloseEvent, QDragEnterEvent, QDropEvent, QKeySequence
 from PySide6.QtWidgets import (
     QAbstractButton,
     QApplication,
-    QButtonGroup,
     QComboBox,
     QDockWidget,
     QFileDialog,
-    QHBoxLayout,
-    QLabel,
     QMainWindow,
     QMessageBox,
-    QProgressBar,
-    QPushButton,
-    QSizePolicy,
     QSplitter,
-    QToolBar,
-    QToolButton,
     QWidget,
 )
 
 from app import icons
-from app.actions import Actions, Command, Standard
+from app.actions import Actions
 from app.canvas.canvas import Canvas
 from app.canvas.drops import Drop, load_of
+from app.commands import commands
 from app.document import Document
 from app.figures import Figures
-from app.files import PRACTICE, SAMPLE, Files
+from app.files import Files
+from app.header import Header
+from app.job_line import JobLine
 from app.jobs import Jobs
 from app.panels.library import LibraryPanel
 from app.panels.preview import PreviewPanel
@@ -41,13 +35,11 @@ from app.performance import Performance
 from app.session import Session
 from app.theme import KIND_MARKS, apply, theme
 from app.thumbnails import Thumbnails
-from app.words import many
 from metagraph.formats.imports import Imported
 from metagraph.graph import edits
 from metagraph.graph.check import Problem, check
-from metagraph.graph.model import KINDS, LAYERS, Layer, Project
+from metagraph.graph.model import KINDS, Layer, Project
 
-LAYER_KEYS = {"body": "Alt+1", "arms": "Alt+2", "head": "Alt+3"}
 LATE = 4000  # milliseconds after which the late panels are made whatever else is going on
 CHECK_AFTER = 250  # milliseconds of quiet after an edit before problems are looked for
 
@@ -85,10 +77,16 @@ class Window(QMainWindow):
         self._add_dock("library", "Clips", self.library, Qt.DockWidgetArea.LeftDockWidgetArea)
         self._add_dock("preview", "Character", self.preview, Qt.DockWidgetArea.RightDockWidgetArea)
         self._late_panels()
-        self.actions = Actions(self, self._commands())
+        self.actions = Actions(self, commands(self))
         self._menus()
-        self._toolbar()
-        self._status()
+        self.header = Header(self.document, self.session, self.actions, self)
+        self.addToolBar(self.header)
+        self.header.problem_button.clicked.connect(lambda: self.show_dock("problems"))
+        self.header.machine_button.clicked.connect(self.show_machine)
+        self.header.export_button.clicked.connect(self.export)
+        self.job_line = JobLine(self.jobs, self)
+        self.statusBar().addPermanentWidget(self.job_line)
+        self.job_line.told.connect(self.tell)
         self._wire()
         self._arrange()
         self._restore()
@@ -163,75 +161,6 @@ class Window(QMainWindow):
     _loading = False
     _machine_wanted = False
 
-    def _commands(self) -> tuple[Command, ...]:
-        s, d, f, c = self.session, self.document, self.files, self.canvas
-        some = lambda: bool(s.clips or s.actions)  # noqa: E731
-        out = [
-            Command("new", "&File", "&New project", f.new, (Standard.New,)),
-            Command("open", "&File", "&Open…", f.ask_open, (Standard.Open,)),
-            Command("sample", "&File", "Open the &sample project", lambda: f.open(SAMPLE, template=True)),
-            Command("practice", "&File", "Open the &practice project", lambda: f.open(PRACTICE, template=True), tip="152 clips to label"),
-            Command("save", "&File", "&Save", f.save, (Standard.Save,), line=True),
-            Command("save_as", "&File", "Save &as…", f.save_as, (Standard.SaveAs,)),
-            Command("import", "&File", "&Import folder…", f.ask_import_folder, ("Ctrl+I",), line=True, icon="folder"),
-            Command("import_files", "&File", "Import &files…", f.ask_import_files, ("Ctrl+Shift+I",)),
-            Command("find_missing", "&File", "Find missing files…", f.find_missing),
-            Command("character", "&File", "Choose &character…", self.choose_character, line=True, tip="The GLB that is drawn"),
-            Command("no_character", "&File", "Draw a stick figure",
-                    lambda: d.edit("Draw a stick figure", lambda p: edits.set_character(p, None)),
-                    enabled=lambda: d.project.character is not None),
-            Command("export", "&File", "&Export…", self.export, ("Ctrl+E",), line=True, icon="export", tip="JSON and GLB for engines",
-                    enabled=lambda: any(True for _ in d.project.actions())),
-            Command("quit", "&File", "&Quit", self.close, (Standard.Quit, "Ctrl+Q"), line=True),
-            Command("undo", "&Edit", "&Undo", d.undo, (Standard.Undo,), icon="undo", enabled=d.undo_stack.canUndo),
-            Command("redo", "&Edit", "&Redo", d.redo, (Standard.Redo, "Ctrl+Y"), icon="redo", enabled=d.undo_stack.canRedo),
-            Command("delete", "&Edit", "&Remove", self.remove, (Standard.Delete,), enabled=some, line=True),
-            Command("rename", "&Edit", "Re&name…", self.rename, ("F2",)),
-            Command("select_all", "&Edit", "Select &all", self.select_all, (Standard.SelectAll,), line=True),
-            Command("find", "&Edit", "&Find clip", self.library.search.setFocus, (Standard.Find,)),
-            Command("new_stance", "&Graph", "&New stance…", c.new_stance, ("Ctrl+Shift+N",)),
-        ]  # fmt: skip
-        for number, kind in enumerate(KINDS, 1):
-            text = f"Label as &{number} {kind}"
-            out.append(
-                Command(
-                    f"label_{kind}", "&Graph", text, lambda k=kind: c.place_selection(k), (str(number),), enabled=some, line=number == 1
-                )
-            )
-        for layer in LAYERS:
-            out.append(
-                Command(f"layer_{layer}", "&Graph", f"{layer.capitalize()} layer", lambda x=layer: s.set_layer(x), (LAYER_KEYS[layer],),
-                        checked=lambda x=layer: s.layer == x, line=layer == "body")
-            )  # fmt: skip
-        for number in range(1, 10):
-            out.append(
-                Command(f"stance_{number}", "&Graph", f"Stance {number}", lambda n=number: self.choose_stance(n - 1), (f"Ctrl+{number}",),
-                        line=number == 1, enabled=lambda n=number: len(d.project.graphs[s.layer].stances) >= n)
-            )  # fmt: skip
-        out += [
-            Command("skeleton", "&Graph", "S&keleton…", self.show_skeleton, line=True, tip="Roles and body parts of the joints",
-                    enabled=lambda: d.project.skeleton is not None),
-            Command("play", "&Play", "Play or &pause", lambda: s.set_playing(not s.playing), ("Space",)),
-            Command("to_start", "&Play", "Back to the &start", lambda: s.seek(0.0), ("Home",)),
-            Command("back", "&Play", "A frame back", lambda: self.step(-1), (",",)),
-            Command("forward", "&Play", "A frame forward", lambda: self.step(1), (".",)),
-            Command("loop", "&Play", "&Loop", self.preview.toggle_loop, ("L",), checked=lambda: s.loop),
-            Command("show_plan", "&Play", "The whole &performance", s.show_plan, ("Escape",), line=True, checked=lambda: s.show == "plan"),
-            Command("alone", "&Play", "The clip &alone", self.play_alone, ("Ctrl+Return",), enabled=some),
-            Command("in_context", "&Play", "In &context", self.play_in_context, ("Shift+Return",), enabled=some),
-            Command("frame", "&View", "&Frame the character", self.preview.frame_all, ("F",)),
-            Command("face", "&View", "Close-up of the &face", self.preview.frame_face, ("Shift+F",)),
-            Command("bones", "&View", "Show the &skeleton", self.preview.toggle_bones, ("B",), checked=lambda: self.preview.bones),
-            Command("machine", "&View", "The &machine beside the graph", self.show_machine, ("M",), line=True,
-                    checked=lambda: self._machine_wanted),
-            Command("big", "&View", "Only the &character", self.only_character, ("F11",)),
-            Command("arrange", "&View", "&Put the panels back", self._arrange),
-            Command("theme", "&View", "&Light theme", self.toggle_theme, checked=lambda: s.theme == "light", line=True, icon="theme"),
-            Command("keys", "&Help", "&Keyboard shortcuts", self.show_keys, ("F1",)),
-            Command("about", "&Help", "&About Metagraph", self.about),
-        ]  # fmt: skip
-        return tuple(out)
-
     def _menus(self) -> None:
         self.menus = self.actions.fill(self.menuBar())
         for menu in self.menus.values():
@@ -252,56 +181,6 @@ class Window(QMainWindow):
         if self.recent_menu.isEmpty():
             self.recent_menu.addAction("None yet").setEnabled(False)
 
-    def _toolbar(self) -> None:
-        bar = QToolBar("Main", self)
-        bar.setObjectName("toolbar")
-        bar.setMovable(False)
-        bar.setIconSize(QSize(18, 18))
-        self.addToolBar(bar)
-        self.name = QLabel(self)
-        self.name.setMinimumWidth(190)
-        self.name.setContentsMargins(6, 0, 12, 0)
-        self.name.setTextFormat(Qt.TextFormat.RichText)
-        bar.addWidget(self.name)
-        for ident in ("import", "undo", "redo"):
-            bar.addAction(self.actions[ident])
-        bar.addWidget(_stretch(self))
-        self.layer_buttons = QButtonGroup(self)
-        tabs = QWidget(self)
-        row = QHBoxLayout(tabs)
-        row.setContentsMargins(0, 0, 0, 0)
-        row.setSpacing(2)
-        for layer in LAYERS:
-            button = QToolButton(tabs, text=layer.capitalize(), checkable=True, toolTip=f"The {layer} layer ({LAYER_KEYS[layer]})")
-            button.setMinimumWidth(72)
-            button.clicked.connect(lambda _=False, x=layer: self.session.set_layer(x))
-            self.layer_buttons.addButton(button, LAYERS.index(layer))
-            row.addWidget(button)
-        bar.addWidget(tabs)
-        bar.addWidget(_stretch(self))
-        self.problem_button = QToolButton(self, toolTip="Problems of the project")
-        self.problem_button.setToolButtonStyle(Qt.ToolButtonStyle.ToolButtonTextBesideIcon)
-        self.problem_button.clicked.connect(lambda: self.show_dock("problems"))
-        bar.addWidget(self.problem_button)
-        self.machine_button = QToolButton(self, text="Machine", toolTip="The state machine you did not have to draw (M)")
-        self.machine_button.setCheckable(True)
-        self.machine_button.clicked.connect(self.show_machine)
-        bar.addWidget(self.machine_button)
-        self.export_button = QPushButton("Export", self, toolTip="JSON and GLB for engines (Ctrl+E)")
-        self.export_button.setProperty("strong", True)
-        self.export_button.setFocusPolicy(Qt.FocusPolicy.TabFocus)
-        self.export_button.clicked.connect(self.export)
-        bar.addWidget(self.export_button)
-
-    def _status(self) -> None:
-        self.job_label, self.job_bar = QLabel(self), QProgressBar(self)
-        self.job_bar.setFixedWidth(180)
-        self.job_cancel = QToolButton(self, text="Cancel", toolTip="Cancel this job")
-        self.job_cancel.clicked.connect(self._cancel_job)
-        for widget in (self.job_label, self.job_bar, self.job_cancel):
-            self.statusBar().addPermanentWidget(widget)
-            widget.hide()
-
     def _wire(self) -> None:
         d, s = self.document, self.session
         d.changed.connect(self._edited)
@@ -319,7 +198,6 @@ class Window(QMainWindow):
         self.files.report.connect(self._report)
         self.files.imported.connect(self._imported)
         self.files.opened.connect(self._opened)
-        self.jobs.changed.connect(self._show_job)
         self._check_timer = QTimer(self, singleShot=True, interval=CHECK_AFTER)
         self._check_timer.timeout.connect(self._check)
         self._checking = False
@@ -363,7 +241,7 @@ class Window(QMainWindow):
     def show_machine(self, on: bool | None = None) -> None:
         """Show or hide the expanded graph beside the meta-graph."""
         self._machine_wanted = not self._machine_wanted if on is None else on
-        self.machine_button.setChecked(self._machine_wanted)
+        self.header.machine_button.setChecked(self._machine_wanted)
         if self.ready:
             self.machine.setVisible(self._machine_wanted)
             width = self.centre.width()
@@ -393,7 +271,7 @@ class Window(QMainWindow):
                 self.actions[command.id].setIcon(icons.icon(command.icon, look.text))
         self.library.restyle()
         QSettings().setValue("theme", look.name)
-        self._show_problems()
+        self.header.show_problems(self.problems)
         self.canvas.update()
 
     def toggle_theme(self) -> None:
@@ -407,17 +285,9 @@ class Window(QMainWindow):
         undo, redo = d.undo_stack.undoText(), d.undo_stack.redoText()
         self.actions["undo"].setText(f"&Undo {undo}".strip())
         self.actions["redo"].setText(f"&Redo {redo}".strip())
-        saved = "not saved yet" if d.path is None else "edited" if d.dirty else "saved"
-        dim = theme(self.session.theme).dim
-        self.name.setText(f"<b>{escape(d.project.name)}</b>&nbsp;&nbsp;<span style='color:{dim}'>{saved}</span>")
         self.setWindowTitle(f"{d.project.name}{'[*]'} - Metagraph")
         self.setWindowModified(d.dirty)
-        button = self.layer_buttons.button(LAYERS.index(self.session.layer))
-        button.setChecked(True)
-        for layer in LAYERS:
-            count = len(d.project.graphs[layer].actions)
-            self.layer_buttons.button(LAYERS.index(layer)).setText(f"{layer.capitalize()}  {count}" if count else layer.capitalize())
-        self.export_button.setEnabled(self.actions["export"].isEnabled())
+        self.header.refresh()
         places = list(d.project.graphs[self.session.layer].stances.values())
         for number in range(1, 10):
             name = places[number - 1].name if number <= len(places) else f"Stance {number}"
@@ -450,17 +320,7 @@ class Window(QMainWindow):
         if self.ready:
             self.properties.set_misfits(misfits)
             self.problems_panel.show_problems(self.problems)
-        self._show_problems()
-
-    def _show_problems(self) -> None:
-        look = theme(self.session.theme)
-        grave = [p for p in self.problems if p.severity != "hint"]
-        hints = len(self.problems) - len(grave)
-        color = look.error if any(p.severity == "error" for p in grave) else look.warning if grave else look.dim
-        text = many(len(grave), "problem") if grave else many(hints, "hint") if hints else "No problems"
-        self.problem_button.setText(text)
-        self.problem_button.setIcon(icons.icon("warning", color))
-        self.problem_button.setStyleSheet(f"color: {color}")
+        self.header.show_problems(self.problems)
 
     def _opened(self) -> None:
         self.session.stances.clear()
@@ -491,26 +351,6 @@ class Window(QMainWindow):
             box.setDetailedText("\n".join(lines))
         box.setAttribute(Qt.WidgetAttribute.WA_DeleteOnClose)
         box.open()
-
-    def _show_job(self) -> None:
-        job = self.jobs.running[-1] if self.jobs.running else None
-        for widget in (self.job_label, self.job_bar, self.job_cancel):
-            widget.setVisible(job is not None)
-        if job is not None:
-            self.job_label.setText(job.title)
-            self.job_bar.setRange(0, 0)
-            job.progress.connect(self._progress, Qt.ConnectionType.UniqueConnection)
-
-    def _progress(self, done: int, total: int, words: str = "") -> None:
-        self.job_bar.setRange(0, max(1, total))
-        self.job_bar.setValue(done)
-        if self.jobs.running and words:
-            self.job_label.setText(f"{self.jobs.running[-1].title}: {words}")
-
-    def _cancel_job(self) -> None:
-        if self.jobs.running:
-            self.jobs.running[-1].cancel()
-            self.tell("Cancelled.")
 
     # --- commands
 
@@ -637,9 +477,3 @@ def late_modules() -> None:
     import app.panels.problems
     import app.panels.properties
     import app.panels.timeline  # noqa: F401
-
-
-def _stretch(parent: QWidget) -> QWidget:
-    out = QWidget(parent)
-    out.setSizePolicy(QSizePolicy.Policy.Expanding, QSizePolicy.Policy.Preferred)
-    return out

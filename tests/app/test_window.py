@@ -411,8 +411,8 @@ def test_problems_are_found_shown_and_jumped_to(toys):
     drive.document.edit("Break", lambda q: edits.update_actions(q, (drive.id("up point"),), timing={"start": 5.0, "end": 6.0}))
     panel = drive.problems_panel
     drive.wait(lambda: any(q.action == drive.id("up point") for q in panel.problems))
-    assert "No problems" not in drive.problem_button.text()
-    drive.click((drive.problem_button, drive.problem_button.rect().center()))
+    assert "No problems" not in drive.header.problem_button.text()
+    drive.click((drive.header.problem_button, drive.header.problem_button.rect().center()))
     drive.wait(panel.tree.isVisible)
     row = next(n for n, q in enumerate(panel.problems) if q.action == drive.id("up point"))
     item = panel.tree.topLevelItem(row)
@@ -430,12 +430,12 @@ def test_machine_theme_and_the_character_alone_come_and_go(toys):
     drive = toys
     drive.key(KEY.Key_M)
     assert drive.machine.isVisible()
-    assert drive.machine_button.isChecked()
+    assert drive.header.machine_button.isChecked()
     drive.wait(lambda: bool(drive.machine._places))
     at = drive.machine._places[drive.id("rest beat lf")].toPoint()
     drive.click((drive.machine, at))
     assert drive.session.actions == (drive.id("rest beat lf"),)
-    drive.click((drive.machine_button, drive.machine_button.rect().center()))
+    drive.click((drive.header.machine_button, drive.header.machine_button.rect().center()))
     assert not drive.machine.isVisible()
     drive.actions["theme"].trigger()
     assert drive.session.theme == "light"

@@ -1,0 +1,84 @@
+"""The table of the window's commands."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+from app.actions import Command, Standard
+from app.files import PRACTICE, SAMPLE
+from metagraph.graph import edits
+from metagraph.graph.model import KINDS, LAYERS
+
+if TYPE_CHECKING:
+    from app.window import Window
+
+LAYER_KEYS = {"body": "Alt+1", "arms": "Alt+2", "head": "Alt+3"}
+
+
+def commands(window: Window) -> tuple[Command, ...]:
+    """Return every command, in the order of the menus."""
+    s, d, f, c = window.session, window.document, window.files, window.canvas
+    some = lambda: bool(s.clips or s.actions)  # noqa: E731
+    out = [
+        Command("new", "&File", "&New project", f.new, (Standard.New,)),
+        Command("open", "&File", "&Open…", f.ask_open, (Standard.Open,)),
+        Command("sample", "&File", "Open the &sample project", lambda: f.open(SAMPLE, template=True)),
+        Command("practice", "&File", "Open the &practice project", lambda: f.open(PRACTICE, template=True), tip="152 clips to label"),
+        Command("save", "&File", "&Save", f.save, (Standard.Save,), line=True),
+        Command("save_as", "&File", "Save &as…", f.save_as, (Standard.SaveAs,)),
+        Command("import", "&File", "&Import folder…", f.ask_import_folder, ("Ctrl+I",), line=True, icon="folder"),
+        Command("import_files", "&File", "Import &files…", f.ask_import_files, ("Ctrl+Shift+I",)),
+        Command("find_missing", "&File", "Find missing files…", f.find_missing),
+        Command("character", "&File", "Choose &character…", window.choose_character, line=True, tip="The GLB that is drawn"),
+        Command("no_character", "&File", "Draw a stick figure",
+                lambda: d.edit("Draw a stick figure", lambda p: edits.set_character(p, None)),
+                enabled=lambda: d.project.character is not None),
+        Command("export", "&File", "&Export…", window.export, ("Ctrl+E",), line=True, icon="export", tip="JSON and GLB for engines",
+                enabled=lambda: any(True for _ in d.project.actions())),
+        Command("quit", "&File", "&Quit", window.close, (Standard.Quit, "Ctrl+Q"), line=True),
+        Command("undo", "&Edit", "&Undo", d.undo, (Standard.Undo,), icon="undo", enabled=d.undo_stack.canUndo),
+        Command("redo", "&Edit", "&Redo", d.redo, (Standard.Redo, "Ctrl+Y"), icon="redo", enabled=d.undo_stack.canRedo),
+        Command("delete", "&Edit", "&Remove", window.remove, (Standard.Delete,), enabled=some, line=True),
+        Command("rename", "&Edit", "Re&name…", window.rename, ("F2",)),
+        Command("select_all", "&Edit", "Select &all", window.select_all, (Standard.SelectAll,), line=True),
+        Command("find", "&Edit", "&Find clip", window.library.search.setFocus, (Standard.Find,)),
+        Command("new_stance", "&Graph", "&New stance…", c.new_stance, ("Ctrl+Shift+N",)),
+    ]  # fmt: skip
+    for number, kind in enumerate(KINDS, 1):
+        text = f"Label as &{number} {kind}"
+        out.append(
+            Command(f"label_{kind}", "&Graph", text, lambda k=kind: c.place_selection(k), (str(number),), enabled=some, line=number == 1)
+        )
+    for layer in LAYERS:
+        out.append(
+            Command(f"layer_{layer}", "&Graph", f"{layer.capitalize()} layer", lambda x=layer: s.set_layer(x), (LAYER_KEYS[layer],),
+                    checked=lambda x=layer: s.layer == x, line=layer == "body")
+        )  # fmt: skip
+    for number in range(1, 10):
+        out.append(
+            Command(f"stance_{number}", "&Graph", f"Stance {number}", lambda n=number: window.choose_stance(n - 1), (f"Ctrl+{number}",),
+                    line=number == 1, enabled=lambda n=number: len(d.project.graphs[s.layer].stances) >= n)
+        )  # fmt: skip
+    out += [
+        Command("skeleton", "&Graph", "S&keleton…", window.show_skeleton, line=True, tip="Roles and body parts of the joints",
+                enabled=lambda: d.project.skeleton is not None),
+        Command("play", "&Play", "Play or &pause", lambda: s.set_playing(not s.playing), ("Space",)),
+        Command("to_start", "&Play", "Back to the &start", lambda: s.seek(0.0), ("Home",)),
+        Command("back", "&Play", "A frame back", lambda: window.step(-1), (",",)),
+        Command("forward", "&Play", "A frame forward", lambda: window.step(1), (".",)),
+        Command("loop", "&Play", "&Loop", window.preview.toggle_loop, ("L",), checked=lambda: s.loop),
+        Command("show_plan", "&Play", "The whole &performance", s.show_plan, ("Escape",), line=True, checked=lambda: s.show == "plan"),
+        Command("alone", "&Play", "The clip &alone", window.play_alone, ("Ctrl+Return",), enabled=some),
+        Command("in_context", "&Play", "In &context", window.play_in_context, ("Shift+Return",), enabled=some),
+        Command("frame", "&View", "&Frame the character", window.preview.frame_all, ("F",)),
+        Command("face", "&View", "Close-up of the &face", window.preview.frame_face, ("Shift+F",)),
+        Command("bones", "&View", "Show the &skeleton", window.preview.toggle_bones, ("B",), checked=lambda: window.preview.bones),
+        Command("machine", "&View", "The &machine beside the graph", window.show_machine, ("M",), line=True,
+                checked=lambda: window._machine_wanted),
+        Command("big", "&View", "Only the &character", window.only_character, ("F11",)),
+        Command("arrange", "&View", "&Put the panels back", window._arrange),
+        Command("theme", "&View", "&Light theme", window.toggle_theme, checked=lambda: s.theme == "light", line=True, icon="theme"),
+        Command("keys", "&Help", "&Keyboard shortcuts", window.show_keys, ("F1",)),
+        Command("about", "&Help", "&About Metagraph", window.about),
+    ]  # fmt: skip
+    return tuple(out)
