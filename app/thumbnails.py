@@ -40,6 +40,7 @@ class Thumbnails(QObject):
         self._number = 0
         self._process: subprocess.Popen[bytes] | None = None
         self._queue: queue.SimpleQueue[Order | None] = queue.SimpleQueue()
+        self._threads: list[threading.Thread] = []
         self._stopped = False
         self._drawn.connect(self._keep, Qt.ConnectionType.QueuedConnection)
         document.changed.connect(self._follow)
@@ -111,7 +112,9 @@ class Thumbnails(QObject):
             stdin=subprocess.PIPE, stdout=subprocess.PIPE, stderr=subprocess.DEVNULL, cwd=root,
         )  # fmt: skip
         for work in (self._send, self._listen):
-            threading.Thread(target=work, args=(self._process,), name="thumbnails", daemon=True).start()
+            thread = threading.Thread(target=work, args=(self._process,), name="thumbnails", daemon=True)
+            thread.start()
+            self._threads.append(thread)
 
     def _send(self, process: subprocess.Popen[bytes]) -> None:
         assert process.stdin is not None
@@ -135,3 +138,5 @@ class Thumbnails(QObject):
             self._process.kill()
             self._process.wait(5)
             self._process = None
+        for thread in self._threads:  # both end with the process; one that still made pictures would outlive Qt
+            thread.join(5)
