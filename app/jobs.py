@@ -63,6 +63,9 @@ class _Runner(QRunnable):
             self.job._over.emit(result, problem)
 
 
+_BUSY: list[QThreadPool] = []  # pools that outlive their window because a job would not end
+
+
 class Jobs(QObject):
     """Starts jobs and keeps them alive while they run. `changed` tells when one starts or ends."""
 
@@ -98,7 +101,8 @@ class Jobs(QObject):
         else:
             self._alive.add(job)
             job.ended.connect(lambda: self._alive.discard(job))
-        (self._quick if quick else self._pool).start(_Runner(job))
+        if not self._stopped:
+            (self._quick if quick else self._pool).start(_Runner(job))
         return job
 
     def _ended(self, job: Job) -> None:
@@ -107,10 +111,16 @@ class Jobs(QObject):
             self.changed.emit()
 
     def stop(self) -> None:
-        """Cancel everything and wait for it; at closing."""
+        """Cancel everything, wait for it, and take nothing more; at closing.
+
+        A pool is destroyed with its owner and then waits for its threads while it holds the interpreter, which they
+        need to end: a deadlock. So none may start after this, and a pool still busy is not destroyed.
+        """
+        self._stopped = True
         for job in [*self.running, *self._alive]:
             job.cancel()
-        self._pool.clear()
-        self._quick.clear()
-        self._pool.waitForDone(5000)
-        self._quick.waitForDone(5000)
+        for pool in (self._pool, self._quick):
+            pool.clear()
+            if not pool.waitForDone(5000):
+                pool.setParent(None)
+                _BUSY.append(pool)

@@ -466,6 +466,7 @@ class Window(QMainWindow):
         self.document.close_journal()
         self.preview._timer.stop()
         self.canvas._hero_timer.stop()
+        self._check_timer.stop()
         self.jobs.stop()
         self.thumbnails.stop()
         event.accept()

@@ -126,3 +126,12 @@ def test_stopping_cancels_and_waits(qapp):
     assert job.cancelled
     qapp.processEvents()
     assert seen == []
+
+
+def test_after_stop_nothing_starts_any_more(qtbot):
+    jobs, ran = Jobs(), []
+    jobs.stop()
+    jobs.start("late", lambda job: ran.append(1))
+    jobs.start("late and quick", lambda job: ran.append(2), quick=True)
+    qtbot.wait(50)
+    assert ran == []
