@@ -79,6 +79,7 @@ class Jobs(QObject):
         self._pool.setMaxThreadCount(2)  # long jobs must not starve the short ones the preview needs
         self._quick = QThreadPool(self)
         self._quick.setMaxThreadCount(2)  # a large plan must not hold up a figure
+        self._stopped = False
 
     def start(
         self,
