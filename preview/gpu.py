@@ -20,6 +20,7 @@ Array = NDArray[Any]
 KEEP_MESHES = 8
 IDLE_FRAMES = 240
 TEXTURE_LIMIT = 2048
+PALETTE = 128  # pixels; textures up to this size are palettes and need no mipmaps
 MARK_STRENGTH = 200  # of 255: how much a mark covers the figure's own colour
 
 # How the vertex (see mesh.VERTEX) is read by shaders of each kind; positions come from a buffer of their own.
@@ -151,8 +152,9 @@ class Store:
     def _image(self, encoded: bytes) -> moderngl.Texture:
         size, pixels = decoded(encoded)
         texture = self._ctx.texture(size, 4, pixels)
-        texture.build_mipmaps()
-        texture.filter = moderngl.LINEAR_MIPMAP_LINEAR, moderngl.LINEAR
+        if max(size) > PALETTE:  # what is smaller holds flat colours; and mipmaps cost a stall in software
+            texture.build_mipmaps()
+            texture.filter = moderngl.LINEAR_MIPMAP_LINEAR, moderngl.LINEAR
         return texture
 
 
