@@ -12,7 +12,7 @@ from typing import Any
 
 from metagraph import __version__
 
-ERROR, PROBLEMS, USAGE = 1, 3, 2
+ERROR = 1
 
 DESCRIPTION = """\
 Drop motion clips onto stance, gesture, fidget and transition; the state machine draws itself.

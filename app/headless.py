@@ -23,7 +23,7 @@ from metagraph.graph.model import KINDS, LAYERS, Project
 from metagraph.playback.bake import bake
 from metagraph.playback.plan import Plan
 from metagraph.playback.planner import make_plan
-from metagraph.playback.player import pose_at
+from metagraph.playback.player import morphs_at, pose_at
 
 SAMPLE = Path(__file__).resolve().parents[1] / "sample_clips" / f"sample{SUFFIX}"
 
@@ -167,13 +167,21 @@ def pictures(
         assert made is not None
         return pose_at(made, project, at)
 
+    def morphs(at: float) -> Any:
+        if not figure.morphs:
+            return None
+        if entry is not None and entry.motion is not None:
+            return figure.morph_weights(entry.motion.morphs_at(at))
+        assert made is not None
+        return figure.morph_weights(morphs_at(made, project, at))
+
     skeleton = project.skeleton
     _, seen = skeleton.globals(pose(times[:: max(1, len(times) // 60)]))
     camera = whole_figure(figure.bounds(seen), size[0] / size[1])
     with Offscreen(*size) as offscreen:
         for at in times:
             rotations, positions = skeleton.globals(pose(np.asarray(at)))
-            yield offscreen.render(Scene((Actor(figure, rotations, positions),)), camera, THEMES[look])
+            yield offscreen.render(Scene((Actor(figure, rotations, positions, morphs(float(at))),)), camera, THEMES[look])
 
 
 def render(options: Namespace) -> int:

@@ -158,10 +158,7 @@ class Performance(QObject):
     def morphs(self) -> dict[str, float]:
         if self.shown.clip is not None:
             motion = self.shown.project.clips[self.shown.clip].motion
-            if motion is None or motion.weights is None or not motion.morphs:
-                return {}
-            low, _, _ = motion.locate(self.session.seconds)
-            return dict(zip(motion.morphs, map(float, motion.weights[low]), strict=True))
+            return motion.morphs_at(self.session.seconds) if motion is not None else {}
         return morphs_at(self.shown.plan, self.shown.project, self.session.seconds)
 
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from functools import cached_property
 from typing import Any
 
@@ -25,6 +26,8 @@ class Figure:
     skeleton: whose global transforms the figure takes. mesh: in its rest pose. sources: `[M]`, for each matrix of the
     palette the joint of `skeleton` it follows (-1: none). shadow: joints `[S]` and radii `[S]` that darken the ground.
     """
+
+    morphs: tuple[str, ...] = ()  # names of the mesh's morph targets
 
     def __init__(self, skeleton: Skeleton, mesh: Mesh, sources: Array) -> None:
         self.skeleton, self.mesh, self.sources = skeleton, mesh, sources
@@ -52,6 +55,10 @@ class Figure:
     def palette(self, rotations: Array, positions: Array) -> Array:
         """Return `[..., M, 3, 4]` float32: rest pose to posed, from global `rotations [..., J, 4]`, `positions [..., J, 3]`."""
         raise NotImplementedError
+
+    def morph_weights(self, values: Mapping[str, float]) -> Array | None:
+        """Return weights `[K]` in the order of `morphs`, 0 for those not named; None for a figure without any."""
+        return np.array([values.get(name, 0.0) for name in self.morphs], np.float32) if self.morphs else None
 
     def bounds(self, positions: Array) -> tuple[Array, Array]:
         """Return the lowest and highest corner of a box round the figure in all poses `positions [..., J, 3]`."""
@@ -137,7 +144,7 @@ class SkinnedFigure(Figure):
         self._inverse_rotations = rotation.conjugate(rest_r)[follow].astype(np.float32)
         self._rest_positions = rest_p[follow].astype(np.float32)
         super().__init__(skeleton, _character_mesh(character), found[follow])
-        self.character = character
+        self.character, self.morphs = character, character.morphs
 
     def palette(self, rotations: Array, positions: Array) -> Array:
         sources = np.maximum(self.sources, 0)

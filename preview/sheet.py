@@ -16,7 +16,6 @@ Color = tuple[int, int, int]
 
 PAPER: Color = (28, 29, 33)
 INK: Color = (232, 234, 237)
-FAINT: Color = (150, 154, 163)
 
 
 def contact_sheet(

@@ -145,14 +145,8 @@ class PreviewPanel(QWidget):
         if self._framed is not figure and not self.view.moved_by_hand:
             self._framed = figure
             self._frame(figure, positions)
-        return Scene((Actor(figure, rotations, positions, self._morphs(figure), self._marks(), self.bones),))
-
-    def _morphs(self, figure: object) -> np.ndarray | None:
-        names = getattr(figure, "morphs", ())
-        if not names:
-            return None
-        values = self.performance.morphs()
-        return np.array([values.get(name, 0.0) for name in names], np.float32)
+        morphs = figure.morph_weights(self.performance.morphs()) if figure.morphs else None
+        return Scene((Actor(figure, rotations, positions, morphs, self._marks(), self.bones),))
 
     def _marks(self) -> dict[int, tuple[float, float, float]]:
         """Point out the joints of the selected action's mask."""

@@ -65,7 +65,6 @@ class Lanes(QWidget):
         self.each = 44.0
         self.first = 0.0
         self.follow = True
-        self._moved = False
         self.setMinimumHeight(RULER + 4 * 24)
         self.setMouseTracking(True)
         self.setFocusPolicy(Qt.FocusPolicy.ClickFocus)

@@ -154,9 +154,6 @@ class ImageView(CameraMouse, QWidget):
         painter.end()
         self.painted.emit(0.0)
 
-    def grabFramebuffer(self) -> QImage:
-        return self.grab().toImage()
-
 
 def make_view(compose: Compose, parent: QWidget | None = None) -> GLView | ImageView:
     """Return the host that is right here: OpenGL in the widget on a graphics card, a drawn image elsewhere.

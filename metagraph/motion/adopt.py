@@ -10,7 +10,6 @@ from metagraph.motion import rotation
 from metagraph.motion.clip import Clip
 from metagraph.motion.skeleton import Skeleton
 
-LENGTH_TOLERANCE = 0.02  # of the skeleton's height: files of one character differ by rounding and by their first frame
 MOVED = 1e-4  # metres: below this a joint keeps its rest translation
 
 

@@ -94,6 +94,14 @@ class Clip:
         full[..., list(self.translated), :] = moved
         return Pose(rotations, full)
 
+    def morphs_at(self, seconds: float) -> dict[str, float]:
+        """Return the morph target weights at one time, by name; linear between frames, clamped to the clip."""
+        if self.weights is None or not self.morphs:
+            return {}
+        low, high, part = self.locate(seconds)
+        values = self.weights[low] * (1 - part) + self.weights[high] * part
+        return dict(zip(self.morphs, map(float, values), strict=True))
+
     def locate(self, seconds: ArrayLike) -> tuple[Array, Array, Array]:
         """Return the frames before and after `seconds [...]` and the part of the way between them (float32, 0..1)."""
         at = np.clip(np.asarray(seconds, np.float64) * self.fps, 0, self.frames - 1)

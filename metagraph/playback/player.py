@@ -216,10 +216,7 @@ def morphs_at(plan: Plan, project: Project, seconds: float) -> dict[str, float]:
             shares.append((rest.action, float(loop_seconds(project, rest.action, np.array([seconds - rest.start]))[0][0]), 1 - weight))
         for action, at, share in shares:
             motion = playable(project, action)
-            if motion is None or not motion.morphs or motion.weights is None or share <= 0:
-                continue
-            low, high, part = motion.locate(at)
-            values = motion.weights[low] * (1 - part) + motion.weights[high] * part
-            for name, value in zip(motion.morphs, values, strict=True):
-                out[name] = out.get(name, 0.0) + share * float(value)
+            if motion is not None and share > 0:
+                for name, value in motion.morphs_at(at).items():
+                    out[name] = out.get(name, 0.0) + share * value
     return {name: min(1.0, max(0.0, value)) for name, value in out.items()}

@@ -1,0 +1,56 @@
+"""A character whose face is made of morph targets moves it, alone and in a performance."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from app.headless import pictures
+from app.performance import alone
+from metagraph.formats.gltf import read_character
+from metagraph.formats.imports import import_files
+from metagraph.graph import edits
+from metagraph.graph.model import Project
+from metagraph.playback.planner import make_plan
+from metagraph.playback.player import morphs_at
+from preview.figure import SkinnedFigure, StickFigure
+
+
+def test_a_figure_without_morphs_takes_no_weights(toy):
+    assert StickFigure(toy.skeleton).morph_weights({"smile": 1.0}) is None
+
+
+def test_a_clip_without_morphs_has_no_weights(sample):
+    clip = next(iter(sample.clips.values())).motion
+    assert clip.morphs_at(0.5) == {}
+
+
+@pytest.mark.gl
+def test_morphs_of_a_clip_and_of_a_plan_are_drawn(shared_data):
+    file = shared_data / "robot-expressive" / "RobotExpressive.glb"
+    project = import_files(Project(), None, [file]).into(Project())
+    figure = SkinnedFigure(read_character(file), project.skeleton)
+    assert figure.morphs
+    # The file's own weights stay at zero; ours rise to 1 over the clip.
+    entry = next(e for e in project.clips.values() if e.name == "Idle")
+    weights = np.zeros_like(entry.motion.weights)
+    weights[:, 0] = np.linspace(0, 1, len(weights))
+    entry = replace(entry, motion=replace(entry.motion, weights=weights))
+    project = replace(project, clips={**project.clips, entry.id: entry})
+    frame = entry.frames // 2
+    wanted = entry.motion.morphs_at(frame / entry.fps)
+    assert figure.morph_weights(wanted).any()
+    assert alone(project, entry.id).clip == entry.id
+
+    project = edits.add_stance(project, "head", "face", [entry.id])
+    loop = project.graphs["head"].of(next(iter(project.graphs["head"].stances)), "stance")[0]
+    assert morphs_at(make_plan(project, 5.0), project, frame / entry.fps - project.span(loop)[0]) == pytest.approx(
+        {name: min(1.0, max(0.0, value)) for name, value in wanted.items()}, abs=1e-3
+    )
+    times = np.array([frame / entry.fps])
+    shown = next(iter(pictures(project, figure, times, None, entry.id, (160, 160), "dark")))
+    figure.morphs = ()
+    still = next(iter(pictures(project, figure, times, None, entry.id, (160, 160), "dark")))
+    assert (shown != still).any(), "the face differs from the one without morphs"
