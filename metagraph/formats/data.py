@@ -11,8 +11,10 @@ from dataclasses import MISSING, fields
 from functools import cache
 from typing import Any
 
+import msgspec
 import numpy as np
 
+from metagraph.graph.asks import words_of
 from metagraph.graph.model import (
     KINDS,
     LAYERS,
@@ -21,9 +23,14 @@ from metagraph.graph.model import (
     Action,
     BasePose,
     ClipEntry,
+    Face,
     Layer,
+    Life,
+    Line,
     Markov,
     MetaGraph,
+    Performance,
+    Point,
     Project,
     Settings,
     Stance,
@@ -148,6 +155,7 @@ def to_data(project: Project) -> Data:
         "clips": [clip_data(entry) for entry in project.clips.values()],
         "layers": layers,
         "markov": {layer: markov_data(project.markov[layer]) for layer in LAYERS if layer in project.markov},
+        **{key: struct_data(getattr(project, key)) for key in STRUCTS},
         "skeleton": skeleton_data(project.skeleton) if project.skeleton is not None else [],
     }
 
@@ -158,6 +166,33 @@ def markov_data(model: Markov) -> Data:
         "states": [f"{limb} {kind}" for limb, kind in model.states],
         "matrix": [[_whole(p) for p in row] for row in model.matrix],
     }
+
+
+# What the life layers, asks and performances are made of describes itself; written and read by type.
+STRUCTS: dict[str, Any] = {
+    "life": Life, "face": Face, "points": dict[str, Point], "lines": dict[str, Line], "performances": dict[str, Performance],
+    "tiers": dict[str, str],
+}  # fmt: skip
+
+
+def struct_data(value: Any) -> Any:
+    """Return what one of `STRUCTS` holds, fields at their default left out."""
+    return _rounded(msgspec.to_builtins(value))
+
+
+def _rounded(value: Any) -> Any:
+    if isinstance(value, dict):
+        return {k: _rounded(v) for k, v in value.items()}
+    return [_rounded(v) for v in value] if isinstance(value, list | tuple) else _plain(value)
+
+
+def struct_from(data: Any, kind: Any, where: str) -> Any:
+    """Return one of `STRUCTS` from data. Raises DataError."""
+    try:
+        return msgspec.convert(data, kind)
+    except msgspec.ValidationError as error:
+        field, _, rest = words_of(error).rpartition(": ")
+        raise DataError(f"{where}.{field}" if field else where, rest) from None
 
 
 # --- reading ---------------------------------------------------------------------------------------------------------
@@ -216,6 +251,7 @@ def _one_of(value: Any, allowed: tuple[str, ...], where: str) -> Any:
 _RANGES = {  # field -> least and greatest value of what no check of the graph looks at
     "fps": (1e-3, 1e6), "frames": (0, 1e9), "take": (0, 1e6), "frame": (0, 1e9), "seed": (0, 0xFFFFFFFF), "alpha": (0, LARGEST),
     "shortest": (0, LARGEST), "wait": (0, LARGEST), "gap": (1e-3, LARGEST), "positive": (0, 1), "negative": (0, 1),
+    "memory": (0, 600), "rest": (0, 600), "lookahead": (0, 10), "cooldown": (0, LARGEST),
 }  # fmt: skip
 
 
@@ -269,7 +305,7 @@ def _items(data: Data, key: str, where: str, seen: set[str]) -> list[tuple[str, 
 
 _ACTION_FIELDS = ({f.name for f in fields(Action)} | {f.name for f in fields(Timing)}) - {"layer", "timing"}
 _CLIP_FIELDS = ({f.name for f in fields(ClipEntry)} | {"sha256"}) - {"motion", "digest"}
-_PROJECT_FIELDS = ({f.name for f in fields(Project)} | {"metagraph", "layers"}) - {"graphs"}
+_PROJECT_FIELDS = ({f.name for f in fields(Project)} | {"metagraph", "layers"}) - {"graphs", "voices"}
 
 
 def action_from(data: Data, layer: Layer, where: str) -> Action:
@@ -373,6 +409,7 @@ def from_data(data: Any) -> Project:
         parts=dict(parts),
         markov={layer: markov_from(layer, models[layer], f"markov.{layer}") for layer in LAYERS if layer in models},
         settings=Settings(**_fill(Settings, settings, "settings")),
+        **{key: struct_from(data[key], kind, key) for key, kind in STRUCTS.items() if data.get(key) is not None},
         character=_get(data, "character", str, "", None),
         next_id=max(_get(data, "next_id", int, "", 1), above(*clips, *stance_ids, *action_ids)),
     )

@@ -14,6 +14,7 @@ from typing import Any, BinaryIO
 
 from metagraph.errors import FileError
 from metagraph.formats.data import (
+    STRUCTS,
     Data,
     DataError,
     action_data,
@@ -22,6 +23,7 @@ from metagraph.formats.data import (
     markov_data,
     skeleton_data,
     stance_data,
+    struct_data,
     to_data,
     weights_data,
 )
@@ -41,6 +43,9 @@ def changes(before: Project, after: Project) -> Data:
     for key in ("name", "character", "next_id", "base", "settings", "roles", "parts"):
         if getattr(before, key) is not getattr(after, key) and getattr(before, key) != getattr(after, key):
             out[key] = to_data(_bare(after))[key]
+    for key in STRUCTS:
+        if getattr(before, key) is not getattr(after, key) and getattr(before, key) != getattr(after, key):
+            out[key] = struct_data(getattr(after, key))
     if before.markov is not after.markov and before.markov != after.markov:
         out["markov"] = {layer: markov_data(m) for layer, m in after.markov.items()}
     if before.skeleton is not after.skeleton:

@@ -9,20 +9,18 @@ from collections.abc import Callable, Iterable, Iterator, Mapping
 from dataclasses import dataclass, field, replace
 from functools import cached_property
 from types import MappingProxyType
-from typing import Any, Literal, get_args
+from typing import Any
 
+from metagraph.graph.asks import Line, Performance, Point
+from metagraph.graph.life import Face, Life
+from metagraph.graph.words import KINDS, LAYERS, LIMBS, MODES, PARTS, Kind, Layer, Limb, Mode, Part
 from metagraph.motion.clip import Clip
 from metagraph.motion.skeleton import Skeleton
 
-Layer = Literal["body", "arms", "head"]
-Kind = Literal["stance", "gesture", "fidget", "transition"]
-Limb = Literal["left", "right", "both"]
-Part = Literal["legs", "spine", "arms", "head", "face"]
-
-LAYERS: tuple[Layer, ...] = get_args(Layer)
-KINDS: tuple[Kind, ...] = get_args(Kind)
-LIMBS: tuple[Limb, ...] = get_args(Limb)
-PARTS: tuple[Part, ...] = get_args(Part)
+__all__ = [
+    "KINDS", "LAYERS", "LIMBS", "MODES", "PARTS", "REACH", "Action", "BasePose", "ClipEntry", "Face", "Index", "Kind", "Layer", "Life",
+    "Limb", "Line", "Markov", "MetaGraph", "Mode", "Part", "Performance", "Point", "Project", "Settings", "Stance", "Timing", "Uses",
+]  # fmt: skip
 
 # Which layer reaches which part, and how strongly: Borer et al., section 5 (weights of 1.0). The face moves with the head.
 REACH: Mapping[Layer, Mapping[Part, float]] = {
@@ -39,6 +37,8 @@ class Timing:
     start, end: the part that plays; `end` None is the clip's end. blend_in, blend_out: seconds of blending from and to
     the stance, within start..end (for a looping stance, blend_in is the overlap at the loop's seam). loop: repeats.
     earliest_exit: from here on the action may be left, or None to play it through. stroke: its most telling moment.
+    ready, stroke_end, relax: where a gesture's preparation, stroke and hold end (its retraction ends with it); None as found
+    from the motion (`playback.phases`).
     """
 
     start: float = 0.0
@@ -48,6 +48,9 @@ class Timing:
     loop: bool = False
     earliest_exit: float | None = None
     stroke: float | None = None
+    ready: float | None = None
+    stroke_end: float | None = None
+    relax: float | None = None
 
 
 @dataclass(frozen=True, slots=True)
@@ -57,6 +60,8 @@ class Action:
     stance: id of the stance it starts from (for kind "stance", the stance whose loop it is). end_stance: only for
     transitions. limb: which arm it needs; the other keeps to the stance. joints: names of the only joints it moves;
     empty means all. tags: free words, "positive" and "negative" among them. likelihood: relative, > 0.
+    cooldown: seconds after it has ended in which it is not drawn again. spacing: how many other actions of its kind and stance
+    are drawn before it may be drawn again; None as the settings' never_twice says.
     """
 
     id: str
@@ -71,6 +76,8 @@ class Action:
     joints: tuple[str, ...] = ()
     tags: tuple[str, ...] = ()
     likelihood: float = 1.0
+    cooldown: float = 0.0
+    spacing: int | None = None
 
 
 @dataclass(frozen=True, slots=True)
@@ -261,6 +268,8 @@ class Settings:
 
     never_twice: an action is not played twice in a row where there is another. shortest: seconds below which
     the remainder of a cut meta action is not worth keeping. wait: how late, in seconds, a request may start.
+    memory: seconds after which a use no longer counts, 0 for never (as in the paper). rest: least seconds in the stance
+    between two actions of a layer. lookahead: seconds ahead of now in which a running plan is not changed any more.
     """
 
     alpha: float = 4.0
@@ -268,6 +277,9 @@ class Settings:
     never_twice: bool = True
     shortest: float = 0.4
     wait: float = 4.0
+    memory: float = 0.0
+    rest: float = 0.0
+    lookahead: float = 0.1
 
 
 def _empty_graphs() -> dict[Layer, MetaGraph]:
@@ -278,7 +290,9 @@ def _empty_graphs() -> dict[Layer, MetaGraph]:
 class Project:
     """Everything that is saved. roles: corrections, role -> joint name. parts: corrections, joint name -> body part.
 
-    character: path of the GLB to draw, relative to the project file, or None for a stick figure.
+    character: path of the GLB to draw, relative to the project file, or None for a stick figure. points: named places to
+    look at, metres. lines: the dialogue an agent calls by id. performances: those kept, by id. tiers: annotation tier -> what
+    it was last read as. voices: line -> its analysed sound (`playback.life.voice.Voice`), as far as read; never saved.
     """
 
     name: str = "untitled"
@@ -291,6 +305,13 @@ class Project:
     markov: Mapping[Layer, Markov] = field(default_factory=dict)
     settings: Settings = Settings()
     character: str | None = None
+    life: Life = field(default_factory=Life)
+    face: Face = field(default_factory=Face)
+    points: Mapping[str, Point] = field(default_factory=dict)
+    lines: Mapping[str, Line] = field(default_factory=dict)
+    performances: Mapping[str, Performance] = field(default_factory=dict)
+    tiers: Mapping[str, str] = field(default_factory=dict)
+    voices: Mapping[str, Any] = field(default_factory=dict, compare=False, repr=False)
     next_id: int = 1
 
     def actions(self) -> Iterable[Action]:

@@ -1,0 +1,210 @@
+"""What can be asked of a character, at any level of abstraction, and what is made of it: lines and performances.
+
+An ask is what an agent sends, what a performance saves and what the timeline edits; the same fields everywhere. In JSON
+`do` says which it is: {"do": "gesture", "layer": "arms", "tags": ["positive"], "at": 2.1, "priority": 3}. Times are
+seconds of the performance, lengths seconds, points metres in the character's space (Y up, the character looks along +Z).
+"""
+
+from __future__ import annotations
+
+from typing import Annotated, Any, Union, get_args
+
+import msgspec
+from msgspec import Meta, Struct
+
+from metagraph.graph.words import Layer, Limb, Mode
+
+Id = Annotated[str, Meta(min_length=1, max_length=200)]
+Seconds = Annotated[float, Meta(ge=0, le=1e6, description="seconds")]
+# Of any length by type, since msgspec mistakes a text of limited length beside a tuple of fixed length, and crashes.
+Point = Annotated[tuple[Annotated[float, Meta(ge=-1e6, le=1e6)], ...], Meta(min_length=3, max_length=3, description="x, y, z; metres")]
+Tags = tuple[Annotated[str, Meta(max_length=200)], ...]
+
+
+class Ask(Struct, frozen=True, kw_only=True, omit_defaults=True, forbid_unknown_fields=True, tag_field="do"):
+    """What all asks have. id: made up where it is empty; the same id again replaces what was asked before. at: when it should
+    begin, null for as soon as can be. told: when it became known, null for from the start; a planner that acts
+    before then has not heard of it. priority: higher wins over lower; what the model writes on its own has 0."""
+
+    id: Annotated[str, Meta(max_length=200)] = ""
+    at: Seconds | None = None
+    told: Seconds | None = None
+    priority: Annotated[int, Meta(ge=-1000, le=1000)] = 1
+
+
+class Gesture(Ask, frozen=True, tag="gesture"):
+    """A gesture of the stance the layer is in. tags: all of them must fit. duration: how long the activity is wanted.
+    stroke: when its most telling moment should come, instead of `at`. hold: seconds its hold should last. prepare: whether the
+    preparation plays. resume: whether its rest goes on after something more important has cut it."""
+
+    layer: Layer = "arms"
+    tags: Tags = ()
+    limb: Limb | None = None
+    duration: Seconds | None = None
+    stroke: Seconds | None = None
+    hold: Annotated[float, Meta(ge=0, le=600)] | None = None
+    prepare: bool = True
+    resume: bool = False
+
+
+class Fidget(Ask, frozen=True, tag="fidget"):
+    """A fidget of the stance the layer is in."""
+
+    layer: Layer = "arms"
+    tags: Tags = ()
+    limb: Limb | None = None
+    duration: Seconds | None = None
+    resume: bool = False
+
+
+class Play(Ask, frozen=True, tag="action"):
+    """One action, by id or name; the layer goes to its stance first. stroke, hold, prepare: as for a gesture."""
+
+    action: Id
+    layer: Layer | None = None
+    stroke: Seconds | None = None
+    hold: Annotated[float, Meta(ge=0, le=600)] | None = None
+    prepare: bool = True
+
+
+class Go(Ask, frozen=True, tag="stance"):
+    """Go to a stance, by id or name, by the shortest chain of transitions."""
+
+    stance: Id
+    layer: Layer | None = None
+
+
+class Nod(Ask, frozen=True, tag="nod"):
+    """Nod: a gesture of the head that is tagged or called so."""
+
+    tags: Tags = ()
+
+
+class Shake(Ask, frozen=True, tag="shake"):
+    """Shake the head."""
+
+    tags: Tags = ()
+
+
+class Look(Ask, frozen=True, tag="look"):
+    """Look at a point, a named point ("user", another character), or "ahead". duration: null until the next look.
+    amount: 0 turns nothing, 1 all the way. strict: without averting the gaze meanwhile."""
+
+    to: Annotated[str, Meta(min_length=1, max_length=200)] | Point = "user"
+    duration: Seconds | None = None
+    amount: Annotated[float, Meta(ge=0, le=1)] = 1.0
+    strict: bool = False
+
+
+class Blink(Ask, frozen=True, tag="blink"):
+    """Blink once."""
+
+
+class Say(Ask, frozen=True, tag="say"):
+    """Say a line of the project's list, its audio, its lip sync and its own asks with it; or other words with `text`,
+    whose length is guessed from them, or `duration`. gestures: whether the line's own asks are made."""
+
+    line: Annotated[str, Meta(min_length=1, max_length=200)] | int | None = None
+    text: Annotated[str, Meta(max_length=20000)] = ""
+    duration: Seconds | None = None
+    gestures: bool = True
+
+
+class Behave(Ask, frozen=True, tag="mode"):
+    """Idle, listen or talk from now on; null goes back to talking while something is said and idling otherwise."""
+
+    mode: Mode | None = None
+
+
+class Place(Ask, frozen=True, tag="place"):
+    """Put a named point somewhere, so that it can be looked at; the gaze follows it."""
+
+    name: Id
+    point: Point
+
+
+class Withdraw(Ask, frozen=True, tag="withdraw"):
+    """Take back what was asked for with an id; all of it where `what` is empty. What has begun plays on."""
+
+    what: Annotated[str, Meta(max_length=200)] = ""
+
+
+class Bml(Ask, frozen=True, tag="bml"):
+    """A block of Behaviour Markup Language; what of it is understood becomes asks."""
+
+    bml: Annotated[str, Meta(max_length=200000)]
+
+
+AnyAsk = Union[Gesture, Fidget, Play, Go, Nod, Shake, Look, Blink, Say, Behave, Place, Withdraw, Bml]  # noqa: UP007
+
+
+class Line(Struct, frozen=True, kw_only=True, omit_defaults=True, forbid_unknown_fields=True):
+    """A line of dialogue, which an agent calls by its id. audio, phones: paths relative to the project file of a sound file and
+    of a Praat TextGrid with phones or words. duration: seconds, where there is no audio. asks: times from the line's start."""
+
+    text: Annotated[str, Meta(max_length=20000)] = ""
+    audio: str | None = None
+    phones: str | None = None
+    duration: Seconds | None = None
+    asks: tuple[AnyAsk, ...] = ()
+
+
+class Performance(Struct, frozen=True, kw_only=True, omit_defaults=True, forbid_unknown_fields=True):
+    """A performance that is kept: what was asked for and what chance it was played with. seed: null for the project's.
+    length: seconds. idle: whether the models fill the time nobody asks for. stances: layer -> the stance it begins in."""
+
+    name: Annotated[str, Meta(max_length=200)]
+    asks: tuple[AnyAsk, ...] = ()
+    seed: Annotated[int, Meta(ge=0, le=0xFFFFFFFF)] | None = None
+    length: Annotated[float, Meta(gt=0, le=1e6)] = 60.0
+    idle: bool = True
+    stances: dict[Layer, str] = {}
+
+
+class AskError(ValueError):
+    """An ask that cannot be read or understood; the message says what is wrong and what would be right."""
+
+
+_decoder: msgspec.json.Decoder[AnyAsk] = msgspec.json.Decoder(AnyAsk)
+
+
+def read_ask(text: bytes | str) -> AnyAsk:
+    """Return the ask a JSON text says. Raises AskError naming the field."""
+    try:
+        return _decoder.decode(text)
+    except (msgspec.ValidationError, msgspec.DecodeError, UnicodeDecodeError, RecursionError) as error:
+        raise AskError(words_of(error)) from None
+
+
+def ask_from(data: Any) -> AnyAsk:
+    """Return the ask that plain data says. Raises AskError naming the field."""
+    try:
+        out: AnyAsk = msgspec.convert(data, AnyAsk)
+        return out
+    except (msgspec.ValidationError, RecursionError) as error:
+        raise AskError(words_of(error)) from None
+
+
+def words_of(error: Exception) -> str:
+    """Return a reader's complaint for people: the field, then what is wrong."""
+    text = str(error)
+    if isinstance(error, msgspec.ValidationError):
+        message, _, where = text.partition(" - at ")
+        field = where.strip("`").removeprefix("$").lstrip(".")
+        if "Invalid value" in message and field == "do":
+            message += f"; known are {', '.join(WORDS)}"
+        return f"{field}: {message}" if field else message
+    return f"not JSON: {text}"
+
+
+WORDS: tuple[str, ...] = tuple(str(kind.__struct_config__.tag) for kind in get_args(AnyAsk))
+
+
+def schema() -> dict[str, Any]:
+    """Return the JSON Schema (draft 2020-12) of an ask."""
+    return {
+        "$schema": "https://json-schema.org/draft/2020-12/schema",
+        "title": "Metagraph request",
+        "description": "What can be asked of a character, at any level. Times are seconds, points metres, Y up.",
+        **msgspec.json.schema(AnyAsk),
+    }

@@ -1,0 +1,17 @@
+"""The words everything is told apart by: layers, kinds, limbs, body parts, modes."""
+
+from __future__ import annotations
+
+from typing import Literal, get_args
+
+Layer = Literal["body", "arms", "head"]
+Kind = Literal["stance", "gesture", "fidget", "transition"]
+Limb = Literal["left", "right", "both"]
+Part = Literal["legs", "spine", "arms", "head", "face"]
+Mode = Literal["idle", "listening", "talking"]
+
+LAYERS: tuple[Layer, ...] = get_args(Layer)
+KINDS: tuple[Kind, ...] = get_args(Kind)
+LIMBS: tuple[Limb, ...] = get_args(Limb)
+PARTS: tuple[Part, ...] = get_args(Part)
+MODES: tuple[Mode, ...] = get_args(Mode)

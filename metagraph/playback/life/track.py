@@ -1,0 +1,131 @@
+"""What was asked of the life layers: where to look, what to say, which mode to be in. Values; times are seconds."""
+
+from __future__ import annotations
+
+from collections.abc import Collection
+from dataclasses import dataclass, replace
+from math import inf
+
+from metagraph.graph.asks import Point
+from metagraph.graph.words import Mode
+
+
+@dataclass(frozen=True, slots=True)
+class LookAt:
+    """Look at a point or a named point from `start` until `end`, or until the next look. strict: without averting."""
+
+    id: str
+    start: float
+    end: float
+    to: str | Point
+    amount: float = 1.0
+    strict: bool = False
+    priority: int = 1
+
+
+@dataclass(frozen=True, slots=True)
+class Speech:
+    """Something said. line: id of the project's line, None for `text` alone. priority: the higher interrupts the lower."""
+
+    id: str
+    start: float
+    end: float
+    line: str | None = None
+    text: str = ""
+    priority: int = 1
+
+
+@dataclass(frozen=True, slots=True)
+class ModeFrom:
+    """The mode from `start` on; None for talking while something is said and idling otherwise."""
+
+    id: str
+    start: float
+    mode: Mode | None
+
+
+@dataclass(frozen=True, slots=True)
+class PlaceFrom:
+    """Where a named point is from `start` on."""
+
+    id: str
+    start: float
+    name: str
+    point: Point
+
+
+@dataclass(frozen=True, slots=True)
+class BlinkAt:
+    """A blink asked for."""
+
+    id: str
+    start: float
+
+
+Item = LookAt | Speech | ModeFrom | PlaceFrom | BlinkAt
+
+
+@dataclass(frozen=True)
+class Track:
+    """All of it, each by start. Speeches do not overlap."""
+
+    looks: tuple[LookAt, ...] = ()
+    speeches: tuple[Speech, ...] = ()
+    modes: tuple[ModeFrom, ...] = ()
+    places: tuple[PlaceFrom, ...] = ()
+    blinks: tuple[BlinkAt, ...] = ()
+
+    @property
+    def items(self) -> tuple[Item, ...]:
+        return (*self.looks, *self.speeches, *self.modes, *self.places, *self.blinks)
+
+    def without(self, idents: Collection[str], now: float = -inf) -> Track:
+        """Return the track without items of these ids that begin at `now` or later; what has begun ends now, if it can."""
+
+        def kept(item: Item) -> Item | None:
+            if item.id not in idents:
+                return item
+            if item.start >= now:
+                return None
+            return replace(item, end=min(item.end, now)) if isinstance(item, LookAt | Speech) else item
+
+        return track_of(k for i in self.items if (k := kept(i)) is not None)
+
+    def plus(self, items: Collection[Item]) -> Track:
+        """Return the track with more items; of speeches that overlap the later or more important cuts the other short."""
+        return track_of((*self.items, *items)) if items else self
+
+    def since(self, seconds: float) -> Track:
+        """Return the track without what no time from `seconds` on needs."""
+        places = {p.name: p for p in self.places if p.start <= seconds}
+        looks = [x for x in self.looks if x.start <= seconds][-1:]
+        modes = [x for x in self.modes if x.start <= seconds][-1:]
+        old = {id(x) for x in (*places.values(), *looks, *modes)}
+        return track_of(i for i in self.items if i.start > seconds or id(i) in old or (isinstance(i, LookAt | Speech) and i.end > seconds))
+
+
+def track_of(items: object) -> Track:
+    """Return a track of items in any order."""
+    every = sorted(items, key=lambda i: (i.start, i.id))  # type: ignore[call-overload]
+    return Track(
+        tuple(i for i in every if isinstance(i, LookAt)),
+        _apart([i for i in every if isinstance(i, Speech)]),
+        tuple(i for i in every if isinstance(i, ModeFrom)),
+        tuple(i for i in every if isinstance(i, PlaceFrom)),
+        tuple(i for i in every if isinstance(i, BlinkAt)),
+    )
+
+
+def _apart(speeches: list[Speech]) -> tuple[Speech, ...]:
+    """Return speeches without overlaps: one that is at least as important cuts the running one, a lesser one is not said."""
+    out: list[Speech] = []
+    for speech in speeches:
+        if out and out[-1].end > speech.start:
+            if speech.priority < out[-1].priority:
+                continue
+            if out[-1].start >= speech.start:
+                out.pop()
+            else:
+                out[-1] = replace(out[-1], end=speech.start)
+        out.append(speech)
+    return tuple(out)
