@@ -7,7 +7,8 @@ the body mostly rests, shifts and fidgets.
 
 from __future__ import annotations
 
-from collections.abc import Collection, Iterator, Mapping
+from collections.abc import Collection, Mapping
+from dataclasses import dataclass
 
 from metagraph.graph.model import Kind, Layer, Limb, Markov, Project
 from metagraph.playback.choice import pick, uniform
@@ -53,27 +54,38 @@ def model(project: Project, layer: Layer) -> Markov:
     return project.markov.get(layer, DEFAULTS[layer])
 
 
-def write(chain: Markov, seed: int, until: float, kinds: Collection[Kind] | None = None) -> Iterator[MetaAction]:
-    """Yield meta actions from 0 to `until` seconds: rests drawn between 0.35 and 1.65 times the mean gap, windows of 1 to 3 s.
+@dataclass(frozen=True, slots=True)
+class Cursor:
+    """Where writing stands: before meta action `number`, in state number `state` (-1: none yet), which ended at `time` seconds."""
 
+    number: int = 0
+    state: int = -1
+    time: float = 0.0
+
+
+def write(
+    chain: Markov, seed: int, until: float, kinds: Collection[Kind] | None = None, cursor: Cursor = Cursor()
+) -> tuple[list[MetaAction], Cursor]:
+    """Return the meta actions that start before `until` seconds, from the cursor on, and the cursor before the first one left out.
+
+    Rests are drawn between 0.35 and 1.65 times the mean gap, windows of 1 to 3 s.
     kinds: what the graph has; states of other kinds are passed over, so that half-filled graphs perform too.
 
-    Each draw is keyed by the meta action's number, so a longer horizon only appends. A chain that cannot leave a row
-    of zeros starts again from any state.
+    Each draw is keyed by the meta action's number, so a longer horizon only appends, and writing on from a cursor gives bit for
+    bit what writing in one go does. A chain that cannot leave a row of zeros starts again from any state.
     """
-    time, state, number = 0.0, -1, 0
+    number, state, time = cursor.number, cursor.state, cursor.time
     open_to = [1.0 if kinds is None or kind in kinds else 0.0 for _, kind in chain.states]
-    if not any(open_to):
-        return
-    while True:
+    out: list[MetaAction] = []
+    while any(open_to):
         key = f"auto/{chain.layer}/{number}"
-        row = [p * may for p, may in zip(chain.matrix[state] if state >= 0 else open_to, open_to, strict=True)]
+        row = [p * may for p, may in zip(chain.matrix[state], open_to, strict=True)] if 0 <= state < len(open_to) else open_to
         weights = {str(i): p for i, p in enumerate(row if any(row) else open_to)}
+        start = time + chain.gap * (0.35 + 1.3 * uniform(seed, key, "gap"))
+        if start >= until:
+            break
         state = int(pick(seed, key, "state", weights))
         limb, kind = chain.states[state]
-        time += chain.gap * (0.35 + 1.3 * uniform(seed, key, "gap"))
-        if time >= until:
-            return
         length = 1.0 + 2.0 * uniform(seed, key, "length")
         tags: tuple[str, ...] = ()
         if kind == "gesture":
@@ -82,7 +94,7 @@ def write(chain: Markov, seed: int, until: float, kinds: Collection[Kind] | None
                 tags = ("positive",)
             elif draw < chain.positive + chain.negative:
                 tags = ("negative",)
-        request = Request(key, chain.layer, kind, time, length, tags=tags, limb=limb, priority=WRITTEN)
-        yield MetaAction(request, time, time + length, written=True)
-        time += length
-        number += 1
+        request = Request(key, chain.layer, kind, start, length, tags=tags, limb=limb, priority=WRITTEN)
+        out.append(MetaAction(request, start, start + length, written=True))
+        number, time = number + 1, start + length
+    return out, Cursor(number, state, time)

@@ -106,7 +106,7 @@ def _extend_layer(
     performer.free = max(now, performer.free)
     if idle:
         kinds = {kind for _, kind in graph.index}
-        written = markov.write(markov.model(project, layer), plan.seed, end, kinds)
+        written, _ = markov.write(markov.model(project, layer), plan.seed, end, kinds)
         future += [m for m in written if m.start >= max(plan.end, now)]
     asked, delayed = delay(asked, performer.free, project.settings)
     placed, told = replan([*future, *asked], project.settings)

@@ -8,11 +8,13 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+from hypothesis import given
+from hypothesis import strategies as st
 
 from metagraph.graph import edits
-from metagraph.graph.model import LAYERS, Markov, Project
+from metagraph.graph.model import LAYERS, Layer, Markov, Project
 from metagraph.playback import markov
-from metagraph.playback.markov import ARMS, DEFAULTS, write
+from metagraph.playback.markov import ARMS, DEFAULTS, Cursor, write
 
 # Borer et al., figure 11, in percent, typed in once more from the paper.
 FIGURE_11 = {
@@ -48,25 +50,53 @@ def test_a_projects_own_model_comes_before_the_default() -> None:
 
 
 def test_nothing_is_written_for_no_time() -> None:
-    assert list(write(ARMS, 1, 0)) == []
+    assert write(ARMS, 1, 0) == ([], Cursor())
 
 
 @pytest.mark.parametrize("seed", [0, 1, 99])
 def test_a_longer_horizon_only_appends(seed: int) -> None:
-    short, long = list(write(ARMS, seed, 60)), list(write(ARMS, seed, 300))
+    short, long = write(ARMS, seed, 60)[0], write(ARMS, seed, 300)[0]
     assert long[: len(short)] == short and len(long) > len(short)
     assert all(m.start < 60 for m in short) and long[len(short)].start >= 60
 
 
+@given(st.integers(0, 0xFFFFFFFF), st.lists(st.floats(0, 400), max_size=8), st.sampled_from(LAYERS))
+def test_writing_in_many_goes_gives_the_same_bit_for_bit(seed: int, stops: list[float], layer: Layer) -> None:
+    chain, cursor, metas = DEFAULTS[layer], Cursor(), []
+    for until in [*sorted(stops), 400.0]:
+        more, cursor = write(chain, seed, until, cursor=cursor)
+        assert all(m.start < until for m in more)
+        metas += more
+    assert (metas, cursor) == write(chain, seed, 400.0)
+
+
+def test_the_cursor_stands_before_the_first_meta_action_left_out() -> None:
+    metas, _ = write(ARMS, 4, 100)
+    for n, meta in enumerate(metas):
+        before, cursor = write(ARMS, 4, meta.start)  # ends are open
+        assert len(before) == n == cursor.number and cursor.time == (before[-1].end if before else 0.0)
+        assert write(ARMS, 4, 100, cursor=cursor)[0] == metas[n:]
+
+
+def test_an_earlier_horizon_writes_nothing_and_leaves_the_cursor() -> None:
+    _, cursor = write(ARMS, 4, 100)
+    assert write(ARMS, 4, 50, cursor=cursor) == ([], cursor)
+
+
+def test_a_cursor_in_a_state_the_model_has_lost_goes_on_from_any_state() -> None:
+    small = Markov("arms", (("both", "gesture"),), ((1.0,),))
+    assert write(small, 1, 60, cursor=Cursor(3, 7, 10.0))[0][0].request.kind == "gesture"
+
+
 def test_what_is_written_ascends_without_overlaps_and_says_it_was_written() -> None:
-    metas = list(write(ARMS, 5, 600))
+    metas = write(ARMS, 5, 600)[0]
     assert all(a.end < b.start for a, b in itertools.pairwise(metas))
     assert all(m.written and m.request.priority == 0 and 1 <= m.end - m.start <= 3 for m in metas)
     assert len({m.key for m in metas}) == len(metas)
 
 
 def test_rests_are_as_long_on_average_as_the_model_says() -> None:
-    metas = list(write(ARMS, 3, 20000))
+    metas = write(ARMS, 3, 20000)[0]
     gaps = np.array([b.start - a.end for a, b in itertools.pairwise(metas)])
     assert gaps.min() >= ARMS.gap * 0.35 and gaps.max() <= ARMS.gap * 1.65
     assert abs(gaps.mean() - ARMS.gap) < 4 * gaps.std() / np.sqrt(len(gaps))
@@ -75,7 +105,7 @@ def test_rests_are_as_long_on_average_as_the_model_says() -> None:
 @pytest.mark.parametrize("layer", LAYERS)
 def test_observed_transitions_are_within_sampling_error_of_the_matrix(layer: str) -> None:
     model = DEFAULTS[layer]  # type: ignore[index]
-    states = [(m.request.limb, m.request.kind) for m in write(model, 11, 40000)]
+    states = [(m.request.limb, m.request.kind) for m in write(model, 11, 40000)[0]]
     pairs = Counter(itertools.pairwise(states))
     for i, source in enumerate(model.states):
         seen = np.array([pairs[source, target] for target in model.states], float)
@@ -89,26 +119,26 @@ def test_observed_transitions_are_within_sampling_error_of_the_matrix(layer: str
 
 def test_tags_are_asked_for_as_often_as_the_model_says() -> None:
     model = replace(DEFAULTS["head"], positive=0.3, negative=0.2)
-    tags = Counter(m.request.tags for m in write(model, 2, 20000) if m.request.kind == "gesture")
+    tags = Counter(m.request.tags for m in write(model, 2, 20000)[0] if m.request.kind == "gesture")
     total = sum(tags.values())
     for tag, share in ((("positive",), 0.3), (("negative",), 0.2)):
         assert abs(tags[tag] / total - share) < 4 * np.sqrt(share * (1 - share) / total)
-    assert all(not m.request.tags for m in write(model, 2, 500) if m.request.kind != "gesture")
+    assert all(not m.request.tags for m in write(model, 2, 500)[0] if m.request.kind != "gesture")
 
 
 def test_a_row_of_zeros_starts_again_from_any_state() -> None:
     stuck = Markov("head", (("both", "gesture"), ("both", "fidget")), ((0.0, 0.0), (1.0, 0.0)))
-    kinds = {m.request.kind for m in write(stuck, 1, 200)}
+    kinds = {m.request.kind for m in write(stuck, 1, 200)[0]}
     assert kinds == {"gesture", "fidget"}
 
 
 def test_layers_and_seeds_draw_apart() -> None:
-    a, b = list(write(ARMS, 1, 60)), list(write(ARMS, 2, 60))
+    a, b = write(ARMS, 1, 60)[0], write(ARMS, 2, 60)[0]
     assert [m.start for m in a] != [m.start for m in b]
-    assert [m.start for m in write(DEFAULTS["head"], 1, 60)] != [m.start for m in write(DEFAULTS["body"], 1, 60)]
+    assert [m.start for m in write(DEFAULTS["head"], 1, 60)[0]] != [m.start for m in write(DEFAULTS["body"], 1, 60)[0]]
 
 
 def test_kinds_the_graph_has_not_are_passed_over() -> None:
-    assert {m.request.kind for m in write(ARMS, 1, 300, {"fidget", "stance"})} == {"fidget"}
-    assert list(write(ARMS, 1, 300, {"stance"})) == list(write(ARMS, 1, 300, ())) == []
-    assert list(write(ARMS, 1, 300, {"gesture", "fidget", "transition"})) == list(write(ARMS, 1, 300))
+    assert {m.request.kind for m in write(ARMS, 1, 300, {"fidget", "stance"})[0]} == {"fidget"}
+    assert write(ARMS, 1, 300, {"stance"})[0] == write(ARMS, 1, 300, ())[0] == []
+    assert write(ARMS, 1, 300, {"gesture", "fidget", "transition"})[0] == write(ARMS, 1, 300)[0]
