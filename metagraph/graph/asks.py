@@ -74,6 +74,13 @@ class Go(Ask, frozen=True, tag="stance"):
     layer: Layer | None = None
 
 
+class Change(Ask, frozen=True, tag="change"):
+    """Change to another stance, whichever: a transition drawn among those of the stance the layer is in. limb: which arm moves."""
+
+    layer: Layer = "arms"
+    limb: Limb | None = None
+
+
 class Nod(Ask, frozen=True, tag="nod"):
     """Nod: a gesture of the head that is tagged or called so."""
 
@@ -135,7 +142,7 @@ class Bml(Ask, frozen=True, tag="bml"):
     bml: Annotated[str, Meta(max_length=200000)]
 
 
-AnyAsk = Union[Gesture, Fidget, Play, Go, Nod, Shake, Look, Blink, Say, Behave, Place, Withdraw, Bml]  # noqa: UP007
+AnyAsk = Union[Gesture, Fidget, Play, Go, Change, Nod, Shake, Look, Blink, Say, Behave, Place, Withdraw, Bml]  # noqa: UP007
 
 
 class Line(Struct, frozen=True, kw_only=True, omit_defaults=True, forbid_unknown_fields=True):
