@@ -159,6 +159,17 @@ def _rest(draw: Any, project: Project) -> Project:
                         layer, (("left", "gesture"), ("both", "fidget"), ("both", "transition")), ((third, third, third),) * 3, 1.5, 0.25
                     ),
                 ),
+                lambda p: edits.set_markov(
+                    p,
+                    Markov(
+                        layer,
+                        (("left", "gesture"),) * 2,
+                        ((0.1, 0.9), (third, 2 * third)),
+                        0.8,
+                        tags=draw(st.sampled_from([(), ("", "positive"), ("very negative", "")])),
+                        lengths=draw(st.sampled_from([(), ((1.25, 0.0), (0.5, 2.125))])),
+                    ),
+                ),
                 lambda p: replace(p, graphs={**p.graphs, layer: replace(p.graphs[layer], start=next(iter(p.graphs[layer].stances), None))}),
             ]
         )

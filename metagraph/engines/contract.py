@@ -89,13 +89,16 @@ class Transition(Struct, rename={"source": "from", "target": "to"}, forbid_unkno
 
 class ExportedMarkov(Struct, forbid_unknown_fields=True):
     """states: (limb, kind). matrix: rows of probabilities. gap: mean seconds of rest between meta actions. positive,
-    negative: the share of gestures asked for with that tag."""
+    negative: the share of gestures asked for with that tag. tags: for each state the tags it asks for, blanks between them;
+    empty when no state asks for any. lengths: for each state mean and standard deviation of its seconds, or empty."""
 
     states: list[tuple[LimbName, KindName]]
     matrix: list[list[Annotated[float, Meta(ge=0, le=1)]]]
     gap: Annotated[float, Meta(ge=1e-3, le=1e9)]
     positive: Annotated[float, Meta(ge=0, le=1)]
     negative: Annotated[float, Meta(ge=0, le=1)]
+    tags: list[str] = []
+    lengths: list[Annotated[list[Annotated[float, Meta(ge=0, le=1e6)]], Meta(min_length=2, max_length=2)]] = []
 
 
 class ExportedLayer(Struct, forbid_unknown_fields=True):

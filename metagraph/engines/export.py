@@ -176,7 +176,15 @@ def _layer(project: Project, graph: MetaGraph) -> c.ExportedLayer:
         actions=[_action(project, a) for a in graph.actions.values()],
         index=index,
         transitions=[c.Transition(a, b, ids) for (a, b), ids in ways.items()],
-        markov=c.ExportedMarkov(list(model.states), [list(row) for row in model.matrix], model.gap, model.positive, model.negative),
+        markov=c.ExportedMarkov(
+            list(model.states),
+            [list(row) for row in model.matrix],
+            model.gap,
+            model.positive,
+            model.negative,
+            list(model.tags),
+            [list(pair) for pair in model.lengths],
+        ),
         own_markov=graph.layer in project.markov,
     )
 
@@ -293,8 +301,12 @@ def _skeleton(joints: list[c.Joint]) -> Skeleton:
 
 
 def _markov(layer: Layer, model: c.ExportedMarkov) -> Markov:
-    states = [f"{limb} {kind}" for limb, kind in model.states]
-    more = {"gap": model.gap, "positive": model.positive, "negative": model.negative}
+    if model.tags and len(model.tags) != len(model.states):
+        raise DataError(f"$.layers.{layer}.markov.tags", f"should be {len(model.states)} texts, one for each state")
+    states = [
+        f"{limb} {kind} {tag}".rstrip() for (limb, kind), tag in zip(model.states, model.tags or [""] * len(model.states), strict=True)
+    ]
+    more = {"gap": model.gap, "positive": model.positive, "negative": model.negative, "lengths": model.lengths}
     return markov_from(layer, {"states": states, "matrix": model.matrix, **more}, f"$.layers.{layer}.markov")
 
 

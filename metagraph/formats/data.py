@@ -161,9 +161,10 @@ def to_data(project: Project) -> Data:
 
 
 def markov_data(model: Markov) -> Data:
+    """Return a model; a state's tags stand behind it: "both gesture positive"."""
     return {
-        **_sparse(model, ("layer", "states", "matrix")),
-        "states": [f"{limb} {kind}" for limb, kind in model.states],
+        **_sparse(model, ("layer", "states", "matrix", "tags")),
+        "states": [f"{limb} {kind} {model.tag(n)}".rstrip() for n, (limb, kind) in enumerate(model.states)],
         "matrix": [[_whole(p) for p in row] for row in model.matrix],
     }
 
@@ -171,7 +172,7 @@ def markov_data(model: Markov) -> Data:
 # What the life layers, asks and performances are made of describes itself; written and read by type.
 STRUCTS: dict[str, Any] = {
     "life": Life, "face": Face, "points": dict[str, Point], "lines": dict[str, Line], "performances": dict[str, Performance],
-    "tiers": dict[str, str],
+    "tiers": dict[str, str], "labels": dict[str, str],
 }  # fmt: skip
 
 
@@ -422,11 +423,12 @@ def above(*idents: str) -> int:
 
 
 def markov_from(layer: Layer, data: Any, where: str) -> Markov:
-    states = []
+    states, tags = [], []
     for text in _get(data, "states", list, where):
-        limb, _, kind = text.partition(" ") if isinstance(text, str) else ("", "", "")
+        limb, kind, tag = (*(text.split(" ", 2) if isinstance(text, str) else ()), "", "", "")[:3]
         states.append((_one_of(limb, LIMBS, f"{where}.states"), _one_of(kind, KINDS, f"{where}.states")))
-    _known(data, [f.name for f in fields(Markov) if f.name != "layer"], where)
+        tags.append(tag)
+    _known(data, [f.name for f in fields(Markov) if f.name not in ("layer", "tags")], where)
     rows = _get(data, "matrix", list, where)
     if not rows or len(rows) != len(states):
         raise DataError(f"{where}.matrix", f"should have {max(1, len(states))} rows, one for each state")
@@ -434,4 +436,10 @@ def markov_from(layer: Layer, data: Any, where: str) -> Markov:
     for n, row in enumerate(matrix):
         if min(row) < 0 or not 0.99 < sum(row) < 1.01:
             raise DataError(f"{where}.matrix[{n}]", "should be probabilities that sum to 1")
-    return Markov(layer, tuple(states), matrix, **_fill(Markov, data, where, ("layer", "states", "matrix")))
+    lengths = [_floats(x if isinstance(x, list) else [], 2, f"{where}.lengths", 1e6) for x in _get(data, "lengths", list, where, [])]
+    if lengths and len(lengths) != len(states):
+        raise DataError(f"{where}.lengths", f"should be {len(states)} pairs of seconds, one for each state")
+    if any(mean < 1e-3 or deviation < 0 for mean, deviation in lengths):
+        raise DataError(f"{where}.lengths", "should be means above 0 and deviations of 0 or more")
+    more = _fill(Markov, data, where, ("layer", "states", "matrix", "tags", "lengths"))
+    return Markov(layer, tuple(states), matrix, **more, tags=tuple(tags) if any(tags) else (), lengths=tuple((a, b) for a, b in lengths))

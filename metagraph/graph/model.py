@@ -251,7 +251,9 @@ class Markov:
     """A first-order model over (limb, kind) that writes meta actions when nobody asks for any (Borer et al., 7.3).
 
     matrix: rows of probabilities, each summing to 1. gap: mean seconds of rest between two actions.
-    positive, negative: share of gestures asked for with that tag.
+    positive, negative: share of gestures asked for with that tag, where tags are not part of the states.
+    tags: one text a state, the tags (blanks between them) it asks for; empty when tags are not part of the states.
+    lengths: (mean, standard deviation) seconds of each state's actions; empty where that is not known.
     """
 
     layer: Layer
@@ -260,6 +262,12 @@ class Markov:
     gap: float = 2.5
     positive: float = 0.0
     negative: float = 0.0
+    tags: tuple[str, ...] = ()
+    lengths: tuple[tuple[float, float], ...] = ()
+
+    def tag(self, state: int) -> str:
+        """Return the tags a state asks for, "" for none."""
+        return self.tags[state] if self.tags else ""
 
 
 @dataclass(frozen=True)
@@ -292,7 +300,7 @@ class Project:
 
     character: path of the GLB to draw, relative to the project file, or None for a stick figure. points: named places to
     look at, metres. lines: the dialogue an agent calls by id. performances: those kept, by id. tiers: annotation tier -> what
-    it was last read as. voices: line -> its analysed sound (`playback.life.voice.Voice`), as far as read; never saved.
+    it was last read as; labels: its labels -> what they were last taken for (`playback.annotation`). voices: line -> its analysed sound (`playback.life.voice.Voice`), as far as read; never saved.
     """
 
     name: str = "untitled"
@@ -311,6 +319,7 @@ class Project:
     lines: Mapping[str, Line] = field(default_factory=dict)
     performances: Mapping[str, Performance] = field(default_factory=dict)
     tiers: Mapping[str, str] = field(default_factory=dict)
+    labels: Mapping[str, str] = field(default_factory=dict)
     voices: Mapping[str, Any] = field(default_factory=dict, compare=False, repr=False)
     next_id: int = 1
 

@@ -7,12 +7,12 @@ the body mostly rests, shifts and fidgets.
 
 from __future__ import annotations
 
+import math
 from collections.abc import Collection, Mapping
-from dataclasses import dataclass
 
 from metagraph.graph.model import Kind, Layer, Limb, Markov, Project
 from metagraph.playback.choice import pick, uniform
-from metagraph.playback.plan import WRITTEN, MetaAction, Request
+from metagraph.playback.plan import WRITTEN, Cursor, MetaAction, Request
 
 _LIMB: Mapping[str, Limb] = {"L": "left", "R": "right", "LR": "both"}
 _KIND: Mapping[str, Kind] = {"G": "gesture", "F": "fidget", "T": "transition"}
@@ -48,27 +48,23 @@ HEAD = Markov("head", _states("LR,G LR,F LR,T"), _rows("60 20 20\n60 15 25\n70 2
 BODY = Markov("body", _states("LR,G LR,F LR,T"), _rows("10 40 50\n20 30 50\n25 45 30"), gap=6.0)
 DEFAULTS: Mapping[Layer, Markov] = {"body": BODY, "arms": ARMS, "head": HEAD}
 
+START = Cursor()
+
 
 def model(project: Project, layer: Layer) -> Markov:
     """Return the project's model of a layer, or the default."""
     return project.markov.get(layer, DEFAULTS[layer])
 
 
-@dataclass(frozen=True, slots=True)
-class Cursor:
-    """Where writing stands: before meta action `number`, in state number `state` (-1: none yet), which ended at `time` seconds."""
-
-    number: int = 0
-    state: int = -1
-    time: float = 0.0
+BEGIN = Cursor()
 
 
 def write(
-    chain: Markov, seed: int, until: float, kinds: Collection[Kind] | None = None, cursor: Cursor = Cursor()
+    chain: Markov, seed: int, until: float, kinds: Collection[Kind] | None = None, cursor: Cursor = BEGIN
 ) -> tuple[list[MetaAction], Cursor]:
     """Return the meta actions that start before `until` seconds, from the cursor on, and the cursor before the first one left out.
 
-    Rests are drawn between 0.35 and 1.65 times the mean gap, windows of 1 to 3 s.
+    Rests are drawn between 0.35 and 1.65 times the mean gap, windows as `length` says.
     kinds: what the graph has; states of other kinds are passed over, so that half-filled graphs perform too.
 
     Each draw is keyed by the meta action's number, so a longer horizon only appends, and writing on from a cursor gives bit for
@@ -86,15 +82,30 @@ def write(
             break
         state = int(pick(seed, key, "state", weights))
         limb, kind = chain.states[state]
-        length = 1.0 + 2.0 * uniform(seed, key, "length")
-        tags: tuple[str, ...] = ()
-        if kind == "gesture":
+        seconds = length(chain, state, seed, key)
+        tags = tuple(chain.tag(state).split())
+        if kind == "gesture" and not chain.tags:
             draw = uniform(seed, key, "tag")
             if draw < chain.positive:
                 tags = ("positive",)
             elif draw < chain.positive + chain.negative:
                 tags = ("negative",)
-        request = Request(key, chain.layer, kind, start, length, tags=tags, limb=limb, priority=WRITTEN)
-        out.append(MetaAction(request, start, start + length, written=True))
-        number, time = number + 1, start + length
+        request = Request(key, chain.layer, kind, start, seconds, tags=tags, limb=limb, priority=WRITTEN)
+        out.append(MetaAction(request, start, start + seconds, written=True))
+        number, time = number + 1, start + seconds
     return out, Cursor(number, state, time)
+
+
+def length(chain: Markov, state: int, seed: int, key: str) -> float:
+    """Return how many seconds meta action `key` lasts: 1 to 3, evenly, where the model has no lengths.
+
+    Else log-normal with the state's mean m and standard deviation s, from two uniform draws u, v in (0, 1) by Box and Muller,
+    which any language can do alike: `a = ln(1 + (s / m)^2)`, `z = sqrt(-2 ln u) cos(2 pi v)`, `m exp(sqrt(a) z - a / 2)`.
+    """
+    u = uniform(seed, key, "length")
+    if not chain.lengths:
+        return 1.0 + 2.0 * u
+    mean, deviation = chain.lengths[state]
+    spread = math.log1p((deviation / mean) ** 2)
+    z = math.sqrt(-2.0 * math.log(u)) * math.cos(2.0 * math.pi * uniform(seed, key, "length2"))
+    return mean * math.exp(math.sqrt(spread) * z - spread / 2.0)

@@ -142,3 +142,46 @@ def test_kinds_the_graph_has_not_are_passed_over() -> None:
     assert {m.request.kind for m in write(ARMS, 1, 300, {"fidget", "stance"})[0]} == {"fidget"}
     assert write(ARMS, 1, 300, {"stance"})[0] == write(ARMS, 1, 300, ())[0] == []
     assert write(ARMS, 1, 300, {"gesture", "fidget", "transition"})[0] == write(ARMS, 1, 300)[0]
+
+
+GOLDEN = [  # as written by version 0.1.0
+    "right fidget 0.9095 3.7285", "left fidget 5.5929 7.6896", "left fidget 9.6448 10.9422", "right fidget 12.0253 14.8396",
+    "both gesture 15.5645 17.3421", "right gesture 19.6849 22.2881",
+]  # fmt: skip
+LENGTHS = ((0.8, 0.3), (2.5, 2.0), (1.2, 0.0))
+
+
+def test_lengths_have_the_mean_and_deviation_the_model_says() -> None:
+    model = replace(DEFAULTS["head"], lengths=LENGTHS)
+    seconds: dict[str, list[float]] = {}
+    for meta in write(model, 8, 30000)[0]:
+        seconds.setdefault(meta.request.kind, []).append(meta.end - meta.start)
+    for (_, kind), (mean, deviation) in zip(model.states, LENGTHS, strict=True):
+        drawn = np.array(seconds[kind])
+        assert drawn.min() > 0
+        assert abs(drawn.mean() - mean) <= 4 * deviation / np.sqrt(len(drawn)) + 1e-9
+        assert abs(drawn.std() - deviation) <= 0.15 * deviation + 1e-9  # a log-normal's tail makes this one slow to settle
+        assert np.allclose(drawn, mean) == (deviation == 0)
+
+
+def test_lengths_are_log_normal() -> None:
+    model = replace(DEFAULTS["head"], lengths=((1.5, 0.9),) * 3)
+    spread = np.log1p((0.9 / 1.5) ** 2)
+    z = (np.log([m.end - m.start for m in write(model, 8, 20000)[0]]) - np.log(1.5) + spread / 2) / np.sqrt(spread)
+    for level, share in ((-1.0, 0.1587), (0.0, 0.5), (1.0, 0.8413)):
+        assert abs(np.mean(z < level) - share) < 4 * np.sqrt(share * (1 - share) / len(z))
+
+
+def test_without_lengths_nothing_is_drawn_otherwise_than_before_there_were_any() -> None:
+    metas = write(ARMS, 1, 20)[0]
+    assert [f"{m.request.limb} {m.request.kind} {m.start:.4f} {m.end:.4f}" for m in metas] == GOLDEN
+
+
+def test_a_states_tags_are_asked_for_and_shares_are_not_drawn_beside_them() -> None:
+    states = (("both", "gesture"), ("both", "gesture"), ("both", "fidget"))
+    model = Markov("head", states, ((0.2, 0.4, 0.4),) * 3, positive=1.0, tags=("", "very positive", ""))
+    metas = write(model, 4, 3000)[0]
+    seen = Counter((m.request.kind, m.request.tags) for m in metas)
+    assert set(seen) == {("gesture", ()), ("gesture", ("very", "positive")), ("fidget", ())}
+    for key, share in ((("gesture", ()), 0.2), (("gesture", ("very", "positive")), 0.4)):
+        assert abs(seen[key] / len(metas) - share) < 4 * np.sqrt(share * (1 - share) / len(metas))
