@@ -298,9 +298,9 @@ def _empty_graphs() -> dict[Layer, MetaGraph]:
 class Project:
     """Everything that is saved. roles: corrections, role -> joint name. parts: corrections, joint name -> body part.
 
-    character: path of the GLB to draw, relative to the project file, or None for a stick figure. points: named places to
-    look at, metres. lines: the dialogue an agent calls by id. performances: those kept, by id. tiers: annotation tier -> what
-    it was last read as; labels: its labels -> what they were last taken for (`playback.annotation`). voices: line -> its analysed sound (`playback.life.voice.Voice`), as far as read; never saved.
+    character: path of the GLB to draw, relative to the project file, or None for a stick figure. points: named places to look
+    at, metres. lines: the dialogue an agent calls by id. performances: those kept, by id. tiers: annotation tier -> what it
+    was last read as. voices: line -> its analysed sound (`playback.life.voice.Voice`), as far as read; never saved.
     """
 
     name: str = "untitled"

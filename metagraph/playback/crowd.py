@@ -17,7 +17,7 @@ from metagraph.graph.model import LAYERS, Action, Layer, Project
 from metagraph.motion.clip import Clip
 from metagraph.motion.skeleton import Pose
 from metagraph.playback.composer import Offsets, Rig, rig
-from metagraph.playback.plan import Plan, Rest
+from metagraph.playback.plan import Cue, Plan, Rest
 from metagraph.playback.player import playable
 
 Array = NDArray[Any]
@@ -25,7 +25,8 @@ Array = NDArray[Any]
 # Records of what the loops read; a clip's `first` is its first row in the layer's tables.
 CLIP = np.dtype([("first", "i8"), ("frames", "i8"), ("fps", "f8")])
 REST = np.dtype([(n, "f8") for n in ("start", "fade_start", "fade", "first", "length", "seam", "period")] + [("clip", "i8")])
-CUE = np.dtype([(n, "f8") for n in ("start", "end", "entry", "blend_in", "blend_out")] + [("clip", "i8"), ("mask", "i8")])
+_TIMES = ("start", "end", "entry", "blend_in", "blend_out", "held", "hold", "rate")
+CUE = np.dtype([(n, "f8") for n in _TIMES] + [("clip", "i8"), ("mask", "i8")])
 
 LANES = 16  # joints in a block; crowd_kernels.LANES, which is not imported before it is needed
 SHARED = 128  # characters a thread should have at least, for a second thread to pay
@@ -34,7 +35,7 @@ SHARED = 128  # characters a thread should have at least, for a second thread to
 class Crowd:
     """The characters of one project, one plan each; plans may be shared. Everything is laid out once, when it is made.
 
-    Poses agree with `pose_at` to 1e-5. The first call in a process imports numba, the first ever compiles (seconds).
+    Poses agree with `pose_at` without life layers to 1e-5. The first call in a process imports numba, the first ever compiles (seconds).
     A crowd is for one thread at a time. Raises ValueError when the project has no skeleton.
     """
 
@@ -146,6 +147,11 @@ class _Blocks:
         return out
 
 
+def _held(cue: Cue) -> tuple[float, float, float]:
+    """Return seconds before the hold, seconds of it, and clip seconds a second in it."""
+    return (cue.hold_from - cue.entry, cue.hold, (cue.hold_to - cue.hold_from) / cue.hold) if cue.hold > 0 else (0.0, 0.0, 1.0)
+
+
 class _Tables:
     """One layer of the plans, and the clips they play, laid out flat: what the loops read."""
 
@@ -168,7 +174,7 @@ class _Tables:
             rests += [self._rest(rest) for rest in lane.rests]
             for cue in lane.cues:
                 clip, mask = self._clip(cue.action), self._mask(cue.action)
-                cues.append((cue.start, cue.end, cue.entry, cue.blend_in, cue.blend_out, clip, mask))
+                cues.append((cue.start, cue.end, cue.entry, cue.blend_in, cue.blend_out, *_held(cue), clip, mask))
             rest_at.append(len(rests))
             cue_at.append(len(cues))
         rest_table, cue_table = np.array(rests, REST), np.array(cues, CUE)

@@ -113,6 +113,16 @@ def _ease(x: Number) -> Number:
 
 
 @_compiled
+def _clip_seconds(cue: Any, time: Number) -> Number:
+    """Return the clip seconds a cue shows, its hold stretched."""
+    elapsed = time - cue.start
+    if cue.hold <= 0:
+        return cue.entry + elapsed
+    held = min(max(elapsed - cue.held, 0.0), cue.hold)
+    return cue.entry + elapsed - held + held * cue.rate
+
+
+@_compiled
 def _last_from(starts: Array, low: int, high: int, time: Number) -> int:
     """Return the last place in low..high whose start is not after `time`; low - 1 when there is none."""
     while low < high:
@@ -222,11 +232,11 @@ def add_layer(
         if playing:
             cue = cues[place]
             clip, mask = clips[cue.clip], cue.mask
-            spot = _spot(clip, cue.entry + time - cue.start)
+            spot = _spot(clip, _clip_seconds(cue, time))
             rising = time < cue.start + cue.blend_in
             blending = rising or time >= cue.end - cue.blend_out
             if blending:
-                edge = _spot(clip, cue.entry if rising else cue.entry + cue.end - cue.start)
+                edge = _spot(clip, cue.entry if rising else _clip_seconds(cue, cue.end))
                 up = _ease((time - cue.start) / cue.blend_in) if cue.blend_in > 0 else 1.0
                 down = _ease((cue.end - time) / cue.blend_out) if cue.blend_out > 0 else 1.0
                 lead = np.float32(1 - up * down)

@@ -9,9 +9,12 @@ from typing import Any
 from metagraph.graph.expand import chain
 from metagraph.graph.model import Action, MetaGraph, Project
 from metagraph.playback.choice import pick
-from metagraph.playback.plan import Cue, MetaAction, Outcome, Report, Request, Rest
+from metagraph.playback.phases import LEAST_BLEND, phases
+from metagraph.playback.plan import Cue, MetaAction, Outcome, Past, Report, Request, Rest
 
 FITS = 1e-6  # seconds by which sums of times may be off
+REMEMBERED = 32  # draws of a stance and kind that spacing can look back on
+HURRY = 2.0  # a hold is played at most this many times as fast as it was made
 LOOP_FADE = 0.6  # seconds of crossfade when a long rest changes from one loop of its stance to another
 
 
@@ -23,12 +26,25 @@ class Step:
     hop: str = ""
 
 
+@dataclass(frozen=True, slots=True)
+class Shape:
+    """How an action would play: from `start` on, `length` seconds, at least `shortest`; the rest as in a cue."""
+
+    start: float
+    entry: float
+    length: float
+    shortest: float
+    hold_from: float = 0.0
+    hold_to: float = 0.0
+    hold: float = 0.0
+
+
 @dataclass
 class Performer:
     """One layer being planned, cue after cue. Mutable while planning; nothing of it leaves the planner.
 
-    counts: how often each action was used, times alpha. last: the action used last, by (stance, kind).
-    begun: keys of meta actions whose chain of transitions plays already.
+    uses: how often each action was used. recent: the last draws of each (stance, kind). ended: when each action ended. begun:
+    keys of meta actions whose chain of transitions plays already.
     """
 
     project: Project
@@ -36,19 +52,40 @@ class Performer:
     seed: int
     stance: str
     free: float = 0.0
-    counts: dict[str, float] = field(default_factory=dict)
-    last: dict[tuple[str, str], str] = field(default_factory=dict)
+    uses: dict[str, int] = field(default_factory=dict)
+    recent: dict[tuple[str, str], tuple[str, ...]] = field(default_factory=dict)
+    ended: dict[str, float] = field(default_factory=dict)
     cues: list[Cue] = field(default_factory=list)
     rests: list[Rest] = field(default_factory=list)
     reports: list[Report] = field(default_factory=list)
     begun: frozenset[str] = frozenset()
 
-    def begin(self) -> bool:
+    @classmethod
+    def after(cls, project: Project, graph: MetaGraph, seed: int, begin: str, past: Past, cues: Sequence[Cue]) -> Performer:
+        """Return the performer that stands where cues have been played after a past."""
+        stance = past.stance if past.stance in graph.stances else begin
+        out = cls(project, graph, seed, stance, past.free, dict(past.uses), dict(past.recent), dict(past.ended))
+        for cue in cues:
+            out.note(cue, cue.then if cue.then in graph.stances else begin)
+        return out
+
+    def note(self, cue: Cue, then: str) -> None:
+        """Take a cue as played."""
+        self.cues.append(cue)
+        self.free, self.stance = cue.end, then
+        remember(cue, self.uses, self.recent, self.ended)
+
+    @property
+    def ready(self) -> float:
+        """When the next action may begin at the earliest."""
+        return self.free + (self.project.settings.rest if self.ended else 0.0)
+
+    def begin(self, stance: str) -> bool:
         """Lay the first loop down; return whether the layer can perform at all."""
-        loop = self._loop(self.stance, f"rest/{self.graph.layer}")
+        loop = self._loop(stance, f"rest/{self.graph.layer}")
         if loop is None:
             return False
-        self.rests.append(Rest(self.stance, loop, 0.0, 0.0, 0.0))
+        self.rests.append(Rest(stance, loop, 0.0, 0.0, 0.0))
         return True
 
     def perform(self, metas: Sequence[MetaAction], end: float) -> None:
@@ -56,11 +93,11 @@ class Performer:
         for meta, limit, wish in _bounds(metas):
             if meta.start >= end:
                 return
-            if meta.end <= self.free + FITS and meta.start < self.free and meta.key not in self.begun:
+            if meta.end <= self.ready + FITS and meta.start < self.ready and meta.key not in self.begun:
                 running = f"'{self.cues[-1].action.name}'" if self.cues else "the running action"
                 self._tell(meta, "covered", f"wholly covered by {running}, which plays until {self.free:.2f} s")
                 continue
-            self._realise(meta, max(self.free, meta.start), limit, wish)
+            self._realise(meta, max(self.ready, meta.start), limit, wish)
 
     def _realise(self, meta: MetaAction, now: float, limit: float, wish: float) -> None:
         steps = self._steps(meta)
@@ -69,17 +106,29 @@ class Performer:
         cues: list[Cue] = []
         stance = self.stance
         for step in steps:
-            fitting = [a for a in step.candidates if now + self._shortest(a) <= limit + FITS]
+            shapes = {a.id: self._shape(a, None if step.hop else meta.request, now) for a in step.candidates}
+            fitting = [a for a in step.candidates if shapes[a.id].start + shapes[a.id].shortest <= limit + FITS]
             if not fitting:
                 before = "" if meta.written else " before something more important"
                 self._tell(meta, "no-room", f"nothing fits into the {max(0.0, limit - now):.2f} s{before}")
                 return
-            action = self._draw(fitting, f"{meta.key}/{step.hop}" if step.hop else meta.key)
-            cue = self._cue(action, now, limit, float("inf") if step.hop else wish, stance, meta.key)
+            if not step.hop and meta.request.action is None:
+                warm = [a for a in fitting if self._cooled(a, stance) <= shapes[a.id].start + FITS]
+                if not warm:
+                    soonest = min(self._cooled(a, stance) for a in fitting)
+                    self._tell(meta, "cooling", f"all that fit are cooling down; the first may play again at {soonest:.2f} s")
+                    return
+                fitting = warm
+            action = self._draw(fitting, f"{meta.key}/{step.hop}" if step.hop else meta.key, now)
+            cue = self._cue(action, shapes[action.id], limit, float("inf") if step.hop else wish, stance, meta.key)
             cues.append(cue)
             now, stance = cue.end, cue.then
         for cue in cues:
             self._keep(cue)
+
+    def _cooled(self, action: Action, stance: str) -> float:
+        """Return when an action may be drawn again."""
+        return self.ended[action.id] + action.cooldown if action.cooldown > 0 and action.id in self.ended else float("-inf")
 
     def _steps(self, meta: MetaAction) -> list[Step] | None:
         """Return each action in turn: the transitions to get there, then the action itself; None if impossible or needless."""
@@ -102,12 +151,14 @@ class Performer:
                 return None
             return self._way(meta, request.stance)
         every = [a for a in graph.of(self.stance, request.kind) if self._usable(a)]
+        if request.among:
+            every = [a for a in every if a.id in request.among]
         found = [a for a in every if all(tag in a.tags for tag in request.tags)] if request.tags else every
         exact = [a for a in found if a.limb == request.limb] if request.limb is not None else found
         if meta.written:  # the model's limb and tags are wishes, not orders, nor worth playing the same again
-            again = self.last.get((self.stance, request.kind))
+            again = self.recent.get((self.stance, request.kind), ())[-1:]
             wider = (exact, found, every)
-            exact = next((some for some in wider if any(a.id != again for a in some)), wider[-1])
+            exact = next((some for some in wider if any(a.id not in again for a in some)), wider[-1])
         if not exact:
             name = graph.stances[self.stance].name
             asked = " ".join(x for x in (request.limb or "", *request.tags, request.kind) if x)
@@ -148,38 +199,81 @@ class Performer:
     def _usable(self, action: Action) -> bool:
         return action.likelihood > 0 and self._arrives(action)
 
-    def _shortest(self, action: Action) -> float:
-        """Seconds an action needs at the least: to its earliest exit and its blend out, or all of it."""
+    def _shape(self, action: Action, request: Request | None, now: float) -> Shape:
+        """Return how an action would play for a request from `now` on, or as a step on the way to it."""
         start, end = self.project.span(action)
-        exit_at = action.timing.earliest_exit
-        if exit_at is None:
-            return end - start
-        return min(end - start, max(0.0, exit_at - start) + action.timing.blend_out)
+        begin, entry, hold_from, hold_to, hold = now, start, 0.0, 0.0, 0.0
+        special = request is not None and (request.hold is not None or request.stroke is not None or not request.prepare)
+        if special and request is not None and action.kind == "gesture":
+            found = phases(self.project, action)
+            latest = found.skip(action.timing.blend_in)
+            entry = start if request.prepare else latest
+            if request.stroke is not None:  # wait for the stroke, or catch up with it by cutting the preparation
+                begin = max(now, request.stroke - (found.stroke - entry))
+                entry = min(max(entry, found.stroke - max(0.0, request.stroke - begin)), max(entry, latest))
+            if request.hold is not None:
+                hold_from, hold_to = found.stroke_end, found.relax
+                hold = max(request.hold, (hold_to - hold_from) / HURRY)
+                if hold <= 0:
+                    hold_from = hold_to = 0.0
+        length = end - entry + hold - (hold_to - hold_from)
+        shortest, exit_at = length, action.timing.earliest_exit
+        if exit_at is not None:
+            left = exit_at - entry + (hold - (hold_to - hold_from) if exit_at >= hold_to else 0.0)
+            shortest = min(length, max(0.0, left) + action.timing.blend_out)
+        return Shape(begin, entry, length, shortest, hold_from, hold_to, hold)
 
-    def _draw(self, candidates: list[Action], key: str) -> Action:
-        """Draw with p_k ~ likelihood_k / max(c_k, 1); the one played last in this place is left out where there is another."""
-        if len(candidates) > 1 and self.project.settings.never_twice:
-            first = candidates[0]
-            last = self.last.get((first.stance, first.kind))
-            candidates = [a for a in candidates if a.id != last] or candidates
-        weights = {a.id: a.likelihood / max(self.counts.get(a.id, 0.0), 1.0) for a in candidates}
+    def _draw(self, candidates: list[Action], key: str, now: float) -> Action:
+        """Draw with p_k ~ likelihood_k / max(c_k, 1), leaving out those used too recently as long as any others are left."""
+        candidates = self._spaced(candidates)
+        weights = {a.id: a.likelihood / max(self._count(a.id, now), 1.0) for a in candidates}
         chosen = pick(self.seed, key, "action", weights) if any(w > 0 for w in weights.values()) else candidates[0].id
         return next(a for a in candidates if a.id == chosen)
 
-    def _cue(self, action: Action, now: float, limit: float, wish: float, stance: str, meta: str) -> Cue:
-        start, end = self.project.span(action)
-        length = end - start
+    def _spaced(self, candidates: list[Action]) -> list[Action]:
+        """Leave out what needs more other actions before it plays again; where that leaves nothing, all need one less, and so on."""
+        default = 1 if self.project.settings.never_twice else 0
+        first = candidates[0]
+        before = self.recent.get((first.stance, first.kind), ())
+        if len(candidates) < 2 or not before:
+            return candidates
+        since = {ident: len(before) - 1 - place for place, ident in enumerate(before)}  # how many came after it
+        needs = {a.id: default if a.spacing is None else a.spacing for a in candidates}
+        for less in range(max(needs.values(), default=0) + 1):
+            left = [a for a in candidates if since.get(a.id, REMEMBERED) >= needs[a.id] - less]
+            if left:
+                return left
+        return candidates
+
+    def _count(self, ident: str, now: float) -> float:
+        """Return c_k of section 6.2, alpha times the uses, over the settings' memory."""
+        memory, alpha = self.project.settings.memory, self.project.settings.alpha
+        if memory <= 0:
+            return alpha * self.uses.get(ident, 0)
+        used = 0
+        for cue in reversed(self.cues):
+            if cue.start < now - memory:
+                break
+            used += cue.action.id == ident
+        return alpha * used
+
+    def _cue(self, action: Action, shape: Shape, limit: float, wish: float, stance: str, meta: str) -> Cue:
+        length = shape.length
         if action.timing.earliest_exit is not None:
-            length = min(length, max(self._shortest(action), min(limit, wish) - now))
+            length = min(length, max(shape.shortest, min(limit, wish) - shape.start))
         into, out = max(0.0, action.timing.blend_in), max(0.0, action.timing.blend_out)
+        if shape.entry > self.project.span(action)[0]:
+            into = max(into, LEAST_BLEND)
         squeeze = min(1.0, length / (into + out)) if into + out > 0 else 1.0
         then = action.end_stance if action.kind == "transition" and action.end_stance else stance
-        return Cue(action, now, now + length, start, into * squeeze, out * squeeze, stance, then, meta)
+        end = shape.start + length
+        return Cue(
+            action, shape.start, end, shape.entry, into * squeeze, out * squeeze, stance, then, meta,
+            shape.hold_from, shape.hold_to, shape.hold,
+        )  # fmt: skip
 
     def _keep(self, cue: Cue) -> None:
-        self.cues.append(cue)
-        self.free, self.stance = cue.end, cue.then
-        count(self.counts, self.last, cue, self.project.settings.alpha)
+        self.note(cue, cue.then)
         loop = self._loop(cue.then, cue.meta)
         if loop is not None:
             # The loop begins anew under the action, so that the action's last pose meets the loop's first. Where the
@@ -238,10 +332,12 @@ def _bounds(metas: Sequence[MetaAction]) -> list[tuple[MetaAction, float, float]
     return out[::-1]
 
 
-def count(counts: dict[str, float], last: dict[tuple[str, str], str], cue: Cue, alpha: float) -> None:
-    """Note that an action was used: c_k += alpha."""
-    counts[cue.action.id] = counts.get(cue.action.id, 0.0) + alpha
-    last[(cue.stance, cue.action.kind)] = cue.action.id
+def remember(cue: Cue, uses: dict[str, int], recent: dict[tuple[str, str], tuple[str, ...]], ended: dict[str, float]) -> None:
+    """Note that a cue was played: how often its action was, lately, and until when."""
+    ident, node = cue.action.id, (cue.stance, cue.action.kind)
+    uses[ident] = uses.get(ident, 0) + 1
+    recent[node] = (*recent.get(node, ())[1 - REMEMBERED :], ident)
+    ended[ident] = cue.end
 
 
 def _usable_graph(graph: MetaGraph) -> MetaGraph:

@@ -12,6 +12,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from metagraph.graph.model import LAYERS, Action, Kind, Layer, Limb
+from metagraph.playback.life.schedule import Schedule
+from metagraph.playback.life.track import Track
 
 Array = NDArray[Any]
 
@@ -26,7 +28,9 @@ class Request:
     id: unique; it keys the random draws. start: seconds. duration: how long the activity is wanted, None for one action.
     action: id of a specific action. tags: all of them must be on the action. limb: which arm. stance: id of the stance to
     go to (kind "transition"). priority: higher wins. resume: whether, when something more important cuts it, its
-    remainder goes on afterwards.
+    remainder goes on afterwards. stroke: when a gesture's stroke should come; `start` is then the earliest it may begin.
+    hold: seconds its hold should last, None for as long as it was made. prepare: whether its preparation plays. among: ids
+    of the only actions it may be, any where empty.
     """
 
     id: str
@@ -40,10 +44,23 @@ class Request:
     stance: str | None = None
     priority: int = ASKED
     resume: bool = False
+    stroke: float | None = None
+    hold: float | None = None
+    prepare: bool = True
+    among: tuple[str, ...] = ()
 
     def __post_init__(self) -> None:
-        if not (isfinite(self.start) and isfinite(self.duration or 0.0)):
-            raise ValueError(f"request '{self.id}': start and duration must be finite numbers of seconds")
+        if not all(isfinite(x or 0.0) for x in (self.start, self.duration, self.stroke, self.hold)):
+            raise ValueError(f"request '{self.id}': its times must be finite numbers of seconds")
+
+
+@dataclass(frozen=True, slots=True)
+class Cursor:
+    """Where writing stands: before meta action `number`, in state number `state` (-1: none yet), which ended at `time` seconds."""
+
+    number: int = 0
+    state: int = -1
+    time: float = 0.0
 
 
 @dataclass(frozen=True, slots=True)
@@ -66,10 +83,11 @@ class MetaAction:
 
 @dataclass(frozen=True, slots=True)
 class Cue:
-    """One action in the plan. It plays clip seconds `entry`..`entry + (end - start)` during `start`..`end`.
+    """One action in the plan. It plays its clip from `entry` on during `start`..`end`, at its own speed but for its hold.
 
-    blend_in, blend_out: seconds, fitting inside the cue. stance: before it; then: the stance it leaves the layer in.
-    meta: key of the meta action it realises.
+    hold_from, hold_to: clip seconds of the hold, which takes `hold` seconds; 0, 0, 0 where it is not stretched. blend_in,
+    blend_out: seconds, fitting inside the cue. stance: before it; then: the stance it leaves the layer in. meta: key of the meta
+    action it realises.
     """
 
     action: Action
@@ -81,6 +99,23 @@ class Cue:
     stance: str
     then: str
     meta: str
+    hold_from: float = 0.0
+    hold_to: float = 0.0
+    hold: float = 0.0
+
+    def clip_seconds(self, times: Any) -> Any:
+        """Return the clip seconds shown at `times`, a number or an array `[...]` within the cue."""
+        elapsed = times - self.start
+        if self.hold <= 0:
+            return self.entry + elapsed
+        before, natural = self.hold_from - self.entry, self.hold_to - self.hold_from
+        held = np.clip(elapsed - before, 0.0, self.hold)
+        return self.entry + elapsed - held + held * (natural / self.hold)
+
+    @property
+    def last(self) -> float:
+        """Clip seconds shown at its end."""
+        return float(self.clip_seconds(self.end))
 
 
 @dataclass(frozen=True, slots=True)
@@ -98,7 +133,20 @@ class Rest:
 
 
 Outcome = Literal[
-    "late", "cut", "resumed", "covered", "no-room", "no-candidate", "no-way", "no-stance", "unknown-action", "past", "already-there"
+    "late",
+    "cut",
+    "resumed",
+    "covered",
+    "no-room",
+    "no-candidate",
+    "no-way",
+    "no-stance",
+    "unknown-action",
+    "past",
+    "already-there",
+    "cooling",
+    "not-understood",
+    "withdrawn",
 ]
 TEMPORAL: frozenset[Outcome] = frozenset(("late", "cut", "resumed", "past"))  # told by temporal replanning, once
 
@@ -116,14 +164,31 @@ class Report:
     written: bool = False
 
 
+@dataclass(frozen=True, slots=True)
+class Past:
+    """What planning on needs of cues that were forgotten. free: when the last ended; stance: in which. uses: how often
+    each action was used. recent: the actions used last, by (stance, kind), the latest at the end. ended: when each ended last."""
+
+    free: float = 0.0
+    stance: str = ""
+    uses: Mapping[str, int] = field(default_factory=dict)
+    recent: Mapping[tuple[str, str], tuple[str, ...]] = field(default_factory=dict)
+    ended: Mapping[str, float] = field(default_factory=dict)
+
+
 @dataclass(frozen=True)
 class LayerPlan:
-    """cues never overlap and ascend; rests ascend by fade_start, the first covering everything before."""
+    """cues never overlap and ascend; rests ascend by fade_start, the first covering everything before.
+
+    past: what came before the first cue, where that was forgotten. cursor: where the Markov model writes on.
+    """
 
     layer: Layer
     metas: tuple[MetaAction, ...] = ()
     cues: tuple[Cue, ...] = ()
     rests: tuple[Rest, ...] = ()
+    past: Past = Past()
+    cursor: Cursor = Cursor()
 
     @cached_property
     def starts(self) -> Array:
@@ -175,10 +240,15 @@ def _empty() -> dict[Layer, LayerPlan]:
 
 @dataclass(frozen=True)
 class Plan:
-    """The specific actions of every layer from 0 to `end` seconds, and what became of requests that could not be met."""
+    """The specific actions of every layer from 0 to `end` seconds, and what became of requests that could not be met.
+
+    track: what was asked of the life layers; life: what they do. Both begin where the plan was last cut (`since`).
+    """
 
     seed: int
     end: float
     layers: Mapping[Layer, LayerPlan] = field(default_factory=_empty)
     reports: tuple[Report, ...] = ()
     requests: tuple[Request, ...] = ()
+    track: Track = field(default_factory=Track)
+    life: Schedule = field(default_factory=Schedule)

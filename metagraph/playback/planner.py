@@ -10,7 +10,8 @@ from collections.abc import Iterable, Mapping
 
 from metagraph.graph.model import LAYERS, Layer, MetaGraph, Project
 from metagraph.playback import markov
-from metagraph.playback.pick import Performer, count
+from metagraph.playback.life.schedule import schedule
+from metagraph.playback.pick import FITS, Performer
 from metagraph.playback.plan import TEMPORAL, LayerPlan, MetaAction, Plan, Report, Request
 from metagraph.playback.replan import delay, replan
 
@@ -42,14 +43,15 @@ def extend(
     end: float,
     stances: Mapping[Layer, str] | None = None,
     idle: bool = True,
+    withdrawn: frozenset[str] = frozenset(),
 ) -> Plan:
-    """Return the plan with new requests worked in and the horizon moved to `end`.
+    """Return the plan with new requests worked in, others withdrawn, and the horizon moved to `end`.
 
     What starts before `now` stays exactly as it was. What was planned for later is taken back to its meta actions,
-    merged with the new ones and planned again.
+    merged with the new ones and planned again. An extension in many steps gives what one in a single step does.
     """
     fresh = tuple({r.id: r for r in requests}.values())  # of two with one id the later counts
-    again = {r.id for r in fresh}
+    again = {r.id for r in fresh} | withdrawn
     layers: dict[Layer, LayerPlan] = {}
     reports: list[Report] = []
     for layer in LAYERS:
@@ -58,11 +60,14 @@ def extend(
         layers[layer], told = _extend_layer(project, plan, layer, now, asked, again, end, begin, idle)
         reports += told
     kept = tuple(r for r in plan.requests if r.id not in again)
-    return Plan(plan.seed, end, layers, tuple(sorted(reports, key=lambda r: r.at)), kept + fresh)
+    life = schedule(project.life, plan.track, project.voices, plan.seed, end, plan.life, now)
+    return Plan(plan.seed, end, layers, tuple(sorted(reports, key=lambda r: r.at)), kept + fresh, plan.track, life)
 
 
 def _meta(request: Request) -> MetaAction:
     length = WINDOW if request.duration is None else max(0.0, request.duration)
+    if request.stroke is not None:
+        length = max(length, request.stroke - request.start + FITS)
     return MetaAction(request, request.start, request.start + length)
 
 
@@ -79,7 +84,6 @@ def _extend_layer(
 ) -> tuple[LayerPlan, list[Report]]:
     """Return a layer's plan and its reports, old and new. again: requests that replace what was asked before."""
     graph, old = project.graphs[layer], plan.layers[layer]
-    performer = Performer(project, graph, plan.seed, begin or "")
     kept = [cue for cue in old.cues if cue.start < now]
     played = {cue.meta for cue in kept}
     waiting = {cue.meta for cue in old.cues[len(kept) :]}  # also those whose chain of transitions has begun
@@ -91,32 +95,30 @@ def _extend_layer(
         r for r in plan.reports
         if r.layer == layer and r.request not in again and (r.outcome in TEMPORAL or (r.request, r.at) not in planned_again)
     ]  # fmt: skip
-    if not begin or not performer.begin():
+    performer = Performer.after(project, graph, plan.seed, begin or "", old.past, kept)
+    if not begin or not performer.begin(begin):
         why = f"the {layer} layer has no stance with a loop to begin in"
         reports += [Report(m.request.id, "no-stance", why, layer, m.start) for m in (*future, *asked) if not m.written]
-        return LayerPlan(layer, (*done, *future, *asked)), reports
+        return LayerPlan(layer, (*done, *future, *asked), past=old.past, cursor=old.cursor), reports
     if old.rests and now > 0:
         begun = {cue.end - cue.blend_out for cue in kept}
         performer.rests = [r for r in old.rests if r.fade_start < now or r.start in begun]
-    for cue in kept:
-        performer.cues.append(cue)
-        performer.free, performer.stance = cue.end, cue.then if cue.then in graph.stances else begin
-        count(performer.counts, performer.last, cue, project.settings.alpha)
     performer.begun = frozenset(played & waiting)
-    performer.free = max(now, performer.free)
+    performer.free = max(now - (performer.ready - performer.free), performer.free)
+    cursor = old.cursor
     if idle:
         kinds = {kind for _, kind in graph.index}
-        written, _ = markov.write(markov.model(project, layer), plan.seed, end, kinds)
-        future += [m for m in written if m.start >= max(plan.end, now)]
-    asked, delayed = delay(asked, performer.free, project.settings)
+        written, cursor = markov.write(markov.model(project, layer), plan.seed, end, kinds, old.cursor)
+        future += [m for m in written if m.start >= now]
+    asked, delayed = delay(asked, performer.ready, project.settings)
     placed, told = replan([*future, *asked], project.settings)
     performer.perform(placed, end)
     performer.vary_rests(end)
-    whole = LayerPlan(layer, (*done, *placed), tuple(performer.cues), tuple(performer.rests))
+    whole = LayerPlan(layer, (*done, *placed), tuple(performer.cues), tuple(performer.rests), old.past, cursor)
     return whole, [*reports, *delayed, *told, *performer.reports]
 
 
 def _begin(graph: MetaGraph, old: LayerPlan, stance: str | None) -> str | None:
     """Return the stance a layer begins in: as it did before, as asked, the graph's start, or the first that has a loop."""
-    wishes = [old.rests[0].stance if old.rests else None, stance, graph.start, *graph.stances]
+    wishes = [old.past.stance, old.rests[0].stance if old.rests else None, stance, graph.start, *graph.stances]
     return next((s for s in wishes if s is not None and s in graph.stances and graph.of(s, "stance")), None)

@@ -16,6 +16,7 @@ from metagraph.motion import rotation
 from metagraph.motion.clip import Clip
 from metagraph.motion.skeleton import Pose
 from metagraph.playback.composer import Ground, Reach, rig
+from metagraph.playback.life.evaluate import enliven, face_weights
 from metagraph.playback.plan import Cue, LayerPlan, Plan, Rest
 
 Array = NDArray[Any]
@@ -27,11 +28,11 @@ def ease(x: Array) -> Array:
     return np.asarray(x * x * (3 - 2 * x))
 
 
-def pose_at(plan: Plan, project: Project, seconds: Any) -> Pose:
+def pose_at(plan: Plan, project: Project, seconds: Any, alive: bool = True) -> Pose:
     """Return the composed pose at `seconds`, a number or an array `[...]`: rotations `[..., J, 4]`, translations `[..., J, 3]`.
 
-    Times before 0 and after the plan's end rest in the first and last stance. Actions whose clip is missing show their stance.
-    Raises ValueError when the project has no skeleton.
+    alive: with the life layers, as far as the project has them on. Times before 0 and after the plan's end rest in the first
+    and last stance. Actions whose clip is missing show their stance. Raises ValueError when the project has no skeleton.
     """
     at = np.asarray(seconds, np.float64)
     times = at.reshape(-1)
@@ -41,6 +42,8 @@ def pose_at(plan: Plan, project: Project, seconds: Any) -> Pose:
         if plan.layers[layer].rests and len(times):
             layers[layer] = _layer(plan.layers[layer], project, frame.ground, frame.reach[layer], times)
     pose = frame.compose(layers, len(times))
+    if alive and project.life.on and plan.life.end > 0 and len(times):
+        pose = enliven(pose, project, plan.life, plan.track, times)
     shape = (*at.shape, len(frame.ground.skeleton))
     return Pose(pose.rotations.reshape(*shape, 4), pose.translations.reshape(*shape, 3))
 
@@ -124,14 +127,14 @@ def _together(
     motion = playable(project, cue.action) if cue is not None else None
     if cue is None or motion is None:
         return _stance(plan, project, ground, reach, times, current, fading)
-    shown = _sample(ground, reach, motion, cue.entry + times - cue.start)
+    shown = _sample(ground, reach, motion, cue.clip_seconds(times))
     mask = anatomy.mask(project, cue.action)
     still = np.flatnonzero(mask[reach.joints] == 0) if mask is not None else ()
     if phase == _FULL and len(still) == 0:
         return shown
     stance = _stance(plan, project, ground, reach, times, current, fading)
     if phase != _FULL:
-        edge = cue.entry if phase == _ENTERING else cue.entry + cue.end - cue.start
+        edge = cue.entry if phase == _ENTERING else cue.last
         shown = _lead(shown, stance, _sample(ground, reach, motion, np.array([edge])), 1 - cue_weight(cue, times))
     for part, rest in zip(shown, stance, strict=True):
         part[:, still] = rest[:, still]
@@ -201,8 +204,8 @@ def _sample(ground: Ground, reach: Reach, clip: Clip, seconds: Array) -> Sample:
     return mixed, away
 
 
-def morphs_at(plan: Plan, project: Project, seconds: float) -> dict[str, float]:
-    """Return morph target weights, 0..1, at one time: the layers' sums."""
+def morphs_at(plan: Plan, project: Project, seconds: float, alive: bool = True) -> dict[str, float]:
+    """Return morph target weights, 0..1, at one time: the layers' sums, and with `alive` the life layers' on top."""
     out: dict[str, float] = {}
     for layer in LAYERS:
         of = plan.layers[layer]
@@ -211,7 +214,7 @@ def morphs_at(plan: Plan, project: Project, seconds: float) -> dict[str, float]:
         shares: list[tuple[Action, float, float]] = []
         weight = float(cue_weight(cue, np.array([seconds]))[0]) if cue is not None else 0.0
         if cue is not None:
-            shares.append((cue.action, cue.entry + seconds - cue.start, weight))
+            shares.append((cue.action, float(cue.clip_seconds(seconds)), weight))
         if rest is not None:
             shares.append((rest.action, float(loop_seconds(project, rest.action, np.array([seconds - rest.start]))[0][0]), 1 - weight))
         for action, at, share in shares:
@@ -219,4 +222,7 @@ def morphs_at(plan: Plan, project: Project, seconds: float) -> dict[str, float]:
             if motion is not None and share > 0:
                 for name, value in motion.morphs_at(at).items():
                     out[name] = out.get(name, 0.0) + share * value
+    if alive and project.life.on and plan.life.end > 0:
+        for name, value in face_weights(project, plan.life, plan.track, seconds).items():
+            out[name] = out.get(name, 0.0) + value
     return {name: min(1.0, max(0.0, value)) for name, value in out.items()}

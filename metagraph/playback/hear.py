@@ -1,0 +1,149 @@
+"""Performing what is asked, all at once or while it comes in.
+
+`perform` plans a whole performance; `hear` works into a running plan what has just been asked. Both are one function: a
+performance whose asks say when they became known (`told`) is planned through the same steps as it was live.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Mapping, Sequence
+from dataclasses import dataclass, replace
+from typing import Literal
+
+import msgspec
+
+from metagraph.graph.asks import AnyAsk
+from metagraph.graph.model import Layer, Project
+from metagraph.playback.pick import remember
+from metagraph.playback.plan import Cue, LayerPlan, Past, Plan, Report
+from metagraph.playback.planner import extend
+from metagraph.playback.understand import understand
+
+State = Literal["planned", "late", "refused", "done"]
+
+
+def perform(
+    project: Project,
+    asks: Iterable[AnyAsk],
+    end: float,
+    seed: int | None = None,
+    stances: Mapping[Layer, str] | None = None,
+    idle: bool = True,
+) -> Plan:
+    """Plan a performance from 0 to `end` seconds. Arguments as for `make_plan`."""
+    groups: dict[float, list[AnyAsk]] = {0.0: []}
+    for number, ask in enumerate(asks):
+        named = ask if ask.id else msgspec.structs.replace(ask, id=f"ask{number}")
+        groups.setdefault(ask.told or 0.0, []).append(named)
+    plan = Plan(project.settings.seed if seed is None else seed, 0.0)
+    for told in sorted(groups):
+        plan = hear(project, plan, told, groups[told], end, stances, idle)
+    return plan
+
+
+def hear(
+    project: Project,
+    plan: Plan,
+    now: float,
+    asks: Sequence[AnyAsk],
+    end: float,
+    stances: Mapping[Layer, str] | None = None,
+    idle: bool = True,
+) -> Plan:
+    """Return the plan with asks worked in that became known at `now`, and the horizon moved to `end`.
+
+    What begins before now + the settings' lookahead stays as it was, but at the very beginning, when nothing has been shown.
+    Asks need ids; of two with one id the later counts.
+    """
+    fixed = now + project.settings.lookahead if now > 0 else 0.0
+    meant = understand(project, asks, fixed)
+    every = "" in meant.withdrawn
+    gone = meant.withdrawn | {r.id for r in meant.requests} | {i.id for i in meant.items} | {r.request for r in meant.refused}
+    asked_before = {r.id for r in plan.requests} | {i.id for i in plan.track.items}
+    withdrawn = asked_before if every else {i for i in asked_before if any(_belongs(i, to) for to in gone)}
+    track = plan.track.without(withdrawn, fixed).plus(meant.items)
+    plan = replace(plan, track=track)
+    after = extend(project, plan, fixed, meant.requests, end, stances, idle, frozenset(withdrawn))
+    return replace(after, reports=(*after.reports, *meant.refused)) if meant.refused else after
+
+
+def _belongs(ident: str, owner: str) -> bool:
+    """Whether a request was made by an ask: its own, or one of its parts."""
+    return ident == owner or (ident.startswith(owner + ".") and ident[len(owner) + 1 :].replace(".", "").isdigit())
+
+
+@dataclass(frozen=True, slots=True)
+class Answer:
+    """What became of an ask. at, until: seconds, when it plays; None when it will not. what: the actions or words."""
+
+    id: str
+    state: State
+    at: float | None
+    until: float | None
+    what: tuple[str, ...]
+    why: str
+
+
+def answer(plan: Plan, ident: str) -> Answer:
+    """Say what a plan does about an ask: when it will play, or why it will not."""
+    cues = [c for layer in plan.layers.values() for c in layer.cues if _belongs(c.meta.partition("+")[0], ident)]
+    items = [i for i in plan.track.items if _belongs(i.id, ident)]
+    told = [r for r in plan.reports if _belongs(r.request, ident)]
+    why = "; ".join(dict.fromkeys(r.message for r in told))
+    if cues or items:
+        starts = [c.start for c in cues] + [i.start for i in items]
+        ends = [c.end for c in cues] + [getattr(i, "end", i.start) for i in items]
+        late = any(r.outcome in ("late", "resumed") for r in told)
+        what = (*(c.action.name for c in cues), *(_words(i) for i in items))
+        return Answer(ident, "late" if late else "planned", min(starts), max(ends), what, why)
+    if any(r.outcome == "already-there" for r in told):
+        return Answer(ident, "done", None, None, (), why)
+    waiting = [m for layer in plan.layers.values() for m in layer.metas if _belongs(m.request.id, ident) and m.start >= plan.end]
+    if waiting and not told:
+        return Answer(ident, "planned", waiting[0].start, None, (), "chosen when its time is nearer")
+    return Answer(ident, "refused", None, None, (), why or "nothing came of it")
+
+
+def _words(item: object) -> str:
+    name = type(item).__name__
+    return {"LookAt": "look", "Speech": "speech", "ModeFrom": "mode", "PlaceFrom": "place", "BlinkAt": "blink"}[name]
+
+
+def reports_of(plan: Plan, ident: str) -> tuple[Report, ...]:
+    """Return all that was told about an ask."""
+    return tuple(r for r in plan.reports if _belongs(r.request, ident))
+
+
+def since(plan: Plan, seconds: float) -> Plan:
+    """Return a running plan without what ended before `seconds`; what is planned on from it stays as it would have been.
+
+    Poses before `seconds` are lost. What must not be forgotten are the settings' memory (600 s at most) and the last draws.
+    """
+    layers = {layer: _since(of, seconds) for layer, of in plan.layers.items()}
+    known = {m.request.id for of in layers.values() for m in of.metas}
+    return replace(
+        plan,
+        layers=layers,
+        reports=tuple(r for r in plan.reports if r.at >= seconds),
+        requests=tuple(r for r in plan.requests if r.start >= seconds or r.id in known),
+        track=plan.track.since(seconds),
+        life=plan.life.since(seconds),
+    )
+
+
+def _since(plan: LayerPlan, seconds: float) -> LayerPlan:
+    gone = next((n for n, cue in enumerate(plan.cues) if cue.end >= seconds), len(plan.cues))
+    rests = [n for n, rest in enumerate(plan.rests) if rest.fade_start + rest.fade <= seconds]
+    cues = plan.cues[gone:]
+    played = {cue.meta for cue in cues}
+    metas = tuple(m for m in plan.metas if m.end >= seconds or m.key in played)
+    return LayerPlan(plan.layer, metas, cues, plan.rests[rests[-1] if rests else 0 :], _past(plan, plan.cues[:gone]), plan.cursor)
+
+
+def _past(plan: LayerPlan, gone: tuple[Cue, ...]) -> Past:
+    if not gone:
+        return plan.past
+    uses, recent, ended = dict(plan.past.uses), dict(plan.past.recent), dict(plan.past.ended)
+    for cue in gone:
+        remember(cue, uses, recent, ended)
+    return Past(gone[-1].end, gone[-1].then, uses, recent, ended)

@@ -1,0 +1,172 @@
+"""A gesture's phases: preparation, stroke, hold, retraction (Kendon; BML's ready, stroke-end and relax), found from its motion.
+
+The speed of what moves - the hands seen from the chest, the head seen from the hips, the trunk - falls into bouts parted by
+rests and by clear slowings. The last bout is the retraction, the rest before it the hold, the first bout before the stroke
+the preparation. Where a gesture is one bout, it prepares until halfway out and retracts from where it is farthest.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from functools import lru_cache
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from metagraph.graph import anatomy
+from metagraph.graph.model import Action, Layer, Project
+from metagraph.motion.clip import Clip
+
+Array = NDArray[Any]
+
+RESTING = 0.1  # of the way from the least to the greatest speed: below is rest (Yang et al., section 3.1)
+SLOWING = 0.5  # a slowing to less than this share of the slower peak beside it parts two bouts
+SMOOTH = 0.06  # seconds, standard deviation of the filter on speeds
+SHORTEST = 0.08  # seconds of a bout or rest worth the name
+LEAST_BLEND = 0.25  # seconds in which a gesture that skips its preparation comes in
+
+
+@dataclass(frozen=True, slots=True)
+class Phases:
+    """Clip seconds, ascending: start, ready (preparation ends), stroke (its peak), stroke_end (the hold begins), relax (the
+    hold ends), end."""
+
+    start: float
+    ready: float
+    stroke: float
+    stroke_end: float
+    relax: float
+    end: float
+
+    def skip(self, blend_in: float) -> float:
+        """Return where a gesture begins that skips its preparation: as late as it can blend in and be ready."""
+        return max(self.start, self.ready - max(blend_in, LEAST_BLEND))
+
+
+def phases(project: Project, action: Action) -> Phases:
+    """Return an action's phases: what its timing says, and the rest as found; the middle of it where the clip is missing."""
+    start, end = project.span(action)
+    timing = action.timing
+    entry = project.clips.get(action.clip)
+    motion = entry.motion if entry is not None else None
+    if motion is None or motion.frames < 4 or end - start < 4 / motion.fps:
+        middle = (start + end) / 2
+        found = Phases(start, middle, middle, middle, middle, end)
+    else:
+        movers, seen_from = _movers(project, motion, action.layer, action.limb)
+        found = _found(motion, movers, seen_from, start, end)
+    ready = _within(timing.ready, found.ready, start, end)
+    stroke = _within(timing.stroke, max(ready, found.stroke), start, end)
+    stroke_end = _within(timing.stroke_end, max(stroke, found.stroke_end), start, end)
+    relax = _within(timing.relax, max(stroke_end, found.relax), start, end)
+    ready, stroke_end = min(ready, stroke), max(stroke_end, stroke)
+    return Phases(start, ready, stroke, stroke_end, max(relax, stroke_end), end)
+
+
+def _within(own: float | None, found: float, start: float, end: float) -> float:
+    return min(max(found if own is None else own, start), end)
+
+
+def _movers(project: Project, motion: Clip, layer: Layer, limb: str) -> tuple[tuple[int, ...], int]:
+    """Return the joints that make the gesture and the joint they are seen from."""
+    roles = anatomy.roles(project) if motion.skeleton == project.skeleton else {}
+    if layer == "arms":
+        names: Sequence[str] = [f"{side}_hand" for side in ("left", "right") if limb in (side, "both")]
+        ground: Sequence[str] = ("upper_chest", "chest", "spine", "hips")
+    elif layer == "head":
+        names, ground = ("head",), ("upper_chest", "chest", "spine", "hips")
+    else:
+        names, ground = ("upper_chest", "chest", "hips", "left_foot", "right_foot"), ()
+    movers = tuple(roles[n] for n in names if n in roles)
+    seen_from = next((roles[g] for g in ground if g in roles), -1)
+    return movers or tuple(range(len(motion.skeleton))), seen_from
+
+
+@lru_cache(maxsize=4096)
+def _found(motion: Clip, movers: tuple[int, ...], seen_from: int, start: float, end: float) -> Phases:
+    first, last = int(np.ceil(start * motion.fps)), int(np.floor(end * motion.fps + 1e-6))
+    track = _track(motion, movers, seen_from)[first : last + 1]
+    speed, away = _speed(track, motion.fps), np.linalg.norm(track - track[0], axis=-1).max(-1)
+    times = start + np.arange(len(track)) / motion.fps
+    bouts = _bouts(speed, motion.fps)
+    peak = int(np.argmax(speed))
+    if len(bouts) == 0 or away.max() < 1e-4:
+        middle = (start + end) / 2
+        return Phases(start, middle, float(times[peak]), middle, middle, end)
+    if len(bouts) == 1:
+        farthest = max(int(np.argmax(away)), 1)
+        ready = int(np.argmax(away >= away[farthest] / 2))
+        stroke = int(np.argmax(speed[: farthest + 1]))
+        return _of(times, start, end, min(ready, stroke), stroke, farthest, farthest)
+    (_, gone), (back, _) = bouts[-2], bouts[-1]
+    if len(bouts) == 2:
+        before = bouts[0]
+        top = before[0] + int(np.argmax(speed[before[0] : before[1] + 1]))
+        ready = int(np.argmax(away >= away[: gone + 1].max() / 2))
+        return _of(times, start, end, min(ready, top), top, gone, back)
+    ready = bouts[1][0]
+    stroke = ready + int(np.argmax(speed[ready : gone + 1]))
+    return _of(times, start, end, ready, stroke, gone, back)
+
+
+def _of(times: Array, start: float, end: float, ready: int, stroke: int, gone: int, back: int) -> Phases:
+    at = [float(times[min(max(i, 0), len(times) - 1)]) for i in (ready, stroke, gone, back)]
+    return Phases(start, at[0], at[1], max(at[1], at[2]), max(at[1], at[2], at[3]), end)
+
+
+@lru_cache(maxsize=512)
+def _track(motion: Clip, movers: tuple[int, ...], seen_from: int) -> Array:
+    """Return where the joints are `[F, n, 3]`, metres, in the frame of the joint they are seen from, or of the clip."""
+    from metagraph.motion import rotation
+
+    turns, places = motion.skeleton.globals(motion.poses())
+    chosen = places[:, list(movers)]
+    if seen_from >= 0:
+        chosen = rotation.rotate(rotation.conjugate(turns[:, seen_from])[:, None], chosen - places[:, seen_from, None])
+    return np.asarray(chosen, np.float64)
+
+
+def _speed(track: Array, fps: float) -> Array:
+    """Return `[F]` the fastest joint's speed, metres a second, smoothed."""
+    speed = np.linalg.norm(np.gradient(track, 1 / fps, axis=0), axis=-1).max(-1)
+    reach = max(1, round(3 * SMOOTH * fps))
+    kernel = np.exp(-0.5 * (np.arange(-reach, reach + 1) / (SMOOTH * fps)) ** 2)
+    padded = np.pad(speed, reach, mode="edge")
+    return np.asarray(np.convolve(padded, kernel / kernel.sum(), "valid"))
+
+
+def _bouts(speed: Array, fps: float) -> list[tuple[int, int]]:
+    """Return first and last frame of each bout of movement, in order."""
+    low, high = float(speed.min()), float(speed.max())
+    if high - low < 1e-4:
+        return []
+    moving = speed >= low + RESTING * (high - low)
+    edges = np.flatnonzero(np.diff(np.concatenate(([0], moving.astype(int), [0]))))
+    runs = [(int(a), int(b) - 1) for a, b in edges.reshape(-1, 2)]
+    least = max(1, round(SHORTEST * fps))
+    merged: list[tuple[int, int]] = []
+    for run in runs:
+        if merged and run[0] - merged[-1][1] <= least:
+            merged[-1] = (merged[-1][0], run[1])
+        else:
+            merged.append(run)
+    out: list[tuple[int, int]] = []
+    for a, b in merged:
+        if b - a + 1 >= least:
+            out += _parted(speed, a, b, least)
+    return out
+
+
+def _parted(speed: Array, a: int, b: int, least: int) -> list[tuple[int, int]]:
+    """Part a bout at its clearest slowing, and its parts in turn."""
+    inner = speed[a : b + 1]
+    left, right = np.maximum.accumulate(inner), np.maximum.accumulate(inner[::-1])[::-1]
+    depth = inner / np.maximum(np.minimum(left, right), 1e-9)
+    if len(inner) <= 2 * least:
+        return [(a, b)]
+    place = least + int(np.argmin(depth[least : len(inner) - least]))
+    if depth[place] >= SLOWING:
+        return [(a, b)]
+    return [*_parted(speed, a, a + place, least), *_parted(speed, a + place, b, least)]

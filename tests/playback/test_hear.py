@@ -1,0 +1,195 @@
+"""Asks at any level, all at once or as they come in: the same performance, and an answer to each."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import replace
+from typing import Any
+
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+from metagraph.graph import asks as a
+from metagraph.graph.model import LAYERS, Project
+from metagraph.playback.hear import answer, hear, perform, since
+from metagraph.playback.plan import Plan
+from metagraph.playback.player import pose_at
+
+END = 30.0
+_SAMPLE: list[Project] = []
+
+
+@pytest.fixture(autouse=True, scope="module")
+def _sample(sample: Project) -> None:
+    _SAMPLE[:] = [sample]
+
+
+def shown(plan: Plan) -> Any:
+    return {layer: (plan.layers[layer].cues, plan.layers[layer].rests) for layer in LAYERS}, plan.life
+
+
+some_asks = st.lists(
+    st.one_of(
+        st.builds(a.Gesture, layer=st.sampled_from(LAYERS), tags=st.sampled_from([(), ("positive",), ("beat",)]),
+                  at=st.floats(0, 25).map(lambda x: round(x, 2)), priority=st.integers(0, 3), hold=st.sampled_from([None, 0.0, 2.5]),
+                  prepare=st.booleans(), resume=st.booleans(), duration=st.sampled_from([None, 4.0])),
+        st.builds(a.Gesture, stroke=st.floats(0, 25).map(lambda x: round(x, 2)), limb=st.sampled_from([None, "left", "right"])),
+        st.builds(a.Go, stance=st.sampled_from(["on hips", "arms crossed", "head tilt left", "weight left"]),
+                  at=st.floats(0, 25).map(lambda x: round(x, 2)), priority=st.integers(1, 2)),
+        st.builds(a.Nod, at=st.floats(0, 25).map(lambda x: round(x, 2))),
+        st.builds(a.Say, text=st.just("Well, I would not say so."), at=st.floats(0, 25).map(lambda x: round(x, 2))),
+        st.builds(a.Look, to=st.just((1.0, 1.2, 2.0)), at=st.floats(0, 25).map(lambda x: round(x, 2)), duration=st.just(2.0)),
+    ),
+    max_size=8,
+)  # fmt: skip
+
+
+def in_ticks(project: Project, asks: list[Any], end: float, tick: float, ahead: float = 8.0, forget: float | None = None) -> list[Plan]:
+    """Play live: the plan at every tick, asks heard when they are told."""
+    waiting = sorted(((ask.told or 0.0), n, ask) for n, ask in enumerate(asks))
+    plan, out, now = Plan(project.settings.seed, 0.0), [], 0.0
+    for n in range(math.ceil(end / tick) + 1):
+        now = n * tick
+        groups: dict[float, list[Any]] = {}
+        while waiting and waiting[0][0] <= now:
+            told, k, ask = waiting.pop(0)
+            groups.setdefault(told, []).append(a.msgspec.structs.replace(ask, id=ask.id or f"ask{k}"))
+        for told, some in groups.items():
+            plan = hear(project, plan, told, some, max(plan.end, told + ahead))
+        if plan.end < now + ahead:
+            plan = hear(project, plan, now, [], now + ahead)
+        if forget is not None:
+            plan = since(plan, now - forget)
+        out.append(plan)
+    return out
+
+
+@settings(max_examples=12)
+@given(some_asks, st.sampled_from([0.016, 0.2, 1.7]))
+def test_live_in_ticks_gives_what_one_plan_gives(asks: list[Any], tick: float) -> None:
+    project = _SAMPLE[0]
+    whole = perform(project, asks, END + 8)
+    last = in_ticks(project, asks, END, tick)[-1]
+    for layer in LAYERS:
+        one, many = whole.layers[layer], last.layers[layer]
+        assert [c for c in many.cues if c.start < END] == [c for c in one.cues if c.start < END]
+        assert [r for r in many.rests if r.start < END] == [r for r in one.rests if r.start < END]
+    times = [0.0, 3.3, END / 2, END - 0.01]
+    assert (pose_at(last, project, times).rotations == pose_at(whole, project, times).rotations).all()
+
+
+@settings(max_examples=12)
+@given(some_asks, st.lists(st.floats(0, 20).map(lambda x: round(x, 2)), min_size=8, max_size=8))
+def test_what_was_told_on_the_way_replays_as_it_was_heard(asks: list[Any], told: list[float]) -> None:
+    project = _SAMPLE[0]
+    heard = [a.msgspec.structs.replace(ask, told=t) for ask, t in zip(asks, told, strict=False)]
+    live = in_ticks(project, heard, END, 0.1)[-1]
+    again = perform(project, heard, END + 8)
+    for layer in LAYERS:
+        assert [c for c in live.layers[layer].cues if c.start < END] == [c for c in again.layers[layer].cues if c.start < END]
+
+
+@settings(max_examples=8)
+@given(some_asks, st.sampled_from([0.0, 60.0]))
+def test_forgetting_the_past_changes_nothing_to_come(asks: list[Any], memory: float) -> None:
+    project = replace(_SAMPLE[0], settings=replace(_SAMPLE[0].settings, memory=memory))
+    kept = in_ticks(project, asks, 200.0, 0.7)[-1]
+    cut = in_ticks(project, asks, 200.0, 0.7, forget=70.0)[-1]
+    for layer in LAYERS:
+        assert [c for c in kept.layers[layer].cues if c.end > 135] == [c for c in cut.layers[layer].cues if c.end > 135]
+        assert len(cut.layers[layer].cues) < len(kept.layers[layer].cues)
+        assert all(m.end > 120 for m in cut.layers[layer].metas)
+    assert (pose_at(kept, project, [150.0, 199.0]).rotations == pose_at(cut, project, [150.0, 199.0]).rotations).all()
+
+
+def test_what_is_before_now_and_the_lookahead_stays(sample: Project) -> None:
+    project = replace(sample, settings=replace(sample.settings, lookahead=2.0))
+    plan = perform(project, [], 20)
+    after = hear(project, plan, 5.0, [a.Gesture(id="x", priority=9)], 20)
+    for layer in LAYERS:
+        assert [c for c in plan.layers[layer].cues if c.start < 7] == [c for c in after.layers[layer].cues if c.start < 7]
+    assert answer(after, "x").at >= 7.0
+
+
+def test_the_past_is_planned_from_nothing_when_nothing_was_shown(sample: Project) -> None:
+    assert shown(hear(sample, Plan(1, 0.0), 0.0, [], 20)) == shown(perform(sample, [], 20, seed=1))
+
+
+# --- answers
+
+
+def test_an_answer_says_when_and_what(sample: Project) -> None:
+    plan = perform(sample, [a.Gesture(id="g", tags=("positive",), at=2.1, priority=3)], 20)
+    said = answer(plan, "g")
+    assert said.state == "planned" and said.at == pytest.approx(2.1) and said.until > said.at and len(said.what) == 1
+
+
+def test_an_answer_says_why_not(sample: Project) -> None:
+    plan = perform(sample, [a.Gesture(id="g", tags=("nonsense",), at=2.0)], 20)
+    said = answer(plan, "g")
+    assert said.state == "refused" and "nonsense" in said.why
+
+
+def test_words_nobody_knows_are_refused_with_a_hint(sample: Project) -> None:
+    plan = perform(sample, [a.Go(id="g", stance="arms crosed"), a.Play(id="p", action="shrug"), a.Say(id="s", line="279")], 5)
+    assert "did you mean 'arms crossed'" in answer(plan, "g").why
+    assert "shrug" in answer(plan, "p").why
+    assert answer(plan, "s").why == "there is no line '279'; there are none"
+
+
+def test_going_where_one_is_is_done_already(sample: Project) -> None:
+    plan = perform(sample, [a.Go(id="g", stance="hands at sides", at=0.1)], 5)
+    assert answer(plan, "g").state == "done"
+
+
+def test_far_asks_are_planned_but_not_chosen_yet(sample: Project) -> None:
+    said = answer(perform(sample, [a.Gesture(id="g", at=500.0)], 20), "g")
+    assert (said.state, said.at) == ("planned", 500.0)
+
+
+def test_a_withdrawn_ask_does_not_play_and_one_that_plays_goes_on(sample: Project) -> None:
+    asks = [a.Gesture(id="early", at=1.0, priority=2), a.Gesture(id="late", at=12.0, priority=2), a.Look(id="look", to="user", at=15.0)]
+    plan = perform(sample, asks, 20, idle=False)
+    after = hear(sample, plan, 1.5, [a.Withdraw(id="w")], 20, idle=False)
+    assert [c.meta for c in after.layers["arms"].cues] == ["early"]
+    assert not after.track.looks
+    one = hear(sample, plan, 1.5, [a.Withdraw(id="w", what="late")], 20, idle=False)
+    assert [c.meta for c in one.layers["arms"].cues] == ["early"] and len(one.track.looks) == 1
+
+
+def test_the_same_id_again_replaces_what_was_asked(sample: Project) -> None:
+    plan = perform(sample, [a.Gesture(id="g", at=5.0)], 20, idle=False)
+    after = hear(sample, plan, 1.0, [a.Fidget(id="g", at=8.0)], 20, idle=False)
+    assert [(c.meta, c.action.kind, c.start) for c in after.layers["arms"].cues] == [("g", "fidget", 8.0)]
+
+
+def test_a_line_brings_its_own_asks_and_withdraws_them_with_it(sample: Project) -> None:
+    line = a.Line(text="No, no.", duration=3.0, asks=(a.Shake(at=0.2), a.Gesture(at=0.5, tags=("negative",))))
+    project = replace(sample, lines={"279": line})
+    plan = perform(project, [a.Say(id="s", line=279, at=4.0)], 20, idle=False)
+    assert [(c.meta, round(c.start, 3)) for c in plan.layers["head"].cues] == [("s.1", 4.2)]
+    assert [(c.meta, round(c.start, 3)) for c in plan.layers["arms"].cues] == [("s.2", 4.5)]
+    assert [(x.start, x.end, x.line) for x in plan.track.speeches] == [(4.0, 7.0, "279")]
+    said = answer(plan, "s")
+    assert said.state == "planned" and set(said.what) >= {"speech"} and len(said.what) == 3
+    gone = hear(project, plan, 1.0, [a.Withdraw(id="w", what="s")], 20, idle=False)
+    assert not gone.layers["head"].cues and not gone.track.speeches
+    without = perform(project, [a.Say(id="s", line="279", at=4.0, gestures=False)], 20, idle=False)
+    assert not without.layers["arms"].cues and without.track.speeches
+
+
+def test_a_nod_is_a_gesture_tagged_or_called_so(sample: Project) -> None:
+    cue = perform(sample, [a.Nod(id="n", at=1.0)], 10, idle=False).layers["head"].cues[0]
+    assert cue.action.name.startswith("nod")
+    with_tags = perform(sample, [a.Nod(id="n", at=1.0, tags=("nonsense",))], 10, idle=False)
+    assert answer(with_tags, "n").state == "refused"
+
+
+def test_speech_interrupts_speech_of_the_same_weight_but_not_more_important_one(sample: Project) -> None:
+    first = a.Say(id="1", text="one two three", at=1.0, duration=5.0)
+    plan = perform(sample, [first, a.Say(id="2", text="stop", at=2.0, duration=1.0)], 10)
+    assert [(s.id, s.start, s.end) for s in plan.track.speeches] == [("1", 1.0, 2.0), ("2", 2.0, 3.0)]
+    first = a.msgspec.structs.replace(first, priority=3)
+    plan = perform(sample, [first, a.Say(id="2", text="stop", at=2.0, duration=1.0)], 10)
+    assert [s.id for s in plan.track.speeches] == ["1"]
