@@ -155,7 +155,7 @@ def to_data(project: Project) -> Data:
         "clips": [clip_data(entry) for entry in project.clips.values()],
         "layers": layers,
         "markov": {layer: markov_data(project.markov[layer]) for layer in LAYERS if layer in project.markov},
-        **{key: struct_data(getattr(project, key)) for key in STRUCTS},
+        **{key: data for key in STRUCTS if (data := struct_data(getattr(project, key)))},
         "skeleton": skeleton_data(project.skeleton) if project.skeleton is not None else [],
     }
 

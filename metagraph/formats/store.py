@@ -12,11 +12,14 @@ from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any
 
+import msgspec
+
 from metagraph.errors import FileError
 from metagraph.formats.atomic import write_atomically
 from metagraph.formats.clips import digest, read_clips
 from metagraph.formats.data import FORMAT, Data, DataError, from_data, to_data
 from metagraph.formats.text import TextError, parse, to_text
+from metagraph.graph.asks import Line
 from metagraph.graph.model import ClipEntry, Project
 from metagraph.motion.adopt import SkeletonMismatchError, adopt
 from metagraph.motion.clip import Clip
@@ -105,14 +108,23 @@ def moved(project: Project, old: Path | None, new: Path) -> Project:
 
     clips = {i: replace(e, path=renew(e.path)) for i, e in project.clips.items()}
     character = renew(project.character) if project.character else None
-    return replace(project, clips=clips, character=character)
+    return replace(project, clips=clips, character=character, lines=_lines(project, renew))
+
+
+def _lines(project: Project, renew: Callable[[str], str]) -> Mapping[str, Line]:
+    """Return the project's lines with other paths to their sounds and phones."""
+    found = project.lines.items()
+    return {i: msgspec.structs.replace(x, audio=x.audio and renew(x.audio), phones=x.phones and renew(x.phones)) for i, x in found}
 
 
 def absolute(project: Project, folder: Path) -> Project:
     """Return the project with its paths, relative to `folder`, made absolute: for a project without a file."""
-    clips = {i: replace(e, path=(folder / e.path).resolve().as_posix()) for i, e in project.clips.items()}
-    character = (folder / project.character).resolve().as_posix() if project.character else None
-    return replace(project, clips=clips, character=character)
+    def renew(text: str) -> str:
+        return (folder / text).resolve().as_posix()
+
+    clips = {i: replace(e, path=renew(e.path)) for i, e in project.clips.items()}
+    character = renew(project.character) if project.character else None
+    return replace(project, clips=clips, character=character, lines=_lines(project, renew))
 
 
 def relative(path: Path, folder: Path) -> str:
