@@ -1,18 +1,177 @@
-"""How alive a character is when nothing is asked of it: the amounts and rates of breathing, gaze, blinks and lip sync."""
+"""How alive a character is when nothing is asked of it: the amounts and rates of breathing, gaze, blinks and lip sync.
+
+Numbers of people, from the literature the defaults follow: 12 to 20 breaths a minute at rest; 17 blinks a minute at rest and
+26 in conversation (Bentivoglio et al. 1997); speaking, the partner is looked at for 3.1 s and then away for 0.9 s, listening
+for 7.9 s and away for 0.4 s, on average (Lee, Badler, Badler 2002, "Eyes Alive"); listeners look more than speakers (Argyle
+and Cook 1976).
+"""
 
 from __future__ import annotations
 
-from typing import Annotated
+from collections.abc import Mapping
+from dataclasses import dataclass
+from types import MappingProxyType
+from typing import Annotated, Any, get_type_hints
 
+import msgspec
 from msgspec import Meta, Struct
+
+from metagraph.graph.words import MODES, Mode
+
+Factor = Annotated[float, Meta(ge=0, le=4)]
+
+
+class Manner(Struct, frozen=True, kw_only=True, omit_defaults=True, forbid_unknown_fields=True):
+    """What a mode makes of the amounts and rates below: factors, 1 leaves them as they are."""
+
+    breathing: Factor = 1.0
+    breath_rate: Factor = 1.0
+    aversion_rate: Factor = 1.0
+    aversion_length: Factor = 1.0
+    aversion_angle: Factor = 1.0
+    saccades: Factor = 1.0
+    saccade_rate: Factor = 1.0
+    blinks: Factor = 1.0
+
+
+# Talking: 15 aversions a minute of 0.93 s. Listening: 7.2 of 0.43 s. Both as "Eyes Alive" has them. Idle, ours: nobody speaks,
+# so the gaze wanders longer and farther, and away half of the time.
+MANNERS: Mapping[Mode, Manner] = MappingProxyType({
+    "idle": Manner(aversion_rate=1.1, aversion_length=2.4, aversion_angle=1.4, saccade_rate=0.85),
+    "listening": Manner(aversion_rate=0.6, aversion_length=0.46, aversion_angle=0.8, saccades=0.9),
+    "talking": Manner(breathing=1.15, breath_rate=1.1, aversion_rate=1.25),
+})  # fmt: skip
 
 
 class Life(Struct, frozen=True, kw_only=True, omit_defaults=True, forbid_unknown_fields=True):
-    """The life layers' settings. on: whether they play at all. stillness: 0 as set below .. 1 nothing moves of itself."""
+    """The life layers' settings; what each means, and which value turns it off, says `DIALS`.
+
+    on: whether they play at all. stillness: multiplies every amount by 1 - stillness and stretches the time between events; at
+    1 nothing moves of itself, only lips and what is asked for. modes: changes to `MANNERS`, by mode.
+    """
 
     on: bool = True
     stillness: Annotated[float, Meta(ge=0, le=1)] = 0.0
+    breathing: Annotated[float, Meta(ge=0, le=2)] = 1.0
+    breath_rate: Annotated[float, Meta(ge=0, le=40)] = 14.0
+    gaze: Annotated[float, Meta(ge=0, le=1)] = 1.0
+    head_share: Annotated[float, Meta(ge=0, le=1)] = 0.6
+    aversion_rate: Annotated[float, Meta(ge=0, le=40)] = 12.0
+    aversion_length: Annotated[float, Meta(ge=0, le=5)] = 0.93
+    aversion_angle: Annotated[float, Meta(ge=0, le=40)] = 14.0
+    saccades: Annotated[float, Meta(ge=0, le=2)] = 1.0
+    saccade_rate: Annotated[float, Meta(ge=0, le=180)] = 60.0
+    lids: Annotated[float, Meta(ge=0, le=2)] = 1.0
+    blinks: Annotated[float, Meta(ge=0, le=60)] = 17.0
+    accent_blinks: Annotated[float, Meta(ge=0, le=1)] = 1.0
+    blink_close: Annotated[float, Meta(ge=0.02, le=1)] = 0.07
+    blink_open: Annotated[float, Meta(ge=0.02, le=1)] = 0.10
+    lips: Annotated[float, Meta(ge=0, le=2)] = 1.0
+    lip_smoothing: Annotated[float, Meta(ge=0, le=0.2)] = 0.03
+    modes: dict[Mode, Manner] = {}
+
+
+@dataclass(frozen=True)
+class Dial:
+    """One number of `Life` or `Manner` as animators see it. name: the field. off: the value that turns it off, None for a
+    number that is no amount. The ranges are the fields' own; the default is the field's (for a manner, `MANNERS`')."""
+
+    name: str
+    group: str
+    label: str
+    unit: str
+    low: float
+    high: float
+    step: float
+    off: float | None
+    tip: str
+
+
+DIALS: tuple[Dial, ...] = (
+    Dial("stillness", "All", "Stillness", "", 0, 1, 0.01, 0, "Calms everything at once; at 1 only lips and what is asked for move."),
+    Dial("breathing", "Breathing", "Depth", "×", 0, 2, 0.05, 0, "How far chest and shoulders rise."),
+    Dial("breath_rate", "Breathing", "Breaths", "/ min", 0, 40, 0.5, 0, "People at rest: 12 to 20."),
+    Dial("gaze", "Gaze", "Look-at", "", 0, 1, 0.01, 0, "How far eyes and head turn to what is looked at."),
+    Dial("head_share", "Gaze", "Head's share", "", 0, 1, 0.01, 0, "How much of a wide turn the head takes; the eyes do the rest."),
+    Dial("aversion_rate", "Gaze", "Looks away", "/ min", 0, 40, 0.5, 0, "How often the gaze leaves the partner for a moment."),
+    Dial("aversion_length", "Gaze", "Time away", "s", 0, 5, 0.05, 0, "How long it stays away."),
+    Dial("aversion_angle", "Gaze", "Angle away", "°", 0, 40, 0.5, 0, "How far beside the partner's face it goes."),
+    Dial("saccades", "Eyes", "Eye darts", "×", 0, 2, 0.05, 0, "Size of the small jumps that the eyes make while they look."),
+    Dial("saccade_rate", "Eyes", "Darts", "/ min", 0, 180, 1, 0, "How often the eyes jump."),
+    Dial("lids", "Eyes", "Lids follow", "×", 0, 2, 0.05, 0, "How far the lids go down and up with the eyes."),
+    Dial("blinks", "Blinks", "Blinks", "/ min", 0, 60, 0.5, 0, "Those that come of themselves; people at rest: 17."),
+    Dial("accent_blinks", "Blinks", "On stressed words", "", 0, 1, 0.01, 0, "How many of the stressed syllables bring a blink."),
+    Dial("blink_close", "Blinks", "Closing", "s", 0.02, 1, 0.01, None, "How long the lids take to close."),
+    Dial("blink_open", "Blinks", "Opening", "s", 0.02, 1, 0.01, None, "How long the lids take to open again."),
+    Dial("lips", "Lips", "Lip sync", "×", 0, 2, 0.05, 0, "How far the mouth opens and shapes itself in speech."),
+    Dial("lip_smoothing", "Lips", "Smoothing", "s", 0, 0.2, 0.005, 0, "More is softer; too much mumbles."),
+)
+MANNER_DIALS: tuple[Dial, ...] = (
+    Dial("breathing", "Breathing", "Depth", "×", 0, 4, 0.05, 0, "Depth of breath in this mode."),
+    Dial("breath_rate", "Breathing", "Breaths", "×", 0, 4, 0.05, 0, "Breaths a minute in this mode."),
+    Dial("aversion_rate", "Gaze", "Looks away", "×", 0, 4, 0.05, 0, "How often the gaze leaves the partner in this mode."),
+    Dial("aversion_length", "Gaze", "Time away", "×", 0, 4, 0.05, 0, "How long it stays away in this mode."),
+    Dial("aversion_angle", "Gaze", "Angle away", "×", 0, 4, 0.05, 0, "How far it goes in this mode."),
+    Dial("saccades", "Eyes", "Eye darts", "×", 0, 4, 0.05, 0, "Size of the eyes' jumps in this mode."),
+    Dial("saccade_rate", "Eyes", "Darts", "×", 0, 4, 0.05, 0, "How often the eyes jump in this mode."),
+    Dial("blinks", "Blinks", "Blinks", "×", 0, 4, 0.05, 0, "Blinks a minute in this mode."),
+)
+
+
+def manner(life: Life, mode: Mode) -> Manner:
+    """Return what a mode makes of the amounts: the project's own, else the default."""
+    return life.modes.get(mode, MANNERS[mode])
+
+
+def limits(kind: type[Struct]) -> dict[str, tuple[float, float]]:
+    """Return the range of each number of `Life` or `Manner`."""
+    out = {}
+    for name, hint in get_type_hints(kind, include_extras=True).items():
+        meta = next((m for m in getattr(hint, "__metadata__", ()) if isinstance(m, Meta)), None)
+        if meta is not None and meta.ge is not None and meta.le is not None:
+            out[name] = (float(meta.ge), float(meta.le))
+    return out
+
+
+def with_life(life: Life, mode: Mode | None = None, **changes: Any) -> Life:
+    """Return the settings with fields changed; those of one mode's manner where `mode` is given.
+
+    Raises ValueError naming a field that does not exist or a value outside its range.
+    """
+    if mode is None:
+        return _checked(life, changes)
+    if mode not in MODES:
+        raise ValueError(f"there is no mode '{mode}'; modes are {', '.join(MODES)}")
+    return msgspec.structs.replace(life, modes={**life.modes, mode: _checked(manner(life, mode), changes)})
+
+
+def _checked(value: Any, changes: Mapping[str, Any]) -> Any:
+    fields = {f.name for f in msgspec.structs.fields(type(value))}
+    for name in changes:
+        if name not in fields:
+            raise ValueError(f"there is no dial '{name}'; dials are {', '.join(sorted(fields))}")
+    whole = msgspec.structs.replace(value, **changes)
+    try:
+        return msgspec.convert({name: msgspec.to_builtins(getattr(whole, name)) for name in fields}, type(value))
+    except msgspec.ValidationError as error:
+        text, _, where = str(error).partition(" - at ")
+        raise ValueError(f"{where.strip('`$.')}: {text[:1].lower()}{text[1:]}") from None
+
+
+class FacePose(Struct, frozen=True, kw_only=True, omit_defaults=True, forbid_unknown_fields=True):
+    """A frame of a clip that shows a face's channel in full. clip: id. frame: null for the frame that differs most from
+    `neutral`, the frame that shows the face without it."""
+
+    clip: str
+    frame: Annotated[int, Meta(ge=0)] | None = None
+    neutral: Annotated[int, Meta(ge=0)] = 0
 
 
 class Face(Struct, frozen=True, kw_only=True, omit_defaults=True, forbid_unknown_fields=True):
-    """Corrections of what was found in the face."""
+    """Corrections of what was found in the face (`metagraph.graph.face`). channels: channel -> name of the joint or morph target
+    that moves it, "" for nothing. poses: channel -> the frame of a clip that shows it. morphs: names of the character's morph
+    targets, as last read from its file."""
+
+    channels: dict[str, str] = {}
+    poses: dict[str, FacePose] = {}
+    morphs: tuple[str, ...] = ()

@@ -25,7 +25,8 @@ class LookAt:
 
 @dataclass(frozen=True, slots=True)
 class Speech:
-    """Something said. line: id of the project's line, None for `text` alone. priority: the higher interrupts the lower."""
+    """Something said. line: id of the project's line, None for `text` alone. priority: the higher interrupts the lower.
+    length: seconds it would have taken, where something cut it short."""
 
     id: str
     start: float
@@ -33,6 +34,7 @@ class Speech:
     line: str | None = None
     text: str = ""
     priority: int = 1
+    length: float | None = None
 
 
 @dataclass(frozen=True, slots=True)
@@ -87,7 +89,9 @@ class Track:
                 return item
             if item.start >= now:
                 return None
-            return replace(item, end=min(item.end, now)) if isinstance(item, LookAt | Speech) else item
+            if isinstance(item, Speech):
+                return cut(item, now)
+            return replace(item, end=min(item.end, now)) if isinstance(item, LookAt) else item
 
         return track_of(k for i in self.items if (k := kept(i)) is not None)
 
@@ -116,6 +120,13 @@ def track_of(items: object) -> Track:
     )
 
 
+def cut(speech: Speech, at: float) -> Speech:
+    """Return the speech, ending no later than `at`; how long it would have been is remembered."""
+    if speech.end <= at:
+        return speech
+    return replace(speech, end=at, length=speech.end - speech.start if speech.length is None else speech.length)
+
+
 def _apart(speeches: list[Speech]) -> tuple[Speech, ...]:
     """Return speeches without overlaps: one that is at least as important cuts the running one, a lesser one is not said."""
     out: list[Speech] = []
@@ -126,6 +137,6 @@ def _apart(speeches: list[Speech]) -> tuple[Speech, ...]:
             if out[-1].start >= speech.start:
                 out.pop()
             else:
-                out[-1] = replace(out[-1], end=speech.start)
+                out[-1] = cut(out[-1], speech.start)
         out.append(speech)
     return tuple(out)

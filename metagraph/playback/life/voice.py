@@ -2,27 +2,48 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+from functools import cached_property, lru_cache
 from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
+from metagraph.playback.life.letters import spelled
+from metagraph.playback.life.mouth import VISEMES, Piece, mouth_track
+from metagraph.playback.life.track import Speech
+
+__all__ = ["VISEMES", "Voice", "silent", "voice_from_text", "voice_of"]
+
 Array = NDArray[Any]
 
-# The 15 mouth shapes most rigs and lip-sync tools share (Oculus), silence first.
-VISEMES: tuple[str, ...] = ("sil", "PP", "FF", "TH", "DD", "kk", "CH", "SS", "nn", "RR", "aa", "E", "I", "O", "U")
+ACCENT = 1.5  # seconds round a stressed syllable without another: two to three stresses in a spoken phrase
 
 
 @dataclass(frozen=True, eq=False)
 class Voice:
-    """One line, analysed. duration: seconds. peaks: times of its loudness peaks `[P]`. times `[K]`, weights `[K, 15]`: how
-    much of each of `VISEMES` the mouth shows, 0..1, linear between the times."""
+    """One line, analysed. duration: seconds. peaks: times of its loudness peaks, a syllable each `[P]`. times `[K]`, weights
+    `[K, 15]`: how much of each of `VISEMES` the mouth shows, 0..1, linear between the times. strengths: how loud the peaks
+    are `[P]`, 0..1; empty where that is not known."""
 
     duration: float
     peaks: Array
     times: Array
     weights: Array
+    strengths: Array = field(default_factory=lambda: np.zeros(0))
+
+    @cached_property
+    def accents(self) -> Array:
+        """Times of the stressed syllables `[A]`: the first peak, then the loudest ones that have no louder one within
+        `ACCENT` seconds. People blink and gesture on these, not on every syllable."""
+        count = len(self.peaks)
+        loud = self.strengths if len(self.strengths) == count else np.ones(count)
+        taken: list[float] = []
+        for i in sorted(range(count), key=lambda i: (i > 0, -loud[i], self.peaks[i])):
+            if all(abs(self.peaks[i] - t) >= ACCENT for t in taken):
+                taken.append(float(self.peaks[i]))
+        return np.array(sorted(taken))
 
 
 def silent(duration: float) -> Voice:
@@ -30,3 +51,27 @@ def silent(duration: float) -> Voice:
     rest = np.zeros((2, len(VISEMES)), np.float32)
     rest[:, 0] = 1
     return Voice(duration, np.zeros(0), np.array([0.0, duration]), rest)
+
+
+@lru_cache(maxsize=256)
+def voice_from_text(text: str, duration: float | None = None) -> Voice:
+    """Return a voice guessed from letters alone. duration: seconds, None for about 14 characters a second."""
+    pieces, peaks, strengths, length = spelled(text, duration)
+    if not pieces:
+        return silent(length)
+    times, weights = mouth_track(pieces, length)
+    return Voice(length, np.array(peaks), times, weights, np.array(strengths))
+
+
+def voice_of(voices: Mapping[str, Voice], speech: Speech) -> Voice:
+    """Return the voice of something said: its line's as read from the sound, else one guessed from its text."""
+    known = voices.get(speech.line) if speech.line is not None else None
+    if isinstance(known, Voice):
+        return known
+    return voice_from_text(speech.text, max(0.0, speech.length if speech.length is not None else speech.end - speech.start))
+
+
+def heard(pieces: list[Piece], duration: float, peaks: Array, strengths: Array) -> Voice:
+    """Return a voice of mouth shapes in time and loudness peaks."""
+    times, weights = mouth_track(pieces, duration)
+    return Voice(duration, peaks, times, weights, strengths)
