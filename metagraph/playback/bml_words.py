@@ -1,0 +1,126 @@
+"""The words of a block of BML and those of a project: which tags, action or stance a lexeme means, and how long things take."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from typing import Any
+
+from metagraph.graph import asks as a
+from metagraph.graph.model import LAYERS, Action, Layer, Project
+
+SYNCS = ("start", "ready", "strokestart", "stroke", "strokeend", "relax", "end", "attackpeak")
+GUESSED = {
+    "ready": 0.3,
+    "strokestart": 0.3,
+    "stroke": 0.45,
+    "strokeend": 0.6,
+    "relax": 0.8,
+    "end": 1.3,
+}  # seconds, of a gesture nobody knows
+NODDED = {"ready": 0.1, "strokestart": 0.1, "stroke": 0.3, "strokeend": 0.5, "relax": 0.6, "end": 0.9}
+SPOKEN = 14.0  # characters a second, as where asks are understood
+UNSAID = 2.0  # seconds of a line about which nothing is known
+PARTS: Mapping[str, Layer] = {
+    "arms": "arms", "leftarm": "arms", "rightarm": "arms", "hands": "arms", "head": "head",
+    "body": "body", "wholebody": "body", "legs": "body", "leftleg": "body", "rightleg": "body",
+}  # fmt: skip
+
+
+def spelled(text: str) -> str:
+    """Return a word as it is compared: lower case, letters and digits alone."""
+    return "".join(c for c in text.lower() if c.isalnum())
+
+
+class Words:
+    """What the words of a block mean in a project; without one they are taken as they are and lengths are guessed."""
+
+    def __init__(self, project: Project | None) -> None:
+        self.project = project
+        self.gestures: dict[Layer, list[Action]] = {}
+        if project is not None:
+            self.gestures = {x: [g for g in project.graphs[x].actions.values() if g.kind == "gesture"] for x in LAYERS}
+
+    def gesture(self, words: Sequence[str], layer: str, fields: Mapping[str, Any]) -> a.Gesture | a.Play:
+        """Return what asks for a gesture with these tags, or called so; arms first, where no layer is said."""
+        wanted = {spelled(w) for w in words} - {""}
+        for each in [layer] if layer else ("arms", "head", "body") if wanted else ():
+            gestures = self.gestures.get(each, [])  # type: ignore[call-overload]
+            tags = {spelled(t): t for g in gestures for t in g.tags}
+            if wanted and wanted <= tags.keys():
+                return a.Gesture(layer=each, tags=tuple(tags[w] for w in map(spelled, words) if w), **fields)  # type: ignore[arg-type]
+            called = [g for g in gestures if _called(g.name, "".join(map(spelled, words)))] if wanted else []
+            if called:
+                # The likeliest one; of equals that of the stance the layer starts in.
+                start = self.project.graphs[each].start if self.project is not None else None  # type: ignore[index]
+                limb = fields.get("limb")
+                best = max(called, key=lambda g: (g.limb == limb, g.likelihood, g.stance == start))
+                return a.Play(id=fields["id"], priority=fields["priority"], action=best.id, layer=each)  # type: ignore[arg-type]
+        return a.Gesture(layer=layer or "arms", tags=tuple(words), **fields)  # type: ignore[arg-type]
+
+    def action(self, name: str, layer: str) -> str:
+        """Return an action's name as the project writes it."""
+        if self.project is None:
+            return name
+        actions = [x for x in self.project.actions() if layer in ("", x.layer)]
+        if any(name in (x.id, x.name) for x in actions):
+            return name
+        return next((x.name for x in actions if spelled(x.name) == spelled(name)), name)
+
+    def stance(self, part: str, word: str, layer: str) -> tuple[str, str]:
+        """Return layer ("" for any) and stance of a posture: `part` ARMS and `word` CROSSED find "arms crossed"."""
+        layer = layer or PARTS.get(spelled(part), "")
+        if self.project is not None:
+            stances = [s for x in LAYERS if layer in ("", x) for s in self.project.graphs[x].stances.values()]
+            if not any(word in (s.id, s.name) for s in stances):
+                ways = (spelled(word), spelled(part + word), spelled(word + part))
+                found = next((s for s in stances if spelled(s.name) in ways), None)
+                return (found.layer, found.name) if found is not None else (layer, word)
+        return layer, word
+
+    def line(self, ident: str) -> str:
+        """Return the project's line of this id, "" where there is none."""
+        return ident if self.project is not None and ident in self.project.lines else ""
+
+    def spoken(self, line: str, text: str) -> float:
+        """Return how long something takes to say; seconds."""
+        if self.project is None:
+            return len(text) / SPOKEN if text else UNSAID
+        from metagraph.playback.understand import spoken_seconds  # the planner, which reading alone does not need
+
+        known = self.project.lines.get(line)
+        return spoken_seconds(self.project, line or None, text or (known.text if known is not None else ""))
+
+    def offsets(self, ask: a.Gesture | a.Fidget | a.Play) -> dict[str, float]:
+        """Return the sync points of the likeliest action an ask may get; seconds after its start."""
+        if self.project is None:
+            return dict(GUESSED)
+        if isinstance(ask, a.Play):
+            fitting = [x for x in self.project.actions() if ask.action in (x.id, x.name) and ask.layer in (None, x.layer)]
+        else:
+            tags, limb = set(ask.tags), ask.limb
+            kind = "gesture" if isinstance(ask, a.Gesture) else "fidget"
+            actions = self.project.graphs[ask.layer].actions.values() if ask.layer in LAYERS else ()
+            fitting = [x for x in actions if x.kind == kind and tags <= set(x.tags) and limb in (None, x.limb)]
+        return self._phases(fitting, GUESSED)
+
+    def head(self, word: str) -> dict[str, float]:
+        """Return the sync points of a nod or a shake."""
+        return self._phases([x for x in self.gestures.get("head", []) if word in x.tags or word in x.name.lower()], NODDED)
+
+    def _phases(self, fitting: Sequence[Action], guessed: Mapping[str, float]) -> dict[str, float]:
+        if self.project is None or not fitting:
+            return dict(guessed)
+        from metagraph.playback.phases import phases
+
+        found = phases(self.project, max(fitting, key=lambda x: x.likelihood))
+        points = (found.ready, found.ready, found.stroke, found.stroke_end, found.relax, found.end)
+        return {sync: x - found.start for sync, x in zip(guessed, points, strict=True)}
+
+
+def _called(name: str, word: str) -> bool:
+    """Whether a name is a word, or begins with it: `shrug_bt_01` is called shrug."""
+    whole = spelled(name)
+    if word == whole:
+        return True
+    pieces = name.replace("-", "_").replace(" ", "_").split("_")
+    return any(spelled("".join(pieces[:n])) == word for n in range(1, len(pieces)))
