@@ -1,0 +1,283 @@
+"""What people were seen to do: tiers of intervals, and what tiers and labels are taken for.
+
+A tier is read as one of `ROLES` (Borer et al., section 7.2: a stance and an action layer for the head, one layer for each
+arm, one for the body), a label as one of `MEANINGS`, with tags behind it: "gesture positive". Both are guessed from words and can be
+said otherwise; what was said is remembered as plain texts.
+"""
+
+from __future__ import annotations
+
+import re
+from collections import Counter
+from collections.abc import Iterable, Mapping, Sequence
+from dataclasses import dataclass
+from functools import cached_property
+
+from metagraph.graph.model import Layer, Limb
+
+IGNORE = "ignore"
+ROLES: Mapping[str, tuple[Layer, Limb]] = {
+    "left arm": ("arms", "left"), "right arm": ("arms", "right"), "arms": ("arms", "both"),
+    "head action": ("head", "both"), "head stance": ("head", "both"), "body": ("body", "both"),
+}  # fmt: skip
+STANCES = ("head stance", "body")  # roles whose intervals are changes of stance, or the stances themselves
+PHASES = ("preparation", "stroke", "hold", "retraction")  # of one gesture
+MEANINGS = ("gesture", "fidget", "transition", "stance", *PHASES, IGNORE)
+COVERED = 0.6  # of its span that a tier covers when its intervals are the stances, not the changes between them
+
+
+@dataclass(frozen=True, slots=True)
+class Interval:
+    """start, end: seconds, start < end."""
+
+    start: float
+    end: float
+    text: str
+
+
+@dataclass(frozen=True)
+class Tier:
+    """intervals: ascending by start. participant: whose tier it is, "" where the file does not say. parent: the tier it refers to."""
+
+    name: str
+    intervals: tuple[Interval, ...] = ()
+    participant: str = ""
+    parent: str = ""
+
+    @cached_property
+    def labels(self) -> Mapping[str, int]:
+        """Label, as `label_of` spells it -> how often it occurs, in the order of their first occurrence."""
+        return Counter(label_of(i.text) for i in self.intervals)
+
+    @property
+    def whose(self) -> str:
+        """Return the participant, or what stands behind an @ in the name, as is the custom."""
+        return self.participant or self.name.partition("@")[2].strip()
+
+
+@dataclass(frozen=True)
+class Annotation:
+    """media: the sound and video files it is about, as named in it. vocabularies: name -> labels. notes: what was left out."""
+
+    tiers: tuple[Tier, ...] = ()
+    media: tuple[str, ...] = ()
+    vocabularies: Mapping[str, tuple[str, ...]] | None = None
+    notes: tuple[str, ...] = ()
+
+    @property
+    def end(self) -> float:
+        """When the last interval ends, seconds; 0 without any."""
+        return max((i.end for tier in self.tiers for i in tier.intervals), default=0.0)
+
+
+def label_of(text: str) -> str:
+    """Return how a label is spelled in tables: blanks as one, capitals as small letters."""
+    return " ".join(text.split()).casefold()
+
+
+def _words(text: str) -> list[str]:
+    """Return the words of a name in small letters: "LeftHand_phase-2" -> left, hand, phase, 2."""
+    spaced = re.sub(r"(?<=[a-zäöüéèß])(?=[A-ZÄÖÜ])|(?<=\D)(?=\d)|(?<=\d)(?=\D)", " ", text)
+    return [w for w in re.split(r"[\W_]+", spaced.casefold()) if w]
+
+
+def _set(text: str) -> frozenset[str]:
+    return frozenset(text.split())
+
+
+# --- tiers -----------------------------------------------------------------------------------------------------------
+
+# English, German, French, Spanish and Italian, as tiers are named in published corpora of gesture.
+_LEFT = _set("left l lh la links linke linker linkehand gauche izquierda izq izquierdo sinistra sx")
+_RIGHT = _set("right r rh ra rechts rechte rechter rechtehand droite droit derecha derecho destra dx")
+_ARMS = _set("""
+    hand hands arm arms gesture gestures gest geste gesten gesto gestos gesti phase phases manual bimanual bh hände haende arme main
+    mains bras mano manos mani brazo braccio
+""")
+_HEAD = _set("head kopf tête tete cabeza testa nod nods nodding headmovement headmovements hm")
+_STANCE = _set("stance stances pose position posture haltung kopfhaltung tilt orientation lean direction")
+_BODY = _set("""
+    body torso trunk leg legs feet hips posture weight körper koerper rumpf beine haltung corps jambes cuerpo piernas corpo gambe
+    körperhaltung oberkörper
+""")
+_ELSE = _set("""
+    text word words speech utterance utterances transcription transcript translation gloss glosses pos comment comments note notes
+    gaze eye eyes mouth face facial brow brows meaning handedness handshape orthography marker language tokens lemma syntax blick
+    shape
+""")
+_SIDES = _set("lh rh linkehand rechtehand left right links rechts")  # enough without a word for hand
+
+
+def guess_role(tier: Tier) -> str:
+    """Return one of `ROLES` or `IGNORE`, from the tier's name or, where it says nothing, from its labels."""
+    words = set(_words(tier.name.partition("@")[0]))
+    if words & _ELSE:
+        return IGNORE
+    left, right, arms = bool(words & _LEFT), bool(words & _RIGHT), bool(words & _ARMS)
+    if words & _HEAD:
+        return "head stance" if words & _STANCE else "head action"
+    if words & _BODY and not arms:
+        return "body"
+    if (arms or words & _SIDES) and left != right:
+        return "left arm" if left else "right arm"
+    if arms:
+        return "arms"
+    known = Counter[str]()
+    for label, count in tier.labels.items():
+        found = set(_words(label))
+        known["head action" if found & {"nod", "nods", "nodding", "shake", "shaking"} else "arms"] += count if _known(label) else 0
+    role, count = max(known.items(), key=lambda x: x[1], default=(IGNORE, 0))
+    return role if count > sum(tier.labels.values()) / 2 else IGNORE
+
+
+def guess_roles(annotation: Annotation, *remembered: Mapping[str, str]) -> dict[str, str]:
+    """Return tier -> role for every tier: as remembered (the earlier mapping counts), else as guessed.
+
+    Of the people in an annotation only the one with most intervals is taken; of several tiers that would be the same to them, the one
+    whose labels are best known.
+    """
+    said = {t.name: next((m[t.name] for m in remembered if m.get(t.name) in (*ROLES, IGNORE)), None) for t in annotation.tiers}
+    guessed = {t.name: guess_role(t) for t in annotation.tiers}
+    people = Counter[str]()
+    for tier in annotation.tiers:
+        if (said[tier.name] or guessed[tier.name]) != IGNORE:
+            people[tier.whose] += len(tier.intervals) or 0
+    who = people.most_common(1)[0][0] if people else ""
+    best: dict[str, Tier] = {}
+    for tier in annotation.tiers:
+        if said[tier.name] is None and tier.whose == who and guessed[tier.name] != IGNORE:
+            other = best.get(guessed[tier.name])
+            if other is None or _clarity(tier) > _clarity(other):
+                best[guessed[tier.name]] = tier
+    out = {}
+    for tier in annotation.tiers:
+        guess = guessed[tier.name]
+        out[tier.name] = said[tier.name] or (guess if best.get(guess) is tier and guess not in said.values() else IGNORE)
+    return out
+
+
+def _clarity(tier: Tier) -> tuple[bool, float]:
+    """Return how well a tier's labels say what was done: gestures as a whole come before their phases."""
+    total = sum(tier.labels.values())
+    known = [(_known(label), count) for label, count in tier.labels.items()]
+    return total > 0, round(sum(n * (1.0 if k not in PHASES else 0.9) for k, n in known if k) / max(1, total), 6)
+
+
+# --- labels ----------------------------------------------------------------------------------------------------------
+
+_NOTHING = frozenset("""
+    |rest|resting|rest position|rp|home|home position|still|none|no|no gesture|n a|na|xxx|x|idle|nothing|neutral|stance
+    |ruhe|ruheposition|keine|repos|aucun|reposo|ninguno
+""".replace("\n", "").replace("    ", "").split("|"))  # fmt: skip
+# The first that is found decides: a "pre-stroke hold" is a hold, a "stance-transition" a transition.
+_SIGNS: tuple[tuple[str, str], ...] = (
+    ("transition", r"trans|chang(e|ing)|shift|switch|wechsel|verlagerung|cambio"),
+    ("fidget", r"fidget|scratch|adapt[oe]r|self ?touch|touch(es|ing)?|groom|rub(s|bing)?|fiddl|tics?|ticks?|kratz|nestel|autoadap"),
+    ("hold", r"hold|holding|psh|halten|houd|tenue"),
+    ("preparation", r"prep|vorb|anlauf"),
+    ("retraction", r"retr|recover|relax|rück|terug|ritraz"),
+    ("stroke", r"stroke|strk"),
+    ("gesture", r"gest|beats?|batons?|iconic|ikonisch|deictic|deiktisch|metaphori|emblem|pragmatic|point|wav(e|es|ing)|shrug|nod|nick"
+                r"|shak(e|es|ing)|schüttel|clap|thumb|illustrator|raise|count"),
+)  # fmt: skip
+_POSITIVE = _set("positive pos yes ja oui sí agree agreement affirm affirmative affirmation nod nods nodding")
+_NEGATIVE = _set("negative neg no nein non disagree disagreement negation shake shakes shaking headshake")
+
+
+def _known(label: str) -> str | None:
+    """Return what a label surely means, None where its words say nothing."""
+    parts = _words(label)
+    words = " ".join(parts)
+    if words in _NOTHING:
+        return IGNORE
+    if len(parts) > 6:  # speech
+        return None
+    return next((meaning for meaning, sign in _SIGNS if re.search(rf"(^| )({sign})", words)), None)
+
+
+def guess_meaning(label: str, role: str, stance: bool = False) -> str:
+    """Return one of `MEANINGS`, tags behind it, for a label on a tier of a role.
+
+    stance: on a tier of stances, labels that name no change are the stances themselves. On tiers of arms and head actions any
+    other short label is a gesture; a long one is speech.
+    """
+    words = _words(label)
+    known = _known(label)
+    if role == "head action" and known == IGNORE and words == ["no"]:
+        known = "gesture"
+    if known is None:
+        if role in STANCES:
+            known = "stance" if stance else "transition"
+        elif role == "head action" and set(words) & {"tilt", "turn", "lean"}:
+            known = "transition"
+        else:
+            known = "gesture" if len(words) <= 4 and len(label) <= 40 else IGNORE
+    elif role in STANCES and known not in ("transition", "fidget", IGNORE):
+        known = "stance" if stance else "transition"
+    elif role in STANCES and stance and label_of(label) in ("neutral", "rest", "home"):
+        known = "stance"
+    if known != "gesture":
+        return known
+    tag = "positive" if set(words) & _POSITIVE else "negative" if set(words) & _NEGATIVE else ""
+    return f"gesture {tag}".rstrip()
+
+
+@dataclass(frozen=True, slots=True)
+class Label:
+    """A label on a layer. count: how often it occurs there. meaning: what it is taken for."""
+
+    layer: Layer
+    text: str
+    count: int
+    meaning: str
+
+    @property
+    def key(self) -> str:
+        """What it is remembered by."""
+        return f"{self.layer}: {self.text}"
+
+
+def labels(annotation: Annotation, roles: Mapping[str, str], *remembered: Mapping[str, str]) -> tuple[Label, ...]:
+    """Return the labels of every layer that is read, the most frequent first, each as remembered (by `layer: text` or text) or guessed."""
+    found: dict[tuple[Layer, str], int] = {}
+    guess: dict[tuple[Layer, str], str] = {}
+    for tier in annotation.tiers:
+        role = roles.get(tier.name, IGNORE)
+        if role not in ROLES:
+            continue
+        layer, stance = ROLES[role][0], role in STANCES and covers(tier)
+        for text, count in tier.labels.items():
+            found[layer, text] = found.get((layer, text), 0) + count
+            guess.setdefault((layer, text), guess_meaning(text, role, stance))
+    out = []
+    for (layer, text), count in sorted(found.items(), key=lambda x: (tuple(LAYER_ORDER).index(x[0][0]), -x[1])):
+        said = next((m[k] for m in remembered for k in (f"{layer}: {text}", text) if is_meaning(m.get(k, ""))), None)
+        out.append(Label(layer, text, count, said or guess[layer, text]))
+    return tuple(out)
+
+
+LAYER_ORDER: Sequence[Layer] = ("arms", "head", "body")
+
+
+def covers(tier: Tier) -> bool:
+    """Return whether a tier's intervals fill most of its span and say different things: they are stances, not changes."""
+    if len(tier.labels) < 2:
+        return False
+    span = tier.intervals[-1].end - tier.intervals[0].start
+    return sum(i.end - i.start for i in tier.intervals) > COVERED * span
+
+
+def is_meaning(text: str) -> bool:
+    """Return whether a text says what a label means: one of `MEANINGS`, then tags."""
+    return text.split(" ")[0] in MEANINGS
+
+
+def parted(meaning: str) -> tuple[str, tuple[str, ...]]:
+    """Return the kind (or phase) and the tags of a meaning."""
+    first, *tags = meaning.split()
+    return first, tuple(tags)
+
+
+def told(labels: Iterable[Label]) -> dict[str, str]:
+    """Return what to remember of labels."""
+    return {label.key: label.meaning for label in labels}
