@@ -147,6 +147,9 @@ class _Reader:
             case "wait" | "pause":
                 length = self._number(e, "duration", 0.0) or self._number(e, "max-wait", 0.0)
                 return [], {"end": length}
+            case "metagraph:change":
+                change = a.Change(layer=e.get("metagraph:layer") or "arms", limb=e.get("mode").lower() or None, **common)  # type: ignore[arg-type]
+                return [change], {"end": 1.0}
             case "metagraph:mode":
                 return [a.Behave(mode=e.get("mode") or None, **common)], {"end": 0.0}  # type: ignore[arg-type]
             case "metagraph:place":

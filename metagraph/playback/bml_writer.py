@@ -49,6 +49,8 @@ def _element(ask: a.AnyAsk) -> str:
         case a.Go():
             stance = _tag("stance", {"type": ask.stance})
             return _tag("postureShift", own | {"metagraph:layer": ask.layer} | times, stance)
+        case a.Change():
+            return _tag("metagraph:change", own | {"metagraph:layer": ask.layer if ask.layer != "arms" else None, "mode": ask.limb} | times)
         case a.Nod() | a.Shake():
             tags = msgspec.json.encode(ask.tags).decode() if ask.tags else None
             return _tag("head", own | {"lexeme": "NOD" if isinstance(ask, a.Nod) else "SHAKE", "metagraph:tags": tags} | times)

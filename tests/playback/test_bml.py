@@ -283,6 +283,7 @@ plain = st.one_of(
     st.builds(a.Fidget, layer=layers, tags=tags, limb=limbs, **timed, **common),
     st.builds(a.Play, action=words, layer=st.none() | layers, **phased, **common),
     st.builds(a.Go, stance=words, layer=st.none() | layers, **common),
+    st.builds(a.Change, layer=layers, limb=limbs, **common),
     st.builds(a.Nod, tags=tags, **common),
     st.builds(a.Shake, tags=tags, **common),
     st.builds(a.Look, to=words | points, duration=seconds, amount=st.floats(0, 1), strict=st.booleans(), **common),

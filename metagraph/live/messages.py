@@ -1,0 +1,207 @@
+"""What a client may send and what it gets back: JSON objects, one or a list of them to a message.
+
+A request is an ask (`metagraph.graph.asks`), which may say `in` seconds from now instead of `at`; or one of the session's own:
+hello, status, describe. Every request gets exactly one reply; what happens later is told as events to those who want them.
+"""
+
+from __future__ import annotations
+
+from typing import Annotated, Any, Literal, Union, get_args
+
+import msgspec
+from msgspec import UNSET, Meta, Struct, UnsetType
+
+from metagraph.graph import asks as a
+
+LONGEST = 64 * 1024  # bytes of one request
+LONGEST_BML = 256 * 1024  # bytes of one that holds a block of BML
+LONGEST_MESSAGE = 1024 * 1024  # bytes of one message, a list of requests
+MOST = 1000  # requests of one list
+FASTEST = 120.0  # poses a second, at most
+
+Space = Literal["local", "model"]
+
+
+class Poses(Struct, frozen=True, kw_only=True, omit_defaults=True, forbid_unknown_fields=True):
+    """How poses are streamed. rate: frames a second. joints: which, in which order; all where it is null. space: rotations to
+    the parent joint, or positions and rotations in the character's space. translations: of all joints, not the root's alone."""
+
+    rate: Annotated[float, Meta(gt=0, le=FASTEST)] = 30.0
+    format: Literal["json", "binary"] = "json"
+    joints: Annotated[tuple[str, ...], Meta(max_length=1000)] | None = None
+    space: Space = "local"
+    translations: bool = False
+
+
+class _Own(Struct, frozen=True, kw_only=True, omit_defaults=True, forbid_unknown_fields=True, tag_field="do"):
+    id: Annotated[str, Meta(max_length=200)] = ""
+
+
+class Hello(_Own, frozen=True, tag="hello"):
+    """Says who one is and what one wants to be told; may be sent again to change that. token: where the server asks for one.
+    poses: null for none. events: whether to be told when what one asked for changes, starts and ends; "all" for what plays of
+    itself and what others asked for, too."""
+
+    name: Annotated[str, Meta(max_length=200)] = ""
+    token: Annotated[str, Meta(max_length=1000)] = ""
+    poses: Poses | UnsetType | None = UNSET
+    events: bool | Literal["all"] | UnsetType = UNSET
+
+
+class Status(_Own, frozen=True, tag="status"):
+    """What is playing, and how much waits."""
+
+
+class Describe(_Own, frozen=True, tag="describe"):
+    """What may be asked of this character: its joints, stances, actions, tags, lines and points."""
+
+
+OwnMessage = Hello | Status | Describe
+Message = Union[a.AnyAsk, Hello, Status, Describe]  # noqa: UP007
+WORDS: tuple[str, ...] = (*a.WORDS, *(str(kind.__struct_config__.tag) for kind in get_args(OwnMessage)))
+
+
+class Heard(Struct, frozen=True, array_like=True):
+    """A request as it was understood. after: seconds from now at which it should begin, where it said `in`."""
+
+    message: Message
+    after: float | None = None
+
+
+State = Literal["planned", "late", "refused", "done"]
+
+
+class Part(Struct, frozen=True, kw_only=True, omit_defaults=True):
+    """What became of one behaviour of a block of BML. do: the ask it was understood as."""
+
+    id: str
+    do: str
+    state: State
+    at: float | None = None
+    until: float | None = None
+    actions: tuple[str, ...] = ()
+    why: str = ""
+
+
+class Reply(Struct, frozen=True, kw_only=True, omit_defaults=True):
+    """What becomes of a request. at, until: seconds of the session at which it plays. actions: what plays. notes: what was
+    left out of it. error: what is wrong with it, where it could not be understood; then nothing else is said."""
+
+    id: str | None = None
+    state: State | None = None
+    layer: str | None = None
+    at: float | None = None
+    until: float | None = None
+    actions: tuple[str, ...] = ()
+    why: str = ""
+    notes: tuple[str, ...] = ()
+    parts: tuple[Part, ...] = ()
+    error: str | None = None
+
+
+class Event(Struct, frozen=True, kw_only=True, omit_defaults=True):
+    """Something that happened. changed: what was planned is planned otherwise, state and times as in a reply. started,
+    ended: an action, or speech, with the words said."""
+
+    event: Literal["changed", "started", "ended", "closed"]
+    t: float
+    id: str | None = None
+    state: State | None = None
+    layer: str | None = None
+    at: float | None = None
+    until: float | None = None
+    actions: tuple[str, ...] = ()
+    action: str | None = None
+    line: str | None = None
+    text: str | None = None
+    why: str = ""
+
+
+_message: msgspec.json.Decoder[Message] = msgspec.json.Decoder(Message)
+_several: msgspec.json.Decoder[list[msgspec.Raw]] = msgspec.json.Decoder(list[msgspec.Raw])
+_seconds: msgspec.json.Decoder[Any] = msgspec.json.Decoder()
+encode = msgspec.json.Encoder().encode
+
+
+def split(data: bytes | str) -> tuple[list[bytes | str | msgspec.Raw], bool]:
+    """Return the requests of a message, and whether it was a list. Raises AskError for one that is too long or no list."""
+    if len(data) > LONGEST_MESSAGE:
+        raise a.AskError(f"a message has at most {LONGEST_MESSAGE // 1024} KiB, not {len(data) // 1024}; send several")
+    if data.lstrip()[:1] not in ("[", b"["):
+        return [data], False
+    try:
+        several = _several.decode(data)
+    except (msgspec.DecodeError, UnicodeError, RecursionError) as error:
+        raise a.AskError(a.words_of(error)) from None
+    if len(several) > MOST:
+        raise a.AskError(f"a list has at most {MOST} requests, not {len(several)}; send several lists")
+    return list(several), True
+
+
+def read(data: bytes | str | msgspec.Raw) -> Heard | Reply:
+    """Return one request, or the reply that says what is wrong with it."""
+    size = len(memoryview(data)) if isinstance(data, msgspec.Raw) else len(data)
+    if size > LONGEST and not (size <= LONGEST_BML and _holds_bml(data)):
+        return Reply(error=f"a request has at most {LONGEST // 1024} KiB, a block of BML {LONGEST_BML // 1024}, not {size // 1024}")
+    try:
+        return Heard(_message.decode(data))
+    except msgspec.ValidationError as error:
+        return _otherwise(data, error)
+    except (msgspec.DecodeError, UnicodeError, RecursionError) as error:
+        return Reply(error=a.words_of(error))
+
+
+def _holds_bml(data: bytes | str | msgspec.Raw) -> bool:
+    return '"bml"' in data if isinstance(data, str) else b'"bml"' in bytes(data)
+
+
+def _otherwise(data: bytes | str | msgspec.Raw, error: msgspec.ValidationError) -> Heard | Reply:
+    """Read a request that is no ask as it stands: one that says `in`, or one that is wrong."""
+    try:
+        fields = _seconds.decode(data)
+    except (msgspec.DecodeError, UnicodeError, RecursionError) as broken:
+        return Reply(error=a.words_of(broken))
+    if not isinstance(fields, dict):
+        return Reply(error='a request is an object, as {"do": "nod"}')
+    ident = fields["id"] if isinstance(fields.get("id"), str) and len(fields["id"]) <= 200 else None
+    if "in" not in fields:
+        return Reply(id=ident, error=_words(error))
+    after = fields.pop("in")
+    if isinstance(after, bool) or not isinstance(after, int | float) or not 0 <= after <= 1e6:
+        return Reply(id=ident, error="in: seconds from now are expected, 0 or more")
+    if fields.get("at") is not None:
+        return Reply(id=ident, error="say `at`, seconds of the session, or `in`, seconds from now, not both")
+    try:
+        message = msgspec.convert(fields, Message)
+    except (msgspec.ValidationError, RecursionError) as wrong:
+        return Reply(id=ident, error=_words(wrong))
+    if isinstance(message, OwnMessage):
+        return Reply(id=ident, error="in: only what the character does can be put off")
+    return Heard(message, float(after))
+
+
+def _words(error: Exception) -> str:
+    text = a.words_of(error).removeprefix("[...]: ")
+    if text.startswith("do: Invalid value"):
+        text = text.partition("; known are")[0] + f"; known are {', '.join(WORDS)}"
+    elif text.endswith("required field `do`"):
+        text += f"; it is one of {', '.join(WORDS)}"
+    return text
+
+
+def schema() -> dict[str, Any]:
+    """Return the JSON Schema (draft 2020-12) of the live session: requests, lists of them, replies and events."""
+    asks = msgspec.json.schema_components([Message, Reply, Event], ref_template="#/$defs/{name}")
+    (requests, reply, event), parts = asks
+    for name, part in parts.items():
+        if name in {kind.__name__ for kind in get_args(a.AnyAsk)}:
+            part["properties"]["in"] = {
+                "type": "number", "minimum": 0, "maximum": 1e6, "description": "seconds from now, instead of `at`",
+            }  # fmt: skip
+    return {
+        "$schema": "https://json-schema.org/draft/2020-12/schema",
+        "title": "Metagraph live session",
+        "description": "What a client sends: a request or a list of them. Definitions Reply and Event are what it gets.",
+        "anyOf": [{"$ref": "#/$defs/Request"}, {"type": "array", "maxItems": MOST, "items": {"$ref": "#/$defs/Request"}}],
+        "$defs": {"Request": requests, **parts, "Reply": parts.get("Reply", reply), "Event": parts.get("Event", event)},
+    }
