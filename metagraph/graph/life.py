@@ -139,7 +139,8 @@ def with_life(life: Life, mode: Mode | None = None, **changes: Any) -> Life:
     Raises ValueError naming a field that does not exist or a value outside its range.
     """
     if mode is None:
-        return _checked(life, changes)
+        out: Life = _checked(life, changes)
+        return out
     if mode not in MODES:
         raise ValueError(f"there is no mode '{mode}'; modes are {', '.join(MODES)}")
     return msgspec.structs.replace(life, modes={**life.modes, mode: _checked(manner(life, mode), changes)})

@@ -94,11 +94,11 @@ def spelled(text: str, duration: float | None = None) -> tuple[list[Piece], list
         # Content words are longer than the words between them; the first vowel bears the stress more often than not.
         weight = min(1.0, 0.35 + 0.09 * len(word)) - 0.1 * (crc32(word.encode()) % 100) / 100
         first = True
-        for n, shape in enumerate(found):
-            syllable = shape in VOWELS and (n == 0 or found[n - 1] not in VOWELS)
+        for n, mouth in enumerate(found):
+            syllable = mouth in VOWELS and (n == 0 or found[n - 1] not in VOWELS)
             strength = (weight if first else 0.6 * weight) if syllable else 0.0
             first = first and not syllable
-            plan.append((shape, _LENGTH["vowel" if shape in VOWELS else "consonant"], strength))
+            plan.append((mouth, _LENGTH["vowel" if mouth in VOWELS else "consonant"], strength))
         if pause:
             plan.append((None, pause, 0.0))
     total = sum(size for _, size, _ in plan)

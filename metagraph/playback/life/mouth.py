@@ -14,10 +14,10 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from metagraph.graph.face_names import VISEMES
+
 Array = NDArray[Any]
 
-# The 15 mouth shapes most rigs and lip-sync tools share (Oculus), silence first.
-VISEMES: tuple[str, ...] = ("sil", "PP", "FF", "TH", "DD", "kk", "CH", "SS", "nn", "RR", "aa", "E", "I", "O", "U")
 PLACE = {name: i for i, name in enumerate(VISEMES)}
 
 # How much a shape rules its neighbours: closed lips and teeth on the lip must be seen, tongue and palate need not.

@@ -10,8 +10,9 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from metagraph.graph.face_names import VISEMES
 from metagraph.playback.life.letters import spelled
-from metagraph.playback.life.mouth import VISEMES, Piece, mouth_track
+from metagraph.playback.life.mouth import Piece, mouth_track
 from metagraph.playback.life.track import Speech
 
 __all__ = ["VISEMES", "Voice", "silent", "voice_from_text", "voice_of"]
