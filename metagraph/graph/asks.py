@@ -75,10 +75,12 @@ class Go(Ask, frozen=True, tag="stance"):
 
 
 class Change(Ask, frozen=True, tag="change"):
-    """Change to another stance, whichever: a transition drawn among those of the stance the layer is in. limb: which arm moves."""
+    """Change to another stance, whichever: a transition drawn among those of the stance the layer is in. limb: which arm moves.
+    duration: how long it took where it was seen; the transition takes its own time."""
 
     layer: Layer = "arms"
     limb: Limb | None = None
+    duration: Seconds | None = None
 
 
 class Nod(Ask, frozen=True, tag="nod"):

@@ -322,6 +322,11 @@ def set_markov(project: Project, model: Markov) -> Project:
     return replace(project, markov={**project.markov, model.layer: model})
 
 
+def reset_markov(project: Project, layer: Layer) -> Project:
+    """Go back to the default model of a layer."""
+    return replace(project, markov={k: m for k, m in project.markov.items() if k != layer})
+
+
 def set_character(project: Project, path: str | None) -> Project:
     return replace(project, character=path)
 

@@ -87,6 +87,15 @@ class Comparison:
         with np.errstate(divide="ignore", invalid="ignore"):
             return np.where(np.abs(off) < 1e-9, 0.0, off / self.deviation)
 
+    def apart(self) -> Array:
+        """By how many standard deviations what was seen is off what the model does in the long run, `[n]`; 0 where nothing was seen."""
+        if self.observed is None or not self.observed.count:
+            return np.zeros(len(self.expected))
+        off = self.observed.shares() - self.expected
+        chance = deviation(self.model.matrix, self.expected, self.observed.count)
+        with np.errstate(divide="ignore", invalid="ignore"):
+            return np.where(np.abs(off) < 1e-9, 0.0, off / chance)
+
     def move_surprises(self) -> Array:
         """The same for each transition, given how often its state was left, `[n, n]`."""
         matrix, left = np.array(self.model.matrix), self.generated.moves.sum(axis=1, keepdims=True)

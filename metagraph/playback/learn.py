@@ -283,7 +283,7 @@ def asks_of(layer: Layer, acts: Sequence[Act]) -> tuple[AnyAsk, ...]:
         elif act.kind == "fidget":
             out.append(Fidget(id=ident, at=at, layer=layer, tags=act.tags, limb=limb, duration=seconds))
         elif act.kind == "transition":
-            out.append(Change(id=ident, at=at, layer=layer, limb=limb))
+            out.append(Change(id=ident, at=at, layer=layer, limb=limb, duration=seconds))
     return tuple(out)
 
 
@@ -295,13 +295,12 @@ def performance(name: str, observed: Mapping[Layer, Sequence[Act]]) -> Performan
 
 
 def acts_of_asks(layer: Layer, asks: Iterable[AnyAsk]) -> tuple[Act, ...]:
-    """Return the acts that a performance asks of a layer, as far as it asks for kinds: the inverse of `asks_of`, but that a change of
-    stance lasts `STANCE_CHANGE`."""
+    """Return the acts that a performance asks of a layer, as far as it asks for kinds and times: the inverse of `asks_of`."""
     out = []
     for ask in asks:
         if not isinstance(ask, Gesture | Fidget | Change) or ask.layer != layer or ask.at is None:
             continue
-        seconds = STANCE_CHANGE if isinstance(ask, Change) or ask.duration is None else ask.duration
+        seconds = STANCE_CHANGE if ask.duration is None else ask.duration
         kind: Kind = "gesture" if isinstance(ask, Gesture) else "fidget" if isinstance(ask, Fidget) else "transition"
         stroke = ask.stroke if isinstance(ask, Gesture) else None
         tags = () if isinstance(ask, Change) else ask.tags

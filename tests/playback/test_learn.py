@@ -294,7 +294,7 @@ def test_acts_become_asks_with_their_times_and_back() -> None:
     assert asks == (
         Gesture(id="arms1", at=0.5, layer="arms", tags=("positive",), limb="left", duration=1.25, stroke=1.0),
         Fidget(id="arms2", at=2.0, layer="arms", limb="right", duration=1.0),
-        Change(id="arms3", at=4.0, layer="arms", limb="both"),
+        Change(id="arms3", at=4.0, layer="arms", limb="both", duration=1.0),
     )
     assert acts_of_asks("arms", asks) == acts
     assert acts_of_asks("head", asks) == ()
