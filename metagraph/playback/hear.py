@@ -6,7 +6,7 @@ performance whose asks say when they became known (`told`) is planned through th
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from typing import Literal
 
@@ -60,7 +60,7 @@ def hear(
     every = "" in meant.withdrawn
     gone = meant.withdrawn | {r.id for r in meant.requests} | {i.id for i in meant.items} | {r.request for r in meant.refused}
     asked_before = {r.id for r in plan.requests} | {i.id for i in plan.track.items}
-    withdrawn = asked_before if every else {i for i in asked_before if any(_belongs(i, to) for to in gone)}
+    withdrawn = asked_before if every else {i for i in asked_before if any(owner in gone for owner in _owners(i))}
     track = plan.track.without(withdrawn, fixed).plus(meant.items)
     plan = replace(plan, track=track)
     after = extend(project, plan, fixed, meant.requests, end, stances, idle, frozenset(withdrawn))
@@ -69,7 +69,17 @@ def hear(
 
 def _belongs(ident: str, owner: str) -> bool:
     """Whether a request was made by an ask: its own, or one of its parts."""
-    return ident == owner or (ident.startswith(owner + ".") and ident[len(owner) + 1 :].replace(".", "").isdigit())
+    return owner in _owners(ident)
+
+
+def _owners(ident: str) -> Iterator[str]:
+    """Yield the asks a request may have been made by: that of its own id, and those of which it would be a part."""
+    yield ident
+    while True:
+        ident, dot, number = ident.rpartition(".")
+        if not dot or not number.isdigit():
+            return
+        yield ident
 
 
 @dataclass(frozen=True, slots=True)
@@ -99,8 +109,8 @@ def answer(plan: Plan, ident: str) -> Answer:
     if any(r.outcome == "already-there" for r in told):
         return Answer(ident, "done", None, None, (), why)
     waiting = [m for layer in plan.layers.values() for m in layer.metas if _belongs(m.request.id, ident) and m.start >= plan.end]
-    if waiting and not told:
-        return Answer(ident, "planned", waiting[0].start, None, (), "chosen when its time is nearer")
+    if waiting and all(r.played for r in told):
+        return Answer(ident, "late" if told else "planned", waiting[0].start, None, (), why or "chosen when its time is nearer")
     return Answer(ident, "refused", None, None, (), why or "nothing came of it")
 
 

@@ -148,6 +148,19 @@ def test_far_asks_are_planned_but_not_chosen_yet(sample: Project) -> None:
     assert (said.state, said.at) == ("planned", 500.0)
 
 
+def test_far_asks_that_must_wait_for_others_are_late_not_refused(sample: Project) -> None:
+    plan = perform(sample, [a.Gesture(id="g", at=500.5), a.Gesture(id="h", at=500.0)], 20)
+    said = answer(plan, "g")
+    assert (said.state, said.at) == ("late", 501.0) and "waits" in said.why
+
+
+def test_withdrawing_among_thousands_takes_back_what_belongs_together(sample: Project) -> None:
+    asks = [a.Nod(id=f"n{n}", at=100.0 + n) for n in range(500)] + [a.Nod(id=f"n7.{n}", at=900.0 + n) for n in range(1, 3)]
+    plan = perform(sample, asks, 20, idle=False)
+    gone = hear(sample, plan, 1.0, [a.Withdraw(id=f"w{n}", what=f"n{n}") for n in range(0, 400)], 20, idle=False)
+    assert {r.id for r in gone.requests} == {f"n{n}" for n in range(400, 500)}
+
+
 def test_a_withdrawn_ask_does_not_play_and_one_that_plays_goes_on(sample: Project) -> None:
     asks = [a.Gesture(id="early", at=1.0, priority=2), a.Gesture(id="late", at=12.0, priority=2), a.Look(id="look", to="user", at=15.0)]
     plan = perform(sample, asks, 20, idle=False)
