@@ -8,7 +8,7 @@ from pathlib import Path
 from PySide6.QtCore import QObject, Signal
 from PySide6.QtWidgets import QFileDialog, QMessageBox, QWidget
 
-from app.canvas.drops import Drop, Load
+from app.canvas.drops import ANNOTATIONS, Drop, Load
 from app.document import Document, state_folder, untitled_journal
 from app.jobs import Job, Jobs
 from metagraph.errors import FileError
@@ -25,12 +25,14 @@ PRACTICE = Path(__file__).resolve().parents[1] / "sample_clips" / f"practice{SUF
 
 
 class Files(QObject):
-    """told: words for the status bar. report: (title, lines) to read. imported: (Imported, Drop or None). opened: a project is shown."""
+    """told: words for the status bar. report: (title, lines) to read. imported: (Imported, Drop or None). opened: a project is shown.
+    annotation_dropped: the path of an annotation among files to import."""
 
     told = Signal(str)
     report = Signal(str, object)
     imported = Signal(object, object)
     opened = Signal()
+    annotation_dropped = Signal(str)
 
     def __init__(self, document: Document, jobs: Jobs, window: QWidget) -> None:
         super().__init__(window)
@@ -178,6 +180,12 @@ class Files(QObject):
 
     def import_paths(self, paths: list[str], drop: Drop | None = None) -> None:
         """Import files and folders on a thread; one undo step when it is done. drop: where to place them then."""
+        annotations = [path for path in paths if path.lower().endswith(ANNOTATIONS)]
+        paths = [path for path in paths if path not in annotations]
+        for path in annotations[:1]:  # one dialog is enough
+            self.annotation_dropped.emit(path)
+        if not paths:
+            return
         project, folder, era = self.document.project, self.document.folder, self._era
 
         def done(result: Imported) -> None:

@@ -108,6 +108,7 @@ class Window(QMainWindow):
         for key, title, area in (
             ("properties", "Properties", Qt.DockWidgetArea.RightDockWidgetArea),
             ("timeline", "Performance", Qt.DockWidgetArea.BottomDockWidgetArea),
+            ("models", "Models", Qt.DockWidgetArea.BottomDockWidgetArea),
             ("problems", "Problems", Qt.DockWidgetArea.BottomDockWidgetArea),
         ):
             self._add_dock(key, title, QWidget(self), area)
@@ -131,6 +132,7 @@ class Window(QMainWindow):
     def make_late_panels(self) -> None:
         """Fill the docks that were left empty for a fast start."""
         from app.panels.machine import MachinePanel
+        from app.panels.models import ModelsPanel
         from app.panels.problems import ProblemsPanel
         from app.panels.properties import PropertiesPanel
         from app.panels.timeline import TimelinePanel
@@ -140,12 +142,15 @@ class Window(QMainWindow):
         self.properties = PropertiesPanel(self.document, self.session, self.performance, self)
         self.timeline = TimelinePanel(self.document, self.session, self.performance, self)
         self.problems_panel = ProblemsPanel(self.session, self)
+        self.models = ModelsPanel(self.document, self.session, self.jobs, self)
+        self.models.learn_wanted.connect(self.annotate)
         self.machine = MachinePanel(self.document, self.session, self)
         self.centre.addWidget(self.machine)
         self.machine.setVisible(self._machine_wanted)
         for key, panel in (
             ("properties", self.properties),
             ("timeline", self.timeline),
+            ("models", self.models),
             ("problems", self.problems_panel),
         ):
             old = self.docks[key].widget()
@@ -197,6 +202,7 @@ class Window(QMainWindow):
         self.files.told.connect(self.tell)
         self.files.report.connect(self._report)
         self.files.imported.connect(self._imported)
+        self.files.annotation_dropped.connect(self.annotate)
         self.files.opened.connect(self._opened)
         self._check_timer = QTimer(self, singleShot=True, interval=CHECK_AFTER)
         self._check_timer.timeout.connect(self._check)
@@ -209,12 +215,13 @@ class Window(QMainWindow):
         for key, area in (
             ("library", Qt.DockWidgetArea.LeftDockWidgetArea), ("preview", Qt.DockWidgetArea.RightDockWidgetArea),
             ("properties", Qt.DockWidgetArea.RightDockWidgetArea), ("timeline", Qt.DockWidgetArea.BottomDockWidgetArea),
-            ("problems", Qt.DockWidgetArea.BottomDockWidgetArea),
+            ("models", Qt.DockWidgetArea.BottomDockWidgetArea), ("problems", Qt.DockWidgetArea.BottomDockWidgetArea),
         ):  # fmt: skip
             self.docks[key].setFloating(False)
             self.addDockWidget(area, self.docks[key])
             self.docks[key].show()
-        self.tabifyDockWidget(self.docks["timeline"], self.docks["problems"])
+        self.tabifyDockWidget(self.docks["timeline"], self.docks["models"])
+        self.tabifyDockWidget(self.docks["models"], self.docks["problems"])
         self.docks["timeline"].raise_()
         self.setCorner(Qt.Corner.BottomLeftCorner, Qt.DockWidgetArea.BottomDockWidgetArea)
         self.setCorner(Qt.Corner.BottomRightCorner, Qt.DockWidgetArea.BottomDockWidgetArea)
@@ -410,6 +417,12 @@ class Window(QMainWindow):
 
         SkeletonDialog(self.document, self.session, self).open()
 
+    def annotate(self, path: str = "") -> None:
+        """Import an annotation; without a path it is asked for."""
+        from app.panels.annotate import open_annotation
+
+        open_annotation(self, path)
+
     def export(self) -> None:
         from app.panels.export import ExportDialog
 
@@ -474,7 +487,9 @@ class Window(QMainWindow):
 
 def late_modules() -> None:
     """Import what takes long and is not in the first picture."""
+    import app.panels.annotate
     import app.panels.machine
+    import app.panels.models
     import app.panels.problems
     import app.panels.properties
     import app.panels.timeline  # noqa: F401

@@ -14,6 +14,7 @@ from metagraph.graph.model import Kind, Layer, Project
 
 CLIPS = "application/x-metagraph-clips"
 ACTIONS = "application/x-metagraph-actions"
+ANNOTATIONS = ".eaf"
 
 
 @dataclass(frozen=True)
@@ -47,7 +48,8 @@ def load_of(data: QMimeData) -> Load:
     clips = tuple(bytes(data.data(CLIPS).data()).decode().split("\n")) if data.hasFormat(CLIPS) else ()
     actions = tuple(bytes(data.data(ACTIONS).data()).decode().split("\n")) if data.hasFormat(ACTIONS) else ()
     files = tuple(u.toLocalFile() for u in data.urls() if u.isLocalFile()) if data.hasUrls() else ()
-    return Load(clips, actions, tuple(f for f in files if "." not in f.rsplit("/", 1)[-1] or f.lower().endswith(tuple(SUFFIXES))))
+    ends = (*SUFFIXES, ANNOTATIONS)
+    return Load(clips, actions, tuple(f for f in files if "." not in f.rsplit("/", 1)[-1] or f.lower().endswith(ends)))
 
 
 @dataclass(frozen=True)
@@ -68,6 +70,8 @@ def drop_at(project: Project, layer: Layer, stance: str | None, other: str | Non
     """Return what dropping `load` on `hit` does; the current stance and the other stance say where."""
     if not load:
         return Drop(False, "only clips, folders of clips and actions can be dropped here")
+    if load.files and all(f.lower().endswith(ANNOTATIONS) for f in load.files):
+        return Drop(True, "drop to learn from this annotation")
     if load.actions and hit.area == "chip" and hit.ident is not None:
         return _move(project, hit.ident, load)
     what = _count(load)

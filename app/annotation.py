@@ -1,0 +1,93 @@
+"""An annotation on its way into a project: which tiers and labels are read as what, and what is made of it. For window and command line."""
+
+from __future__ import annotations
+
+from collections.abc import Collection, Mapping
+from dataclasses import dataclass, field, replace
+from functools import cached_property
+
+from metagraph.graph import edits, staging
+from metagraph.graph.model import LAYERS, Layer, Project
+from metagraph.playback.annotation import Annotation, Label, guess_roles, labels
+from metagraph.playback.learn import Act, learn, performance, sequences
+
+FEW = 30  # acts below which a model is a rough one
+
+
+@dataclass(frozen=True)
+class Reading:
+    """How an annotation is read. roles: tier -> role. said: label, or `layer: label` -> meaning, before what is remembered and guessed."""
+
+    annotation: Annotation
+    roles: Mapping[str, str]
+    said: Mapping[str, str] = field(default_factory=dict)
+    memory: tuple[Mapping[str, str], ...] = ()
+
+    @cached_property
+    def labels(self) -> tuple[Label, ...]:
+        return labels(self.annotation, self.roles, self.said, *self.memory)
+
+    @cached_property
+    def observed(self) -> dict[Layer, tuple[Act, ...]]:
+        """Layer -> what it was seen to do; layers that no tier is read as are not in it."""
+        found = sequences(self.annotation, self.roles, self.labels)
+        return {layer: found[layer] for layer in LAYERS if layer in found}
+
+    def with_role(self, tier: str, role: str) -> Reading:
+        return replace(self, roles={**self.roles, tier: role})
+
+    def with_meaning(self, label: Label, meaning: str) -> Reading:
+        return replace(self, said={**self.said, label.key: meaning})
+
+
+def begin(annotation: Annotation, *tiers: Mapping[str, str], labels: tuple[Mapping[str, str], ...] = ()) -> Reading:
+    """Return a reading as remembered, the earlier memories first, and otherwise as guessed."""
+    return Reading(annotation, guess_roles(annotation, *tiers), {}, labels)
+
+
+@dataclass(frozen=True)
+class Made:
+    """What became of a reading. learned: the layers that have a model of their own now. performance: id of what was kept."""
+
+    project: Project
+    learned: tuple[Layer, ...] = ()
+    performance: str | None = None
+
+
+def into(project: Project, reading: Reading, learned: Collection[Layer], tagged: bool, name: str | None, smoothing: float = 0.0) -> Made:
+    """Work a reading into a project: remember how it was read, learn models, keep it as a performance.
+
+    learned: layers to learn, as far as they were seen to do something. tagged: positive and negative become states of their own,
+    otherwise shares of gestures. name: of the performance, None to keep none.
+    """
+    project = remember(project, reading)
+    done = []
+    for layer in LAYERS:
+        if layer in learned and reading.observed.get(layer):
+            project = edits.set_markov(project, learn(layer, [reading.observed[layer]], tagged, smoothing))
+            done.append(layer)
+    kept = None
+    if name is not None and any(reading.observed.values()):
+        project, kept = staging.add_performance(project, performance(name, reading.observed))
+    return Made(project, tuple(done), kept)
+
+
+def remember(project: Project, reading: Reading) -> Project:
+    """Note in a project what tiers are read as, and labels where that is not what would be guessed."""
+    guessed = {label.key: label.meaning for label in labels(reading.annotation, reading.roles)}
+    noted = {key: meaning for key, meaning in project.labels.items() if key not in guessed}
+    noted |= {label.key: label.meaning for label in reading.labels if label.meaning != guessed[label.key]}
+    return replace(project, tiers={**project.tiers, **reading.roles}, labels=noted)
+
+
+def told(reading: Reading) -> list[str]:
+    """Return in words what is doubtful about a reading."""
+    out = list(reading.annotation.notes)
+    if not reading.observed:
+        out.append("No tier is read as an arm, the head or the body yet: choose what the tiers stand for.")
+    for layer, acts in reading.observed.items():
+        if not acts:
+            out.append(f"The {layer} tiers hold nothing that counts: see what their labels mean.")
+        elif len(acts) < FEW:
+            out.append(f"Only {len(acts)} actions of the {layer}: their model will be a rough one.")
+    return out
