@@ -1,24 +1,228 @@
-"""The life layers at a time: what they add to the pose the layers have composed."""
+"""The life layers at a time: what they add to the pose the layers have composed.
+
+All is additive: a turn is multiplied on the right of a joint's composed rotation, a shift is added to its translation.
+
+    breath(t)   = depth e(min(x / 0.4, (1 - x) / 0.6)),  x: how far the breath has gone, e(x) = 3 x^2 - 2 x^3
+    blink(t)    = e(min(x / close, (close + open - x) / open)),  x: seconds since the blink began
+    gaze(t)     = moves from target to target, with aversions and saccades: `gaze`
+    head(a)     = share a |a| / (|a| + 15 degrees), and all beyond what the eyes do with ease, for a target at angle a: `solve`
+    eyes        = the turn that aims each eye at the target from where head and body have it, so they hold while the head nods
+    lid         = follow x pitch of the eye + blink x (1 - how far it is shut already)
+    mouth       = sum over mouth shapes of weight x shape: `lips`
+"""
 
 from __future__ import annotations
 
+from bisect import bisect_right
+from dataclasses import dataclass
 from typing import Any
 
+import numpy as np
 from numpy.typing import NDArray
 
+from metagraph.graph.anatomy import base_pose
+from metagraph.graph.face import CHANNELS, LIDS, MOUTH, UPPER_FOLLOWS, UPPER_LID_SHUT, FaceRig
+from metagraph.graph.life import Life
 from metagraph.graph.model import Project
 from metagraph.motion.skeleton import Pose
+from metagraph.playback.life.body import Body, body_of
+from metagraph.playback.life.gaze import ease, gaze_of
+from metagraph.playback.life.lane import Lane
+from metagraph.playback.life.lips import mouth
 from metagraph.playback.life.schedule import Schedule
+from metagraph.playback.life.solve import breathe, lid, look, part_along
 from metagraph.playback.life.track import Track
 
 Array = NDArray[Any]
 
+INHALE = 0.4  # of a breath
+MORPH_LOOK = np.radians(30.0)  # the turn of an eye that a morph target of a look stands for
+MORPH_FOLLOWS = UPPER_FOLLOWS / np.radians(UPPER_LID_SHUT)  # how far a morph target shuts for an eye that looks down a radian
+MORPH_WIDE = 0.6  # of a target that opens wide, for a lid as far open as it would be shut
+
+_PRODUCT = np.array([[3, 2, 1, 0], [2, 3, 0, 1], [1, 0, 3, 2], [0, 1, 2, 3]])  # of quaternions, as a matrix of the left one
+_SIGNS = np.array([[1.0, -1, 1, 1], [1, 1, -1, 1], [-1, 1, 1, 1], [-1, -1, -1, 1]])
+
 
 def enliven(pose: Pose, project: Project, schedule: Schedule, track: Track, times: Array) -> Pose:
-    """Return composed poses `[N, J]` with breathing, gaze, lids and lips added at `times [N]`."""
-    return pose
+    """Return composed poses `[N, J]` with breathing, gaze, lids and lips added at `times [N]`.
+
+    Any times in any order; each pose depends on its own time alone.
+    """
+    if not project.life.on or project.skeleton is None or not len(times):
+        return pose
+    body = body_of(project)
+    if body.empty:
+        return pose
+    found = _Found(body, project, schedule, track, np.asarray(times, np.float64), pose)
+    rotations = np.array(pose.rotations)
+    rotations[:, body.joints] = found.rotations()
+    translations = pose.translations
+    shifted = body.face.shifted
+    if len(shifted) and found.channels.any():
+        translations = np.array(translations)
+        translations[:, body.face.joints[shifted]] += _each(found.channels, body.face.shifts[:, shifted])
+    return Pose(rotations, translations)
 
 
-def face_weights(project: Project, schedule: Schedule, track: Track, seconds: float) -> dict[str, float]:
-    """Return the morph target weights of the life layers at one time, 0..1."""
-    return {}
+def face_weights(project: Project, schedule: Schedule, track: Track, seconds: float, pose: Pose | None = None) -> dict[str, float]:
+    """Return the morph target weights of the life layers at one time, 0..1.
+
+    pose: the composed pose `[J]`, before `enliven`, so that eyes made of morph targets hold while the head moves; else the base pose.
+    """
+    if not project.life.on or project.skeleton is None:
+        return {}
+    body = body_of(project)
+    if not body.face.morphs:
+        return {}
+    whole = base_pose(project) if pose is None else pose
+    one = Pose(whole.rotations[None], whole.translations[None])
+    found = _Found(body, project, schedule, track, np.array([float(seconds)]), one)
+    return _morphs(body.face, found.faces[0], found.channels[0])
+
+
+@dataclass(frozen=True, slots=True)
+class _Look:
+    """A face at a time. blink: 0..1. shut: how far each of LIDS is. eyes: their turns to the left and up, radians."""
+
+    blink: float
+    shut: tuple[float, ...]
+    eyes: tuple[tuple[float, float], ...]
+
+
+class _Found:
+    """What the life layers make of poses `[N, J]` at times `[N]`: `chain [N, c, 4]` as breathing has it, `turns [N, M, 3]` of
+    the body's joints but the face's, `channels [N, C]` of the face and `faces`."""
+
+    def __init__(self, body: Body, project: Project, schedule: Schedule, track: Track, times: Array, pose: Pose) -> None:
+        self.body, self.pose = body, pose
+        life, rig = project.life, body.face
+        calm = 1 - life.stillness
+        gaze = gaze_of(schedule, life, body, project.points) if body.lookers else None
+        moving = gaze is not None and bool(schedule.targets)
+        read = pose.rotations[:, body.read].tolist()
+        places = pose.translations[:, body.chain].tolist()
+        long = len(body.chain)
+        lids = rig.lid_joints.tolist()
+        follows = rig.follows.tolist() if max(lids) >= 0 else [MORPH_FOLLOWS, MORPH_FOLLOWS, 0.0, 0.0]
+        shut_by = rig.shut_by.tolist()
+        self.channels = np.zeros((len(times), len(CHANNELS)))
+        chains: list[Any] = []
+        turns: list[Any] = []
+        self.faces: list[_Look] = []
+        for n, time in enumerate(times.tolist()):
+            rotations = read[n]
+            chain = rotations[:long]
+            full = breath_at(schedule.breaths, life, time)
+            if full:
+                breathe(body, chain, full)
+            turn: list[Any] = [_NONE] * long
+            eyes = [(0.0, 0.0), (0.0, 0.0)]
+            if moving and gaze is not None:
+                towards, eyes = look(body, chain, places[n], gaze.at(time), life.gaze, calm, life.head_share)
+                for looker, vector in zip(body.lookers, towards, strict=True):
+                    turn[looker.place] = vector
+            turn += [(full * x, full * y, full * z) for x, y, z in body.shoulders]
+            down = [-eyes[0][1], -eyes[1][1]]
+            place = long
+            for side, eye in enumerate(body.eyes):
+                if eye.joint:
+                    (left, up), a, b = eyes[side], eye.turn_left, eye.turn_up
+                    turn.append((left * a[0] + up * b[0], left * a[1] + up * b[1], left * a[2] + up * b[2]))
+                    down[side] += part_along(rotations[place], eye.down)
+                    place += 1
+            blink = blink_at(schedule.blinks, life, time)
+            shut, own = [], []
+            for k in range(4):
+                already = 0.0
+                if lids[k] >= 0:
+                    already = part_along(rotations[place], shut_by[k])
+                    place += 1
+                shut.append(lid(down[k % 2], life.lids * follows[k], already, blink))
+                own.append(shut[k] - already)
+            chains.append(chain)
+            turns.append(turn)
+            self.faces.append(_Look(blink, tuple(shut), tuple(eyes)))
+            self.channels[n, : len(LIDS) + 1] = (*own, blink)
+        self.chain = np.array(chains).reshape(len(times), long, 4)
+        self.turns = np.array(turns).reshape(len(times), -1, 3)
+        shown = mouth(track, project.voices, life.lip_smoothing, times) if life.lips > 0 else None
+        if shown is not None:
+            self.channels[:, len(LIDS) + 2 :] = shown * life.lips
+
+    def rotations(self) -> Array:
+        """Return what the rotations of the body's joints become `[N, L, 4]`."""
+        body = self.body
+        local = np.asarray(self.pose.rotations[:, body.joints], np.float64)
+        local[:, : len(body.chain)] = self.chain
+        turns = self.turns
+        if len(body.face.joints):
+            turns = np.concatenate([turns, _each(self.channels, body.face.turns)], 1)
+        return _times(local, _turn(turns))
+
+
+_NONE = (0.0, 0.0, 0.0)
+
+
+def breath_at(lane: Lane, life: Life, time: float) -> float:
+    """Return how full the chest is, 0 at rest, about 1 at the top of a breath."""
+    starts, values = lane.plain
+    n = bisect_right(starts, time) - 1
+    if n < 0:
+        return 0.0
+    length, depth = values[n]
+    gone = (time - starts[n]) / length
+    return life.breathing * (1 - life.stillness) * depth * ease(min(gone / INHALE, (1 - gone) / (1 - INHALE)))
+
+
+def blink_at(lane: Lane, life: Life, time: float) -> float:
+    """Return how far a blink has shut the eyes, 0..1."""
+    starts, _ = lane.plain
+    whole, out = life.blink_close + life.blink_open, 0.0
+    n = bisect_right(starts, time) - 1
+    while n >= 0 and time - starts[n] < whole:  # a slow one may still be opening when the next begins
+        gone = time - starts[n]
+        out = max(out, ease(min(gone / life.blink_close, (whole - gone) / life.blink_open)))
+        n -= 1
+    return out
+
+
+def _morphs(face: FaceRig, look: _Look, channels: Array) -> dict[str, float]:
+    """Return morph target weights of a face."""
+    values: dict[str, float] = {"blink": max(sum(look.shut[:2]) / 2, look.blink)}
+    for n, side in enumerate(("left", "right")):
+        values[f"blink_{side}"], values[f"wide_{side}"] = look.shut[n], -MORPH_WIDE * look.shut[n]
+        left, up = (x / MORPH_LOOK for x in look.eyes[n])
+        values |= {f"look_left_{side}": left, f"look_right_{side}": -left, f"look_up_{side}": up, f"look_down_{side}": -up}
+    values |= dict(zip(MOUTH, channels[len(LIDS) + 1 :].tolist(), strict=True))
+    out: dict[str, float] = {}
+    for channel, targets in face.morphs.items():
+        value = values.get(channel, 0.0)
+        if value > 1e-4:
+            for name, weight in targets:
+                out[name] = out.get(name, 0.0) + value * weight
+    return {name: min(1.0, value) for name, value in out.items()}
+
+
+# --- many joints at once
+
+
+def _times(a: Array, b: Array) -> Array:
+    """Return products `[..., 4]`: rotate by `b`, then by `a`."""
+    return np.asarray((a[..., _PRODUCT] * _SIGNS) @ b[..., None])[..., 0]
+
+
+def _turn(vectors: Array) -> Array:
+    """Return unit quaternions `[..., 4]` of rotation vectors `[..., 3]`."""
+    size = np.sqrt((vectors * vectors).sum(-1) + 1e-30)
+    half = 0.5 * size
+    out = np.empty((*vectors.shape[:-1], 4))
+    out[..., :3] = vectors * (np.sin(half) / size)[..., None]
+    out[..., 3] = np.cos(half)
+    return out
+
+
+def _each(channels: Array, shapes: Array) -> Array:
+    """Return sums over channels `[N, C]` of shapes `[C, F, 3]`: `[N, F, 3]`."""
+    flat = shapes.reshape(len(shapes), -1)
+    return np.asarray((channels[:, None, :] @ flat)[:, 0]).reshape(len(channels), *shapes.shape[1:])

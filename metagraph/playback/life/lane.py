@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
+from functools import cached_property
 from typing import Any
 
 import numpy as np
@@ -30,6 +31,11 @@ class Lane:
 
     def __hash__(self) -> int:
         return hash((self.first, self.starts.tobytes()))
+
+    @cached_property
+    def plain(self) -> tuple[list[float], list[list[float]]]:
+        """Starts and values as plain numbers."""
+        return self.starts.tolist(), self.values.tolist()
 
     @property
     def next(self) -> int:

@@ -67,9 +67,12 @@ class Schedule:
         # Gaps run in modes' time from the event before, so the modes since then are needed.
         idle = [name for name, kept in lanes.items() if not len(kept) and (self.life is None or getattr(self.life, _RANDOM[name]) > 0)]
         needed = 0.0 if idle else min([float(kept.starts[0]) for kept in lanes.values() if len(kept)], default=seconds)
-        starts = [t.start for t in self.targets]
-        kept = max(0, bisect_right(starts, min(needed, seconds - RECALL)) - 1)
+        kept = max(0, bisect_right(self.targets, min(needed, seconds - RECALL), key=_start) - 1)
         return replace(self, modes=self.modes.since(needed, 0), targets=self.targets[kept:], **lanes)
+
+
+def _start(target: Target) -> float:
+    return target.start
 
 
 _RANDOM = {"breaths": "breath_rate", "aversions": "aversion_rate", "saccades": "saccade_rate", "blinks": "blinks"}
@@ -121,9 +124,9 @@ class _Draw:
         if new and new[0][1] == last:
             new = new[1:]
         self.modes = modes.plus([at for at, _ in new], [(m,) for _, m in new])
-        targets = before.targets[: bisect_left([t.start for t in before.targets], cut)]
+        targets = before.targets[: bisect_left(before.targets, cut, key=_start)]
         for target in targets_between(track, cut, drawn):
-            if not targets or replace(target, start=0.0) != replace(targets[-1], start=0.0):
+            if not targets or not target.like(targets[-1]):
                 targets = (*targets, target)
         self.targets = targets
         self.calm = 1.0 - life.stillness
@@ -135,11 +138,10 @@ class _Draw:
         """Lay modes and strict looks out in one row of segments."""
         self.cut = cut
         starts, kinds = self.modes.starts.tolist(), self.modes.values[:, 0].astype(int).tolist()
-        looks = [t.start for t in self.targets]
         for edge in sorted({*starts, *(t.start for n, t in enumerate(self.targets) if n == 0 or t.strict != self.targets[n - 1].strict)}):
             self._edges.append(edge)
             self._modes.append(MODES[kinds[max(0, bisect_right(starts, edge) - 1)]])
-            self._strict.append(self.targets[max(0, bisect_right(looks, edge) - 1)].strict)
+            self._strict.append(self.targets[max(0, bisect_right(self.targets, edge, key=_start) - 1)].strict)
 
     def chance(self, *words: str) -> float:
         return uniform(self.seed, *words)

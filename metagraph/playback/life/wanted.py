@@ -17,13 +17,19 @@ AHEAD = "ahead"  # nothing in particular: eyes and head as the layers have them
 
 @dataclass(frozen=True, slots=True)
 class Target:
-    """What is looked at from `start` on: a point, or a name whose place the project knows. asked: not of its own accord."""
+    """What is looked at from `start` on: a point, or a name whose place the project knows. since: when the look at it began; its
+    place may have changed meanwhile. asked: not of its own accord."""
 
     start: float
     to: str | Point
+    since: float = 0.0
     amount: float = 1.0
     strict: bool = False
     asked: bool = False
+
+    def like(self, other: Target) -> bool:
+        """Whether it is the same but for its times."""
+        return (self.to, self.amount, self.strict, self.asked) == (other.to, other.amount, other.strict, other.asked)
 
 
 def mode_at(track: Track, seconds: float) -> Mode:
@@ -57,6 +63,8 @@ def targets_between(track: Track, start: float, end: float) -> Iterator[Target]:
     looks: list[LookAt] = []  # the most important first; those beneath are older or lesser
     places: dict[str, Point] = {}
     last: Target | None = None
+    chosen: LookAt | None = None
+    since = 0.0
     changes.sort(key=lambda c: (c[0], c[1]))
     for n, (at, kind, what) in enumerate(changes):
         if at >= end:
@@ -69,19 +77,21 @@ def targets_between(track: Track, start: float, end: float) -> Iterator[Target]:
             looks = [x for x in looks if x is not what]
         elif kind == 2:
             places[what.name] = what.point
+        if chosen is not (looks[0] if looks else None):
+            chosen, since = looks[0] if looks else None, at
         if at < start or (n + 1 < len(changes) and changes[n + 1][0] == at):
             continue
-        new = _target(at, looks[0] if looks else None, places)
-        if last is None or (new.to, new.amount, new.strict, new.asked) != (last.to, last.amount, last.strict, last.asked):
+        new = _target(at, since, chosen, places)
+        if last is None or not new.like(last):
             yield new
             last = new
 
 
-def _target(at: float, look: LookAt | None, places: dict[str, Point]) -> Target:
+def _target(at: float, since: float, look: LookAt | None, places: dict[str, Point]) -> Target:
     if look is None:
-        return Target(at, places.get(PARTNER, PARTNER))
+        return Target(at, places.get(PARTNER, PARTNER), since)
     to = places.get(look.to, look.to) if isinstance(look.to, str) else look.to
-    return Target(at, to, look.amount, look.strict, True)
+    return Target(at, to, since, look.amount, look.strict, True)
 
 
 def _start(item: Any) -> float:
