@@ -19,6 +19,7 @@ def commands(window: Window) -> tuple[Command, ...]:
     """Return every command, in the order of the menus."""
     s, d, f, c = window.session, window.document, window.files, window.canvas
     some = lambda: bool(s.clips or s.actions)  # noqa: E731
+    gone = lambda: bool(s.clips or s.actions or s.asks)  # noqa: E731
     out = [
         Command("new", "&File", "&New project", f.new, (Standard.New,)),
         Command("open", "&File", "&Open…", f.ask_open, (Standard.Open,)),
@@ -39,7 +40,7 @@ def commands(window: Window) -> tuple[Command, ...]:
         Command("quit", "&File", "&Quit", window.close, (Standard.Quit, "Ctrl+Q"), line=True),
         Command("undo", "&Edit", "&Undo", d.undo, (Standard.Undo,), icon="undo", enabled=d.undo_stack.canUndo),
         Command("redo", "&Edit", "&Redo", d.redo, (Standard.Redo, "Ctrl+Y"), icon="redo", enabled=d.undo_stack.canRedo),
-        Command("delete", "&Edit", "&Remove", window.remove, (Standard.Delete,), enabled=some, line=True),
+        Command("delete", "&Edit", "&Remove", window.remove, (Standard.Delete,), enabled=gone, line=True),
         Command("rename", "&Edit", "Re&name…", window.rename, ("F2",)),
         Command("select_all", "&Edit", "Select &all", window.select_all, (Standard.SelectAll,), line=True),
         Command("find", "&Edit", "&Find clip", window.library.search.setFocus, (Standard.Find,)),

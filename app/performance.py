@@ -1,27 +1,33 @@
 """The performance: the plan for the project as it is now, and the pose at the playhead. Derived, never saved.
 
-The plan is a pure function of (project, requests, seed, stances, length); it is made anew on a thread after each edit,
+The plan is a pure function of (project, asks, seed, stances, length); it is made anew on a thread after each edit,
 and the old one plays until the new one is there.
 """
 
 from __future__ import annotations
 
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 
+import msgspec
 from PySide6.QtCore import QObject, QTimer, Signal
 
 from app.document import Document
 from app.jobs import Jobs
 from app.session import Session
+from metagraph.graph import staging
+from metagraph.graph.asks import AnyAsk
+from metagraph.graph.asks import Performance as KeptPerformance
 from metagraph.graph.edits import EditError, place
 from metagraph.graph.model import LAYERS, Layer, Project
 from metagraph.motion.skeleton import Pose, Skeleton
+from metagraph.playback.hear import Answer, answer, perform
 from metagraph.playback.plan import Plan, Request
 from metagraph.playback.planner import make_plan
 from metagraph.playback.player import morphs_at, pose_at
 
 LENGTH = 60.0  # seconds planned ahead, and how much more whenever the playhead comes near the end
 AHEAD = 15.0  # seconds before the end at which more is planned
+SOON = 0.15  # seconds from now at which "now" is: the plan needs a moment
 LEAD = 0.8  # seconds of stance before and after a clip shown in context
 
 
@@ -43,16 +49,18 @@ class Performance(QObject):
     def __init__(self, document: Document, session: Session, jobs: Jobs, parent: QObject | None = None) -> None:
         super().__init__(parent)
         self.document, self.session, self.jobs = document, session, jobs
-        self.requests: tuple[Request, ...] = ()
         self.length = LENGTH
         self.shown = Shown(document.project, Plan(1, 0.0), LENGTH)
-        self._number = 0
         self._busy = self._again = False
         self._soon = QTimer(self, singleShot=True, interval=0)
         self._soon.timeout.connect(self._replan)
         document.loaded.connect(self._loaded)
         document.changed.connect(self._edited)
         session.show_changed.connect(self.replan)
+        session.performance_changed.connect(self._staged)
+        self._on_stage: str | None = None
+        self._answered: Shown | None = None
+        self._answers: dict[str, Answer] = {}
 
     # --- what plays
 
@@ -61,9 +69,18 @@ class Performance(QObject):
         self._soon.start()
 
     def _loaded(self) -> None:
-        self.requests, self.length = (), LENGTH
+        self.length = LENGTH
+        self.session.set_performance(None)
+
+    def _staged(self) -> None:
+        if self.session.performance != self._on_stage:
+            self._on_stage = self.session.performance
+            self.length = self.kept.length if self.kept is not None else LENGTH
+            self.replan()
 
     def _edited(self, before: Project, after: Project) -> None:
+        if self.kept is not None:
+            self.length = self.kept.length
         if before.skeleton is not after.skeleton or after.skeleton is None:
             self.shown = Shown(after, Plan(1, 0.0), LENGTH)
             self.changed.emit()
@@ -74,7 +91,7 @@ class Performance(QObject):
             self._again = True
             return
         self._busy, self._again = True, False
-        project, requests, length = self.document.project, self.requests, self.length
+        project, kept, length = self.document.project, self.kept, self.length
         show, shown = self.session.show, self.session.shown
         stances = {layer: s for layer in LAYERS if (s := self.session.stance(layer)) is not None}
         layer = self.session.layer
@@ -84,7 +101,9 @@ class Performance(QObject):
                 return alone(project, shown or "")
             if show == "context" and shown is not None:
                 return in_context(project, shown, layer, stances)
-            return Shown(project, make_plan(project, length, requests), length)
+            if kept is None:
+                return Shown(project, make_plan(project, length), length)
+            return Shown(project, perform(project, kept.asks, length, kept.seed, dict(kept.stances), kept.idle), length)
 
         self.jobs.start("plan", work, self._planned, self._failed, quick=True)
 
@@ -101,22 +120,65 @@ class Performance(QObject):
             self.replan()
         self.document.failed.emit(f"The plan could not be made: {error}")
 
-    # --- requests
+    # --- what is asked for
 
-    def request(self, layer: Layer, kind: str, seconds: float | None = None, **more: object) -> Request:
-        """Ask for something at a time, or as soon as can be; return the request."""
-        self._number += 1
-        start = self.session.seconds + 0.15 if seconds is None else seconds
-        request = Request(f"r{self._number}", layer, kind, round(start, 3), **more)  # type: ignore[arg-type]
-        self.requests = (*self.requests, request)
+    @property
+    def kept(self) -> KeptPerformance | None:
+        """The kept performance on stage, as it is now; None while the models improvise."""
+        return self.document.project.performances.get(self.session.performance or "")
+
+    @property
+    def asks(self) -> tuple[AnyAsk, ...]:
+        return self.kept.asks if self.kept is not None else ()
+
+    @property
+    def editable(self) -> bool:
+        """Whether the asks that are shown can be moved and changed."""
+        return self.kept is not None and self.session.show == "plan"
+
+    def answers(self) -> dict[str, Answer]:
+        """Return what the plan that is shown does about each ask."""
+        if self._answered is not self.shown:
+            self._answered, self._answers = self.shown, {ask.id: answer(self.shown.plan, ask.id) for ask in self.asks}
+        return self._answers
+
+    def ask(self, ask: AnyAsk, text: str = "Ask for something") -> None:
+        """Ask for one thing more, in the performance on stage or a new one; without a time it is wanted as soon as can be."""
+        if ask.at is None and getattr(ask, "stroke", None) is None:
+            ask = msgspec.structs.replace(ask, at=round(self.session.seconds + SOON, 3))
+        on_stage = self.session.performance
+        made = on_stage
+
+        def edit(project: Project) -> Project:
+            nonlocal made
+            if made is None or made not in project.performances:
+                kept = KeptPerformance(name="Performance", length=self.length)
+                project, made = staging.add_performance(project, kept)
+            return staging.add_ask(project, made, ask)
+
+        self.document.edit(text, edit)
+        self.session.set_performance(made)
+        if made is not None:
+            self.session.select_asks((self.document.project.performances[made].asks[-1].id,))
         self.session.show_plan()
-        self.replan()
-        return request
 
-    def withdraw(self, ident: str | None = None) -> None:
-        """Forget one request, or all."""
-        self.requests = tuple(r for r in self.requests if ident is not None and r.id != ident)
-        self.replan()
+    def change_ask(self, ident: str, merge: str | None = None, **changes: object) -> None:
+        """Set fields of an ask of the performance on stage. Raises EditError."""
+        stage = self.session.performance
+        if stage is not None:
+            self.document.edit("Change request", lambda p: staging.change_ask(p, stage, ident, **changes), merge)
+
+    def move_asks(self, idents: tuple[str, ...], by: float, merge: str | None = None) -> None:
+        """Move asks in time."""
+        stage = self.session.performance
+        if stage is not None:
+            self.document.edit("Move request", lambda p: staging.move_asks(p, stage, idents, by), merge)
+
+    def withdraw(self, *idents: str) -> None:
+        """Take asks of the performance on stage back; all when none is named."""
+        stage = self.session.performance
+        if stage is not None:
+            self.document.edit("Withdraw request", lambda p: staging.remove_asks(p, stage, idents or None))
 
     # --- the playhead
 
@@ -127,10 +189,10 @@ class Performance(QObject):
             return
         seconds = session.seconds + elapsed * session.speed
         length = self.shown.length
-        if session.show == "plan" and not session.loop and seconds > self.length - AHEAD:
+        if self.kept is None and session.show == "plan" and not session.loop and seconds > self.length - AHEAD:
             self.length += LENGTH
             self.replan()
-        if seconds >= length > 0 and not (session.show == "plan" and not session.loop):
+        if seconds >= length > 0 and not (self.kept is None and session.show == "plan" and not session.loop):
             if session.loop:
                 seconds %= length
             else:
@@ -193,6 +255,6 @@ def in_context(project: Project, ident: str, layer: Layer, stances: dict[Layer, 
         scratch = scratch.with_graph(graph.with_actions(only))
         return Shown(scratch, make_plan(scratch, end - start, (), stances=begin, idle=False), max(1.0, end - start))
     request = Request("shown", action.layer, action.kind, LEAD, action=action.id)
-    plan = make_plan(scratch, 1e9, (request,), stances=begin, idle=False)
-    last = max((cue.end for cue in plan.layers[action.layer].cues), default=LEAD)
-    return Shown(scratch, replace(plan, end=last + LEAD), last + LEAD)
+    start, end = scratch.span(action)
+    length = LEAD + max(0.0, end - start) + LEAD
+    return Shown(scratch, make_plan(scratch, length, (request,), stances=begin, idle=False), length)

@@ -15,7 +15,8 @@ Show = Literal["plan", "clip", "context"]
 class Session(QObject):
     """layer_changed: another layer's tab. stance_changed: another current stance, or another other stance for transitions.
     selection_changed: other clips or actions are selected. show_changed: the preview shows something else (see `show`).
-    playing_changed, moved: transport. theme_changed: dark or light.
+    playing_changed, moved: transport. theme_changed: dark or light. performance_changed: another kept performance is on stage, or
+    other asks of it are selected.
     """
 
     layer_changed = Signal()
@@ -25,6 +26,7 @@ class Session(QObject):
     playing_changed = Signal()
     moved = Signal(float)
     theme_changed = Signal()
+    performance_changed = Signal()
 
     def __init__(self, document: Document, parent: QObject | None = None) -> None:
         super().__init__(parent)
@@ -40,6 +42,8 @@ class Session(QObject):
         self.speed = 1.0
         self.loop = True
         self.seconds = 0.0
+        self.performance: str | None = None  # the kept performance on stage, None while the models improvise
+        self.asks: tuple[str, ...] = ()  # selected in the timeline
         self.theme: Literal["dark", "light"] = "dark"
         document.changed.connect(self._follow)
 
@@ -117,6 +121,19 @@ class Session(QObject):
         elif clip is not None and clip in project.clips:
             self.select_clips((clip,))
 
+    # --- performances
+
+    def set_performance(self, ident: str | None) -> None:
+        """Put a kept performance on stage, or none."""
+        if ident != self.performance:
+            self.performance, self.asks = ident, ()
+            self.performance_changed.emit()
+
+    def select_asks(self, asks: tuple[str, ...]) -> None:
+        if asks != self.asks:
+            self.asks = asks
+            self.performance_changed.emit()
+
     # --- preview
 
     def show_plan(self) -> None:
@@ -169,6 +186,11 @@ class Session(QObject):
         if (actions, clips) != (self.actions, self.clips):
             self.actions, self.clips = actions, clips
             self.selection_changed.emit()
+        if self.performance is not None and self.performance not in after.performances:
+            self.set_performance(None)
+        elif self.performance is not None and before.performances is not after.performances:
+            there = {ask.id for ask in after.performances[self.performance].asks}
+            self.select_asks(tuple(i for i in self.asks if i in there))
         if self.shown is not None and self.shown not in after.clips and after.action(self.shown) is None:
             self.show_plan()
         if any(before.graphs[layer].stances is not after.graphs[layer].stances for layer in LAYERS):

@@ -191,7 +191,9 @@ class Window(QMainWindow):
         d.changed.connect(self._edited)
         d.state_changed.connect(self.refresh)
         d.failed.connect(self.tell)
-        for signal in (s.layer_changed, s.selection_changed, s.show_changed, s.playing_changed, s.stance_changed):
+        for signal in (
+            s.layer_changed, s.selection_changed, s.show_changed, s.playing_changed, s.stance_changed, s.performance_changed,
+        ):  # fmt: skip
             signal.connect(self.refresh)
         s.theme_changed.connect(self.restyle)
         self.library.import_wanted.connect(self.files.ask_import_folder)
@@ -231,7 +233,7 @@ class Window(QMainWindow):
     def _sizes(self) -> None:
         self.resizeDocks([self.docks["library"], self.docks["preview"]], [300, 420], Qt.Orientation.Horizontal)
         self.resizeDocks([self.docks["preview"], self.docks["properties"]], [430, 350], Qt.Orientation.Vertical)
-        self.resizeDocks([self.docks["timeline"]], [226], Qt.Orientation.Vertical)
+        self.resizeDocks([self.docks["timeline"]], [286], Qt.Orientation.Vertical)
 
     def _restore(self) -> None:
         settings = QSettings()
@@ -367,7 +369,9 @@ class Window(QMainWindow):
             self.session.set_stance(stances[place])
 
     def remove(self) -> None:
-        if self.session.actions:
+        if self.session.asks:
+            self.performance.withdraw(*self.session.asks)
+        elif self.session.actions:
             self.canvas.remove_selection()
         else:
             self.library.remove(self.session.clips)

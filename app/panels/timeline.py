@@ -1,279 +1,21 @@
-"""The timeline: what each layer does and will do, requests above, the playhead across."""
+"""The performance panel: which performance is on stage and with what chance, and the lanes of what was asked and what plays."""
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from PySide6.QtWidgets import QComboBox, QHBoxLayout, QInputDialog, QLabel, QMenu, QMessageBox, QSpinBox, QToolButton, QVBoxLayout, QWidget
 
-from PySide6.QtCore import QPointF, QRectF, Qt
-from PySide6.QtGui import QColor, QContextMenuEvent, QFontMetricsF, QHelpEvent, QMouseEvent, QPainter, QPaintEvent, QPen, QWheelEvent
-from PySide6.QtWidgets import QHBoxLayout, QLabel, QMenu, QSpinBox, QToolButton, QToolTip, QVBoxLayout, QWidget
-
+from app.asks import ask_menu
 from app.document import Document
-from app.performance import Performance, Shown
+from app.panels.lane_view import Lanes
+from app.performance import Performance
 from app.session import Session
-from app.theme import KIND_MARKS, Theme, theme
 from app.words import many
-from metagraph.graph import edits
-from metagraph.graph.model import LAYERS, Layer
-from metagraph.playback.plan import Cue, Request
+from metagraph.graph import edits, staging
+from metagraph.graph.asks import Performance as KeptPerformance
+from metagraph.graph.edits import EditError
+from metagraph.graph.model import LAYERS
 
-LEFT, RULER, LANE = 84, 24, 34
-STEPS = (0.1, 0.2, 0.5, 1.0, 2.0, 5.0, 10.0, 30.0, 60.0, 300.0)
-
-
-@dataclass(frozen=True)
-class Scale:
-    """Seconds to pixels: `first` seconds stand at the left of the lanes, `each` pixels a second."""
-
-    first: float
-    each: float
-
-    def x(self, seconds: float) -> float:
-        return LEFT + (seconds - self.first) * self.each
-
-    def seconds(self, x: float) -> float:
-        return self.first + (x - LEFT) / self.each
-
-    def step(self) -> float:
-        """Seconds between marks of the ruler, at least 64 pixels apart."""
-        return next((s for s in STEPS if s * self.each >= 64), STEPS[-1])
-
-
-def lanes(height: float) -> dict[str, QRectF]:
-    """Return where each lane is, from the top: requests, then the layers."""
-    names = ("requests", *LAYERS)
-    each = min(LANE, max(20.0, (height - RULER) / len(names)))
-    return {name: QRectF(0, RULER + n * each, 1e6, each) for n, name in enumerate(names)}
-
-
-def cue_at(shown: Shown, scale: Scale, height: float, at: QPointF) -> tuple[Layer, Cue] | None:
-    """Return the cue under a point."""
-    seconds = scale.seconds(at.x())
-    for layer in LAYERS:
-        if at.x() >= LEFT and lanes(height)[layer].contains(at):
-            cue = shown.plan.layers[layer].cue_at(seconds)
-            return (layer, cue) if cue is not None else None
-    return None
-
-
-class Lanes(QWidget):
-    """Draws the plan. Click or drag moves the playhead, the wheel zooms, a click on a cue selects its action."""
-
-    def __init__(self, session: Session, performance: Performance, parent: QWidget) -> None:
-        super().__init__(parent)
-        self.session, self.performance = session, performance
-        self.each = 44.0
-        self.first = 0.0
-        self.follow = True
-        self.setMinimumHeight(RULER + 4 * 24)
-        self.setMouseTracking(True)
-        self.setFocusPolicy(Qt.FocusPolicy.ClickFocus)
-        self.setAccessibleName("Timeline")
-        performance.changed.connect(self.update)
-        session.moved.connect(self._playhead)
-        session.theme_changed.connect(self.update)
-        session.selection_changed.connect(self.update)
-
-    def scale(self) -> Scale:
-        return Scale(self.first, self.each)
-
-    def _playhead(self, seconds: float) -> None:
-        width = self.width() - LEFT
-        if self.follow and width > 40:
-            x = (seconds - self.first) * self.each
-            if x > width * 0.85:
-                self.first = seconds - 0.15 * width / self.each
-            elif x < 0:
-                self.first = max(0.0, seconds - 0.15 * width / self.each)
-        self.update()
-
-    # --- painting
-
-    def paintEvent(self, event: QPaintEvent) -> None:
-        t = theme(self.session.theme)
-        painter = QPainter(self)
-        painter.setRenderHint(QPainter.RenderHint.Antialiasing)
-        painter.fillRect(self.rect(), QColor(t.panel))
-        scale, shown = self.scale(), self.performance.shown
-        self._ruler(painter, t, scale)
-        for name, lane in lanes(self.height()).items():
-            painter.setPen(QColor(t.line))
-            painter.drawLine(QPointF(0, lane.bottom()), QPointF(self.width(), lane.bottom()))
-            painter.setPen(QColor(t.text if name == self.session.layer else t.dim))
-            painter.drawText(QRectF(14, lane.top(), LEFT - 18, lane.height()), Qt.AlignmentFlag.AlignVCenter, name.capitalize())
-        painter.setClipRect(QRectF(LEFT, 0, self.width() - LEFT, self.height()))
-        if shown.clip is None:
-            for layer in LAYERS:
-                self._layer(painter, t, scale, shown, layer)
-            for request in self.performance.requests if self.session.show == "plan" else ():
-                self._request(painter, t, scale, request)
-        else:
-            entry = shown.project.clips[shown.clip]
-            rect = QRectF(scale.x(0), RULER + 40, max(2.0, entry.duration * scale.each), LANE - 8)
-            self._bar(painter, t, rect, QColor(t.line), entry.name, t.text, False)
-        x = scale.x(self.session.seconds)
-        painter.setPen(QPen(QColor(t.text), 1.6))
-        painter.drawLine(QPointF(x, 4), QPointF(x, self.height()))
-        painter.setPen(Qt.PenStyle.NoPen)
-        painter.setBrush(QColor(t.text))
-        painter.drawPolygon([QPointF(x - 5, 4), QPointF(x + 5, 4), QPointF(x, 11)])
-        painter.end()
-
-    def _ruler(self, painter: QPainter, t: Theme, scale: Scale) -> None:
-        step = scale.step()
-        mark = max(0.0, (scale.first // step) * step)
-        painter.setPen(QColor(t.dim))
-        while scale.x(mark) < self.width():
-            x = scale.x(mark)
-            if x >= LEFT - 1:
-                words = f"{mark:g} s" if step < 60 else f"{mark / 60:g} min"
-                painter.drawText(QRectF(x - 40, 0, 80, RULER), Qt.AlignmentFlag.AlignCenter, words)
-            mark = round(mark + step, 3)
-
-    def _layer(self, painter: QPainter, t: Theme, scale: Scale, shown: Shown, layer: Layer) -> None:
-        """Stances as a quiet band, cues on it in their kind's colour, blends as slopes at their ends."""
-        plan, lane = shown.plan.layers[layer], lanes(self.height())[layer]
-        area = lane.adjusted(0, 3, 0, -3)
-        edges = [0.0, *(cue.end for cue in plan.cues if cue.then != cue.stance), max(shown.length, scale.seconds(self.width()))]
-        stances = [plan.rests[0].stance, *(cue.then for cue in plan.cues if cue.then != cue.stance)] if plan.rests else []
-        for stance, start, end in zip(stances, edges, edges[1:], strict=False):
-            if scale.x(end) < LEFT or scale.x(start) > self.width():
-                continue
-            found = shown.project.stance(stance)
-            fill = t.fill("stance")
-            fill.setAlpha(70 if t.name == "dark" else 90)
-            left, right = max(scale.x(start), LEFT - 8.0), min(scale.x(end), self.width() + 8.0)
-            self._bar(
-                painter, t, QRectF(left, area.top(), right - left - 1, area.height()), fill, found.name if found else "", t.text, False
-            )
-        for cue in plan.cues:
-            left, right = scale.x(cue.start), scale.x(cue.end)
-            if right < LEFT or left > self.width():
-                continue
-            rect = QRectF(left, area.top(), max(3.0, right - left - 1), area.height())
-            selected = cue.action.id in self.session.actions
-            self._bar(painter, t, rect, t.fill(cue.action.kind), f"{KIND_MARKS[cue.action.kind]} {cue.action.name}", "#17181b", selected)
-
-    def _bar(self, painter: QPainter, t: Theme, rect: QRectF, fill: QColor, words: str, ink: str, selected: bool) -> None:
-        painter.setPen(QPen(QColor(t.text), 2) if selected else Qt.PenStyle.NoPen)
-        painter.setBrush(fill)
-        painter.drawRoundedRect(rect, 4, 4)
-        inner = QRectF(max(rect.left(), LEFT) + 8, rect.top(), rect.right() - max(rect.left(), LEFT) - 12, rect.height())
-        if inner.width() > 16 and words:
-            painter.setPen(QColor(ink))
-            text = QFontMetricsF(painter.font()).elidedText(words, Qt.TextElideMode.ElideRight, inner.width())
-            painter.drawText(inner, Qt.AlignmentFlag.AlignVCenter, text)
-
-    def _request(self, painter: QPainter, t: Theme, scale: Scale, request: Request) -> None:
-        lane = lanes(self.height())["requests"].adjusted(0, 5, 0, -5)
-        words = request_words(request, self.performance)
-        told = next((r for r in self.performance.shown.plan.reports if r.request == request.id and not r.played), None)
-        width = QFontMetricsF(painter.font()).horizontalAdvance(words) + 20
-        rect = QRectF(scale.x(request.start), lane.top(), width, lane.height())
-        painter.setPen(QPen(QColor(t.warning if told else t.dim), 1.2))
-        painter.setBrush(Qt.BrushStyle.NoBrush)
-        painter.drawRoundedRect(rect, rect.height() / 2, rect.height() / 2)
-        painter.setPen(QColor(t.warning if told else t.text))
-        painter.drawText(rect, Qt.AlignmentFlag.AlignCenter, words)
-
-    # --- events
-
-    def mousePressEvent(self, event: QMouseEvent) -> None:
-        if event.button() != Qt.MouseButton.LeftButton or event.position().x() < LEFT:
-            return
-        found = cue_at(self.performance.shown, self.scale(), self.height(), event.position())
-        if found is not None:
-            self.session.jump(action=found[1].action.id)
-        else:
-            self._scrub(event.position().x())
-
-    def mouseMoveEvent(self, event: QMouseEvent) -> None:
-        if event.buttons() & Qt.MouseButton.LeftButton:
-            self._scrub(event.position().x())
-        elif event.buttons() & Qt.MouseButton.MiddleButton:
-            self.first = max(0.0, self.first - (event.position().x() - self._grip) / self.each)
-            self.update()
-        self._grip = event.position().x()
-
-    _grip = 0.0
-
-    def mouseDoubleClickEvent(self, event: QMouseEvent) -> None:
-        found = cue_at(self.performance.shown, self.scale(), self.height(), event.position())
-        if found is not None:
-            self.session.show_context(found[1].action.id)
-
-    def _scrub(self, x: float) -> None:
-        self.session.set_playing(False)
-        self.session.seek(max(0.0, self.scale().seconds(max(x, LEFT))))
-
-    def wheelEvent(self, event: QWheelEvent) -> None:
-        delta = event.angleDelta()
-        if event.modifiers() & Qt.KeyboardModifier.ShiftModifier or abs(delta.x()) > abs(delta.y()):
-            self.first = max(0.0, self.first - (delta.x() or delta.y()) / 2 / self.each)
-        else:
-            at = self.scale().seconds(event.position().x())
-            self.each = min(400.0, max(2.0, self.each * 1.2 ** (delta.y() / 120)))
-            self.first = max(0.0, at - (event.position().x() - LEFT) / self.each)
-        self.update()
-        event.accept()
-
-    def event(self, event: object) -> bool:
-        if isinstance(event, QHelpEvent):
-            found = cue_at(self.performance.shown, self.scale(), self.height(), QPointF(event.pos()))
-            words = ""
-            if found is not None:
-                cue = found[1]
-                words = f"{cue.action.name}\n{cue.action.kind}, {cue.start:.2f} to {cue.end:.2f} s\n"
-                words += "Click selects it, double-click plays it in context"
-            elif lanes(self.height())["requests"].contains(QPointF(event.pos())):
-                told = [r.message for r in self.performance.shown.plan.reports if not r.written]
-                words = "\n".join(told[:6]) or "Requests: right-click to ask for something here"
-            QToolTip.showText(event.globalPos(), words, self)
-            return True
-        return super().event(event)  # type: ignore[arg-type]
-
-    def contextMenuEvent(self, event: QContextMenuEvent) -> None:
-        seconds = round(max(0.0, self.scale().seconds(event.pos().x())), 2)
-        request_menu(self, self.performance, seconds).exec(event.globalPos())
-
-
-def request_menu(parent: QWidget, performance: Performance, seconds: float | None) -> QMenu:
-    """Return a menu of everything that can be asked for at a time (None: now)."""
-    menu = QMenu(parent)
-    project = performance.document.project
-    for layer in LAYERS:
-        graph = project.graphs[layer]
-        if not graph.stances:
-            continue
-        inner = menu.addMenu(layer.capitalize())
-        for kind in ("gesture", "fidget"):
-            if any(a.kind == kind for a in graph.actions.values()):
-                inner.addAction(f"A {kind}", lambda x=layer, k=kind: performance.request(x, k, seconds))
-        tags = sorted({tag for a in graph.actions.values() if a.kind == "gesture" for tag in a.tags})
-        if tags:
-            tagged = inner.addMenu("A gesture that is …")
-            for tag in tags:
-                tagged.addAction(tag, lambda x=layer, tag=tag: performance.request(x, "gesture", seconds, tags=(tag,)))
-        inner.addSeparator()
-        for stance in graph.stances.values():
-            inner.addAction(f"Go to {stance.name}", lambda x=layer, s=stance.id: performance.request(x, "transition", seconds, stance=s))
-    if performance.requests:
-        menu.addSeparator()
-        menu.addAction("Withdraw all requests", lambda: performance.withdraw())
-    if menu.isEmpty():
-        menu.addAction("Make a stance first").setEnabled(False)
-    return menu
-
-
-def request_words(request: Request, performance: Performance) -> str:
-    project = performance.document.project
-    if request.stance is not None:
-        found = project.stance(request.stance)
-        return f"go to {found.name if found else '?'}"
-    if request.action is not None:
-        action = project.action(request.action)
-        return action.name if action else "?"
-    return ", ".join((request.kind, *request.tags))
+IMPROVISED = "Improvised"
 
 
 class TimelinePanel(QWidget):
@@ -288,6 +30,19 @@ class TimelinePanel(QWidget):
         layout.setSpacing(0)
         row = QHBoxLayout()
         row.setContentsMargins(12, 0, 12, 2)
+        row.setSpacing(8)
+        self.stage = QComboBox(self, toolTip="Which performance is on stage; improvised, the models fill the time on their own")
+        self.stage.setAccessibleName("Performance")
+        self.stage.setMinimumWidth(150)
+        self.stage.activated.connect(lambda _: session.set_performance(self.stage.currentData()))
+        row.addWidget(self.stage)
+        self.more = QToolButton(self, text="…", toolTip="New, rename, length, remove")
+        self.more.setAccessibleName("Performances")
+        self.more.setPopupMode(QToolButton.ToolButtonPopupMode.InstantPopup)
+        self.more_menu = QMenu(self)
+        self.more.setMenu(self.more_menu)
+        self.more_menu.aboutToShow.connect(self._fill)
+        row.addWidget(self.more)
         self.title = QLabel(self)
         self.title.setProperty("dim", True)
         row.addWidget(self.title, 1)
@@ -305,20 +60,117 @@ class TimelinePanel(QWidget):
         layout.addWidget(self.lanes, 1)
         performance.changed.connect(self._words)
         session.show_changed.connect(self._words)
-        document.changed.connect(lambda before, after: self._show_seed())
-        self._show_seed()
+        session.performance_changed.connect(self._restage)
+        document.changed.connect(lambda before, after: self._restage())
+        self._restage()
         self._words()
 
+    def _restage(self) -> None:
+        """Show which performance is on stage, and its seed."""
+        wanted = [(IMPROVISED, None), *((p.name, i) for i, p in self.document.project.performances.items())]
+        if wanted != [(self.stage.itemText(n), self.stage.itemData(n)) for n in range(self.stage.count())]:
+            self.stage.clear()
+            for name, ident in wanted:
+                self.stage.addItem(name, ident)
+        self.stage.setCurrentIndex(next((n for n, (_, i) in enumerate(wanted) if i == self.session.performance), 0))
+        self._show_seed()
+
+    # --- performances
+
+    def _fill(self) -> None:
+        menu, kept = self.more_menu, self.performance.kept
+        menu.clear()
+        menu.addAction("New performance", self.new)
+        if kept is None:
+            return
+        menu.addAction("Rename…", self.rename)
+        menu.addAction("Duplicate", self.duplicate)
+        menu.addAction("Length…", self.set_length)
+        fill = menu.addAction("The models fill the rest", lambda: self._change("Change who fills the rest", idle=not kept.idle))
+        fill.setCheckable(True)
+        fill.setChecked(kept.idle)
+        own = menu.addAction("A seed of its own", self._own_seed)
+        own.setCheckable(True)
+        own.setChecked(kept.seed is not None)
+        menu.addSeparator()
+        menu.addAction("Remove…", self.remove)
+
+    def _keep(self, text: str, performance: KeptPerformance) -> None:
+        made = ""
+
+        def edit(project: object) -> object:
+            nonlocal made
+            project, made = staging.add_performance(project, performance)  # type: ignore[arg-type]
+            return project
+
+        self.document.edit(text, edit)  # type: ignore[arg-type]
+        self.session.set_performance(made)
+        self.session.show_plan()
+
+    def new(self) -> None:
+        self._keep("New performance", KeptPerformance(name="Performance"))
+
+    def duplicate(self) -> None:
+        if self.performance.kept is not None:
+            self._keep("Duplicate performance", self.performance.kept)
+
+    def rename(self) -> None:
+        kept = self.performance.kept
+        if kept is not None:
+            name, ok = QInputDialog.getText(self, "Rename performance", "Name", text=kept.name)
+            if ok and name.strip():
+                self._change("Rename performance", name=name)
+
+    def set_length(self) -> None:
+        kept = self.performance.kept
+        if kept is not None:
+            seconds, ok = QInputDialog.getDouble(self, "Length of the performance", "Seconds", kept.length, 0.1, 36000, 1)
+            if ok:
+                self._change("Change length", length=round(seconds, 3))
+
+    def _own_seed(self) -> None:
+        kept = self.performance.kept
+        if kept is not None:
+            self._change("Change seed", seed=self.document.project.settings.seed if kept.seed is None else None)
+
+    def remove(self) -> None:
+        kept, ident = self.performance.kept, self.session.performance
+        if kept is None or ident is None:
+            return
+        if kept.asks:
+            question = f"Remove '{kept.name}' and its {many(len(kept.asks), 'request')}? It can be undone."
+            if QMessageBox.question(self, "Remove performance", question) != QMessageBox.StandardButton.Yes:
+                return
+        self.document.edit("Remove performance", lambda p: staging.remove_performance(p, ident))
+
+    def _change(self, text: str, **changes: object) -> None:
+        ident = self.session.performance
+        if ident is not None:
+            try:
+                self.document.edit(text, lambda p: staging.change_performance(p, ident, **changes), merge=text)
+            except EditError as error:
+                self.document.failed.emit(str(error))
+
+    # --- asking, seed
+
     def _ask(self) -> None:
-        request_menu(self, self.performance, None).exec(self.ask.mapToGlobal(self.ask.rect().bottomLeft()))
+        ask_menu(self, self.performance, None).exec(self.ask.mapToGlobal(self.ask.rect().bottomLeft()))
 
     def _seeded(self, seed: int) -> None:
-        if seed != self.document.project.settings.seed:
+        kept = self.performance.kept
+        if kept is not None and kept.seed is not None:
+            if seed != kept.seed:
+                self._change("Change seed", seed=seed)
+        elif seed != self.document.project.settings.seed:
             self.document.edit("Change seed", lambda p: edits.set_settings(p, seed=seed), merge="seed")
 
     def _show_seed(self) -> None:
-        if self.seed.value() != self.document.project.settings.seed:
-            self.seed.setValue(self.document.project.settings.seed)
+        kept = self.performance.kept
+        seed = kept.seed if kept is not None and kept.seed is not None else self.document.project.settings.seed
+        if self.seed.value() != seed:
+            self.seed.blockSignals(True)
+            self.seed.setValue(seed)
+            self.seed.blockSignals(False)
 
     def _words(self) -> None:
         shown = self.performance.shown
@@ -328,7 +180,7 @@ class TimelinePanel(QWidget):
             self.title.setText("In context: stance, action, back to the stance. Esc for the performance.")
         else:
             count = sum(len(shown.plan.layers[layer].cues) for layer in LAYERS)
-            lost = sum(1 for r in shown.plan.reports if not r.played and not r.written)
+            lost = sum(1 for a in self.performance.answers().values() if a.state == "refused")
             words = (
                 f"{many(count, 'action')} in {shown.length:g} s"
                 if count

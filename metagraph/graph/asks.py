@@ -165,7 +165,7 @@ class Performance(Struct, frozen=True, kw_only=True, omit_defaults=True, forbid_
     name: Annotated[str, Meta(max_length=200)]
     asks: tuple[AnyAsk, ...] = ()
     seed: Annotated[int, Meta(ge=0, le=0xFFFFFFFF)] | None = None
-    length: Annotated[float, Meta(gt=0, le=1e6)] = 60.0
+    length: Annotated[float, Meta(gt=0, le=36000)] = 60.0
     idle: bool = True
     stances: dict[Layer, str] = {}
 

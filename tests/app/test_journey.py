@@ -17,6 +17,7 @@ from PySide6.QtWidgets import QFileDialog, QMessageBox
 
 from metagraph.engines.export import read_export, schema_text
 from metagraph.formats.store import open_project
+from metagraph.graph import asks as a
 
 pytestmark = [pytest.mark.window, pytest.mark.gl]
 ROOT = Path(__file__).resolve().parents[2]
@@ -215,7 +216,7 @@ def test_sitting_down_and_standing_up_are_transitions_between_two_stances(drive,
     drive.drag(drive.card("Interact"), drive.node("fidget"), lambda: drive.names("fidget") == ["Interact"])
 
     # Asked to sit, the character sits.
-    drive.performance.request("body", "transition", 1.0, stance=sitting)
+    drive.performance.ask(a.Go(stance=sitting, at=1.0))
     drive.wait(lambda: any(c.action.name == "Sit_Chair_Down" for c in drive.performance.shown.plan.layers["body"].cues))
 
     drive.document.save(tmp_path / "rogue.metagraph.yaml")

@@ -11,7 +11,8 @@ from app.document import Document
 from app.jobs import Jobs
 from app.performance import LEAD, Performance, alone, in_context
 from app.session import Session
-from metagraph.graph import edits
+from metagraph.graph import asks as a
+from metagraph.graph import edits, staging
 from metagraph.graph.model import LAYERS, Project
 from metagraph.playback.player import pose_at
 
@@ -144,19 +145,66 @@ def test_a_request_appears_in_the_plan_and_can_be_withdrawn(stage, qtbot, toy):
     qtbot.waitUntil(lambda: planned(stage))
     unasked = stage.shown.plan.layers["arms"].cues
     far = toy.id(stage.document.project, "far")
-    request = stage.request("arms", "transition", 3.0, stance=far)
+    stage.ask(a.Go(stance=far, at=3.0))
     qtbot.waitUntil(lambda: any(c.then == far and c.start < 6 for c in stage.shown.plan.layers["arms"].cues))
-    stage.withdraw(request.id)
+    stage.withdraw(stage.asks[0].id)
     qtbot.waitUntil(lambda: stage.shown.plan.layers["arms"].cues == unasked)
-    assert stage.requests == ()
+    assert stage.asks == ()
+
+
+def test_asks_are_kept_with_the_project_and_undone_like_any_edit(stage, qtbot):
+    stage.ask(a.Gesture(at=3.0), "Ask for a gesture")
+    project = stage.document.project
+    assert [p.name for p in project.performances.values()] == ["Performance"] and stage.kept is not None
+    stage.ask(a.Nod(at=4.0))
+    assert len(stage.asks) == 2, "the second joins the first"
+    first = stage.asks[0].id
+    stage.move_asks((first,), 1.25)
+    assert stage.asks[0].at == 4.25
+    stage.change_ask(first, priority=5)
+    assert stage.asks[0].priority == 5
+    for _ in range(4):
+        stage.document.undo()
+    assert stage.kept is None and stage.asks == () and stage.session.performance is None
+
+
+def test_an_ask_for_now_gets_a_time_just_after_the_playhead(stage, qtbot):
+    stage.session.seek(7.0)
+    stage.ask(a.Gesture())
+    assert stage.asks[0].at == pytest.approx(7.15)
+    assert stage.session.asks == (stage.asks[0].id,)
+
+
+def test_a_kept_performance_has_its_own_length_and_seed(stage, qtbot):
+    qtbot.waitUntil(lambda: planned(stage))
+    other = stage.shown.plan.layers["arms"].cues
+    made = []
+
+    def edit(project):
+        project, ident = staging.add_performance(project, a.Performance(name="talk", length=12.0, seed=99))
+        made.append(ident)
+        return project
+
+    stage.document.edit("Keep", edit)
+    stage.session.set_performance(made[-1])
+    qtbot.waitUntil(lambda: stage.shown.length == 12.0)
+    assert stage.shown.plan.layers["arms"].cues != tuple(c for c in other if c.start < 12)
+    assert stage.shown.plan.seed == 99
+    stage.session.set_performance(None)
+    qtbot.waitUntil(lambda: stage.shown.length == 60.0 and stage.shown.plan.layers["arms"].cues == other)
+
+
+def test_answers_are_about_the_plan_that_is_shown(stage, qtbot):
+    stage.ask(a.Gesture(at=3.0, tags=("nonsense",)))
+    qtbot.waitUntil(lambda: bool(stage.answers()) and stage.answers()[stage.asks[0].id].state == "refused")
 
 
 def test_another_project_forgets_requests_and_length(stage, qtbot, toy):
-    stage.request("arms", "gesture", 3.0)
+    stage.ask(a.Gesture(at=3.0))
     stage.length = 600.0
     stage.document.load(toy.project(), None)
     qtbot.waitUntil(lambda: planned(stage))
-    assert stage.requests == ()
+    assert stage.asks == () and stage.session.performance is None
     assert stage.shown.length == 60.0
 
 

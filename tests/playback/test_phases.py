@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from itertools import pairwise
 from typing import Any
 
 import numpy as np
@@ -81,7 +82,7 @@ def test_what_the_timing_says_wins_and_stays_in_order(toy: Any) -> None:
 def test_phases_are_always_in_order(toy: Any, angles: list[float], start: float, end: float) -> None:
     found = phases(*placed(toy, swung(toy, "any", angles), start=start, end=end))
     order = (found.start, found.ready, found.stroke, found.stroke_end, found.relax, found.end)
-    assert all(a <= b + 1e-9 for a, b in zip(order, order[1:], strict=False)), order
+    assert all(a <= b + 1e-9 for a, b in pairwise(order)), order
 
 
 def test_holds_of_the_sample_gestures_are_found(sample: Project) -> None:
