@@ -68,7 +68,7 @@ def into(project: Project, reading: Reading, learned: Collection[Layer], tagged:
             done.append(layer)
     kept = None
     if name is not None and any(reading.observed.values()):
-        project, kept = staging.add_performance(project, performance(name, reading.observed))
+        project, kept = staging.add_performance(project, performance(name, reading.observed, reading.annotation.end))
     return Made(project, tuple(done), kept)
 
 

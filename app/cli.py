@@ -27,6 +27,7 @@ examples:
   metagraph check my.metagraph.yaml           list what is wrong, and what to do about it
   metagraph plan my.metagraph.yaml -s 20      print a performance of 20 seconds
   metagraph render my.metagraph.yaml -o show.mp4 -s 20
+  metagraph annotate my.metagraph.yaml talk.eaf --learn
   metagraph export my.metagraph.yaml -o game/
 
 exit codes: 0 done, 1 an error, 2 wrong usage, 3 done but with problems"""
@@ -67,6 +68,18 @@ def _parser() -> argparse.ArgumentParser:
     exported.add_argument("-o", "--out", type=Path, required=True, help="a folder")
     exported.add_argument("--expanded", action="store_true", help="list the expanded state machine as well")
     exported.add_argument("--no-mesh", action="store_true", help="leave the character's mesh out of the GLB")
+    annotated = command("annotate", "learn from an ELAN annotation what follows what, or perform it")
+    annotated.add_argument("annotation", type=Path, help="an .eaf file")
+    annotated.add_argument("--tier", action="append", default=[], metavar="NAME=ROLE",
+                           help="what a tier stands for: left arm, right arm, arms, head action, head stance, body, ignore")  # fmt: skip
+    annotated.add_argument("--label", action="append", default=[], metavar="LABEL=MEANING",
+                           help='what a label means: gesture, fidget, transition, ignore ..., then tags ("gesture positive")')  # fmt: skip
+    meaning = annotated.add_mutually_exclusive_group()
+    meaning.add_argument("--states", action="store_true", help="positive and negative gestures are states of their own")
+    meaning.add_argument("--shares", action="store_true", help="they are shares of all gestures (the default)")
+    annotated.add_argument("--smoothing", type=float, default=0.0, help="added to every count (default: 0, as in the paper)")
+    annotated.add_argument("--learn", action="store_true", help="learn the models of all layers that were annotated")
+    annotated.add_argument("--perform", metavar="NAME", help="keep it as a performance")
     info = command("info", "tell what is in a project, an export or a clip file", project=False)
     info.add_argument("path", type=Path, help="a project, an exported JSON, or a clip file")
     demo = command("demo", "the main job without a window: sample project to performance, pictures, video and export", project=False)
@@ -80,7 +93,7 @@ def _performance(parser: argparse.ArgumentParser, seconds: float) -> None:
     parser.add_argument("--seed", type=int, help="another performance of the same project (default: the project's seed)")
 
 
-COMMANDS = ("window", "import", "check", "plan", "render", "export", "info", "demo")
+COMMANDS = ("window", "import", "check", "plan", "render", "annotate", "export", "info", "demo")
 
 
 def main(arguments: Sequence[str] | None = None) -> int:

@@ -13,6 +13,7 @@ from typing import Any
 
 import numpy as np
 
+from app.headless_annotate import annotate as annotate
 from metagraph.errors import FileError
 from metagraph.formats.clips import SUFFIXES, read_clips
 from metagraph.formats.imports import import_files

@@ -124,10 +124,12 @@ def guess_role(tier: Tier) -> str:
         return "arms"
     known = Counter[str]()
     for label, count in tier.labels.items():
-        found = set(_words(label))
-        known["head action" if found & {"nod", "nods", "nodding", "shake", "shaking"} else "arms"] += count if _known(label) else 0
+        meaning = _known(label)
+        if meaning != IGNORE:
+            head = set(_words(label)) & {"nod", "nods", "nodding", "shake", "shaking"}
+            known[IGNORE if meaning is None else "head action" if head else "arms"] += count
     role, count = max(known.items(), key=lambda x: x[1], default=(IGNORE, 0))
-    return role if count > sum(tier.labels.values()) / 2 else IGNORE
+    return role if count > known.total() / 2 else IGNORE
 
 
 def guess_roles(annotation: Annotation, *remembered: Mapping[str, str]) -> dict[str, str]:

@@ -287,11 +287,14 @@ def asks_of(layer: Layer, acts: Sequence[Act]) -> tuple[AnyAsk, ...]:
     return tuple(out)
 
 
-def performance(name: str, observed: Mapping[Layer, Sequence[Act]]) -> Performance:
-    """Return what was seen as a performance to keep; other seeds perform it with other actions. Layers that were not seen rest."""
+def performance(name: str, observed: Mapping[Layer, Sequence[Act]], seconds: float = 0.0) -> Performance:
+    """Return what was seen as a performance to keep; other seeds perform it with other actions. Layers that were not seen rest.
+
+    seconds: how long it was watched, at least; it lasts a second longer than the last act in any case.
+    """
     asks = sorted((ask for layer, acts in observed.items() for ask in asks_of(layer, acts)), key=lambda ask: ask.at or 0.0)
     end = max((act.end for acts in observed.values() for act in acts), default=0.0)
-    return Performance(name=name, asks=tuple(asks), length=float(max(1, math.ceil(end + 1.0))), idle=False)
+    return Performance(name=name, asks=tuple(asks), length=float(math.ceil(max(end + 1.0, seconds))), idle=False)
 
 
 def acts_of_asks(layer: Layer, asks: Iterable[AnyAsk]) -> tuple[Act, ...]:

@@ -53,6 +53,8 @@ def test_a_name_that_says_nothing_leaves_it_to_the_labels() -> None:
     assert guess_role(of("tier 1", "prep", "stroke", "hold", "what?")) == "arms"
     assert guess_role(of("tier 1", "nod", "nodding", "shake")) == "head action"
     assert guess_role(of("tier 1", "well", "I see", "nod")) == "ignore"
+    assert guess_role(of("tier 1", "rest", "prep", "rest", "rest")) == "arms"
+    assert guess_role(of("tier 1", "x", "rest", "")) == "ignore"
     assert guess_role(of("tier 1")) == "ignore"
 
 

@@ -310,6 +310,8 @@ def test_a_performance_holds_every_layer_in_order_and_fills_nothing_in() -> None
     assert [(ask.id, ask.at) for ask in made.asks] == [("arms1", 0.0), ("head1", 0.0), ("arms2", 1.5)]
     assert (made.name, made.length, made.idle, made.seed) == ("talk", 4.0, False, None)
     assert performance("nothing", {}).asks == ()
+    assert performance("nothing", {}).length == 1.0
+    assert performance("talk", {"head": kinds("both gesture")}, 20.5).length == 21.0
 
 
 def test_the_sample_annotation_becomes_models_of_three_layers() -> None:
