@@ -14,6 +14,7 @@ from PySide6.QtWidgets import (
     QFileDialog,
     QMainWindow,
     QMessageBox,
+    QScrollArea,
     QSplitter,
     QWidget,
 )
@@ -40,6 +41,7 @@ from metagraph.graph import edits
 from metagraph.graph.check import Problem, check
 from metagraph.graph.model import KINDS, Layer, Project
 
+ARRANGED = 2  # which docks there are; another arrangement saved before is not restored
 LATE = 4000  # milliseconds after which the late panels are made whatever else is going on
 CHECK_AFTER = 250  # milliseconds of quiet after an edit before problems are looked for
 
@@ -107,6 +109,7 @@ class Window(QMainWindow):
         """Docks whose panels are made after the first paint, since pyqtgraph takes its time to import."""
         for key, title, area in (
             ("properties", "Properties", Qt.DockWidgetArea.RightDockWidgetArea),
+            ("life", "Life", Qt.DockWidgetArea.RightDockWidgetArea),
             ("timeline", "Performance", Qt.DockWidgetArea.BottomDockWidgetArea),
             ("models", "Models", Qt.DockWidgetArea.BottomDockWidgetArea),
             ("problems", "Problems", Qt.DockWidgetArea.BottomDockWidgetArea),
@@ -131,6 +134,7 @@ class Window(QMainWindow):
 
     def make_late_panels(self) -> None:
         """Fill the docks that were left empty for a fast start."""
+        from app.panels.life import LifePanel
         from app.panels.machine import MachinePanel
         from app.panels.models import ModelsPanel
         from app.panels.problems import ProblemsPanel
@@ -140,6 +144,7 @@ class Window(QMainWindow):
         if self.ready:
             return
         self.properties = PropertiesPanel(self.document, self.session, self.performance, self)
+        self.life = LifePanel(self.document, self.session, self)
         self.timeline = TimelinePanel(self.document, self.session, self.performance, self)
         self.problems_panel = ProblemsPanel(self.session, self)
         self.models = ModelsPanel(self.document, self.session, self.jobs, self)
@@ -149,8 +154,9 @@ class Window(QMainWindow):
         self.machine.setVisible(self._machine_wanted)
         for key, panel in (
             ("properties", self.properties),
+            ("life", self.life),
             ("timeline", self.timeline),
-            ("models", self.models),
+            ("models", _scrolled(self.models)),
             ("problems", self.problems_panel),
         ):
             old = self.docks[key].widget()
@@ -216,12 +222,15 @@ class Window(QMainWindow):
         """Put every dock where it belongs."""
         for key, area in (
             ("library", Qt.DockWidgetArea.LeftDockWidgetArea), ("preview", Qt.DockWidgetArea.RightDockWidgetArea),
-            ("properties", Qt.DockWidgetArea.RightDockWidgetArea), ("timeline", Qt.DockWidgetArea.BottomDockWidgetArea),
+            ("properties", Qt.DockWidgetArea.RightDockWidgetArea), ("life", Qt.DockWidgetArea.RightDockWidgetArea),
+            ("timeline", Qt.DockWidgetArea.BottomDockWidgetArea),
             ("models", Qt.DockWidgetArea.BottomDockWidgetArea), ("problems", Qt.DockWidgetArea.BottomDockWidgetArea),
         ):  # fmt: skip
             self.docks[key].setFloating(False)
             self.addDockWidget(area, self.docks[key])
             self.docks[key].show()
+        self.tabifyDockWidget(self.docks["properties"], self.docks["life"])
+        self.docks["properties"].raise_()
         self.tabifyDockWidget(self.docks["timeline"], self.docks["models"])
         self.tabifyDockWidget(self.docks["models"], self.docks["problems"])
         self.docks["timeline"].raise_()
@@ -238,10 +247,11 @@ class Window(QMainWindow):
     def _restore(self) -> None:
         settings = QSettings()
         self.resize(1680, 1020)
-        for key, restore in (("geometry", self.restoreGeometry), ("state", self.restoreState)):
-            saved = settings.value(key)
-            if isinstance(saved, QByteArray):
-                restore(saved)
+        geometry, state = settings.value("geometry"), settings.value("state")
+        if isinstance(geometry, QByteArray):
+            self.restoreGeometry(geometry)
+        if isinstance(state, QByteArray):
+            self.restoreState(state, ARRANGED)
 
     def show_dock(self, key: str) -> None:
         self.docks[key].show()
@@ -260,13 +270,13 @@ class Window(QMainWindow):
     def only_character(self) -> None:
         """Give the character the whole window, or put everything back."""
         if self.centre.isVisible():
-            self._before = self.saveState()
+            self._before = self.saveState(ARRANGED)
             self.centre.hide()
             for key, dock in self.docks.items():
                 dock.setVisible(key == "preview")
         else:
             self.centre.show()
-            self.restoreState(self._before)
+            self.restoreState(self._before, ARRANGED)
 
     _before = QByteArray()
 
@@ -479,7 +489,7 @@ class Window(QMainWindow):
         settings = QSettings()
         if self.centre.isVisible():
             settings.setValue("geometry", self.saveGeometry())
-            settings.setValue("state", self.saveState())
+            settings.setValue("state", self.saveState(ARRANGED))
         self.document.close_journal()
         self.preview._timer.stop()
         self.canvas._hero_timer.stop()
@@ -489,9 +499,18 @@ class Window(QMainWindow):
         event.accept()
 
 
+def _scrolled(panel: QWidget) -> QScrollArea:
+    """Return a panel in an area that scrolls where the dock is smaller than the panel needs."""
+    area = QScrollArea(widgetResizable=True)
+    area.setFrameShape(QScrollArea.Shape.NoFrame)
+    area.setWidget(panel)
+    return area
+
+
 def late_modules() -> None:
     """Import what takes long and is not in the first picture."""
     import app.panels.annotate
+    import app.panels.life
     import app.panels.machine
     import app.panels.models
     import app.panels.problems

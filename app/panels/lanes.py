@@ -18,7 +18,7 @@ from metagraph.graph.model import LAYERS, Layer, Project
 from metagraph.playback.hear import Answer
 from metagraph.playback.plan import Cue
 
-LEFT, RULER, LANE = 84, 24, 52
+LEFT, RULER, LANE = 84, 24, 60
 ASKS = 0.44  # of a lane's height is for what was asked
 STEPS = (0.1, 0.2, 0.5, 1.0, 2.0, 5.0, 10.0, 30.0, 60.0, 300.0)
 NAMES = (STAGE, *LAYERS)
