@@ -235,13 +235,13 @@ class Window(QMainWindow):
         self.tabifyDockWidget(self.docks["models"], self.docks["problems"])
         self.docks["timeline"].raise_()
         self.setCorner(Qt.Corner.BottomLeftCorner, Qt.DockWidgetArea.BottomDockWidgetArea)
-        self.setCorner(Qt.Corner.BottomRightCorner, Qt.DockWidgetArea.BottomDockWidgetArea)
+        self.setCorner(Qt.Corner.BottomRightCorner, Qt.DockWidgetArea.RightDockWidgetArea)
         self._sizes()
         self.centre.show()
 
     def _sizes(self) -> None:
         self.resizeDocks([self.docks["library"], self.docks["preview"]], [300, 420], Qt.Orientation.Horizontal)
-        self.resizeDocks([self.docks["preview"], self.docks["properties"]], [430, 350], Qt.Orientation.Vertical)
+        self.resizeDocks([self.docks["preview"], self.docks["properties"]], [470, 440], Qt.Orientation.Vertical)
         self.resizeDocks([self.docks["timeline"]], [286], Qt.Orientation.Vertical)
 
     def _restore(self) -> None:
