@@ -23,11 +23,12 @@ Space = Literal["local", "model"]
 
 
 class Poses(Struct, frozen=True, kw_only=True, omit_defaults=True, forbid_unknown_fields=True):
-    """How poses are streamed. rate: frames a second. joints: which, in which order; all where it is null. space: rotations to
-    the parent joint, or positions and rotations in the character's space. translations: of all joints, not the root's alone."""
+    """How poses are streamed. rate: frames a second. format: "osc" for clients that speak it. joints: which, in which order;
+    all where it is null. space: rotations to the parent joint, or positions and rotations in the character's space.
+    translations: of all joints, not the root's alone."""
 
     rate: Annotated[float, Meta(gt=0, le=FASTEST)] = 30.0
-    format: Literal["json", "binary"] = "json"
+    format: Literal["json", "binary", "osc"] = "json"
     joints: Annotated[tuple[str, ...], Meta(max_length=1000)] | None = None
     space: Space = "local"
     translations: bool = False
@@ -121,6 +122,11 @@ _message: msgspec.json.Decoder[Message] = msgspec.json.Decoder(Message)
 _several: msgspec.json.Decoder[list[msgspec.Raw]] = msgspec.json.Decoder(list[msgspec.Raw])
 _seconds: msgspec.json.Decoder[Any] = msgspec.json.Decoder()
 encode = msgspec.json.Encoder().encode
+
+
+def rounded(seconds: float | None) -> float | None:
+    """Return seconds as they are told, to a tenth of a millisecond."""
+    return None if seconds is None else round(seconds, 4)
 
 
 def split(data: bytes | str) -> tuple[list[bytes | str | msgspec.Raw], bool]:

@@ -1,0 +1,125 @@
+"""What a plan does about many asks at once: `metagraph.playback.hear.answer` for a whole tick, in one pass over what is near."""
+
+from __future__ import annotations
+
+from collections.abc import Collection, Iterable, Iterator
+from dataclasses import dataclass, field
+from math import inf
+
+from metagraph.playback.life.track import Item, LookAt, Speech
+from metagraph.playback.plan import MetaAction, Plan, Report
+
+ENDLESS = 1e8  # seconds; what ends later than this ends when something else begins
+
+
+@dataclass(slots=True)
+class Found:
+    """All that a plan holds of one ask. starts, ends: seconds. what: actions, or words for what the life layers do."""
+
+    starts: list[float] = field(default_factory=list)
+    ends: list[float] = field(default_factory=list)
+    what: list[str] = field(default_factory=list)
+    reports: list[Report] = field(default_factory=list)
+    waits: float | None = None
+    layer: str | None = None
+
+    @property
+    def state(self) -> str:
+        if self.starts:
+            return "late" if any(r.outcome in ("late", "resumed") for r in self.reports) else "planned"
+        if any(r.outcome == "already-there" for r in self.reports):
+            return "done"
+        if self.waits is not None and all(r.played for r in self.reports):
+            return "late" if self.reports else "planned"
+        return "refused"
+
+    def said(self, missed: float = 0.0) -> str:
+        """Return the state told to who asked. missed: seconds by which it was asked for too late."""
+        return "late" if missed > 0 and self.state == "planned" else self.state
+
+    @property
+    def at(self) -> float | None:
+        return min(self.starts) if self.starts else self.waits if self.state != "refused" else None
+
+    @property
+    def until(self) -> float | None:
+        end = max(self.ends, default=inf)
+        return end if end < ENDLESS else None
+
+    @property
+    def why(self) -> str:
+        words = "; ".join(dict.fromkeys(r.message for r in self.reports))
+        if words or self.starts:
+            return words
+        return "nothing came of it" if self.state == "refused" else "chosen when its time is nearer"
+
+
+WORDS = {"LookAt": "look", "Speech": "speech", "ModeFrom": "mode", "PlaceFrom": "place", "BlinkAt": "blink"}
+
+
+def find(plan: Plan, wanted: Collection[str], since: float = -inf) -> dict[str, Found]:
+    """Return what a plan holds of asks, for those of which it holds anything. since: seconds before which nothing matters."""
+    out: dict[str, Found] = {}
+
+    def of(ident: str) -> Found | None:
+        owner = owner_of(ident, wanted)
+        return None if owner is None else out.setdefault(owner, Found())
+
+    for layer, lane in plan.layers.items():
+        for cue in reversed(lane.cues):
+            if cue.end < since:
+                break
+            found = of(cue.meta.partition("+")[0])
+            if found is not None:
+                found.starts.append(cue.start)
+                found.ends.append(cue.end)
+                found.what.append(cue.action.name)
+                found.layer = layer
+        for meta in _far(lane.metas, plan.end):
+            found = of(meta.request.id)
+            if found is not None:
+                found.waits, found.layer = meta.start, found.layer or layer
+    for item in _near(plan, since):
+        found = of(item.id)
+        if found is not None:
+            found.starts.append(item.start)
+            found.ends.append(getattr(item, "end", item.start))
+            found.what.append(WORDS[type(item).__name__])
+    for report in plan.reports:
+        found = of(report.request)
+        if found is not None:
+            found.reports.append(report)
+            found.layer = found.layer or report.layer
+    for found in out.values():
+        found.what.reverse()
+    return out
+
+
+def owner_of(ident: str, wanted: Collection[str]) -> str | None:
+    """Return which of the wanted asks a request belongs to: its own, or that of which it is a part (`ask.1`, `ask.1.2`)."""
+    while ident not in wanted:
+        ident, dot, number = ident.rpartition(".")
+        if not dot or not number.isdigit():
+            return None
+    return ident
+
+
+def _far(metas: Iterable[MetaAction], end: float) -> Iterator[MetaAction]:
+    """Yield, the earliest last, what is placed but begins too late to have been chosen."""
+    for meta in reversed(tuple(metas)):
+        if meta.start < end:
+            return
+        yield meta
+
+
+def _near(plan: Plan, since: float) -> Iterator[Item]:
+    """Yield what was asked of the life layers and matters from `since` on."""
+    track = plan.track
+    several: tuple[tuple[Item, ...], ...] = (track.modes, track.places, track.blinks)
+    for items in several:
+        for item in reversed(items):
+            if item.start < since:
+                break
+            yield item
+    lasting: tuple[LookAt | Speech, ...] = (*track.looks, *track.speeches)
+    yield from (x for x in lasting if x.end >= since)

@@ -1,0 +1,101 @@
+"""What a session says of itself and of its character, as JSON."""
+
+from __future__ import annotations
+
+from collections import Counter
+from typing import TYPE_CHECKING, Any
+
+import msgspec
+
+from metagraph import __version__
+from metagraph.graph import anatomy
+from metagraph.graph.model import LAYERS, Project
+from metagraph.graph.words import MODES
+from metagraph.live import limits, messages
+from metagraph.live.poses import Stream
+
+if TYPE_CHECKING:
+    from metagraph.live.session import LiveSession
+
+LINES, POINTS, ACTIONS = 2000, 500, 20000  # described at most
+
+
+def named(data: bytes, ident: str) -> bytes:
+    """Return a JSON object with an id."""
+    return b'{"id":' + messages.encode(ident) + b"," + data[1:] if ident else data
+
+
+def greeting(session: LiveSession, stream: Stream | None, ident: str) -> bytes:
+    """Return the reply to hello: what is spoken here, and in which order a stream's numbers come."""
+    out: dict[str, Any] = {
+        "state": "done",
+        "metagraph": __version__,
+        "t": round(session.now, 4),
+        "project": session.project.name,
+        "limits": {
+            "bytes": messages.LONGEST, "bml": messages.LONGEST_BML, "list": messages.MOST, "pending": limits.PENDING,
+            "seconds": limits.FARTHEST,
+        },
+    }  # fmt: skip
+    if stream is not None:
+        out["poses"] = msgspec.to_builtins(stream.wish) | {"rate": stream.wish.rate, "joints": stream.names, "morphs": stream.morphs}
+    return named(messages.encode(out), ident)
+
+
+def status(session: LiveSession) -> bytes:
+    """Return what plays at this moment."""
+    now, plan = session.now, session.plan
+    playing: dict[str, dict[str, Any]] = {}
+    for layer in LAYERS:
+        lane = plan.layers[layer]
+        cue, stance = lane.cue_at(now), session.project.stance(lane.stance_at(now))
+        playing[layer] = {"stance": stance.name if stance is not None else None}
+        if cue is not None:
+            playing[layer] |= {"action": cue.action.name, "kind": cue.action.kind, "at": round(cue.start, 4), "until": round(cue.end, 4)}
+    spoken = next((s for s in reversed(plan.track.speeches) if s.start <= now < s.end), None)
+    out = {
+        "state": "done",
+        "t": round(now, 4),
+        "playing": playing,
+        "speaking": None if spoken is None else {"line": spoken.line, "text": spoken.text, "until": round(spoken.end, 4)},
+        "waiting": session.ledger.pending(now),
+        "clients": len(session.clients),
+    }
+    return messages.encode(out)
+
+
+def describe(project: Project) -> bytes:
+    """Return what may be asked of a character: its joints, stances, actions, tags, lines and points."""
+    skeleton, parts = project.skeleton, anatomy.parts(project) if project.skeleton is not None else ()
+    layers = {}
+    for layer in LAYERS:
+        graph = project.graphs[layer]
+        tags = Counter(tag for action in graph.actions.values() for tag in action.tags)
+        layers[layer] = {
+            "start": graph.start,
+            "stances": [{"id": s.id, "name": s.name} for s in graph.stances.values()],
+            "actions": [_action(project, x) for x in list(graph.actions.values())[:ACTIONS] if x.kind != "stance"],
+            "tags": dict(tags),
+        }
+    out = {
+        "state": "done",
+        "project": project.name,
+        "words": messages.WORDS,
+        "modes": MODES,
+        "joints": [] if skeleton is None else [
+            {"name": name, "parent": None if parent < 0 else skeleton.names[parent], "part": part}
+            for name, parent, part in zip(skeleton.names, skeleton.parents.tolist(), parts, strict=True)
+        ],
+        "layers": layers,
+        "lines": [{"id": ident, "text": line.text} for ident, line in list(project.lines.items())[:LINES]],
+        "points": dict(list(project.points.items())[:POINTS]),
+    }  # fmt: skip
+    return messages.encode(out)
+
+
+def _action(project: Project, action: Any) -> dict[str, Any]:
+    start, end = project.span(action)
+    out = {"id": action.id, "name": action.name, "kind": action.kind, "stance": action.stance, "seconds": round(end - start, 3)}
+    if action.kind == "transition":
+        out["to"] = action.end_stance
+    return out | ({"limb": action.limb} if action.limb != "both" else {}) | ({"tags": action.tags} if action.tags else {})

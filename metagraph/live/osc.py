@@ -1,0 +1,188 @@
+"""OSC over UDP: messages in, and for those who ask replies, events and poses out. The addresses are listed in docs/live.md."""
+
+from __future__ import annotations
+
+import asyncio
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from typing import Any
+
+from metagraph.graph.words import LAYERS
+from metagraph.live.hub import Hub
+from metagraph.live.messages import LONGEST_MESSAGE, encode
+
+ROOT = "/metagraph/"
+SILENT = 60.0  # seconds after which a sender is forgotten
+SENDERS = 32  # known at once
+LARGEST = 60_000  # bytes of one datagram that is sent
+
+
+class OscError(ValueError):
+    """A message that cannot be turned into a request."""
+
+
+def request(address: str, values: Sequence[Any]) -> Mapping[str, Any]:
+    """Return the request an OSC message says. Raises OscError with what would be right.
+
+    Texts like `priority=3` or `in=0.5` set fields of any request; the other values mean what the address says.
+    """
+    word = address.removeprefix(ROOT)
+    if word == address:
+        raise OscError(f"addresses begin with {ROOT}")
+    more = dict(_field(x) for x in values if isinstance(x, str) and "=" in x)
+    plain = [x for x in values if not (isinstance(x, str) and "=" in x)]
+    texts, numbers = [x for x in plain if isinstance(x, str)], [float(x) for x in plain if isinstance(x, int | float)]
+    match word:
+        case "gesture" | "fidget":
+            layer = {"layer": texts[0]} if texts and texts[0] in LAYERS else {}
+            return {"do": word} | layer | {"tags": texts[len(layer) :]} | more
+        case "change":
+            return {"do": word} | ({"layer": texts[0]} if texts else {}) | more
+        case "nod" | "shake":
+            return {"do": word, "tags": texts} | more
+        case "action" | "stance":
+            if not texts:
+                raise OscError(f"{address} needs a name")
+            return {"do": word, word: texts[0]} | ({"layer": texts[1]} if len(texts) > 1 else {}) | more
+        case "look":
+            return {"do": word, "to": texts[0] if texts else numbers or "user"} | more
+        case "blink" | "status" | "describe":
+            return {"do": word} | more
+        case "say":
+            return {"do": word} | ({"line": texts[0] if texts else str(plain[0])} if plain else {}) | more
+        case "text":
+            return {"do": "say", "text": " ".join(texts)} | more
+        case "mode":
+            return {"do": word, "mode": texts[0] if texts and texts[0] else None} | more
+        case "place":
+            return {"do": word, "name": texts[0] if texts else "user", "point": numbers} | more
+        case "withdraw":
+            return {"do": word, "what": texts[0] if texts else ""} | more
+        case "hello":
+            return {"do": word} | ({"token": texts[0]} if texts else {}) | more
+        case "events":
+            return {"do": "hello", "events": bool(numbers and numbers[0])} | more
+        case "poses":
+            rate = numbers[0] if numbers else 30.0
+            poses: dict[str, Any] = {"rate": rate, "format": "osc"} | ({"joints": texts} if texts else {})
+            for name in ("space", "translations"):
+                if name in more:
+                    poses[name] = bool(more.pop(name)) if name == "translations" else more.pop(name)
+            return {"do": "hello", "poses": poses if rate > 0 else None} | more
+    raise OscError(f"there is no address {address[:80]}")
+
+
+def _field(text: str) -> tuple[str, Any]:
+    name, _, value = text.partition("=")
+    try:
+        return name, float(value) if "." in value else int(value)
+    except ValueError:
+        return name, {"true": True, "false": False}.get(value, value)
+
+
+def texts_of(datagram: bytes) -> Iterator[tuple[str, bytes | str | OscError | bool]]:
+    """Yield, for each message of a datagram, its address and the JSON it says, what is wrong, or whether replies are wanted."""
+    from pythonosc.osc_packet import OscPacket  # only sessions that listen for OSC pay for it
+
+    try:
+        messages = [timed.message for timed in OscPacket(datagram).messages]
+    except Exception as error:  # its reader raises many kinds on broken datagrams
+        yield "", OscError(f"not OSC: {str(error)[:200] or type(error).__name__}")
+        return
+    for message in messages:
+        address, values = str(message.address), list(message.params)
+        try:
+            if address == ROOT + "replies":
+                yield address, bool(values[0]) if values else True
+            elif address == ROOT + "json":
+                yield address, str(values[0]) if values else ""
+            else:
+                yield address, encode(request(address, values))
+        except (OscError, TypeError, ValueError) as error:
+            yield address, OscError(str(error))
+
+
+class _Sender:
+    """One address that sends. wants: whether replies and events are to be sent back."""
+
+    formats = ("osc",)
+
+    def __init__(self, osc: OscLine, address: Any) -> None:
+        self.osc, self.address, self.wants, self.number, self.heard = osc, address, False, 0, 0.0
+
+    def send(self, messages: list[tuple[bytes, bool]]) -> None:
+        """Send replies and events as texts, poses as they are."""
+        for data, binary in messages:
+            if binary:
+                self.osc.put(data, self.address)
+            elif self.wants:
+                word = "event" if data.startswith(b'{"event"') else "reply"
+                text = data.decode()
+                if len(data) > LARGEST:
+                    text = '{"error":"the reply is too long for a datagram; ask over WebSocket"}'
+                self.osc.put(padded(f"{ROOT}{word}") + padded(",s") + padded(text), self.address)
+
+    def backlog(self) -> int:
+        """Datagrams do not wait."""
+        return 0
+
+    def close(self, code: int, reason: str) -> None:
+        """Forget the sender."""
+        self.osc.senders.pop(self.address, None)
+
+
+class OscLine(asyncio.DatagramProtocol):
+    """All senders of one port."""
+
+    def __init__(self, hub: Hub, clock: Callable[[], float]) -> None:
+        self.hub, self.clock = hub, clock
+        self.senders: dict[Any, _Sender] = {}
+        self.transport: asyncio.DatagramTransport | None = None
+
+    def connection_made(self, transport: Any) -> None:
+        self.transport = transport
+
+    def datagram_received(self, data: bytes, address: Any) -> None:
+        sender = self._sender(address)
+        if sender is None:
+            return
+        for _, text in texts_of(data[:LONGEST_MESSAGE]):
+            if isinstance(text, bool):
+                sender.wants = text
+            elif isinstance(text, OscError):
+                sender.send([(encode({"error": str(text)}), False)])
+            elif sender.number:
+                self.hub.message(sender.number, text)
+
+    def error_received(self, error: Exception) -> None:
+        """Nobody listens where something was sent; that is theirs to know."""
+
+    def _sender(self, address: Any) -> _Sender | None:
+        sender = self.senders.get(address)
+        if sender is None:
+            self.check()
+            if len(self.senders) >= SENDERS:
+                return None
+            sender = _Sender(self, address)
+            sender.number = self.hub.open(sender, self.clock())
+            if sender.number:
+                self.senders[address] = sender
+        sender.heard = self.clock()
+        return sender if sender.number else None
+
+    def check(self) -> None:
+        """Forget those that have been silent for long."""
+        now = self.clock()
+        for sender in [s for s in self.senders.values() if now - s.heard > SILENT]:
+            self.hub.drop(sender.number, 1000, "silent")
+            self.senders.pop(sender.address, None)
+
+    def put(self, data: bytes, address: Any) -> None:
+        """Send a datagram."""
+        if self.transport is not None and not self.transport.is_closing():
+            self.transport.sendto(data, address)
+
+
+def padded(text: str) -> bytes:
+    """Return a text as OSC has it: ended by a zero byte and filled up to four."""
+    data = text.encode("utf-8", "replace").replace(b"\0", b"?") + b"\0"
+    return data + b"\0" * (-len(data) % 4)

@@ -1,0 +1,125 @@
+"""Poses on their way to an engine: what a client wants of them, as JSON, as packed numbers, or as OSC."""
+
+from __future__ import annotations
+
+import struct
+from collections.abc import Sequence
+from dataclasses import dataclass, field
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from metagraph.graph.asks import AskError
+from metagraph.graph.model import Project
+from metagraph.live.messages import Poses, encode
+from metagraph.live.osc import padded
+from metagraph.motion.skeleton import Pose
+from metagraph.playback.plan import Plan
+from metagraph.playback.player import morphs_at, pose_at
+
+Array = NDArray[Any]
+
+MAGIC = b"MGP1"
+HEADER = struct.Struct("<4sHHHHd")  # magic, flags, joints, morphs, 0, seconds
+MODEL, TRANSLATIONS = 1, 2  # flags
+
+
+@dataclass(frozen=True)
+class Frame:
+    """One pose for some clients. binary: whether it is to be sent as bytes rather than text."""
+
+    clients: tuple[int, ...]
+    data: bytes
+    binary: bool
+
+
+@dataclass
+class Stream:
+    """What a client wants: joints `[J]`, their names, and when the next pose is due."""
+
+    wish: Poses
+    joints: Array
+    names: tuple[str, ...]
+    morphs: tuple[str, ...]
+    next: float
+    prefixes: list[bytes] = field(default_factory=list)
+
+    @classmethod
+    def of(cls, wish: Poses, project: Project, now: float) -> Stream:
+        """Return the stream of a wish. Raises AskError for joints that are not there."""
+        skeleton = project.skeleton
+        if skeleton is None:
+            raise AskError("the project has no clips, so there are no poses")
+        unknown = [] if wish.joints is None else [j for j in wish.joints if j not in skeleton.names]
+        if unknown:
+            raise AskError(f"there is no joint '{unknown[0][:60]}'; 'describe' lists them")
+        names = skeleton.names if wish.joints is None else wish.joints
+        morphs = dict.fromkeys(name for entry in project.clips.values() if entry.motion is not None for name in entry.motion.morphs)
+        places = np.array([skeleton.names.index(name) for name in names], np.int64)
+        return cls(wish, places, tuple(names), (*morphs, *(m for m in project.face.morphs if m not in morphs)), now)
+
+    @property
+    def key(self) -> Any:
+        """What streams have in common that get the same bytes."""
+        return self.wish.format, self.wish.space, self.wish.translations, self.names
+
+
+def due(now: float, plan: Plan, project: Project, streams: Sequence[tuple[int, Stream]]) -> list[Frame]:
+    """Return the poses that are due at `now`, and say when the next are."""
+    groups: dict[Any, list[tuple[int, Stream]]] = {}
+    for client, stream in streams:
+        if stream.next <= now and project.skeleton is not None:
+            step = 1.0 / stream.wish.rate
+            stream.next = stream.next + step if stream.next + step > now else now + step
+            groups.setdefault(stream.key, []).append((client, stream))
+    if not groups or project.skeleton is None:
+        return []
+    pose = pose_at(plan, project, now)
+    turned = project.skeleton.globals(pose) if any(key[1] == "model" for key in groups) else None
+    weights = morphs_at(plan, project, now)
+    out = []
+    for group in groups.values():
+        stream = group[0][1]
+        data = frame(stream, now, pose, turned, weights)
+        out.append(Frame(tuple(client for client, _ in group), data, stream.wish.format != "json"))
+    return out
+
+
+def frame(stream: Stream, now: float, pose: Pose, turned: tuple[Array, Array] | None, weights: dict[str, float]) -> bytes:
+    """Return one pose as a client wants it. turned: rotations and positions in the character's space, where they are needed."""
+    wish, joints = stream.wish, stream.joints
+    root = pose.translations[0]
+    rotations, places = pose.rotations[joints], pose.translations[joints] if wish.translations else None
+    if wish.space == "model" and turned is not None:
+        rotations, places = turned[0][joints], turned[1][joints]
+    if wish.format == "binary":
+        flags = (MODEL if wish.space == "model" else 0) | (TRANSLATIONS if places is not None else 0)
+        head = HEADER.pack(MAGIC, flags, len(joints), len(stream.morphs), 0, now)
+        parts = [root, rotations, *([] if places is None else [places]), np.array([weights.get(m, 0.0) for m in stream.morphs])]
+        return head + b"".join(np.ascontiguousarray(part, "<f4").tobytes() for part in parts)
+    if wish.format == "osc":
+        return _osc(stream, now, root, rotations, places, weights)
+    data: dict[str, Any] = {"t": round(now, 4), "root": _plain(root), "rotations": _plain(rotations)}
+    if places is not None:
+        data["positions" if wish.space == "model" else "translations"] = _plain(places)
+    if weights:
+        data["weights"] = {name: round(value, 4) for name, value in weights.items()}
+    return encode(data)
+
+
+def _plain(values: Array) -> Any:
+    return np.round(values.astype(np.float64), 5).tolist()
+
+
+def _osc(stream: Stream, now: float, root: Array, rotations: Array, places: Array | None, weights: dict[str, float]) -> bytes:
+    """Return an OSC bundle: /metagraph/pose with the time, /metagraph/root, one /metagraph/joint each, one /metagraph/weight each."""
+    if not stream.prefixes:
+        tags = ",sffff" if places is None else ",sfffffff"
+        stream.prefixes = [padded("/metagraph/joint") + padded(tags) + padded(name) for name in stream.names]
+    numbers = rotations if places is None else np.concatenate([rotations, places], axis=1)
+    parts = [padded("/metagraph/pose") + padded(",d") + struct.pack(">d", now)]
+    parts.append(padded("/metagraph/root") + padded(",fff") + root.astype(">f4").tobytes())
+    parts += [prefix + row.tobytes() for prefix, row in zip(stream.prefixes, numbers.astype(">f4"), strict=True)]
+    parts += [padded("/metagraph/weight") + padded(",sf") + padded(name) + struct.pack(">f", x) for name, x in weights.items()]
+    return b"#bundle\0" + struct.pack(">Q", 1) + b"".join(struct.pack(">i", len(part)) + part for part in parts)

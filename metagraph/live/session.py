@@ -1,0 +1,378 @@
+"""The live session: requests come in between two ticks, are worked into the plan at once, and each is told what becomes of it.
+
+No threads and no clock: time is passed in, seconds since the session began. The plan of a session is the plan of a performance
+(`metagraph.playback.hear`): what was asked, with when it became known, is kept and performs again as it was played.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Mapping
+from dataclasses import replace
+from typing import Any
+
+import msgspec
+
+from metagraph.graph import asks as a
+from metagraph.graph.model import LAYERS, Layer, Project
+from metagraph.live import describe
+from metagraph.live.answers import Found, find
+from metagraph.live.happenings import happenings
+from metagraph.live.ledger import Known, Ledger, key_of, told
+from metagraph.live.limits import BML_PER_TICK, BUSY, FARTHEST, HINTS, NAMES, PENDING, PER_TICK, Words
+from metagraph.live.messages import Describe, Event, Heard, OwnMessage, Part, Reply, Status, read, rounded, split
+from metagraph.live.poses import Stream, due
+from metagraph.live.tape import Tape
+from metagraph.live.work import Client, Open, Out, Work
+from metagraph.playback.bml import Block, read_block
+from metagraph.playback.hear import hear, since
+from metagraph.playback.life.track import Track
+from metagraph.playback.phases import phases
+from metagraph.playback.plan import Plan
+from metagraph.playback.understand import find_action, find_stance
+
+AGAIN = 0.25  # seconds for which a layer without room is not tried again
+SLACK = 2.0  # seconds by which the plan may fall behind its horizon before it is extended
+TIDY = 0.25  # seconds between two looks at what is over
+KEPT = 10.0  # seconds for which what was told and asked of the plan is kept when it is over
+TOLD = 100  # of what was told to others than those who ask, the last are kept
+THIN = 20.0  # seconds after which of a moving point only every so manyth place is kept
+COARSE = 0.25  # seconds between those
+
+
+class LiveSession:
+    """One character, played live. Arguments as for `perform`; history: seconds of past that are kept; ahead: of plan."""
+
+    def __init__(
+        self,
+        project: Project,
+        seed: int | None = None,
+        idle: bool = True,
+        history: float = 600.0,
+        ahead: float = 20.0,
+        stances: Mapping[Layer, str] | None = None,
+    ) -> None:
+        self.project, self.idle, self.history, self.ahead, self.stances = project, idle, history, ahead, dict(stances or {})
+        self.now = 0.0
+        self.clients: dict[int, Client] = {}
+        self.ledger = Ledger()
+        self._words = Words(project)
+        self._names: set[str] = set()
+        self._queue: list[tuple[int, Heard | Reply]] = []
+        self.tape = Tape()
+        self._tidied = 0.0
+        self._edited = False
+        self._told: dict[str, bytes] = {}
+        empty = Plan(project.settings.seed if seed is None else seed, 0.0)
+        self.plan = hear(project, empty, 0.0, [], ahead, self.stances, idle)
+
+    # --- clients
+
+    def join(self, client: int) -> None:
+        """Let a client in; numbers are the caller's and not used twice."""
+        self.clients[client] = Client(client)
+
+    def leave(self, client: int) -> None:
+        """Let a client go. What it asked for is played all the same."""
+        self.clients.pop(client, None)
+
+    def receive(self, client: int, data: bytes | str) -> None:
+        """Take a message in, to be answered at the next tick: one reply to each request in it."""
+        try:
+            requests, _ = split(data)
+        except a.AskError as error:
+            self._queue.append((client, Reply(error=str(error))))
+            return
+        self._queue += [(client, read(request)) for request in requests]
+
+    def warm(self) -> None:
+        """Work out beforehand what requests with a stroke or a hold need to know of every gesture; may take seconds."""
+        for action in self.project.actions():
+            if action.kind == "gesture":
+                phases(self.project, action)
+
+    def change(self, project: Project) -> None:
+        """Go on with an edited project; what has not begun is planned anew at the next tick."""
+        self.project, self._words, self._edited = project, Words(project), True
+        self._told.clear()
+
+    # --- ticks
+
+    def tick(self, now: float, heard: Iterable[tuple[int, Heard | Reply]] = ()) -> Out:
+        """Answer what was received, then `heard`, and move on to `now`, seconds that never decrease."""
+        before, self.now = self.now, max(now, self.now)
+        queue, self._queue = [*self._queue, *heard], []
+        self.ledger.limits.tick(self.now)
+        self._told.pop("status", None)
+        out, work = Out(), Work()
+        for place, (client, item) in enumerate(queue):
+            if isinstance(item, Reply):
+                out.replies.append(item)
+            elif place >= PER_TICK:
+                out.replies.append(Reply(id=item.message.id or None, state="refused", why=BUSY))
+            else:
+                if client not in self.clients:
+                    self.join(client)
+                found = self._take(self.clients[client], item, work, place)
+                out.replies.append(Reply() if found is None else found)
+        self._plan(work, out)
+        out.events += happenings(self.plan, self.ledger, before, self.now, self.clients.values())
+        self._tidy()
+        out.frames = due(self.now, self.plan, self.project, [(c.number, c.stream) for c in self.clients.values() if c.stream])
+        return out
+
+    def _take(self, client: Client, heard: Heard, work: Work, place: int) -> Reply | bytes | None:
+        """Return the reply to a request; None for what has to be planned first."""
+        message = heard.message
+        if isinstance(message, OwnMessage):
+            return self._own(client, message)
+        ident = message.id
+        if not ident:
+            client.count += 1
+            ident = f"#{client.count}"
+        key = key_of(client.number, ident)
+        ask: Any = msgspec.structs.replace(message, at=message.at if heard.after is None else self.now + heard.after, told=self.now)
+        if isinstance(ask, a.Withdraw):
+            return self._withdraw(client, ident, ask, work)
+        if isinstance(ask, a.Bml):
+            return self._block(client, Open(place, ident, key), ask, work)
+        why = self._admit(client, ident, key, ask, work)
+        if why:
+            return Reply(id=ident, state="refused", why=why)
+        work.open[key] = Open(place, ident, key)
+        return None
+
+    def _own(self, client: Client, message: OwnMessage) -> Reply | bytes:
+        """Answer what is asked of the session itself."""
+        if isinstance(message, Status):
+            if "status" not in self._told:
+                self._told["status"] = describe.status(self)
+            return describe.named(self._told["status"], message.id)
+        if isinstance(message, Describe):
+            if self.ledger.limits.characters >= BML_PER_TICK:
+                return Reply(id=message.id or None, state="refused", why=BUSY)
+            if "project" not in self._told:
+                self._told["project"] = describe.describe(self.project)
+            self.ledger.limits.characters += len(self._told["project"])
+            return describe.named(self._told["project"], message.id)
+        client.name = message.name or client.name
+        if message.events is not msgspec.UNSET:
+            client.events = "all" if message.events == "all" else "own" if message.events else ""
+        if message.poses is not msgspec.UNSET:
+            try:
+                client.stream = None if message.poses is None else Stream.of(message.poses, self.project, self.now)
+            except a.AskError as error:
+                return Reply(id=message.id or None, error=str(error))
+        return describe.greeting(self, client.stream, message.id)
+
+    # --- what becomes of a request
+
+    def _admit(self, client: Client, ident: str, key: str, ask: Any, work: Work) -> str:
+        """Take an ask on; return why not, if it is not."""
+        wait = self.project.settings.wait
+        stroke, missed = getattr(ask, "stroke", None), 0.0
+        for name in ("at", "stroke", "duration"):
+            value = getattr(ask, name, None)
+            if value is not None and value > FARTHEST + (0.0 if name == "duration" else self.now):
+                return f"{name}: at most {FARTHEST:g} s" + (f" ahead; it is {self.now:.1f} s" if name != "duration" else "")
+        if ask.at is not None and ask.at < self.now:
+            missed, ask = self.now - ask.at, msgspec.structs.replace(ask, at=None)
+        if stroke is not None:
+            missed = max(0.0, self.now - stroke)
+        if missed > wait:
+            return f"asked for {missed:.1f} s ago; it is {self.now:.1f} s"
+        lane = self._words.lane(ask)
+        if lane is None:
+            return self._unknown(ask)
+        if isinstance(ask, a.Place) and ask.name not in self._names:
+            if len(self._names) >= NAMES:
+                return f"{NAMES} points have names already; use one of them again"
+            self._names.add(ask.name)
+        ledger = self.ledger
+        if key not in ledger.known and len(ledger.known) >= PENDING and ledger.pending(self.now) >= PENDING:
+            return f"{PENDING} requests wait already; try again when some of them have played"
+        wanted = stroke if stroke is not None else self.now if ask.at is None else ask.at
+        why = ledger.limits.refusal(lane, wanted, wait, ask.priority, self.now)
+        if why:
+            return why
+        if key in ledger.blocks:
+            self._take_back([key], work)
+        work.close(key, "asked again under the same id")
+        ledger.limits.planned += 1
+        ledger.add(key, Known(client.number, ident, lane, ask.priority, wanted, missed=missed))
+        work.asks[key] = msgspec.structs.replace(ask, id=key)
+        return ""
+
+    def _unknown(self, ask: Any) -> str:
+        """Say that there is nothing of a name; for a few asks a tick, which names there are."""
+        self.ledger.limits.hints += 1
+        what, name = (
+            ("line", ask.line) if isinstance(ask, a.Say) else ("action", ask.action) if isinstance(ask, a.Play) else ("stance", ask.stance)
+        )
+        if self.ledger.limits.hints <= HINTS:
+            try:
+                if isinstance(ask, a.Play):
+                    find_action(self.project, ask.action, ask.layer)
+                elif isinstance(ask, a.Go):
+                    find_stance(self.project, ask.stance, ask.layer)
+            except a.AskError as error:
+                return str(error)
+        return f"there is no {what} '{str(name)[:60]}'"
+
+    def _withdraw(self, client: Client, ident: str, ask: a.Withdraw, work: Work) -> Reply:
+        """Take back what a client asked for itself; what has begun plays on."""
+        target = key_of(client.number, ask.what)
+        keys = self.ledger.belonging(target) if ask.what else list(self.ledger.of(client.number))
+        if not keys:
+            return Reply(id=ident, state="done", why="nothing waits under that id" if ask.what else "nothing waits")
+        if self.ledger.limits.refusal("withdraw", self.now, 0.0, 0, self.now):
+            return Reply(id=ident, state="refused", why=BUSY)
+        self._take_back([target] if ask.what else keys, work)
+        return Reply(id=ident, state="done", why=f"{len(keys)} taken back; what has begun plays on")
+
+    def _take_back(self, keys: Iterable[str], work: Work) -> None:
+        for key in keys:
+            work.close(key, "taken back")
+            for each, _ in self.ledger.drop(key):
+                work.close(each, "taken back")
+                work.asks.pop(each, None)
+            work.asks[key] = a.Withdraw(id=key, what=key, told=self.now)
+
+    def _block(self, client: Client, open_: Open, ask: a.Bml, work: Work) -> Reply | None:
+        """Take a block's behaviours on, each for itself."""
+        limits = self.ledger.limits
+        if limits.characters + len(ask.bml) > BML_PER_TICK and limits.characters > 0:
+            return Reply(id=open_.ident, state="refused", why=BUSY)
+        limits.characters += len(ask.bml)
+        begin = self.now + self.project.settings.lookahead if ask.at is None else ask.at
+        try:
+            block = read_block(ask.bml, begin, ask.priority, self.project)
+            if block.composition == "append":
+                last = [k.until or k.at for k in self.ledger.known.values() if k.client == client.number]
+                block = read_block(ask.bml, max(begin, *last, begin), ask.priority, self.project)
+        except a.AskError as error:
+            return Reply(id=open_.ident, error=str(error))
+        self._take_back([open_.key] if open_.key in self.ledger.blocks or open_.key in self.ledger.known else [], work)
+        open_.notes, open_.parts = block.notes, self._parts(client, open_, block, begin if ask.at is not None else None, work)
+        self.ledger.blocks[open_.key] = tuple(key for key, _, _, why in open_.parts if not why)
+        work.open[open_.key] = open_
+        return None
+
+    def _parts(self, client: Client, open_: Open, block: Block, at: float | None, work: Work) -> list[tuple[str, str, str, str]]:
+        """Take on what a block asks for; return of each its key, what it is called, the ask, and why it was refused already."""
+        out = []
+        for n, ask in enumerate(block.asks):
+            key, called = f"{open_.key}.{n + 1}", ask.id or f"{open_.ident}.{n + 1}"
+            word = str(ask.__struct_config__.tag)
+            if isinstance(ask, a.Withdraw):
+                self._take_back([key_of(client.number, ask.what)] if ask.what else [*self.ledger.of(client.number)], work)
+                continue
+            timed: Any = msgspec.structs.replace(ask, at=at if ask.at is None else ask.at, told=self.now)
+            out.append((key, called, word, self._admit(client, called, key, timed, work)))
+        return out
+
+    # --- the plan
+
+    def _plan(self, work: Work, out: Out) -> None:
+        """Work a tick's asks in, answer them, and tell of others that are planned otherwise because of them."""
+        now, ledger = self.now, self.ledger
+        if work.asks or self._edited or self.plan.end < now + self.ahead - SLACK:
+            asks = list(work.asks.values())
+            self.tape.keep(asks)
+            self.plan = hear(self.project, self.plan, now, asks, max(self.plan.end, now + self.ahead), self.stances, self.idle)
+        for done in work.over:
+            out.replies[done.place] = Reply(id=done.ident, state="refused", why=done.why)
+        if not (work.asks or work.open or self._edited):
+            return
+        self._edited = False
+        watched = {key: ask for key, ask in ledger.known.items() if not ask.settled or ask.at > now}
+        found = find(self.plan, watched, now - 1.0)
+        for key, ask in watched.items():
+            if ask.settled and ask.differs(found.get(key)):
+                self._tell_changed(key, ask, found.get(key, Found()), out)
+        for open_ in work.open.values():
+            if open_.parts is None:
+                out.replies[open_.place] = self._settle(open_.key, found.get(open_.key, Found()))
+            else:
+                out.replies[open_.place] = self._settle_block(open_, found)
+
+    def _settle(self, key: str, found: Found) -> Reply:
+        """Return the reply to an ask that was planned, or was not."""
+        ask = self.ledger.known[key]
+        if found.state in ("refused", "done"):
+            full = ask.lane in LAYERS and any(r.outcome in ("covered", "no-room") for r in found.reports)
+            if full and ask.at <= self.now + self.project.settings.wait:
+                self.ledger.limits.full[ask.lane] = (self.now + AGAIN, ask.priority)
+            self.ledger.drop(key)
+        else:
+            self.ledger.settle(key, found)
+        why = f"asked for {ask.missed:.2f} s ago" if ask.missed > 0 and not found.why else found.why
+        return Reply(
+            id=ask.ident, state=found.said(ask.missed), layer=found.layer, at=rounded(found.at), until=rounded(found.until),  # type: ignore[arg-type]
+            actions=tuple(found.what), why=told(why, ask.client),
+        )  # fmt: skip
+
+    def _settle_block(self, open_: Open, found: Mapping[str, Found]) -> Reply:
+        """Return the reply to a block of BML: of each behaviour, and of all of them."""
+        parts: list[Part] = []
+        for key, called, word, why in open_.parts or ():
+            if why or key not in self.ledger.known:
+                parts.append(Part(id=called, do=word, state="refused", why=why or "taken back"))
+                continue
+            r = self._settle(key, found.get(key, Found()))
+            parts.append(Part(id=called, do=word, state=r.state or "refused", at=r.at, until=r.until, actions=r.actions, why=r.why))
+        states = {part.state for part in parts}
+        state = next((s for s in ("late", "planned", "done", "refused") if s in states), "done")
+        starts = [p.at for p in parts if p.at is not None]
+        ends = [p.until for p in parts if p.until is not None]
+        return Reply(
+            id=open_.ident, state=state, at=min(starts, default=None), until=max(ends, default=None), notes=open_.notes,  # type: ignore[arg-type]
+            actions=tuple(x for p in parts for x in p.actions), parts=tuple(parts), why="" if parts else "nothing in it was understood",
+        )  # fmt: skip
+
+    def _tell_changed(self, key: str, ask: Known, found: Found, out: Out) -> None:
+        """Tell who asked that what was answered holds no longer."""
+        if found.state in ("refused", "done"):
+            self.ledger.drop(key)
+        else:
+            self.ledger.settle(key, found)
+        client = self.clients.get(ask.client)
+        if client is not None and client.events:
+            event = Event(
+                event="changed", t=rounded(self.now), id=ask.ident, state=found.said(ask.missed), layer=found.layer,  # type: ignore[arg-type]
+                at=rounded(found.at), until=rounded(found.until), actions=tuple(found.what), why=told(found.why, ask.client),
+            )  # fmt: skip
+            out.events.append((ask.client, event))
+
+    # --- the past
+
+    def _tidy(self) -> None:
+        """Forget what is over, so that a session may last for days."""
+        if self.now < self._tidied + TIDY:
+            return
+        now = self._tidied = self.now
+        looks = [x.start for x in self.plan.track.looks if x.start <= now]
+        self.ledger.forget(now, max(looks, default=0.0))
+        plan = since(self.plan, now - self.history) if now > self.history else self.plan
+        near = {m.request.id for layer in plan.layers.values() for m in layer.metas if m.end > now - KEPT}
+        owner = self.ledger.owner
+        reports = tuple(r for n, r in enumerate(plan.reports, TOLD - len(plan.reports)) if n >= 0 or (r.at > now - KEPT and owner(r.request)))
+        requests = tuple(r for r in plan.requests if r.id in near or owner(r.id))
+        self.plan = replace(plan, reports=reports, requests=requests, track=_thinned(plan, now - THIN))
+
+    def performance(self, name: str) -> a.Performance:
+        """Return the session so far, to be kept: `perform` plays it as it was played. Raises AskError when it was too long."""
+        asks, length = self.tape.asks(), max(self.now, 0.1)
+        return a.Performance(name=name, asks=asks, seed=self.plan.seed, length=length, idle=self.idle, stances=self.stances)
+
+
+def _thinned(plan: Plan, before: float) -> Track:
+    """Return the track with fewer of the places a moving point had long ago; a stream of them would slow every plan down."""
+    places = plan.track.places
+    if len(places) < 100:
+        return plan.track
+    kept, last = [], dict[str, float]()
+    for place in places:
+        if place.start > before or place.start - last.get(place.name, -1e9) >= COARSE:
+            kept.append(place)
+            last[place.name] = place.start
+    return replace(plan.track, places=tuple(kept)) if len(kept) < len(places) else plan.track

@@ -1,0 +1,58 @@
+"""The pieces of a tick: who asks, what waits for the plan, what comes out."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+
+from metagraph.graph import asks as a
+from metagraph.live.messages import Event, Reply
+from metagraph.live.poses import Frame, Stream
+
+
+@dataclass(slots=True)
+class Client:
+    """Someone who asks. count: of ids made up. events: "" for none, "own" or "all"."""
+
+    number: int
+    name: str = ""
+    events: str = ""
+    stream: Stream | None = None
+    count: int = 0
+
+
+@dataclass
+class Out:
+    """What a tick gives: a reply to each request in order, JSON where it is bytes; events and poses for clients."""
+
+    replies: list[Reply | bytes] = field(default_factory=list)
+    events: list[tuple[int, Event]] = field(default_factory=list)
+    frames: list[Frame] = field(default_factory=list)
+
+
+@dataclass(slots=True)
+class Open:
+    """A request that waits for the plan. place: among the replies. parts: of a block: key, what it is called, ask, why it was
+    refused already. why: what has become of it in the meantime."""
+
+    place: int
+    ident: str
+    key: str
+    parts: list[tuple[str, str, str, str]] | None = None
+    notes: tuple[str, ...] = ()
+    why: str = ""
+
+
+@dataclass
+class Work:
+    """A tick's asks on their way into the plan."""
+
+    asks: dict[str, a.AnyAsk] = field(default_factory=dict)
+    open: dict[str, Open] = field(default_factory=dict)
+    over: list[Open] = field(default_factory=list)
+
+    def close(self, key: str, why: str) -> None:
+        """Answer a request at once: something else has taken its place."""
+        found = self.open.pop(key, None)
+        if found is not None:
+            found.why = why
+            self.over.append(found)
