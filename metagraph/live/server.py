@@ -1,0 +1,180 @@
+"""The lines of a session, opened and closed: WebSocket, OSC, standard input and output, on one asyncio loop.
+
+Nothing listens beyond this machine unless a host is named, and then only with a token.
+"""
+
+from __future__ import annotations
+
+import asyncio
+import contextlib
+import ipaddress
+import secrets
+from collections.abc import Callable, Sequence
+from typing import Any
+
+from msgspec import Struct
+
+from metagraph.live.hub import Hub
+from metagraph.live.stdio import StdioLine
+from metagraph.live.wire import Batch, Ready, Result
+
+PORT, OSC_PORT = 8765, 8766
+TICK = 1 / 60  # seconds
+LAST = 2.0  # seconds at most for answering what was asked before the end
+CHECK = 1.0  # seconds between looks at who is still there
+
+
+class Options(Struct, frozen=True):
+    """Where to listen. host: loopback, on both IP versions, where it is empty. port, osc: 0 for any free one, None for none.
+    origins: web pages that may connect besides those of this machine, "null" for those from files. stdio: whether standard
+    input and output are a client."""
+
+    host: str = ""
+    port: int | None = PORT
+    osc: int | None = OSC_PORT
+    token: str | None = None
+    origins: tuple[str, ...] = ()
+    stdio: bool = False
+
+
+class LiveError(ValueError):
+    """A session cannot be opened as asked; the message says why and what to do."""
+
+
+def checked(options: Options) -> Options:
+    """Return options that are safe. Raises LiveError for those that are not."""
+    if options.token is not None and not options.token:
+        raise LiveError("the token is empty; leave it out or give one")
+    if not is_loopback(options.host) and options.token is None:
+        words = f"to listen on {options.host} a token is needed, so that not everyone there can move the character; "
+        raise LiveError(words + f"choose one, for example --token {secrets.token_urlsafe(12)}")
+    for port in (options.port, options.osc):
+        if port is not None and not 0 <= port <= 65535:
+            raise LiveError(f"a port lies between 0 and 65535, not {port}")
+    return options
+
+
+def is_loopback(host: str) -> bool:
+    """Whether a host can be reached from this machine alone."""
+    if host in ("", "localhost"):
+        return True
+    try:
+        return ipaddress.ip_address(host.strip("[]")).is_loopback
+    except ValueError:
+        return False
+
+
+class Server:
+    """Opens the lines and passes batches on. clock: seconds, of any beginning."""
+
+    def __init__(self, options: Options, clock: Callable[[], float]) -> None:
+        self.options, self.clock = checked(options), clock
+        self.hub = Hub(options.token)
+        self.stopped = asyncio.Event()
+        self._sockets: set[Any] = set()
+        self._servers: list[asyncio.Server] = []
+        self._osc: Any = None
+        self._stdio: StdioLine | None = None
+        self._stdio_number = 0
+
+    async def open(self) -> Ready:
+        """Open the lines; return where they are. Raises LiveError when a port is taken."""
+        options, websocket, osc = self.options, None, None
+        hosts = [options.host.strip("[]")] if options.host else ["127.0.0.1", "::1"]
+        try:
+            if options.port is not None:
+                websocket = await self._open_websocket(hosts, options.port)
+            if options.osc is not None:
+                osc = await self._open_osc(hosts[0], options.osc)
+        except OSError as error:
+            await self.close()
+            words = error.strerror or str(error)
+            raise LiveError(f"cannot listen on {hosts[0]}: {words}. Choose another port, or 0 for any free one.") from None
+        if options.stdio:
+            self._stdio = StdioLine(asyncio.get_running_loop().call_soon_threadsafe, self._line)
+            self._stdio_number = self.hub.open(self._stdio, self.clock(), proven=True)
+            self._stdio.start()
+        return Ready(websocket, osc, options.token is not None)
+
+    async def _open_websocket(self, hosts: Sequence[str], port: int) -> str:
+        from metagraph.live.websocket import WebSocketLine  # only those who listen pay for its import
+
+        loop, local = asyncio.get_running_loop(), is_loopback(self.options.host)
+
+        def line() -> WebSocketLine:
+            return WebSocketLine(self.hub, self._sockets, self.options.origins, local)
+
+        for place, host in enumerate(hosts):
+            try:
+                self._servers.append(await loop.create_server(line, host, port))
+            except OSError:
+                if place == 0:
+                    raise
+                continue  # this machine has no IPv6
+            port = port or int(self._servers[0].sockets[0].getsockname()[1])
+        shown = f"[{hosts[0]}]" if ":" in hosts[0] else hosts[0]
+        return f"ws://{shown}:{port}"
+
+    async def _open_osc(self, host: str, port: int) -> tuple[str, int]:
+        from metagraph.live.osc import OscLine
+
+        loop = asyncio.get_running_loop()
+        transport, self._osc = await loop.create_datagram_endpoint(lambda: OscLine(self.hub, self.clock), (host, port))
+        return host, int(transport.get_extra_info("sockname")[1])
+
+    def _line(self, line: bytes | None) -> None:
+        if line is not None:
+            self.hub.message(self._stdio_number, line)
+        else:
+            self.stopped.set()
+
+    def say(self, data: bytes) -> None:
+        """Write a line of our own to standard output."""
+        if self._stdio is not None:
+            self._stdio.send([(data, False)])
+
+    async def run(self, step: Callable[[Batch | None], Result | None]) -> None:
+        """Pass batches to `step` and its results on, every tick, until stopped; what was asked by then is answered first."""
+        checks, following, end = 0.0, self.clock(), float("inf")
+        while True:
+            last = self.stopped.is_set()
+            result = step(self.hub.take())
+            if result is not None:
+                self.hub.give(result)
+            now = self.clock()
+            if now >= checks:
+                checks = now + CHECK
+                self._check(now)
+            end = min(end, now + LAST) if last else end
+            if last and (self.hub.idle or now >= end):
+                return
+            following = max(following + TICK, now)
+            if last:
+                await asyncio.sleep(following - now)
+            else:
+                with contextlib.suppress(TimeoutError):
+                    await asyncio.wait_for(self.stopped.wait(), following - now)
+
+    def _check(self, now: float) -> None:
+        self.hub.check(now)
+        loop_now = asyncio.get_running_loop().time()
+        for line in list(self._sockets):
+            line.ask(loop_now)
+        if self._osc is not None:
+            self._osc.check()
+
+    async def close(self) -> None:
+        """Hang up and stop listening."""
+        self.hub.close()
+        for server in self._servers:
+            server.close()
+        if self._osc is not None and self._osc.transport is not None:
+            self._osc.transport.close()
+        if self._stdio is not None:
+            await asyncio.get_running_loop().run_in_executor(None, self._stdio.finish)
+        deadline = self.clock() + 1.0
+        while self._sockets and self.clock() < deadline:
+            await asyncio.sleep(0.01)
+        for line in list(self._sockets):
+            line.cut()
+        await asyncio.sleep(0)

@@ -1,0 +1,75 @@
+"""What goes between the side that talks to clients and the side that plans, once a tick; as values or as bytes for a pipe."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import msgspec
+from msgspec import Struct
+
+from metagraph.live.messages import Heard, encode
+
+if TYPE_CHECKING:
+    from metagraph.live.session import LiveSession
+
+
+class Batch(Struct, frozen=True, array_like=True):
+    """Requests that came in since the last. number: counts up. joined, left: clients. asked: client and request, in order."""
+
+    number: int = 0
+    joined: tuple[int, ...] = ()
+    left: tuple[int, ...] = ()
+    asked: tuple[tuple[int, Heard], ...] = ()
+
+    def __bool__(self) -> bool:
+        return bool(self.joined or self.left or self.asked)
+
+
+class Picture(Struct, frozen=True, array_like=True):
+    """A pose for some clients."""
+
+    clients: tuple[int, ...]
+    data: bytes
+    binary: bool
+
+
+class Result(Struct, frozen=True, array_like=True):
+    """What a batch is answered with. number: the batch's, 0 for none. replies: JSON, one to each request in order. events:
+    client and JSON."""
+
+    number: int = 0
+    replies: tuple[bytes, ...] = ()
+    events: tuple[tuple[int, bytes], ...] = ()
+    poses: tuple[Picture, ...] = ()
+
+    def __bool__(self) -> bool:
+        return bool(self.number or self.events or self.poses)
+
+
+class Ready(Struct, frozen=True, omit_defaults=True):
+    """Where a server listens, or why it does not. websocket: an address; osc: host and port; token: whether one is asked for."""
+
+    websocket: str | None = None
+    osc: tuple[str, int] | None = None
+    token: bool = False
+    error: str | None = None
+
+
+def exchange(session: LiveSession, now: float, batch: Batch) -> Result:
+    """Let a session answer a batch at `now`; an empty one for what happens without being asked."""
+    for client in batch.joined:
+        session.join(client)
+    out = session.tick(now, batch.asked)
+    for client in batch.left:
+        session.leave(client)
+    return Result(
+        batch.number,
+        tuple(reply if isinstance(reply, bytes) else encode(reply) for reply in out.replies),
+        tuple((client, encode(event)) for client, event in out.events),
+        tuple(Picture(frame.clients, frame.data, frame.binary) for frame in out.frames),
+    )
+
+
+pack = msgspec.msgpack.Encoder().encode
+unpack_batch = msgspec.msgpack.Decoder(Batch).decode
+unpack_result = msgspec.msgpack.Decoder(Result).decode
