@@ -7,8 +7,8 @@ from collections.abc import Callable, Mapping
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from PySide6.QtCore import QSettings, QSize, Qt, Signal
-from PySide6.QtGui import QColor, QIcon
+from PySide6.QtCore import QSettings, Qt, Signal
+from PySide6.QtGui import QIcon
 from PySide6.QtWidgets import (
     QCheckBox,
     QDialog,
@@ -16,22 +16,20 @@ from PySide6.QtWidgets import (
     QFileDialog,
     QFormLayout,
     QHBoxLayout,
-    QHeaderView,
     QInputDialog,
     QLabel,
     QLineEdit,
     QMessageBox,
     QPushButton,
     QRadioButton,
-    QTreeWidget,
-    QTreeWidgetItem,
     QVBoxLayout,
     QWidget,
 )
 
 from app.annotation import Reading, begin, into, told
 from app.document import Document
-from app.panels.fields import Chooser, Seconds
+from app.panels.choices import ChoiceTable, Entries, Row
+from app.panels.fields import Seconds
 from app.panels.strip import Strip, clock
 from app.session import Session
 from app.theme import KIND_MARKS, theme
@@ -45,13 +43,11 @@ if TYPE_CHECKING:
 
 SAMPLE = Path(__file__).resolve().parents[2] / "sample_clips" / "annotation" / "conversation.eaf"
 FILTER = "ELAN annotations (*.eaf);;All files (*)"
-MOST = 60  # labels that can be said otherwise; those beyond are rare
+MOST = 1000  # labels that can be said otherwise; those beyond are rare
 REMEMBERED = 400  # tiers and labels that are kept for the next project
 WORTH = 10  # acts from which a model is learned unless said otherwise
-ROLE_ENTRIES = [*((role.capitalize(), role) for role in ROLES), ("Ignore", IGNORE)]
 OTHER = "other"
 LEGEND = (("gesture", "gesture"), ("fidget", "fidget"), ("transition", "change of stance"))
-HIGH = 36  # pixels of a row with a field in it
 ROLE_TIPS = {
     "left arm": "What the left arm does: gestures, fidgets, changes of stance",
     "right arm": "What the right arm does: gestures, fidgets, changes of stance",
@@ -60,17 +56,20 @@ ROLE_TIPS = {
     "head stance": "How the head is held, or changes between that",
     "body": "How body, legs and spine stand, or changes between that",
 }
+ROLE_ENTRIES: Entries = [(role.capitalize(), role, ROLE_TIPS.get(role, "")) for role in (*ROLES, IGNORE)]
+MEANING_TIPS = {
+    "stance": "The label names the stance that is held: where another begins, the stance changes",
+    **dict.fromkeys(PHASES, "A phase of a gesture: phases that follow each other are one gesture"),
+}
 
 
-def meaning_entries(meaning: str) -> list[tuple[str, object]]:
-    """Return what a label can mean, in words; the meaning it has now is among them."""
-    out: list[tuple[str, object]] = [
-        (meaning_words(m), m)
-        for m in ("gesture", "gesture positive", "gesture negative", "fidget", "transition", "stance", *PHASES, IGNORE)
-    ]
-    if all(m != meaning for _, m in out):
-        out.insert(3, (meaning_words(meaning), meaning))
-    out.insert(-1, ("With other tags…", OTHER))
+def meaning_entries(meaning: str) -> list[tuple[str, object, str]]:
+    """Return what a label can mean: words, meaning, tip; what it means now is among them."""
+    known = ["gesture", "gesture positive", "gesture negative", "fidget", "transition", "stance", *PHASES, IGNORE]
+    if meaning not in known:
+        known.insert(3, meaning)
+    out: list[tuple[str, object, str]] = [(meaning_words(m), m, MEANING_TIPS.get(parted(m)[0], "")) for m in known]
+    out.insert(-1, ("With other tags…", OTHER, "A gesture with tags of your own; actions of the graph need the same tags"))
     return out
 
 
@@ -79,7 +78,7 @@ def meaning_words(meaning: str) -> str:
     if first == IGNORE:
         return "Ignore"
     mark = KIND_MARKS["gesture" if first in PHASES else first]
-    words = {"transition": "change of stance", "stance": "stance held"}.get(first, f"gesture: its {first}" if first in PHASES else first)
+    words = {"transition": "change of stance", "stance": "stance held"}.get(first, first)
     return f"{mark} {', '.join((words, *tags))}"
 
 
@@ -88,11 +87,11 @@ class AnnotateDialog(QDialog):
 
     imported = Signal(object, object)
 
-    def __init__(self, document: Document, session: Session, annotation: Annotation, name: str, parent: QWidget | None = None) -> None:
+    def __init__(self, document: Document, session: Session, reading: Reading, name: str, parent: QWidget | None = None) -> None:
         super().__init__(parent)
-        self.document, self.session, self.name = document, session, name
-        project = document.project
-        self.reading: Reading = begin(annotation, project.tiers, recall("tiers"), labels=(project.labels, recall("labels")))
+        self.document, self.session, self.name, self.reading = document, session, name, reading
+        annotation = reading.annotation
+        self.order = sorted(annotation.tiers, key=lambda t: reading.roles[t.name] == IGNORE)  # those that are read first
         self.setAttribute(Qt.WidgetAttribute.WA_DeleteOnClose)
         self.setWindowTitle("Import annotation")
         self.resize(1040, 780)
@@ -107,10 +106,11 @@ class AnnotateDialog(QDialog):
         layout.setContentsMargins(18, 16, 18, 14)
         layout.setSpacing(10)
         people = sorted({t.whose for t in annotation.tiers if t.whose})
+        read = sorted({t.whose for t in annotation.tiers if t.whose and self.reading.roles[t.name] != IGNORE})
         count = sum(len(t.intervals) for t in annotation.tiers)
         facts = [clock(round(annotation.end, 1)), many(len(annotation.tiers), "tier"), many(count, "interval")]
         if len(people) > 1:
-            facts.append(f"{len(people)} people: one is taken, say otherwise by choosing their tiers")
+            facts.append(f"{len(people)} people, {' and '.join(read) or 'none'} of them read: another's tiers can be chosen instead")
         title = QLabel(self.name, self)
         title.setProperty("title", True)
         layout.addWidget(title)
@@ -119,8 +119,13 @@ class AnnotateDialog(QDialog):
         layout.addWidget(self.facts)
         tables = QHBoxLayout()
         tables.setSpacing(18)
-        self.tiers = self._table(tables, "What the tiers stand for", ("Tier", "Intervals", "Read as"), 5)
-        self.labels = self._table(tables, "What the labels mean", ("Label", "Layer", "Times", "Means"), 6)
+        self.tiers = self._table(tables, "What the tiers stand for", ("Tier", "Intervals", "Read as"), 138, 5, lambda _: ROLE_ENTRIES)
+        self.labels = self._table(
+            tables, "What the labels mean", ("Label", "Layer", "Times", "Means"), 188, 6,
+            lambda row: meaning_entries(self.reading.labels[row].meaning),
+        )  # fmt: skip
+        self.tiers.chosen.connect(lambda row, role: self._set_role(self.order[row].name, role))
+        self.labels.chosen.connect(lambda row, meaning: self._set_meaning(self.reading.labels[row], meaning))
         layout.addLayout(tables, 3)
         row = QHBoxLayout()
         row.setSpacing(12)
@@ -149,30 +154,18 @@ class AnnotateDialog(QDialog):
         self.buttons.rejected.connect(self.reject)
         layout.addWidget(self.buttons)
 
-    def _table(self, row: QHBoxLayout, title: str, heads: tuple[str, ...], stretch: int) -> QTreeWidget:
+    def _table(
+        self, row: QHBoxLayout, title: str, heads: tuple[str, ...], wide: int, stretch: int, entries: Callable[[int], Entries]
+    ) -> ChoiceTable:
         box = QVBoxLayout()
         box.setSpacing(4)
         caption = QLabel(title, self)
         caption.setProperty("title", True)
         box.addWidget(caption)
-        tree = QTreeWidget(self)
-        tree.setColumnCount(len(heads))
-        tree.setHeaderLabels(list(heads))
-        tree.setRootIsDecorated(False)
-        tree.setSelectionMode(QTreeWidget.SelectionMode.NoSelection)
-        tree.setFocusPolicy(Qt.FocusPolicy.NoFocus)
-        tree.setAccessibleName(title)
-        header = tree.header()
-        header.setStretchLastSection(False)
-        tree.headerItem().setTextAlignment(len(heads) - 2, Qt.AlignmentFlag.AlignRight | Qt.AlignmentFlag.AlignVCenter)
-        header.setSectionResizeMode(0, QHeaderView.ResizeMode.Stretch)
-        for column in range(1, len(heads) - 1):
-            header.setSectionResizeMode(column, QHeaderView.ResizeMode.ResizeToContents)
-        header.setSectionResizeMode(len(heads) - 1, QHeaderView.ResizeMode.Fixed)
-        tree.setColumnWidth(len(heads) - 1, 132 if len(heads) == 3 else 182)
-        box.addWidget(tree, 1)
+        table = ChoiceTable(self.session, title, heads, wide, entries, self)
+        box.addWidget(table, 1)
         row.addLayout(box, stretch)
-        return tree
+        return table
 
     def _options(self) -> QFormLayout:
         form = QFormLayout()
@@ -220,58 +213,21 @@ class AnnotateDialog(QDialog):
     # --- showing
 
     def _show_tiers(self) -> None:
-        for tier in self.reading.annotation.tiers:
-            item = QTreeWidgetItem([tier.name, f"{len(tier.intervals):,}"])
-            item.setSizeHint(0, QSize(0, HIGH))
-            item.setTextAlignment(1, Qt.AlignmentFlag.AlignRight | Qt.AlignmentFlag.AlignVCenter)
-            some = ", ".join(x or "(empty)" for x in list(tier.labels)[:6])
+        rows = []
+        for tier in self.order:
             of = f"{tier.name} of {tier.whose}" if tier.whose else tier.name
-            item.setToolTip(0, f"{of}: {some}" if some else f"{of}: nothing in it")
-            self.tiers.addTopLevelItem(item)
-            box = self._chooser(self.tiers, f"What tier {tier.name} stands for")
-            box.show_entries(ROLE_ENTRIES, self.reading.roles[tier.name])
-            for n, (_, role) in enumerate(ROLE_ENTRIES):
-                box.setItemData(n, ROLE_TIPS.get(role, ""), Qt.ItemDataRole.ToolTipRole)
-            box.activated.connect(lambda _, t=tier.name, b=box: self._set_role(t, b.currentData()))
-            self.tiers.setItemWidget(item, 2, box)
-            self._dim(item, self.reading.roles[tier.name] == IGNORE, 2)
-
-    def _chooser(self, tree: QTreeWidget, name: str) -> Chooser:
-        box = Chooser(tree, name)
-        box.setToolTip("")
-        box.setMaxVisibleItems(16)
-        box.setFocusPolicy(Qt.FocusPolicy.StrongFocus)
-        return box
-
-    def _dim(self, item: QTreeWidgetItem, dim: bool, columns: int) -> None:
-        look = theme(self.session.theme)
-        for column in range(columns):
-            item.setForeground(column, QColor(look.dim if dim else look.text))
+            some = ", ".join(x or "(empty)" for x in list(tier.labels)[:6])
+            role = self.reading.roles[tier.name]
+            tip = f"{of}: {some}" if some else f"{of}: nothing in it"
+            rows.append(Row((tier.name, f"{len(tier.intervals):,}"), role.capitalize(), role == IGNORE, tip))
+        self.tiers.show_rows(rows, "There is no tier in this annotation.")
 
     def _show_labels(self) -> None:
-        self.labels.clear()
-        for label in self.reading.labels[:MOST]:
-            item = QTreeWidgetItem([label.text or "(empty)", label.layer, f"{label.count:,}"])
-            item.setSizeHint(0, QSize(0, HIGH))
-            item.setTextAlignment(2, Qt.AlignmentFlag.AlignRight | Qt.AlignmentFlag.AlignVCenter)
-            item.setToolTip(0, label.text)
-            self.labels.addTopLevelItem(item)
-            box = self._chooser(self.labels, f"What {label.text or 'an empty label'} means")
-            box.show_entries(meaning_entries(label.meaning), label.meaning)
-            box.activated.connect(lambda _, x=label, b=box: self._set_meaning(x, b.currentData()))
-            self.labels.setItemWidget(item, 3, box)
-            self._dim(item, label.meaning == IGNORE, 3)
-        rest = len(self.reading.labels) - MOST
-        if rest > 0:
-            item = QTreeWidgetItem([f"and {many(rest, 'rarer label')}, read as guessed"])
-            item.setFirstColumnSpanned(True)
-            self.labels.addTopLevelItem(item)
-            self._dim(item, True, 1)
-        elif not self.reading.labels:
-            item = QTreeWidgetItem(["Say what the tiers stand for, then their labels come here."])
-            self.labels.addTopLevelItem(item)
-            item.setFirstColumnSpanned(True)
-            self._dim(item, True, 1)
+        rows = [
+            Row((x.text or "(empty)", x.layer, f"{x.count:,}"), meaning_words(x.meaning), x.meaning == IGNORE, x.text)
+            for x in self.reading.labels[:MOST]
+        ]
+        self.labels.show_rows(rows, "Say what the tiers stand for, then their labels come here.")
 
     def _changed(self, first: bool = False) -> None:
         """Show what comes of the tiers and labels as they are read now."""
@@ -305,8 +261,7 @@ class AnnotateDialog(QDialog):
 
     def _set_role(self, tier: str, role: str) -> None:
         self.reading = self.reading.with_role(tier, role)
-        for n, one in enumerate(self.reading.annotation.tiers):
-            self._dim(self.tiers.topLevelItem(n), self.reading.roles[one.name] == IGNORE, 2)
+        self._show_tiers()
         self._changed()
 
     def _set_meaning(self, label: Label, meaning: str) -> None:
@@ -357,8 +312,16 @@ def open_annotation(window: Window, path: str | Path | None = None, done: Callab
             return
     file = SAMPLE if str(path) == "sample" else Path(path)
 
-    def show(annotation: Annotation) -> None:
-        dialog = AnnotateDialog(window.document, window.session, annotation, file.name, window)
+    project = window.document.project
+    tiers, labels = (project.tiers, recall("tiers")), (project.labels, recall("labels"))
+
+    def work(_: object) -> Reading:
+        reading = begin(read_elan(file), *tiers, labels=labels)
+        _ = reading.observed  # worked out here, not on the window's thread
+        return reading
+
+    def show(reading: Reading) -> None:
+        dialog = AnnotateDialog(window.document, window.session, reading, file.name, window)
         dialog.imported.connect(lambda observed, kept: _taken(window, observed, kept))
         dialog.open()
         if done is not None:
@@ -367,7 +330,7 @@ def open_annotation(window: Window, path: str | Path | None = None, done: Callab
     def failed(error: Exception) -> None:
         QMessageBox.warning(window, "Not imported", str(error))
 
-    window.jobs.start(f"Reading {file.name}", lambda _: read_elan(file), show, failed)
+    window.jobs.start(f"Reading {file.name}", work, show, failed)
 
 
 def _taken(window: Window, observed: object, performance: str | None) -> None:

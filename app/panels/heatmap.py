@@ -57,8 +57,9 @@ def shade(color: QColor, ground: QColor, probability: float) -> QColor:
 
 
 def ink(ground: QColor) -> QColor:
-    """Return dark or light, whichever reads better on a ground."""
-    return QColor(max(INKS, key=lambda c: contrast(QColor(c), ground)))
+    """Return dark or light, whichever reads better on a ground; on middling ones black or white, since no other gives 4.5:1."""
+    soft = max(map(QColor, INKS), key=lambda c: contrast(c, ground))
+    return soft if contrast(soft, ground) >= 4.5 else max(QColor("#000000"), QColor("#ffffff"), key=lambda c: contrast(c, ground))
 
 
 def contrast(a: QColor, b: QColor) -> float:
@@ -128,7 +129,6 @@ class HeatMap(QWidget):
         self.field.setAlignment(Qt.AlignmentFlag.AlignCenter)
         self.field.setAccessibleName("Percent")
         self.field.hide()
-        self.field.returnPressed.connect(self._typed)
         self.field.installEventFilter(self)
 
     def show_model(self, model: Markov, layer: Layer, look: str, closed: frozenset[int] = frozenset()) -> None:
@@ -357,10 +357,14 @@ class HeatMap(QWidget):
             if event.type() == QEvent.Type.ShortcutOverride and isinstance(event, QKeyEvent) and event.key() == Qt.Key.Key_Escape:
                 event.accept()
                 return True
-            if event.type() == QEvent.Type.KeyPress and isinstance(event, QKeyEvent) and event.key() == Qt.Key.Key_Escape:
-                self.field.hide()
-                self.setFocus()
-                return True
+            if event.type() == QEvent.Type.KeyPress and isinstance(event, QKeyEvent):
+                if event.key() in (Qt.Key.Key_Return, Qt.Key.Key_Enter):  # which a line of text would let through to the map as well
+                    self._typed()
+                    return True
+                if event.key() == Qt.Key.Key_Escape:
+                    self.field.hide()
+                    self.setFocus()
+                    return True
             if event.type() == QEvent.Type.FocusOut:
                 self.field.hide()
         return super().eventFilter(watched, event)  # type: ignore[arg-type]

@@ -10,12 +10,12 @@ from PySide6.QtWidgets import QToolTip, QWidget
 
 from app.session import Session
 from app.theme import KIND_MARKS, Theme, theme
-from metagraph.graph.model import Layer
+from metagraph.graph.model import KINDS, Layer
 from metagraph.playback.learn import Act, state_of, state_words
 
 LEFT, RULER, LANE = 56, 20, 34
 STEPS = (0.5, 1.0, 2.0, 5.0, 10.0, 15.0, 30.0, 60.0, 120.0, 300.0, 600.0, 1800.0, 3600.0)
-NARROWEST = 2.0  # pixels of an act
+NARROWEST, ROUND = 2.0, 4.0  # pixels of an act, and from how many on it has round corners
 
 
 def place(lane: QRectF, act: Act, layer: Layer) -> tuple[float, float]:
@@ -100,8 +100,15 @@ class Strip(QWidget):
             painter.drawRoundedRect(lane, 4, 4)
             painter.save()
             painter.setClipRect(lane)
+            each, fills = self.each(), {kind: t.fill(kind) for kind in KINDS}
             for act in acts:
-                self._act(painter, lane, layer, act, t)
+                left, width = self.left + (act.start - self.first) * each, max(NARROWEST, act.length * each)
+                if left + width >= lane.left() and left <= lane.right():
+                    top, height = place(lane, act, layer)
+                    if width < ROUND:
+                        painter.fillRect(QRectF(left, top, width, height), fills[act.kind])
+                    else:
+                        self._act(painter, QRectF(left, top, width - 1, height), act, fills[act.kind])
             painter.restore()
         painter.end()
 
@@ -119,18 +126,13 @@ class Strip(QWidget):
                     painter.drawText(box, side | Qt.AlignmentFlag.AlignVCenter, clock(n * step))
             n += 1
 
-    def _act(self, painter: QPainter, lane: QRectF, layer: Layer, act: Act, t: Theme) -> None:
-        left, width = self.x(act.start), max(NARROWEST, act.length * self.each())
-        if left + width < lane.left() or left > lane.right():
-            return
-        top, height = place(lane, act, layer)
-        rect = QRectF(left, top, max(NARROWEST, width - 1), height)
+    def _act(self, painter: QPainter, rect: QRectF, act: Act, fill: QColor) -> None:
         painter.setPen(Qt.PenStyle.NoPen)
-        painter.setBrush(t.fill(act.kind))
-        painter.drawRoundedRect(rect, min(3.0, rect.width() / 2), 3)
+        painter.setBrush(fill)
+        painter.drawRoundedRect(rect, 3, 3)
         sign = {"positive": "+", "negative": "−"}.get(act.tags[0] if act.tags else "", "")
         words = f"{KIND_MARKS[act.kind]}{sign}"
-        if rect.width() > QFontMetricsF(painter.font()).horizontalAdvance(words) + 4 and height > 12:
+        if rect.width() > 12 and rect.height() > 12 and rect.width() > QFontMetricsF(painter.font()).horizontalAdvance(words) + 4:
             painter.setPen(QColor("#17181b"))
             painter.drawText(rect, Qt.AlignmentFlag.AlignCenter, words)
 
