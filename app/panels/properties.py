@@ -25,6 +25,7 @@ from PySide6.QtWidgets import (
 from app.document import Document
 from app.panels.fields import MIXED, Chooser, Field, Mixed, Seconds, common
 from app.panels.timing import TimingPlot, retimed
+from app.panels.variation import ActionRows, PlannerRows
 from app.performance import Performance
 from app.session import Session
 from app.theme import KIND_MARKS, KIND_TITLES, theme
@@ -101,7 +102,7 @@ class PropertiesPanel(QScrollArea):
         self.end.valueChanged.connect(lambda v: self._timing("end", v))
         self.blend_in.valueChanged.connect(lambda v: self._timing("blend_in", v))
         self.blend_out.valueChanged.connect(lambda v: self._timing("blend_out", v))
-        self.leave = QCheckBox("may be left early, from", page)
+        self.leave = QCheckBox("early, from", page)
         self.leave.setAccessibleName("May be left early")
         self.leave.setToolTip("Whether what comes next may begin before its end")
         self.leave.clicked.connect(self._leave)
@@ -132,6 +133,8 @@ class PropertiesPanel(QScrollArea):
         self.likelihood = Seconds(page, "Likelihood against the others of its node; 1 is usual", 100, "", 0.1)
         self.likelihood.valueChanged.connect(self._likely)
         form.addRow("Likelihood", self.likelihood)
+        self.variation = ActionRows(form, page)
+        self.variation.changed.connect(lambda text, fields: self._set(text, **fields))
         self.stance = Chooser(page, toolTip="The stance it starts from")
         self.stance.activated.connect(self._restance)
         form.addRow("Stance", self.stance)
@@ -176,6 +179,13 @@ class PropertiesPanel(QScrollArea):
         self.base_frame = Seconds(page, "Frame of that clip", 1e6, "", 1, 0)
         self.base_frame.valueChanged.connect(self._set_base_frame)
         form.addRow("At frame", self.base_frame)
+        line = QFrame(page, frameShape=QFrame.Shape.HLine)
+        line.setStyleSheet("color: palette(mid)")
+        box.addWidget(line)
+        words = QLabel("All layers, when something is chosen:", page, wordWrap=True)
+        words.setProperty("dim", True)
+        box.addWidget(words)
+        self.planner = PlannerRows(self._form(box), page, self._try)
         box.addStretch(1)
         return page
 
@@ -203,6 +213,7 @@ class PropertiesPanel(QScrollArea):
             or before.clips is not after.clips
             or before.base != after.base
             or before.markov is not after.markov
+            or before.settings != after.settings
         ):
             self.show_selection()
 
@@ -259,6 +270,7 @@ class PropertiesPanel(QScrollArea):
         self.tags.show_text("" if tags is Mixed else ", ".join(tags), of)
         self.tags.setPlaceholderText(MIXED if tags is Mixed else "positive, greeting, …")
         self.likelihood.show_value(common([a.likelihood for a in actions]))
+        self.variation.show_actions(project, actions)
         self._fill_stances(actions, kind)
         masks = common([a.joints for a in actions])
         self.joints.setText(MIXED if masks is Mixed else f"{len(masks)} joints only" if masks else "all its layer reaches")
@@ -323,6 +335,7 @@ class PropertiesPanel(QScrollArea):
         self.base.setEnabled(bool(project.clips))
         self.base_frame.setEnabled(project.base.clip is not None)
         self.base_frame.show_value(project.base.frame)
+        self.planner.show_settings(project.settings)
 
     # --- editing
 

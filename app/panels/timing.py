@@ -17,9 +17,12 @@ from app.theme import Theme, theme
 from metagraph.graph import anatomy, edits
 from metagraph.graph.model import Action, Project
 from metagraph.motion import features
+from metagraph.playback.phases import phases
 
-HANDLES = ("start", "end", "in", "out", "exit", "stroke")
+HANDLES = ("start", "end", "in", "out", "exit", "stroke", "ready", "hold", "relax")
 WORDS = {"start": "start", "end": "end", "in": "blend in", "out": "blend out", "exit": "earliest exit", "stroke": "stroke"}
+PHASES = ("ready", "hold", "relax")  # handles of a gesture's phases
+BANDS = ("prepare", "stroke", "hold", "retract")
 
 
 def speed_of(project: Project, action: Action) -> tuple[np.ndarray, str]:
@@ -53,7 +56,15 @@ def times_of(project: Project, action: Action) -> dict[str, float | None]:
         "out": max(start, end - t.blend_out),
         "exit": t.earliest_exit,
         "stroke": t.stroke,
+        **_phases(project, action),
     }
+
+
+def _phases(project: Project, action: Action) -> dict[str, float | None]:
+    if action.kind != "gesture":
+        return dict.fromkeys(PHASES)
+    found = phases(project, action)
+    return {"ready": found.ready, "hold": found.stroke_end, "relax": found.relax}
 
 
 def moved(project: Project, action: Action, handle: str, seconds: float) -> dict[str, Any]:
@@ -73,6 +84,12 @@ def moved(project: Project, action: Action, handle: str, seconds: float) -> dict
         return {"blend_out": round(min(max(0.0, end - at), end - start), 3)}
     if handle == "exit":
         return {"earliest_exit": min(max(at, start), end)}
+    if handle in PHASES:
+        now = times_of(project, action)
+        order = (start, *(float(now[p] or start) for p in PHASES), end)
+        place = PHASES.index(handle) + 1
+        fields = dict(zip(PHASES, ("ready", "stroke_end", "relax"), strict=True))
+        return {fields[handle]: round(min(max(at, order[place - 1]), order[place + 1]), 3)}
     return {"stroke": min(max(at, start), end)}
 
 
@@ -114,9 +131,15 @@ class TimingPlot(QWidget):
         for blend in self.blends:
             blend.setZValue(-5)
             self.plot.addItem(blend)
+        self.hold = pg.LinearRegionItem(movable=False)
+        self.hold.setZValue(-6)
+        self.plot.addItem(self.hold)
+        self.bands = [pg.TextItem(word, anchor=(0.5, 0.0)) for word in BANDS]
+        for band in self.bands:
+            self.plot.addItem(band, ignoreBounds=True)
         self.lines: dict[str, pg.InfiniteLine] = {}
         for name in HANDLES:
-            line = pg.InfiniteLine(movable=True, label=WORDS[name])
+            line = pg.InfiniteLine(movable=True, label=WORDS.get(name))
             line.setCursor(Qt.CursorShape.SizeHorCursor)
             line.sigDragged.connect(lambda item, n=name: self._dragged(n, item.value()))
             line.sigPositionChangeFinished.connect(lambda _: self._let_go())
@@ -175,8 +198,13 @@ class TimingPlot(QWidget):
             style = Qt.PenStyle.SolidLine if strong else Qt.PenStyle.DashLine
             line.setPen(pg.mkPen(t.text if strong else color, width=2 if strong else 1.4, style=style))
             line.setHoverPen(pg.mkPen(t.text, width=3))
-            line.label.setColor(t.dim)
-            line.label.setPosition({"start": 0.92, "end": 0.92, "in": 0.76, "out": 0.76, "exit": 0.6, "stroke": 0.44}[name])
+            if name in PHASES:
+                own = {"ready": action.timing.ready, "hold": action.timing.stroke_end, "relax": action.timing.relax}[name]
+                line.setPen(pg.mkPen(t.dim if own is None else t.text, width=1.2, style=Qt.PenStyle.DotLine))
+            else:
+                line.label.setColor(t.dim)
+                line.label.setPosition({"start": 0.78, "end": 0.78, "in": 0.62, "out": 0.62, "exit": 0.46, "stroke": 0.3}[name])
+        self._bands(t, at)
         fill = QColor(color)
         fill.setAlpha(46)
         for blend, (a, b) in zip(self.blends, ((at["start"], at["in"]), (at["out"], at["end"])), strict=True):
@@ -186,6 +214,26 @@ class TimingPlot(QWidget):
                 line.setPen(pg.mkPen(None))
         self.blends[1].setVisible(action.kind != "stance")
         self._setting = False
+
+    def _bands(self, t: Theme, at: dict[str, float | None]) -> None:
+        """Name the phases along the top, and shade the hold."""
+        whole = at["ready"] is not None
+        self.hold.setVisible(whole)
+        edges = [at[x] for x in ("start", "ready", "hold", "relax", "end")]
+        (low, high), (_, top) = self.plot.viewRange()
+        for band, a, b in zip(self.bands, edges, edges[1:], strict=False):
+            wide = a is not None and b is not None and (b - a) * self.plot.width() / max(high - low, 1e-6) > 46
+            band.setVisible(whole and wide)
+            if whole and wide and a is not None and b is not None:
+                band.setColor(t.dim)
+                band.setPos((a + b) / 2, top)
+        if whole:
+            fill = QColor(t.text)
+            fill.setAlpha(22)
+            self.hold.setBrush(fill)
+            self.hold.setRegion((edges[2], edges[3]))
+            for line in self.hold.lines:
+                line.setPen(pg.mkPen(None))
 
     def _dragged(self, name: str, seconds: float) -> None:
         if self._setting or self.action is None:
