@@ -10,10 +10,11 @@ from __future__ import annotations
 
 from collections import OrderedDict
 from collections.abc import Collection, Iterable, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property
 from typing import Any
 
+import msgspec
 import numpy as np
 from numpy.typing import NDArray
 
@@ -31,6 +32,13 @@ LIDS = ("upper_lid_left", "upper_lid_right", "lower_lid_left", "lower_lid_right"
 MOUTH = ("jaw_open", *(f"viseme_{v}" for v in VISEMES[1:]))
 CHANNELS = (*LIDS, "blink", *MOUTH)  # in the order of a rig's arrays
 SIDES = ("left", "right")
+# What `Face.channels` may bind to a joint and to a morph target, and `Face.poses` to a frame of a clip.
+JOINT_BOUND = (*(f"eye_{s}" for s in SIDES), *LIDS, "jaw_open")
+MORPH_BOUND = (
+    "blink", *(f"{what}_{s}" for what in ("blink", "wide") for s in SIDES), *MOUTH,
+    *(f"look_{way}_{s}" for way in ("up", "down", "left", "right") for s in SIDES),
+)  # fmt: skip
+POSE_BOUND = ("blink", *MOUTH)
 
 # Where nothing in the project shows it, lids turn about the eye and the jaw about its joint; degrees about the axis to the left.
 UPPER_LID_SHUT, LOWER_LID_SHUT = 40.0, -15.0
@@ -132,6 +140,14 @@ def morph_names(project: Project, morphs: Sequence[str] = ()) -> tuple[str, ...]
     return tuple(names)
 
 
+def with_morphs(project: Project, names: Iterable[str]) -> Project:
+    """Return the project remembering the morph targets of its character; the same one where it knows them already."""
+    found = tuple(names)
+    if found == project.face.morphs:
+        return project
+    return replace(project, face=msgspec.structs.replace(project.face, morphs=found))
+
+
 def _find(project: Project, morphs: Sequence[str]) -> FaceRig:
     bound = project.face.channels
     targets = find_morphs(morph_names(project, morphs), bound)
@@ -147,7 +163,7 @@ def _find(project: Project, morphs: Sequence[str]) -> FaceRig:
         shapes |= reader.lids()
     if not any(c in targets for c in MOUTH):
         shapes |= reader.mouth()
-    shapes |= reader.shown({c: p for c, p in project.face.poses.items() if c in CHANNELS})
+    shapes |= reader.shown({c: p for c, p in project.face.poses.items() if c in POSE_BOUND})
     off = {c for c, name in bound.items() if not name}
     return _rig(eyes, {c: s for c, s in shapes.items() if c not in off}, reader.lid_joints(off), targets, skeleton)
 

@@ -107,8 +107,9 @@ def find_morphs(names: Iterable[str], bound: Mapping[str, str] | None = None) ->
                 take(f"look_{way}_{side}", have.one(f"look{way}", f"eyelook{way}", f"eyeslook{way}"))
     if "blink_left" not in out and "blink_right" not in out:
         take("blink", have.one(*shut))
-    out |= _mouth(have)
     known = set(all_names)
+    own = bound.get("jaw_open")
+    out |= _mouth(have, own if own in known else None)
     for channel, name in bound.items():
         if not name:
             out.pop(channel, None)
@@ -117,8 +118,11 @@ def find_morphs(names: Iterable[str], bound: Mapping[str, str] | None = None) ->
     return out
 
 
-def _mouth(have: _Names) -> dict[str, Weights]:
-    """Return the mouth's shapes from targets made for them, else from ARKit's, VRM's vowels, or a mouth that opens."""
+def _mouth(have: _Names, bound: str | None = None) -> dict[str, Weights]:
+    """Return the mouth's shapes from targets made for them, else from ARKit's, VRM's vowels, or a mouth that opens.
+
+    bound: the target that opens the mouth, where the user says so.
+    """
     out: dict[str, Weights] = {}
     for viseme, forms in _OCULUS.items():
         name = have.one(*(p + f for p in ("viseme", "vis", "v") for f in forms))
@@ -126,7 +130,7 @@ def _mouth(have: _Names) -> dict[str, Weights]:
             out[f"viseme_{viseme}"] = ((name, 1.0),)
     if len(out) >= 6:
         return out
-    jaw = have.one("jawopen", "jawdrop", "mouthopen", "openmouth")
+    jaw = bound or have.one("jawopen", "jawdrop", "mouthopen", "openmouth")
     out = {"jaw_open": ((jaw, 1.0),)} if jaw is not None else {}
     if have.one("jawopen") and have.one("mouthfunnel", "mouthpucker"):
         return out | {f"viseme_{v}": mix for v, recipe in _ARKIT.items() if (mix := have.mixed(recipe))}

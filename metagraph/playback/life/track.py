@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Collection
+from bisect import bisect_right
+from collections.abc import Collection, Iterable, Iterator
 from dataclasses import dataclass, replace
 from math import inf
 
@@ -93,11 +94,21 @@ class Track:
                 return cut(item, now)
             return replace(item, end=min(item.end, now)) if isinstance(item, LookAt) else item
 
-        return track_of(k for i in self.items if (k := kept(i)) is not None)
+        if not idents or not any(item.id in idents for item in self.items):
+            return self
+        return Track(*(tuple(k for i in of if (k := kept(i)) is not None) for of in self._kinds()))  # type: ignore[arg-type]
 
     def plus(self, items: Collection[Item]) -> Track:
         """Return the track with more items; of speeches that overlap the later or more important cuts the other short."""
-        return track_of((*self.items, *items)) if items else self
+        if not items:
+            return self
+        more = track_of(items)
+        looks, _, modes, places, blinks = (_merged(old, new) for old, new in zip(self._kinds(), more._kinds(), strict=True))
+        speeches = self.speeches if not more.speeches else _apart(sorted((*self.speeches, *_speeches(items)), key=_order))
+        return Track(looks, speeches, modes, places, blinks)  # type: ignore[arg-type]
+
+    def _kinds(self) -> tuple[tuple[Item, ...], ...]:
+        return self.looks, self.speeches, self.modes, self.places, self.blinks
 
     def since(self, seconds: float) -> Track:
         """Return the track without what no time from `seconds` on needs."""
@@ -110,7 +121,7 @@ class Track:
 
 def track_of(items: object) -> Track:
     """Return a track of items in any order."""
-    every = sorted(items, key=lambda i: (i.start, i.id))  # type: ignore[call-overload]
+    every = sorted(items, key=_order)  # type: ignore[call-overload]
     return Track(
         tuple(i for i in every if isinstance(i, LookAt)),
         _apart([i for i in every if isinstance(i, Speech)]),
@@ -118,6 +129,22 @@ def track_of(items: object) -> Track:
         tuple(i for i in every if isinstance(i, PlaceFrom)),
         tuple(i for i in every if isinstance(i, BlinkAt)),
     )
+
+
+def _order(item: Item) -> tuple[float, str]:
+    return item.start, item.id
+
+
+def _speeches(items: Iterable[Item]) -> Iterator[Speech]:
+    return (item for item in items if isinstance(item, Speech))
+
+
+def _merged(old: tuple[Item, ...], new: tuple[Item, ...]) -> tuple[Item, ...]:
+    """Put new items among those that are in order already; most are the latest, so that little is compared."""
+    for item in new:
+        place = bisect_right(old, _order(item), key=_order)
+        old = (*old[:place], item, *old[place:])
+    return old
 
 
 def cut(speech: Speech, at: float) -> Speech:

@@ -1,0 +1,80 @@
+"""The lines a character says: their sound files and phones read into voices."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from pathlib import Path
+
+import numpy as np
+
+from metagraph.errors import FileError
+from metagraph.graph.asks import Line
+from metagraph.graph.model import Project
+from metagraph.playback.life.mouth import mouth_track
+from metagraph.playback.life.voice import Voice, silent
+from metagraph.speech.phones import pieces_of
+from metagraph.speech.sound import hear, read_sound, shapes_heard, syllables
+from metagraph.speech.textgrid import read_textgrid
+
+_VOWELS = ("aa", "E", "I", "O", "U", "RR")
+
+
+def read_voice(audio: str | Path, phones: str | Path | None = None) -> Voice:
+    """Read a line's sound and, where there are any, its phones or words from a Praat TextGrid. Raises FileError."""
+    heard = hear(*read_sound(audio))
+    peaks, strengths = syllables(heard)
+    pieces = pieces_of(read_textgrid(phones)) if phones is not None else shapes_heard(heard)
+    pieces = [replace(p, end=min(p.end, heard.duration)) for p in pieces if p.start < heard.duration]
+    if phones is not None:  # how open a vowel is, its loudness tells
+        loud = [float(np.interp(0.5 * (p.start + p.end), heard.times, heard.loud)) for p in pieces]
+        pieces = [
+            replace(p, strength=p.strength * (0.6 + 0.4 * x)) if p.viseme in _VOWELS else p for p, x in zip(pieces, loud, strict=True)
+        ]
+    if not pieces:
+        return silent(heard.duration)
+    times, weights = mouth_track(pieces, heard.duration)
+    return Voice(heard.duration, peaks, times, weights, strengths)
+
+
+def voice_from_phones(phones: str | Path) -> Voice:
+    """Read a line that has no sound from its TextGrid alone; every vowel is a syllable. Raises FileError."""
+    grid = read_textgrid(phones)
+    pieces = [p for p in pieces_of(grid) if p.start >= 0]
+    duration = max([grid.end, *(p.end for p in pieces)])
+    if not pieces:
+        return silent(max(duration, 0.0))
+    vowels = [p for n, p in enumerate(pieces) if p.viseme in _VOWELS and (n == 0 or pieces[n - 1].viseme not in _VOWELS)]
+    peaks = np.array([0.5 * (p.start + p.end) for p in vowels])
+    long = np.array([p.strength * min(1.0, 0.3 + 4 * (p.end - p.start)) for p in vowels])  # what is stressed is long
+    return Voice(duration, peaks, *mouth_track(pieces, duration), long)
+
+
+def read_line(line: Line, folder: Path) -> Voice | None:
+    """Return the voice of a line with sound or phones, paths relative to `folder`; None for one without. Raises FileError."""
+    if line.audio:
+        return read_voice(folder / line.audio, folder / line.phones if line.phones else None)
+    return voice_from_phones(folder / line.phones) if line.phones else None
+
+
+def load_voices(project: Project, folder: str | Path) -> tuple[Project, tuple[str, ...]]:
+    """Read the sound of every line that has one; return the project with its voices, and what could not be read, in words.
+
+    A line whose phones are broken is read from its sound alone; one whose sound is broken speaks by its letters.
+    """
+    folder = Path(folder)
+    voices: dict[str, Voice] = {}
+    notes: list[str] = []
+    for ident, line in project.lines.items():
+        tries = [line] if not (line.audio and line.phones) else [line, Line(audio=line.audio)]
+        for attempt in tries:
+            try:
+                voice = read_line(attempt, folder)
+            except FileError as error:
+                note = f"line '{ident}': {error}"
+                if note not in notes:
+                    notes.append(note)
+                continue
+            if voice is not None:
+                voices[ident] = voice
+            break
+    return replace(project, voices=voices), tuple(notes)

@@ -1,0 +1,122 @@
+"""From phones to mouth shapes: ARPAbet (AA1, with or without stress), IPA and SAMPA; from words by their letters.
+
+Shapes after the table of the Oculus visemes and what they are seen to do; diphthongs are two shapes.
+"""
+
+from __future__ import annotations
+
+import re
+import unicodedata
+from collections.abc import Iterable, Sequence
+
+from metagraph.playback.life.letters import shapes
+from metagraph.playback.life.mouth import Piece
+from metagraph.speech.textgrid import Interval, TextGrid, Tier
+
+_SILENT = {"", "sil", "sp", "spn", "pau", "#", "h#", "epi", "_", "<p:>", "<p>", "<sil>", "noise", "brth", "<eps>", "xxx", "..."}
+
+_ARPABET = {
+    "aa": "aa", "ae": "aa", "ah": "aa", "ao": "O", "aw": "aa U", "ax": "E", "axr": "RR", "ay": "aa I", "eh": "E", "er": "RR",
+    "ey": "E I", "ih": "I", "ix": "I", "iy": "I", "ow": "O U", "oy": "O I", "uh": "U", "uw": "U", "ux": "U", "axh": "E",
+    "b": "PP", "p": "PP", "m": "PP", "em": "PP", "f": "FF", "v": "FF", "th": "TH", "dh": "TH", "d": "DD", "t": "DD", "dx": "DD",
+    "l": "nn", "el": "nn", "n": "nn", "en": "nn", "nx": "nn", "ng": "kk", "eng": "kk", "k": "kk", "g": "kk", "q": "kk", "hh": "kk",
+    "hv": "kk", "h": "kk", "ch": "CH", "jh": "CH", "sh": "CH", "zh": "CH", "s": "SS", "z": "SS", "r": "RR", "w": "U", "wh": "U",
+    "y": "I", "bcl": "PP", "pcl": "PP", "dcl": "DD", "tcl": "DD", "gcl": "kk", "kcl": "kk",
+}  # fmt: skip
+_LONG_VOWELS = {k for k, v in _ARPABET.items() if len(k) == 2 and v.split()[0] in ("aa", "E", "I", "O", "U", "RR") and k != "wh"}
+_SIGNS = {  # IPA, and SAMPA where it differs
+    "aa": "aɑɐʌæäɶAV{6", "E": "eɛəɜɘɞE@3", "I": "iɪɨjI1}", "O": "oɔɒɤœOQ9", "U": "uʊʉɯwʍyʏɥøUMHWY28", "PP": "pbmɓʙB", "FF": "fvɸβʋɱFP",
+    "TH": "θðTD", "DD": "tdʈɖɾɗ4", "nn": "nlɭɫɲɳʎɬɮɴʟNJL5", "kk": "kgɡqcɟxɣχhɦħʔŋʕɠGXh?", "CH": "ʃʒɕʑʂʐçSZC", "SS": "szʦʣ",
+    "RR": "rɹʀʁɻɽɚɝR`",
+}  # fmt: skip
+_SIGN = {sign: viseme for viseme, signs in _SIGNS.items() for sign in signs}
+_VOWELS = ("aa", "E", "I", "O", "U")
+_REDUCED = {"ə", "@", "ɘ", "ɐ", "6", "ax", "axh", "ix"}  # vowels that are hardly made
+_TWO = (0.6, 0.4)  # how a diphthong's time is shared
+
+
+def is_arpabet(labels: Iterable[str]) -> bool:
+    """Whether labels are ARPAbet: nearly all known there, and a vowel of two letters among them."""
+    plain = [_bare(x) for x in labels if x.strip().casefold() not in _SILENT]
+    known = sum(x in _ARPABET for x in plain)
+    return bool(plain) and known >= 0.75 * len(plain) and any(x in _LONG_VOWELS for x in plain)
+
+
+def visemes_of(label: str, arpabet: bool) -> tuple[list[str], float]:
+    """Return a phone's mouth shapes in turn, none for silence, and how fully they are made, 0..1."""
+    if label.strip().casefold() in _SILENT:
+        return [], 0.0
+    if arpabet:
+        bare = _bare(label)
+        if bare in _ARPABET:
+            weak = bare in _REDUCED or (label.strip().endswith("0") and bare in _LONG_VOWELS)
+            return _ARPABET[bare].split(), 0.65 if weak else 1.0
+        out: list[str] = []
+        while bare:  # two run together, as "PT"
+            size = next((n for n in (3, 2, 1) if bare[:n] in _ARPABET), 0)
+            out += _ARPABET[bare[:size]].split() if size else []
+            bare = bare[max(1, size) :]
+        return out, 1.0
+    signs = [c for c in unicodedata.normalize("NFD", label) if not unicodedata.combining(c)]
+    out = []
+    for sign in signs:
+        viseme = _SIGN.get(sign)
+        if viseme is not None and (not out or out[-1] != viseme):
+            out.append(viseme)
+    if out[:2] in (["DD", "CH"], ["DD", "SS"]):
+        out = out[1:]  # an affricate shows its second part
+    return out, 0.65 if all(s in _REDUCED or s not in _SIGN for s in signs) else 1.0
+
+
+def _bare(label: str) -> str:
+    return re.sub(r"[^a-z]", "", label.strip().casefold())
+
+
+def pieces_of(grid: TextGrid) -> list[Piece]:
+    """Return what the mouth goes through in a TextGrid, by its phones or, where it has none, its words."""
+    tiers = [t for t in grid.tiers if not t.points and any(i.text.casefold() not in _SILENT for i in t.intervals)]
+    phones = _pick(tiers, r"phon|segment|sampa|ipa|\bmau\b|\bph\b|^phs?$", short=True)
+    if phones is not None:
+        arpabet = is_arpabet(i.text for i in phones.intervals)
+        return [p for i in phones.intervals for p in _spread(i, *visemes_of(i.text, arpabet))]
+    words = _pick(tiers, r"word|ort|transcript|text|utter|phrase", short=False)
+    return [p for i in words.intervals for p in _spell(i)] if words is not None else []
+
+
+def _pick(tiers: Sequence[Tier], pattern: str, short: bool) -> Tier | None:
+    named = [t for t in tiers if re.search(pattern, t.name.casefold())]
+    if named:
+        return named[0]
+
+    def length(tier: Tier) -> float:
+        sizes = sorted(len(i.text) for i in tier.intervals if i.text.casefold() not in _SILENT)
+        return sizes[len(sizes) // 2]
+
+    fitting = [t for t in tiers if (length(t) <= 2.5) == short]
+    return max(fitting, key=lambda t: len(t.intervals), default=None)
+
+
+def _spread(interval: Interval, found: list[str], strength: float) -> list[Piece]:
+    """Return an interval's pieces: a diphthong's two, or equal parts."""
+    if not found or interval.end <= interval.start:
+        return []
+    parts = _TWO if len(found) == 2 and all(f in _VOWELS for f in found) else (1 / len(found),) * len(found)
+    out, at = [], interval.start
+    for viseme, part in zip(found, parts, strict=True):
+        end = at + part * (interval.end - interval.start)
+        out.append(Piece(at, end, viseme, strength))
+        at = end
+    return out
+
+
+def _spell(interval: Interval) -> list[Piece]:
+    if interval.text.casefold() in _SILENT:
+        return []
+    found = [s for word in interval.text.split() for s in shapes(word)]
+    sizes = [1.25 if s in _VOWELS else 0.8 for s in found]
+    scale = (interval.end - interval.start) / sum(sizes) if sizes else 0.0
+    out, at = [], interval.start
+    for viseme, size in zip(found, sizes, strict=True):
+        out.append(Piece(at, at + size * scale, viseme))
+        at += size * scale
+    return out
