@@ -355,7 +355,8 @@ class LiveSession:
         plan = since(self.plan, now - self.history) if now > self.history else self.plan
         near = {m.request.id for layer in plan.layers.values() for m in layer.metas if m.end > now - KEPT}
         owner = self.ledger.owner
-        reports = tuple(r for n, r in enumerate(plan.reports, TOLD - len(plan.reports)) if n >= 0 or (r.at > now - KEPT and owner(r.request)))
+        last = len(plan.reports) - TOLD
+        reports = tuple(r for n, r in enumerate(plan.reports) if n >= last or (r.at > now - KEPT and owner(r.request)))
         requests = tuple(r for r in plan.requests if r.id in near or owner(r.id))
         self.plan = replace(plan, reports=reports, requests=requests, track=_thinned(plan, now - THIN))
 

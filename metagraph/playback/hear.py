@@ -60,7 +60,8 @@ def hear(
     every = "" in meant.withdrawn
     gone = meant.withdrawn | {r.id for r in meant.requests} | {i.id for i in meant.items} | {r.request for r in meant.refused}
     asked_before = {r.id for r in plan.requests} | {i.id for i in plan.track.items}
-    withdrawn = asked_before if every else {i for i in asked_before if any(owner in gone for owner in _owners(i))}
+    belonging = {i for i in asked_before if i in gone or ("." in i and any(owner in gone for owner in _owners(i)))}
+    withdrawn = asked_before if every else belonging
     track = plan.track.without(withdrawn, fixed).plus(meant.items)
     plan = replace(plan, track=track)
     after = extend(project, plan, fixed, meant.requests, end, stances, idle, frozenset(withdrawn))
