@@ -10,6 +10,9 @@ from typing import Annotated, Any, Literal
 import msgspec
 from msgspec import Meta, Struct
 
+from metagraph.graph.asks import Line, Performance, Point
+from metagraph.graph.life import Face, Life
+
 FORMAT = 1
 
 Id = Annotated[str, Meta(min_length=1)]
@@ -57,7 +60,9 @@ class ExportedStance(Struct, forbid_unknown_fields=True):
 class ExportedAction(Struct, forbid_unknown_fields=True):
     """One use of a clip. start, end: the part of the clip that plays (whole_end: the end is the clip's own). blend_in and
     blend_out lie inside it; a stance's blend_in is the overlap at its loop's seam. earliest_exit: clip time from which it
-    may be left, or null. joints: the only ones it moves, all when empty."""
+    may be left, or null. joints: the only ones it moves, all when empty. phases: of a gesture, clip seconds of ready, stroke,
+    stroke end and relax; own_phases: ready, stroke_end, relax as the user set them, null where found. cooldown: seconds in
+    which it is not drawn again; spacing: how many others come between, null as never_twice says."""
 
     id: Id
     name: str
@@ -77,6 +82,10 @@ class ExportedAction(Struct, forbid_unknown_fields=True):
     joints: list[str]
     tags: list[str]
     likelihood: Annotated[float, Meta(gt=0, le=1e15)]
+    phases: Annotated[list[Seconds], Meta(max_length=4)] = []
+    own_phases: Annotated[list[Number | None], Meta(max_length=3)] = []
+    cooldown: Seconds = 0.0
+    spacing: Annotated[int, Meta(ge=0, le=1000)] | None = None
 
 
 class Transition(Struct, rename={"source": "from", "target": "to"}, forbid_unknown_fields=True):
@@ -130,7 +139,10 @@ class Planner(Struct, forbid_unknown_fields=True):
     """Constants of planning. alpha: added to an action's count when it is used; an action is drawn with probability
     likelihood / max(count, 1). never_twice: not the same in a row where there is another. shortest: seconds below which what is
     left of a cut request is dropped. wait: how late a request may start. window: seconds a request may use that does
-    not say how long. blend: the curve of a blend's weight over its time x."""
+    not say how long. blend: the curve of a blend's weight over its time x. memory: seconds after which a use no longer counts, 0
+    for never. rest: least seconds between two actions of a layer. lookahead: seconds ahead of now that stay as planned.
+    hurry: how many times as fast as made a hold plays at most. least_blend: seconds in which an action comes in that skips
+    its preparation."""
 
     seed: Annotated[int, Meta(ge=0, le=0xFFFFFFFF)]
     alpha: Annotated[float, Meta(ge=0, le=1e15)]
@@ -140,6 +152,11 @@ class Planner(Struct, forbid_unknown_fields=True):
     window: Seconds
     loop_fade: Seconds
     blend: Literal["3x^2-2x^3"]
+    memory: Annotated[float, Meta(ge=0, le=600)] = 0.0
+    rest: Annotated[float, Meta(ge=0, le=600)] = 0.0
+    lookahead: Annotated[float, Meta(ge=0, le=10)] = 0.1
+    hurry: Annotated[float, Meta(ge=1, le=100)] = 2.0
+    least_blend: Seconds = 0.25
 
 
 class Randomness(Struct, forbid_unknown_fields=True):
@@ -182,6 +199,11 @@ class Export(Struct, omit_defaults=True, forbid_unknown_fields=True):
     roles: dict[str, str] = {}
     parts: dict[str, PartName] = {}
     expanded: dict[LayerName, Expanded] | None = None
+    life: Life = Life()
+    face: Face = Face()
+    points: dict[str, Point] = {}
+    lines: dict[str, Line] = {}
+    performances: dict[str, Performance] = {}
 
 
 def schema() -> dict[str, Any]:

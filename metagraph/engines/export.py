@@ -34,7 +34,8 @@ from metagraph.graph.model import (
 from metagraph.motion.clip import Clip
 from metagraph.motion.skeleton import Skeleton, unique_names
 from metagraph.playback import choice, markov
-from metagraph.playback.pick import LOOP_FADE
+from metagraph.playback.phases import LEAST_BLEND, phases
+from metagraph.playback.pick import HURRY, LOOP_FADE
 from metagraph.playback.planner import WINDOW
 
 
@@ -136,7 +137,6 @@ def to_document(project: Project, glb: str, names: tuple[str, ...], expanded: bo
         c.ExportedClip(e.id, name, n, e.fps, e.frames, e.duration, e.digest)
         for n, (e, name) in enumerate(zip(_used(project), names, strict=True))
     ]
-    s = project.settings
     return c.Export(
         metagraph=c.FORMAT,
         name=project.name,
@@ -147,14 +147,24 @@ def to_document(project: Project, glb: str, names: tuple[str, ...], expanded: bo
         base=base,
         clips=clips,
         layers={layer: _layer(project, project.graphs[layer]) for layer in LAYERS},
-        planner=c.Planner(s.seed & 0xFFFFFFFF, s.alpha, s.never_twice, s.shortest, s.wait, WINDOW, LOOP_FADE, "3x^2-2x^3"),
+        planner=_planner(project.settings),
         randomness=c.Randomness(
             "fnv1a32-mix", choice.OFFSET, choice.PRIME, [16, choice.MIX[0], 13, choice.MIX[1], 16], choice.key32(1, "a", "b")
         ),
         roles=dict(project.roles),
         parts=dict(project.parts),
         expanded={layer: _expanded(project, project.graphs[layer]) for layer in LAYERS} if expanded else None,
+        life=project.life,
+        face=project.face,
+        points=dict(project.points),
+        lines=dict(project.lines),
+        performances=dict(project.performances),
     )
+
+
+def _planner(s: Settings) -> c.Planner:
+    constants = (WINDOW, LOOP_FADE, "3x^2-2x^3", s.memory, s.rest, s.lookahead, HURRY, LEAST_BLEND)
+    return c.Planner(s.seed & 0xFFFFFFFF, s.alpha, s.never_twice, s.shortest, s.wait, *constants)
 
 
 def _layer(project: Project, graph: MetaGraph) -> c.ExportedLayer:
@@ -211,7 +221,19 @@ def _action(project: Project, action: Action) -> c.ExportedAction:
         list(action.joints),
         list(action.tags),
         action.likelihood,
+        *_phases(project, action),
+        max(0.0, action.cooldown),
+        action.spacing,
     )
+
+
+def _phases(project: Project, action: Action) -> tuple[list[float], list[float | None]]:
+    """Return a gesture's phases as they are, and as the user set them."""
+    if action.kind != "gesture":
+        return [], []
+    found, t = phases(project, action), action.timing
+    own = [t.ready, t.stroke_end, t.relax]
+    return [found.ready, found.stroke, found.stroke_end, found.relax], own if any(x is not None for x in own) else []
 
 
 def _expanded(project: Project, graph: MetaGraph) -> c.Expanded:
@@ -283,7 +305,12 @@ def _project(path: Path, document: c.Export, motions: bool) -> Project:
         roles=dict(document.roles),
         parts=dict(document.parts),
         markov={layer: _markov(layer, document.layers[layer].markov) for layer in LAYERS if document.layers[layer].own_markov},
-        settings=Settings(p.alpha, p.seed, p.never_twice, p.shortest, p.wait),
+        settings=Settings(p.alpha, p.seed, p.never_twice, p.shortest, p.wait, p.memory, p.rest, p.lookahead),
+        life=document.life,
+        face=document.face,
+        points=dict(document.points),
+        lines=dict(document.lines),
+        performances=dict(document.performances),
         next_id=above(*clips, *(i for g in graphs.values() for i in (*g.stances, *g.actions))),
     )
 
@@ -321,10 +348,12 @@ def _graph(layer: Layer, data: c.ExportedLayer) -> MetaGraph:
     for n, a in enumerate(data.actions):
         if a.id in actions:
             raise DataError(f"{where}.actions[{n}].id", f"'{a.id}' is used twice")
-        timing = Timing(a.start, None if a.whole_end else a.end, a.blend_in, a.blend_out, a.loop, a.earliest_exit, a.stroke)
+        own = a.own_phases if len(a.own_phases) == 3 else [None] * 3
+        timing = Timing(a.start, None if a.whole_end else a.end, a.blend_in, a.blend_out, a.loop, a.earliest_exit, a.stroke, *own)
         actions[a.id] = Action(
-            a.id, a.clip, a.kind, layer, a.stance, a.name, a.end_stance, timing, a.limb, tuple(a.joints), tuple(a.tags), a.likelihood
-        )
+            a.id, a.clip, a.kind, layer, a.stance, a.name, a.end_stance, timing, a.limb, tuple(a.joints), tuple(a.tags), a.likelihood,
+            a.cooldown, a.spacing,
+        )  # fmt: skip
     if unknown := [part for part in data.own_weights if part not in data.weights]:
         raise DataError(f"{where}.own_weights", f"weights say nothing of '{unknown[0]}'")
     return MetaGraph(layer, stances, actions, data.start, {part: data.weights[part] for part in data.own_weights})
