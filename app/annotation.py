@@ -89,5 +89,5 @@ def told(reading: Reading) -> list[str]:
         if not acts:
             out.append(f"The {layer} tiers hold nothing that counts: see what their labels mean.")
         elif len(acts) < FEW:
-            out.append(f"Only {len(acts)} actions of the {layer}: their model will be a rough one.")
+            out.append(f"Only {len(acts)} actions of the {layer}: its model will be a rough one.")
     return out

@@ -75,7 +75,7 @@ def test_models_are_learned_of_the_layers_that_are_wanted_and_were_seen(conversa
 
 
 def test_few_actions_are_doubted(conversation: Annotation) -> None:
-    assert told(begin(conversation)) == ["Only 12 actions of the body: their model will be a rough one."]
+    assert told(begin(conversation)) == ["Only 12 actions of the body: its model will be a rough one."]
     assert "hold nothing that counts" in told(begin(Annotation((tier("LH", "rest"),))))[0]
     assert told(begin(Annotation((), notes=("one left out",))))[0] == "one left out"
 
