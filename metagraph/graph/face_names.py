@@ -17,8 +17,11 @@ _PREFIX = re.compile(r"^(blendshapes?|blendshape\d+|morph(target)?s?|shapes?|bs|
 
 
 def plain(name: str) -> str:
-    """Return a name without what differs from tool to tool: case, separators, what stands before a dot."""
-    return re.sub(r"[^a-z0-9]", "", name.rsplit(".", 1)[-1].lower())
+    """Return a name without what differs from tool to tool: case, separators, what stands before a dot ("eyeBlink.L" is whole)."""
+    before, _, last = name.lower().rpartition(".")
+    if last in ("l", "r", "left", "right") or last.isdigit():
+        last = before.rsplit(".", 1)[-1] + last
+    return re.sub(r"[^a-z0-9]", "", last)
 
 
 def _keys(name: str) -> list[str]:
