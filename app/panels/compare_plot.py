@@ -6,17 +6,17 @@ from typing import Any
 
 import numpy as np
 import pyqtgraph as pg
-from PySide6.QtCore import QPointF
+from PySide6.QtCore import QPointF, Qt
 from PySide6.QtGui import QColor
 from PySide6.QtWidgets import QHBoxLayout, QLabel, QVBoxLayout, QWidget
 
+from app.panels.heatmap import SIDES
 from app.session import Session
 from app.theme import KIND_MARKS, theme
 from metagraph.playback.compare import SURE, Comparison, quantiles
 from metagraph.playback.learn import State, state_words
 
 WIDTH = 0.34  # of a bar; two stand side by side
-SIDES = {"left": "L", "right": "R", "both": "LR"}
 
 
 def short(state: State, layer: str) -> str:
@@ -68,6 +68,7 @@ class ComparePlot(QWidget):
         plot.setMenuEnabled(False)
         plot.setMouseEnabled(False, False)
         plot.hideButtons()
+        plot.setFocusPolicy(Qt.FocusPolicy.NoFocus)
         plot.getAxis("left").setWidth(34)
         plot.setMinimumHeight(96)
         plot.scene().sigMouseMoved.connect(lambda at, p=plot: self._hover(p, at))

@@ -16,6 +16,7 @@ HEAD = 38.0  # pixels above the columns
 SIDE = 104.0  # left of the rows
 DRAG = 160.0  # pixels of dragging from 0 to 100 %
 INKS = ("#17181b", "#f4f5f7")
+SIDES = {"left": "L", "right": "R", "both": "LR"}  # as in the paper's figure 11
 _SHORT = {"positive": "+", "negative": "−"}
 _GAP = 18.0  # from a mark to what stands behind it
 _TWO_LINES = 32.0  # pixels of a row in which tags have a line of their own
@@ -214,8 +215,9 @@ class HeatMap(QWidget):
             self._tags(painter, t, below, state[2], n, Qt.AlignmentFlag.AlignLeft)
 
     def _column_head(self, painter: QPainter, t: Theme, box: QRectF, state: State, n: int, lit: bool) -> None:
-        metrics = QFontMetricsF(self.font())
-        name = metrics.elidedText(self._name(state), Qt.TextElideMode.ElideRight, box.width() - _GAP - 2)
+        metrics, name = QFontMetricsF(self.font()), self._name(state)
+        if metrics.horizontalAdvance(name) > box.width() - _GAP - 2:
+            name = SIDES.get(name) or metrics.elidedText(name, Qt.TextElideMode.ElideRight, box.width() - _GAP - 2)
         width = _GAP + metrics.horizontalAdvance(name)
         line = QRectF(box.center().x() - width / 2, box.bottom() - (34 if state[2] else 18), width + 4, 18)
         self._words(painter, t, line, state, n, lit, name)

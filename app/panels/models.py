@@ -38,15 +38,13 @@ from metagraph.playback.markov import model
 
 HOUR = 3600.0  # seconds the model makes to be compared
 SAMPLE = 60.0  # seconds of the sample
-TALL = 420  # pixels the panel likes to have
+TALL = 430  # pixels the panel likes to have, its title included
 IMPORTED = "imported"  # what was read last, whether or not it was kept
 MERGE = "matrix"
 TEACH = (
-    "<p><b>Nobody has been watched yet.</b> This is the {origin}.</p>"
-    "<p>Annotate a video in ELAN: a tier for each arm, for the head and for the body, with labels such as <i>gesture</i>, <i>fidget</i>, "
-    "<i>stance-transition</i>, <i>nodding</i>. <a href='learn'>Import the .eaf file</a>, or drop it on the window: what follows what is "
-    "counted and becomes the model, and here you see how well it makes what people did. "
-    "<a href='sample'>Try the sample annotation.</a></p>"
+    "<b>Nobody has been watched yet:</b> this is the {origin}. Annotate a video in ELAN, with a tier for each arm, the head and the body "
+    "and labels such as <i>gesture, fidget, stance-transition, nodding</i>. <a href='learn'>Import the .eaf file</a> or drop it on the "
+    "window: what follows what is counted and becomes the model. <a href='sample'>Try the sample annotation.</a>"
 )
 
 
@@ -81,8 +79,8 @@ class ModelsPanel(QWidget):
         layout.addLayout(self._top())
         row = QHBoxLayout()
         row.setSpacing(24)
-        row.addLayout(self._left(), 5)
-        row.addLayout(self._right(), 6)
+        row.addLayout(self._left(), 1)
+        row.addLayout(self._right(), 1)
         layout.addLayout(row, 1)
         bottom = QHBoxLayout()
         bottom.setSpacing(12)
@@ -121,6 +119,7 @@ class ModelsPanel(QWidget):
         self.heat.menu.connect(self._menu)
         scroll = QScrollArea(self)
         scroll.setFrameShape(QFrame.Shape.NoFrame)
+        scroll.setFocusPolicy(Qt.FocusPolicy.NoFocus)
         scroll.setWidgetResizable(True)
         scroll.setWidget(self.heat)
         left.addWidget(scroll, 1)
@@ -183,7 +182,7 @@ class ModelsPanel(QWidget):
         window, dock = self.window(), self.parent()
         while dock is not None and not isinstance(dock, QDockWidget):
             dock = dock.parent()
-        if isinstance(window, QMainWindow) and isinstance(dock, QDockWidget) and self.height() < TALL - 60:
+        if isinstance(window, QMainWindow) and isinstance(dock, QDockWidget) and dock.height() < TALL:
             window.resizeDocks([dock], [min(TALL, window.height() // 2)], Qt.Orientation.Vertical)
 
     # --- showing

@@ -131,8 +131,9 @@ class Strip(QWidget):
         painter.setBrush(fill)
         painter.drawRoundedRect(rect, 3, 3)
         sign = {"positive": "+", "negative": "−"}.get(act.tags[0] if act.tags else "", "")
-        words = f"{KIND_MARKS[act.kind]}{sign}"
-        if rect.width() > 12 and rect.height() > 12 and rect.width() > QFontMetricsF(painter.font()).horizontalAdvance(words) + 4:
+        if rect.width() > 12 and rect.height() > 12:
+            metrics, mark = QFontMetricsF(painter.font()), KIND_MARKS[act.kind]
+            words = next((w for w in (mark + sign, mark) if metrics.horizontalAdvance(w) + 3 < rect.width()), "")
             painter.setPen(QColor("#17181b"))
             painter.drawText(rect, Qt.AlignmentFlag.AlignCenter, words)
 
