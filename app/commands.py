@@ -68,6 +68,8 @@ def commands(window: Window) -> tuple[Command, ...]:
         Command("to_start", "&Play", "Back to the &start", lambda: s.seek(0.0), ("Home",)),
         Command("back", "&Play", "A frame back", lambda: window.step(-1), (",",)),
         Command("forward", "&Play", "A frame forward", lambda: window.step(1), (".",)),
+        Command("live", "&Play", "Li&ve", window.toggle_live, ("Ctrl+L",), tip="Let programs on this machine drive the character",
+                enabled=lambda: d.project.skeleton is not None, checked=lambda: window.performance.live is not None, line=True),
         Command("loop", "&Play", "&Loop", window.preview.toggle_loop, ("L",), checked=lambda: s.loop),
         Command("show_plan", "&Play", "The whole &performance", s.show_plan, ("Escape",), line=True, checked=lambda: s.show == "plan"),
         Command("alone", "&Play", "The clip &alone", window.play_alone, ("Ctrl+Return",), enabled=some),

@@ -7,6 +7,7 @@ and the old one plays until the new one is there.
 from __future__ import annotations
 
 from dataclasses import dataclass
+from typing import TYPE_CHECKING
 
 import msgspec
 from PySide6.QtCore import QObject, QTimer, Signal
@@ -15,7 +16,7 @@ from app.document import Document
 from app.jobs import Jobs
 from app.session import Session
 from metagraph.graph import staging
-from metagraph.graph.asks import AnyAsk
+from metagraph.graph.asks import AnyAsk, AskError
 from metagraph.graph.asks import Performance as KeptPerformance
 from metagraph.graph.edits import EditError, place
 from metagraph.graph.model import LAYERS, Layer, Project
@@ -24,6 +25,10 @@ from metagraph.playback.hear import Answer, answer, perform
 from metagraph.playback.plan import Plan, Request
 from metagraph.playback.planner import make_plan
 from metagraph.playback.player import morphs_at, pose_at
+
+if TYPE_CHECKING:
+    from app.live import LiveStage
+    from metagraph.live.server import Options
 
 LENGTH = 60.0  # seconds planned ahead, and how much more whenever the playhead comes near the end
 AHEAD = 15.0  # seconds before the end at which more is planned
@@ -42,9 +47,10 @@ class Shown:
 
 
 class Performance(QObject):
-    """changed: something else plays, or the same was planned anew."""
+    """changed: something else plays, or the same was planned anew. live_changed: live begins, ends, or is connected otherwise."""
 
     changed = Signal()
+    live_changed = Signal()
 
     def __init__(self, document: Document, session: Session, jobs: Jobs, parent: QObject | None = None) -> None:
         super().__init__(parent)
@@ -59,6 +65,9 @@ class Performance(QObject):
         session.show_changed.connect(self.replan)
         session.performance_changed.connect(self._staged)
         self._on_stage: str | None = None
+        self.live: LiveStage | None = None
+        self.following = True  # while live: the playhead is now, not somewhere in the past
+        self.last_live: KeptPerformance | None = None  # what was played live last, if anything was asked
         self._answered: Shown | None = None
         self._answers: dict[str, Answer] = {}
 
@@ -69,6 +78,8 @@ class Performance(QObject):
         self._soon.start()
 
     def _loaded(self) -> None:
+        self.stop_live()
+        self.last_live = None
         self.length = LENGTH
         self.session.set_performance(None)
 
@@ -82,11 +93,17 @@ class Performance(QObject):
         if self.kept is not None:
             self.length = self.kept.length
         if before.skeleton is not after.skeleton or after.skeleton is None:
+            self.stop_live()
             self.shown = Shown(after, Plan(1, 0.0), LENGTH)
             self.changed.emit()
+        if self.live is not None:
+            self.live.change(after)
         self.replan()
 
     def _replan(self) -> None:
+        if self.live is not None and self.session.show == "plan":
+            self._ticked()
+            return
         if self._busy:
             self._again = True
             return
@@ -109,6 +126,8 @@ class Performance(QObject):
 
     def _planned(self, shown: Shown) -> None:
         self._busy = False
+        if self.live is not None and self.session.show == "plan":
+            return
         self.shown = shown
         self.changed.emit()
         if self._again:
@@ -129,21 +148,31 @@ class Performance(QObject):
 
     @property
     def asks(self) -> tuple[AnyAsk, ...]:
+        """What is asked for: of the performance on stage, or lately of the live one."""
+        if self.live is not None:
+            return self.live.asks
         return self.kept.asks if self.kept is not None else ()
 
     @property
     def editable(self) -> bool:
         """Whether the asks that are shown can be moved and changed."""
-        return self.kept is not None and self.session.show == "plan"
+        return self.live is None and self.kept is not None and self.session.show == "plan"
 
     def answers(self) -> dict[str, Answer]:
         """Return what the plan that is shown does about each ask."""
+        if self.live is not None:
+            return self.live.answers()
         if self._answered is not self.shown:
             self._answered, self._answers = self.shown, {ask.id: answer(self.shown.plan, ask.id) for ask in self.asks}
         return self._answers
 
     def ask(self, ask: AnyAsk, text: str = "Ask for something") -> None:
         """Ask for one thing more, in the performance on stage or a new one; without a time it is wanted as soon as can be."""
+        if self.live is not None:
+            if ask.at is not None and ask.at <= self.live.now:
+                ask = msgspec.structs.replace(ask, at=None)
+            self.live.ask(ask)
+            return
         if ask.at is None and getattr(ask, "stroke", None) is None:
             ask = msgspec.structs.replace(ask, at=round(self.session.seconds + SOON, 3))
         on_stage = self.session.performance
@@ -180,11 +209,60 @@ class Performance(QObject):
         if stage is not None:
             self.document.edit("Withdraw request", lambda p: staging.remove_asks(p, stage, idents or None))
 
+    # --- live
+
+    def go_live(self, options: Options | None = None) -> None:
+        """Let agents drive the character from now on."""
+        from app.live import LiveStage
+
+        if self.live is not None or self.document.project.skeleton is None:
+            return
+        self.session.set_performance(None)
+        self.session.show_plan()
+        self.live, self.following = LiveStage(self.document.project, options, self), True
+        self.live.ticked.connect(self._ticked)
+        self.live.told.connect(lambda _: self.live_changed.emit())
+        self.session.set_playing(True)
+        self.live.start()
+        self.live_changed.emit()
+
+    def stop_live(self) -> None:
+        """Hang up, and keep at hand what was played."""
+        if self.live is None:
+            return
+        live, self.live = self.live, None
+        live.stop()
+        try:
+            self.last_live = live.performance() if live.tape.count else None
+        except AskError as error:
+            self.last_live = None
+            self.document.failed.emit(str(error))
+        live.deleteLater()
+        self.replan()
+        self.live_changed.emit()
+
+    def _ticked(self) -> None:
+        if self.live is None or self.session.show != "plan":
+            return
+        plan = self.live.session.plan
+        if plan is not self.shown.plan:
+            self.shown = Shown(self.live.session.project, plan, plan.end)
+            self.changed.emit()
+
+    def follow(self) -> None:
+        """Back to now, after scrubbing through the past of a live session."""
+        self.following = True
+        self.session.show_plan()
+        self.session.set_playing(True)
+
     # --- the playhead
 
     def advance(self, elapsed: float) -> None:
         """Move the playhead by `elapsed` seconds of wall clock; called before each frame."""
         session = self.session
+        if self.live is not None and session.show == "plan":
+            self._advance_live(elapsed)
+            return
         if not session.playing or elapsed <= 0 or self.skeleton() is None:
             return
         seconds = session.seconds + elapsed * session.speed
@@ -199,6 +277,16 @@ class Performance(QObject):
                 seconds = length
                 session.set_playing(False)
         session.seek(seconds)
+
+    def _advance_live(self, elapsed: float) -> None:
+        """The playhead is now; or, once it was moved back, plays on behind until it is followed again."""
+        assert self.live is not None
+        session, now = self.session, self.live.now
+        self.following = self.following and session.playing
+        if self.following:
+            session.seek(now)
+        elif session.playing:
+            session.seek(min(now, session.seconds + elapsed * session.speed))
 
     def skeleton(self) -> Skeleton | None:
         """Return the skeleton of what plays: a clip looked at alone may have its own."""

@@ -402,6 +402,12 @@ class Window(QMainWindow):
         else:
             self.session.select_actions(tuple(a.id for a in self.canvas._listed()))
 
+    def toggle_live(self) -> None:
+        """Begin or end the live session."""
+        (self.performance.go_live if self.performance.live is None else self.performance.stop_live)()
+        self.show_dock("timeline")
+        self.actions.refresh()
+
     def step(self, frames: int) -> None:
         self.session.set_playing(False)
         self.session.seek(self.session.seconds + frames / 30)
@@ -490,6 +496,7 @@ class Window(QMainWindow):
         if self.centre.isVisible():
             settings.setValue("geometry", self.saveGeometry())
             settings.setValue("state", self.saveState(ARRANGED))
+        self.performance.stop_live()
         self.document.close_journal()
         self.preview._timer.stop()
         self.canvas._hero_timer.stop()

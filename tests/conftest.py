@@ -10,7 +10,7 @@ import pytest
 from hypothesis import settings
 
 from metagraph.graph import edits
-from metagraph.graph.model import LAYERS, Layer, Project
+from metagraph.graph.model import LAYERS, Layer, Life, Project
 from metagraph.motion import rotation
 from metagraph.motion.clip import Clip
 
@@ -70,7 +70,7 @@ class Toy:
         clips += [self.clip(name, seconds, angles[name.split()[0]]) for name, seconds in lengths.items()]
         ways = (("rest", "up"), ("up", "rest"), ("up", "far"), ("far", "up"))
         clips += [self.clip(f"{a} to {b}", 0.8, angles[a], angles[b]) for a, b in ways]
-        project = edits.add_clips(Project("toy"), [(f"{c.name}.glb", 0, "", c) for c in clips])
+        project = edits.add_clips(Project("toy", life=Life(on=False)), [(f"{c.name}.glb", 0, "", c) for c in clips])
         clip = {entry.name: entry.id for entry in project.clips.values()}
         for name in angles:
             project = edits.add_stance(project, layer, name, [clip[f"{name} loop"]])

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from PySide6.QtCore import QTimer
 from PySide6.QtWidgets import QComboBox, QHBoxLayout, QInputDialog, QLabel, QMenu, QMessageBox, QSpinBox, QToolButton, QVBoxLayout, QWidget
 
 from app.asks import ask_menu
@@ -46,6 +47,13 @@ class TimelinePanel(QWidget):
         self.title = QLabel(self)
         self.title.setProperty("dim", True)
         row.addWidget(self.title, 1)
+        self.now = QToolButton(self, text="Back to now", toolTip="Follow what is played live again")
+        self.now.clicked.connect(performance.follow)
+        row.addWidget(self.now)
+        self.live = QToolButton(self, text="Live", checkable=True)
+        self.live.setToolTip("Let programs on this machine drive the character, over WebSocket and OSC (Ctrl+L)")
+        self.live.clicked.connect(self.toggle_live)
+        row.addWidget(self.live)
         self.ask = QToolButton(self, text="Ask for…", toolTip="Ask the character for something now")
         self.ask.clicked.connect(self._ask)
         row.addWidget(self.ask)
@@ -60,6 +68,11 @@ class TimelinePanel(QWidget):
         layout.addWidget(self.lanes, 1)
         performance.changed.connect(self._words)
         session.show_changed.connect(self._words)
+        performance.live_changed.connect(self._live)
+        session.moved.connect(self._moved)
+        self._spoken = QTimer(self, interval=500)  # the words about clients, while live
+        self._spoken.timeout.connect(self._words)
+        self._live()
         session.performance_changed.connect(self._restage)
         document.changed.connect(lambda before, after: self._restage())
         self._restage()
@@ -81,6 +94,9 @@ class TimelinePanel(QWidget):
         menu, kept = self.more_menu, self.performance.kept
         menu.clear()
         menu.addAction("New performance", self.new)
+        played = self.performance.last_live
+        if played is not None:
+            menu.addAction("Keep what was played live", lambda: self._keep("Keep live session", played))
         if kept is None:
             return
         menu.addAction("Rename…", self.rename)
@@ -151,6 +167,29 @@ class TimelinePanel(QWidget):
             except EditError as error:
                 self.document.failed.emit(str(error))
 
+    # --- live
+
+    def toggle_live(self) -> None:
+        if self.performance.live is None:
+            self.performance.go_live()
+        else:
+            self.performance.stop_live()
+        self._live()
+
+    def _live(self) -> None:
+        on = self.performance.live is not None
+        self.live.setChecked(on)
+        self.live.setText("● Live" if on else "Live")
+        self.stage.setEnabled(not on)
+        self.more.setEnabled(not on)
+        self.seed.setEnabled(not on)
+        (self._spoken.start if on else self._spoken.stop)()
+        self._moved()
+        self._words()
+
+    def _moved(self) -> None:
+        self.now.setVisible(self.performance.live is not None and not self.performance.following)
+
     # --- asking, seed
 
     def _ask(self) -> None:
@@ -174,7 +213,9 @@ class TimelinePanel(QWidget):
 
     def _words(self) -> None:
         shown = self.performance.shown
-        if shown.clip is not None:
+        if self.performance.live is not None and self.session.show == "plan":
+            self.title.setText(self.performance.live.words())
+        elif shown.clip is not None:
             self.title.setText("A clip alone. Click it again to play it in context, Esc for the performance.")
         elif self.session.show == "context":
             self.title.setText("In context: stance, action, back to the stance. Esc for the performance.")

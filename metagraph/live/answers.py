@@ -26,7 +26,7 @@ class Found:
     @property
     def state(self) -> str:
         if self.starts:
-            return "late" if any(r.outcome in ("late", "resumed") for r in self.reports) else "planned"
+            return "late" if any(r.outcome in ("late", "queued", "resumed") for r in self.reports) else "planned"
         if any(r.outcome == "already-there" for r in self.reports):
             return "done"
         if self.waits is not None and all(r.played for r in self.reports):

@@ -104,7 +104,7 @@ def answer(plan: Plan, ident: str) -> Answer:
     if cues or items:
         starts = [c.start for c in cues] + [i.start for i in items]
         ends = [c.end for c in cues] + [getattr(i, "end", i.start) for i in items]
-        late = any(r.outcome in ("late", "resumed") for r in told)
+        late = any(r.outcome in ("late", "queued", "resumed") for r in told)
         what = (*(c.action.name for c in cues), *(_words(i) for i in items))
         return Answer(ident, "late" if late else "planned", min(starts), max(ends), what, why)
     if any(r.outcome == "already-there" for r in told):

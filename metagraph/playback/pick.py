@@ -95,8 +95,12 @@ class Performer:
                 return
             if meta.end <= self.ready + FITS and meta.start < self.ready and meta.key not in self.begun:
                 running = f"'{self.cues[-1].action.name}'" if self.cues else "the running action"
-                self._tell(meta, "covered", f"wholly covered by {running}, which plays until {self.free:.2f} s")
-                continue
+                waits = self.ready - meta.request.start
+                # What is wanted for a certain time is over; what is wanted once may come late.
+                if meta.written or meta.request.duration is not None or waits > self.project.settings.wait:
+                    self._tell(meta, "covered", f"wholly covered by {running}, which plays until {self.free:.2f} s")
+                    continue
+                self._tell(meta, "queued", f"waits {waits:.2f} s for {running}", played=True)
             self._realise(meta, max(self.ready, meta.start), limit, wish)
 
     def _realise(self, meta: MetaAction, now: float, limit: float, wish: float) -> None:

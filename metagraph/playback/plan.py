@@ -145,6 +145,7 @@ Outcome = Literal[
     "past",
     "already-there",
     "cooling",
+    "queued",
     "not-understood",
     "withdrawn",
 ]

@@ -309,3 +309,17 @@ def test_an_action_that_leaves_joints_alone_changes_the_rest_below_slowly(projec
     one_armed = arms(way, ask("a", 1, action=toy.id(project, "rest to up")))[0]
     cue, rest = one_armed.cues[0], one_armed.rests[-1]
     assert (rest.fade_start, rest.fade) == (cue.start, pytest.approx(cue.end - cue.start))
+
+
+def test_what_is_wanted_once_waits_for_a_longer_action_and_what_is_wanted_then_is_dropped(project: Project, toy: Any) -> None:
+    long = toy.id(project, "rest long")
+    plan, whole = arms(project, ask("a", 1.0, action=long), ask("once", 1.4), ask("then", 1.6, 0.5, kind="fidget"))
+    assert [(c.meta, round(c.start, 3)) for c in plan.cues] == [("a", 1.0), ("once", 3.4)]
+    assert outcomes(whole)["once"] == "queued" and outcomes(whole)["then"] == "covered"
+    assert "waits 2.00 s for 'rest long'" in next(r.message for r in whole.reports if r.outcome == "queued")
+
+
+def test_what_would_wait_too_long_behind_an_action_is_dropped(project: Project, toy: Any) -> None:
+    project = edits.set_settings(project, wait=1.0)
+    plan, whole = arms(project, ask("a", 1.0, action=toy.id(project, "rest long")), ask("once", 1.4))
+    assert len(plan.cues) == 1 and outcomes(whole)["once"] in ("covered", "late")

@@ -1,0 +1,167 @@
+"""The stage played live: agents ask over WebSocket and OSC on this machine, the window shows what they get.
+
+The lines to clients are in a process of their own; here is one tick a frame, which answers what came in since the last.
+"""
+
+from __future__ import annotations
+
+from collections import deque
+from collections.abc import Sequence
+
+import msgspec
+from PySide6.QtCore import QElapsedTimer, QObject, Qt, QTimer, Signal
+
+from metagraph.graph.asks import AnyAsk, Performance
+from metagraph.graph.model import Project
+from metagraph.live.relay import Relay
+from metagraph.live.server import OSC_PORT, PORT, LiveError, Options
+from metagraph.live.session import LiveSession
+from metagraph.live.tape import Tape
+from metagraph.playback.hear import Answer, answer
+
+TICK = 16  # milliseconds
+SHOWN = 300  # requests that are shown in the timeline, the latest
+ANSWERED = 0.2  # seconds between two looks at what becomes of them
+RATED = 1.0  # seconds over which requests are counted
+WINDOW = 0  # the window is a client, too
+
+
+class _Shown(Tape):
+    """A tape that also keeps the latest requests at hand."""
+
+    def __init__(self) -> None:
+        super().__init__()
+        self.latest: deque[AnyAsk] = deque(maxlen=SHOWN)
+        self.count = 0
+
+    def keep(self, asks: Sequence[AnyAsk]) -> None:
+        super().keep(asks)
+        self.latest.extend(ask for ask in asks if ask.__struct_config__.tag != "withdraw")
+        self.count += len(asks)
+
+
+class LiveStage(QObject):
+    """ticked: the plan went on. told: words about who can connect, or why nobody can."""
+
+    ticked = Signal()
+    told = Signal(str)
+
+    def __init__(self, project: Project, options: Options | None = None, parent: QObject | None = None) -> None:
+        super().__init__(parent)
+        self.session = LiveSession(project)
+        self.session.tape = self.tape = _Shown()
+        self.session.join(WINDOW)
+        self.options = options or Options(port=PORT, osc=OSC_PORT)
+        self.relay: Relay | None = None
+        self.error = ""
+        self._clock = QElapsedTimer()
+        self._timer = QTimer(self, interval=TICK)
+        self._timer.setTimerType(Qt.TimerType.PreciseTimer)
+        self._timer.timeout.connect(self.tick)
+        self._answers: dict[str, Answer] = {}
+        self._answered = -ANSWERED
+        self._rated: deque[tuple[float, int]] = deque()
+        self._ready = False
+
+    # --- from beginning to end
+
+    def start(self) -> None:
+        """Begin: open the lines and let time run."""
+        self._clock.start()
+        self._open(self.options)
+        self._timer.start()
+
+    def _open(self, options: Options) -> None:
+        try:
+            self.relay = Relay(options)
+            self.relay.start()
+        except (LiveError, OSError) as error:
+            self.relay, self.error = None, str(error)
+            self.told.emit(self.words())
+
+    def stop(self) -> None:
+        """End: clients are hung up on."""
+        self._timer.stop()
+        if self.relay is not None:
+            self.relay.close()
+            self.relay = None
+
+    @property
+    def now(self) -> float:
+        """Seconds since it began."""
+        return self._clock.elapsed() / 1000 if self._clock.isValid() else 0.0
+
+    # --- what happens
+
+    def tick(self) -> None:
+        """Answer what came in, and go on."""
+        now = self.now
+        if self.relay is None:
+            self.session.tick(now)
+        else:
+            self.relay.tick(self.session, now)
+            if self.relay.error and not self.error:
+                self._lost(self.relay.error)
+            elif self.relay is not None and self.relay.ready is not None and not self._ready:
+                self._ready = True
+                self.told.emit(self.words())
+        self._rated.append((now, self.tape.count))
+        while self._rated[0][0] < now - RATED:
+            self._rated.popleft()
+        self.ticked.emit()
+
+    def _lost(self, error: str) -> None:
+        relay, self.relay = self.relay, None
+        if relay is not None:
+            relay.close()
+        if not self._ready and (self.options.port, self.options.osc) == (PORT, OSC_PORT):
+            self.options = Options(port=0, osc=0)  # someone else listens there: any free ones will do
+            self._open(self.options)
+            return
+        self.error = error
+        self.told.emit(self.words())
+
+    def ask(self, ask: AnyAsk) -> None:
+        """Ask as a client does."""
+        self.session.receive(WINDOW, msgspec.json.encode(ask))
+
+    def change(self, project: Project) -> None:
+        """Go on with an edited project."""
+        self.session.change(project)
+
+    # --- what is known
+
+    @property
+    def asks(self) -> tuple[AnyAsk, ...]:
+        """The latest requests of all clients."""
+        return tuple(self.tape.latest)
+
+    def answers(self) -> dict[str, Answer]:
+        """Return what becomes of the latest requests."""
+        if self.session.now >= self._answered + ANSWERED:
+            self._answered = self.session.now
+            self._answers = {ask.id: answer(self.session.plan, ask.id) for ask in self.tape.latest}
+        return self._answers
+
+    @property
+    def rate(self) -> float:
+        """Requests a second, lately."""
+        if len(self._rated) < 2:
+            return 0.0
+        (a, first), (b, last) = self._rated[0], self._rated[-1]
+        return (last - first) / max(b - a, 1e-3)
+
+    def words(self) -> str:
+        """Say who can connect and how busy it is."""
+        if self.error:
+            return f"Live, but nobody can connect: {self.error}"
+        ready = self.relay.ready if self.relay is not None else None
+        if ready is None:
+            return "Live, opening the lines…"
+        clients = len(self.session.clients) - 1
+        who = "nobody is connected yet" if clients == 0 else f"{clients} client{'s' if clients != 1 else ''}, {self.rate:.0f} requests/s"
+        return f"Live at {ready.websocket}: {who}"
+
+    def performance(self) -> Performance:
+        """Return what was played so far, to be kept. Raises AskError when it was too much."""
+        return self.session.performance("Live session")
