@@ -75,8 +75,8 @@ class Go(Ask, frozen=True, tag="stance"):
 
 
 class Change(Ask, frozen=True, tag="change"):
-    """Change to another stance, whichever: a transition drawn among those of the stance the layer is in. limb: which arm moves.
-    duration: how long it took where it was seen; the transition takes its own time."""
+    """Change to another stance, whichever: a transition drawn among those of the stance the layer is in. limb, duration: which
+    arm was seen to move, and for how long; any transition will do, and takes its own time."""
 
     layer: Layer = "arms"
     limb: Limb | None = None

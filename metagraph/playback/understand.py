@@ -80,7 +80,8 @@ def _meant(project: Project, ask: a.AnyAsk, at: float) -> Sequence[Request | Ite
             layer, stance = find_stance(project, ask.stance, ask.layer)
             return [Request(ask.id, layer, "transition", at, stance=stance, priority=ask.priority)]
         case a.Change():
-            return [Request(ask.id, ask.layer, "transition", at, limb=ask.limb, priority=ask.priority)]
+            # Whichever arm was seen to move: stances are joined by few transitions, and mostly of both.
+            return [Request(ask.id, ask.layer, "transition", at, priority=ask.priority)]
         case a.Nod() | a.Shake():
             return [_head(project, ask, "nod" if isinstance(ask, a.Nod) else "shake", at)]
         case a.Look():

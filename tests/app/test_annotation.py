@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from pathlib import Path
+from typing import Any
 
 import pytest
 
@@ -110,3 +111,15 @@ def test_an_annotation_is_performed_as_it_was_seen_and_other_seeds_vary_the_acti
         starts = {f"{layer}{n + 1}": a.start for n, a in enumerate(acts)}
         late = [cue.start - starts[cue.meta.split("+")[0]] for cue in plans[0].layers[layer].cues]
         assert sorted(late)[len(late) // 2] < 0.5, "most begin when they were seen to"
+
+
+def test_a_change_of_one_arm_is_performed_by_any_transition(toy: Any) -> None:
+    project = toy.project()
+    reading = begin(Annotation((Tier("LH", (Interval(0.5, 1.5, "stance-transition"), Interval(6, 7, "change"))),)))
+    made = into(project, reading, (), False, "shift")
+    kept = made.project.performances[made.performance or ""]
+    assert [ask.limb for ask in kept.asks] == ["left", "left"]  # type: ignore[union-attr]
+    plan = perform(made.project, kept.asks, kept.length, 1, dict(kept.stances), kept.idle)
+    assert [cue.action.kind for cue in plan.layers["arms"].cues] == ["transition", "transition"]
+    assert [cue.action.limb for cue in plan.layers["arms"].cues] == ["both", "both"]
+    assert not plan.reports
