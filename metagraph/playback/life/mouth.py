@@ -22,12 +22,12 @@ PLACE = {name: i for i, name in enumerate(VISEMES)}
 
 # How much a shape rules its neighbours: closed lips and teeth on the lip must be seen, tongue and palate need not.
 RULE = {
-    "sil": 0.8, "PP": 4.0, "FF": 3.0, "TH": 1.0, "DD": 0.7, "kk": 0.5, "CH": 1.6, "SS": 1.2, "nn": 0.7, "RR": 0.9,
+    "sil": 0.8, "PP": 6.0, "FF": 4.0, "TH": 1.0, "DD": 0.7, "kk": 0.5, "CH": 1.6, "SS": 1.2, "nn": 0.7, "RR": 0.9,
     "aa": 1.5, "E": 1.3, "I": 1.2, "O": 1.7, "U": 1.9,
 }  # fmt: skip
 EARLY, LATE = 0.075, 0.065  # seconds over which a shape comes before its sound begins and goes after it ends
 STEP = 1 / 50  # seconds between the keys of a track
-_LEAST = 0.02  # how much rest rules everywhere, so that far from any sound the mouth is shut
+_LEAST = 0.02  # how much rest rules everywhere
 
 
 @dataclass(frozen=True, slots=True)
@@ -45,16 +45,19 @@ def mouth_track(pieces: Sequence[Piece], duration: float) -> tuple[Array, Array]
     count = max(2, int(np.ceil(duration / STEP)) + 1)
     times = np.linspace(0.0, max(duration, 1e-3), count)
     rule = np.zeros((count, len(VISEMES)))
-    rule[:, 0] = _LEAST
+    made = np.zeros(count)
     for piece in pieces:
         low, high = np.searchsorted(times, (piece.start - EARLY, piece.end + LATE))
         t = times[low:high]
         # Short sounds are not left out: their ramps overlap and still reach the top in the middle.
         rise = _ease((t - piece.start + EARLY) / (EARLY + min(0.5 * (piece.end - piece.start), 0.04)))
         fall = _ease((piece.end + LATE - t) / (LATE + min(0.5 * (piece.end - piece.start), 0.04)))
-        here = RULE[piece.viseme] * np.minimum(rise, fall)
+        here = np.minimum(rise, fall)
+        made[low:high] += here
+        here *= RULE[piece.viseme]
         rule[low:high, PLACE[piece.viseme]] += here * piece.strength
         rule[low:high, 0] += here * (1 - piece.strength)
+    rule[:, 0] += _LEAST + RULE["sil"] * np.maximum(1 - made, 0)  # where no sound rules, rest does
     weights = rule / rule.sum(1, keepdims=True)
     weights[[0, -1]] = np.eye(len(VISEMES))[0]
     return times, weights.astype(np.float32)

@@ -1,0 +1,66 @@
+"""Mouth shapes from letters, of any alphabet."""
+
+from __future__ import annotations
+
+from itertools import pairwise
+
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from metagraph.graph.face_names import VISEMES
+from metagraph.playback.life.letters import PACE, SHORTEST, shapes, spelled
+
+
+@pytest.mark.parametrize(
+    ("word", "want"),
+    [
+        ("", []),
+        ("map", ["PP", "aa", "PP"]),
+        ("five", ["FF", "I", "FF"]),
+        ("the", ["TH", "E"]),
+        ("shoot", ["CH", "U", "DD"]),
+        ("hello", ["kk", "E", "nn", "O"]),
+        ("Größe", ["kk", "RR", "O", "SS"]),
+        ("привет", ["PP", "RR", "I", "FF", "E", "DD"]),
+        ("...", []),
+    ],
+)
+def test_words_are_read_by_their_letters(word: str, want: list[str]) -> None:
+    assert shapes(word) == want
+
+
+def test_writing_without_letters_gives_a_syllable_a_sign() -> None:
+    assert len(shapes("日本語")) == 6 and len(shapes("2024")) == 8
+
+
+@pytest.mark.parametrize("text", ["", "   ", "?!", "…"])
+def test_nothing_to_say_has_no_shapes_but_a_length(text: str) -> None:
+    pieces, peaks, strengths, length = spelled(text)
+    assert pieces == [] and peaks == [] and strengths == [] and length == SHORTEST
+
+
+def test_text_takes_its_time_and_what_time_it_is_given() -> None:
+    text = "It takes about as long as it takes to read."
+    assert spelled(text)[3] == pytest.approx(len(text) / PACE)
+    assert spelled(text, 9.0)[3] == 9.0 and spelled(text, 0.0)[0] == []
+
+
+def test_a_full_stop_is_a_pause() -> None:
+    one, two = spelled("one two", 2.0)[0], spelled("one. two", 2.0)[0]
+
+    def widest(pieces: list[object]) -> float:
+        return max(b.start - a.end for a, b in pairwise(pieces))  # type: ignore[attr-defined]
+
+    assert widest(two) > 2 * widest(one)
+
+
+@given(st.text(max_size=200), st.none() | st.floats(0, 60))
+def test_any_text_is_survived(text: str, duration: float | None) -> None:
+    pieces, peaks, strengths, length = spelled(text, duration)
+    assert len(peaks) == len(strengths) and all(0 < s <= 1 for s in strengths)
+    assert peaks == sorted(peaks) and all(0 <= p <= length + 1e-6 for p in peaks)
+    for a, b in pairwise(pieces):
+        assert a.start < a.end <= b.start + 1e-9
+    assert all(p.viseme in VISEMES and p.viseme != "sil" and 0 < p.strength <= 1 for p in pieces)
+    assert not pieces or (pieces[0].start >= 0 and pieces[-1].end <= length + 1e-6)
