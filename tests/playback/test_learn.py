@@ -131,6 +131,7 @@ def test_phases_become_one_gesture_whose_stroke_is_known() -> None:
         (["prep", "prep", "stroke"], [3]),  # but not between two of them
         (["stroke", "retr", "stroke"], [2, 3]),  # a retraction ends one
         (["stroke", "hold", "stroke", "retr"], [2, 4]),  # each has one stroke
+        (["prep", "retr", "hold"], [2, 3]),
         (["hold"], [1]),
     ],
 )
