@@ -6,7 +6,7 @@ from collections.abc import Callable, Mapping, Sequence
 from dataclasses import replace
 
 from PySide6.QtCore import QPoint, QSize, Qt, QTimer, Signal
-from PySide6.QtGui import QShowEvent
+from PySide6.QtGui import QPaintEvent
 from PySide6.QtWidgets import (
     QDockWidget,
     QFrame,
@@ -169,10 +169,11 @@ class ModelsPanel(QWidget):
     def sizeHint(self) -> QSize:
         return QSize(1100, TALL)
 
-    def showEvent(self, event: QShowEvent) -> None:
-        super().showEvent(event)
+    def paintEvent(self, event: QPaintEvent) -> None:
+        """Catch up once it is seen: the docks behind others are only moved out of sight, which tells nobody."""
+        super().paintEvent(event)
         if self._stale:
-            self.refresh()
+            QTimer.singleShot(0, self.refresh)
         if not self._grown:
             self._grown = True
             QTimer.singleShot(0, self._grow)
@@ -192,7 +193,7 @@ class ModelsPanel(QWidget):
 
     def refresh(self) -> None:
         """Show the model of the current layer."""
-        self._stale = not self.isVisible()
+        self._stale = self.visibleRegion().isEmpty()
         if self._stale:
             return
         project, layer, shown = self.document.project, self.session.layer, self.model()

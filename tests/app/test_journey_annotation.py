@@ -41,9 +41,14 @@ def test_an_annotation_is_imported_learned_changed_and_performed(drive, tmp_path
     drive.files.open(SAMPLE, template=True)
     drive.wait(lambda: len(drive.document.project.clips) == 152 and bool(drive.performance.shown.plan.layers["arms"].cues), 60)
 
-    # The panel teaches, and its link opens what it speaks of; here the menu's command with the file chosen.
+    # While its tab lies behind another it works nothing out and leaves the dock as low as it is.
+    height = drive.docks["timeline"].height()
+    assert drive.models.heat.model is None
     drive.show_dock("models")
-    drive.wait(drive.models.isVisible)
+    drive.wait(lambda: drive.models.heat.model is not None)
+    drive.wait(lambda: drive.docks["models"].height() > height)
+
+    # The panel teaches, and its link opens what it speaks of; here the menu's command with the file chosen.
     assert drive.models.teach.isVisible()
     monkeypatch.setattr(QFileDialog, "getOpenFileName", lambda *a, **k: (str(EAF), ""))
     drive.actions["annotate"].trigger()

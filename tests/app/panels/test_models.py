@@ -36,7 +36,7 @@ def panel(qtbot, toy, monkeypatch, tmp_path):
     qtbot.addWidget(widget)
     widget.resize(1200, 440)
     widget.show()
-    qtbot.waitExposed(widget)
+    qtbot.waitUntil(lambda: widget.heat.model is not None)
     yield widget
     jobs.stop()
     document.close_journal()
@@ -170,12 +170,12 @@ def test_what_was_read_but_not_kept_can_be_compared_with_until_another_project_c
     assert not panel.chooser.isVisible() and panel.imported == {}
 
 
-def test_nothing_is_worked_out_while_the_panel_is_hidden(panel):
+def test_nothing_is_worked_out_while_the_panel_is_hidden(panel, qtbot):
     panel.hide()
     panel.document.edit("Edit", lambda p: edits.set_markov(p, replace(ARMS, gap=9.0)))
     assert panel.heat.model is ARMS
     panel.show()
-    assert panel.heat.model.gap == 9.0
+    qtbot.waitUntil(lambda: panel.heat.model.gap == 9.0)
 
 
 def test_both_themes_are_drawn(panel, qtbot):
