@@ -73,6 +73,8 @@ class AskEditor(QDialog):
         self.remove = buttons.addButton("Take it back", QDialogButtonBox.ButtonRole.DestructiveRole)
         self.remove.clicked.connect(self._remove)
         buttons.rejected.connect(self.accept)
+        for button in buttons.buttons():  # Enter takes over what was typed, it does not close
+            button.setAutoDefault(False)  # type: ignore[attr-defined]
         layout.addWidget(buttons)
         performance.changed.connect(self._told)
         self._told()

@@ -70,6 +70,7 @@ class TimelinePanel(QWidget):
         session.show_changed.connect(self._words)
         performance.live_changed.connect(self._live)
         session.moved.connect(self._moved)
+        session.playing_changed.connect(self._moved)
         self._spoken = QTimer(self, interval=500)  # the words about clients, while live
         self._spoken.timeout.connect(self._words)
         self._live()
@@ -188,7 +189,8 @@ class TimelinePanel(QWidget):
         self._words()
 
     def _moved(self) -> None:
-        self.now.setVisible(self.performance.live is not None and not self.performance.following)
+        here = self.performance.following and self.session.playing
+        self.now.setVisible(self.performance.live is not None and not here)
 
     # --- asking, seed
 
