@@ -104,8 +104,8 @@ def _a(state: State, layer: Layer) -> str:
 class HeatMap(QWidget):
     """Drag a number up or down, or type one; arrow keys go from cell to cell, + and - change by 1 %.
 
-    edited: (row, column, probability, whether it is still being dragged). cancelled: a drag was given up. pointed: the sentence of the cell
-    that is hovered over or current. menu: (row or -1, global position) was asked for.
+    edited: (row, column, probability, whether it is still being dragged). cancelled: a drag was given up. pointed: the sentence of
+    the cell that is hovered over or current. menu: (row or -1, global position) was asked for.
     """
 
     edited = Signal(int, int, float, bool)
@@ -379,13 +379,9 @@ class HeatMap(QWidget):
         self.update()
 
     def _tell(self) -> None:
-        if self.model is None:
-            return
-        at = self.hovered if self.hovered is not None and self._from is None else self.current
-        if min(at) >= 0:
-            self.pointed.emit(sentence(self.model, self.layer, *at))
-        else:
-            self.pointed.emit(self._state_sentence(max(at)))
+        if self.model is not None:
+            at = self.hovered if self.hovered is not None and self._from is None else self.current
+            self.pointed.emit(sentence(self.model, self.layer, *at) if min(at) >= 0 else self._state_sentence(max(at)))
 
     def _state_sentence(self, n: int) -> str:
         assert self.model is not None
