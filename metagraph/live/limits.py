@@ -15,11 +15,13 @@ PENDING = 1000  # requests that have not begun, of all clients
 PER_TICK = 2000  # requests answered at one tick; the rest is told to try again
 PLANNED_PER_TICK = 64  # requests worked into the plan at one tick
 WAITING = 8  # requests of one layer that wait for the same time, those as important counted
+SPEECH = 2000  # characters said at once
 BML_PER_TICK = 200_000  # characters of BML read at one tick
+TAG = 200  # characters that a tag of it counts for besides its own
 HINTS = 4  # words nobody knows that are looked up among those known, in a second
 NAMES = 64  # points a session knows by name
 SPAN = 4.0  # seconds over which these rates are counted
-RATES = {"look": 60, "place": 240, "blink": 16, "say": 16, "mode": 16, "withdraw": 240}  # in SPAN seconds
+RATES = {"look": 60, "place": 500, "blink": 16, "say": 16, "mode": 16, "withdraw": 240}  # in SPAN seconds
 
 BUSY = "too much at once; try again in a moment"
 

@@ -5,6 +5,7 @@ from __future__ import annotations
 import struct
 from collections.abc import Sequence
 from dataclasses import dataclass, field
+from math import floor
 from typing import Any
 
 import numpy as np
@@ -70,8 +71,7 @@ def due(now: float, plan: Plan, project: Project, streams: Sequence[tuple[int, S
     groups: dict[Any, list[tuple[int, Stream]]] = {}
     for client, stream in streams:
         if stream.next <= now and project.skeleton is not None:
-            step = 1.0 / stream.wish.rate
-            stream.next = stream.next + step if stream.next + step > now else now + step
+            stream.next = (floor(now * stream.wish.rate + 1e-6) + 1) / stream.wish.rate  # those of one rate are due together
             groups.setdefault(stream.key, []).append((client, stream))
     if not groups or project.skeleton is None:
         return []

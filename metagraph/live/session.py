@@ -6,6 +6,7 @@ No threads and no clock: time is passed in, seconds since the session began. The
 
 from __future__ import annotations
 
+from collections import deque
 from collections.abc import Iterable, Mapping
 from dataclasses import replace
 from typing import Any
@@ -18,7 +19,7 @@ from metagraph.live import describe
 from metagraph.live.answers import Found, find
 from metagraph.live.happenings import happenings
 from metagraph.live.ledger import Known, Ledger, key_of, told
-from metagraph.live.limits import BML_PER_TICK, BUSY, FARTHEST, HINTS, NAMES, PENDING, PER_TICK, Words
+from metagraph.live.limits import BML_PER_TICK, BUSY, FARTHEST, HINTS, NAMES, PENDING, PER_TICK, SPEECH, TAG, Words
 from metagraph.live.messages import Describe, Event, Heard, OwnMessage, Part, Reply, Status, read, rounded, split
 from metagraph.live.poses import Stream, due
 from metagraph.live.tape import Tape
@@ -32,6 +33,8 @@ from metagraph.playback.understand import find_action, find_stance
 
 AGAIN = 0.25  # seconds for which a layer without room is not tried again
 SLACK = 2.0  # seconds by which the plan may fall behind its horizon before it is extended
+RECENT = 30.0  # seconds of past that are planned on from; what lies before costs nothing
+CUT = 15.0  # seconds between two cuts
 TIDY = 0.25  # seconds between two looks at what is over
 KEPT = 10.0  # seconds for which what was told and asked of the plan is kept when it is over
 TOLD = 100  # of what was told to others than those who ask, the last are kept
@@ -59,7 +62,8 @@ class LiveSession:
         self._names: set[str] = set()
         self._queue: list[tuple[int, Heard | Reply]] = []
         self.tape = Tape()
-        self._tidied = 0.0
+        self._tidied = self._begin = 0.0
+        self._past: deque[tuple[float, Plan]] = deque()
         self._edited = False
         self._told: dict[str, bytes] = {}
         empty = Plan(project.settings.seed if seed is None else seed, 0.0)
@@ -174,6 +178,8 @@ class LiveSession:
             value = getattr(ask, name, None)
             if value is not None and value > FARTHEST + (0.0 if name == "duration" else self.now):
                 return f"{name}: at most {FARTHEST:g} s" + (f" ahead; it is {self.now:.1f} s" if name != "duration" else "")
+        if isinstance(ask, a.Say) and len(ask.text) > SPEECH:
+            return f"at most {SPEECH} characters can be said at once; say it in pieces"
         if ask.at is not None and ask.at < self.now:
             missed, ask = self.now - ask.at, msgspec.structs.replace(ask, at=None)
         if stroke is not None:
@@ -216,7 +222,8 @@ class LiveSession:
                     find_stance(self.project, ask.stance, ask.layer)
             except a.AskError as error:
                 return str(error)
-        return f"there is no {what} '{str(name)[:60]}'"
+        known = f"; there are {', '.join(list(self.project.lines)[:6]) or 'none'}" if what == "line" else ""
+        return f"there is no {what} '{str(name)[:60]}'{known}"
 
     def _withdraw(self, client: Client, ident: str, ask: a.Withdraw, work: Work) -> Reply:
         """Take back what a client asked for itself; what has begun plays on."""
@@ -240,9 +247,10 @@ class LiveSession:
     def _block(self, client: Client, open_: Open, ask: a.Bml, work: Work) -> Reply | None:
         """Take a block's behaviours on, each for itself."""
         limits = self.ledger.limits
-        if limits.characters + len(ask.bml) > BML_PER_TICK and limits.characters > 0:
+        cost = len(ask.bml) + TAG * ask.bml.count("<")
+        if limits.characters + cost > BML_PER_TICK and limits.characters > 0:
             return Reply(id=open_.ident, state="refused", why=BUSY)
-        limits.characters += len(ask.bml)
+        limits.characters += cost
         begin = self.now + self.project.settings.lookahead if ask.at is None else ask.at
         try:
             block = read_block(ask.bml, begin, ask.priority, self.project)
@@ -352,13 +360,26 @@ class LiveSession:
         now = self._tidied = self.now
         looks = [x.start for x in self.plan.track.looks if x.start <= now]
         self.ledger.forget(now, max(looks, default=0.0))
-        plan = since(self.plan, now - self.history) if now > self.history else self.plan
+        plan = self.plan
+        recent = max(RECENT, self.project.settings.memory)
+        if now > self._begin + recent + CUT:
+            self._past.append((self._begin, plan))
+            self._begin = now - recent
+            plan = since(plan, self._begin)
+            while self._past and self._past[0][0] < now - self.history - recent - CUT:
+                self._past.popleft()
         near = {m.request.id for layer in plan.layers.values() for m in layer.metas if m.end > now - KEPT}
         owner = self.ledger.owner
         last = len(plan.reports) - TOLD
         reports = tuple(r for n, r in enumerate(plan.reports) if n >= last or (r.at > now - KEPT and owner(r.request)))
         requests = tuple(r for r in plan.requests if r.id in near or owner(r.id))
         self.plan = replace(plan, reports=reports, requests=requests, track=_thinned(plan, now - THIN))
+
+    def plan_at(self, seconds: float) -> Plan:
+        """Return the plan that knows what was shown at a time: the running one, or for the past one of before."""
+        if seconds >= self._begin or not self._past:
+            return self.plan
+        return next((plan for begin, plan in reversed(self._past) if begin <= seconds), self._past[0][1])
 
     def performance(self, name: str) -> a.Performance:
         """Return the session so far, to be kept: `perform` plays it as it was played. Raises AskError when it was too long."""

@@ -1,0 +1,161 @@
+"""Reading what clients send."""
+
+from __future__ import annotations
+
+import json
+
+import msgspec
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from metagraph.graph import asks as a
+from metagraph.live.messages import (
+    LONGEST,
+    LONGEST_BML,
+    LONGEST_MESSAGE,
+    MOST,
+    WORDS,
+    Describe,
+    Heard,
+    Hello,
+    Poses,
+    Reply,
+    Status,
+    encode,
+    read,
+    schema,
+    split,
+)  # fmt: skip
+
+
+def error(text: str | bytes) -> str:
+    reply = read(text)
+    assert isinstance(reply, Reply) and reply.error
+    return reply.error
+
+
+def test_an_ask_is_read_as_it_is() -> None:
+    assert read('{"do":"gesture","tags":["beat"],"at":2.1}') == Heard(a.Gesture(tags=("beat",), at=2.1))
+    assert read(b'{"do":"nod"}') == Heard(a.Nod())
+    assert read(msgspec.Raw(b'{"do":"blink"}')) == Heard(a.Blink())
+
+
+def test_seconds_from_now_are_kept_beside_the_ask() -> None:
+    assert read('{"do":"nod","in":2}') == Heard(a.Nod(), 2.0)
+    assert read('{"in":0,"do":"nod","id":"n"}') == Heard(a.Nod(id="n"), 0.0)
+
+
+def test_the_sessions_own_questions_are_read() -> None:
+    assert read('{"do":"status","id":"s"}') == Heard(Status(id="s"))
+    assert read('{"do":"describe"}') == Heard(Describe())
+    hello = read('{"do":"hello","token":"t","poses":{"rate":60,"format":"binary"},"events":true}')
+    assert hello == Heard(Hello(token="t", poses=Poses(rate=60, format="binary"), events=True))
+    off = read('{"do":"hello","poses":null}')
+    assert isinstance(off, Heard) and isinstance(off.message, Hello) and off.message.poses is None and off.message.events is msgspec.UNSET
+
+
+@pytest.mark.parametrize(
+    ("text", "words"),
+    [
+        ("", "not JSON"),
+        ("nod", "not JSON"),
+        ("{", "not JSON"),
+        ("7", "a request is an object"),
+        ('"nod"', "a request is an object"),
+        ("[]", "a request is an object"),
+        ("{}", "required field `do`; it is one of gesture, "),
+        ('{"do":"dance"}', "Invalid value 'dance'; known are gesture, "),
+        ('{"do":5}', "do: Expected `str`"),
+        ('{"do":"nod","speed":2}', "unknown field `speed`"),
+        ('{"do":"gesture","layer":"tail"}', "layer: Invalid enum value 'tail'"),
+        ('{"do":"gesture","tags":"beat"}', "tags: Expected `array`"),
+        ('{"do":"nod","at":-1}', "at: Expected `float` >= 0"),
+        ('{"do":"nod","at":NaN}', "not JSON"),
+        ('{"do":"nod","at":Infinity}', "not JSON"),
+        ('{"do":"nod","at":1e400}', "out of range"),
+        ('{"do":"nod","in":"soon"}', "in: seconds from now"),
+        ('{"do":"nod","in":-1}', "in: seconds from now"),
+        ('{"do":"nod","in":true}', "in: seconds from now"),
+        ('{"do":"nod","in":1,"at":2}', "not both"),
+        ('{"do":"nod","in":1,"speed":2}', "unknown field `speed`"),
+        ('{"do":"status","in":1}', "only what the character does"),
+        ('{"do":"hello","poses":{"rate":1e9}}', "poses.rate: Expected `float` <= 120"),
+        ('{"do":"look","to":[1,2]}', "to: Expected `array` of length"),
+        (b'{"do":"nod","id":"\xff"}', ""),
+        ("[" * 5000, "not JSON"),
+        ('{"a":' * 5000, "not JSON"),
+        ("x" * (LONGEST + 1), "at most 64 KiB"),
+        ('{"do":"bml","bml":"' + "x" * LONGEST_BML + '"}', "at most 64 KiB, a block of BML 256"),
+    ],
+)
+def test_what_is_wrong_is_told_by_field_and_remedy(text: str | bytes, words: str) -> None:
+    assert words in error(text)
+
+
+def test_what_is_wrong_is_told_with_the_id_it_came_with() -> None:
+    reply = read('{"id":"q7","do":"dance"}')
+    assert isinstance(reply, Reply) and reply.id == "q7"
+    other = read('{"id":7,"do":"nod"}')
+    assert isinstance(other, Reply) and other.id is None
+
+
+def test_blocks_of_bml_may_be_longer() -> None:
+    assert isinstance(read(json.dumps({"do": "bml", "bml": "x" * 190_000})), Heard)
+
+
+def test_a_list_is_several_requests_in_order() -> None:
+    requests, listed = split(' [{"do":"nod"}, 7, {"do":"blink"}]')
+    assert listed and [type(read(r)) for r in requests] == [Heard, Reply, Heard]
+    assert split('{"do":"nod"}') == (['{"do":"nod"}'], False)
+    assert split("[]") == ([], True)
+
+
+@pytest.mark.parametrize(
+    ("data", "words"),
+    [("[1,", "not JSON"), ("[" + "1," * MOST + "1]", "at most 1000 requests"), ("[" + " " * LONGEST_MESSAGE, "at most 1024 KiB")],
+)
+def test_lists_that_cannot_be_taken_apart_are_refused_whole(data: str, words: str) -> None:
+    with pytest.raises(a.AskError, match=words):
+        split(data)
+
+
+@given(st.one_of(st.text(max_size=300), st.binary(max_size=300)))
+def test_any_bytes_get_an_answer(data: str | bytes) -> None:
+    try:
+        requests, _ = split(data)
+    except a.AskError as refused:
+        assert str(refused)
+        return
+    for request in requests:
+        found = read(request)
+        assert isinstance(found, Heard) or (found.error and encode(found))
+
+
+values = st.recursive(
+    st.none() | st.booleans() | st.integers(-(2**70), 2**70) | st.floats() | st.text(max_size=8),
+    lambda inner: st.lists(inner, max_size=3) | st.dictionaries(st.text(max_size=5), inner, max_size=3),
+    max_leaves=6,
+)
+
+
+@given(
+    st.sampled_from(WORDS), st.dictionaries(st.sampled_from(["id", "at", "in", "tags", "layer", "to", "what", "poses", "point"]), values)
+)
+def test_any_fields_get_an_answer(word: str, fields: dict[str, object]) -> None:
+    found = read(json.dumps(fields | {"do": word}))
+    assert isinstance(found, Heard) or found.error
+
+
+def test_the_schema_says_what_is_read() -> None:
+    import jsonschema
+
+    validator = jsonschema.Draft202012Validator(schema())
+    validator.check_schema(schema())
+    for text in (
+        '{"do":"nod"}', '{"do":"nod","in":2}', '{"do":"hello","poses":null,"events":"all"}', '[{"do":"status"},{"do":"look","to":[1,2,3]}]',
+        '{"do":"dance"}', '{"do":"gesture","layer":"tail"}', '{"do":"nod","at":-1}', '{"do":"nod","in":-1}', '{"do":"look","to":[1,2]}',
+        '{"do":"hello","poses":{"rate":500}}', '{"do":"place","name":"","point":[0,0,0]}', "7", '{"do":"say","speed":1}',
+    ):  # fmt: skip
+        requests, _ = split(text)
+        assert validator.is_valid(json.loads(text)) == all(isinstance(read(r), Heard) for r in requests), text
