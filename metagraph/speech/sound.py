@@ -27,7 +27,8 @@ APART = 0.09  # seconds between syllables
 OPEN, HALF = 0.66, 0.45  # of a vowel
 AUDIBLE, SONOROUS = 0.12, 0.4  # how loud speech is at least, and a vowel
 _LEAST_RANGE = 9.0  # dB between the loudest and the softest of anything spoken
-_HUSH = -66.0  # dB below full scale: softer than this is silence
+_HUSH = -84.0  # dB of full scale: softer than this is silence
+_BURST = 6.0  # dB a hiss stands out by
 _SUFFIXES = "WAV, FLAC, OGG or MP3"
 
 
@@ -103,6 +104,8 @@ def hear(samples: Array, rate: int) -> Heard:
     else:
         softest = max(floor + 0.3 * (top - floor), top - BELOW)
         loud = np.clip((level - softest) / (top - softest), 0, 1)
+    high_level = 10 * np.log10(high + 1e-12)
+    bursts = (high_level > np.percentile(high_level, 20) + _BURST) & (high_level > _HUSH)  # a hiss that never stops is noise
     # The first formant rises as the mouth opens, the second as the tongue comes forward.
     first = _smooth(middle(220.0, 1050.0), 2.0)
     forward, back = band(1500.0, 3000.0), band(650.0, 1300.0)
@@ -115,7 +118,7 @@ def hear(samples: Array, rate: int) -> Heard:
         loud,
         _relative(first, spoken, 430.0, 600.0),
         _relative(front, spoken, -12.0, 4.0),
-        high / np.maximum(high + band(120.0, 3500.0), 1e-12),
+        np.where(bursts, high / np.maximum(high + band(120.0, 3500.0), 1e-12), 0.0),
         middle(2500.0, 8000.0),
     )
 
