@@ -30,6 +30,7 @@ WINDOW = {
     "libxcb-keysyms.so.1": "libxcb-keysyms1",
     "libxcb-shape.so.0": "libxcb-shape0",
     "libxkbcommon-x11.so.0": "libxkbcommon-x11-0",
+    "libportaudio.so.2": "libportaudio2",
 }
 TESTING = {"Xvfb": "xvfb", "xauth": "xauth", "xdotool": "xdotool"}
 

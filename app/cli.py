@@ -89,7 +89,9 @@ def _parser() -> argparse.ArgumentParser:
 
 
 def _performance(parser: argparse.ArgumentParser, seconds: float) -> None:
-    parser.add_argument("-s", "--seconds", type=float, default=seconds, help=f"length of the performance (default: {seconds:g})")
+    parser.add_argument("-s", "--seconds", type=float, help=f"length of the performance (default: its own, else {seconds:g})")
+    parser.set_defaults(usual_seconds=seconds)
+    parser.add_argument("--performance", metavar="NAME", help="a performance that is kept in the project (default: improvise)")
     parser.add_argument("--seed", type=int, help="another performance of the same project (default: the project's seed)")
 
 

@@ -11,10 +11,11 @@ from PySide6.QtWidgets import QFileDialog, QMessageBox, QWidget
 from app.canvas.drops import ANNOTATIONS, Drop, Load
 from app.document import Document, state_folder, untitled_journal
 from app.jobs import Job, Jobs
+from app.opening import load_whole, open_whole
 from metagraph.errors import FileError
 from metagraph.formats.imports import Imported, import_files
 from metagraph.formats.journal import journal_path, recover
-from metagraph.formats.store import SUFFIX, Opened, absolute, load_motions, open_project
+from metagraph.formats.store import SUFFIX, Opened, absolute
 from metagraph.graph.model import Project
 
 RECENT = 10
@@ -67,8 +68,8 @@ class Files(QObject):
 
         def work(job: Job) -> Opened:
             if recovered is not None:
-                return load_motions(recovered, path.parent, job.tell)
-            return open_project(path, job.tell)
+                return load_whole(recovered, path.parent, job.tell)
+            return open_whole(path, job.tell)
 
         def done(opened: Opened) -> None:
             if self.document.project is not left and not self.may_leave():
@@ -94,7 +95,7 @@ class Files(QObject):
             self.document.load(opened.project, None, recovered=True)
             self.opened.emit()
 
-        self.jobs.start("Recovering", lambda job: load_motions(project, Path("/"), job.tell), done, self._failed)
+        self.jobs.start("Recovering", lambda job: load_whole(project, Path("/"), job.tell), done, self._failed)
         return True
 
     def _offer(self, journal: Path, saved: Path | None) -> Project | None:

@@ -14,14 +14,17 @@ from typing import Any
 import numpy as np
 
 from app.headless_annotate import annotate as annotate
+from app.opening import open_whole
 from metagraph.errors import FileError
 from metagraph.formats.clips import SUFFIXES, read_clips
 from metagraph.formats.imports import import_files
-from metagraph.formats.store import SUFFIX, Opened, open_project, save_project
+from metagraph.formats.store import SUFFIX, save_project
+from metagraph.graph.asks import Performance
 from metagraph.graph.check import check as find_problems
 from metagraph.graph.expand import size
 from metagraph.graph.model import KINDS, LAYERS, Project
 from metagraph.playback.bake import bake
+from metagraph.playback.hear import perform
 from metagraph.playback.plan import Plan
 from metagraph.playback.planner import make_plan
 from metagraph.playback.player import morphs_at, pose_at
@@ -36,7 +39,7 @@ def _say(options: Namespace, words: str, data: Any) -> None:
 
 
 def _open(path: Path) -> Project:
-    opened: Opened = open_project(path)
+    opened = open_whole(path)
     for note in opened.notes:
         print(f"note: {note}", file=sys.stderr)
     return opened.project
@@ -105,9 +108,24 @@ def check(options: Namespace) -> int:
 
 
 def _plan(project: Project, options: Namespace) -> Plan:
+    """Return the performance that is asked for, or an improvised one; its length goes into the options."""
+    kept = _kept(project, options.performance) if options.performance is not None else None
+    if options.seconds is None:
+        options.seconds = kept.length if kept is not None else options.usual_seconds
     if not 0 < options.seconds <= LONGEST:
         raise ValueError(f"a performance lasts more than 0 and at most {LONGEST} seconds")
-    return make_plan(project, options.seconds, seed=options.seed)
+    if kept is None:
+        return make_plan(project, options.seconds, seed=options.seed)
+    seed = kept.seed if options.seed is None else options.seed
+    return perform(project, kept.asks, options.seconds, seed, dict(kept.stances), kept.idle)
+
+
+def _kept(project: Project, name: str) -> Performance:
+    found = next((p for i, p in project.performances.items() if name in (i, p.name)), None)
+    if found is None:
+        names = ", ".join(f"'{p.name}'" for p in project.performances.values()) or "none"
+        raise ValueError(f"there is no performance '{name}' in the project; it keeps {names}")
+    return found
 
 
 def plan(options: Namespace) -> int:
@@ -199,32 +217,45 @@ def render(options: Namespace) -> int:
     size = _size(options.size)
     figure = _figure(project, options.project.resolve().parent)
     clip = None
-    seconds = options.seconds
     if options.clip is not None:
         clip = next((e.id for e in project.clips.values() if options.clip in (e.name, e.id)), None)
         if clip is None or project.clips[clip].motion is None:
             raise ValueError(f"there is no clip '{options.clip}' in the project")
-        seconds = project.clips[clip].duration
+        options.seconds = project.clips[clip].duration
     made = _plan(project, options) if clip is None else None
+    seconds = options.seconds
     if options.out.suffix in (".glb", ".bvh"):
         bake_to(options.out, project, made, clip, seconds, options.fps)
     else:
-        draw_to(options.out, project, figure, made, clip, seconds, size, options.fps, options.frames, options.theme)
+        sound = _sound(project, options.project.resolve().parent, made, seconds) if options.out.suffix == ".mp4" else None
+        draw_to(options.out, project, figure, made, clip, seconds, size, options.fps, options.frames, options.theme, sound)
     _say(options, f"{options.out}", {"written": str(options.out)})
     return 0
 
 
+def _sound(project: Project, folder: Path, made: Plan | None, seconds: float) -> tuple[np.ndarray, int] | None:
+    """Return the sound of what is said in a performance, None where nothing is."""
+    if made is None or not any(s.line and project.lines[s.line].audio for s in made.track.speeches if s.line in project.lines):
+        return None
+    from metagraph.speech.soundtrack import RATE, line_sounds, mixed, placed
+
+    sounds, notes = line_sounds(project, folder)
+    for note in notes:
+        print(f"note: {note}", file=sys.stderr)
+    return mixed(placed(made, sounds), 0, round(seconds * RATE)), RATE
+
+
 def draw_to(
     out: Path, project: Project, figure: Any, made: Plan | None, clip: str | None, seconds: float, size: tuple[int, int],
-    fps: float, frames: int, look: str,
+    fps: float, frames: int, look: str, sound: tuple[np.ndarray, int] | None = None,
 ) -> None:  # fmt: skip
-    """Write a contact sheet (.png) or a video (.mp4)."""
+    """Write a contact sheet (.png) or a video (.mp4), with its sound."""
     out.parent.mkdir(parents=True, exist_ok=True)
     if out.suffix == ".mp4":
         from preview.video import write_video
 
         times = np.arange(max(1, round(seconds * fps))) / fps
-        write_video(out, pictures(project, figure, times, made, clip, size, look), fps, size)
+        write_video(out, pictures(project, figure, times, made, clip, size, look), fps, size, sound=sound)
     elif out.suffix == ".png":
         from preview.sheet import contact_sheet, write_png
 
@@ -344,7 +375,7 @@ def demo(options: Namespace) -> int:
     draw_to(sheet, project, figure, made, None, made.end, (960, 540), 30, 24, "dark")
     if not quiet:
         print(f"contact sheet  {sheet.resolve()}", flush=True)
-    draw_to(video, project, figure, made, None, made.end, (640, 360), 30, 0, "dark")
+    draw_to(video, project, figure, made, None, made.end, (640, 360), 30, 0, "dark", _sound(project, folder, made, made.end))
     if not quiet:
         print(f"video          {video.resolve()}", flush=True)
     exported = write(project, out, character=folder / project.character if project.character else None)

@@ -11,9 +11,10 @@ from pathlib import Path
 from typing import Any
 
 from app.annotation import Reading, begin, into, told
+from app.opening import open_whole
 from metagraph.errors import FileError
 from metagraph.formats.elan import read_elan
-from metagraph.formats.store import open_project, save_project
+from metagraph.formats.store import save_project
 from metagraph.graph.model import LAYERS, Layer
 from metagraph.playback.annotation import IGNORE, MEANINGS, ROLES, Annotation, is_meaning, label_of
 from metagraph.playback.compare import compare
@@ -23,7 +24,7 @@ from metagraph.playback.learn import Act, learn, state_words, states_of
 def annotate(options: Namespace) -> int:
     """Say what an annotation is read as; with `learn` or `perform`, work it into the project and save that."""
     path: Path = options.project
-    opened = open_project(path)
+    opened = open_whole(path)
     project = opened.project
     reading = _reading(read_elan(options.annotation), options, project.tiers, project.labels)
     if options.smoothing < 0:

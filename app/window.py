@@ -34,6 +34,7 @@ from app.panels.library import LibraryPanel
 from app.panels.preview import PreviewPanel
 from app.performance import Performance
 from app.session import Session
+from app.sound import Sound
 from app.theme import KIND_MARKS, apply, theme
 from app.thumbnails import Thumbnails
 from metagraph.formats.imports import Imported
@@ -60,6 +61,7 @@ class Window(QMainWindow):
         self.performance = Performance(self.document, self.session, self.jobs, self)
         self.thumbnails = Thumbnails(self.document, self.session, self.figures, self)
         self.files = Files(self.document, self.jobs, self)
+        self.sound = Sound(self.document, self.session, self.performance, self.jobs, self)
         self.problems: tuple[Problem, ...] = ()
         settings = QSettings()
         if settings.value("theme") in ("dark", "light"):
@@ -208,6 +210,7 @@ class Window(QMainWindow):
         self.canvas.refused.connect(self.tell)
         self.preview.view.failed.connect(self.tell)
         self.files.told.connect(self.tell)
+        self.sound.told.connect(self.tell)
         self.files.report.connect(self._report)
         self.files.imported.connect(self._imported)
         self.files.annotation_dropped.connect(self.annotate)
@@ -497,6 +500,7 @@ class Window(QMainWindow):
             settings.setValue("geometry", self.saveGeometry())
             settings.setValue("state", self.saveState(ARRANGED))
         self.performance.stop_live()
+        self.sound.stop()
         self.document.close_journal()
         self.preview._timer.stop()
         self.canvas._hero_timer.stop()

@@ -27,11 +27,13 @@ def write_video(
     progress: Callable[[int], None] | None = None,
     cancelled: Callable[[], bool] | None = None,
     quality: int = 20,
+    sound: tuple[Array, int] | None = None,
 ) -> int:
     """Write `frames` (uint8 `[H, W, 3 or 4]`, sRGB, all of one size) at `fps` and return how many there were.
 
     size: width and height of the video; by default that of the first frame, made even as H.264 needs. Frames that differ
     are scaled. quality: x264's rate factor, 0 (lossless) .. 51. progress is called with the number of frames written.
+    sound: mono samples `[N]`, -1..1, and how many there are a second; cut or filled with silence to the pictures' length.
     The file appears only when it is complete. Raises FileError (no frames, not writable), Cancelled.
     """
     import av
@@ -44,6 +46,7 @@ def write_video(
     try:
         with av.open(str(part), "w", format="mp4", options={"movflags": "faststart"}) as container:
             stream: Any = None
+            voice: Any = None
             for picture in frames:
                 if cancelled is not None and cancelled():
                     raise Cancelled
@@ -54,6 +57,8 @@ def write_video(
                     stream.width, stream.height = max(2, width + width % 2), max(2, height + height % 2)
                     stream.pix_fmt = "yuv420p"
                     stream.options = {"preset": "veryfast", "crf": str(quality), "tune": "animation"}
+                    if sound is not None:
+                        voice = container.add_stream("aac", rate=sound[1], layout="mono")
                 frame = av.VideoFrame.from_ndarray(np.ascontiguousarray(picture[..., :3], np.uint8), format="rgb24")
                 for packet in stream.encode(frame):  # scales to the stream's size when the frame differs
                     container.mux(packet)
@@ -64,9 +69,27 @@ def write_video(
                 raise FileError(path, "there are no frames to write", remedy="Choose a time span longer than one frame.")
             for packet in stream.encode():
                 container.mux(packet)
+            if voice is not None and sound is not None:
+                _write_sound(container, voice, sound[0], round(count / fps * sound[1]))
         part.replace(path)
     except OSError as error:
         raise FileError(path, f"the video could not be written ({error})", remedy="Check the folder and the free space.") from error
     finally:
         part.unlink(missing_ok=True)
     return count
+
+
+def _write_sound(container: Any, stream: Any, samples: Array, count: int) -> None:
+    """Encode `count` samples, in the blocks AAC has."""
+    import av
+
+    whole = np.zeros(count, np.float32)
+    whole[: min(count, len(samples))] = samples[:count]
+    size = 1024
+    for first in range(0, count, size):
+        frame = av.AudioFrame.from_ndarray(np.ascontiguousarray(whole[None, first : first + size]), format="fltp", layout="mono")
+        frame.sample_rate, frame.pts = stream.rate, first
+        for packet in stream.encode(frame):
+            container.mux(packet)
+    for packet in stream.encode():
+        container.mux(packet)

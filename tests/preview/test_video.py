@@ -76,3 +76,32 @@ def test_a_failed_frame_leaves_the_old_file_alone(tmp_path):
 def test_a_folder_that_is_not_there_is_named(tmp_path):
     with pytest.raises(FileError, match="folder"):
         write_video(tmp_path / "none" / "a.mp4", frames(2), 30)
+
+
+# --- with sound
+
+
+def heard(path):
+    import av
+
+    with av.open(str(path)) as container:
+        stream = container.streams.audio[0]
+        return np.concatenate([f.to_ndarray()[0] for f in container.decode(stream)]), stream.rate
+
+
+def test_a_video_has_its_sound_where_it_belongs(tmp_path):
+    rate = 44100
+    sound = np.zeros(rate, np.float32)
+    sound[rate // 2 : rate // 2 + 4410] = 0.5 * np.sin(2 * np.pi * 440 * np.arange(4410) / rate)
+    write_video(tmp_path / "a.mp4", frames(30), 30, sound=(sound, rate))
+    samples, found = heard(tmp_path / "a.mp4")
+    assert found == rate and len(decoded(tmp_path / "a.mp4")[0]) == 30
+    loud = np.flatnonzero(np.abs(samples) > 0.2) / rate
+    assert loud.min() == pytest.approx(0.5, abs=0.06) and loud.max() == pytest.approx(0.6, abs=0.06)
+
+
+@pytest.mark.parametrize("seconds", [0.0, 0.3, 5.0])
+def test_sound_is_as_long_as_the_pictures(tmp_path, seconds):
+    write_video(tmp_path / "a.mp4", frames(30), 30, sound=(np.full(round(seconds * 22050), 0.1, np.float32), 22050))
+    samples, rate = heard(tmp_path / "a.mp4")
+    assert len(samples) / rate == pytest.approx(1.0, abs=0.1)

@@ -1,0 +1,31 @@
+"""A project with everything it names: its clips, and the sounds of its lines."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import replace
+from pathlib import Path
+
+from metagraph.formats.store import Opened, load_motions, open_project
+from metagraph.graph.model import Project
+
+Progress = Callable[[int, int], None]
+
+
+def open_whole(path: Path, progress: Progress | None = None) -> Opened:
+    """Read a project file with its clips and voices. Raises FileError; what is missing beside it is in the notes."""
+    return _voiced(open_project(path, progress), path.resolve().parent)
+
+
+def load_whole(project: Project, folder: Path, progress: Progress | None = None) -> Opened:
+    """Read the clips and voices of a project that is there already."""
+    return _voiced(load_motions(project, folder, progress), folder)
+
+
+def _voiced(opened: Opened, folder: Path) -> Opened:
+    if not any(line.audio or line.phones for line in opened.project.lines.values()):
+        return opened
+    from metagraph.speech.lines import load_voices
+
+    project, notes = load_voices(opened.project, folder)
+    return replace(opened, project=project, notes=(*opened.notes, *notes))
