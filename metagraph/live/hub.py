@@ -114,15 +114,24 @@ class Hub:
             return
         slot = _Slot(number, [], listed)
         for request in requests:
-            slot.answers.append(self._request(number, client, read(request)))
+            item = read(request)
+            if not client.proven:
+                client.proven = self._proves(item)
             if not client.proven:
                 client.line.send([(encode(Reply(error=STRANGER)), False)])
                 self.drop(number, POLICY, STRANGER)
                 return
+            slot.answers.append(self._request(number, client, item))
         client.waiting += len(slot.answers)
         self._slots.append(slot)
         if client.waiting > UNANSWERED:
             self.drop(number, POLICY, TOO_FAST)
+
+    def _proves(self, item: Heard | Reply) -> bool:
+        """Whether a request shows the token."""
+        return (
+            self.token is not None and isinstance(item, Heard) and isinstance(item.message, Hello) and same(item.message.token, self.token)
+        )
 
     def _answered(self, number: int, reply: Reply) -> None:
         self.clients[number].waiting += 1
@@ -134,8 +143,6 @@ class Hub:
             return encode(item)
         message = item.message
         if isinstance(message, Hello):
-            if self.token is not None and message.token:
-                client.proven = client.proven or same(message.token, self.token)
             wish = message.poses
             if isinstance(wish, msgspec.Struct) and wish.format not in client.line.formats:
                 words = f"poses: this line carries them as {' or '.join(client.line.formats)}, not as {wish.format}"

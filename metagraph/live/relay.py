@@ -66,7 +66,7 @@ class Relay:
                 continue
             batch = unpack_batch(data)
         result = exchange(session, now, batch)
-        if result:
+        if result.number or result.events or result.poses:
             self._out.put(pack(result))
 
     def close(self) -> None:
@@ -82,11 +82,10 @@ class Relay:
 
 
 def _receive(pipe: Any, target: queue.SimpleQueue[bytes | None]) -> None:
-    try:
-        while True:
-            target.put(pipe.recv_bytes())
-    except (EOFError, OSError):
-        target.put(None)
+    with contextlib.suppress(EOFError, OSError):
+        while data := pipe.recv_bytes():
+            target.put(data)
+    target.put(None)
 
 
 def _send(pipe: Any, source: queue.SimpleQueue[bytes | None]) -> None:
@@ -133,7 +132,7 @@ async def _serve(pipe: Any, options: Options) -> None:
             loop.call_soon_threadsafe(take, None)
 
     def step(batch: Batch | None = None) -> Result | None:
-        batch = batch or server.hub.take()
+        batch = server.hub.take() if batch is None else batch
         if batch is not None:
             out.put(pack(batch))
         return None

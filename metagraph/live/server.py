@@ -65,10 +65,10 @@ def is_loopback(host: str) -> bool:
 
 
 class Server:
-    """Opens the lines and passes batches on. clock: seconds, of any beginning."""
+    """Opens the lines and passes batches on. clock: seconds, of any beginning. pipes: what to read lines from and write them to."""
 
-    def __init__(self, options: Options, clock: Callable[[], float]) -> None:
-        self.options, self.clock = checked(options), clock
+    def __init__(self, options: Options, clock: Callable[[], float], pipes: tuple[int, int] = (0, 1)) -> None:
+        self.options, self.clock, self.pipes = checked(options), clock, pipes
         self.hub = Hub(options.token)
         self.stopped = asyncio.Event()
         self._sockets: set[Any] = set()
@@ -91,7 +91,7 @@ class Server:
             words = error.strerror or str(error)
             raise LiveError(f"cannot listen on {hosts[0]}: {words}. Choose another port, or 0 for any free one.") from None
         if options.stdio:
-            self._stdio = StdioLine(asyncio.get_running_loop().call_soon_threadsafe, self._line)
+            self._stdio = StdioLine(asyncio.get_running_loop().call_soon_threadsafe, self._line, *self.pipes)
             self._stdio_number = self.hub.open(self._stdio, self.clock(), proven=True)
             self._stdio.start()
         return Ready(websocket, osc, options.token is not None)

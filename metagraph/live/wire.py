@@ -21,9 +21,6 @@ class Batch(Struct, frozen=True, array_like=True):
     left: tuple[int, ...] = ()
     asked: tuple[tuple[int, Heard], ...] = ()
 
-    def __bool__(self) -> bool:
-        return bool(self.joined or self.left or self.asked)
-
 
 class Picture(Struct, frozen=True, array_like=True):
     """A pose for some clients."""
@@ -42,9 +39,6 @@ class Result(Struct, frozen=True, array_like=True):
     events: tuple[tuple[int, bytes], ...] = ()
     poses: tuple[Picture, ...] = ()
 
-    def __bool__(self) -> bool:
-        return bool(self.number or self.events or self.poses)
-
 
 class Ready(Struct, frozen=True, omit_defaults=True):
     """Where a server listens, or why it does not. websocket: an address; osc: host and port; token: whether one is asked for."""
@@ -55,8 +49,9 @@ class Ready(Struct, frozen=True, omit_defaults=True):
     error: str | None = None
 
 
-def exchange(session: LiveSession, now: float, batch: Batch) -> Result:
-    """Let a session answer a batch at `now`; an empty one for what happens without being asked."""
+def exchange(session: LiveSession, now: float, batch: Batch | None) -> Result:
+    """Let a session answer a batch at `now`; None for what happens without being asked."""
+    batch = Batch() if batch is None else batch
     for client in batch.joined:
         session.join(client)
     out = session.tick(now, batch.asked)

@@ -75,7 +75,7 @@ def read_block(text: str, at: float = 0.0, priority: int = 1, project: Project |
 class _Reader:
     def __init__(self, words: Words, at: float, priority: int) -> None:
         self.words, self.priority = words, priority
-        self.timing = Timing(at, self._note)
+        self.timing = Timing(at, self._note, words.offsets)
         self.notes: list[str] = []
 
     # --- elements
@@ -100,8 +100,8 @@ class _Reader:
             raise a.AskError(f"{element.place}: a block has at most {MOST} behaviours; send several")
         self.timing.add(Behaviour(element, element.get("id"), asks, offsets, times))
 
-    def _read(self, kind: str, e: Element) -> tuple[list[Any], dict[str, float]]:
-        """Return an element's asks, still without times, and its sync points' seconds after its start."""
+    def _read(self, kind: str, e: Element) -> tuple[list[Any], dict[str, float] | None]:
+        """Return an element's asks, still without times, and its sync points' seconds after its start; None for as its clip has."""
         common: dict[str, Any] = {"id": e.get("id"), "priority": self._integer(e, "metagraph:priority", self.priority)}
         tags = self._tags(e)
         match kind:
@@ -118,15 +118,15 @@ class _Reader:
                     ask: Any = a.Play(action=self.words.action(e.get("name"), layer), layer=layer or None, **common)  # type: ignore[arg-type]
                 else:
                     ask = self._gesture(tags, lexeme, layer, common | more)
-                return [ask], self.words.offsets(ask)
+                return [ask], None
             case "animation":
                 layer = e.get("metagraph:layer")
                 ask = a.Play(action=self.words.action(e.get("name"), layer), layer=layer or None, **common)  # type: ignore[arg-type]
-                return [ask], self.words.offsets(ask)
+                return [ask], None
             case "metagraph:fidget":
                 more = {"limb": e.get("mode").lower() or None, "resume": e.get("metagraph:resume") == "true"}
                 ask = a.Fidget(tags=tags or _listed(e.get("lexeme")), layer=e.get("metagraph:layer") or "arms", **more, **common)  # type: ignore[arg-type]
-                return [ask], self.words.offsets(ask)
+                return [ask], None
             case "head":
                 return self._head(e, tags, common)
             case "posture" | "postureshift" | "body":
@@ -160,19 +160,19 @@ class _Reader:
                 self._note(e, f"is left out; {NOT_READ.get(kind, 'it is none of the behaviours that are understood')}")
         return [], {}
 
-    def _head(self, e: Element, tags: tuple[str, ...] | None, common: dict[str, Any]) -> tuple[list[Any], dict[str, float]]:
+    def _head(self, e: Element, tags: tuple[str, ...] | None, common: dict[str, Any]) -> tuple[list[Any], dict[str, float] | None]:
         lexeme = e.get("lexeme", "type")
         if e.get("repetition", "repeats") not in ("", "1", "1.0"):
             self._note(e, "nods and shakes as often as its clip; the repetition is left out")
         match spelled(lexeme):
             case "nod":
-                return [a.Nod(tags=tags or (), **common)], self.words.head("nod")
+                return [a.Nod(tags=tags or (), **common)], None
             case "shake":
-                return [a.Shake(tags=tags or (), **common)], self.words.head("shake")
+                return [a.Shake(tags=tags or (), **common)], None
             case "" if e.get("target"):
                 return [a.Look(to=self._target(e), **common)], {"ready": 0.3, "relax": 1.0, "end": 1.3}
         ask = self._gesture(tags, lexeme, e.get("metagraph:layer") or "head", common)
-        return [ask], self.words.offsets(ask)
+        return [ask], None
 
     def _gesture(self, tags: tuple[str, ...] | None, lexeme: str, layer: str, fields: dict[str, Any]) -> a.Gesture | a.Play:
         if tags is not None:  # said in our own words

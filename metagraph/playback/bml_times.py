@@ -19,13 +19,13 @@ LONGEST = 250  # characters of a time
 
 @dataclass
 class Behaviour:
-    """An element on its way to an ask. times: sync -> what its attribute says. offsets: sync -> seconds after the start, as
-    far as can be known. pinned: whether others are timed by its stroke."""
+    """An element on its way to an ask. times: sync -> what its attribute says. offsets: sync -> seconds after the start,
+    None for those of its ask's action. pinned: whether others are timed by its stroke."""
 
     element: Element
     ident: str
     asks: Sequence[Any]
-    offsets: dict[str, float]
+    offsets: dict[str, float] | None
     times: dict[str, str] = field(default_factory=dict)
     known: dict[str, float] = field(default_factory=dict)
     prepare: bool = True
@@ -34,10 +34,12 @@ class Behaviour:
 
 @dataclass
 class Timing:
-    """Works out all times of a block that begins at `at` seconds. note: takes an element and what to say of it."""
+    """Works out all times of a block that begins at `at` seconds. note: takes an element and what to say of it. lengths: gives
+    the sync points of what an ask may get."""
 
     at: float
     note: Callable[[Element, str], None]
+    lengths: Callable[[Any], dict[str, float]]
     behaviours: list[Behaviour] = field(default_factory=list)
     named: dict[str, Behaviour] = field(default_factory=dict)
     constraints: list[Element] = field(default_factory=list)
@@ -114,12 +116,13 @@ class Timing:
         return value
 
     def _offset(self, b: Behaviour, sync: str) -> float:
-        if sync not in b.offsets and sync not in SYNCS:
-            known = ", ".join(s for s in b.offsets if s not in SYNCS)
+        offsets = b.offsets if b.offsets is not None else self.lengths(b.asks[0])
+        if sync not in offsets and sync not in SYNCS:
+            known = ", ".join(s for s in offsets if s not in SYNCS)
             raise a.AskError(f"{b.element.place}: it has no sync point '{sync}'" + (f"; its marks are {known}" if known else ""))
         if not b.prepare:
-            return max(0.0, b.offsets.get(sync, 0.0) - b.offsets.get("ready", 0.0))
-        return b.offsets.get(sync, b.offsets.get("end", 0.0) if sync in ("end", "relax", "strokeend") else 0.0)
+            return max(0.0, offsets.get(sync, 0.0) - offsets.get("ready", 0.0))
+        return offsets.get(sync, offsets.get("end", 0.0) if sync in ("end", "relax", "strokeend") else 0.0)
 
     def _own(self, b: Behaviour, sync: str) -> bool:
         """Whether a sync point is timed by another of the same behaviour."""

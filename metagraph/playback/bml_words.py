@@ -36,16 +36,17 @@ class Words:
 
     def __init__(self, project: Project | None) -> None:
         self.project = project
-        self.gestures: dict[Layer, list[Action]] = {}
+        self.gestures: dict[str, list[Action]] = {}
         if project is not None:
             self.gestures = {x: [g for g in project.graphs[x].actions.values() if g.kind == "gesture"] for x in LAYERS}
+        self.tags = {x: {spelled(t): t for g in gestures for t in g.tags} for x, gestures in self.gestures.items()}
+        self.lengths: dict[Any, dict[str, float]] = {}
 
     def gesture(self, words: Sequence[str], layer: str, fields: Mapping[str, Any]) -> a.Gesture | a.Play:
         """Return what asks for a gesture with these tags, or called so; arms first, where no layer is said."""
         wanted = {spelled(w) for w in words} - {""}
         for each in [layer] if layer else ("arms", "head", "body") if wanted else ():
-            gestures = self.gestures.get(each, [])  # type: ignore[call-overload]
-            tags = {spelled(t): t for g in gestures for t in g.tags}
+            gestures, tags = self.gestures.get(each, []), self.tags.get(each, {})
             if wanted and wanted <= tags.keys():
                 return a.Gesture(layer=each, tags=tuple(tags[w] for w in map(spelled, words) if w), **fields)  # type: ignore[arg-type]
             called = [g for g in gestures if _called(g.name, "".join(map(spelled, words)))] if wanted else []
@@ -90,10 +91,19 @@ class Words:
         known = self.project.lines.get(line)
         return spoken_seconds(self.project, line or None, text or (known.text if known is not None else ""))
 
-    def offsets(self, ask: a.Gesture | a.Fidget | a.Play) -> dict[str, float]:
+    def offsets(self, ask: a.Gesture | a.Fidget | a.Play | a.Nod | a.Shake) -> dict[str, float]:
         """Return the sync points of the likeliest action an ask may get; seconds after its start."""
+        key = (type(ask), *(getattr(ask, name, None) for name in ("layer", "tags", "limb", "action")))
+        if key not in self.lengths:
+            self.lengths[key] = self._offsets(ask)
+        return self.lengths[key]
+
+    def _offsets(self, ask: a.Gesture | a.Fidget | a.Play | a.Nod | a.Shake) -> dict[str, float]:
+        if isinstance(ask, a.Nod | a.Shake):
+            word = "nod" if isinstance(ask, a.Nod) else "shake"
+            return self._phases([x for x in self.gestures.get("head", []) if word in x.tags or word in x.name.lower()], NODDED)
         if self.project is None:
-            return dict(GUESSED)
+            return GUESSED
         if isinstance(ask, a.Play):
             fitting = [x for x in self.project.actions() if ask.action in (x.id, x.name) and ask.layer in (None, x.layer)]
         else:
@@ -103,13 +113,9 @@ class Words:
             fitting = [x for x in actions if x.kind == kind and tags <= set(x.tags) and limb in (None, x.limb)]
         return self._phases(fitting, GUESSED)
 
-    def head(self, word: str) -> dict[str, float]:
-        """Return the sync points of a nod or a shake."""
-        return self._phases([x for x in self.gestures.get("head", []) if word in x.tags or word in x.name.lower()], NODDED)
-
-    def _phases(self, fitting: Sequence[Action], guessed: Mapping[str, float]) -> dict[str, float]:
+    def _phases(self, fitting: Sequence[Action], guessed: dict[str, float]) -> dict[str, float]:
         if self.project is None or not fitting:
-            return dict(guessed)
+            return guessed
         from metagraph.playback.phases import phases
 
         found = phases(self.project, max(fitting, key=lambda x: x.likelihood))

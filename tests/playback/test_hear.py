@@ -157,7 +157,7 @@ def test_far_asks_that_must_wait_for_others_are_late_not_refused(sample: Project
 def test_withdrawing_among_thousands_takes_back_what_belongs_together(sample: Project) -> None:
     asks = [a.Nod(id=f"n{n}", at=100.0 + n) for n in range(500)] + [a.Nod(id=f"n7.{n}", at=900.0 + n) for n in range(1, 3)]
     plan = perform(sample, asks, 20, idle=False)
-    gone = hear(sample, plan, 1.0, [a.Withdraw(id=f"w{n}", what=f"n{n}") for n in range(0, 400)], 20, idle=False)
+    gone = hear(sample, plan, 1.0, [a.Withdraw(id=f"w{n}", what=f"n{n}") for n in range(400)], 20, idle=False)
     assert {r.id for r in gone.requests} == {f"n{n}" for n in range(400, 500)}
 
 

@@ -1,0 +1,45 @@
+"""What a plan does about many asks, in one pass, is what `answer` says of each."""
+
+from __future__ import annotations
+
+import random
+from typing import Any
+
+import msgspec
+
+from metagraph.graph import asks as a
+from metagraph.graph.model import Project
+from metagraph.live.answers import find, owner_of
+from metagraph.live.messages import Heard, read
+from metagraph.playback.hear import answer, perform
+from tests.live.traffic import valid
+
+
+def test_an_owner_is_found_through_all_parts() -> None:
+    assert owner_of("a", {"a"}) == "a"
+    assert owner_of("a.1.12", {"a"}) == "a"
+    assert owner_of("a.1.12", {"a", "a.1"}) == "a.1"
+    assert owner_of("a.b", {"a"}) is None and owner_of("ab", {"a"}) is None and owner_of("a.", {"a"}) is None
+
+
+def test_found_together_is_what_is_answered_one_by_one(sample: Project) -> None:
+    for seed in range(12):
+        r = random.Random(seed)
+        asks: list[Any] = []
+        while len(asks) < 25:
+            heard = read(msgspec.json.encode(valid(r)))
+            assert isinstance(heard, Heard)
+            if not isinstance(heard.message, a.Withdraw):
+                asks.append(msgspec.structs.replace(heard.message, id=f"x{len(asks)}", at=round(r.random() * 40, 2)))  # type: ignore[arg-type]
+        plan = perform(sample, asks, 25.0, idle=bool(seed % 2))
+        found = find(plan, {ask.id for ask in asks})
+        for ask in asks:
+            one = answer(plan, ask.id)
+            if ask.id not in found:
+                assert (one.state, one.why) == ("refused", "nothing came of it")
+                continue
+            many = found[ask.id]
+            assert (many.state, many.at) == (one.state, one.at), ask
+            assert sorted(many.what) == sorted(one.what)
+            assert many.why == one.why
+            assert many.until == (one.until if one.until is not None and one.until < 1e8 else None)

@@ -1,0 +1,90 @@
+"""OSC addresses and the requests they say."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from metagraph.graph import asks as a
+from metagraph.live.hub import Hub
+from metagraph.live.messages import Heard, Hello, Poses, encode, read
+from metagraph.live.osc import SENDERS, SILENT, OscError, OscLine, padded, request, texts_of
+
+
+def said(address: str, *values: Any) -> Any:
+    found = read(encode(request(f"/metagraph/{address}", values)))
+    assert isinstance(found, Heard), found
+    return found.message if found.after is None else found
+
+
+@pytest.mark.parametrize(
+    ("address", "values", "message"),
+    [
+        ("gesture", (), a.Gesture()),
+        ("gesture", ("head", "positive", "agree"), a.Gesture(layer="head", tags=("positive", "agree"))),
+        ("gesture", ("beat", "limb=left", "at=2.5", "prepare=false"), a.Gesture(tags=("beat",), limb="left", at=2.5, prepare=False)),
+        ("fidget", ("priority=3", "resume=true"), a.Fidget(priority=3, resume=True)),
+        ("gesture", ("in=1",), Heard(a.Gesture(), 1.0)),
+        ("fidget", ("body",), a.Fidget(layer="body")),
+        ("change", ("head",), a.Change(layer="head")),
+        ("nod", (), a.Nod()),
+        ("shake", ("doubt",), a.Shake(tags=("doubt",))),
+        ("action", ("bow_01",), a.Play(action="bow_01")),
+        ("stance", ("on hips", "arms"), a.Go(stance="on hips", layer="arms")),
+        ("look", (), a.Look()),
+        ("look", ("door",), a.Look(to="door")),
+        ("look", (0.5, 1, 2.0), a.Look(to=(0.5, 1.0, 2.0))),
+        ("blink", (), a.Blink()),
+        ("say", ("279",), a.Say(line="279")),
+        ("say", (279,), a.Say(line="279")),
+        ("text", ("Hello", "you"), a.Say(text="Hello you")),
+        ("mode", ("listening",), a.Behave(mode="listening")),
+        ("mode", (), a.Behave()),
+        ("place", ("door", 0, 1, 2), a.Place(name="door", point=(0.0, 1.0, 2.0))),
+        ("withdraw", (), a.Withdraw()),
+        ("withdraw", ("x",), a.Withdraw(what="x")),
+        ("hello", ("secret",), Hello(token="secret")),
+        ("events", (1,), Hello(events=True)),
+        ("poses", (60.0, "Head", "space=model"), Hello(poses=Poses(rate=60.0, format="osc", joints=("Head",), space="model"))),
+        ("poses", (0,), Hello(poses=None)),
+    ],
+)  # fmt: skip
+def test_an_address_says_a_request(address: str, values: tuple[Any, ...], message: Any) -> None:
+    assert said(address, *values) == message
+
+
+@pytest.mark.parametrize("address", ["/metagraph/dance", "/other/nod", "", "/metagraph/", "/metagraph/action", "/metagraph/stance"])
+def test_other_addresses_say_none(address: str) -> None:
+    with pytest.raises(OscError):
+        request(address, ())
+
+
+@given(st.binary(max_size=200))
+def test_any_datagram_is_taken_apart_or_refused(data: bytes) -> None:
+    for each in (data, b"#bundle\0" + b"\0" * 7 + b"\1" + data, padded("/metagraph/gesture") + padded(",s") + data):
+        for _, text in texts_of(each):
+            assert isinstance(text, bytes | str | bool | OscError)
+
+
+def test_bundles_within_bundles_end() -> None:
+    data = b""
+    for _ in range(2000):
+        inner = b"" if not data else len(data).to_bytes(4, "big") + data
+        data = b"#bundle\0" + (1).to_bytes(8, "big") + inner
+    assert all(isinstance(text, OscError) for _, text in texts_of(data))
+
+
+def test_senders_are_forgotten_when_they_are_silent_and_only_so_many_are_known() -> None:
+    now = [0.0]
+    hub = Hub()
+    line = OscLine(hub, lambda: now[0])
+    message = padded("/metagraph/nod") + padded(",")
+    for n in range(SENDERS + 10):
+        line.datagram_received(message, ("127.0.0.1", 1000 + n))
+    assert len(hub.clients) == SENDERS
+    now[0] = SILENT + 1
+    line.datagram_received(message, ("127.0.0.1", 5))
+    assert list(line.senders) == [("127.0.0.1", 5)] and len(hub.clients) == 1

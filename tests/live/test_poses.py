@@ -1,0 +1,59 @@
+"""Poses as engines get them."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+from metagraph.graph.asks import AskError
+from metagraph.graph.model import Project
+from metagraph.live.messages import Poses
+from metagraph.live.poses import HEADER, Stream, due, frame
+from metagraph.live.session import LiveSession
+from metagraph.playback.player import pose_at
+
+
+def test_streams_of_one_rate_get_the_same_bytes_once(sample: Project) -> None:
+    session = LiveSession(sample)
+    streams = [(n, Stream.of(Poses(rate=30), sample, 0.01 * n)) for n in range(3)] + [
+        (9, Stream.of(Poses(rate=30, format="binary"), sample, 0.0))
+    ]
+    frames = due(0.1, session.plan, sample, streams)
+    assert [f.clients for f in frames] == [(0, 1, 2), (9,)] and [f.binary for f in frames] == [False, True]
+    assert due(0.11, session.plan, sample, streams) == []
+    assert len(due(0.1 + 1 / 30, session.plan, sample, streams)) == 2
+
+
+def test_after_a_pause_one_pose_comes_not_all_that_were_missed(sample: Project) -> None:
+    session = LiveSession(sample)
+    streams = [(1, Stream.of(Poses(rate=60), sample, 0.0))]
+    assert len(due(5.0, session.plan, sample, streams)) == 1
+    assert due(5.001, session.plan, sample, streams) == []
+
+
+def test_joints_come_in_the_order_they_were_named(sample: Project) -> None:
+    assert sample.skeleton is not None
+    names = ("Head", "Hips", "Spine")
+    stream = Stream.of(Poses(joints=names, format="binary"), sample, 0.0)
+    session = LiveSession(sample)
+    pose = pose_at(session.plan, sample, 1.0)
+    data = frame(stream, 1.0, pose, None, {})
+    numbers = np.frombuffer(data, "<f4", offset=HEADER.size)
+    places = [sample.skeleton.names.index(n) for n in names]
+    np.testing.assert_array_equal(numbers[3:15].reshape(3, 4), pose.rotations[places].astype(np.float32))
+    np.testing.assert_array_equal(numbers[:3], pose.translations[0].astype(np.float32))
+
+
+def test_weights_of_morph_targets_come_in_the_order_of_the_greeting(sample: Project) -> None:
+    stream = Stream.of(Poses(joints=(), format="binary"), sample, 0.0)
+    stream.morphs = ("a", "b", "c")
+    data = frame(stream, 2.5, pose_at(LiveSession(sample).plan, sample, 1.0), None, {"b": 0.5, "other": 1.0})
+    assert HEADER.unpack_from(data)[1:] == (0, 0, 3, 0, 2.5)
+    assert np.frombuffer(data, "<f4", offset=HEADER.size)[3:].tolist() == [0.0, 0.5, 0.0]
+
+
+def test_what_is_not_there_cannot_be_streamed(sample: Project) -> None:
+    with pytest.raises(AskError, match="no joint 'Tail'"):
+        Stream.of(Poses(joints=("Tail",)), sample, 0.0)
+    with pytest.raises(AskError, match="no clips"):
+        Stream.of(Poses(), Project(), 0.0)

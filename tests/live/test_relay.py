@@ -1,0 +1,91 @@
+"""A session whose lines are in a process of their own."""
+
+from __future__ import annotations
+
+import json
+import socket
+import threading
+import time
+from typing import Any
+
+import pytest
+from websockets.sync.client import connect
+
+from metagraph.graph.model import Project
+from metagraph.live.relay import Relay
+from metagraph.live.server import LiveError, Options
+from metagraph.live.session import LiveSession
+
+
+def until(condition: Any, relay: Relay, session: LiveSession, begin: float) -> None:
+    """Tick as a window does until something is so."""
+    deadline = time.monotonic() + 30
+    while not condition():
+        assert time.monotonic() < deadline, relay.error
+        relay.tick(session, time.monotonic() - begin)
+        time.sleep(0.005)
+
+
+def test_a_window_answers_clients_that_another_process_talks_to(sample: Project) -> None:
+    session, relay, begin = LiveSession(sample), Relay(Options(port=0, osc=0)), time.monotonic()
+    relay.start()
+    try:
+        until(lambda: relay.ready is not None, relay, session, begin)
+        assert relay.ready is not None and not relay.error and relay.ready.websocket and relay.ready.osc
+        got: list[Any] = []
+
+        def client() -> None:
+            with connect(str(relay.ready.websocket)) as line:  # type: ignore[union-attr]
+                line.send('[{"do":"nod","id":"n"},{"do":"dance"},{"do":"hello","poses":{"rate":60,"format":"binary"}}]')
+                got.append(json.loads(line.recv()))
+                got.append(line.recv())
+                line.send("nonsense")
+                while isinstance(data := line.recv(), bytes):
+                    pass
+                got.append(json.loads(data))
+            got.append("over")
+
+        thread = threading.Thread(target=client)
+        thread.start()
+        until(lambda: "over" in got, relay, session, begin)
+        thread.join()
+        assert got[0][0]["state"] in ("planned", "late") and "error" in got[0][1] and got[0][2]["poses"]["rate"] == 60
+        assert got[1].startswith(b"MGP1") and "not JSON" in got[2]["error"]
+        until(lambda: not session.clients, relay, session, begin)
+    finally:
+        relay.close()
+
+
+def test_a_port_that_is_taken_is_told_to_the_window(sample: Project) -> None:
+    session, begin = LiveSession(sample), time.monotonic()
+    with socket.socket() as other:
+        other.bind(("127.0.0.1", 0))
+        other.listen()
+        relay = Relay(Options(port=other.getsockname()[1], osc=None))
+        relay.start()
+        try:
+            until(lambda: relay.error, relay, session, begin)
+            assert "cannot listen" in relay.error and "Choose another port" in relay.error
+        finally:
+            relay.close()
+
+
+def test_what_is_not_safe_is_not_even_started() -> None:
+    with pytest.raises(LiveError, match="a token is needed"):
+        Relay(Options(host="0.0.0.0"))
+
+
+def test_a_child_that_ends_is_noticed(sample: Project) -> None:
+    session, relay, begin = LiveSession(sample), Relay(Options(port=0, osc=None)), time.monotonic()
+    relay.start()
+    try:
+        until(lambda: relay.ready is not None, relay, session, begin)
+        relay._process.terminate()
+        until(lambda: relay.error, relay, session, begin)
+        assert relay.error == "the process that talks to clients has ended"
+    finally:
+        relay.close()
+
+
+def test_closing_what_was_never_started_is_fine() -> None:
+    Relay(Options()).close()
