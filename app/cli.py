@@ -10,6 +10,7 @@ from difflib import get_close_matches
 from pathlib import Path
 from typing import Any
 
+from app.headless_live import arguments as live_arguments
 from metagraph import __version__
 
 ERROR = 1
@@ -29,6 +30,7 @@ examples:
   metagraph render my.metagraph.yaml -o show.mp4 -s 20
   metagraph annotate my.metagraph.yaml talk.eaf --learn
   metagraph export my.metagraph.yaml -o game/
+  metagraph live my.metagraph.yaml            play, and do what agents ask
 
 exit codes: 0 done, 1 an error, 2 wrong usage, 3 done but with problems"""
 
@@ -80,6 +82,8 @@ def _parser() -> argparse.ArgumentParser:
     annotated.add_argument("--smoothing", type=float, default=0.0, help="added to every count (default: 0, as in the paper)")
     annotated.add_argument("--learn", action="store_true", help="learn the models of all layers that were annotated")
     annotated.add_argument("--perform", metavar="NAME", help="keep it as a performance")
+    played = command("live", "play, and listen to what programs ask: JSON lines, WebSocket, OSC")
+    live_arguments(played)
     info = command("info", "tell what is in a project, an export or a clip file", project=False)
     info.add_argument("path", type=Path, help="a project, an exported JSON, or a clip file")
     demo = command("demo", "the main job without a window: sample project to performance, pictures, video and export", project=False)
@@ -95,7 +99,7 @@ def _performance(parser: argparse.ArgumentParser, seconds: float) -> None:
     parser.add_argument("--seed", type=int, help="another performance of the same project (default: the project's seed)")
 
 
-COMMANDS = ("window", "import", "check", "plan", "render", "annotate", "export", "info", "demo")
+COMMANDS = ("window", "import", "check", "plan", "render", "annotate", "export", "live", "info", "demo")
 
 
 def main(arguments: Sequence[str] | None = None) -> int:

@@ -14,6 +14,7 @@ from typing import Any
 import numpy as np
 
 from app.headless_annotate import annotate as annotate
+from app.headless_live import live as live
 from app.opening import open_whole
 from metagraph.errors import FileError
 from metagraph.formats.clips import SUFFIXES, read_clips

@@ -14,11 +14,11 @@ from typing import Any
 
 from msgspec import Struct
 
+from metagraph.live import OSC_PORT, PORT
 from metagraph.live.hub import Hub
 from metagraph.live.stdio import StdioLine
 from metagraph.live.wire import Batch, Ready, Result
 
-PORT, OSC_PORT = 8765, 8766
 TICK = 1 / 60  # seconds
 LAST = 2.0  # seconds at most for answering what was asked before the end
 CHECK = 1.0  # seconds between looks at who is still there
