@@ -47,6 +47,14 @@ def test_syllables_are_counted(count: int) -> None:
         assert np.allclose(peaks, 0.28 + 0.24 * np.arange(count), atol=0.025)
 
 
+@pytest.mark.parametrize(("depth", "count"), [(0.5, 8), (0.03, 0)])
+def test_a_dip_that_can_be_heard_parts_syllables_and_a_tremor_does_not(depth: float, count: int) -> None:
+    t = np.arange(2 * RATE) / RATE
+    tone = (1 - depth * np.cos(2 * np.pi * 4 * t)) * np.sin(2 * np.pi * 500 * t) * (t > 0.001)
+    samples = np.concatenate([np.zeros(RATE // 4), 0.2 * tone, np.zeros(RATE // 4)])
+    assert abs(len(syllables(hear(samples, RATE))[0]) - count) <= 1
+
+
 @pytest.mark.parametrize("gain", [1e-3, 0.05, 1.0, 3.0])
 @pytest.mark.parametrize("noise", [0.0, 0.01])
 def test_level_and_noise_do_not_matter(gain: float, noise: float) -> None:

@@ -102,7 +102,7 @@ def spelled(text: str, duration: float | None = None) -> tuple[list[Piece], list
         if pause:
             plan.append((None, pause, 0.0))
     total = sum(size for _, size, _ in plan)
-    if not any(shape for shape, _, _ in plan) or length <= 0:
+    if not any(shape for shape, _, _ in plan) or length < 1e-3:
         return [], [], [], length
     edge = min(0.06, 0.1 * length)
     scale, at = (length - 2 * edge) / total, edge

@@ -19,6 +19,7 @@ from metagraph.motion import rotation
 from metagraph.motion.clip import Clip
 from metagraph.motion.skeleton import Pose, Skeleton
 from metagraph.playback.life.evaluate import enliven, face_weights
+from metagraph.playback.life.lane import lane
 from metagraph.playback.life.schedule import Schedule, schedule
 from metagraph.playback.life.track import BlinkAt, LookAt, ModeFrom, Speech, Track, track_of
 from metagraph.playback.planner import make_plan
@@ -199,7 +200,9 @@ def test_both_eyes_look_at_a_near_target_whatever_the_layers_play(sample: Projec
 def test_far_targets_are_met_with_the_help_of_the_head(sample: Project, target: tuple[float, float, float]) -> None:
     track = track_of([LookAt("l", 0.0, 99, target, strict=True)])
     _, after = alive(sample, alone(QUIET, gaze=1), track, [20.0])
-    assert gaze_error(sample, after, target).max() < 3
+    assert gaze_error(sample, after, target).max() < (0.02 if target[2] == 0.5 and target[0] < 1 else 3), (
+        "where the head has taken the eyes"
+    )
     eye = np.degrees(rotation.angle_between(after.rotations[0, joint(sample, "LeftEye")].astype(float), rotation.IDENTITY))
     assert eye < 32
 
@@ -296,10 +299,18 @@ def test_lids_go_with_the_eyes(sample: Project, target: tuple[float, float, floa
 
 
 def test_slow_blinks_meet_without_opening_at_once(sample: Project) -> None:
-    life = alone(QUIET, blink_close=0.5, blink_open=1.0)
+    project = replace(sample, life=alone(QUIET, blink_close=0.5, blink_open=1.0))
     times = np.arange(2.5, 7, 1 / 120)
-    _, after = alive(sample, life, track_of([BlinkAt("b", 3.0), BlinkAt("c", 4.6)]), times)
+    found = Schedule(blinks=lane(1).plus([3.0, 3.9], [(0,), (0,)]))
+    after = enliven(resting(project, len(times)), project, found, Track(), times)
     assert np.abs(np.diff(lids(sample, after)[:, 0])).max() * 120 < 200
+
+
+def test_lids_go_with_eyes_that_a_clip_moves(sample: Project) -> None:
+    pose = resting(sample, 1)
+    pose.rotations[:, joint(sample, "LeftEye")] = rotation.from_axis_angle([1.0, 0, 0], np.radians(12))
+    _, after = alive(sample, QUIET, None, [5.0], pose)
+    assert lids(sample, after)[0] == pytest.approx([0.6 * 12, 0.35 * 12], abs=0.1)
 
 
 # --- lips

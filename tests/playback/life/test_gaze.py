@@ -12,6 +12,7 @@ from metagraph.graph.life import Life
 from metagraph.graph.model import Project
 from metagraph.playback.life.body import PARTNER_AWAY, body_of
 from metagraph.playback.life.gaze import ENDING, Gaze, Moves, ease, eye_time, gaze_of, head_time, settle
+from metagraph.playback.life.lane import lane
 from metagraph.playback.life.schedule import RECALL, Schedule, schedule
 from metagraph.playback.life.track import LookAt, PlaceFrom, Track, track_of
 from metagraph.playback.life.wanted import Target
@@ -148,6 +149,12 @@ def test_a_strict_look_does_not_avert_and_a_new_look_ends_an_aversion(sample: Pr
         found = gaze_of(after, life, body_of(sample), {})
         assert np.hypot(*found.at(middle - 0.01).eyes) > 0.05
         assert np.hypot(*found.at(middle + ENDING + 0.01).eyes) < 1e-9
+
+
+def test_an_aversion_within_a_strict_look_is_not_made(sample: Project) -> None:
+    for strict, size in ((False, 14.0), (True, 0.0)):
+        drawn = Schedule(targets=(Target(0.0, "user", strict=strict),), aversions=lane(3).plus([5.0], [(7.0, 1.0, 0.0)]))
+        assert np.degrees(gaze_of(drawn, CALM, body_of(sample), {}).at(6.0).eyes[0]) == pytest.approx(size)
 
 
 def test_a_place_that_moves_does_not_end_an_aversion(sample: Project) -> None:

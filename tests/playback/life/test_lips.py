@@ -65,6 +65,14 @@ def test_speech_that_is_cut_shuts_the_mouth_at_once_but_not_in_one_frame() -> No
     assert np.abs(np.diff(opened)).max() < 0.2
 
 
+def test_what_was_cut_off_is_not_mouthed() -> None:
+    voice = open_mouth(8.0)
+    voice.weights[0] = np.eye(15)[0]
+    late = Voice(8.0, voice.peaks, np.array([1.9, 2.0]), voice.weights)  # opens at 2 s, where it is cut
+    shown = mouth(spoken(Speech("s", 0.0, 1.9, "a", length=8.0)), {"a": late}, 0.0, np.arange(1.9, 2.1, 0.01))
+    assert shown is not None and shown.max() < 1e-9
+
+
 def test_a_cut_speech_was_as_quick_before_the_cut() -> None:
     whole = spoken(Speech("s", 0.0, 4.0, text=TEXT))
     cut = whole.without({"s"}, 2.0)

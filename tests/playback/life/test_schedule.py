@@ -189,6 +189,15 @@ def test_forgetting_the_past_leaves_the_future_as_it_was(seconds: float, seed: i
             assert np.array_equal(got.values[got.starts >= seconds], all_of.values[new]), name
 
 
+def test_forgetting_before_anything_has_happened_keeps_what_is_waited_for() -> None:
+    life = Life(aversion_rate=2)
+    track = track_of([ModeFrom("a", 0, "listening"), ModeFrom("b", 8, "talking")])
+    whole = schedule(life, track, {}, 1, 16.0, Schedule(), 0.0)
+    assert not len(whole.aversions), "the first comes later"
+    want = schedule(life, track, {}, 1, 160.0, Schedule(), 0.0).aversions
+    assert len(want) and schedule(life, track, {}, 1, 160.0, whole.since(14.0), 15.0).aversions == want
+
+
 def test_an_hour_alive_stays_small() -> None:
     found, sizes, now = Schedule(), [], 0.0
     while now < HOUR:
