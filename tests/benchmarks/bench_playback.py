@@ -1,8 +1,8 @@
 """Planning and posing: python tests/benchmarks/bench_playback.py [characters]
 
 Plan of one hour; one pose of one character; a frame of a crowd in which everyone has a plan and a time of their own, against
-the same work in plain NumPy, batched over characters. Medians on the sample project; crowds in interleaved runs of ten
-frames, as a crowd plays frame after frame.
+the same work in plain NumPy, batched over characters; what the life layers add to a frame. Medians on the sample project;
+crowds in interleaved runs of ten frames, as a crowd plays frame after frame.
 """
 
 from __future__ import annotations
@@ -12,6 +12,7 @@ import statistics
 import sys
 import time
 from collections.abc import Callable
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
@@ -27,6 +28,8 @@ from metagraph.motion import rotation  # noqa: E402
 from metagraph.motion.skeleton import Pose  # noqa: E402
 from metagraph.playback.composer import rig  # noqa: E402
 from metagraph.playback.crowd import Crowd  # noqa: E402
+from metagraph.playback.life.schedule import Schedule, schedule  # noqa: E402
+from metagraph.playback.life.track import LookAt, Speech, track_of  # noqa: E402
 from metagraph.playback.plan import Plan  # noqa: E402
 from metagraph.playback.planner import extend, make_plan  # noqa: E402
 from metagraph.playback.player import ease, playable, pose_at  # noqa: E402
@@ -178,6 +181,37 @@ def crowded(project: Project, copies: int) -> Project:
     return project
 
 
+def lively(project: Project) -> None:
+    """What the life layers cost one character that talks and looks about: a frame of each kind in turn."""
+    text = "Well, I think that we should go there tomorrow, because the weather will be fine and everybody has time."
+    asks = [Speech(f"s{n}", 9.0 * n, 9.0 * n + 7.5, None, text) for n in range(60)]
+    looks = [LookAt(f"l{n}", 7.0 * n, 7.0 * n + 4.0, (np.sin(n), 1.5, 1.0)) for n in range(80)]
+    plan = make_plan(project, 600.0)
+    track = track_of([*asks, *looks])
+    life = schedule(project.life, track, {}, 1, 600.0, Schedule(), 0.0)
+    plan = replace(plan, track=track, life=life)
+    bare: list[float] = []
+    whole: list[float] = []
+    planned: list[float] = []
+    running = make_plan(project, 12.0)
+    pose_at(plan, project, 1.0)
+    for n in range(600):
+        at, now = 100 + n / 60, n / 60
+        bare.append(clock(lambda at=at: pose_at(plan, project, at, alive=False)))  # type: ignore[misc]
+        whole.append(clock(lambda at=at: pose_at(plan, project, at)))  # type: ignore[misc]
+        began = time.perf_counter()
+        running = replace(running, life=schedule(project.life, running.track, {}, 1, 12.0 + now, running.life, now))
+        planned.append((time.perf_counter() - began) * 1e3)
+    times = np.arange(3600) / 60
+    print("\none character, talking and looking about")
+    row("a frame of the layers", bare)
+    row("a frame of layers and life", whole, f"life adds {statistics.median(whole) - statistics.median(bare):.3f}")
+    row("what drawing life ahead adds to a tick", planned, f"mean {statistics.mean(planned):.3f}")
+    row("one minute at 60 fps, a frame", [clock(lambda: pose_at(plan, project, times)) / 3600 for _ in range(3)])
+    hour = [clock(lambda: schedule(project.life, track, {}, 1, 3600.0, Schedule(), 0.0)) for _ in range(5)]
+    row("an hour of life, drawn at once", hour)
+
+
 def main() -> None:
     count = int(sys.argv[1]) if len(sys.argv) > 1 else 1000
     sample = open_project(ROOT / "sample_clips" / "sample.metagraph.yaml").project
@@ -194,9 +228,11 @@ def main() -> None:
     row("extend an hour's plan by a minute", [clock(lambda: extend(sample, hour, 3590, (), 3660)) for _ in range(7)])
 
     times = np.random.default_rng(1).uniform(0, 3600, 400)
-    pose_at(hour, sample, times)
-    row("pose_at, one time", [clock(lambda t=t: pose_at(hour, sample, t)) for t in times])  # type: ignore[misc]
-    row("pose_at, one minute at 60 fps, a frame", [clock(lambda: pose_at(hour, sample, np.arange(3600) / 60)) / 3600 for _ in range(3)])
+    pose_at(hour, sample, times, alive=False)
+    row("pose_at without life, one time", [clock(lambda t=t: pose_at(hour, sample, t, alive=False)) for t in times])  # type: ignore[misc]
+    minute = np.arange(3600) / 60
+    row("the same, one minute at 60 fps, a frame", [clock(lambda: pose_at(hour, sample, minute, alive=False)) / 3600 for _ in range(3)])
+    lively(sample)
 
     plans = [make_plan(sample, 60, seed=seed) for seed in range(count)]
     start = time.perf_counter()
@@ -227,7 +263,7 @@ def main() -> None:
     row(
         "plain NumPy, batched, and Skeleton.globals", globally, f"{statistics.median(globally) / statistics.median(both):.1f} times as long"
     )
-    some = [clock(lambda n=n: pose_at(plans[n], sample, moments[n])) for n in range(min(count, 300))]  # type: ignore[misc]
+    some = [clock(lambda n=n: pose_at(plans[n], sample, moments[n], alive=False)) for n in range(min(count, 300))]  # type: ignore[misc]
     row("pose_at for each, all of them", [statistics.median(some) * count])
 
 
