@@ -37,6 +37,8 @@ def commands(window: Window) -> tuple[Command, ...]:
                 enabled=lambda: d.project.character is not None),
         Command("export", "&File", "&Export…", window.export, ("Ctrl+E",), line=True, icon="export", tip="JSON and GLB for engines",
                 enabled=lambda: any(True for _ in d.project.actions())),
+        Command("render", "&File", "&Write performance…", window.render, ("Ctrl+R",), tip="Video with sound, contact sheet, or motion",
+                enabled=lambda: d.project.skeleton is not None),
         Command("quit", "&File", "&Quit", window.close, (Standard.Quit, "Ctrl+Q"), line=True),
         Command("undo", "&Edit", "&Undo", d.undo, (Standard.Undo,), icon="undo", enabled=d.undo_stack.canUndo),
         Command("redo", "&Edit", "&Redo", d.redo, (Standard.Redo, "Ctrl+Y"), icon="redo", enabled=d.undo_stack.canRedo),

@@ -113,7 +113,11 @@ class Sound(QObject):
             self._stream = sounddevice.OutputStream(samplerate=RATE, channels=1, dtype="float32", callback=self.fill, latency="low")
         except Exception as error:  # the library has errors of its own, and OSError where PortAudio is missing
             self._silent = True
-            self.told.emit(f"No sound: {str(error).splitlines()[0]}. On Debian or Ubuntu: apt install libportaudio2")
+            cause = str(error).splitlines()[0].rstrip(".")
+            missing = isinstance(error, OSError) and "PortAudio" in cause  # the library itself; an own kind of error otherwise
+            self.told.emit(
+                f"No sound: {cause}. " + ("On Debian and Ubuntu: apt install libportaudio2" if missing else "Is a sound device there?")
+            )
             return False
         return True
 

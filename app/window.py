@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from itertools import pairwise
 from pathlib import Path
 
 from PySide6.QtCore import QByteArray, QEvent, QSettings, Qt, QTimer
@@ -42,7 +43,12 @@ from metagraph.graph import edits
 from metagraph.graph.check import Problem, check
 from metagraph.graph.model import KINDS, Layer, Project
 
-ARRANGED = 2  # which docks there are; another arrangement saved before is not restored
+_LEFT, _RIGHT, _BOTTOM = Qt.DockWidgetArea.LeftDockWidgetArea, Qt.DockWidgetArea.RightDockWidgetArea, Qt.DockWidgetArea.BottomDockWidgetArea
+DOCKS = {
+    "library": ("Clips", _LEFT), "preview": ("Character", _RIGHT), "properties": ("Properties", _RIGHT), "life": ("Life", _RIGHT),
+    "timeline": ("Performance", _BOTTOM), "models": ("Models", _BOTTOM), "lines": ("Lines", _BOTTOM), "problems": ("Problems", _BOTTOM),
+}  # fmt: skip
+ARRANGED = 3  # which docks there are; another arrangement saved before is not restored
 LATE = 4000  # milliseconds after which the late panels are made whatever else is going on
 CHECK_AFTER = 250  # milliseconds of quiet after an edit before problems are looked for
 
@@ -78,8 +84,8 @@ class Window(QMainWindow):
             QMainWindow.DockOption.AnimatedDocks | QMainWindow.DockOption.AllowNestedDocks | QMainWindow.DockOption.AllowTabbedDocks
         )
         self.docks: dict[str, QDockWidget] = {}
-        self._add_dock("library", "Clips", self.library, Qt.DockWidgetArea.LeftDockWidgetArea)
-        self._add_dock("preview", "Character", self.preview, Qt.DockWidgetArea.RightDockWidgetArea)
+        self._add_dock("library", "Clips", self.library, _LEFT)
+        self._add_dock("preview", "Character", self.preview, _RIGHT)
         self._late_panels()
         self.actions = Actions(self, commands(self))
         self._menus()
@@ -109,14 +115,9 @@ class Window(QMainWindow):
 
     def _late_panels(self) -> None:
         """Docks whose panels are made after the first paint, since pyqtgraph takes its time to import."""
-        for key, title, area in (
-            ("properties", "Properties", Qt.DockWidgetArea.RightDockWidgetArea),
-            ("life", "Life", Qt.DockWidgetArea.RightDockWidgetArea),
-            ("timeline", "Performance", Qt.DockWidgetArea.BottomDockWidgetArea),
-            ("models", "Models", Qt.DockWidgetArea.BottomDockWidgetArea),
-            ("problems", "Problems", Qt.DockWidgetArea.BottomDockWidgetArea),
-        ):
-            self._add_dock(key, title, QWidget(self), area)
+        for key, (title, area) in DOCKS.items():
+            if key not in self.docks:
+                self._add_dock(key, title, QWidget(self), area)
 
     def load_late_panels_soon(self) -> None:
         """Load them once the first picture is painted and the project is open, which must not wait for them."""
@@ -137,6 +138,7 @@ class Window(QMainWindow):
     def make_late_panels(self) -> None:
         """Fill the docks that were left empty for a fast start."""
         from app.panels.life import LifePanel
+        from app.panels.lines import LinesPanel
         from app.panels.machine import MachinePanel
         from app.panels.models import ModelsPanel
         from app.panels.problems import ProblemsPanel
@@ -151,6 +153,8 @@ class Window(QMainWindow):
         self.problems_panel = ProblemsPanel(self.session, self)
         self.models = ModelsPanel(self.document, self.session, self.jobs, self)
         self.models.learn_wanted.connect(self.annotate)
+        self.lines = LinesPanel(self.document, self.session, self.performance, self.jobs, self)
+        self.lines.told.connect(self.tell)
         self.machine = MachinePanel(self.document, self.session, self)
         self.centre.addWidget(self.machine)
         self.machine.setVisible(self._machine_wanted)
@@ -159,6 +163,7 @@ class Window(QMainWindow):
             ("life", self.life),
             ("timeline", self.timeline),
             ("models", _scrolled(self.models)),
+            ("lines", self.lines),
             ("problems", self.problems_panel),
         ):
             old = self.docks[key].widget()
@@ -223,20 +228,14 @@ class Window(QMainWindow):
 
     def _arrange(self) -> None:
         """Put every dock where it belongs."""
-        for key, area in (
-            ("library", Qt.DockWidgetArea.LeftDockWidgetArea), ("preview", Qt.DockWidgetArea.RightDockWidgetArea),
-            ("properties", Qt.DockWidgetArea.RightDockWidgetArea), ("life", Qt.DockWidgetArea.RightDockWidgetArea),
-            ("timeline", Qt.DockWidgetArea.BottomDockWidgetArea),
-            ("models", Qt.DockWidgetArea.BottomDockWidgetArea), ("problems", Qt.DockWidgetArea.BottomDockWidgetArea),
-        ):  # fmt: skip
+        for key, (_, area) in DOCKS.items():
             self.docks[key].setFloating(False)
             self.addDockWidget(area, self.docks[key])
             self.docks[key].show()
-        self.tabifyDockWidget(self.docks["properties"], self.docks["life"])
-        self.docks["properties"].raise_()
-        self.tabifyDockWidget(self.docks["timeline"], self.docks["models"])
-        self.tabifyDockWidget(self.docks["models"], self.docks["problems"])
-        self.docks["timeline"].raise_()
+        for first, *others in (("properties", "life"), ("timeline", "models", "lines", "problems")):
+            for one, following in pairwise((first, *others)):
+                self.tabifyDockWidget(self.docks[one], self.docks[following])
+            self.docks[first].raise_()
         self.setCorner(Qt.Corner.BottomLeftCorner, Qt.DockWidgetArea.BottomDockWidgetArea)
         self.setCorner(Qt.Corner.BottomRightCorner, Qt.DockWidgetArea.RightDockWidgetArea)
         self._sizes()
@@ -451,6 +450,11 @@ class Window(QMainWindow):
 
         ExportDialog(self.document, self.jobs, self).open()
 
+    def render(self) -> None:
+        from app.panels.render import RenderDialog
+
+        RenderDialog(self.performance, self.session, self.jobs, self).open()
+
     def show_keys(self) -> None:
         rows = []
         for command in self.actions.commands:
@@ -522,6 +526,7 @@ def late_modules() -> None:
     """Import what takes long and is not in the first picture."""
     import app.panels.annotate
     import app.panels.life
+    import app.panels.lines
     import app.panels.machine
     import app.panels.models
     import app.panels.problems

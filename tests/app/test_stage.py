@@ -174,7 +174,8 @@ def test_a_client_drives_a_gesture_that_is_seen_in_the_preview(live):
     assert drive.timeline.live.isChecked() and "ws://127.0.0.1:" in drive.performance.live.words()
     drive.wait(lambda: drive.performance.live.now > 1.0)
     before = drive.performance.pose()
-    process, reader, replies = client(drive, {"do": "action", "action": "rest long", "id": "w", "priority": 5}, {"do": "gesture", "tags": ["none"]})
+    long = {"do": "action", "action": "rest long", "id": "w", "priority": 5}
+    process, reader, replies = client(drive, long, {"do": "gesture", "tags": ["none"]})
     try:
         arms = lambda: drive.performance.shown.plan.layers["arms"].cues  # noqa: E731
         drive.wait(lambda: any(c.action.name == "rest long" and c.meta.endswith("/w") for c in arms()))

@@ -1,0 +1,132 @@
+"""Lines of dialogue from files: sounds, each with its text and phones where those lie beside it, and lists of lines."""
+
+from __future__ import annotations
+
+import csv
+import io
+from collections.abc import Iterable, Mapping
+from dataclasses import dataclass, replace
+from pathlib import Path
+from typing import Any
+
+from metagraph.errors import FileError
+from metagraph.formats.store import relative
+from metagraph.graph import staging
+from metagraph.graph.asks import Line
+from metagraph.graph.model import Project
+
+SOUNDS = (".wav", ".flac", ".ogg", ".mp3")
+LISTS = (".csv", ".tsv", ".txt")
+PHONES = (".TextGrid", ".textgrid")
+LONGEST = 20_000  # characters of a text
+MOST = 100_000  # lines of a list
+
+
+@dataclass(frozen=True)
+class Lines:
+    """What was read: lines by id, their voices, and what could not be read, in words."""
+
+    lines: Mapping[str, Line]
+    voices: Mapping[str, Any]
+    notes: tuple[str, ...] = ()
+
+
+def read_lines(paths: Iterable[Path], folder: Path | None) -> Lines:
+    """Read sound files and lists. folder: what paths in the lines are relative to, None for absolute ones. One bad file spoils no other."""
+    lines: dict[str, Line] = {}
+    notes: list[str] = []
+    for path in paths:
+        try:
+            if path.suffix.lower() in SOUNDS:
+                lines[_free(path.stem, lines)] = _beside(path, folder)
+            elif path.suffix.lower() in LISTS:
+                for ident, line in _listed(path, folder):
+                    lines[_free(ident, lines)] = line
+            else:
+                raise FileError(path, "is no sound and no list of lines", remedy=f"Sounds are {', '.join(SOUNDS)}, lists are .csv or .tsv.")
+        except FileError as error:
+            notes.append(str(error))
+    voices: dict[str, Any] = {}
+    from metagraph.speech.lines import load_voices
+
+    read, told = load_voices(Project(lines=lines), folder or Path())
+    voices.update(read.voices)
+    # A sound that cannot be read is no line; its text, if it has any, still is.
+    for ident, line in list(lines.items()):
+        if line.audio and ident not in voices:
+            if line.text:
+                lines[ident] = Line(text=line.text)
+            else:
+                del lines[ident]
+    return Lines(lines, voices, (*notes, *told))
+
+
+def _free(ident: str, taken: Mapping[str, Line]) -> str:
+    if ident not in taken:
+        return ident
+    number = 2
+    while f"{ident} {number}" in taken:
+        number += 1
+    return f"{ident} {number}"
+
+
+def _place(path: Path, folder: Path | None) -> str:
+    return relative(path, folder) if folder is not None else path.resolve().as_posix()
+
+
+def _beside(path: Path, folder: Path | None) -> Line:
+    """Return a sound's line, with the text and phones of files called like it."""
+    text = path.with_suffix(".txt")
+    words = " ".join(_text(text).split())[:LONGEST] if text.is_file() else path.stem.replace("_", " ")
+    phones = next((p for s in PHONES if (p := path.with_suffix(s)).is_file()), None)
+    return Line(text=words, audio=_place(path, folder), phones=_place(phones, folder) if phones else None)
+
+
+def _text(path: Path) -> str:
+    try:
+        data = path.read_bytes()
+    except OSError as error:
+        raise FileError(path, f"cannot be read ({error.strerror})", remedy="Check that it is there.") from None
+    for encoding in ("utf-8-sig", "utf-16" if data[:2] in (b"\xff\xfe", b"\xfe\xff") else "utf-8", "latin-1"):
+        try:
+            return data.decode(encoding)
+        except UnicodeDecodeError:
+            continue
+    return ""
+
+
+def _listed(path: Path, folder: Path | None) -> list[tuple[str, Line]]:
+    """Return the lines of a list: id and text, and perhaps a sound file; apart by commas, semicolons or tabs. A head is passed over."""
+    text = _text(path)
+    first = text.split("\n", 1)[0]
+    apart = "\t" if "\t" in first else ";" if first.count(";") > first.count(",") else ","
+    out: list[tuple[str, Line]] = []
+    try:
+        rows = list(csv.reader(io.StringIO(text.replace("\0", "")), delimiter=apart))
+    except csv.Error as error:
+        raise FileError(path, f"is no list of lines: {error}", remedy="Write one line a row: id, text, and perhaps a sound file.") from None
+    if len(rows) > MOST:
+        raise FileError(path, f"has {len(rows):,} rows", remedy=f"A list has {MOST:,} lines at most.")
+    for n, row in enumerate(rows):
+        cells = [c.strip() for c in row]
+        if not any(cells) or (n == 0 and cells[0].lower() in ("id", "line", "number", "nr", "no")):
+            continue
+        if len(cells) < 2 or not cells[0]:
+            raise FileError(path, "has no id and text", f"row {n + 1}", "Write one line a row: id, text, and perhaps a sound file.")
+        audio = path.parent / cells[2] if len(cells) > 2 and cells[2] else None
+        if audio is not None and not audio.is_file():
+            raise FileError(
+                path, f"names a sound that is not there: {cells[2]}", f"row {n + 1}", "Put it beside the list, or correct its name."
+            )
+        out.append((cells[0][:200], Line(text=cells[1][:LONGEST], audio=_place(audio, folder) if audio else None)))
+    return out
+
+
+def add_lines(project: Project, read: Lines) -> Project:
+    """Return the project with lines added; one of an id that is there already replaces it, but keeps its asks."""
+    for ident, line in read.lines.items():
+        before = project.lines.get(ident)
+        if before is not None and before.asks:
+            line = type(line)(**{f: getattr(line, f) for f in line.__struct_fields__ if f != "asks"}, asks=before.asks)
+        project = staging.set_line(project, ident, line)
+    return replace(project, voices={**project.voices, **read.voices})
