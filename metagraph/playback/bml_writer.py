@@ -48,9 +48,11 @@ def _element(ask: a.AnyAsk) -> str:
             return _tag("animation", own | {"name": ask.action, "metagraph:layer": ask.layer} | times | _phased(ask))
         case a.Go():
             stance = _tag("stance", {"type": ask.stance})
-            return _tag("postureShift", own | {"metagraph:layer": ask.layer} | times, stance)
+            own |= {"metagraph:layer": ask.layer, "metagraph:stay": _flag(ask.stay, False)}
+            return _tag("postureShift", own | times, stance)
         case a.Change():
-            return _tag("metagraph:change", own | {"metagraph:layer": ask.layer if ask.layer != "arms" else None, "mode": ask.limb} | times)
+            own |= {"metagraph:layer": ask.layer if ask.layer != "arms" else None, "mode": ask.limb}
+            return _tag("metagraph:change", own | times | {"end": _after("start", ask.duration)})
         case a.Nod() | a.Shake():
             tags = msgspec.json.encode(ask.tags).decode() if ask.tags else None
             return _tag("head", own | {"lexeme": "NOD" if isinstance(ask, a.Nod) else "SHAKE", "metagraph:tags": tags} | times)

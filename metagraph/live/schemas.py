@@ -1,0 +1,27 @@
+"""The published JSON Schemas of what can be asked: `python -m metagraph.live.schemas` writes them anew after a change."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Any
+
+import msgspec
+
+from metagraph.graph import asks
+from metagraph.live import messages
+
+GRAPH, LIVE = Path(asks.__file__).with_name("asks.schema.json"), Path(__file__).with_name("live.schema.json")
+
+
+def texts() -> dict[Path, bytes]:
+    """Return the files: one ask as performances, lines and agents have it; all that a live session says and hears."""
+    return {GRAPH: _text(asks.schema()), LIVE: _text(messages.schema())}
+
+
+def _text(schema: dict[str, Any]) -> bytes:
+    return msgspec.json.format(msgspec.json.encode(schema), indent=2) + b"\n"
+
+
+if __name__ == "__main__":
+    for path, text in texts().items():
+        path.write_bytes(text)

@@ -1,0 +1,119 @@
+"""What docs/live.md says of the live session is true, and its clients run."""
+
+from __future__ import annotations
+
+import json
+import re
+import shutil
+import subprocess
+import sys
+from collections.abc import Iterator
+from pathlib import Path
+
+import pytest
+
+from metagraph.live import hub, limits, messages, osc, schemas, tape
+
+ROOT = Path(__file__).resolve().parents[2]
+PAGE = (ROOT / "docs" / "live.md").read_text(encoding="utf-8")
+CLIENTS = ROOT / "docs" / "clients"
+
+
+def section(title: str) -> str:
+    return PAGE.split(f"\n## {title}\n")[1].split("\n## ")[0]
+
+
+def test_the_published_schemas_are_those_of_the_code() -> None:
+    for path, text in schemas.texts().items():
+        assert path.read_bytes() == text, "write them anew: .venv/bin/python -m metagraph.live.schemas"
+
+
+def test_every_request_and_its_fields_are_in_the_table() -> None:
+    rows = section("Requests")
+    common = {"id", "at", "in", "priority", "told", "do"}
+    parts = messages.schema()["$defs"]
+    for name in (ref["$ref"].rpartition("/")[2] for ref in parts["Request"]["anyOf"]):
+        word = parts[name]["properties"]["do"]["enum"][0]
+        row = next((line for line in rows.splitlines() if re.match(rf"\| (`\w+`, )?`{word}`[, ]", line)), "")
+        assert row, word
+        assert not [field for field in parts[name]["properties"] if field not in common and f"`{field}`" not in row], (word, row)
+    assert all(f"| `{field}` |" in rows for field in common - {"do"})
+
+
+@pytest.mark.parametrize(("part", "title"), [("Reply", "Replies"), ("Event", "Events"), ("Poses", "Poses")])
+def test_every_field_that_is_sent_back_is_described(part: str, title: str) -> None:
+    text = section(title)
+    assert not [field for field in messages.schema()["$defs"][part]["properties"] if f"`{field}`" not in text]
+
+
+def test_every_address_is_listed_and_understood() -> None:
+    text = section("OSC")
+    for word in re.findall(r"`/metagraph/(\w+)`", text):
+        if word in ("pose", "root", "joint", "weight", "reply", "event", "json", "replies"):
+            continue
+        assert osc.request(f"/metagraph/{word}", ("x",))["do"]
+    known = re.findall(r'case ((?:"\w+"(?: \| )?)+):', Path(osc.__file__).read_text())
+    assert not {word for words in known for word in re.findall(r"\w+", words) if f"`/metagraph/{word}`" not in text}
+
+
+def test_the_limits_are_the_codes() -> None:
+    text = section("Limits")
+    kib = 1024
+    for number in (
+        f"{messages.LONGEST // kib} KiB", f"{messages.LONGEST_BML // kib} KiB",
+        f"{messages.LONGEST_MESSAGE // kib} KiB, {messages.MOST} requests",
+        f"| {limits.PER_TICK}, of which {limits.PLANNED_PER_TICK} change", f"| {limits.PENDING}, of all", f"| {limits.WAITING} of the same",
+        f"| {limits.FARTHEST:g} s |", f"| {limits.SPEECH} characters |", f"names | {limits.NAMES} |", f"clients | {hub.CLIENTS} |",
+        f"{hub.BACKLOG // kib // kib} MiB", f"{tape.MOST // kib // kib} MiB",
+    ):  # fmt: skip
+        assert number in text, number
+    assert f"up to {messages.FASTEST:g}" in section("Poses") and f"within {hub.PROVE:g} seconds" in section("Who may ask")
+
+
+def test_the_examples_are_json_as_it_is_sent() -> None:
+    reply, pose = (json.loads(x) for x in re.findall(r"^```json\n(.*?)\n```$", PAGE, re.S | re.M))
+    assert set(reply) <= set(messages.Reply.__struct_fields__) and {"t", "root", "rotations", "weights"} == set(pose)
+
+
+@pytest.mark.parametrize(("tag", "name"), [("py", "client.py"), ("js", "client.mjs")])
+def test_the_clients_on_the_page_are_the_files_and_have_ten_lines(tag: str, name: str) -> None:
+    (shown,) = re.findall(rf"^```{tag}\n(.*?)^```$", PAGE, re.S | re.M)
+    assert shown == (CLIENTS / name).read_text(encoding="utf-8")
+    assert len(shown.splitlines()) == 10
+
+
+@pytest.fixture(scope="module")
+def port() -> Iterator[str]:
+    """A session in a process of its own; the port it listens on."""
+    words = ["live", str(ROOT / "sample_clips" / "sample.metagraph.yaml"), "--json", "--port", "0", "--no-osc", "--no-stdin"]
+    with subprocess.Popen([sys.executable, "-m", "app.cli", *words], stdout=subprocess.PIPE, text=True, cwd=ROOT) as process:
+        assert process.stdout is not None
+        yield json.loads(process.stdout.readline())["websocket"].rpartition(":")[2]
+        process.terminate()
+        assert process.wait(30) == 0
+
+
+def run(name: str, words: list[str], port: str, folder: Path) -> str:
+    file = folder / name
+    file.write_text((CLIENTS / name).read_text(encoding="utf-8").replace("8765", port), encoding="utf-8")
+    done = subprocess.run([*words, str(file)], capture_output=True, text=True, timeout=60, cwd=ROOT)
+    assert done.returncode == 0, done.stderr
+    return done.stdout
+
+
+def test_the_python_client_runs(port: str, tmp_path: Path) -> None:
+    first, second = run("client.py", [sys.executable], port, tmp_path).splitlines()
+    assert "'state': 'planned'" in first or "'state': 'late'" in first
+    assert "nod" in second
+
+
+def test_the_javascript_client_runs(port: str, tmp_path: Path) -> None:
+    node = shutil.which("node")
+    if node is None:
+        pytest.skip("Node is not here")
+    version = subprocess.run([node, "--version"], capture_output=True, text=True, timeout=60).stdout
+    major, minor = (int(x) for x in version.strip().removeprefix("v").split(".")[:2])
+    if (major, minor) < (20, 10):
+        pytest.skip(f"Node {version.strip()} has no WebSocket")
+    out = run("client.mjs", [node, *(["--experimental-websocket"] if major < 22 else [])], port, tmp_path)
+    assert out.count("state:") == 2 and "nod" in out
