@@ -6,14 +6,15 @@ import math
 from dataclasses import replace
 from typing import Any
 
+import numpy as np
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from metagraph.graph import asks as a
-from metagraph.graph.model import LAYERS, Project
+from metagraph.graph.model import LAYERS, Layer, Project
 from metagraph.playback.hear import answer, hear, perform, since
-from metagraph.playback.plan import Plan
+from metagraph.playback.plan import Cue, Plan
 from metagraph.playback.player import pose_at
 
 END = 30.0
@@ -206,3 +207,69 @@ def test_speech_interrupts_speech_of_the_same_weight_but_not_more_important_one(
     first = a.msgspec.structs.replace(first, priority=3)
     plan = perform(sample, [first, a.Say(id="2", text="stop", at=2.0, duration=1.0)], 10)
     assert [s.id for s in plan.track.speeches] == ["1"]
+
+
+# --- staying
+
+
+def _left(plan: Plan, layer: Layer) -> list[Cue]:
+    return [c for c in plan.layers[layer].cues if c.then != c.stance]
+
+
+def test_the_models_leave_a_stance_that_is_to_be_kept_alone(sample: Project) -> None:
+    free = perform(sample, [a.Go(id="g", stance="arms crossed", at=1.0)], 120)
+    kept = perform(sample, [a.Go(id="g", stance="arms crossed", at=1.0, stay=True)], 120)
+    assert len(_left(free, "arms")) > 2
+    assert [c.then for c in _left(kept, "arms") if c.start >= 1.0] == ["s159"]
+    assert len(kept.layers["arms"].cues) > 10  # gestures and fidgets go on
+    assert _left(kept, "body") == _left(free, "body")
+
+
+def test_staying_ends_with_the_next_stance_that_is_asked_for_or_when_it_is_taken_back(sample: Project) -> None:
+    go = a.Go(id="g", stance="arms crossed", at=1.0, stay=True)
+    other = perform(sample, [go, a.Go(id="h", stance="on hips", at=20.0, told=20.0)], 160)
+    back = perform(sample, [go, a.Withdraw(id="w", what="g", told=20.0)], 160)
+    for plan in (other, back):
+        assert len([c for c in _left(plan, "arms") if c.start < 19]) == 1
+        assert len([c for c in _left(plan, "arms") if c.start > 22]) > 1
+    assert [s.on for s in other.track.stays] == [True, False]
+
+
+def test_where_nothing_is_to_be_kept_stances_leave_no_trace_in_the_track(sample: Project) -> None:
+    assert perform(sample, [a.Go(id="g", stance="arms crossed", at=1.0)], 20).track.stays == ()
+
+
+def test_being_there_already_is_answered_as_before_when_it_is_to_be_kept(sample: Project) -> None:
+    plan = perform(sample, [a.Go(id="g", stance="hands at sides", at=0.0, stay=True)], 60)
+    assert answer(plan, "g").state == "done"
+    assert _left(plan, "arms") == []
+
+
+def test_what_is_to_be_kept_is_not_forgotten_with_the_past(sample: Project) -> None:
+    plan = perform(sample, [a.Go(id="g", stance="arms crossed", at=1.0, stay=True)], 60)
+    whole = hear(sample, plan, 40.0, [], 160)
+    cut = hear(sample, since(plan, 40.0), 40.0, [], 160)
+    assert [c.start for c in cut.layers["arms"].cues] == [c.start for c in whole.layers["arms"].cues if c.end >= 40]
+    assert _left(cut, "arms") == []
+
+
+def test_poses_are_bit_for_bit_the_same_live_in_ticks_of_16_ms_scrubbed_and_baked() -> None:
+    """Each pose is taken at its tick from the plan as it was then; later the whole is planned at once and posed in any order."""
+    project = replace(_SAMPLE[0], lines={"1": a.Line(text="Well, I would not say so.", duration=2.0, asks=(a.Nod(at=0.4),))})
+    heard = [
+        a.Gesture(tags=("positive",), told=0.9, priority=3), a.Say(line="1", told=2.3), a.Look(to=(1.0, 1.4, 1.5), duration=1.5, told=4.0),
+        a.Go(stance="on hips", told=5.0), a.Gesture(hold=1.5, told=7.7), a.Behave(mode="listening", told=8.5), a.Blink(told=9.0),
+    ]  # fmt: skip
+    end, tick = 12.0, 0.016
+    plans = in_ticks(project, heard, end, tick, ahead=4.0, forget=3.0)
+    live = [pose_at(plan, project, n * tick) for n, plan in enumerate(plans)]
+    whole = perform(project, [a.msgspec.structs.replace(x, id=f"ask{n}") for n, x in enumerate(heard)], end + 8)
+    times = np.arange(len(plans)) * tick
+    baked = pose_at(whole, project, times)
+    shuffled = np.random.default_rng(3).permutation(len(times))
+    scrubbed = {int(n): pose_at(whole, project, times[n]) for n in shuffled[:200]}
+    for n, pose in enumerate(live):
+        assert (pose.rotations == baked.rotations[n]).all() and (pose.translations == baked.translations[n]).all(), n * tick
+        if n in scrubbed:
+            assert (pose.rotations == scrubbed[n].rotations).all()
+    assert np.abs(np.diff(baked.rotations, axis=0)).max() > 1e-3, "it moves"
