@@ -30,7 +30,7 @@ LABELS = {
     "at": "At", "stroke": "Stroke at", "duration": "Wanted for", "hold": "Hold", "priority": "Priority", "tags": "Tags", "limb": "Arm",
     "prepare": "Prepare", "resume": "Go on after a cut", "action": "Action", "stance": "Stance", "to": "Look at", "amount": "How far",
     "strict": "Without averting", "line": "Line", "text": "Words", "gestures": "With its gestures", "mode": "Mode",
-    "name": "Point",
+    "name": "Point", "stay": "Stay there",
 }  # fmt: skip
 TIPS = {
     "at": "Seconds of the performance; it may come later when something else plays",
@@ -42,6 +42,7 @@ TIPS = {
     "tags": "Words apart by commas; all must be among the action's tags",
     "resume": "When something more important cuts it, its rest plays afterwards",
     "strict": "The gaze stays there without looking away now and then",
+    "stay": "The models do not leave the stance, until another one is asked for",
 }
 ORDER = tuple(LABELS)
 

@@ -68,10 +68,12 @@ class Play(Ask, frozen=True, tag="action"):
 
 
 class Go(Ask, frozen=True, tag="stance"):
-    """Go to a stance, by id or name, by the shortest chain of transitions."""
+    """Go to a stance, by id or name, by the shortest chain of transitions. stay: the models do not leave it of their own accord,
+    until another stance is asked for or this is taken back."""
 
     stance: Id
     layer: Layer | None = None
+    stay: bool = False
 
 
 class Change(Ask, frozen=True, tag="change"):

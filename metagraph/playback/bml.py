@@ -188,8 +188,8 @@ class _Reader:
             self._note(e, 'names no stance; say <stance type="..."/>')
         if kind == "posture" and e.get("end"):
             self._note(e, "lasts until another posture is asked for, not only until its end")
-        layer = e.get("metagraph:layer")
-        asks = [a.Go(stance=s, layer=x or None, **common) for part, w in found for x, s in [self.words.stance(part, w, layer)]]  # type: ignore[arg-type]
+        layer, stay = e.get("metagraph:layer"), e.get("metagraph:stay") == "true"
+        asks = [a.Go(stance=s, layer=x or None, stay=stay, **common) for part, w in found for x, s in [self.words.stance(part, w, layer)]]  # type: ignore[arg-type]
         return [msgspec.structs.replace(x, id=f"{x.id}{n or ''}") if x.id else x for n, x in enumerate(asks)]
 
     def _speech(self, e: Element, common: dict[str, Any]) -> tuple[list[Any], dict[str, float]]:

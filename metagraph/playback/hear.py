@@ -14,6 +14,7 @@ import msgspec
 
 from metagraph.graph.asks import AnyAsk
 from metagraph.graph.model import Layer, Project
+from metagraph.playback.life.track import StayFrom
 from metagraph.playback.pick import remember
 from metagraph.playback.plan import Cue, LayerPlan, Past, Plan, Report
 from metagraph.playback.planner import extend
@@ -62,7 +63,9 @@ def hear(
     asked_before = {r.id for r in plan.requests} | {i.id for i in plan.track.items}
     belonging = {i for i in asked_before if i in gone or ("." in i and any(owner in gone for owner in _owners(i)))}
     withdrawn = asked_before if every else belonging
-    track = plan.track.without(withdrawn, fixed).plus(meant.items)
+    staying = {s.layer for s in (*plan.track.stays, *meant.items) if isinstance(s, StayFrom) and s.on}
+    items = [i for i in meant.items if not isinstance(i, StayFrom) or i.layer in staying]
+    track = plan.track.without(withdrawn, fixed).plus(items)
     plan = replace(plan, track=track)
     after = extend(project, plan, fixed, meant.requests, end, stances, idle, frozenset(withdrawn))
     return replace(after, reports=(*after.reports, *meant.refused)) if meant.refused else after
@@ -98,7 +101,7 @@ class Answer:
 def answer(plan: Plan, ident: str) -> Answer:
     """Say what a plan does about an ask: when it will play, or why it will not."""
     cues = [c for layer in plan.layers.values() for c in layer.cues if _belongs(c.meta.partition("+")[0], ident)]
-    items = [i for i in plan.track.items if _belongs(i.id, ident)]
+    items = [i for i in plan.track.items if not isinstance(i, StayFrom) and _belongs(i.id, ident)]
     told = [r for r in plan.reports if _belongs(r.request, ident)]
     why = "; ".join(dict.fromkeys(r.message for r in told))
     if cues or items:

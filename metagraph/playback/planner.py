@@ -112,7 +112,9 @@ def _extend_layer(
         future += [m for m in written if m.start >= now]
     asked, delayed = delay(asked, performer.ready, project.settings)
     placed, told = replan([*future, *asked], project.settings)
-    performer.perform(placed, end)
+    performer.perform(
+        [m for m in placed if not (m.written and m.request.kind == "transition" and plan.track.stays_at(layer, m.start))], end
+    )
     performer.vary_rests(end)
     whole = LayerPlan(layer, (*done, *placed), tuple(performer.cues), tuple(performer.rests), old.past, cursor)
     return whole, [*reports, *delayed, *told, *performer.reports]

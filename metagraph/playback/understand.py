@@ -11,7 +11,7 @@ import msgspec
 
 from metagraph.graph import asks as a
 from metagraph.graph.model import LAYERS, Action, Layer, Project
-from metagraph.playback.life.track import BlinkAt, Item, LookAt, ModeFrom, PlaceFrom, Speech
+from metagraph.playback.life.track import BlinkAt, Item, LookAt, ModeFrom, PlaceFrom, Speech, StayFrom
 from metagraph.playback.plan import Report, Request
 
 FOREVER = 1e9  # seconds; a look that lasts until the next
@@ -21,7 +21,7 @@ SHORTEST_LINE = 0.4  # seconds
 
 @dataclass(frozen=True)
 class Understood:
-    """requests: for the layers. items: for the life layers. withdrawn: ids taken back; every id where it holds "".
+    """requests: for the layers. items: for the track. withdrawn: ids taken back; every id where it holds "".
     refused: what could not be understood, and why."""
 
     requests: tuple[Request, ...] = ()
@@ -78,7 +78,7 @@ def _meant(project: Project, ask: a.AnyAsk, at: float) -> Sequence[Request | Ite
             ]  # fmt: skip
         case a.Go():
             layer, stance = find_stance(project, ask.stance, ask.layer)
-            return [Request(ask.id, layer, "transition", at, stance=stance, priority=ask.priority)]
+            return [Request(ask.id, layer, "transition", at, stance=stance, priority=ask.priority), StayFrom(ask.id, at, layer, ask.stay)]
         case a.Change():
             # Whichever arm was seen to move: stances are joined by few transitions, and mostly of both.
             return [Request(ask.id, ask.layer, "transition", at, priority=ask.priority)]

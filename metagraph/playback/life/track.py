@@ -1,4 +1,4 @@
-"""What was asked of the life layers: where to look, what to say, which mode to be in. Values; times are seconds."""
+"""What was asked for and lasts: where to look, what to say, which mode to be in, which stance to stay in. Values; times are seconds."""
 
 from __future__ import annotations
 
@@ -8,7 +8,7 @@ from dataclasses import dataclass, replace
 from math import inf
 
 from metagraph.graph.asks import Point
-from metagraph.graph.words import Mode
+from metagraph.graph.words import Layer, Mode
 
 
 @dataclass(frozen=True, slots=True)
@@ -65,7 +65,18 @@ class BlinkAt:
     start: float
 
 
-Item = LookAt | Speech | ModeFrom | PlaceFrom | BlinkAt
+@dataclass(frozen=True, slots=True)
+class StayFrom:
+    """From `start` on the models change no stance of a layer (or, with `on` false, may again), until `end` or the next of these."""
+
+    id: str
+    start: float
+    layer: Layer
+    on: bool = True
+    end: float = inf
+
+
+Item = LookAt | Speech | ModeFrom | PlaceFrom | BlinkAt | StayFrom
 
 
 @dataclass(frozen=True)
@@ -77,10 +88,16 @@ class Track:
     modes: tuple[ModeFrom, ...] = ()
     places: tuple[PlaceFrom, ...] = ()
     blinks: tuple[BlinkAt, ...] = ()
+    stays: tuple[StayFrom, ...] = ()
 
     @property
     def items(self) -> tuple[Item, ...]:
-        return (*self.looks, *self.speeches, *self.modes, *self.places, *self.blinks)
+        return (*self.looks, *self.speeches, *self.modes, *self.places, *self.blinks, *self.stays)
+
+    def stays_at(self, layer: Layer, seconds: float) -> bool:
+        """Return whether the models may not change a layer's stance at a time."""
+        last = next((s for s in reversed(self.stays) if s.layer == layer and s.start <= seconds), None)
+        return last is not None and last.on and seconds < last.end
 
     def without(self, idents: Collection[str], now: float = -inf) -> Track:
         """Return the track without items of these ids that begin at `now` or later; what has begun ends now, if it can."""
@@ -92,7 +109,7 @@ class Track:
                 return None
             if isinstance(item, Speech):
                 return cut(item, now)
-            return replace(item, end=min(item.end, now)) if isinstance(item, LookAt) else item
+            return replace(item, end=min(item.end, now)) if isinstance(item, LookAt | StayFrom) else item
 
         if not idents or not any(item.id in idents for item in self.items):
             return self
@@ -103,19 +120,20 @@ class Track:
         if not items:
             return self
         more = track_of(items)
-        looks, _, modes, places, blinks = (_merged(old, new) for old, new in zip(self._kinds(), more._kinds(), strict=True))
+        looks, _, modes, places, blinks, stays = (_merged(old, new) for old, new in zip(self._kinds(), more._kinds(), strict=True))
         speeches = self.speeches if not more.speeches else _apart(sorted((*self.speeches, *_speeches(items)), key=_order))
-        return Track(looks, speeches, modes, places, blinks)  # type: ignore[arg-type]
+        return Track(looks, speeches, modes, places, blinks, stays)  # type: ignore[arg-type]
 
     def _kinds(self) -> tuple[tuple[Item, ...], ...]:
-        return self.looks, self.speeches, self.modes, self.places, self.blinks
+        return self.looks, self.speeches, self.modes, self.places, self.blinks, self.stays
 
     def since(self, seconds: float) -> Track:
         """Return the track without what no time from `seconds` on needs."""
         places = {p.name: p for p in self.places if p.start <= seconds}
         looks = [x for x in self.looks if x.start <= seconds][-1:]
         modes = [x for x in self.modes if x.start <= seconds][-1:]
-        old = {id(x) for x in (*places.values(), *looks, *modes)}
+        stays = {s.layer: s for s in self.stays if s.start <= seconds}
+        old = {id(x) for x in (*places.values(), *looks, *modes, *stays.values())}
         return track_of(i for i in self.items if i.start > seconds or id(i) in old or (isinstance(i, LookAt | Speech) and i.end > seconds))
 
 
@@ -128,6 +146,7 @@ def track_of(items: object) -> Track:
         tuple(i for i in every if isinstance(i, ModeFrom)),
         tuple(i for i in every if isinstance(i, PlaceFrom)),
         tuple(i for i in every if isinstance(i, BlinkAt)),
+        tuple(i for i in every if isinstance(i, StayFrom)),
     )
 
 
