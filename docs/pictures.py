@@ -1,6 +1,6 @@
 """Take the pictures of the documentation from the real window: `python docs/pictures.py` (on a screen, or under `xvfb-run`).
 
-Writes docs/window.png, practice.png, empty.png, light.png and performance.png, from our own sample clips only.
+Writes docs/window.png, practice.png, empty.png, light.png, requests.png, models.png and performance.png, from our own sample clips only.
 """
 
 from __future__ import annotations
@@ -13,7 +13,7 @@ from pathlib import Path
 ROOT = Path(__file__).resolve().parents[1]
 sys.path.insert(0, str(ROOT))
 
-from PySide6.QtCore import QEventLoop, QSettings, QStandardPaths, QTimer  # noqa: E402
+from PySide6.QtCore import QEventLoop, QSettings, QStandardPaths, Qt, QTimer  # noqa: E402
 
 from app.main import prepare  # noqa: E402
 
@@ -107,6 +107,49 @@ def half_labelled() -> None:
     close(out)
 
 
+def requests() -> None:
+    """The lanes of a performance: requests, what plays, one that is late and one that cannot."""
+    from app.files import SAMPLE
+    from metagraph.graph import asks as a
+
+    out = window()
+    out.files.open(SAMPLE, template=True)  # type: ignore[attr-defined]
+    wait(20000, lambda: bool(out.document.project.clips))  # type: ignore[attr-defined]
+    stage, session = out.performance, out.session  # type: ignore[attr-defined]
+    session.set_playing(False)
+    for ask in (
+        a.Say(text="Well, I would not say so. But who knows?", at=1.0), a.Gesture(tags=("negative",), at=1.4, priority=2),
+        a.Go(stance="on hips", at=4.0), a.Look(to="user", at=4.5), a.Nod(at=6.0), a.Gesture(tags=("greeting",), at=8.0),
+        a.Gesture(tags=("positive",), at=10.0), a.Play(action="shrug_bt_01", at=11.5), a.Go(stance="weight left", at=7.0),
+    ):  # fmt: skip
+        stage.ask(ask)
+    session.select_asks(())
+    session.seek(2.0)
+    wait(4000)
+    out.timeline.grab().save(str(ROOT / "docs" / "requests.png"))  # type: ignore[attr-defined]
+    print("docs/requests.png")
+    close(out)
+
+
+def models() -> None:
+    """The heat map of a model learned from our own annotation, beside what it generates."""
+    from app.files import SAMPLE
+    from app.panels.annotate import open_annotation
+
+    out = window()
+    out.files.open(SAMPLE, template=True)  # type: ignore[attr-defined]
+    wait(20000, lambda: bool(out.document.project.clips))  # type: ignore[attr-defined]
+    open_annotation(out, ROOT / "sample_clips" / "annotation" / "conversation.eaf", lambda dialog: dialog.accept())  # type: ignore[arg-type]
+    wait(8000, lambda: "arms" in out.document.project.markov)  # type: ignore[attr-defined]
+    out.session.set_layer("arms")  # type: ignore[attr-defined]
+    out.show_dock("models")  # type: ignore[attr-defined]
+    out.resizeDocks([out.docks["models"]], [420], Qt.Orientation.Vertical)  # type: ignore[attr-defined]
+    wait(3000)
+    out.models.grab().save(str(ROOT / "docs" / "models.png"))  # type: ignore[attr-defined]
+    print("docs/models.png")
+    close(out)
+
+
 def main() -> None:
     QStandardPaths.setTestModeEnabled(True)
     app = prepare()
@@ -119,6 +162,8 @@ def main() -> None:
         finished("window.png", "dark", False, "shrug_bt_01")
         finished("light.png", "light", True, "beat_large_bt_01")
         half_labelled()
+        requests()
+        models()
     from app.cli import main as command
 
     sample = str(ROOT / "sample_clips" / "sample.metagraph.yaml")
