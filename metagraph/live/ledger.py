@@ -18,7 +18,7 @@ _NAMED = re.compile(r"'c(\d+)/([^']*)'")
 
 def key_of(client: int, ident: str) -> str:
     """Return what a client's id is called in the plan: apart from other clients', and free of what has a meaning there."""
-    if _SAFE.fullmatch(ident):
+    if _SAFE.fullmatch(ident) or not ident:
         return f"c{client}/{ident}"
     return f"c{client}/~{hashlib.blake2s(ident.encode('utf-8', 'surrogatepass'), digest_size=12).hexdigest()}"
 
@@ -47,11 +47,9 @@ class Known:
     def settled(self) -> bool:
         return bool(self.state)
 
-    def over(self, now: float, looked: float) -> bool:
-        """Whether one that has begun has ended. looked: when the last look began, which ends those before it."""
-        if self.until is None and self.lane == "look":
-            return self.at < looked
-        if self.lane in MOMENTS:
+    def over(self, now: float) -> bool:
+        """Whether one that has begun has ended, or lasts until something else comes."""
+        if self.lane in MOMENTS or (self.until is None and self.lane == "look"):
             return True
         return (self.at if self.until is None else self.until) < now - OVER
 
@@ -125,9 +123,9 @@ class Ledger:
         """How many have not begun."""
         return sum(1 for ask in self.known.values() if ask.at > now)
 
-    def forget(self, now: float, looked: float) -> None:
-        """Drop what is over. looked: when the last look began, which ends those before it."""
-        over = [key for key, ask in self.known.items() if ask.settled and ask.at < now and ask.over(now, looked)]
+    def forget(self, now: float) -> None:
+        """Drop what is over."""
+        over = [key for key, ask in self.known.items() if ask.settled and ask.at < now and ask.over(now)]
         for key in over:
             self.drop(key)
         for key in [key for key, parts in self.blocks.items() if not any(part in self.known for part in parts)]:

@@ -16,17 +16,16 @@ import msgspec
 from metagraph.graph import asks as a
 from metagraph.graph.model import LAYERS, Layer, Project
 from metagraph.live import describe
-from metagraph.live.answers import Found, find
+from metagraph.live.answers import Found, find, owner_of
 from metagraph.live.happenings import happenings
 from metagraph.live.ledger import Known, Ledger, key_of, told
 from metagraph.live.limits import BML_PER_TICK, BUSY, FARTHEST, HINTS, NAMES, PENDING, PER_TICK, SPEECH, TAG, Words
 from metagraph.live.messages import Describe, Event, Heard, OwnMessage, Part, Reply, Status, read, rounded, split
 from metagraph.live.poses import Stream, due
 from metagraph.live.tape import Tape
-from metagraph.live.work import Client, Open, Out, Work
+from metagraph.live.work import Client, Open, Out, Work, thinned
 from metagraph.playback.bml import Block, read_block
 from metagraph.playback.hear import hear, since
-from metagraph.playback.life.track import Track
 from metagraph.playback.phases import phases
 from metagraph.playback.plan import Plan
 from metagraph.playback.understand import find_action, find_stance
@@ -38,8 +37,6 @@ CUT = 15.0  # seconds between two cuts
 TIDY = 0.25  # seconds between two looks at what is over
 KEPT = 10.0  # seconds for which what was told and asked of the plan is kept when it is over
 TOLD = 100  # of what was told to others than those who ask, the last are kept
-THIN = 20.0  # seconds after which of a moving point only every so manyth place is kept
-COARSE = 0.25  # seconds between those
 
 
 class LiveSession:
@@ -227,12 +224,15 @@ class LiveSession:
 
     def _withdraw(self, client: Client, ident: str, ask: a.Withdraw, work: Work) -> Reply:
         """Take back what a client asked for itself; what has begun plays on."""
-        target = key_of(client.number, ask.what)
-        keys = self.ledger.belonging(target) if ask.what else list(self.ledger.of(client.number))
-        if not keys:
-            return Reply(id=ident, state="done", why="nothing waits under that id" if ask.what else "nothing waits")
         if self.ledger.limits.refusal("withdraw", self.now, 0.0, 0, self.now):
             return Reply(id=ident, state="refused", why=BUSY)
+        target, mine = key_of(client.number, ask.what), key_of(client.number, "")
+        keys = self.ledger.belonging(target) if ask.what else list(self.ledger.of(client.number))
+        # What has begun and lasts is not in the ledger any more, but can still be ended.
+        lasting = [x.id for x in self.plan.track.items if getattr(x, "end", 0.0) > self.now and x.id not in self.ledger.known]
+        keys += [x for x in lasting if (owner_of(x, (target,)) if ask.what else x.startswith(mine))]
+        if not keys:
+            return Reply(id=ident, state="done", why="nothing waits under that id" if ask.what else "nothing waits")
         self._take_back([target] if ask.what else keys, work)
         return Reply(id=ident, state="done", why=f"{len(keys)} taken back; what has begun plays on")
 
@@ -358,8 +358,7 @@ class LiveSession:
         if self.now < self._tidied + TIDY:
             return
         now = self._tidied = self.now
-        looks = [x.start for x in self.plan.track.looks if x.start <= now]
-        self.ledger.forget(now, max(looks, default=0.0))
+        self.ledger.forget(now)
         plan = self.plan
         recent = max(RECENT, self.project.settings.memory)
         if now > self._begin + recent + CUT:
@@ -373,7 +372,7 @@ class LiveSession:
         last = len(plan.reports) - TOLD
         reports = tuple(r for n, r in enumerate(plan.reports) if n >= last or (r.at > now - KEPT and owner(r.request)))
         requests = tuple(r for r in plan.requests if r.id in near or owner(r.id))
-        self.plan = replace(plan, reports=reports, requests=requests, track=_thinned(plan, now - THIN))
+        self.plan = replace(plan, reports=reports, requests=requests, track=thinned(plan, now))
 
     def plan_at(self, seconds: float) -> Plan:
         """Return the plan that knows what was shown at a time: the running one, or for the past one of before."""
@@ -385,16 +384,3 @@ class LiveSession:
         """Return the session so far, to be kept: `perform` plays it as it was played. Raises AskError when it was too long."""
         asks, length = self.tape.asks(), max(self.now, 0.1)
         return a.Performance(name=name, asks=asks, seed=self.plan.seed, length=length, idle=self.idle, stances=self.stances)
-
-
-def _thinned(plan: Plan, before: float) -> Track:
-    """Return the track with fewer of the places a moving point had long ago; a stream of them would slow every plan down."""
-    places = plan.track.places
-    if len(places) < 100:
-        return plan.track
-    kept, last = [], dict[str, float]()
-    for place in places:
-        if place.start > before or place.start - last.get(place.name, -1e9) >= COARSE:
-            kept.append(place)
-            last[place.name] = place.start
-    return replace(plan.track, places=tuple(kept)) if len(kept) < len(places) else plan.track

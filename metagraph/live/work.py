@@ -2,11 +2,16 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 
 from metagraph.graph import asks as a
 from metagraph.live.messages import Event, Reply
 from metagraph.live.poses import Frame, Stream
+from metagraph.playback.life.track import Track
+from metagraph.playback.plan import Plan
+
+THIN = 20.0  # seconds after which of a moving point only some places are kept
+COARSE = 0.25  # seconds between those
 
 
 @dataclass(slots=True)
@@ -56,3 +61,16 @@ class Work:
         if found is not None:
             found.why = why
             self.over.append(found)
+
+
+def thinned(plan: Plan, now: float) -> Track:
+    """Return the track with fewer of the places a moving point had long ago; a stream of them would slow every plan down."""
+    places = plan.track.places
+    if len(places) < 100:
+        return plan.track
+    kept, last = [], dict[str, float]()
+    for place in places:
+        if place.start > now - THIN or place.start - last.get(place.name, -1e9) >= COARSE:
+            kept.append(place)
+            last[place.name] = place.start
+    return replace(plan.track, places=tuple(kept)) if len(kept) < len(places) else plan.track
