@@ -65,7 +65,7 @@ LINES: tuple[tuple[str, str, str], ...] = (
     ("hello", "Hello! How are you?", "HH AH0 L OW1 , HH AW1 AA0 R Y UW1"),
     ("happy", "I am so happy to see you.", "AY0 AE0 M S OW1 HH AE1 P IY0 T UH0 S IY1 Y UW0"),
     ("maybe", "Well, maybe. Who knows?", "W EH1 L , M EY1 B IY0 , HH UW1 N OW1 Z"),
-    ("no", "No, no, no! You first.", "N OW1 , N OW0 , N OW1 , Y UW1 F ER1 S T"),
+    ("you_first", "No, no, no! You first.", "N OW1 , N OW0 , N OW1 , Y UW1 F ER1 S T"),
 )
 
 

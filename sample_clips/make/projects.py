@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from pathlib import Path
 from typing import cast
 
@@ -9,6 +10,7 @@ from metagraph.formats.imports import import_files
 from metagraph.formats.store import SUFFIX, save_project
 from metagraph.graph import edits
 from metagraph.graph.model import LAYERS, Kind, Layer, Limb, Project, Timing
+from sample_clips.make.babble import sample_lines
 from sample_clips.make.catalogue import BASE, Entry, catalogue
 
 HERE = Path(__file__).resolve().parents[1]
@@ -28,7 +30,7 @@ def practice() -> Project:
 
 
 def sample() -> Project:
-    """Return the finished project: every clip of the catalogue placed with its timing, tags and likelihood."""
+    """Return the finished project: every clip of the catalogue placed with its timing, tags and likelihood, and a few lines to say."""
     project = edits.rename_project(practice(), "sample")
     clips = {c.name: c.id for c in project.clips.values()}
     entries = catalogue()
@@ -41,7 +43,7 @@ def sample() -> Project:
             ids[(layer, name)] = list(project.graphs[layer].stances)[-1]
     for entry in sorted(entries, key=lambda e: ("stance", "gesture", "fidget", "transition").index(e.kind)):
         project = _place(project, entry, clips[entry.name], ids)
-    return project
+    return replace(project, lines=sample_lines())
 
 
 def _words(name: str) -> str:
