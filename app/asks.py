@@ -7,6 +7,7 @@ from typing import Any
 
 from PySide6.QtWidgets import QInputDialog, QMenu, QWidget
 
+from app.document import Document
 from app.performance import Performance
 from app.theme import KIND_MARKS
 from metagraph.graph import asks as a
@@ -95,7 +96,7 @@ def ask_menu(parent: QWidget, performance: Performance, seconds: float | None, l
     if lane in (None, STAGE) and project.skeleton is not None:
         if lane is None:
             menu.addSeparator()
-        _stage_items(menu, parent, project, seconds, ask)
+        _stage_items(menu, parent, performance.document, seconds, ask)
     if lane is None and performance.asks:
         menu.addSeparator()
         menu.addAction("Withdraw all requests", lambda: performance.withdraw())
@@ -133,7 +134,8 @@ def _layer_items(menu: QMenu, project: Project, layer: Layer, at: float | None, 
         menu.addAction("Change to another stance", lambda: ask(a.Change(layer=layer, at=at), "Ask for another stance"))
 
 
-def _stage_items(menu: QMenu, parent: QWidget, project: Project, at: float | None, ask: Ask) -> None:
+def _stage_items(menu: QMenu, parent: QWidget, document: Document, at: float | None, ask: Ask) -> None:
+    project = document.project
     said = menu.addMenu("Say")
     for ident, line in project.lines.items():
         words = line.text if len(line.text) < 48 else line.text[:46] + "…"
@@ -148,11 +150,19 @@ def _stage_items(menu: QMenu, parent: QWidget, project: Project, at: float | Non
     looks.addSeparator()
     for word, point in DIRECTIONS.items():
         looks.addAction(word, lambda p=point: ask(a.Look(to=p, at=at, duration=2.0), "Ask for a look"))
+    looks.addSeparator()
+    looks.addAction("Another point…", lambda: _point(parent, document, at, ask))
     menu.addAction("Blink", lambda: ask(a.Blink(at=at), "Ask for a blink"))
     modes = menu.addMenu("Mode")
     for mode in MODES:
         modes.addAction(MODE_WORDS[mode], lambda m=mode: ask(a.Behave(mode=m, at=at), "Ask for a mode"))
     modes.addAction("As it comes", lambda: ask(a.Behave(mode=None, at=at), "Ask for a mode"))
+
+
+def _point(parent: QWidget, document: Document, at: float | None, ask: Ask) -> None:
+    from app.panels.point_editor import PointEditor
+
+    PointEditor(document, lambda name: ask(a.Look(to=name, at=at), "Ask for a look"), parent).open()
 
 
 def _say(parent: QWidget, at: float | None, ask: Ask) -> None:

@@ -135,6 +135,23 @@ def test_performances_are_made_renamed_and_removed_from_the_panel(stage, monkeyp
     assert drive.document.project.performances
 
 
+def test_a_point_is_put_somewhere_and_looked_at(stage):
+    from app.asks import ask_menu
+
+    drive = stage
+    menu = ask_menu(drive.timeline, drive.performance, 2.0)
+    drive.pick(menu, "Look at", "Another point…")
+    drive.wait(lambda: QApplication.activeModalWidget() is not None)
+    editor = QApplication.activeModalWidget()
+    QTest.keyClicks(editor.name, "door")
+    editor.axes[0].setValue(-2.0)
+    editor.buttons.accepted.emit()
+    assert drive.document.project.points["door"] == (-2.0, 1.5, 1.2)
+    (ask,) = drive.performance.asks
+    assert ask.to == "door" and ask.at == 2.0
+    drive.wait(lambda: bool(drive.performance.shown.plan.track.looks))
+
+
 # --- live
 
 CLIENT = """
