@@ -339,6 +339,9 @@ def _hand_weights(p: Array, fingers: tuple[str, ...] = FINGERS) -> dict[str, Arr
 def _head_weights(p: Array) -> dict[str, Array]:
     out = _chain(p, ("UpperChest", "Neck", "Head"), (0.030, 0.034), (np.array([0.0, 1, 0.15]), np.array([0.0, 1, -0.35])))
     x, y, z = np.abs(p[:, 0]), p[:, 1], p[:, 2]
+    face = step(0.022, 0.050, z)  # the neck has no say in the face: else a nod would part the lips
+    out = {n: w * (1 - face) for n, w in out.items()}
+    out["Head"] = out["Head"] + face
     below = mouth_line(x) - y
     soft = step(-0.016, 0.012, below)
     sharp = (below > 0).astype(float)

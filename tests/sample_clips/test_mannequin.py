@@ -66,6 +66,15 @@ def test_a_fingers_end_is_moved_by_that_finger_alone(character):
         assert all(n.startswith("Left" + finger) for n in joints_of(character, near))
 
 
+def test_a_nod_does_not_part_the_lips(character):
+    neck = character.skeleton.index("Neck")
+    share = np.where(character.joints == neck, character.weights, 0).sum(1)
+    x, y, z = np.abs(character.positions).T
+    lips = (x < 0.025) & (np.abs(y - shapes.MOUTH_Y) < 0.012) & (z > 0.055)
+    assert lips.sum() > 50 and share[lips].max() < 0.01, "both lips go with the head"
+    assert share[(y < 1.47) & (y > 1.44) & (z < 0.03)].mean() > 0.3, "and the neck still bends"
+
+
 def test_the_closing_angles_bring_the_lids_edges_together():
     for name, edge, turn in (
         ("Upper", mannequin.UPPER_LID_OPEN, mannequin.UPPER_LID_CLOSED),
