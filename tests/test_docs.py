@@ -114,6 +114,8 @@ def test_every_field_of_the_schema_is_described() -> None:
     text = (ROOT / "docs" / "format.md").read_text(encoding="utf-8")
     schema = json.loads((ROOT / "metagraph" / "engines" / "metagraph.schema.json").read_bytes())
     export = text[text.index("## The export") : text.index("## Composing poses")]
+    asks = (ROOT / "docs" / "live.md").read_text(encoding="utf-8")
+    export += asks[asks.index("## Requests") : asks.index("## Replies")]
     fields = {name for part in schema["$defs"].values() for name in part["properties"]}
     assert not {f for f in fields if not re.search(rf"`{f}[\[`]", export)}
     assert not {part for part in schema["$defs"] if part not in export}
