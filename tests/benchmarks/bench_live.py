@@ -1,11 +1,10 @@
-"""The live session under load: python tests/benchmarks/bench_live.py [flood|soak|session] [seconds]
+"""The live session under load: python tests/benchmarks/bench_live.py [flood|soak] [seconds]
 
 flood: a client in a process of its own sends 10,000 requests a second over WebSocket, one to a message and then a hundred to a
 message, while this process ticks at 60 Hz as a window would, planning and posing; the lines are in a child process
 (`Relay`). Counted are replies; measured is how long a tick holds the window up. Then the same in one process, as `metagraph live`.
 soak: an hour of session time, simulated, 100 requests a second from three clients, valid and hostile; memory after 10 and after 60
 minutes, and what a tick costs.
-session: a tick of the session by itself, with many requests in it.
 """
 
 from __future__ import annotations

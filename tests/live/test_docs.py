@@ -76,10 +76,10 @@ def test_the_examples_are_json_as_it_is_sent() -> None:
 
 
 @pytest.mark.parametrize(("tag", "name"), [("py", "client.py"), ("js", "client.mjs")])
-def test_the_clients_on_the_page_are_the_files_and_have_ten_lines(tag: str, name: str) -> None:
+def test_the_clients_on_the_page_are_the_files_and_ten_lines_long(tag: str, name: str) -> None:
     (shown,) = re.findall(rf"^```{tag}\n(.*?)^```$", PAGE, re.S | re.M)
     assert shown == (CLIENTS / name).read_text(encoding="utf-8")
-    assert len(shown.splitlines()) == 10
+    assert len(shown.splitlines()) <= 10
 
 
 @pytest.fixture(scope="module")
