@@ -136,7 +136,7 @@ def test_words_nobody_knows_are_refused_with_a_hint(sample: Project) -> None:
     plan = perform(sample, [a.Go(id="g", stance="arms crosed"), a.Play(id="p", action="shrug"), a.Say(id="s", line="279")], 5)
     assert "did you mean 'arms crossed'" in answer(plan, "g").why
     assert "shrug" in answer(plan, "p").why
-    assert answer(plan, "s").why == "there is no line '279'; there are none"
+    assert answer(plan, "s").why == "there is no line '279'; there are hello, happy, maybe, you_first"
 
 
 def test_going_where_one_is_is_done_already(sample: Project) -> None:
