@@ -26,8 +26,7 @@ _ready = msgspec.msgpack.Decoder(Ready)
 
 
 class Relay:
-    """The window's end. Nothing here waits but `start` (a tenth of a second) and `close`. Raises LiveError for options that are
-    not safe; what goes wrong later is in `error`."""
+    """The window's end; nothing here waits. Raises LiveError for options that are not safe; what goes wrong later is in `error`."""
 
     def __init__(self, options: Options) -> None:
         self.options = checked(options)
@@ -69,16 +68,24 @@ class Relay:
         if result.number or result.events or result.poses:
             self._out.put(pack(result))
 
-    def close(self) -> None:
-        """Hang up on all clients and end the child."""
+    def close(self, wait: bool = False) -> None:
+        """Hang up on all clients and end the child, which takes a moment; wait: until it has ended."""
         self._out.put(None)
-        if self._process is not None:
-            self._process.join(STOP)
-            if self._process.is_alive():
-                self._process.terminate()
-                self._process.join(STOP)
-            self._process.close()
-            self._process = None
+        process, self._process = self._process, None
+        if process is None:
+            return
+        ending = threading.Thread(target=_end, args=(process,), daemon=True)
+        ending.start()
+        if wait:
+            ending.join()
+
+
+def _end(process: Any) -> None:
+    process.join(STOP)
+    if process.is_alive():
+        process.terminate()
+        process.join(STOP)
+    process.close()
 
 
 def _receive(pipe: Any, target: queue.SimpleQueue[bytes | None]) -> None:

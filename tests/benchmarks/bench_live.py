@@ -166,7 +166,7 @@ def flood(seconds: float) -> None:
         report(f"relay, {'a hundred to a message' if listed else 'one to a message'}", ours.recv(), ticks)
         assert process is not None
         process.join()
-        relay.close()
+        relay.close(wait=True)
     for listed in (False, True):
         session = LiveSession(project)
         session.warm()

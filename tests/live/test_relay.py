@@ -4,6 +4,8 @@ from __future__ import annotations
 
 import json
 import socket
+import subprocess
+import sys
 import threading
 import time
 from typing import Any
@@ -53,7 +55,7 @@ def test_a_window_answers_clients_that_another_process_talks_to(sample: Project)
         assert got[1].startswith(b"MGP1") and "not JSON" in got[2]["error"]
         until(lambda: not session.clients, relay, session, begin)
     finally:
-        relay.close()
+        relay.close(wait=True)
 
 
 def test_a_port_that_is_taken_is_told_to_the_window(sample: Project) -> None:
@@ -67,7 +69,7 @@ def test_a_port_that_is_taken_is_told_to_the_window(sample: Project) -> None:
             until(lambda: relay.error, relay, session, begin)
             assert "cannot listen" in relay.error and "Choose another port" in relay.error
         finally:
-            relay.close()
+            relay.close(wait=True)
 
 
 def test_what_is_not_safe_is_not_even_started() -> None:
@@ -84,8 +86,18 @@ def test_a_child_that_ends_is_noticed(sample: Project) -> None:
         until(lambda: relay.error, relay, session, begin)
         assert relay.error == "the process that talks to clients has ended"
     finally:
-        relay.close()
+        relay.close(wait=True)
 
 
 def test_closing_what_was_never_started_is_fine() -> None:
     Relay(Options()).close()
+    Relay(Options()).close(wait=True)
+
+
+def test_the_child_loads_nothing_of_the_planner() -> None:
+    heavy = ("numpy", "numba", "PySide6", "yaml", "metagraph.playback")
+    code = (
+        f"import sys, metagraph.live.relay, metagraph.live.websocket, metagraph.live.osc; print([m for m in {heavy} if m in sys.modules])"
+    )
+    done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, timeout=60)
+    assert done.stdout.strip() == "[]", done.stderr
