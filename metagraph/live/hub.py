@@ -39,6 +39,9 @@ class Line(Protocol):
     def send(self, messages: list[tuple[bytes, bool]]) -> None:
         """Send texts and, where the second is true, bytes; never waits."""
 
+    def answered(self, messages: int) -> None:
+        """Take note that so many of the messages that came in are answered."""
+
     def backlog(self) -> int:
         """How many bytes wait to be read by the other side."""
 
@@ -178,6 +181,7 @@ class Hub:
                     client.waiting -= len(answers)
                     data = b"[" + b",".join(answers) + b"]" if slot.listed else answers[0]
                     out.setdefault(slot.client, []).append((data, False))
+                    client.line.answered(1)
             self._flying = None
         for number, data in result.events:
             out.setdefault(number, []).append((data, False))

@@ -121,6 +121,9 @@ class _Sender:
                     text = '{"error":"the reply is too long for a datagram; ask over WebSocket"}'
                 self.osc.put(padded(f"{ROOT}{word}") + padded(",s") + padded(text), self.address)
 
+    def answered(self, messages: int) -> None:
+        """Nothing depends on it."""
+
     def backlog(self) -> int:
         """Datagrams do not wait."""
         return 0

@@ -9,7 +9,7 @@ from collections.abc import Callable
 
 from metagraph.live.messages import LONGEST_MESSAGE
 
-AHEAD = 4000  # lines read but not looked at
+AHEAD = 900  # lines read but not answered; more wait in the pipe
 
 
 class StdioLine:
@@ -61,14 +61,9 @@ class StdioLine:
 
     def _tell(self, line: bytes | None) -> None:
         try:
-            self._call(self._took, line)
+            self._call(self._take, line)
         except RuntimeError:
             self._closed = True  # the loop has ended
-
-    def _took(self, line: bytes | None) -> None:
-        if line is not None:
-            self._room.release()
-        self._take(line)
 
     def _write(self) -> None:
         while (data := self._out.get()) is not None:
@@ -88,6 +83,10 @@ class StdioLine:
             with self._counting:
                 self._waiting += len(data)
             self._out.put(data)
+
+    def answered(self, messages: int) -> None:
+        """Read on."""
+        self._room.release(messages)
 
     def backlog(self) -> int:
         """How many bytes are not yet written."""

@@ -118,6 +118,9 @@ class WebSocketLine(asyncio.Protocol):
             (self.protocol.send_binary if binary else self.protocol.send_text)(data)
         self._flush()
 
+    def answered(self, messages: int) -> None:
+        """Nothing depends on it."""
+
     def backlog(self) -> int:
         """How many bytes wait here; what the system has taken on already is not counted."""
         return 0 if self.transport is None else self.transport.get_write_buffer_size()

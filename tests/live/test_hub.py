@@ -18,10 +18,13 @@ class Wire:
     """A line that keeps what it is given. unread: bytes it pretends the other side has not read."""
 
     def __init__(self, formats: tuple[str, ...] = ("json", "binary")) -> None:
-        self.formats, self.sent, self.unread, self.closed = formats, list[tuple[bytes, bool]](), 0, tuple[int, str]()
+        self.formats, self.sent, self.unread, self.closed, self.done = formats, list[tuple[bytes, bool]](), 0, tuple[int, str](), 0
 
     def send(self, messages: list[tuple[bytes, bool]]) -> None:
         self.sent += messages
+
+    def answered(self, messages: int) -> None:
+        self.done += messages
 
     def backlog(self) -> int:
         return self.unread
@@ -60,6 +63,7 @@ def test_answers_go_back_in_the_order_of_the_requests(wire: Wire) -> None:
     assert batch is not None and batch.joined == (1,) and len(batch.asked) == 4
     hub.give(answered(batch))
     assert wire.texts[0] == '"1:Nod"' and "not JSON" in wire.texts[1] and wire.texts[3:] == ['"1:Status"', "[]"]
+    assert wire.done == 5
     assert json.loads(wire.texts[2])[0] == "1:Blink" and "an object" in json.loads(wire.texts[2])[1]["error"]
     assert hub.idle
 

@@ -465,6 +465,6 @@ def test_a_line_without_end_is_refused_and_the_next_is_heard(sample: Project) ->
     assert "at most" in replies[0]["error"] and replies[-1]["id"] == "s" and len(replies) == 2
 
 
-def test_thousands_of_lines_are_all_answered(sample: Project) -> None:
+def test_thousands_of_lines_wait_for_their_turn_and_are_all_answered(sample: Project) -> None:
     replies = piped(sample, b'{"do":"status"}\n' * 9000)
-    assert len(replies) == 9000
+    assert len(replies) == 9000 and {r["state"] for r in replies} == {"done"}
