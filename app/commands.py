@@ -84,7 +84,7 @@ def commands(window: Window) -> tuple[Command, ...]:
         Command("machine", "&View", "The &machine beside the graph", window.show_machine, ("M",), line=True,
                 checked=lambda: window._machine_wanted),
         Command("big", "&View", "Only the &character", window.only_character, ("F11",)),
-        Command("arrange", "&View", "&Put the panels back", window._arrange),
+        Command("arrange", "&View", "&Put the panels back", window.docks.arrange),
         Command("theme", "&View", "&Light theme", window.toggle_theme, checked=lambda: s.theme == "light", line=True, icon="theme"),
         Command("keys", "&Help", "&Keyboard shortcuts", window.show_keys, ("F1",)),
         Command("about", "&Help", "&About Metagraph", window.about),

@@ -2,22 +2,18 @@
 
 from __future__ import annotations
 
-from itertools import pairwise
 from pathlib import Path
 
-from PySide6.QtCore import QByteArray, QEvent, QSettings, Qt, QTimer
+from PySide6.QtCore import QEvent, QSettings, Qt, QTimer
 from PySide6.QtGui import QCloseEvent, QDragEnterEvent, QDropEvent, QKeySequence
 from PySide6.QtWidgets import (
     QAbstractButton,
     QApplication,
     QComboBox,
-    QDockWidget,
     QFileDialog,
     QMainWindow,
     QMessageBox,
-    QScrollArea,
     QSplitter,
-    QWidget,
 )
 
 from app import icons
@@ -25,6 +21,7 @@ from app.actions import Actions
 from app.canvas.canvas import Canvas
 from app.canvas.drops import Drop, load_of
 from app.commands import commands
+from app.docks import Docks
 from app.document import Document
 from app.figures import Figures
 from app.files import Files
@@ -43,12 +40,6 @@ from metagraph.graph import edits
 from metagraph.graph.check import Problem, check
 from metagraph.graph.model import KINDS, Layer, Project
 
-_LEFT, _RIGHT, _BOTTOM = Qt.DockWidgetArea.LeftDockWidgetArea, Qt.DockWidgetArea.RightDockWidgetArea, Qt.DockWidgetArea.BottomDockWidgetArea
-DOCKS = {
-    "library": ("Clips", _LEFT), "preview": ("Character", _RIGHT), "properties": ("Properties", _RIGHT), "life": ("Life", _RIGHT),
-    "timeline": ("Performance", _BOTTOM), "models": ("Models", _BOTTOM), "lines": ("Lines", _BOTTOM), "problems": ("Problems", _BOTTOM),
-}  # fmt: skip
-ARRANGED = 3  # which docks there are; another arrangement saved before is not restored
 LATE = 4000  # milliseconds after which the late panels are made whatever else is going on
 CHECK_AFTER = 250  # milliseconds of quiet after an edit before problems are looked for
 
@@ -83,10 +74,9 @@ class Window(QMainWindow):
         self.setDockOptions(
             QMainWindow.DockOption.AnimatedDocks | QMainWindow.DockOption.AllowNestedDocks | QMainWindow.DockOption.AllowTabbedDocks
         )
-        self.docks: dict[str, QDockWidget] = {}
-        self._add_dock("library", "Clips", self.library, _LEFT)
-        self._add_dock("preview", "Character", self.preview, _RIGHT)
-        self._late_panels()
+        self.docks = Docks(self, self.centre)
+        self.docks.fill("library", self.library)
+        self.docks.fill("preview", self.preview)
         self.actions = Actions(self, commands(self))
         self._menus()
         self.header = Header(self.document, self.session, self.actions, self)
@@ -98,26 +88,13 @@ class Window(QMainWindow):
         self.statusBar().addPermanentWidget(self.job_line)
         self.job_line.told.connect(self.tell)
         self._wire()
-        self._arrange()
-        self._restore()
+        self.resize(1680, 1020)
+        self.docks.arrange()
+        self.docks.restore()
         self.restyle()
         self.refresh()
 
     # --- building
-
-    def _add_dock(self, key: str, title: str, panel: QWidget, area: Qt.DockWidgetArea) -> QDockWidget:
-        dock = QDockWidget(title, self)
-        dock.setObjectName(key)
-        dock.setWidget(panel)
-        self.addDockWidget(area, dock)
-        self.docks[key] = dock
-        return dock
-
-    def _late_panels(self) -> None:
-        """Docks whose panels are made after the first paint, since pyqtgraph takes its time to import."""
-        for key, (title, area) in DOCKS.items():
-            if key not in self.docks:
-                self._add_dock(key, title, QWidget(self), area)
 
     def load_late_panels_soon(self) -> None:
         """Load them once the first picture is painted and the project is open, which must not wait for them."""
@@ -159,21 +136,16 @@ class Window(QMainWindow):
         self.centre.addWidget(self.machine)
         self.machine.setVisible(self._machine_wanted)
         for key, panel in (
-            ("properties", self.properties),
-            ("life", self.life),
-            ("timeline", self.timeline),
-            ("models", _scrolled(self.models)),
-            ("lines", self.lines),
+            ("properties", self.properties), ("life", self.life), ("timeline", self.timeline), ("lines", self.lines),
             ("problems", self.problems_panel),
-        ):
-            old = self.docks[key].widget()
-            self.docks[key].setWidget(panel)
-            old.deleteLater()
+        ):  # fmt: skip
+            self.docks.fill(key, panel)
+        self.docks.fill("models", self.models, scrolls=True)
         self.problems_panel.show_problems(self.problems)
         self.properties.set_misfits(self.canvas.misfits)
         self.ready = True
-        if not isinstance(QSettings().value("state"), QByteArray):
-            self._sizes()
+        if not self.docks.restored:
+            self.docks.size()
 
     ready = False
     _loading = False
@@ -224,40 +196,8 @@ class Window(QMainWindow):
         self._check_timer.timeout.connect(self._check)
         self._checking = False
 
-    # --- layout of the docks
-
-    def _arrange(self) -> None:
-        """Put every dock where it belongs."""
-        for key, (_, area) in DOCKS.items():
-            self.docks[key].setFloating(False)
-            self.addDockWidget(area, self.docks[key])
-            self.docks[key].show()
-        for first, *others in (("properties", "life"), ("timeline", "models", "lines", "problems")):
-            for one, following in pairwise((first, *others)):
-                self.tabifyDockWidget(self.docks[one], self.docks[following])
-            self.docks[first].raise_()
-        self.setCorner(Qt.Corner.BottomLeftCorner, Qt.DockWidgetArea.BottomDockWidgetArea)
-        self.setCorner(Qt.Corner.BottomRightCorner, Qt.DockWidgetArea.RightDockWidgetArea)
-        self._sizes()
-        self.centre.show()
-
-    def _sizes(self) -> None:
-        self.resizeDocks([self.docks["library"], self.docks["preview"]], [300, 420], Qt.Orientation.Horizontal)
-        self.resizeDocks([self.docks["preview"], self.docks["properties"]], [470, 440], Qt.Orientation.Vertical)
-        self.resizeDocks([self.docks["timeline"]], [286], Qt.Orientation.Vertical)
-
-    def _restore(self) -> None:
-        settings = QSettings()
-        self.resize(1680, 1020)
-        geometry, state = settings.value("geometry"), settings.value("state")
-        if isinstance(geometry, QByteArray):
-            self.restoreGeometry(geometry)
-        if isinstance(state, QByteArray):
-            self.restoreState(state, ARRANGED)
-
     def show_dock(self, key: str) -> None:
-        self.docks[key].show()
-        self.docks[key].raise_()
+        self.docks.show(key)
 
     def show_machine(self, on: bool | None = None) -> None:
         """Show or hide the expanded graph beside the meta-graph."""
@@ -271,16 +211,7 @@ class Window(QMainWindow):
 
     def only_character(self) -> None:
         """Give the character the whole window, or put everything back."""
-        if self.centre.isVisible():
-            self._before = self.saveState(ARRANGED)
-            self.centre.hide()
-            for key, dock in self.docks.items():
-                dock.setVisible(key == "preview")
-        else:
-            self.centre.show()
-            self.restoreState(self._before, ARRANGED)
-
-    _before = QByteArray()
+        self.docks.only("preview")
 
     # --- looks
 
@@ -499,10 +430,7 @@ class Window(QMainWindow):
         if not self.files.may_leave():
             event.ignore()
             return
-        settings = QSettings()
-        if self.centre.isVisible():
-            settings.setValue("geometry", self.saveGeometry())
-            settings.setValue("state", self.saveState(ARRANGED))
+        self.docks.save()
         self.performance.stop_live()
         self.sound.stop()
         self.document.close_journal()
@@ -512,14 +440,6 @@ class Window(QMainWindow):
         self.jobs.stop()
         self.thumbnails.stop()
         event.accept()
-
-
-def _scrolled(panel: QWidget) -> QScrollArea:
-    """Return a panel in an area that scrolls where the dock is smaller than the panel needs."""
-    area = QScrollArea(widgetResizable=True)
-    area.setFrameShape(QScrollArea.Shape.NoFrame)
-    area.setWidget(panel)
-    return area
 
 
 def late_modules() -> None:
