@@ -12,7 +12,8 @@ import msgspec
 from metagraph.engines import contract as c
 from metagraph.errors import FileError
 from metagraph.formats.atomic import write_atomically
-from metagraph.formats.data import DataError, above, markov_from, skeleton_from
+from metagraph.formats.data import above, markov_from, skeleton_from
+from metagraph.formats.fields import DataError
 from metagraph.graph import anatomy
 from metagraph.graph.check import check
 from metagraph.graph.expand import connections

@@ -6,14 +6,14 @@ Fields at their default are left out, floats are rounded to microseconds, so tha
 from __future__ import annotations
 
 import math
-from collections.abc import Collection, Mapping
+from collections.abc import Mapping
 from dataclasses import MISSING, fields
-from functools import cache
 from typing import Any
 
 import msgspec
 import numpy as np
 
+from metagraph.formats.fields import LARGEST, Data, DataError, fill, floats, get, items, known, one_of
 from metagraph.graph.asks import words_of
 from metagraph.graph.model import (
     KINDS,
@@ -39,18 +39,6 @@ from metagraph.graph.model import (
 from metagraph.motion.skeleton import Skeleton
 
 FORMAT = 1  # of the project file; older ones are upgraded when read
-Data = dict[str, Any]
-
-
-LARGEST = 1e15  # no number in a project is larger; up to here whole numbers are exact
-
-
-class DataError(ValueError):
-    """The data is not a project: `where` names the field, the message says what is wrong with it."""
-
-    def __init__(self, where: str, message: str) -> None:
-        self.where = where
-        super().__init__(message)
 
 
 def _number(value: float) -> float | int:
@@ -198,135 +186,29 @@ def struct_from(data: Any, kind: Any, where: str) -> Any:
 
 # --- reading ---------------------------------------------------------------------------------------------------------
 
-_WORDS = {str: "text", int: "a whole number", float: "a number", bool: "true or false", list: "a list", dict: "fields"}
-
-
-def _named(value: Any) -> str:
-    if value is None:
-        return "nothing"
-    if isinstance(value, list | dict):
-        return "a list" if isinstance(value, list) else "fields"
-    if isinstance(value, int) and abs(value) > LARGEST:
-        return "a huge number"
-    text = repr(value)
-    return text if len(text) <= 40 else text[:37] + "..."
-
-
-def _get(data: Any, key: str, kind: Any, where: str, default: Any = MISSING) -> Any:
-    """Return a field checked for its type, `default` where it is missing or empty; numbers are finite and not beyond `LARGEST`."""
-    if not isinstance(data, Mapping):
-        raise DataError(where, f"should be fields, found {_named(data)}")
-    value = data.get(key, MISSING)
-    place = f"{where}.{key}" if where else key
-    if value is MISSING and default is MISSING:
-        raise DataError(place, "is missing")
-    if default is not MISSING and (value is None or value is MISSING):
-        return default
-    wrong = isinstance(value, bool) and kind is not bool
-    if wrong or not isinstance(value, (int, float) if kind is float else kind):
-        raise DataError(place, f"should be {_WORDS[kind]}, found {_named(value)}")
-    if kind in (int, float) and not abs(value) <= LARGEST:
-        raise DataError(place, f"should be a finite number, found {_named(value)}")
-    if isinstance(value, dict) and not all(isinstance(k, str) for k in value):
-        raise DataError(place, "should be fields with names")
-    return float(value) if kind is float else value
-
-
-def _known(data: Data, allowed: Collection[str], where: str) -> None:
-    """Refuse fields nobody reads: what a slip of the pen was meant to say would be lost."""
-    for key in data:
-        if key not in allowed:
-            from difflib import get_close_matches
-
-            near = get_close_matches(str(key), allowed, 1)
-            hint = f"; did you mean '{near[0]}'?" if near else ""
-            raise DataError(f"{where}.{key}" if where else str(key), f"is not a field known here{hint}")
-
-
-def _one_of(value: Any, allowed: tuple[str, ...], where: str) -> Any:
-    if value not in allowed:
-        raise DataError(where, f"should be one of {', '.join(allowed)}, found {_named(value)}")
-    return value
-
-
-_RANGES = {  # field -> least and greatest value of what no check of the graph looks at
-    "fps": (1e-3, 1e6), "frames": (0, 1e9), "take": (0, 1e6), "frame": (0, 1e9), "seed": (0, 0xFFFFFFFF), "alpha": (0, LARGEST),
-    "shortest": (0, LARGEST), "wait": (0, LARGEST), "gap": (1e-3, LARGEST), "positive": (0, 1), "negative": (0, 1),
-    "memory": (0, 600), "rest": (0, 600), "lookahead": (0, 10), "cooldown": (0, LARGEST),
-}  # fmt: skip
-
-
-def _fill(cls: Any, data: Data, where: str, skip: tuple[str, ...] = ()) -> dict[str, Any]:
-    """Return a dataclass's simple fields read from data, those that are there."""
-    out: dict[str, Any] = {}
-    for name, kind in _kinds(cls).items():
-        if name in skip or name not in data:
-            continue
-        if kind is tuple:
-            items = _get(data, name, list, where)
-            if not all(isinstance(x, str) for x in items):
-                raise DataError(f"{where}.{name}", "should be a list of texts")
-            out[name] = tuple(items)
-        elif isinstance(kind, tuple):
-            out[name] = _get(data, name, kind[0], where, None)
-        else:
-            out[name] = _get(data, name, kind, where)
-            if name in _RANGES and not _RANGES[name][0] <= out[name] <= _RANGES[name][1]:
-                low, high = _RANGES[name]
-                limit = f"{low:g} or more" if high in (1e9, LARGEST) else f"between {low:g} and {high:.10g}"
-                raise DataError(f"{where}.{name}", f"should be {limit}, found {_named(data[name])}")
-    return out
-
-
-@cache
-def _kinds(cls: Any) -> dict[str, Any]:
-    """Return field -> type; (type,) where None is a value, too; `tuple` for a list of texts."""
-    out: dict[str, Any] = {}
-    for f in fields(cls):
-        text = str(f.type)
-        plain = {"bool": bool, "int": int, "float": float}.get(text.split(" ")[0], str)
-        out[f.name] = tuple if text.startswith("tuple[str") else (plain,) if "None" in text else plain
-    return out
-
-
-def _items(data: Data, key: str, where: str, seen: set[str]) -> list[tuple[str, Data]]:
-    """Return a list of dicts with ids, each with words for where it stands; `seen` are ids already taken."""
-    out: list[tuple[str, Data]] = []
-    for n, item in enumerate(_get(data, key, list, where, ())):
-        place = f"{where}.{key}[{n}]" if where else f"{key}[{n}]"
-        ident = _get(item, "id", str, place)
-        if not ident:
-            raise DataError(f"{place}.id", "should not be empty")
-        if ident in seen:
-            raise DataError(f"{place}.id", f"'{ident}' is used twice")
-        seen.add(ident)
-        out.append((place, item))
-    return out
-
-
 _ACTION_FIELDS = ({f.name for f in fields(Action)} | {f.name for f in fields(Timing)}) - {"layer", "timing"}
 _CLIP_FIELDS = ({f.name for f in fields(ClipEntry)} | {"sha256"}) - {"motion", "digest"}
 _PROJECT_FIELDS = ({f.name for f in fields(Project)} | {"metagraph", "layers"}) - {"graphs", "voices"}
 
 
 def action_from(data: Data, layer: Layer, where: str) -> Action:
-    _known(data, _ACTION_FIELDS, where)
-    values = _fill(Action, data, where, ("timing", "layer"))
+    known(data, _ACTION_FIELDS, where)
+    values = fill(Action, data, where, ("timing", "layer"))
     for key in ("id", "clip", "kind", "stance", "name"):
         if key not in values:
             raise DataError(f"{where}.{key}", "is missing")
-    _one_of(values["kind"], KINDS, f"{where}.kind")
-    _one_of(values.get("limb", "both"), LIMBS, f"{where}.limb")
-    return Action(layer=layer, timing=Timing(**_fill(Timing, data, where)), **values)
+    one_of(values["kind"], KINDS, f"{where}.kind")
+    one_of(values.get("limb", "both"), LIMBS, f"{where}.limb")
+    return Action(layer=layer, timing=Timing(**fill(Timing, data, where)), **values)
 
 
 def _clip_from(data: Data, where: str) -> ClipEntry:
-    _known(data, _CLIP_FIELDS, where)
-    values = _fill(ClipEntry, data, where, ("motion", "digest"))
+    known(data, _CLIP_FIELDS, where)
+    values = fill(ClipEntry, data, where, ("motion", "digest"))
     for key in ("name", "path"):
         if key not in values:
             raise DataError(f"{where}.{key}", "is missing")
-    return ClipEntry(digest=_get(data, "sha256", str, where, ""), **values)
+    return ClipEntry(digest=get(data, "sha256", str, where, ""), **values)
 
 
 def skeleton_from(joints: list[Any], where: str = "skeleton") -> Skeleton | None:
@@ -337,9 +219,9 @@ def skeleton_from(joints: list[Any], where: str = "skeleton") -> Skeleton | None
     places: dict[str, int] = {}
     for n, joint in enumerate(joints):
         place = f"{where}[{n}]"
-        name = _get(joint, "name", str, place)
-        _known(joint, ("name", "parent", "at", "turn"), place)
-        parent = _get(joint, "parent", str, place, None)
+        name = get(joint, "name", str, place)
+        known(joint, ("name", "parent", "at", "turn"), place)
+        parent = get(joint, "parent", str, place, None)
         if parent is not None and parent not in places:
             raise DataError(f"{place}.parent", f"'{parent}' does not come before joint '{name}'")
         if name in places:
@@ -347,8 +229,8 @@ def skeleton_from(joints: list[Any], where: str = "skeleton") -> Skeleton | None
         places[name] = n
         names.append(name)
         parents.append(-1 if parent is None else places[parent])
-        at.append(_floats(_get(joint, "at", list, place), 3, f"{place}.at", 1e6))
-        turn.append(_floats(_get(joint, "turn", list, place, [0.0, 0.0, 0.0, 1.0]), 4, f"{place}.turn", 2.0))
+        at.append(floats(get(joint, "at", list, place), 3, f"{place}.at", 1e6))
+        turn.append(floats(get(joint, "turn", list, place, [0.0, 0.0, 0.0, 1.0]), 4, f"{place}.turn", 2.0))
         if not 0.9 < math.hypot(*turn[-1]) < 1.1:
             raise DataError(f"{place}.turn", "should be a quaternion of length 1")
     try:
@@ -357,26 +239,19 @@ def skeleton_from(joints: list[Any], where: str = "skeleton") -> Skeleton | None
         raise DataError(where, str(error)) from None
 
 
-def _floats(values: list[Any], count: int, where: str, largest: float = LARGEST) -> list[float]:
-    numbers = [x for x in values if isinstance(x, int | float) and not isinstance(x, bool) and abs(x) <= largest]
-    if not len(numbers) == len(values) == count:
-        raise DataError(where, f"should be {count} numbers")
-    return [float(x) for x in values]
-
-
 def _graph_from(layer: Layer, data: Any, stance_ids: set[str], action_ids: set[str]) -> MetaGraph:
     where = f"layers.{layer}"
-    start = _get(data, "start", str, where, None)
-    _known(data, ("start", "weights", "stances", "actions"), where)
+    start = get(data, "start", str, where, None)
+    known(data, ("start", "weights", "stances", "actions"), where)
     stances: dict[str, Stance] = {}
-    for place, item in _items(data, "stances", where, stance_ids):
-        _known(item, ("id", "name"), place)
-        stances[item["id"]] = Stance(item["id"], layer, _get(item, "name", str, place))
-    actions = {item["id"]: action_from(item, layer, place) for place, item in _items(data, "actions", where, action_ids)}
-    weights = _get(data, "weights", dict, where, {})
+    for place, item in items(data, "stances", where, stance_ids):
+        known(item, ("id", "name"), place)
+        stances[item["id"]] = Stance(item["id"], layer, get(item, "name", str, place))
+    actions = {item["id"]: action_from(item, layer, place) for place, item in items(data, "actions", where, action_ids)}
+    weights = get(data, "weights", dict, where, {})
     for part in weights:
-        _one_of(part, PARTS, f"{where}.weights")
-        _get(weights, part, float, f"{where}.weights")
+        one_of(part, PARTS, f"{where}.weights")
+        get(weights, part, float, f"{where}.weights")
     return MetaGraph(layer, stances, actions, start, {p: float(w) for p, w in weights.items()})
 
 
@@ -385,34 +260,34 @@ def from_data(data: Any) -> Project:
     if not isinstance(data, Mapping) or "metagraph" not in data:
         raise DataError("metagraph", "is missing: this is not a Metagraph project")
     data = dict(data)
-    _known(data, _PROJECT_FIELDS, "")
-    clips = {item["id"]: _clip_from(item, where) for where, item in _items(data, "clips", "", set())}
-    layers = _get(data, "layers", dict, "", {})
-    _known(layers, LAYERS, "layers")
+    known(data, _PROJECT_FIELDS, "")
+    clips = {item["id"]: _clip_from(item, where) for where, item in items(data, "clips", "", set())}
+    layers = get(data, "layers", dict, "", {})
+    known(layers, LAYERS, "layers")
     stance_ids: set[str] = set()
     action_ids: set[str] = set()
-    graphs = {layer: _graph_from(layer, _get(layers, layer, dict, "layers", {}), stance_ids, action_ids) for layer in LAYERS}
-    parts, roles = _get(data, "parts", dict, "", {}), _get(data, "roles", dict, "", {})
+    graphs = {layer: _graph_from(layer, get(layers, layer, dict, "layers", {}), stance_ids, action_ids) for layer in LAYERS}
+    parts, roles = get(data, "parts", dict, "", {}), get(data, "roles", dict, "", {})
     for joint, part in parts.items():
-        _one_of(part, PARTS, f"parts.{joint}")
-    models = _get(data, "markov", dict, "", {})
-    _known(models, LAYERS, "markov")
-    base, settings = _get(data, "base", dict, "", {}), _get(data, "settings", dict, "", {})
-    _known(base, [f.name for f in fields(BasePose)], "base")
-    _known(settings, [f.name for f in fields(Settings)], "settings")
+        one_of(part, PARTS, f"parts.{joint}")
+    models = get(data, "markov", dict, "", {})
+    known(models, LAYERS, "markov")
+    base, settings = get(data, "base", dict, "", {}), get(data, "settings", dict, "", {})
+    known(base, [f.name for f in fields(BasePose)], "base")
+    known(settings, [f.name for f in fields(Settings)], "settings")
     return Project(
-        name=_get(data, "name", str, "", "untitled"),
-        skeleton=skeleton_from(_get(data, "skeleton", list, "", [])),
+        name=get(data, "name", str, "", "untitled"),
+        skeleton=skeleton_from(get(data, "skeleton", list, "", [])),
         clips=clips,
         graphs=graphs,
-        base=BasePose(**_fill(BasePose, base, "base")),
-        roles={r: _get(roles, r, str, "roles") for r in roles},
+        base=BasePose(**fill(BasePose, base, "base")),
+        roles={r: get(roles, r, str, "roles") for r in roles},
         parts=dict(parts),
         markov={layer: markov_from(layer, models[layer], f"markov.{layer}") for layer in LAYERS if layer in models},
-        settings=Settings(**_fill(Settings, settings, "settings")),
+        settings=Settings(**fill(Settings, settings, "settings")),
         **{key: struct_from(data[key], kind, key) for key, kind in STRUCTS.items() if data.get(key) is not None},
-        character=_get(data, "character", str, "", None),
-        next_id=max(_get(data, "next_id", int, "", 1), above(*clips, *stance_ids, *action_ids)),
+        character=get(data, "character", str, "", None),
+        next_id=max(get(data, "next_id", int, "", 1), above(*clips, *stance_ids, *action_ids)),
     )
 
 
@@ -424,22 +299,22 @@ def above(*idents: str) -> int:
 
 def markov_from(layer: Layer, data: Any, where: str) -> Markov:
     states, tags = [], []
-    for text in _get(data, "states", list, where):
+    for text in get(data, "states", list, where):
         limb, kind, tag = (*(text.split(" ", 2) if isinstance(text, str) else ()), "", "", "")[:3]
-        states.append((_one_of(limb, LIMBS, f"{where}.states"), _one_of(kind, KINDS, f"{where}.states")))
+        states.append((one_of(limb, LIMBS, f"{where}.states"), one_of(kind, KINDS, f"{where}.states")))
         tags.append(tag)
-    _known(data, [f.name for f in fields(Markov) if f.name not in ("layer", "tags")], where)
-    rows = _get(data, "matrix", list, where)
+    known(data, [f.name for f in fields(Markov) if f.name not in ("layer", "tags")], where)
+    rows = get(data, "matrix", list, where)
     if not rows or len(rows) != len(states):
         raise DataError(f"{where}.matrix", f"should have {max(1, len(states))} rows, one for each state")
-    matrix = tuple(tuple(_floats(row if isinstance(row, list) else [], len(states), f"{where}.matrix[{n}]")) for n, row in enumerate(rows))
+    matrix = tuple(tuple(floats(row if isinstance(row, list) else [], len(states), f"{where}.matrix[{n}]")) for n, row in enumerate(rows))
     for n, row in enumerate(matrix):
         if min(row) < 0 or not 0.99 < sum(row) < 1.01:
             raise DataError(f"{where}.matrix[{n}]", "should be probabilities that sum to 1")
-    lengths = [_floats(x if isinstance(x, list) else [], 2, f"{where}.lengths", 1e6) for x in _get(data, "lengths", list, where, [])]
+    lengths = [floats(x if isinstance(x, list) else [], 2, f"{where}.lengths", 1e6) for x in get(data, "lengths", list, where, [])]
     if lengths and len(lengths) != len(states):
         raise DataError(f"{where}.lengths", f"should be {len(states)} pairs of seconds, one for each state")
     if any(mean < 1e-3 or deviation < 0 for mean, deviation in lengths):
         raise DataError(f"{where}.lengths", "should be means above 0 and deviations of 0 or more")
-    more = _fill(Markov, data, where, ("layer", "states", "matrix", "tags", "lengths"))
+    more = fill(Markov, data, where, ("layer", "states", "matrix", "tags", "lengths"))
     return Markov(layer, tuple(states), matrix, **more, tags=tuple(tags) if any(tags) else (), lengths=tuple((a, b) for a, b in lengths))

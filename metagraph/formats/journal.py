@@ -15,8 +15,6 @@ from typing import Any, BinaryIO
 from metagraph.errors import FileError
 from metagraph.formats.data import (
     STRUCTS,
-    Data,
-    DataError,
     action_data,
     clip_data,
     from_data,
@@ -27,6 +25,7 @@ from metagraph.formats.data import (
     to_data,
     weights_data,
 )
+from metagraph.formats.fields import Data, DataError
 from metagraph.formats.store import read_project
 from metagraph.graph.model import LAYERS, MetaGraph, Project
 

@@ -17,7 +17,8 @@ import msgspec
 from metagraph.errors import FileError
 from metagraph.formats.atomic import write_atomically
 from metagraph.formats.clips import digest, read_clips
-from metagraph.formats.data import FORMAT, Data, DataError, from_data, to_data
+from metagraph.formats.data import FORMAT, from_data, to_data
+from metagraph.formats.fields import Data, DataError
 from metagraph.formats.text import TextError, parse, to_text
 from metagraph.graph.asks import Line
 from metagraph.graph.model import ClipEntry, Project

@@ -12,7 +12,8 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from metagraph.formats.data import DataError, above, from_data, skeleton_data, skeleton_from, to_data
+from metagraph.formats.data import above, from_data, skeleton_data, skeleton_from, to_data
+from metagraph.formats.fields import DataError
 from metagraph.graph import edits
 from metagraph.graph.model import LAYERS, Project
 from tests.projects import SKELETON, clip, projects

@@ -1,0 +1,132 @@
+"""Reading plain data field by field: types, ranges and known names, and an error that names the place."""
+
+from __future__ import annotations
+
+from collections.abc import Collection, Mapping
+from dataclasses import MISSING, fields
+from functools import cache
+from typing import Any
+
+Data = dict[str, Any]
+LARGEST = 1e15  # no number in a project is larger; up to here whole numbers are exact
+
+
+class DataError(ValueError):
+    """The data is not a project: `where` names the field, the message says what is wrong with it."""
+
+    def __init__(self, where: str, message: str) -> None:
+        self.where = where
+        super().__init__(message)
+
+
+_WORDS = {str: "text", int: "a whole number", float: "a number", bool: "true or false", list: "a list", dict: "fields"}
+
+
+def named(value: Any) -> str:
+    if value is None:
+        return "nothing"
+    if isinstance(value, list | dict):
+        return "a list" if isinstance(value, list) else "fields"
+    if isinstance(value, int) and abs(value) > LARGEST:
+        return "a huge number"
+    text = repr(value)
+    return text if len(text) <= 40 else text[:37] + "..."
+
+
+def get(data: Any, key: str, kind: Any, where: str, default: Any = MISSING) -> Any:
+    """Return a field checked for its type, `default` where it is missing or empty; numbers are finite and not beyond `LARGEST`."""
+    if not isinstance(data, Mapping):
+        raise DataError(where, f"should be fields, found {named(data)}")
+    value = data.get(key, MISSING)
+    place = f"{where}.{key}" if where else key
+    if value is MISSING and default is MISSING:
+        raise DataError(place, "is missing")
+    if default is not MISSING and (value is None or value is MISSING):
+        return default
+    wrong = isinstance(value, bool) and kind is not bool
+    if wrong or not isinstance(value, (int, float) if kind is float else kind):
+        raise DataError(place, f"should be {_WORDS[kind]}, found {named(value)}")
+    if kind in (int, float) and not abs(value) <= LARGEST:
+        raise DataError(place, f"should be a finite number, found {named(value)}")
+    if isinstance(value, dict) and not all(isinstance(k, str) for k in value):
+        raise DataError(place, "should be fields with names")
+    return float(value) if kind is float else value
+
+
+def known(data: Data, allowed: Collection[str], where: str) -> None:
+    """Refuse fields nobody reads: what a slip of the pen was meant to say would be lost."""
+    for key in data:
+        if key not in allowed:
+            from difflib import get_close_matches
+
+            near = get_close_matches(str(key), allowed, 1)
+            hint = f"; did you mean '{near[0]}'?" if near else ""
+            raise DataError(f"{where}.{key}" if where else str(key), f"is not a field known here{hint}")
+
+
+def one_of(value: Any, allowed: tuple[str, ...], where: str) -> Any:
+    if value not in allowed:
+        raise DataError(where, f"should be one of {', '.join(allowed)}, found {named(value)}")
+    return value
+
+
+_RANGES = {  # field -> least and greatest value of what no check of the graph looks at
+    "fps": (1e-3, 1e6), "frames": (0, 1e9), "take": (0, 1e6), "frame": (0, 1e9), "seed": (0, 0xFFFFFFFF), "alpha": (0, LARGEST),
+    "shortest": (0, LARGEST), "wait": (0, LARGEST), "gap": (1e-3, LARGEST), "positive": (0, 1), "negative": (0, 1),
+    "memory": (0, 600), "rest": (0, 600), "lookahead": (0, 10), "cooldown": (0, LARGEST),
+}  # fmt: skip
+
+
+def fill(cls: Any, data: Data, where: str, skip: tuple[str, ...] = ()) -> dict[str, Any]:
+    """Return a dataclass's simple fields read from data, those that are there."""
+    out: dict[str, Any] = {}
+    for name, kind in kinds(cls).items():
+        if name in skip or name not in data:
+            continue
+        if kind is tuple:
+            items = get(data, name, list, where)
+            if not all(isinstance(x, str) for x in items):
+                raise DataError(f"{where}.{name}", "should be a list of texts")
+            out[name] = tuple(items)
+        elif isinstance(kind, tuple):
+            out[name] = get(data, name, kind[0], where, None)
+        else:
+            out[name] = get(data, name, kind, where)
+            if name in _RANGES and not _RANGES[name][0] <= out[name] <= _RANGES[name][1]:
+                low, high = _RANGES[name]
+                limit = f"{low:g} or more" if high in (1e9, LARGEST) else f"between {low:g} and {high:.10g}"
+                raise DataError(f"{where}.{name}", f"should be {limit}, found {named(data[name])}")
+    return out
+
+
+@cache
+def kinds(cls: Any) -> dict[str, Any]:
+    """Return field -> type; (type,) where None is a value, too; `tuple` for a list of texts."""
+    out: dict[str, Any] = {}
+    for f in fields(cls):
+        text = str(f.type)
+        plain = {"bool": bool, "int": int, "float": float}.get(text.split(" ")[0], str)
+        out[f.name] = tuple if text.startswith("tuple[str") else (plain,) if "None" in text else plain
+    return out
+
+
+def items(data: Data, key: str, where: str, seen: set[str]) -> list[tuple[str, Data]]:
+    """Return a list of dicts with ids, each with words for where it stands; `seen` are ids already taken."""
+    out: list[tuple[str, Data]] = []
+    for n, item in enumerate(get(data, key, list, where, ())):
+        place = f"{where}.{key}[{n}]" if where else f"{key}[{n}]"
+        ident = get(item, "id", str, place)
+        if not ident:
+            raise DataError(f"{place}.id", "should not be empty")
+        if ident in seen:
+            raise DataError(f"{place}.id", f"'{ident}' is used twice")
+        seen.add(ident)
+        out.append((place, item))
+    return out
+
+
+def floats(values: list[Any], count: int, where: str, largest: float = LARGEST) -> list[float]:
+    numbers = [x for x in values if isinstance(x, int | float) and not isinstance(x, bool) and abs(x) <= largest]
+    if not len(numbers) == len(values) == count:
+        raise DataError(where, f"should be {count} numbers")
+    return [float(x) for x in values]
