@@ -62,6 +62,7 @@ class LiveSession:
         self._tidied = self._begin = 0.0
         self._past: deque[tuple[float, Plan]] = deque()
         self._edited = False
+        self._cold = [x for x in project.actions() if x.kind == "gesture"]
         self._told: dict[str, bytes] = {}
         empty = Plan(project.settings.seed if seed is None else seed, 0.0)
         self.plan = hear(project, empty, 0.0, [], ahead, self.stances, idle)
@@ -85,15 +86,17 @@ class LiveSession:
             return
         self._queue += [(client, read(request)) for request in requests]
 
-    def warm(self) -> None:
-        """Work out beforehand what requests with a stroke or a hold need to know of every gesture; may take seconds."""
-        for action in self.project.actions():
-            if action.kind == "gesture":
-                phases(self.project, action)
+    def warm(self, most: int | None = None) -> None:
+        """Work out beforehand what requests with a stroke or a hold need to know of gestures, a millisecond each; most: how many
+        now, all where None. Ticks do one each."""
+        while self._cold and most != 0:
+            phases(self.project, self._cold.pop())
+            most = None if most is None else most - 1
 
     def change(self, project: Project) -> None:
         """Go on with an edited project; what has not begun is planned anew at the next tick."""
         self.project, self._words, self._edited = project, Words(project), True
+        self._cold = [x for x in project.actions() if x.kind == "gesture"]
         self._told.clear()
 
     # --- ticks
@@ -118,6 +121,7 @@ class LiveSession:
         self._plan(work, out)
         out.events += happenings(self.plan, self.ledger, before, self.now, self.clients.values())
         self._tidy()
+        self.warm(1)
         out.frames = due(self.now, self.plan, self.project, [(c.number, c.stream) for c in self.clients.values() if c.stream])
         return out
 

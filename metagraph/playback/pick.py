@@ -110,21 +110,24 @@ class Performer:
         cues: list[Cue] = []
         stance = self.stance
         for step in steps:
-            shapes = {a.id: self._shape(a, None if step.hop else meta.request, now) for a in step.candidates}
-            fitting = [a for a in step.candidates if shapes[a.id].start + shapes[a.id].shortest <= limit + FITS]
+            asked = None if step.hop else meta.request
+            fitting = list(step.candidates)
+            if limit < float("inf"):  # else all fit
+                shapes = ((a, self._shape(a, asked, now)) for a in step.candidates)
+                fitting = [a for a, shape in shapes if shape.start + shape.shortest <= limit + FITS]
             if not fitting:
                 before = "" if meta.written else " before something more important"
                 self._tell(meta, "no-room", f"nothing fits into the {max(0.0, limit - now):.2f} s{before}")
                 return
             if not step.hop and meta.request.action is None:
-                warm = [a for a in fitting if self._cooled(a, stance) <= shapes[a.id].start + FITS]
+                warm = [a for a in fitting if a.cooldown <= 0 or self._cooled(a, stance) <= self._shape(a, asked, now).start + FITS]
                 if not warm:
                     soonest = min(self._cooled(a, stance) for a in fitting)
                     self._tell(meta, "cooling", f"all that fit are cooling down; the first may play again at {soonest:.2f} s")
                     return
                 fitting = warm
             action = self._draw(fitting, f"{meta.key}/{step.hop}" if step.hop else meta.key, now)
-            cue = self._cue(action, shapes[action.id], limit, float("inf") if step.hop else wish, stance, meta.key)
+            cue = self._cue(action, self._shape(action, asked, now), limit, float("inf") if step.hop else wish, stance, meta.key)
             cues.append(cue)
             now, stance = cue.end, cue.then
         for cue in cues:

@@ -432,6 +432,17 @@ def test_a_session_too_long_to_be_kept_says_so(session: LiveSession) -> None:
         session.performance("x")
 
 
+def test_gestures_are_looked_at_beforehand_one_a_tick(sample: Project) -> None:
+    session = LiveSession(sample)
+    count = len(session._cold)
+    assert count == sum(x.kind == "gesture" for x in sample.actions())
+    events(session, 1.0)
+    assert count - 62 <= len(session._cold) <= count - 58
+    session.warm()
+    assert not session._cold
+    events(session, 1.1)
+
+
 def test_an_edited_project_is_played_on(sample: Project) -> None:
     session = LiveSession(sample, idle=False)
     listen(session, 1)
