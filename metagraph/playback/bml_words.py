@@ -19,7 +19,7 @@ GUESSED = {
 }  # seconds, of a gesture nobody knows
 NODDED = {"ready": 0.1, "strokestart": 0.1, "stroke": 0.3, "strokeend": 0.5, "relax": 0.6, "end": 0.9}
 SPOKEN = 14.0  # characters a second, as where asks are understood
-LOOKED_UP = 64  # different gestures of one block whose clips are looked at for their lengths
+LOOKED_UP = 16  # different gestures of one block whose clips are looked at for their lengths
 UNSAID = 2.0  # seconds of a line about which nothing is known
 PARTS: Mapping[str, Layer] = {
     "arms": "arms", "leftarm": "arms", "rightarm": "arms", "hands": "arms", "head": "head",
