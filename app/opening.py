@@ -6,7 +6,9 @@ from collections.abc import Callable
 from dataclasses import replace
 from pathlib import Path
 
+from metagraph.errors import FileError
 from metagraph.formats.store import Opened, load_motions, open_project
+from metagraph.graph.face import with_morphs
 from metagraph.graph.model import Project
 
 Progress = Callable[[int, int], None]
@@ -22,7 +24,20 @@ def load_whole(project: Project, folder: Path, progress: Progress | None = None)
     return _voiced(load_motions(project, folder, progress), folder)
 
 
+def _faced(project: Project, folder: Path) -> Project:
+    """Return the project knowing its character's morph targets; what is wrong with the file, whoever draws it says."""
+    if project.character is None:
+        return project
+    from metagraph.formats.gltf import morph_targets
+
+    try:
+        return with_morphs(project, morph_targets(folder / project.character))
+    except FileError:
+        return project
+
+
 def _voiced(opened: Opened, folder: Path) -> Opened:
+    opened = replace(opened, project=_faced(opened.project, folder))
     if not any(line.audio or line.phones for line in opened.project.lines.values()):
         return opened
     from metagraph.speech.lines import load_voices

@@ -363,7 +363,16 @@ class Window(QMainWindow):
 
             folder = self.document.folder
             path = relative(Path(name), folder) if folder is not None else Path(name).as_posix()
-            self.document.edit("Choose character", lambda p: edits.set_character(p, path))
+            from metagraph.errors import FileError
+            from metagraph.formats.gltf import morph_targets
+            from metagraph.graph.face import with_morphs
+
+            try:
+                morphs = morph_targets(name)
+            except FileError as error:
+                self.tell(str(error))
+                return
+            self.document.edit("Choose character", lambda p: with_morphs(edits.set_character(p, path), morphs))
 
     def show_skeleton(self) -> None:
         from app.panels.skeleton import SkeletonDialog

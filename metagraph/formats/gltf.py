@@ -8,7 +8,7 @@ import numpy as np
 
 from metagraph.errors import FileError
 from metagraph.formats.gltf_character import character_of
-from metagraph.formats.gltf_clips import read_clip
+from metagraph.formats.gltf_clips import morph_names, read_clip
 from metagraph.formats.gltf_file import extras, open_gltf
 from metagraph.formats.gltf_skeleton import build_rig
 from metagraph.formats.gltf_writer import write_glb
@@ -51,6 +51,13 @@ def has_skinned_mesh(path: str | Path) -> bool:
     """Return whether a file holds a mesh on a skeleton: something to draw. Raises FileError."""
     nodes = open_gltf(path).json.nodes
     return any(node.mesh is not None and node.skin is not None for node in nodes)
+
+
+def morph_targets(path: str | Path) -> tuple[str, ...]:
+    """Return the names of a character's morph targets, as `read_character` has them. Raises FileError."""
+    gltf = open_gltf(path)
+    nodes = [n for n, node in enumerate(gltf.json.nodes) if node.mesh is not None]
+    return tuple(dict.fromkeys(name for n in nodes for name in morph_names(gltf, n)))
 
 
 @_QUIET

@@ -8,9 +8,10 @@ from pathlib import Path
 
 from metagraph.errors import FileError
 from metagraph.formats.clips import digest, find_clip_files, import_clips
-from metagraph.formats.gltf import has_skinned_mesh
+from metagraph.formats.gltf import has_skinned_mesh, morph_targets
 from metagraph.formats.store import relative
 from metagraph.graph.edits import add_clips, set_character
+from metagraph.graph.face import with_morphs
 from metagraph.graph.model import Project
 from metagraph.motion.adopt import SkeletonMismatchError, adopt, difference
 from metagraph.motion.clip import Clip
@@ -22,6 +23,7 @@ class Imported:
     """loaded: what `add_clips` takes. failures: why files were left out, in words. notes: what readers changed.
 
     character: the first of the files that also holds a mesh, written as clip paths are, for a project that draws none yet.
+    morphs: its morph targets.
     """
 
     loaded: tuple[tuple[str, int, str, Clip], ...]
@@ -29,11 +31,14 @@ class Imported:
     notes: tuple[str, ...] = ()
     cancelled: bool = False
     character: str | None = None
+    morphs: tuple[str, ...] = ()
 
     def into(self, project: Project) -> Project:
         """The edit: `project` with the clips added, and with the character that came with them if it had none."""
         project = add_clips(project, self.loaded)
-        return set_character(project, self.character) if project.character is None and self.character else project
+        if project.character is not None or not self.character:
+            return project
+        return with_morphs(set_character(project, self.character), self.morphs)
 
 
 def gather(paths: Iterable[str | Path]) -> list[Path]:
@@ -85,7 +90,8 @@ def import_files(
         clips = f"{count} clips are" if count > 1 else "its clip is"
         failures.append(f"{path.name}: {clips} of another character: {why}. Import it into a project of its own.")
     character = _character(loaded, folder) if project.character is None else None
-    return Imported(tuple(loaded), tuple(dict.fromkeys(failures)), _together(report.clips), report.cancelled, character)
+    morphs = _morphs(character, folder)
+    return Imported(tuple(loaded), tuple(dict.fromkeys(failures)), _together(report.clips), report.cancelled, character, morphs)
 
 
 def _together(clips: Iterable[tuple[Path, int, Clip]]) -> tuple[str, ...]:
@@ -112,6 +118,10 @@ def _character(loaded: Sequence[tuple[str, int, str, Clip]], folder: Path | None
             except FileError:
                 continue  # its clips were read; what is wrong with its meshes the preview says if it is chosen
     return None
+
+
+def _morphs(character: str | None, folder: Path | None) -> tuple[str, ...]:
+    return morph_targets((folder or Path()) / character) if character is not None else ()
 
 
 def _skeleton_of_most(clips: Sequence[Clip]) -> Skeleton | None:

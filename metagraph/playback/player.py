@@ -223,6 +223,7 @@ def morphs_at(plan: Plan, project: Project, seconds: float, alive: bool = True) 
                 for name, value in motion.morphs_at(at).items():
                     out[name] = out.get(name, 0.0) + share * value
     if alive and project.life.on and plan.life.end > 0:
-        for name, value in face_weights(project, plan.life, plan.track, seconds).items():
+        composed = pose_at(plan, project, seconds, alive=False) if project.face.morphs else None  # what the eyes hold against
+        for name, value in face_weights(project, plan.life, plan.track, seconds, composed).items():
             out[name] = out.get(name, 0.0) + value
     return {name: min(1.0, max(0.0, value)) for name, value in out.items()}

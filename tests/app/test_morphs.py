@@ -3,11 +3,12 @@
 from __future__ import annotations
 
 from dataclasses import replace
+from pathlib import Path
 
 import numpy as np
 import pytest
 
-from app.headless import pictures
+from app.headless_render import pictures
 from app.performance import alone
 from metagraph.formats.gltf import read_character
 from metagraph.formats.imports import import_files
@@ -54,3 +55,20 @@ def test_morphs_of_a_clip_and_of_a_plan_are_drawn(shared_data):
     figure.morphs = ()
     still = next(iter(pictures(project, figure, times, None, entry.id, (160, 160), "dark")))
     assert (shown != still).any(), "the face differs from the one without morphs"
+
+
+def test_the_characters_own_morph_targets_are_known_when_it_is_opened(shared_data: Path, tmp_path: Path) -> None:
+    """A face is recognised from what the character has, not only from what clips move."""
+    from app.opening import open_whole
+    from metagraph.formats.gltf import morph_targets
+    from metagraph.formats.store import save_project
+    from metagraph.graph.life import Face
+
+    robot = shared_data / "robot-expressive"
+    file = next(robot.rglob("*.glb"))
+    assert morph_targets(file) == read_character(file).morphs != ()
+    imported = import_files(Project(), tmp_path, [file])
+    project = imported.into(Project())
+    assert project.face.morphs == morph_targets(file)
+    save_project(replace(project, face=Face()), tmp_path / "robot.metagraph.yaml")
+    assert open_whole(tmp_path / "robot.metagraph.yaml").project.face.morphs == morph_targets(file)
