@@ -17,7 +17,7 @@ from metagraph.live.relay import Relay
 from metagraph.live.server import OSC_PORT, PORT, LiveError, Options
 from metagraph.live.session import LiveSession
 from metagraph.live.tape import Tape
-from metagraph.playback.hear import Answer, answer
+from metagraph.playback.hear import Answer, answers
 
 TICK = 16  # milliseconds
 SHOWN = 300  # requests that are shown in the timeline, the latest
@@ -140,7 +140,7 @@ class LiveStage(QObject):
         """Return what becomes of the latest requests."""
         if self.session.now >= self._answered + ANSWERED:
             self._answered = self.session.now
-            self._answers = {ask.id: answer(self.session.plan, ask.id) for ask in self.tape.latest}
+            self._answers = answers(self.session.plan, (ask.id for ask in self.tape.latest))
         return self._answers
 
     @property

@@ -21,7 +21,7 @@ from metagraph.graph.asks import Performance as KeptPerformance
 from metagraph.graph.edits import EditError, place
 from metagraph.graph.model import LAYERS, Layer, Project
 from metagraph.motion.skeleton import Pose, Skeleton
-from metagraph.playback.hear import Answer, answer, perform
+from metagraph.playback.hear import Answer, answers, perform
 from metagraph.playback.plan import Plan, Request
 from metagraph.playback.planner import make_plan
 from metagraph.playback.player import morphs_at, pose_at
@@ -163,7 +163,7 @@ class Performance(QObject):
         if self.live is not None:
             return self.live.answers()
         if self._answered is not self.shown:
-            self._answered, self._answers = self.shown, {ask.id: answer(self.shown.plan, ask.id) for ask in self.asks}
+            self._answered, self._answers = self.shown, answers(self.shown.plan, (ask.id for ask in self.asks))
         return self._answers
 
     def ask(self, ask: AnyAsk, text: str = "Ask for something") -> None:

@@ -7,8 +7,8 @@ performance whose asks say when they became known (`told`) is planned through th
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Mapping, Sequence
-from dataclasses import dataclass, replace
-from typing import Literal
+from dataclasses import dataclass, field, replace
+from typing import Any, Literal
 
 import msgspec
 
@@ -100,9 +100,46 @@ class Answer:
 
 def answer(plan: Plan, ident: str) -> Answer:
     """Say what a plan does about an ask: when it will play, or why it will not."""
-    cues = [c for layer in plan.layers.values() for c in layer.cues if _belongs(c.meta.partition("+")[0], ident)]
-    items = [i for i in plan.track.items if not isinstance(i, StayFrom) and _belongs(i.id, ident)]
-    told = [r for r in plan.reports if _belongs(r.request, ident)]
+    return answers(plan, (ident,))[ident]
+
+
+def answers(plan: Plan, idents: Iterable[str]) -> dict[str, Answer]:
+    """Say what a plan does about each of many asks, in time that grows with the plan alone."""
+    found: dict[str, _Found] = {ident: _Found() for ident in idents}
+
+    def of(made: str) -> Iterator[_Found]:
+        return (found[owner] for owner in _owners(made) if owner in found)
+
+    for layer in plan.layers.values():
+        for cue in layer.cues:
+            for x in of(cue.meta.partition("+")[0]):
+                x.cues.append(cue)
+        for meta in layer.metas:
+            if meta.start >= plan.end:
+                for x in of(meta.request.id):
+                    x.waiting.append(meta.start)
+    for item in plan.track.items:
+        if not isinstance(item, StayFrom):
+            for x in of(item.id):
+                x.items.append(item)
+    for report in plan.reports:
+        for x in of(report.request):
+            x.told.append(report)
+    return {ident: _answer(ident, x) for ident, x in found.items()}
+
+
+@dataclass(slots=True)
+class _Found:
+    """What in a plan belongs to one ask. waiting: seconds at which what is not chosen yet begins."""
+
+    cues: list[Cue] = field(default_factory=list)
+    items: list[Any] = field(default_factory=list)
+    told: list[Report] = field(default_factory=list)
+    waiting: list[float] = field(default_factory=list)
+
+
+def _answer(ident: str, found: _Found) -> Answer:
+    cues, items, told = found.cues, found.items, found.told
     why = "; ".join(dict.fromkeys(r.message for r in told))
     if cues or items:
         starts = [c.start for c in cues] + [i.start for i in items]
@@ -112,9 +149,8 @@ def answer(plan: Plan, ident: str) -> Answer:
         return Answer(ident, "late" if late else "planned", min(starts), max(ends), what, why)
     if any(r.outcome == "already-there" for r in told):
         return Answer(ident, "done", None, None, (), why)
-    waiting = [m for layer in plan.layers.values() for m in layer.metas if _belongs(m.request.id, ident) and m.start >= plan.end]
-    if waiting and all(r.played for r in told):
-        return Answer(ident, "late" if told else "planned", waiting[0].start, None, (), why or "chosen when its time is nearer")
+    if found.waiting and all(r.played for r in told):
+        return Answer(ident, "late" if told else "planned", found.waiting[0], None, (), why or "chosen when its time is nearer")
     return Answer(ident, "refused", None, None, (), why or "nothing came of it")
 
 
