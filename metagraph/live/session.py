@@ -287,10 +287,13 @@ class LiveSession:
     def _plan(self, work: Work, out: Out) -> None:
         """Work a tick's asks in, answer them, and tell of others that are planned otherwise because of them."""
         now, ledger = self.now, self.ledger
-        if work.asks or self._edited or self.plan.end < now + self.ahead - SLACK:
+        end = self.plan.end if self.plan.end >= now + self.ahead - SLACK else now + self.ahead
+        if self._edited or end > self.plan.end:
+            self.plan = hear(self.project, self.plan, now, [], end, self.stances, self.idle)
+        if work.asks:
             asks = list(work.asks.values())
             self.tape.keep(asks)
-            self.plan = hear(self.project, self.plan, now, asks, max(self.plan.end, now + self.ahead), self.stances, self.idle)
+            self.plan = hear(self.project, self.plan, now, asks, end, self.stances, self.idle)
         for done in work.over:
             out.replies[done.place] = Reply(id=done.ident, state="refused", why=done.why)
         if not (work.asks or work.open or self._edited):

@@ -13,7 +13,7 @@ from typing import Any, Literal
 import msgspec
 
 from metagraph.graph.asks import AnyAsk
-from metagraph.graph.model import Layer, Project
+from metagraph.graph.model import LAYERS, Layer, Project
 from metagraph.playback.life.track import StayFrom
 from metagraph.playback.pick import remember
 from metagraph.playback.plan import Cue, LayerPlan, Past, Plan, Report
@@ -65,9 +65,13 @@ def hear(
     withdrawn = asked_before if every else belonging
     staying = {s.layer for s in (*plan.track.stays, *meant.items) if isinstance(s, StayFrom) and s.on}
     items = [i for i in meant.items if not isinstance(i, StayFrom) or i.layer in staying]
+    touched = {r.layer for r in meant.requests} | {r.layer for r in plan.requests if r.id in withdrawn}
+    touched |= {s.layer for s in (*plan.track.stays, *items) if isinstance(s, StayFrom) and (s.id in gone or s.id in withdrawn)}
+    # Without any asks everything is planned again, so that an edited project shows; with some, what they have to do with.
+    leave = [layer for layer in LAYERS if layer not in touched] if asks and now > 0 and end == plan.end else []
     track = plan.track.without(withdrawn, fixed).plus(items)
     plan = replace(plan, track=track)
-    after = extend(project, plan, fixed, meant.requests, end, stances, idle, frozenset(withdrawn))
+    after = extend(project, plan, fixed, meant.requests, end, stances, idle, frozenset(withdrawn), leave)
     return replace(after, reports=(*after.reports, *meant.refused)) if meant.refused else after
 
 

@@ -6,7 +6,7 @@ extending a running plan are the same function; `make_plan` extends an empty pla
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping
+from collections.abc import Collection, Iterable, Mapping
 
 from metagraph.graph.model import LAYERS, Layer, MetaGraph, Project
 from metagraph.playback import markov
@@ -44,17 +44,23 @@ def extend(
     stances: Mapping[Layer, str] | None = None,
     idle: bool = True,
     withdrawn: frozenset[str] = frozenset(),
+    leave: Collection[Layer] = (),
 ) -> Plan:
     """Return the plan with new requests worked in, others withdrawn, and the horizon moved to `end`.
 
     What starts before `now` stays exactly as it was. What was planned for later is taken back to its meta actions,
-    merged with the new ones and planned again. An extension in many steps gives what one in a single step does.
+    merged with the new ones and planned again. An extension in many steps gives what one in a single step does. leave: layers
+    that are planned to `end` already and that nothing new concerns; planning them again would change nothing.
     """
     fresh = tuple({r.id: r for r in requests}.values())  # of two with one id the later counts
     again = {r.id for r in fresh} | withdrawn
     layers: dict[Layer, LayerPlan] = {}
     reports: list[Report] = []
     for layer in LAYERS:
+        if layer in leave:
+            layers[layer] = plan.layers[layer]
+            reports += [r for r in plan.reports if r.layer == layer and r.request not in again]
+            continue
         asked = [_meta(r) for r in fresh if r.layer == layer]
         begin = _begin(project.graphs[layer], plan.layers[layer], (stances or {}).get(layer))
         layers[layer], told = _extend_layer(project, plan, layer, now, asked, again, end, begin, idle)

@@ -272,12 +272,12 @@ def test_a_block_is_withdrawn_or_replaced_with_all_its_parts(session: LiveSessio
 
 
 def test_a_block_may_replace_or_follow_what_its_client_asked_before(session: LiveSession) -> None:
-    one(session, {"do": "nod", "at": 20}, client=2)
+    one(session, {"do": "nod", "at": 15}, client=2)
     first = one(session, {"do": "bml", "bml": '<bml><head lexeme="NOD" start="5"/></bml>'})
     after = one(session, {"do": "bml", "bml": '<bml composition="APPEND"><head lexeme="NOD" start="0.5"/></bml>'})
     assert after["at"] == pytest.approx(first["until"] + 0.5, abs=1e-3)
     one(session, {"do": "bml", "bml": '<bml composition="REPLACE"><head lexeme="SHAKE" start="3"/></bml>'})
-    assert [round(c.start, 1) for c in session.plan.layers["head"].cues] == [round(session.now + 3.1, 1), 20.0]
+    assert [round(c.start, 1) for c in session.plan.layers["head"].cues] == [round(session.now + 3.1, 1), 15.0]
 
 
 # --- events

@@ -162,6 +162,23 @@ def test_withdrawing_among_thousands_takes_back_what_belongs_together(sample: Pr
     assert {r.id for r in gone.requests} == {f"n{n}" for n in range(400, 500)}
 
 
+def test_layers_that_an_ask_has_nothing_to_do_with_are_left_as_they_are(sample: Project) -> None:
+    plan = perform(sample, [a.Gesture(id="g", at=8.0), a.Go(id="s", stance="head tilt left", at=9.0, stay=True)], 20)
+    for ask, touched in (
+        (a.Place(id="p", name="user", point=(0.0, 1.0, 2.0)), set()),
+        (a.Say(id="w", text="hello"), set()),
+        (a.Nod(id="n"), {"head"}),
+        (a.Withdraw(id="x", what="g"), {"arms"}),
+        (a.Withdraw(id="x", what="s"), {"head"}),
+        (a.Fidget(id="g", layer="body"), {"arms", "body"}),
+        (a.Withdraw(id="x"), {"arms", "head"}),
+    ):
+        after = hear(sample, plan, 2.0, [ask], 20)
+        assert {x for x in LAYERS if after.layers[x] is not plan.layers[x]} == touched, ask
+        again = hear(sample, after, 2.0, [], 20)  # everything is planned again, and comes out the same
+        assert shown(again)[0] == shown(after)[0]
+
+
 def test_a_withdrawn_ask_does_not_play_and_one_that_plays_goes_on(sample: Project) -> None:
     asks = [a.Gesture(id="early", at=1.0, priority=2), a.Gesture(id="late", at=12.0, priority=2), a.Look(id="look", to="user", at=15.0)]
     plan = perform(sample, asks, 20, idle=False)
