@@ -6,15 +6,44 @@ from dataclasses import replace
 from pathlib import Path
 from typing import cast
 
+import msgspec
+
 from metagraph.formats.imports import import_files
 from metagraph.formats.store import SUFFIX, save_project
-from metagraph.graph import edits
+from metagraph.graph import asks as a
+from metagraph.graph import edits, staging
 from metagraph.graph.model import LAYERS, Kind, Layer, Limb, Project, Timing
 from sample_clips.make.babble import sample_lines
 from sample_clips.make.catalogue import BASE, Entry, catalogue
 
 HERE = Path(__file__).resolve().parents[1]
 STARTS = {"body": "weight both", "arms": "hands at sides", "head": "straight"}
+
+
+# What goes with a line, seconds from its start.
+WITH_LINES: dict[str, tuple[a.AnyAsk, ...]] = {
+    "hello": (a.Gesture(tags=("greeting",), at=0.0, priority=2), a.Nod(at=0.9)),
+    "happy": (a.Gesture(tags=("positive",), stroke=0.85, priority=2),),
+    "maybe": (a.Gesture(tags=("unsure",), stroke=0.9, priority=2), a.Shake(at=0.2)),
+    "you_first": (a.Gesture(tags=("refuse",), at=0.0, priority=2), a.Shake(at=0.1)),
+}
+GREETING = a.Performance(
+    name="greeting",
+    length=24.0,
+    asks=(
+        a.Look(to="user", at=0.0, strict=True, duration=4.0),
+        a.Say(line="hello", at=1.0),
+        a.Say(line="happy", at=4.2),
+        a.Behave(mode="listening", at=6.4),
+        a.Go(stance="on hips", at=7.5),
+        a.Nod(at=9.0, tags=("agree",)),
+        a.Look(to=(1.2, 1.3, 1.5), at=11.0, duration=1.6),
+        a.Go(stance="hands at sides", at=13.0),
+        a.Behave(mode=None, at=13.5),
+        a.Say(line="maybe", at=15.0),
+        a.Say(line="you_first", at=19.0),
+    ),
+)
 
 
 def practice() -> Project:
@@ -43,7 +72,8 @@ def sample() -> Project:
             ids[(layer, name)] = list(project.graphs[layer].stances)[-1]
     for entry in sorted(entries, key=lambda e: ("stance", "gesture", "fidget", "transition").index(e.kind)):
         project = _place(project, entry, clips[entry.name], ids)
-    return replace(project, lines=sample_lines())
+    lines = {name: msgspec.structs.replace(line, asks=WITH_LINES.get(name, ())) for name, line in sample_lines().items()}
+    return staging.add_performance(replace(project, lines=lines), GREETING)[0]
 
 
 def _words(name: str) -> str:
