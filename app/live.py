@@ -6,17 +6,19 @@ The lines to clients are in a process of their own; here is one tick a frame, wh
 from __future__ import annotations
 
 from collections import deque
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
 
 import msgspec
 from PySide6.QtCore import QElapsedTimer, QObject, Qt, QTimer, Signal
 
 from metagraph.graph.asks import AnyAsk, Performance
 from metagraph.graph.model import Project
+from metagraph.live.messages import Heard, Reply
 from metagraph.live.relay import Relay
 from metagraph.live.server import OSC_PORT, PORT, LiveError, Options
 from metagraph.live.session import LiveSession
 from metagraph.live.tape import Tape
+from metagraph.live.work import Out
 from metagraph.playback.hear import Answer, answers
 
 TICK = 16  # milliseconds
@@ -27,17 +29,30 @@ WINDOW = 0  # the window is a client, too
 
 
 class _Shown(Tape):
-    """A tape that also keeps the latest requests at hand."""
+    """A tape that also keeps the latest requests at hand. count: how many were taken on."""
 
     def __init__(self) -> None:
         super().__init__()
-        self.latest: deque[AnyAsk] = deque(maxlen=SHOWN)
+        self.latest: tuple[AnyAsk, ...] = ()
         self.count = 0
 
     def keep(self, asks: Sequence[AnyAsk]) -> None:
         super().keep(asks)
-        self.latest.extend(ask for ask in asks if ask.__struct_config__.tag != "withdraw")
+        shown = [ask for ask in asks if ask.__struct_config__.tag != "withdraw"]
+        if shown:
+            self.latest = (*self.latest, *shown)[-SHOWN:]
         self.count += len(asks)
+
+
+class _Counted(LiveSession):
+    """A session that knows how many requests it has answered, whatever it said."""
+
+    answered = 0
+
+    def tick(self, now: float, heard: Iterable[tuple[int, Heard | Reply]] = ()) -> Out:
+        out = super().tick(now, heard)
+        self.answered += len(out.replies)
+        return out
 
 
 class LiveStage(QObject):
@@ -48,7 +63,7 @@ class LiveStage(QObject):
 
     def __init__(self, project: Project, options: Options | None = None, parent: QObject | None = None) -> None:
         super().__init__(parent)
-        self.session = LiveSession(project)
+        self.session = _Counted(project)
         self.session.tape = self.tape = _Shown()
         self.session.join(WINDOW)
         self.options = options or Options(port=PORT, osc=OSC_PORT)
@@ -105,7 +120,7 @@ class LiveStage(QObject):
             elif self.relay is not None and self.relay.ready is not None and not self._ready:
                 self._ready = True
                 self.told.emit(self.words())
-        self._rated.append((now, self.tape.count))
+        self._rated.append((now, self.session.answered))
         while self._rated[0][0] < now - RATED:
             self._rated.popleft()
         self.ticked.emit()
@@ -134,7 +149,7 @@ class LiveStage(QObject):
     @property
     def asks(self) -> tuple[AnyAsk, ...]:
         """The latest requests of all clients."""
-        return tuple(self.tape.latest)
+        return self.tape.latest
 
     def answers(self) -> dict[str, Answer]:
         """Return what becomes of the latest requests."""

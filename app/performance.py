@@ -203,6 +203,21 @@ class Performance(QObject):
         if stage is not None:
             self.document.edit("Move request", lambda p: staging.move_asks(p, stage, idents, by), merge)
 
+    def copy_asks(self, idents: tuple[str, ...], by: float) -> None:
+        """Ask for the same once more, seconds later or earlier, and select the copies."""
+        stage, kept = self.session.performance, self.kept
+        if stage is None or kept is None:
+            return
+        number = len(kept.asks)
+        copies = tuple(msgspec.structs.replace(x, id="", told=None) for x in kept.asks if x.id in idents)
+
+        def edit(project: Project) -> Project:
+            project = staging.change_performance(project, stage, asks=(*project.performances[stage].asks, *copies))
+            return staging.move_asks(project, stage, {x.id for x in project.performances[stage].asks[number:]}, by)
+
+        self.document.edit("Copy request" if len(copies) == 1 else f"Copy {len(copies)} requests", edit)
+        self.session.select_asks(tuple(x.id for x in (self.kept or kept).asks[number:]))
+
     def withdraw(self, *idents: str) -> None:
         """Take asks of the performance on stage back; all when none is named."""
         stage = self.session.performance

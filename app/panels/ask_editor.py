@@ -21,6 +21,7 @@ from PySide6.QtWidgets import (
 )
 
 from app.asks import MODE_WORDS, ask_words, lane_of
+from app.panels.lanes import outcome
 from app.performance import Performance
 from metagraph.graph.edits import EditError
 from metagraph.graph.model import LAYERS, LIMBS, MODES, Project
@@ -84,17 +85,18 @@ class AskEditor(QDialog):
         return next((x for x in self.performance.asks if x.id == self.ident), None)
 
     def _told(self) -> None:
-        answer = self.performance.answers().get(self.ident)
-        if answer is None:
-            self.words.setText("")
-            return
-        why = f"{answer.why[:1].upper()}{answer.why[1:]}." if answer.why else ""
-        if answer.at is not None:
-            self.words.setText(f"Plays {', '.join(answer.what)} from {answer.at:.2f} s. {why}")
+        ask = self._ask()
+        if ask is None:
+            self.words.setText("This request is not there any more.")
         else:
-            self.words.setText(f"Does not play. {why}" if answer.state == "refused" else why)
+            self.words.setText(outcome(ask, self.performance.answers().get(self.ident)))
+        self.remove.setEnabled(ask is not None)
+        for field in self.fields.values():
+            field.setEnabled(ask is not None)
 
     def _set(self, name: str, value: Any) -> None:
+        if self._ask() is None:
+            return
         try:
             self.performance.change_ask(self.ident, **{name: value})
         except EditError as error:

@@ -1,4 +1,4 @@
-"""The widget of the lanes: paints the plan and what was asked, and turns the mouse and the keys into edits."""
+"""The widget of the lanes: shows the plan and what was asked, and turns the mouse and the keys into edits."""
 
 from __future__ import annotations
 
@@ -8,36 +8,48 @@ from PySide6.QtCore import QPointF, QRectF, Qt
 from PySide6.QtGui import (
     QColor,
     QContextMenuEvent,
+    QFocusEvent,
+    QFont,
     QHelpEvent,
     QKeyEvent,
     QMouseEvent,
     QPainter,
     QPaintEvent,
     QPen,
+    QPixmap,
     QWheelEvent,
 )
-from PySide6.QtWidgets import QApplication, QToolTip, QWidget
+from PySide6.QtWidgets import QApplication, QMenu, QToolTip, QWidget
 
-from app.asks import STAGE, ask_menu
-from app.panels.lanes import LANE, LEFT, RULER, TITLES, Mark, Scale, cue_at, elided, lane_at, lanes, mark_at, marks, rows, told
-from app.performance import Performance, Shown
+from app.asks import ask_menu
+from app.panels.lane_paint import Scene, badge, paint, playhead
+from app.panels.lanes import LEFT, RULER, Mark, Scale, cue_at, lane_at, mark_at, marks, time_of, told
+from app.panels.once import Once
+from app.performance import Performance
 from app.session import Session
-from app.theme import KIND_MARKS, Theme, theme
-from metagraph.graph.model import LAYERS, Layer
+from app.theme import theme
 
-NUDGE = 0.1  # seconds an arrow key moves what is selected
+NUDGE, FAR = 0.1, 1.0  # seconds an arrow key moves what is selected, and with Shift
 CATCH = 3  # pixels the mouse must move for a press to become a drag
-INK = "#17181b"  # on the kinds' fills
+ZOOM = 1.2
+COPIES = Qt.KeyboardModifier.ControlModifier | Qt.KeyboardModifier.AltModifier
+TEXT = "Requests, and what plays. Up and Down choose a request, Left and Right move it, Enter changes it, Insert asks for something."
 
 
 @dataclass
 class Drag:
-    """Asks being moved in time: silently until the button is released, then one edit."""
+    """Asks being moved, or copied, in time: silently until the button is released, then one edit.
+
+    ident: the one that is held. lone: let go without moving it, it is selected no longer.
+    """
 
     idents: tuple[str, ...]
+    ident: str
     grip: float
     by: float = 0.0
     begun: bool = False
+    copy: bool = False
+    lone: bool = False
 
 
 class Lanes(QWidget):
@@ -53,10 +65,14 @@ class Lanes(QWidget):
         self.first = 0.0
         self.follow = True
         self.drag: Drag | None = None
+        self._marks: Once[list[Mark]] = Once()
+        self._still: Once[QPixmap] = Once()  # all but what moves while it plays
+        self.painted = 0  # how often that was made
         self.setMinimumHeight(RULER + 4 * 40)
         self.setMouseTracking(True)
-        self.setFocusPolicy(Qt.FocusPolicy.ClickFocus)
+        self.setFocusPolicy(Qt.FocusPolicy.StrongFocus)
         self.setAccessibleName("Timeline")
+        self.setAccessibleDescription(TEXT)
         performance.changed.connect(self.update)
         session.moved.connect(self._playhead)
         for signal in (session.theme_changed, session.selection_changed, session.performance_changed):
@@ -69,9 +85,20 @@ class Lanes(QWidget):
         """Return the requests as they are drawn now."""
         if self.session.show != "plan":
             return []
-        shift = dict.fromkeys(self.drag.idents, self.drag.by) if self.drag is not None and self.drag.begun else None
-        p = self.performance
-        return marks(p.asks, p.answers(), p.document.project, self.scale(), self.height(), self.font(), shift)
+        p, drag = self.performance, self.drag if self.drag is not None and self.drag.begun else None
+        asks, answers, project, scale = p.asks, p.answers(), p.document.project, self.scale()
+
+        def make() -> list[Mark]:
+            shift = dict.fromkeys(drag.idents, drag.by) if drag is not None else None
+            found = marks(asks, answers, project, scale, self.height(), self.font(), shift)
+            if drag is None or not drag.copy:
+                return found
+            # What is copied stays where it is, under its copies.
+            still = marks(asks, answers, project, scale, self.height(), self.font())
+            return still + [m for m in found if m.ask.id in drag.idents]
+
+        values = (scale, self.height(), self.font().toString(), drag and (drag.by, drag.copy))
+        return self._marks.of(values, (asks, answers, project), make)
 
     def _playhead(self, seconds: float) -> None:
         width = self.width() - LEFT
@@ -83,136 +110,66 @@ class Lanes(QWidget):
                 self.first = max(0.0, seconds - 0.15 * width / self.each)
         self.update()
 
+    def reveal(self, ident: str) -> None:
+        """Select a request and bring it in sight."""
+        self.session.select_asks((ident,))
+        mark = next((m for m in self.marks() if m.ask.id == ident), None)
+        if mark is not None and not LEFT <= mark.rect.left() <= self.width() - 60:
+            self.first = max(0.0, mark.at - 0.3 * (self.width() - LEFT) / self.each)
+        self.update()
+
     # --- painting
 
     def paintEvent(self, event: QPaintEvent) -> None:
-        t = theme(self.session.theme)
-        painter = QPainter(self)
-        painter.setRenderHint(QPainter.RenderHint.Antialiasing)
-        painter.fillRect(self.rect(), QColor(t.panel))
-        scale, shown = self.scale(), self.performance.shown
-        self._ruler(painter, t, scale)
-        for name, lane in lanes(self.height()).items():
-            painter.setPen(QColor(t.line))
-            painter.drawLine(QPointF(0, lane.bottom()), QPointF(self.width(), lane.bottom()))
-            painter.setPen(QColor(t.text if name == self.session.layer else t.dim))
-            painter.drawText(QRectF(14, lane.top(), LEFT - 16, lane.height()), Qt.AlignmentFlag.AlignVCenter, TITLES[name])
-        painter.setClipRect(QRectF(LEFT, 0, self.width() - LEFT, self.height()))
-        if shown.clip is None:
-            self._stage(painter, t, scale, shown)
-            for layer in LAYERS:
-                self._layer(painter, t, scale, shown, layer)
-            found = self.marks()
-            self._ties(painter, t, scale, found)
-            for mark in found:
-                self._mark(painter, t, mark)
-        else:
-            entry = shown.project.clips[shown.clip]
-            rect = QRectF(scale.x(0), RULER + 40, max(2.0, entry.duration * scale.each), LANE - 18)
-            self._bar(painter, t, rect, QColor(t.line), entry.name, t.text, False)
-        if self.performance.kept is not None:
-            self._after(painter, t, scale.x(shown.length))
-        self._head(painter, t, scale)
+        t, painter = theme(self.session.theme), QPainter(self)
+        painter.drawPixmap(0, 0, self._picture())
+        playhead(painter, t, self.scale().x(self.session.seconds), self.height())
+        drag = self.drag
+        if drag is not None and drag.begun:
+            held = next((m for m in reversed(self.marks()) if m.ask.id == drag.ident), None)
+            if held is not None:
+                font = QFont(self.font())
+                font.setFeature(QFont.Tag("tnum"), 1)
+                painter.setFont(font)
+                words = f"{max(0.0, held.at):.2f} s  ({drag.by:+.2f}){'  copy' if drag.copy else ''}"
+                badge(painter, t, QPointF(held.rect.left(), 0), words, self.width())
+        if self.hasFocus() and self._by_keys:
+            painter.setPen(QPen(QColor(t.dim), 1))
+            painter.setBrush(Qt.BrushStyle.NoBrush)
+            painter.drawRect(QRectF(self.rect()).adjusted(0.5, 0.5, -0.5, -0.5))
         painter.end()
 
-    def _head(self, painter: QPainter, t: Theme, scale: Scale) -> None:
-        x = scale.x(self.session.seconds)
-        painter.setPen(QPen(QColor(t.text), 1.6))
-        painter.drawLine(QPointF(x, 4), QPointF(x, self.height()))
-        painter.setPen(Qt.PenStyle.NoPen)
-        painter.setBrush(QColor(t.text))
-        painter.drawPolygon([QPointF(x - 5, 4), QPointF(x + 5, 4), QPointF(x, 11)])
+    _by_keys = False
 
-    def _after(self, painter: QPainter, t: Theme, x: float) -> None:
-        """Dim what lies after a kept performance's end."""
-        if x < self.width():
-            veil = QColor(t.ground)
-            veil.setAlpha(150)
-            painter.fillRect(QRectF(max(x, LEFT), RULER, self.width(), self.height()), veil)
+    def _picture(self) -> QPixmap:
+        """Return everything but the playhead, made anew only when something else than the playhead has changed."""
+        s, p, ratio = self.session, self.performance, self.devicePixelRatioF()
+        ends = p.shown.length if p.kept is not None else None
+        found = self.marks()
+        font = self.font()
 
-    def _ruler(self, painter: QPainter, t: Theme, scale: Scale) -> None:
-        step = scale.step()
-        mark = max(0.0, (scale.first // step) * step)
-        painter.setPen(QColor(t.dim))
-        while scale.x(mark) < self.width():
-            x = scale.x(mark)
-            if x >= LEFT - 1:
-                words = f"{mark:g} s" if step < 60 else f"{mark / 60:g} min"
-                painter.drawText(QRectF(x - 40, 0, 80, RULER), Qt.AlignmentFlag.AlignCenter, words)
-            mark = round(mark + step, 3)
+        def make() -> QPixmap:
+            picture = QPixmap(self.size() * ratio)
+            picture.setDevicePixelRatio(ratio)
+            painter = QPainter(picture)
+            painter.setFont(font)
+            scene = Scene(p.shown, found, self.scale(), self.width(), self.height(), s.layer, ends, set(s.actions), set(s.asks))
+            paint(painter, theme(s.theme), scene)
+            painter.end()
+            self.painted += 1
+            return picture
 
-    def _stage(self, painter: QPainter, t: Theme, scale: Scale, shown: Shown) -> None:
-        """Speech as bars with its words, looks as lines under them."""
-        area, track = rows(lanes(self.height())[STAGE])[1], shown.plan.track
-        for look, following in zip(track.looks, (*track.looks[1:], None), strict=False):
-            until = min(look.end, following.start if following else look.end, max(shown.length, look.start))
-            left, right = scale.x(look.start), scale.x(until)
-            if right > LEFT and left < self.width():
-                painter.setPen(QPen(QColor(t.dim), 1.4, Qt.PenStyle.DotLine))
-                painter.drawLine(QPointF(max(left, LEFT), area.bottom() - 2), QPointF(min(right, self.width()), area.bottom() - 2))
-        for speech in track.speeches:
-            left, right = scale.x(speech.start), scale.x(speech.end)
-            if right > LEFT and left < self.width():
-                rect = QRectF(left, area.top(), max(3.0, right - left - 1), area.height() - 5)
-                self._bar(painter, t, rect, QColor(t.hover), speech.text, t.text, False)
+        values = (self.scale(), self.size(), ratio, s.theme, s.layer, ends, s.actions, s.asks, font.toString())
+        return self._still.of(values, (p.shown, found), make)
 
-    def _layer(self, painter: QPainter, t: Theme, scale: Scale, shown: Shown, layer: Layer) -> None:
-        """Stances as a quiet band, cues on it in their kind's colour."""
-        plan, area = shown.plan.layers[layer], rows(lanes(self.height())[layer])[1]
-        begin = plan.past.free
-        edges = [begin, *(cue.end for cue in plan.cues if cue.then != cue.stance), max(shown.length, scale.seconds(self.width()))]
-        first = plan.stance_at(-1.0) if plan.rests else None
-        stances = [first or "", *(cue.then for cue in plan.cues if cue.then != cue.stance)] if plan.rests else []
-        for stance, start, end in zip(stances, edges, edges[1:], strict=False):
-            if scale.x(end) < LEFT or scale.x(start) > self.width():
-                continue
-            found = shown.project.stance(stance)
-            fill = t.fill("stance")
-            fill.setAlpha(70 if t.name == "dark" else 90)
-            left, right = max(scale.x(start), LEFT - 8.0), min(scale.x(end), self.width() + 8.0)
-            rect = QRectF(left, area.top(), right - left - 1, area.height())
-            self._bar(painter, t, rect, fill, found.name if found else "", t.text, False)
-        for cue in plan.cues:
-            left, right = scale.x(cue.start), scale.x(cue.end)
-            if right < LEFT or left > self.width():
-                continue
-            rect = QRectF(left, area.top(), max(3.0, right - left - 1), area.height())
-            selected = cue.action.id in self.session.actions
-            self._bar(painter, t, rect, t.fill(cue.action.kind), f"{KIND_MARKS[cue.action.kind]} {cue.action.name}", INK, selected)
+    def focusInEvent(self, event: QFocusEvent) -> None:
+        self._by_keys = event.reason() in (Qt.FocusReason.TabFocusReason, Qt.FocusReason.BacktabFocusReason)
+        super().focusInEvent(event)
+        self.update()
 
-    def _bar(self, painter: QPainter, t: Theme, rect: QRectF, fill: QColor, words: str, ink: str, selected: bool) -> None:
-        painter.setPen(QPen(QColor(t.text), 2) if selected else Qt.PenStyle.NoPen)
-        painter.setBrush(fill)
-        painter.drawRoundedRect(rect, 4, 4)
-        inner = QRectF(max(rect.left(), LEFT) + 8, rect.top(), rect.right() - max(rect.left(), LEFT) - 12, rect.height())
-        if inner.width() > 16 and words:
-            painter.setPen(QColor(ink))
-            painter.drawText(inner, Qt.AlignmentFlag.AlignVCenter, elided(words, painter.font(), inner.width()))
-
-    def _ties(self, painter: QPainter, t: Theme, scale: Scale, found: list[Mark]) -> None:
-        """Lead from each request down to what plays for it."""
-        painter.setPen(QPen(QColor(t.dim), 1.2))
-        places = lanes(self.height())
-        for mark in found:
-            if mark.answer is None or mark.answer.at is None or mark.kind is None or mark.late <= 0.02:
-                continue
-            lane = next(n for n, r in places.items() if r.contains(QPointF(1, mark.rect.center().y())))
-            x, to = mark.rect.left() + 1, scale.x(mark.answer.at)
-            below = rows(places[lane])[1].top()
-            painter.drawLine(QPointF(x, mark.rect.bottom()), QPointF(to, below))
-
-    def _mark(self, painter: QPainter, t: Theme, mark: Mark) -> None:
-        if mark.rect.right() < LEFT or mark.rect.left() > self.width():
-            return
-        color = QColor(t.warning) if mark.lost else t.kind(mark.kind) if mark.kind else QColor(t.dim)
-        selected = mark.ask.id in self.session.asks
-        painter.setPen(QPen(color, 2.0 if selected else 1.2, Qt.PenStyle.DashLine if mark.lost else Qt.PenStyle.SolidLine))
-        painter.setBrush(QColor(t.hover if selected else t.card))
-        painter.drawRoundedRect(mark.rect, 4, 4)
-        inner = mark.rect.adjusted(7, 0, -5, 0)
-        painter.setPen(QColor(t.warning if mark.lost else t.text))
-        words = f"⚠ {mark.words}" if mark.lost else mark.words
-        painter.drawText(inner, Qt.AlignmentFlag.AlignVCenter, elided(words, painter.font(), inner.width()))
+    def focusOutEvent(self, event: QFocusEvent) -> None:
+        super().focusOutEvent(event)
+        self.update()
 
     # --- the mouse
 
@@ -233,18 +190,22 @@ class Lanes(QWidget):
 
     def _press(self, mark: Mark, event: QMouseEvent) -> None:
         ident, chosen = mark.ask.id, self.session.asks
-        if event.modifiers() & Qt.KeyboardModifier.ControlModifier:
-            self.session.select_asks(tuple(i for i in chosen if i != ident) if ident in chosen else (*chosen, ident))
-        elif ident not in chosen:
-            self.session.select_asks((ident,))
+        more = bool(event.modifiers() & Qt.KeyboardModifier.ControlModifier)
+        lone = more and ident in chosen
+        if ident not in chosen:
+            self.session.select_asks((*chosen, ident) if more else (ident,))
         if self.performance.editable:
-            self.drag = Drag(self.session.asks, event.position().x())
+            self.drag = Drag(self.session.asks, ident, event.position().x(), lone=lone)
+        elif lone:
+            self.session.select_asks(tuple(i for i in chosen if i != ident))
 
     def mouseMoveEvent(self, event: QMouseEvent) -> None:
-        x = event.position().x()
-        if self.drag is not None:
-            self.drag.begun = self.drag.begun or abs(x - self.drag.grip) >= CATCH
-            self.drag.by = round((x - self.drag.grip) / self.each, 2)
+        x, drag = event.position().x(), self.drag
+        if drag is not None:
+            drag.begun = drag.begun or abs(x - drag.grip) >= CATCH
+            drag.copy = bool(event.modifiers() & COPIES)
+            drag.by = self._within(drag, round((x - drag.grip) / self.each, 2))
+            self.setCursor(Qt.CursorShape.DragCopyCursor if drag.copy and drag.begun else Qt.CursorShape.SizeHorCursor)
             self.update()
         elif event.buttons() & Qt.MouseButton.LeftButton:
             self._scrub(x)
@@ -258,10 +219,19 @@ class Lanes(QWidget):
 
     _grip = 0.0
 
+    def _within(self, drag: Drag, by: float) -> float:
+        """Return by how much they can be moved: none to before the beginning."""
+        answers = self.performance.answers()
+        return max(by, -min((time_of(x, answers.get(x.id)) for x in self.performance.asks if x.id in drag.idents), default=0.0))
+
     def mouseReleaseEvent(self, event: QMouseEvent) -> None:
         drag, self.drag = self.drag, None
-        if drag is not None and drag.begun and drag.by:
+        if drag is not None and drag.begun and drag.by and drag.copy:
+            self.performance.copy_asks(drag.idents, drag.by)
+        elif drag is not None and drag.begun and drag.by:
             self.performance.move_asks(drag.idents, drag.by)
+        elif drag is not None and drag.lone and not drag.begun:
+            self.session.select_asks(tuple(i for i in self.session.asks if i != drag.ident))
         self.update()
 
     def mouseDoubleClickEvent(self, event: QMouseEvent) -> None:
@@ -277,7 +247,23 @@ class Lanes(QWidget):
 
     def _menu(self, at: QPointF, on_screen: QPointF) -> None:
         seconds = round(max(0.0, self.scale().seconds(at.x())), 2)
-        ask_menu(self, self.performance, seconds, lane_at(self.height(), at)).popup(on_screen.toPoint())
+        mark = mark_at(self.marks(), at)
+        if mark is not None and self.performance.editable:
+            self._mark_menu(mark).popup(on_screen.toPoint())
+        else:
+            ask_menu(self, self.performance, seconds, lane_at(self.height(), at)).popup(on_screen.toPoint())
+
+    def _mark_menu(self, mark: Mark) -> QMenu:
+        """Return what can be done with a request, or with all that are selected with it."""
+        ident = mark.ask.id
+        if ident not in self.session.asks:
+            self.session.select_asks((ident,))
+        menu, chosen = QMenu(self), self.session.asks
+        menu.setAttribute(Qt.WidgetAttribute.WA_DeleteOnClose)
+        menu.addAction("Change…\tReturn", lambda: self.edit(ident))
+        menu.addAction("Copy\tCtrl+D", lambda: self.performance.copy_asks(chosen, FAR))
+        menu.addAction("Take it back\tDel" if len(chosen) == 1 else "Take them back\tDel", lambda: self.performance.withdraw(*chosen))
+        return menu
 
     def edit(self, ident: str) -> None:
         """Show the fields of a request."""
@@ -287,7 +273,16 @@ class Lanes(QWidget):
             AskEditor(self.performance, ident, self).open()
 
     def contextMenuEvent(self, event: QContextMenuEvent) -> None:
-        self._menu(QPointF(event.pos()), QPointF(event.globalPos()))
+        if event.reason() == QContextMenuEvent.Reason.Keyboard:
+            self._ask_here()
+        elif event.pos().x() >= LEFT:
+            self._menu(QPointF(event.pos()), QPointF(event.globalPos()))
+
+    def _ask_here(self) -> None:
+        """Ask for something at the playhead."""
+        x = min(max(LEFT, self.scale().x(self.session.seconds)), self.width())
+        seconds = round(self.session.seconds, 2) if self.performance.live is None else None
+        ask_menu(self, self.performance, seconds).popup(self.mapToGlobal(QPointF(x, RULER).toPoint()))
 
     def _scrub(self, x: float) -> None:
         self.session.set_playing(False)
@@ -297,28 +292,63 @@ class Lanes(QWidget):
         delta = event.angleDelta()
         if event.modifiers() & Qt.KeyboardModifier.ShiftModifier or abs(delta.x()) > abs(delta.y()):
             self.first = max(0.0, self.first - (delta.x() or delta.y()) / 2 / self.each)
+            self.update()
         else:
-            at = self.scale().seconds(event.position().x())
-            self.each = min(400.0, max(2.0, self.each * 1.2 ** (delta.y() / 120)))
-            self.first = max(0.0, at - (event.position().x() - LEFT) / self.each)
-        self.update()
+            self._zoom(ZOOM ** (delta.y() / 120), event.position().x())
         event.accept()
+
+    def _zoom(self, by: float, x: float) -> None:
+        """Zoom about a place on the screen."""
+        at = self.scale().seconds(x)
+        self.each = min(400.0, max(2.0, self.each * by))
+        self.first = max(0.0, at - (x - LEFT) / self.each)
+        self.update()
 
     # --- keys and tips
 
+    def _nudge(self, key: Qt.Key, modifiers: Qt.KeyboardModifier) -> None:
+        by = FAR if modifiers & Qt.KeyboardModifier.ShiftModifier else NUDGE
+        self.performance.move_asks(self.session.asks, by if key == Qt.Key.Key_Right else -by, merge="nudge")
+
+    def _choose(self, step: int) -> None:
+        """Select the request before or after the selected one, in time; without one, the first from the playhead on."""
+        order = sorted(self.marks(), key=lambda m: m.at)
+        if not order:
+            return
+        chosen = self.session.asks
+        place = next((n for n, m in enumerate(order) if chosen and m.ask.id == chosen[-1]), None)
+        if place is None:
+            place = next((n for n, m in enumerate(order) if m.at >= self.session.seconds), len(order) - 1)
+        else:
+            place = min(max(0, place + step), len(order) - 1)
+        self.reveal(order[place].ask.id)
+
     def keyPressEvent(self, event: QKeyEvent) -> None:
-        chosen, key = self.session.asks, event.key()
+        chosen, key, can = self.session.asks, event.key(), self.performance.editable
         if key == Qt.Key.Key_Escape and self.drag is not None:
             self.drag = None
+            self.setCursor(Qt.CursorShape.ArrowCursor)
             self.update()
-        elif chosen and self.performance.editable and key in (Qt.Key.Key_Left, Qt.Key.Key_Right):
-            self.performance.move_asks(chosen, NUDGE if key == Qt.Key.Key_Right else -NUDGE, merge="nudge")
+        elif key == Qt.Key.Key_Escape and chosen:
+            self.session.select_asks(())
+        elif self.drag is not None:
+            return  # what is held is not edited by keys as well
+        elif chosen and can and key in (Qt.Key.Key_Left, Qt.Key.Key_Right):
+            self._nudge(Qt.Key(key), event.modifiers())
+        elif chosen and can and key == Qt.Key.Key_D and event.modifiers() & Qt.KeyboardModifier.ControlModifier:
+            self.performance.copy_asks(chosen, FAR)
         elif chosen and key in (Qt.Key.Key_Return, Qt.Key.Key_Enter):
             self.edit(chosen[0])
-        elif key == Qt.Key.Key_Tab and self.performance.asks:
-            order = [m.ask.id for m in sorted(self.marks(), key=lambda m: m.at)]
-            place = order.index(chosen[0]) + 1 if chosen and chosen[0] in order else 0
-            self.session.select_asks((order[place % len(order)],))
+        elif key in (Qt.Key.Key_Up, Qt.Key.Key_Down):
+            self._choose(1 if key == Qt.Key.Key_Down else -1)
+        elif key == Qt.Key.Key_Insert:
+            self._ask_here()
+        elif key in (Qt.Key.Key_Plus, Qt.Key.Key_Equal, Qt.Key.Key_Minus):
+            self._zoom(1 / ZOOM if key == Qt.Key.Key_Minus else ZOOM, min(max(LEFT, self.scale().x(self.session.seconds)), self.width()))
+        elif key in (Qt.Key.Key_PageUp, Qt.Key.Key_PageDown):
+            page = 0.8 * (self.width() - LEFT) / self.each
+            self.first = max(0.0, self.first + (page if key == Qt.Key.Key_PageDown else -page))
+            self.update()
         else:
             super().keyPressEvent(event)
 
@@ -327,7 +357,7 @@ class Lanes(QWidget):
             QToolTip.showText(event.globalPos(), self._tip(QPointF(event.pos())), self)
             return True
         if isinstance(event, QKeyEvent) and event.type() == QKeyEvent.Type.ShortcutOverride:
-            mine = (Qt.Key.Key_Left, Qt.Key.Key_Right, Qt.Key.Key_Return)
+            mine = (Qt.Key.Key_Left, Qt.Key.Key_Right, Qt.Key.Key_Return, Qt.Key.Key_Escape)
             if (self.drag is not None and event.key() == Qt.Key.Key_Escape) or (self.session.asks and event.key() in mine):
                 event.accept()
                 return True
@@ -336,7 +366,7 @@ class Lanes(QWidget):
     def _tip(self, at: QPointF) -> str:
         mark = mark_at(self.marks(), at)
         if mark is not None:
-            return told(mark, self.performance.document.project)
+            return told(mark, self.performance.editable)
         found = cue_at(self.performance.shown, self.scale(), self.height(), at)
         if found is not None:
             cue = found[1]

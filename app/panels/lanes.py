@@ -6,7 +6,8 @@ Geometry and hit-testing are functions of values; the widget paints, and turns t
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
+from functools import lru_cache
 
 from PySide6.QtCore import QPointF, QRectF, Qt
 from PySide6.QtGui import QFont, QFontMetricsF
@@ -18,12 +19,13 @@ from metagraph.graph.model import LAYERS, Layer, Project
 from metagraph.playback.hear import Answer
 from metagraph.playback.plan import Cue
 
-LEFT, RULER, LANE = 84, 24, 60
-ASKS = 0.44  # of a lane's height is for what was asked
+LEFT, RULER, LANE = 84, 22, 104
+PLAYS = 34.0  # pixels at most for what plays in a lane; the rest is for what was asked
+ROW, TALLEST = 19.0, 22.0  # pixels of a row of requests, at least and at most
 STEPS = (0.1, 0.2, 0.5, 1.0, 2.0, 5.0, 10.0, 30.0, 60.0, 300.0)
 NAMES = (STAGE, *LAYERS)
 TITLES = {STAGE: "Speech", "body": "Body", "arms": "Arms", "head": "Head"}
-NARROWEST = 22.0  # pixels of a mark
+NARROWEST = 6.0  # pixels of a mark that others leave no room
 
 
 @dataclass(frozen=True)
@@ -52,10 +54,9 @@ def lanes(height: float) -> dict[str, QRectF]:
 
 def rows(lane: QRectF) -> tuple[QRectF, QRectF]:
     """Return a lane's upper row, what was asked, and its lower, what plays."""
-    upper = lane.height() * ASKS
-    return QRectF(lane.left(), lane.top() + 2, lane.width(), upper - 3), QRectF(
-        lane.left(), lane.top() + upper, lane.width(), lane.height() - upper - 3
-    )
+    lower = min(PLAYS, lane.height() * 0.55)
+    upper = lane.height() - lower
+    return QRectF(lane.left(), lane.top() + 2, lane.width(), upper - 3), QRectF(lane.left(), lane.top() + upper, lane.width(), lower - 3)
 
 
 def lane_at(height: float, at: QPointF) -> str | None:
@@ -117,24 +118,27 @@ def marks(
     shift: Mapping[str, float] | None = None,
 ) -> list[Mark]:
     """Return what stands in the upper rows, the later on top. shift: seconds by which some are being dragged."""
-    measure = QFontMetricsF(font)
-    places = lanes(height)
-    rows_: dict[str, list[Mark]] = {}
+    places, key = lanes(height), font.toString()
+    areas = {name: rows(lane)[0] for name, lane in places.items()}
+    count = max(1, int((next(iter(areas.values())).height() + 1) // ROW))
+    lasts: dict[tuple[str, int], int] = {}  # of each row its last mark, by its place in `out`
+    out: list[Mark] = []
     timed = sorted(((time_of(x, answers.get(x.id)) + (shift or {}).get(x.id, 0.0), n, x) for n, x in enumerate(asks)), key=lambda t: t[:2])
     for at, _, ask in timed:
-        lane = lane_of(ask, project)
-        area = rows(places[lane])[0]
-        words = ask_words(ask, project)
-        width = min(260.0, measure.horizontalAdvance(words) + 18)
-        mark = Mark(ask, QRectF(scale.x(at), area.top(), width, area.height()), words, kind_of(ask), at, answers.get(ask.id))
-        rows_.setdefault(lane, []).append(mark)
-    out: list[Mark] = []
-    for of in rows_.values():
-        for n, mark in enumerate(of):
-            room = of[n + 1].rect.left() - mark.rect.left() - 3 if n + 1 < len(of) else mark.rect.width()
-            rect = QRectF(mark.rect)
-            rect.setWidth(max(NARROWEST, min(rect.width(), room)))
-            out.append(Mark(mark.ask, rect, mark.words, mark.kind, mark.at, mark.answer))
+        lane, words, left = lane_of(ask, project), ask_words(ask, project), scale.x(at)
+        area = areas[lane]
+        tall = min(TALLEST, (area.height() + 1) / count - 1)
+        ends = [out[lasts[lane, n]].rect.right() if (lane, n) in lasts else -1e9 for n in range(count)]
+        row = next((n for n, end in enumerate(ends) if end + 3 <= left), None)
+        if row is None:  # no row is free: the one whose last began first makes room
+            row = min(range(count), key=lambda n: out[lasts[lane, n]].rect.left())
+            before = out[lasts[lane, row]]
+            rect = QRectF(before.rect)
+            rect.setWidth(max(NARROWEST, left - 3 - rect.left()))
+            out[lasts[lane, row]] = replace(before, rect=rect)
+        rect = QRectF(left, area.top() + row * (tall + 1), max(NARROWEST, min(260.0, advance(words, key) + 16)), tall)
+        lasts[lane, row] = len(out)
+        out.append(Mark(ask, rect, words, kind_of(ask), at, answers.get(ask.id)))
     return out
 
 
@@ -143,21 +147,51 @@ def mark_at(found: Sequence[Mark], at: QPointF) -> Mark | None:
     return next((m for m in reversed(found) if m.rect.contains(at) and at.x() >= LEFT), None)
 
 
-def told(mark: Mark, project: Project) -> str:
-    """Return what to say about a mark: what was asked, what came of it, or why nothing did."""
+VERBS = {"say": "Said", "look": "Looks", "mode": "Changes", "place": "Moves", "blink": "Blinks"}
+
+
+def outcome(ask: AnyAsk, answer: Answer | None) -> str:
+    """Return in one sentence what becomes of an ask; nothing while it is not known."""
+    if answer is None:
+        return ""
+    why = answer.why.rstrip(".")
+    if answer.state == "refused":
+        return f"Does not play: {why}."
+    if answer.at is None:
+        return f"{why[:1].upper()}{why[1:]}." if why else ""
+    until = f" to {answer.until:.2f}" if answer.until is not None and answer.at < answer.until < 1e5 else ""
+    what = ", ".join(w for w in answer.what if w not in ("look", "speech", "mode", "place", "blink"))
+    verb = f"Plays {what}" if what else VERBS.get(str(ask.__struct_config__.tag), "Plays")
+    return f"{verb} {'from' if until else 'at'} {answer.at:.2f}{until} s{f': {why}' if why else ''}."
+
+
+def wanted(mark: Mark) -> str:
+    """Return what was asked for, and when."""
     when = f"at {mark.at:.2f} s" if getattr(mark.ask, "stroke", None) is None else f"its stroke at {mark.at:.2f} s"
-    lines = [f"{mark.words}, {when}" + (f", priority {mark.ask.priority}" if mark.ask.priority != 1 else "")]
-    answer = mark.answer
-    if answer is not None:
-        if answer.state == "refused":
-            lines.append(f"Does not play: {answer.why}")
-        elif answer.state == "done":
-            lines.append(answer.why[:1].upper() + answer.why[1:])
-        elif answer.at is not None:
-            what = ", ".join(w for w in answer.what if w not in ("look", "speech", "mode", "place", "blink"))
-            lines.append(f"Plays{' ' + what if what else ''} from {answer.at:.2f} s" + (f": {answer.why}" if answer.why else ""))
-    return "\n".join([*lines, "Drag it in time; double-click changes it; Delete takes it back"])
+    return f"{mark.words}, {when}" + (f", priority {mark.ask.priority}" if mark.ask.priority != 1 else "")
 
 
-def elided(text: str, font: QFont, width: float) -> str:
-    return QFontMetricsF(font).elidedText(text, Qt.TextElideMode.ElideRight, width)
+def told(mark: Mark, editable: bool = True) -> str:
+    """Return what to say about a mark: what was asked, what came of it, or why nothing did."""
+    lines = [wanted(mark), outcome(mark.ask, mark.answer)]
+    if editable:
+        lines.append("Drag it in time, with Ctrl a copy; double-click changes it; Delete takes it back")
+    return "\n".join(x for x in lines if x)
+
+
+@lru_cache(maxsize=8192)
+def advance(words: str, font: str) -> float:
+    """Return how wide words are in a font, given as `QFont.toString` does."""
+    return _measure(font).horizontalAdvance(words)
+
+
+@lru_cache(maxsize=8192)
+def elided(text: str, font: str, width: int) -> str:
+    return _measure(font).elidedText(text, Qt.TextElideMode.ElideRight, width)
+
+
+@lru_cache(maxsize=8)
+def _measure(font: str) -> QFontMetricsF:
+    made = QFont()
+    made.fromString(font)
+    return QFontMetricsF(made)

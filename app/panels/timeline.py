@@ -2,12 +2,26 @@
 
 from __future__ import annotations
 
-from PySide6.QtCore import QTimer
-from PySide6.QtWidgets import QComboBox, QHBoxLayout, QInputDialog, QLabel, QMenu, QMessageBox, QSpinBox, QToolButton, QVBoxLayout, QWidget
+from PySide6.QtCore import Qt, QTimer
+from PySide6.QtGui import QResizeEvent
+from PySide6.QtWidgets import (
+    QComboBox,
+    QHBoxLayout,
+    QInputDialog,
+    QLabel,
+    QMenu,
+    QMessageBox,
+    QSizePolicy,
+    QSpinBox,
+    QToolButton,
+    QVBoxLayout,
+    QWidget,
+)
 
 from app.asks import ask_menu
 from app.document import Document
 from app.panels.lane_view import Lanes
+from app.panels.lanes import outcome, wanted
 from app.performance import Performance
 from app.session import Session
 from app.words import many
@@ -44,9 +58,11 @@ class TimelinePanel(QWidget):
         self.more.setMenu(self.more_menu)
         self.more_menu.aboutToShow.connect(self._fill)
         row.addWidget(self.more)
-        self.title = QLabel(self)
-        self.title.setProperty("dim", True)
+        self.title = Sentence(self)
         row.addWidget(self.title, 1)
+        self.lost = QToolButton(self, toolTip="Select the next of them; its reason then stands beside")
+        self.lost.clicked.connect(self.show_lost)
+        row.addWidget(self.lost)
         self.now = QToolButton(self, text="Back to now", toolTip="Follow what is played live again")
         self.now.clicked.connect(performance.follow)
         row.addWidget(self.now)
@@ -75,6 +91,7 @@ class TimelinePanel(QWidget):
         self._spoken.timeout.connect(self._words)
         self._live()
         session.performance_changed.connect(self._restage)
+        session.performance_changed.connect(self._words)
         document.changed.connect(lambda before, after: self._restage())
         self._restage()
         self._words()
@@ -213,20 +230,67 @@ class TimelinePanel(QWidget):
             self.seed.setValue(seed)
             self.seed.blockSignals(False)
 
+    def show_lost(self) -> None:
+        """Select the first request that does not play, or the one after the selected."""
+        lost = [m.ask.id for m in sorted(self.lanes.marks(), key=lambda m: m.at) if m.lost]
+        chosen = self.session.asks
+        if lost:
+            place = lost.index(chosen[0]) + 1 if chosen and chosen[0] in lost else 0
+            self.lanes.reveal(lost[place % len(lost)])
+
     def _words(self) -> None:
-        shown = self.performance.shown
-        if self.performance.live is not None and self.session.show == "plan":
-            self.title.setText(self.performance.live.words())
+        shown, plan = self.performance.shown, self.session.show == "plan"
+        answers = self.performance.answers() if plan else {}
+        lost = sum(1 for a in answers.values() if a.state == "refused")
+        self.lost.setVisible(lost > 0)
+        self.lost.setText(f"⚠ {lost:,} not met")
+        self.lost.setAccessibleName(f"{many(lost, 'request')} could not be met")
+        chosen = self.session.asks if plan else ()
+        marks = [m for m in self.lanes.marks() if m.ask.id in chosen] if chosen else []
+        if len(marks) == 1:
+            self.title.say(f"{wanted(marks[0])}. {outcome(marks[0].ask, marks[0].answer)}", True)
+            return
+        if marks:
+            unmet = sum(1 for m in marks if m.lost)
+            self.title.say(f"{many(len(marks), 'request')} selected" + (f", {unmet:,} of them could not be met" if unmet else ""), True)
+        elif self.performance.live is not None and plan:
+            self.title.say(self.performance.live.words())
         elif shown.clip is not None:
-            self.title.setText("A clip alone. Click it again to play it in context, Esc for the performance.")
+            self.title.say("A clip alone. Click it again to play it in context, Esc for the performance.")
         elif self.session.show == "context":
-            self.title.setText("In context: stance, action, back to the stance. Esc for the performance.")
+            self.title.say("In context: stance, action, back to the stance. Esc for the performance.")
         else:
             count = sum(len(shown.plan.layers[layer].cues) for layer in LAYERS)
-            lost = sum(1 for a in self.performance.answers().values() if a.state == "refused")
-            words = (
-                f"{many(count, 'action')} in {shown.length:g} s"
-                if count
-                else "Nothing plays yet: drop a clip on a stance and some around it."
-            )
-            self.title.setText(words + (f", {many(lost, 'request')} could not be met" if lost else ""))
+            words = f"{many(count, 'action')} in {shown.length:g} s"
+            empty = "Nothing plays yet: drop a clip on a stance and some around it."
+            self.title.say((words if count else empty) + (f", {many(lost, 'request')} could not be met" if lost else ""))
+
+
+class Sentence(QLabel):
+    """One line that gives way where there is no room for it, and then tells all of it in a tooltip."""
+
+    def __init__(self, parent: QWidget) -> None:
+        super().__init__(parent)
+        self.words = ""
+        self.setTextFormat(Qt.TextFormat.PlainText)
+        self.setSizePolicy(QSizePolicy.Policy.Ignored, QSizePolicy.Policy.Preferred)
+        self.setMinimumWidth(40)
+
+    def say(self, words: str, strong: bool = False) -> None:
+        """Show words; strong: they are about what is selected."""
+        if strong == bool(self.property("dim")):
+            self.setProperty("dim", not strong)
+            self.style().polish(self)
+        self.words = " ".join(words.split())
+        self._fit()
+
+    def resizeEvent(self, event: QResizeEvent) -> None:
+        super().resizeEvent(event)
+        self._fit()
+
+    def _fit(self) -> None:
+        shown = self.fontMetrics().elidedText(self.words, Qt.TextElideMode.ElideRight, max(20, self.width() - 2))
+        if shown != self.text():
+            self.setText(shown)
+            self.setToolTip(self.words if shown != self.words else "")
+            self.setAccessibleName(self.words)

@@ -9,7 +9,8 @@ import threading
 
 import numpy as np
 import pytest
-from PySide6.QtCore import QPoint, Qt
+from PySide6.QtCore import QEvent, QPoint, Qt
+from PySide6.QtGui import QMouseEvent
 from PySide6.QtTest import QTest
 from PySide6.QtWidgets import QApplication, QDoubleSpinBox, QMenu, QSpinBox
 
@@ -107,7 +108,136 @@ def test_a_request_is_changed_in_its_fields_and_says_why_it_does_not_play(stage)
     drive.wait(lambda: "Does not play" in editor.words.text())
     assert "nonsense" in editor.words.text()
     drive.wait(lambda: mark(drive, ask.id).lost)
-    assert "1 request could not be met" in drive.timeline.title.text()
+    assert drive.timeline.lost.text() == "⚠ 1 not met"
+    editor.accept()
+
+
+def test_the_lost_requests_are_found_by_a_click_and_say_why_without_hovering(stage):
+    drive = stage
+    panel = drive.timeline
+    for at, tags in ((2.0, ()), (9.0, ("nonsense",)), (50.0, ("gibberish",))):
+        drive.performance.ask(a.Gesture(at=at, tags=tags))
+    drive.wait(lambda: sum(m.lost for m in board(drive).marks()) == 2)
+    drive.session.select_asks(())
+    assert "2 requests could not be met" in panel.title.words
+    for seconds, word in ((9.0, "nonsense"), (50.0, "gibberish"), (9.0, "nonsense")):
+        QTest.mouseClick(panel.lost, LEFT_BUTTON)
+        (chosen,) = drive.session.asks
+        assert mark(drive, chosen).at == seconds
+        assert "Does not play" in panel.title.words and word in panel.title.words
+        assert LEFT <= mark(drive, chosen).rect.left() < board(drive).width()
+    drive.session.select_asks((drive.performance.asks[0].id,))
+    assert "Plays rest" in panel.title.words and "from 2.0" in panel.title.words
+    drive.performance.withdraw()
+    drive.wait(lambda: not panel.lost.isVisible())
+
+
+def test_a_long_sentence_in_the_header_widens_nothing_and_can_be_read_in_full(stage):
+    title = stage.timeline.title
+    before = stage.timeline.minimumSizeHint().width()
+    title.say("word " * 400)
+    assert stage.timeline.minimumSizeHint().width() == before
+    assert title.text().endswith("…") and title.toolTip() == title.words
+
+
+def held(drive, ident: str, modifier=Qt.KeyboardModifier.NoModifier, seconds: float = 3.0) -> QPoint:
+    """Press on a request and move it with the button down; where it is then."""
+    place = mark(drive, ident).rect
+    grip = QPoint(round(place.left() + 8), round(place.center().y()))
+    to = QPoint(grip.x() + round(seconds * board(drive).each), grip.y())
+    QTest.mousePress(board(drive), LEFT_BUTTON, modifier, grip)
+    for point in ((grip + to) / 2, to):
+        move = QMouseEvent(QEvent.Type.MouseMove, point, board(drive).mapToGlobal(point), LEFT_BUTTON, LEFT_BUTTON, modifier)
+        QApplication.sendEvent(board(drive), move)
+    return to
+
+
+def test_a_dragged_request_is_given_up_with_escape_and_copied_with_ctrl(stage):
+    drive = stage
+    drive.performance.ask(a.Gesture(at=2.0))
+    (ask,) = drive.performance.asks
+    drive.wait(lambda: ask.id in drive.performance.answers())
+    board(drive).setFocus()
+    to = held(drive, ask.id)
+    assert mark(drive, ask.id).at == pytest.approx(5.0, abs=0.05)
+    drive.key(Qt.Key.Key_Escape, widget=board(drive))
+    QTest.mouseRelease(board(drive), LEFT_BUTTON, pos=to)
+    assert drive.performance.asks == (ask,) and mark(drive, ask.id).at == 2.0
+    ctrl = Qt.KeyboardModifier.ControlModifier
+    drive.session.select_asks(())
+    to = held(drive, ask.id, ctrl)
+    assert [round(m.at) for m in board(drive).marks()] == [2, 5]
+    QTest.mouseRelease(board(drive), LEFT_BUTTON, ctrl, to)
+    first, copy = drive.performance.asks
+    assert first == ask and copy.at == pytest.approx(5.0, abs=0.05) and drive.session.asks == (copy.id,)
+    assert drive.document.undo_stack.undoText() == "Copy request"
+    drive.document.undo()
+    assert drive.performance.asks == (ask,)
+    # Nothing is dragged to before the beginning, and a click with Ctrl alone selects and unselects.
+    QTest.mouseRelease(board(drive), LEFT_BUTTON, pos=held(drive, ask.id, seconds=-4.0))
+    assert drive.performance.asks[0].at == 0.0
+    place = mark(drive, ask.id).rect.center().toPoint()
+    QTest.mouseClick(board(drive), LEFT_BUTTON, ctrl, place)
+    assert drive.session.asks == ()
+    QTest.mouseClick(board(drive), LEFT_BUTTON, ctrl, place)
+    assert drive.session.asks == (ask.id,)
+
+
+def test_all_of_it_works_from_the_keyboard(stage):
+    drive = stage
+    key = lambda k, m=Qt.KeyboardModifier.NoModifier: QTest.keyClick(board(drive), k, m)  # noqa: E731
+    drive.session.seek(4.0)
+    board(drive).setFocus(Qt.FocusReason.TabFocusReason)
+    key(Qt.Key.Key_Insert)
+    menu = popup(drive)
+    drive.pick(menu, "Arms", "A gesture")
+    menu.close()
+    assert [x.at for x in drive.performance.asks] == [4.0]
+    key(Qt.Key.Key_D, Qt.KeyboardModifier.ControlModifier)
+    assert [x.at for x in drive.performance.asks] == [4.0, 5.0]
+    key(Qt.Key.Key_Right, Qt.KeyboardModifier.ShiftModifier)
+    assert [x.at for x in drive.performance.asks] == [4.0, 6.0]
+    one, two = (x.id for x in drive.performance.asks)
+    for press, chosen in ((Qt.Key.Key_Up, one), (Qt.Key.Key_Up, one), (Qt.Key.Key_Down, two), (Qt.Key.Key_Down, two)):
+        key(press)
+        assert drive.session.asks == (chosen,)
+    key(Qt.Key.Key_Escape)
+    assert drive.session.asks == ()
+    before = board(drive).each
+    key(Qt.Key.Key_Plus)
+    assert board(drive).each > before
+    board(drive).setFocus()
+    key(Qt.Key.Key_Tab)
+    assert QApplication.focusWidget() is not board(drive), "the keyboard can leave"
+
+
+def test_while_it_plays_only_the_playhead_is_painted_anew(stage):
+    drive = stage
+    drive.performance.ask(a.Gesture(at=2.0))
+    drive.wait(lambda: len(drive.performance.answers()) == 1)
+    drive.pause(300)
+    before = board(drive).painted
+    for n in range(20):
+        drive.session.seek(0.1 * n)
+        board(drive).repaint()
+    assert board(drive).painted == before
+    drive.session.select_asks(())
+    board(drive).repaint()
+    assert board(drive).painted == before + 1
+
+
+def test_a_request_that_vanishes_while_its_fields_are_open_says_so(stage):
+    drive = stage
+    drive.performance.ask(a.Gesture(at=3.0))
+    (ask,) = drive.performance.asks
+    drive.wait(lambda: ask.id in drive.performance.answers())
+    board(drive).edit(ask.id)
+    editor = QApplication.activeModalWidget()
+    drive.performance.withdraw(ask.id)
+    drive.wait(lambda: "not there any more" in editor.words.text())
+    assert not editor.fields["at"].isEnabled() and not editor.remove.isEnabled()
+    drive.document.undo()
+    drive.wait(lambda: editor.fields["at"].isEnabled())
     editor.accept()
 
 

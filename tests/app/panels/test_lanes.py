@@ -107,6 +107,25 @@ def test_requests_close_together_stay_apart_and_the_one_under_the_mouse_is_found
     assert mark_at(found, QPointF(LEFT + 20, found[0].rect.center().y())) is None
 
 
+def test_where_there_is_height_requests_close_together_stand_below_each_other_with_their_words(qapp, toy):
+    project, words = toy.project(), ("a very long tag",)
+    asks = [a.Gesture(id=f"g{n}", at=2.0 + n, tags=words) for n in range(3)]
+    plan = perform(project, asks, 60.0)
+    answers = {ask.id: answer(plan, ask.id) for ask in asks}
+    tall = marks(asks, answers, project, Scale(0.0, 40.0), 460.0, QFont())
+    assert len({m.rect.top() for m in tall}) == 3
+    assert len({round(m.rect.width(), 3) for m in tall}) == 1
+    lane = lanes(460.0)["arms"]
+    assert all(rows(lane)[0].contains(m.rect) for m in tall)
+    flat = shown_asks(project, *asks)
+    assert len({m.rect.top() for m in flat}) == 1 and flat[0].rect.width() < tall[0].rect.width()
+
+
+@pytest.mark.parametrize(("height", "used"), [(180, 0.95), (250, 0.95), (430, 0.95)])
+def test_lanes_use_the_height_there_is(height, used):
+    assert list(lanes(height).values())[-1].bottom() >= used * height
+
+
 def test_a_dragged_request_is_drawn_where_it_is_held(qapp, toy):
     still, moved = a.Gesture(id="still", at=2.0), a.Gesture(id="moved", at=8.0)
     found = {m.ask.id: m.at for m in shown_asks(toy.project(), still, moved, shift={"moved": 1.5})}
@@ -117,9 +136,9 @@ def test_what_does_not_play_says_why(qapp, toy):
     project = toy.project()
     lost = shown_asks(project, a.Gesture(id="g", at=2.0, tags=("nonsense",), priority=3))[0]
     assert lost.lost
-    words = told(lost, project)
+    words = told(lost)
     assert "Does not play" in words and "nonsense" in words and "priority 3" in words
     late = {m.ask.id: m for m in shown_asks(project, a.Play(id="a", action="rest long", at=1.0), a.Gesture(id="b", at=2.8))}["b"]
-    assert late.late == pytest.approx(0.6) and "from 3.40 s" in told(late, project)
+    assert late.late == pytest.approx(0.6) and "from 3.40 to 4.30 s" in told(late)
     there = shown_asks(project, a.Go(id="s", stance="rest", at=1.0))[0]
-    assert not there.lost and "already" in told(there, project)
+    assert not there.lost and "already" in told(there)
