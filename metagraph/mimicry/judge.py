@@ -1,0 +1,202 @@
+"""One layer of one person: the running mean of the points, how far each stance is, which one they are in."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from metagraph.graph.words import Layer
+from metagraph.mimicry.measures import (
+    COUNT,
+    LEAST_EVIDENCE,
+    MOVING,
+    SCALE,
+    SHARP,
+    Frame,
+    frame_of,
+    measured,
+    sharp_in_a_picture,
+    trusted,
+    turned,
+)
+from metagraph.mimicry.points import POINTS
+from metagraph.mimicry.signatures import Signature
+from metagraph.mimicry.tuning import Tuning
+
+Array = NDArray[Any]
+
+TURNS = np.radians(np.arange(-60, 61, 10))  # headings that are tried in a picture
+ALIKE = 0.7  # distance below which two stances are not told apart in a picture
+AWAY = 0.15  # width of the shoulders in a picture, torso lengths, below which somebody turns the back
+LEAST_TRUST = 0.1  # of a running mean in a point, below which it is as good as not seen
+SIDEWAYS = np.array([1.0, 1.0, 0.3])  # how much speed counts along each axis; depth jitters
+
+
+class Mean:
+    """A running mean of POINTS by confidence; what is not seen stays where it was and is trusted less and less."""
+
+    def __init__(self, constant: float) -> None:
+        self.constant = constant
+        self._sums = np.zeros((len(POINTS), 4))  # x, y, z by confidence, and confidence
+
+    def feed(self, elapsed: float, weighted: Array) -> None:
+        """Take points in, `[17, 4]`: x, y, z, each times the confidence, and the confidence."""
+        keep = float(np.exp(-elapsed / self.constant))
+        self._sums *= keep
+        self._sums += (1.0 - keep) * weighted
+
+    def points(self) -> Array:
+        """Return the mean `[17, 3]`."""
+        return np.asarray(self._sums[:, :3] / np.maximum(self._sums[:, 3:], 1e-9))
+
+    @property
+    def trust(self) -> Array:
+        """How far each point can be trusted, `[17]`, 0 or LEAST_TRUST to 1."""
+        sure = self._sums[:, 3]
+        return np.where(sure > LEAST_TRUST, sure, 0.0)
+
+
+@dataclass(slots=True)
+class View:
+    """A person as a layer sees them now: points `[17, 3]`, what they are trusted `[17]`, measures `[N, 3]` and their trust `[N, 1]`."""
+
+    points: Array
+    trust: Array
+    frame: Frame
+    measures: Array
+    share: Array
+
+
+class Judge:
+    """Tells a layer's stances apart. start: the stance the character is in before anything is known.
+
+    now: place of the stance the person is in, among the signature's; None where that is not known. distances: `[S]` from each stance,
+    None without evidence. bias `[N, 3]`: what of the person's difference from the character is got used to.
+    """
+
+    def __init__(self, layer: Layer, signature: Signature, tuning: Tuning, start: str | None, width: float) -> None:
+        self.layer, self.signature, self.tuning, self.how, self.width = layer, signature, tuning, tuning.layers[layer], width
+        self.start = signature.stances.index(start) if start in signature.stances else None
+        self.now: int | None = None
+        self.distances: Array | None = None
+        self.moving = False
+        self.bias = np.zeros(signature.measures.shape[1:])
+        self.flat = np.stack([turned(signature.measures, angle)[..., :2] for angle in TURNS])
+        self._alike = self._confused()
+        self._coming: int | None = None
+        self._since = 0.0
+        self.begin()
+
+    def begin(self) -> None:
+        """Forget where the points were."""
+        self.mean = Mean(self.how.smooth)
+        self.forget()
+
+    def forget(self) -> None:
+        """Know nothing of this moment; what was known of the stance holds."""
+        self.distances, self._coming = None, None
+
+    @property
+    def stance(self) -> str | None:
+        """Id of the stance the person is in."""
+        return None if self.now is None else self.signature.stances[self.now]
+
+    def view(self, dims: int) -> View | None:
+        """Return the person as they are now; None where they cannot be made out or show the back."""
+        points, trust = self.mean.points(), self.mean.trust
+        frame = frame_of(points, trust, dims, self.width)
+        if frame is None or (dims == 2 and frame.width < AWAY):
+            return None
+        return View(points, trust, frame, measured(self.layer, points, frame), trusted(self.layer, trust)[:, None])
+
+    def misfits(self, view: View) -> Array | None:
+        """Return how badly the best stance fits a picture under each of the TURNS, a squared distance; None without evidence."""
+        count = float((COUNT[self.layer][:, :2] * view.share).sum())
+        if count <= 0:
+            return None
+        apart = self.flat - view.measures[:, :2] + self.bias[:, :2]
+        sharp = (SHARP[self.layer][:, :2] * view.share).reshape(-1)
+        return np.asarray(((apart.reshape(*apart.shape[:2], -1) ** 2) @ sharp).min(1) / count)
+
+    def judge(self, seconds: float, elapsed: float, view: View, quick: Array, heading: float, dims: int) -> bool:
+        """Take a moment in; return whether the person is in another stance from now on. quick `[17, 3]`: the points, hardly smoothed.
+        heading: of somebody in a picture, radians."""
+        self.moving = self._moves(view, quick)
+        found = self._measure(view, heading, dims)
+        if found is None:
+            self.forget()
+            return False
+        apart, far = found
+        self.distances = np.full(len(self.signature.stances), np.inf)
+        np.minimum.at(self.distances, self.signature.of, far)
+        if self.moving:
+            self._coming = None
+            return False
+        changed = self._decide(seconds, self.distances)
+        if self.now is not None and self._coming is None and self.distances[self.now] < self.how.near:
+            self._get_used(elapsed, apart, far, view.share, dims)
+        return changed
+
+    def _moves(self, view: View, quick: Array) -> bool:
+        """Whether the layer moves too fast for a stance."""
+        rows = MOVING[self.layer]
+        known = np.where(rows != 0, view.trust, 1.0).min(1) > 0
+        speed = (rows[known] @ (quick - view.points) * SIDEWAYS) / ((self.how.smooth - self.tuning.quick) * view.frame.size)
+        return bool((speed**2).sum(1).max(initial=0.0) > self.how.still**2)
+
+    def _measure(self, view: View, heading: float, dims: int) -> tuple[Array, Array] | None:
+        """Return by how much the person differs from each look of a stance, `[T, N, dims]`, and how far that is, `[T]`; None without
+        enough evidence."""
+        every = COUNT[self.layer][:, :dims]
+        count = float((every * view.share).sum())
+        if count < LEAST_EVIDENCE * float(every.sum()):
+            return None
+        sharp, usual, extra = SHARP[self.layer], self.signature.measures, self.signature.extra
+        if dims == 2:
+            sharp, usual = sharp_in_a_picture(self.layer, heading), turned(usual, heading)[..., :2]
+            extra = extra + self._alike[int(np.abs(TURNS - heading).argmin())]
+        apart = view.measures[:, :dims] - usual
+        off = (apart - self.bias[:, :dims]).reshape(len(apart), -1)
+        return apart, np.sqrt(off**2 @ (sharp * view.share).reshape(-1) / count) + extra
+
+    def _decide(self, seconds: float, near: Array) -> bool:
+        """Change over to the nearest stance once it has been nearest by a margin for long enough; return whether that is now."""
+        best = int(near.argmin())
+        here = self.now if self.now is not None else self.start
+        if here is not None and near[best] + self.how.margin > near[here] and near[here] < self.tuning.left:
+            best = here
+        if best == self.now or near[best] > self.how.near:
+            self._coming = None
+            return False
+        if self._coming != best:
+            self._coming, self._since = best, seconds
+        if seconds - self._since < self.how.dwell - 1e-9:
+            return False
+        self.now, self._coming = best, None
+        return True
+
+    def _get_used(self, elapsed: float, apart: Array, far: Array, share: Array, dims: int) -> None:
+        """Get used to how the person differs from the character in the stance they are in, within limits."""
+        mine = np.flatnonzero(self.signature.of == self.now)
+        off = apart[mine[far[mine].argmin()]]
+        most = self.tuning.used * SCALE[self.layer][:, :dims]
+        step = (1.0 - float(np.exp(-elapsed / self.tuning.using))) * share
+        self.bias[:, :dims] = np.clip(self.bias[:, :dims] + step * (off - self.bias[:, :dims]), -most, most)
+
+    def _confused(self) -> Array:
+        """Return `[H, T]` infinity where a picture under a heading cannot tell a stance from one before it, the start stance first."""
+        signature = self.signature
+        order = sorted(range(len(signature.stances)), key=lambda s: s != self.start)
+        out = np.zeros((len(TURNS), len(signature.of)))
+        for n, flat in enumerate(self.flat):
+            apart = flat[:, None] - flat[None]
+            far = np.sqrt((apart**2 * SHARP[self.layer][:, :2]).sum((2, 3)) / COUNT[self.layer][:, :2].sum())
+            for place, stance in enumerate(order):
+                mine = signature.of == stance
+                before = np.isin(signature.of, order[:place]) & (out[n] == 0)
+                if before.any() and float(far[np.ix_(mine, before)].min()) < ALIKE:
+                    out[n, mine] = np.inf
+        return out
