@@ -191,7 +191,8 @@ def _since(plan: LayerPlan, seconds: float) -> LayerPlan:
     cues = plan.cues[gone:]
     played = {cue.meta for cue in cues}
     metas = tuple(m for m in plan.metas if m.end >= seconds or m.key in played)
-    return LayerPlan(plan.layer, metas, cues, plan.rests[rests[-1] if rests else 0 :], _past(plan, plan.cues[:gone]), plan.cursor)
+    kept = plan.rests[rests[-1] if rests else 0 :]
+    return LayerPlan(plan.layer, metas, cues, kept, _past(plan, plan.cues[:gone]), plan.cursor, plan.written)
 
 
 def _past(plan: LayerPlan, gone: tuple[Cue, ...]) -> Past:

@@ -329,13 +329,12 @@ class Performer:
 def _bounds(metas: Sequence[MetaAction]) -> list[tuple[MetaAction, float, float]]:
     """Return each meta action with when the next more important one begins, and the next as important that was asked for."""
     out = []
-    first: dict[tuple[int, bool], float] = {}  # (priority, written) -> start of the next such
+    first: dict[tuple[float, bool], float] = {}  # (rank, written) -> start of the next such
     for meta in reversed(metas):
-        priority = meta.request.priority
-        limit = min((t for (p, _), t in first.items() if p > priority), default=float("inf"))
-        wish = min((t for (p, written), t in first.items() if p >= priority and not written), default=float("inf"))
+        limit = min((t for (rank, _), t in first.items() if rank > meta.rank), default=float("inf"))
+        wish = min((t for (rank, written), t in first.items() if rank >= meta.rank and not written), default=float("inf"))
         out.append((meta, limit, wish))
-        first[(priority, meta.written)] = meta.start
+        first[(meta.rank, meta.written)] = meta.start
     return out[::-1]
 
 

@@ -76,6 +76,11 @@ class MetaAction:
     written: bool = False
 
     @property
+    def rank(self) -> float:
+        """How important it is: its request's priority; what a model wrote gives way to all that is asked for."""
+        return float("-inf") if self.written else self.request.priority
+
+    @property
     def key(self) -> str:
         """What keys this meta action's random draws."""
         return self.request.id if self.part == 0 else f"{self.request.id}+{self.part}"
@@ -181,7 +186,8 @@ class Past:
 class LayerPlan:
     """cues never overlap and ascend; rests ascend by fade_start, the first covering everything before.
 
-    past: what came before the first cue, where that was forgotten. cursor: where the Markov model writes on.
+    past: what came before the first cue, where that was forgotten. cursor: where the Markov model writes on. written: what it
+    wrote for later, as it wrote it: each extension fits it in anew, so that it does not matter when it was first seen.
     """
 
     layer: Layer
@@ -190,6 +196,7 @@ class LayerPlan:
     rests: tuple[Rest, ...] = ()
     past: Past = Past()
     cursor: Cursor = Cursor()
+    written: tuple[MetaAction, ...] = ()
 
     @cached_property
     def starts(self) -> Array:

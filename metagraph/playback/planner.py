@@ -7,12 +7,13 @@ extending a running plan are the same function; `make_plan` extends an empty pla
 from __future__ import annotations
 
 from collections.abc import Collection, Iterable, Mapping
+from dataclasses import replace
 
 from metagraph.graph.model import LAYERS, Layer, MetaGraph, Project
 from metagraph.playback import markov
 from metagraph.playback.life.schedule import schedule
 from metagraph.playback.pick import FITS, Performer
-from metagraph.playback.plan import TEMPORAL, LayerPlan, MetaAction, Plan, Report, Request
+from metagraph.playback.plan import TEMPORAL, Cursor, LayerPlan, MetaAction, Plan, Report, Request
 from metagraph.playback.replan import delay, replan
 
 WINDOW = 1.0  # seconds a request may use when it does not say how long
@@ -93,10 +94,15 @@ def _extend_layer(
     kept = [cue for cue in old.cues if cue.start < now]
     played = {cue.meta for cue in kept}
     waiting = {cue.meta for cue in old.cues[len(kept) :]}  # also those whose chain of transitions has begun
+    written, cursor = _written(project, plan, layer, now, end) if idle else ((), old.cursor)
+    again = again | {m.request.id for m in written}
     future = [m for m in old.metas if m.request.id not in again and (m.key in waiting or (m.start >= now and m.key not in played))]
     # What was told about time still holds; the rest will be told again by those that are planned again.
     planned_again = {(m.request.id, m.start) for m in future}
-    done = tuple(m for m in old.metas if (m.request.id, m.start) not in planned_again and (m.key in played or m.start < now))
+    done = tuple(
+        m for m in old.metas
+        if m.request.id not in again and (m.request.id, m.start) not in planned_again and (m.key in played or m.start < now)
+    )  # fmt: skip
     reports = [
         r for r in plan.reports
         if r.layer == layer and r.request not in again and (r.outcome in TEMPORAL or (r.request, r.at) not in planned_again)
@@ -105,25 +111,36 @@ def _extend_layer(
     if not begin or not performer.begin(begin):
         why = f"the {layer} layer has no stance with a loop to begin in"
         reports += [Report(m.request.id, "no-stance", why, layer, m.start) for m in (*future, *asked) if not m.written]
-        return LayerPlan(layer, (*done, *future, *asked), past=old.past, cursor=old.cursor), reports
+        return LayerPlan(layer, (*done, *future, *asked), past=old.past, cursor=cursor, written=written), reports
     if old.rests and now > 0:
         begun = {cue.end - cue.blend_out for cue in kept}
         performer.rests = [r for r in old.rests if r.fade_start < now or r.start in begun]
     performer.begun = frozenset(played & waiting)
     performer.free = max(now - (performer.ready - performer.free), performer.free)
-    cursor = old.cursor
-    if idle:
-        kinds = {kind for _, kind in graph.index}
-        written, cursor = markov.write(markov.model(project, layer), plan.seed, end, kinds, old.cursor)
-        future += [m for m in written if m.start >= now]
     asked, delayed = delay(asked, performer.ready, project.settings)
-    placed, told = replan([*future, *asked], project.settings)
+    busy = max((m.end for m in done if not m.written), default=now)  # what runs keeps the time it was wanted for, from the models
+    placed, told = replan([*future, *(m for w in written if (m := _after(w, busy, project.settings.shortest))), *asked], project.settings)
     performer.perform(
         [m for m in placed if not (m.written and m.request.kind == "transition" and plan.track.stays_at(layer, m.start))], end
     )
     performer.vary_rests(end)
-    whole = LayerPlan(layer, (*done, *placed), tuple(performer.cues), tuple(performer.rests), old.past, cursor)
+    whole = LayerPlan(layer, (*done, *placed), tuple(performer.cues), tuple(performer.rests), old.past, cursor, written)
     return whole, [*reports, *delayed, *told, *performer.reports]
+
+
+def _written(project: Project, plan: Plan, layer: Layer, now: float, end: float) -> tuple[tuple[MetaAction, ...], Cursor]:
+    """Return what the layer's model writes from `now` to `end`, as it wrote it, and where it writes on."""
+    old = plan.layers[layer]
+    kinds = {kind for _, kind in project.graphs[layer].index}
+    more, cursor = markov.write(markov.model(project, layer), plan.seed, end, kinds, old.cursor)
+    return tuple(m for m in (*old.written, *more) if m.start >= now), cursor
+
+
+def _after(meta: MetaAction, seconds: float, shortest: float) -> MetaAction | None:
+    """Return what is left of a written meta action from a time on, None where it is not enough; as `replan` has it."""
+    if meta.start >= seconds:
+        return meta
+    return replace(meta, start=seconds) if meta.end - seconds >= shortest else None
 
 
 def _begin(graph: MetaGraph, old: LayerPlan, stance: str | None) -> str | None:

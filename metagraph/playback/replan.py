@@ -37,11 +37,11 @@ def replan(metas: Iterable[MetaAction], settings: Settings) -> tuple[list[MetaAc
     Meta actions that do not overlap come back as they are. Of equal start and priority, the id that sorts first goes first.
     """
     serial = count()  # so that equal entries never compare further
-    queue: list[tuple[float, int, str, int, int, MetaAction]] = []
+    queue: list[tuple[float, float, str, int, int, MetaAction]] = []
     reports: list[Report] = []
 
     def push(meta: MetaAction) -> None:
-        heapq.heappush(queue, (meta.start, -meta.request.priority, meta.request.id, meta.part, next(serial), meta))
+        heapq.heappush(queue, (meta.start, -meta.rank, meta.request.id, meta.part, next(serial), meta))
 
     for meta in metas:
         push(meta)
@@ -52,7 +52,7 @@ def replan(metas: Iterable[MetaAction], settings: Settings) -> tuple[list[MetaAc
         if last is None or last.end <= meta.start:
             placed.append(meta)
             continue
-        if meta.request.priority > last.request.priority:
+        if meta.rank > last.rank:
             placed.pop()
             kept = meta.start - last.start >= settings.shortest
             if kept:
