@@ -259,7 +259,8 @@ class Performance(QObject):
     def _ticked(self) -> None:
         if self.live is None or self.session.show != "plan":
             return
-        plan = self.live.session.plan
+        # What lies farther back than the running plan reaches is kept in pieces.
+        plan = self.live.session.plan if self.following else self.live.session.plan_at(self.session.seconds)
         if plan is not self.shown.plan:
             self.shown = Shown(self.live.session.project, plan, plan.end)
             self.changed.emit()

@@ -38,7 +38,7 @@ TIPS = {
     "stroke": "When its most telling moment should come, instead of when it begins",
     "hold": "How long the hold lasts; the motion before and after keeps its speed",
     "prepare": "Off: the preparation is skipped, and it begins shortly before its stroke",
-    "priority": "Higher wins over lower; what the models play has 0",
+    "priority": "Higher wins over lower; what the models play gives way to all",
     "duration": "How long the activity is wanted",
     "tags": "Words apart by commas; all must be among the action's tags",
     "resume": "When something more important cuts it, its rest plays afterwards",

@@ -24,7 +24,7 @@ Tags = tuple[Annotated[str, Meta(max_length=200)], ...]
 class Ask(Struct, frozen=True, kw_only=True, omit_defaults=True, forbid_unknown_fields=True, tag_field="do"):
     """What all asks have. id: made up where it is empty; the same id again replaces what was asked before. at: when it should
     begin, null for as soon as can be. told: when it became known, null for from the start; a planner that acts
-    before then has not heard of it. priority: higher wins over lower; what the model writes on its own has 0."""
+    before then has not heard of it. priority: higher wins over lower; what a model writes gives way to all."""
 
     id: Annotated[str, Meta(max_length=200)] = ""
     at: Seconds | None = None

@@ -103,7 +103,7 @@ def _meant(project: Project, ask: a.AnyAsk, at: float) -> Sequence[Request | Ite
 
             return [
                 meant
-                for n, inner in enumerate(read_bml(ask.bml, at, ask.priority))
+                for n, inner in enumerate(read_bml(ask.bml, at, ask.priority, project))
                 for meant in _meant(project, _named(inner, ask.id, n), at if inner.at is None else inner.at)
             ]
     raise a.AskError(f"nothing is known of '{type(ask).__name__}'")
@@ -165,10 +165,19 @@ def _head(project: Project, ask: a.Nod | a.Shake, word: str, at: float) -> Reque
 
 def _timed(project: Project, layer: Layer, tags: tuple[str, ...], stroke: float | None, at: float) -> tuple[float, float | None]:
     """Return the earliest start of a gesture whose stroke should come at a time, and that time."""
-    if stroke is None:
-        return at, None
-    leads = [lead(project, x) for x in project.graphs[layer].actions.values() if x.kind == "gesture" and set(tags) <= set(x.tags)]
-    return max(0.0, stroke - max(leads, default=0.0)), stroke
+    return (at, None) if stroke is None else (max(0.0, stroke - _longest_lead(project, layer, tags)), stroke)
+
+
+def _longest_lead(project: Project, layer: Layer, tags: tuple[str, ...]) -> float:
+    """Return how long before its stroke any gesture with these tags begins; remembered as long as graph and clips stay as they are."""
+    graph = project.graphs[layer]
+    known = graph.__dict__.get("_leads")
+    leads: dict[tuple[str, ...], float] = known[1] if known is not None and known[0] is project.clips else {}
+    graph.__dict__["_leads"] = (project.clips, leads)
+    if tags not in leads:
+        gestures = (x for x in graph.actions.values() if x.kind == "gesture" and set(tags) <= set(x.tags))
+        leads[tags] = max((lead(project, x) for x in gestures), default=0.0)
+    return leads[tags]
 
 
 def lead(project: Project, action: Action) -> float:
