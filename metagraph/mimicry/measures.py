@@ -9,7 +9,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
-from math import inf
+from math import inf, sin
 from typing import Any
 
 import numpy as np
@@ -104,11 +104,16 @@ COUNT: Mapping[Layer, Array] = {
 }
 
 
+_SLANT: Mapping[Layer, Array] = {
+    layer: np.array([[m.weight, m.scale[1] ** 2, m.slant**2] for m in some]) for layer, some in MEASURES.items()
+}
+
+
 def sharp_in_a_picture(layer: Layer, turn: float) -> Array:
     """Return `[N, 2]` weight / scale^2 of measures in a picture of somebody turned by an angle from the camera."""
     out = SHARP[layer][:, :2].copy()
-    for row, m in zip(out, MEASURES[layer], strict=True):
-        row[1] = m.weight / (m.scale[1] ** 2 + (m.slant * np.sin(turn)) ** 2)
+    weight, scale, slant = _SLANT[layer].T
+    out[:, 1] = weight / (scale + slant * sin(turn) ** 2)
     return out
 
 

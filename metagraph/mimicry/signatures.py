@@ -105,7 +105,8 @@ def signatures(project: Project, body: Body, layers: Collection[Layer] = LAYERS)
     for layer in LAYERS:
         if layer not in layers:
             continue
-        stances, rows, of, extra = [], [], [], []
+        stances: list[str] = []
+        rows, of, extra = [], [], []
         for stance in project.graphs[layer].stances.values():
             loops = [x for x in project.graphs[layer].of(stance.id, "stance") if playable(project, x) is not None]
             seen = [s for loop in loops if (s := _seen(project, body, layer, Rest(stance.id, loop, 0.0, 0.0, 0.0))) is not None]

@@ -1,0 +1,164 @@
+"""One frame of keypoints: whose points it holds, in whichever way they are written, and when it was."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass, field
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from metagraph.errors import FileError
+from metagraph.mimicry.people import Person
+from metagraph.mimicry.points import BY_COUNT, describe_layouts
+
+Array = NDArray[Any]
+
+FARTHEST = 1e7  # of a coordinate, in any unit
+MOST_PEOPLE = 200  # in one frame
+# How keys are spelt, without capitals, hyphens and underscores.
+_SPACE = ("worldlandmarks", "poseworldlandmarks", "keypoints3d", "posekeypoints3d")
+_FLAT = ("landmarks", "poselandmarks", "keypoints", "posekeypoints2d")
+_SECONDS = ("t", "time", "seconds", "timestamp", "timesec", "timestampsec")
+_MILLISECONDS = ("timestampms", "timems", "ms", "milliseconds")
+_NUMBER = ("frame", "frameid", "frameindex", "framenumber", "frameidx", "imageid")
+_SURE = ("visibility", "confidence", "score", "presence", "c", "v")
+REMEDY = "Choose what OpenPose writes with --write_json, or MediaPipe's pose landmarks as JSON."
+
+
+@dataclass
+class Frame:
+    """A frame while it is being read. where: for messages. time: seconds; number: of the frame; either may be unknown."""
+
+    where: str
+    time: float | None = None
+    number: int | None = None
+    flat: list[Person] = field(default_factory=list)
+    space: list[Person] = field(default_factory=list)
+
+
+def spelt(key: str) -> str:
+    return key.replace("_", "").replace("-", "").lower()
+
+
+def has_people(item: Mapping[str, Any]) -> bool:
+    return any(spelt(k) in (*_SPACE, *_FLAT, "people") for k in item)
+
+
+def is_number(value: Any) -> bool:
+    return isinstance(value, int | float) and not isinstance(value, bool)
+
+
+def is_person(value: Any) -> bool:
+    """Whether a list is somebody's points: objects or rows, as many as a layout has, or all numbers of such."""
+    if not isinstance(value, list) or not value:
+        return False
+    if is_number(value[0]):
+        return (len(value) % 3 == 0 and len(value) // 3 in BY_COUNT) or (len(value) % 4 == 0 and len(value) // 4 in BY_COUNT)
+    first = value[0]
+    point = (isinstance(first, dict) and "x" in first) or (isinstance(first, list) and 2 <= len(first) <= 5 and is_number(first[0]))
+    return len(value) in BY_COUNT and point
+
+
+def read_frame(path: Path, item: Any, where: str) -> Frame:
+    """Return what a frame holds. Raises FileError for what is no frame."""
+    out = Frame(where)
+    if isinstance(item, list):
+        out.flat = list(_people(path, item, where, False))
+        return out
+    if not isinstance(item, dict):
+        raise FileError(path, "it is no frame: an object or a list is expected", where, REMEDY)
+    said = {spelt(k): v for k, v in item.items()}
+    _when(path, said, out)
+    if "people" in said:
+        people = said["people"]
+        if not isinstance(people, list) or not all(isinstance(p, dict) for p in people):
+            raise FileError(path, "'people' is not a list of people", where, REMEDY)
+        for person in people[:MOST_PEOPLE]:
+            _take(path, {spelt(k): v for k, v in person.items()}, out)
+    elif any(k in said for k in (*_SPACE, *_FLAT)):
+        _take(path, said, out)
+    elif out.time is None and out.number is None:
+        keys = ", ".join(list(map(str, item))[:6]) or "nothing"
+        raise FileError(path, f"it holds no keypoints; it has {keys}", where, REMEDY)
+    return out
+
+
+def _when(path: Path, said: Mapping[str, Any], out: Frame) -> None:
+    for keys, unit in ((_MILLISECONDS, 1e-3), (_SECONDS, 1.0)):
+        value = next((said[k] for k in keys if k in said), None)
+        if value is not None:
+            if not is_number(value) or not abs(value) <= 1e18:
+                raise FileError(path, f"its time is {str(value)[:40]!r}, not a number", out.where, "Correct it, or leave times out.")
+            out.time = float(value) * unit
+            return
+    value = next((said[k] for k in _NUMBER if k in said), None)
+    if isinstance(value, str):
+        digits = re.findall(r"\d+", value)
+        value = int(digits[-1][-15:]) if digits else None
+    if is_number(value) and 0 <= value <= 1e15:  # type: ignore[operator]
+        out.number = int(value)  # type: ignore[arg-type]
+
+
+def _take(path: Path, said: Mapping[str, Any], out: Frame) -> None:
+    ident = said.get("personid", said.get("id", said.get("idx")))
+    ident = ident[0] if isinstance(ident, list) and ident else ident
+    number = ident if isinstance(ident, int) and not isinstance(ident, bool) and ident >= 0 else None
+    for keys, people, space in ((_SPACE, out.space, True), (_FLAT, out.flat, False)):
+        value = next((said[k] for k in keys if said.get(k)), None)
+        if value is not None:
+            people += _people(path, value, out.where, space, number, said_sure="posekeypoints2d" in said or "keypoints" in said)
+
+
+def _people(path: Path, value: Any, where: str, space: bool, ident: int | None = None, said_sure: bool = False) -> Iterator[Person]:
+    """Yield the people of a list of points, or of a list of such lists. said_sure: rows of three end in the confidence."""
+    if isinstance(value, dict):
+        value = value.get("landmark", value.get("landmarks"))
+    if isinstance(value, list) and not value:
+        return
+    if not isinstance(value, list):
+        raise FileError(path, "its keypoints are not a list", where, REMEDY)
+    if is_person(value):
+        points, confidence = _points(path, value, where, space, said_sure)
+        yield Person(points, confidence, ident)
+        return
+    several = [v.get("landmark", v.get("landmarks")) if isinstance(v, dict) and "x" not in v else v for v in value]
+    if several and all(is_person(v) or v == [] for v in several):
+        for one in several[:MOST_PEOPLE]:
+            if one:
+                points, confidence = _points(path, one, where, space, said_sure)
+                yield Person(points, confidence)
+        return
+    numbers = len(value) // 3 if value and is_number(value[0]) else len(value)
+    raise FileError(path, f"{numbers} points are none of the layouts that are known: {describe_layouts()}", where, REMEDY)
+
+
+def _points(path: Path, value: list[Any], where: str, space: bool, said_sure: bool) -> tuple[Array, Array]:
+    """Return somebody's points `[K, 3]` and confidence `[K]`; what is null or not a number that could be was not found."""
+    if is_number(value[0]):
+        size = 4 if space and len(value) % 4 == 0 and len(value) // 4 in BY_COUNT else 3
+        value = [value[n : n + size] for n in range(0, len(value), size)]
+        said_sure = True
+    out = np.zeros((len(value), 4))
+    for row, point in zip(out, value, strict=True):
+        if isinstance(point, dict):
+            numbers = [point.get("x"), point.get("y"), point.get("z", 0.0)]
+            sure = next((point[k] for k in _SURE if point.get(k) is not None), 1.0)
+        elif isinstance(point, list):
+            flat = (said_sure and not space) or len(point) == 2
+            numbers = [*point[:2], 0.0] if flat else [*point[:3]]
+            rest = point[2:] if flat else point[3:]
+            sure = rest[0] if rest else 1.0
+        else:
+            raise FileError(path, f"a point is {str(point)[:40]!r}, not an object or a list", where, REMEDY)
+        if len(numbers) < 3 or any(n is None for n in (*numbers, sure)):
+            continue
+        if not all(map(is_number, (*numbers, sure))):
+            raise FileError(path, f"a point holds {str(point)[:60]}, which are not all numbers", where, "Correct it.")
+        if max(map(abs, numbers)) <= FARTHEST:
+            row[:3], row[3] = numbers, min(1.0, max(0.0, sure))
+    out[~out[:, :3].any(1), 3] = 0.0  # zeros stand for what was not found
+    return out[:, :3], out[:, 3]
