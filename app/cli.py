@@ -11,6 +11,7 @@ from pathlib import Path
 from typing import Any
 
 from app.headless_live import arguments as live_arguments
+from app.headless_mimic import arguments as mimic_arguments
 from metagraph import __version__
 
 ERROR = 1
@@ -30,6 +31,7 @@ examples:
   metagraph render my.metagraph.yaml -o show.mp4 -s 20
   metagraph annotate my.metagraph.yaml talk.eaf --learn
   metagraph export my.metagraph.yaml -o game/
+  metagraph mimic my.metagraph.yaml keypoints.json -o show.mp4
   metagraph live my.metagraph.yaml            play, and do what agents ask
 
 exit codes: 0 done, 1 an error, 2 wrong usage, 3 done but with problems"""
@@ -85,6 +87,8 @@ def _parser() -> argparse.ArgumentParser:
     annotated.add_argument("--perform", metavar="NAME", help="keep it as a performance")
     played = command("live", "play, and listen to what programs ask: JSON lines, WebSocket, OSC")
     live_arguments(played)
+    mimicked = command("mimic", "tell what stances a person's keypoints show, and let the character do as they do")
+    mimic_arguments(mimicked)
     info = command("info", "tell what is in a project, an export or a clip file", project=False)
     info.add_argument("path", type=Path, help="a project, an exported JSON, or a clip file")
     demo = command("demo", "the main job without a window: sample project to performance, pictures, video and export", project=False)
@@ -100,7 +104,7 @@ def _performance(parser: argparse.ArgumentParser, seconds: float) -> None:
     parser.add_argument("--seed", type=int, help="another performance of the same project (default: the project's seed)")
 
 
-COMMANDS = ("window", "import", "check", "plan", "render", "annotate", "export", "live", "info", "demo")
+COMMANDS = ("window", "import", "check", "plan", "render", "annotate", "export", "live", "mimic", "info", "demo")
 
 
 def main(arguments: Sequence[str] | None = None) -> int:

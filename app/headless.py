@@ -13,6 +13,7 @@ from typing import Any
 from app.headless_annotate import annotate as annotate
 from app.headless_common import opened, say, staged
 from app.headless_live import live as live
+from app.headless_mimic import mimic as mimic
 from app.headless_render import draw_to, figure_of, sound_of
 from app.headless_render import render as render
 from metagraph.errors import FileError
