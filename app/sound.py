@@ -19,6 +19,7 @@ from app.session import Session
 from metagraph.graph.model import Project
 
 RATE = 44100  # as speech.soundtrack's, which is not imported before something is said
+LATENCY = 0.08  # seconds of sound on its way to the ear: enough that a busy machine does not tear it
 DRIFT = 0.08  # seconds the sound may be apart from the picture before it is set right
 EMPTY: list[tuple[float, np.ndarray]] = []
 
@@ -95,9 +96,9 @@ class Sound(QObject):
             if self._stream is not None and self._stream.active:
                 self._stream.stop()
             return
-        at = round(self.session.seconds * RATE)
         if self._stream is None and not self._open():
             return
+        at = round((self.session.seconds + self._stream.latency) * RATE)  # what is mixed now is heard that much later
         if not self._stream.active:
             self.place = at
             self._stream.start()
@@ -110,7 +111,7 @@ class Sound(QObject):
         try:
             import sounddevice
 
-            self._stream = sounddevice.OutputStream(samplerate=RATE, channels=1, dtype="float32", callback=self.fill, latency="low")
+            self._stream = sounddevice.OutputStream(samplerate=RATE, channels=1, dtype="float32", callback=self.fill, latency=LATENCY)
         except Exception as error:  # the library has errors of its own, and OSError where PortAudio is missing
             self._silent = True
             cause = str(error).splitlines()[0].rstrip(".")

@@ -21,7 +21,7 @@ class Stream:
     """What the sound library would give: asks for samples when the test says so."""
 
     def __init__(self, fill: Any) -> None:
-        self.fill, self.active = fill, False
+        self.fill, self.active, self.latency = fill, False, 0.0
 
     def start(self) -> None:
         self.active = True
@@ -121,3 +121,11 @@ def test_lines_that_go_are_not_heard_any_more(stage, qtbot):
 
     stage.document.edit("Remove", lambda p: staging.set_line(p, "1", None))
     qtbot.waitUntil(lambda: not stage.parts)
+
+
+def test_what_is_still_on_its_way_to_the_ear_is_mixed_that_much_earlier(stage):
+    stream = connected(stage)
+    stream.latency = 0.1
+    stage.session.seek(1.0)
+    stage.session.set_playing(True)
+    assert stage.place == round(1.1 * RATE)
