@@ -29,6 +29,7 @@ from metagraph.mimicry.tuning import Tuning
 Array = NDArray[Any]
 
 TURNS = np.radians(np.arange(-60, 61, 10))  # headings that are tried in a picture
+TURN_OFF = 3  # by how many of them a heading may be mistaken, with its sign, say
 ALIKE = 0.7  # distance below which two stances are not told apart in a picture
 AWAY = 0.15  # width of the shoulders in a picture, torso lengths, below which somebody turns the back
 LEAST_TRUST = 0.1  # of a running mean in a point, below which it is as good as not seen
@@ -83,6 +84,7 @@ class Judge:
         self.now: int | None = None
         self.distances: Array | None = None
         self.moving = False
+        self._known = 0.0  # seconds for which the person could be got used to
         self.bias = np.zeros(signature.measures.shape[1:])
         self.flat = np.stack([turned(signature.measures, angle)[..., :2] for angle in TURNS])
         self._alike = self._confused()
@@ -182,8 +184,9 @@ class Judge:
         """Get used to how the person differs from the character in the stance they are in, within limits."""
         mine = np.flatnonzero(self.signature.of == self.now)
         off = apart[mine[far[mine].argmin()]]
-        most = self.tuning.used * SCALE[self.layer][:, :dims]
-        step = (1.0 - float(np.exp(-elapsed / self.tuning.using))) * share
+        most = self.how.used * SCALE[self.layer][:, :dims]
+        self._known += elapsed
+        step = min(1.0, elapsed / min(self.tuning.using, self.tuning.using_first + self._known)) * share
         self.bias[:, :dims] = np.clip(self.bias[:, :dims] + step * (off - self.bias[:, :dims]), -most, most)
 
     def _confused(self) -> Array:
@@ -192,8 +195,9 @@ class Judge:
         order = sorted(range(len(signature.stances)), key=lambda s: s != self.start)
         out = np.zeros((len(TURNS), len(signature.of)))
         for n, flat in enumerate(self.flat):
-            apart = flat[:, None] - flat[None]
-            far = np.sqrt((apart**2 * SHARP[self.layer][:, :2]).sum((2, 3)) / COUNT[self.layer][:, :2].sum())
+            near = self.flat[max(0, n - TURN_OFF) : n + TURN_OFF + 1]
+            apart = flat[None, :, None] - near[:, None]
+            far = np.sqrt((apart**2 * SHARP[self.layer][:, :2]).sum((3, 4)).min(0) / COUNT[self.layer][:, :2].sum())
             for place, stance in enumerate(order):
                 mine = signature.of == stance
                 before = np.isin(signature.of, order[:place]) & (out[n] == 0)

@@ -12,7 +12,8 @@ from metagraph.graph.words import Layer
 class Judging:
     """How one layer is judged. smooth: time constant, seconds, of the running mean that is judged. still: speed, torso lengths a second,
     above which somebody moves: gesturing is no stance. near: distance below which somebody may come into a stance. margin: by how
-    much it must be nearer than the one before. dwell: for how many seconds. Distances are those of `measures`: 1 is as far off as is
+    much it must be nearer than the one before. dwell: for how many seconds. used: how much is got used to of how a person differs from the
+    character in the stance they are in, usual differences. Distances are those of `measures`: 1 is as far off as is
     usual."""
 
     smooth: float
@@ -20,12 +21,13 @@ class Judging:
     near: float
     margin: float
     dwell: float
+    used: float
 
 
 JUDGING: Mapping[Layer, Judging] = {
-    "body": Judging(smooth=0.3, still=0.3, near=1.3, margin=0.3, dwell=0.3),
-    "arms": Judging(smooth=0.2, still=0.6, near=0.9, margin=0.2, dwell=0.4),
-    "head": Judging(smooth=0.45, still=0.35, near=1.3, margin=0.35, dwell=0.3),
+    "body": Judging(smooth=0.3, still=0.3, near=1.3, margin=0.3, dwell=0.3, used=1.0),
+    "arms": Judging(smooth=0.2, still=0.6, near=0.9, margin=0.2, dwell=0.5, used=0.6),
+    "head": Judging(smooth=0.45, still=0.35, near=1.3, margin=0.35, dwell=0.3, used=0.5),
 }
 
 
@@ -35,8 +37,8 @@ class Tuning:
 
     quick: time constant of the running mean that, beside the smooth one, tells the speed. seen: confidence below which a point
     counts for nothing; sure: from which on for all. turning: time constant of the heading of somebody in a picture, looked at
-    every `turned` seconds. using: time constant with which is got used to how a person differs from the character in the stance they
-    are in; used: to how much of that, usual differences. left: distance beyond which somebody has left a stance, whatever they are
+    every `turned` seconds. using: time constant with which is got used to how a person differs from the character; using_first: the same at
+    first, it grows with the time that somebody has been seen. left: distance beyond which somebody has left a stance, whatever they are
     in now. again: after which a stance the character is not in is asked for anew. gap: after which all begins anew. lost: after
     which somebody who is not seen is gone."""
 
@@ -47,7 +49,7 @@ class Tuning:
     turning: float = 1.0
     turned: float = 0.1
     using: float = 6.0
-    used: float = 0.6
+    using_first: float = 1.0
     left: float = 2.0
     again: float = 2.0
     gap: float = 1.0
