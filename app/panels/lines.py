@@ -5,7 +5,7 @@ from __future__ import annotations
 from pathlib import Path
 
 import msgspec
-from PySide6.QtCore import QEvent, Qt, Signal
+from PySide6.QtCore import QEvent, QItemSelection, QItemSelectionModel, Qt, Signal
 from PySide6.QtGui import QColor, QDragEnterEvent, QDragMoveEvent, QDropEvent, QKeyEvent
 from PySide6.QtWidgets import (
     QAbstractItemView,
@@ -26,7 +26,7 @@ from app.jobs import Jobs
 from app.lines import LISTS, SOUNDS, Lines, add_lines, read_lines
 from app.performance import Performance
 from app.session import Session
-from app.theme import theme
+from app.theme import Theme, theme
 from app.words import many
 from metagraph.graph import staging
 from metagraph.graph.asks import Line, Say
@@ -36,6 +36,7 @@ from metagraph.playback.understand import spoken_seconds
 
 COLUMNS = ("Id", "Words", "Sound", "Length", "With it")
 ID, WORDS, SOUND, LENGTH, ASKS = range(5)
+WIDEST = 180  # pixels of the ids at most
 EMPTY = "Drop sound files here, or a list (CSV: id, text, sound).\nAn agent then says a line by its id, and the lips follow its sound."
 
 
@@ -70,6 +71,7 @@ class LinesPanel(QWidget):
         super().__init__(parent)
         self.document, self.session, self.performance, self.jobs = document, session, performance, jobs
         self._filling = False
+        self._rows: dict[int, tuple[object, ...]] = {}  # what each row shows
         self.setAcceptDrops(True)
         layout = QVBoxLayout(self)
         layout.setContentsMargins(12, 6, 12, 6)
@@ -92,6 +94,8 @@ class LinesPanel(QWidget):
             button = QToolButton(self, text=text, toolTip=tip)
             button.clicked.connect(run)
             row.addWidget(button)
+            if run == self.say:
+                self.say_button = button
         layout.addLayout(row)
         self.table = Table(0, len(COLUMNS), self)
         self.table.setHorizontalHeaderLabels(COLUMNS)
@@ -101,12 +105,14 @@ class LinesPanel(QWidget):
         self.table.setShowGrid(False)
         self.table.setAlternatingRowColors(True)
         header = self.table.horizontalHeader()
-        for column in (ID, LENGTH, ASKS):
-            header.setSectionResizeMode(column, QHeaderView.ResizeMode.ResizeToContents)
+        header.setMinimumSectionSize(56)
         header.setSectionResizeMode(WORDS, QHeaderView.ResizeMode.Stretch)
         header.setDefaultAlignment(Qt.AlignmentFlag.AlignLeft)
         self.table.setColumnWidth(SOUND, 190)
         self.table.itemChanged.connect(self._typed)
+        self.table.itemSelectionChanged.connect(lambda: self.say_button.setEnabled(bool(self.table.selectedItems())))
+        self.say_button.setEnabled(False)
+        self.table.setAccessibleName("Lines")
         self.table.deleted.connect(self.remove)
         self.table.said.connect(self.say)
         layout.addWidget(self.table, 1)
@@ -125,27 +131,32 @@ class LinesPanel(QWidget):
 
     def refresh(self) -> None:
         """Show the lines as they are."""
-        project, chosen = self.document.project, set(self.chosen())
+        project, chosen, look = self.document.project, set(self.chosen()), theme(self.session.theme)
+        here = self.table.currentItem()
+        current = (here.data(Qt.ItemDataRole.UserRole), here.column()) if here is not None else None
         self._filling = True
+        self.table.setUpdatesEnabled(False)
         self.table.setRowCount(len(project.lines))
+        selection = QItemSelection()
+        model, last = self.table.model(), len(COLUMNS) - 1
         for n, (ident, line) in enumerate(project.lines.items()):
-            lost = bool(line.audio) and ident not in project.voices
-            seconds = spoken_seconds(project, ident, line.text)
-            asks = many(len(line.asks), "request") if line.asks else ""
-            texts = (ident, line.text, Path(line.audio).name if line.audio else "", f"{seconds:.1f} s", asks)
-            for column, text in enumerate(texts):
-                item = self.table.item(n, column)
-                if item is None:
-                    item = QTableWidgetItem()
-                    self.table.setItem(n, column, item)
-                item.setText(text)
-                item.setData(Qt.ItemDataRole.UserRole, ident)
-                item.setFlags(item.flags() | Qt.ItemFlag.ItemIsEditable if column < SOUND else item.flags() & ~Qt.ItemFlag.ItemIsEditable)
-                if column == SOUND:
-                    item.setForeground(QColor(theme(self.session.theme).warning if lost else theme(self.session.theme).dim))
-                    item.setToolTip("The sound could not be read; the lips follow the letters" if lost else line.audio or "")
+            shown = (ident, line, project.voices.get(ident), look.name)
+            first = self.table.item(n, ID)
+            if first is None or not _same(self._rows.get(n), shown):
+                self._row(n, ident, line, look)
+                self._rows[n] = shown
             if ident in chosen:
-                self.table.selectRow(n)
+                selection.select(model.index(n, 0), model.index(n, last))
+        self.table.selectionModel().select(selection, QItemSelectionModel.SelectionFlag.ClearAndSelect)
+        if current is not None:
+            row = next((n for n, i in enumerate(project.lines) if i == current[0]), -1)
+            if row >= 0:
+                self.table.selectionModel().setCurrentIndex(model.index(row, current[1]), QItemSelectionModel.SelectionFlag.NoUpdate)
+        for column in (ID, LENGTH, ASKS):
+            self.table.resizeColumnToContents(column)
+        if self.table.columnWidth(ID) > WIDEST:
+            self.table.setColumnWidth(ID, WIDEST)
+        self.table.setUpdatesEnabled(True)
         self._filling = False
         self.table.setVisible(bool(project.lines))
         self.empty.setVisible(not project.lines)
@@ -153,6 +164,28 @@ class LinesPanel(QWidget):
         silent = sum(1 for x in project.lines.values() if not x.audio)
         self.words.setText(f"{many(len(project.lines), 'line')}{f', {silent} without sound' if silent else ''}" if project.lines else "")
         self._search(self.search.text())
+
+    def _row(self, n: int, ident: str, line: Line, look: Theme) -> None:
+        """Fill a row of the table."""
+        project = self.document.project
+        lost = bool(line.audio) and ident not in project.voices
+        seconds = spoken_seconds(project, ident, line.text)
+        asks = many(len(line.asks), "request") if line.asks else ""
+        texts = (ident, line.text, Path(line.audio).name if line.audio else "", f"{seconds:.1f} s", asks)
+        for column, text in enumerate(texts):
+            item = self.table.item(n, column)
+            if item is None:
+                item = QTableWidgetItem()
+                self.table.setItem(n, column, item)
+            item.setText(text)
+            item.setData(Qt.ItemDataRole.UserRole, ident)
+            if column >= SOUND and item.flags() & Qt.ItemFlag.ItemIsEditable:
+                item.setFlags(item.flags() & ~Qt.ItemFlag.ItemIsEditable)
+            if column == SOUND:
+                item.setForeground(QColor(look.warning if lost else look.dim))
+                item.setToolTip("The sound could not be read; the lips follow the letters" if lost else line.audio or "")
+            elif column in (ID, WORDS):
+                item.setToolTip(text if len(text) > 24 else "")
 
     def _search(self, text: str) -> None:
         wanted = text.lower().split()
@@ -178,6 +211,7 @@ class LinesPanel(QWidget):
         if self._filling:
             return
         ident, text = str(item.data(Qt.ItemDataRole.UserRole)), item.text()
+        self._rows.pop(item.row(), None)  # what was typed may be refused
         if item.column() == ID:
             self._try("Rename line", lambda p: staging.rename_line(p, ident, text))
         else:
@@ -199,6 +233,7 @@ class LinesPanel(QWidget):
     def add_words(self) -> None:
         """Add a line and let its words be typed."""
         lines = self.document.project.lines
+        self.search.clear()  # the new one must be seen
         number = next(n for n in range(1, len(lines) + 2) if str(n) not in lines)
         self._try("Add line", lambda p: staging.set_line(p, str(number), Line(text="Hello")))
         self.table.setCurrentCell(len(lines), WORDS)
@@ -246,3 +281,8 @@ class LinesPanel(QWidget):
     def _files(self, event: QDropEvent) -> list[Path]:
         paths = [Path(u.toLocalFile()) for u in event.mimeData().urls() if u.isLocalFile()]
         return [p for p in paths if p.suffix.lower() in (*SOUNDS, *LISTS)]
+
+
+def _same(before: tuple[object, ...] | None, now: tuple[object, ...]) -> bool:
+    """Whether a row shows the same; a line and its voice by identity, since every edit makes new ones of what it changes."""
+    return before is not None and before[0] == now[0] and before[1] is now[1] and before[2] is now[2] and before[3] == now[3]

@@ -103,7 +103,7 @@ def test_sounds_dropped_on_the_panel_can_be_edited_said_and_removed(drive, toy, 
     drive.wait(lambda: drive.document.project.lines["two"].text == "Second words")
     # An id that is taken is refused in words, another is taken over.
     panel.table.item(1, 0).setText("one")
-    assert list(drive.document.project.lines) == ["one", "two"]
+    assert list(drive.document.project.lines) == ["one", "two"] and panel.table.item(1, 0).text() == "two"
     panel.table.item(1, 0).setText("279")
     assert list(drive.document.project.lines) == ["one", "279"] and "279" in drive.document.project.voices
     # Said now: the character speaks it.
@@ -131,3 +131,47 @@ def test_words_without_sound_are_a_line_too(drive, toy):
     drive.lines.add_words()
     assert drive.document.project.lines["1"].text == "Hello"
     drive.wait(lambda: drive.lines.table.findChild(QLineEdit) is not None)
+
+
+def test_an_edit_of_one_line_among_many_writes_one_row_and_keeps_the_selection(drive, toy, monkeypatch):
+    from metagraph.graph import staging
+
+    def many(project: Project) -> Project:
+        for n in range(40):
+            project = staging.set_line(project, f"l{n}", a.Line(text=f"line {n}"))
+        return project
+
+    drive.document.load(toy.project(), None)
+    drive.show_dock("lines")
+    panel = drive.lines
+    assert not panel.say_button.isEnabled()
+    drive.document.edit("Add lines", many)
+    panel.table.setFocus()
+    panel.table.selectAll()
+    assert panel.say_button.isEnabled()
+    written: list[int] = []
+    row = panel._row
+    monkeypatch.setattr(panel, "_row", lambda n, *more: (written.append(n), row(n, *more)))
+    drive.document.edit("Change line", lambda p: staging.set_line(p, "l5", a.Line(text="another")))
+    assert written == [5] and panel.table.item(5, 1).text() == "another"
+    assert len(panel.chosen()) == 40
+    # What is added while a search hides everything is seen.
+    panel.search.setText("another")
+    panel.add_words()
+    assert not panel.table.isRowHidden(40)
+
+
+def test_a_line_that_is_removed_while_it_is_asked_for_says_so_and_comes_back_with_undo(drive, toy):
+    from metagraph.graph import staging
+
+    drive.document.load(staging.set_line(toy.project(), "hi", a.Line(text="Hello there")), None)
+    drive.performance.ask(a.Say(line="hi", at=1.0))
+    (ask,) = drive.performance.asks
+    drive.wait(lambda: ask.id in drive.performance.answers() and drive.performance.answers()[ask.id].at is not None)
+    drive.document.edit("Remove line", lambda p: staging.set_line(p, "hi", None))
+    drive.wait(lambda: drive.performance.answers()[ask.id].state == "refused")
+    drive.session.select_asks((ask.id,))
+    assert "hi" in drive.timeline.title.words and "Does not play" in drive.timeline.title.words
+    drive.document.undo()
+    drive.wait(lambda: drive.performance.answers()[ask.id].at is not None)
+    assert "Said from 1.00" in drive.timeline.title.words
