@@ -133,6 +133,8 @@ class LifePanel(QWidget):
         outer.addLayout(tabs)
         area = QScrollArea(self, widgetResizable=True)
         area.setFrameShape(QScrollArea.Shape.NoFrame)
+        area.setStyleSheet("QScrollArea { background: transparent; }")  # no box in the panel
+        area.viewport().setAutoFillBackground(False)
         area.setHorizontalScrollBarPolicy(Qt.ScrollBarPolicy.ScrollBarAlwaysOff)
         outer.addWidget(area, 1)
         self.area = area
@@ -149,6 +151,7 @@ class LifePanel(QWidget):
     def _fill(self, mode: Mode | None) -> None:
         """Make the page of the amounts, or of one mode, when it is first shown."""
         page = QWidget(self.area)
+        page.setAutoFillBackground(False)
         grid = QGridLayout(page)
         grid.setContentsMargins(0, 0, 8, 0)
         grid.setHorizontalSpacing(10)
@@ -189,6 +192,7 @@ class LifePanel(QWidget):
         if self.area.widget() is not self.pages[self.mode]:
             self.area.takeWidget()
             self.area.setWidget(self.pages[self.mode])
+            self.pages[self.mode].setAutoFillBackground(False)  # which the area turns on
             self.pages[self.mode].show()
         self.on.setChecked(life.on)
         for name, row in self.rows.items():

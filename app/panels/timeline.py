@@ -59,6 +59,7 @@ class TimelinePanel(QWidget):
         self.more_menu.aboutToShow.connect(self._fill)
         row.addWidget(self.more)
         self.title = Sentence(self)
+        self.title.setMinimumHeight(2 * self.title.fontMetrics().height())
         row.addWidget(self.title, 1)
         self.lost = QToolButton(self, toolTip="Select the next of them; its reason then stands beside")
         self.lost.clicked.connect(self.show_lost)
@@ -248,7 +249,7 @@ class TimelinePanel(QWidget):
         chosen = self.session.asks if plan else ()
         marks = [m for m in self.lanes.marks() if m.ask.id in chosen] if chosen else []
         if len(marks) == 1:
-            self.title.say(f"{wanted(marks[0])}. {outcome(marks[0].ask, marks[0].answer)}", True)
+            self.title.say(f"{outcome(marks[0].ask, marks[0].answer)} Asked for: {wanted(marks[0])}.".strip(), True)
             return
         if marks:
             unmet = sum(1 for m in marks if m.lost)
@@ -267,13 +268,14 @@ class TimelinePanel(QWidget):
 
 
 class Sentence(QLabel):
-    """One line that gives way where there is no room for it, and then tells all of it in a tooltip."""
+    """A line, or two where it is narrow, that gives way where there is no room for it, and then tells all of it in a tooltip."""
 
     def __init__(self, parent: QWidget) -> None:
         super().__init__(parent)
         self.words = ""
         self.setTextFormat(Qt.TextFormat.PlainText)
-        self.setSizePolicy(QSizePolicy.Policy.Ignored, QSizePolicy.Policy.Preferred)
+        self.setWordWrap(True)
+        self.setSizePolicy(QSizePolicy.Policy.Ignored, QSizePolicy.Policy.Ignored)
         self.setMinimumWidth(40)
 
     def say(self, words: str, strong: bool = False) -> None:
@@ -289,7 +291,10 @@ class Sentence(QLabel):
         self._fit()
 
     def _fit(self) -> None:
-        shown = self.fontMetrics().elidedText(self.words, Qt.TextElideMode.ElideRight, max(20, self.width() - 2))
+        measure, width = self.fontMetrics(), max(20, self.width() - 2)
+        two = self.height() >= 2 * measure.height() - 2 and measure.horizontalAdvance(self.words) > width
+        room = 2 * width - 60 if two else width  # the first line ends with a whole word
+        shown = measure.elidedText(self.words, Qt.TextElideMode.ElideRight, max(20, room))
         if shown != self.text():
             self.setText(shown)
             self.setToolTip(self.words if shown != self.words else "")
