@@ -87,13 +87,18 @@ class Mark:
 
     @property
     def lost(self) -> bool:
-        return self.answer is not None and self.answer.state == "refused"
+        return is_lost(self.answer)
 
     @property
     def late(self) -> float:
         if self.answer is None or self.answer.at is None or getattr(self.ask, "stroke", None) is not None:
             return 0.0
         return max(0.0, self.answer.at - self.at)
+
+
+def is_lost(answer: Answer | None) -> bool:
+    """Whether an ask will not play."""
+    return answer is not None and answer.state == "refused"
 
 
 def time_of(ask: AnyAsk, answer: Answer | None) -> float:
@@ -136,7 +141,12 @@ def marks(
             rect = QRectF(before.rect)
             rect.setWidth(max(NARROWEST, left - 3 - rect.left()))
             out[lasts[lane, row]] = replace(before, rect=rect)
-        rect = QRectF(left, area.top() + row * (tall + 1), max(NARROWEST, min(260.0, advance(words, key) + 16)), tall)
+        rect = QRectF(
+            left,
+            area.top() + row * (tall + 1),
+            max(NARROWEST, min(260.0, advance(f"⚠ {words}" if is_lost(answers.get(ask.id)) else words, key) + 16)),
+            tall,
+        )
         lasts[lane, row] = len(out)
         out.append(Mark(ask, rect, words, kind_of(ask), at, answers.get(ask.id)))
     return out

@@ -11,7 +11,7 @@ from PySide6.QtCore import QPointF
 from PySide6.QtGui import QFont
 
 from app.asks import STAGE
-from app.panels.lanes import LEFT, RULER, Scale, cue_at, lane_at, lanes, mark_at, marks, rows, told
+from app.panels.lanes import LEFT, RULER, Scale, advance, cue_at, lane_at, lanes, mark_at, marks, rows, told
 from app.performance import Shown
 from metagraph.graph import asks as a
 from metagraph.graph.model import LAYERS
@@ -136,6 +136,7 @@ def test_what_does_not_play_says_why(qapp, toy):
     project = toy.project()
     lost = shown_asks(project, a.Gesture(id="g", at=2.0, tags=("nonsense",), priority=3))[0]
     assert lost.lost
+    assert lost.rect.width() >= advance(f"⚠ {lost.words}", QFont().toString()) + 10, "its sign and its words have room"
     words = told(lost)
     assert "Does not play" in words and "nonsense" in words and "priority 3" in words
     late = {m.ask.id: m for m in shown_asks(project, a.Play(id="a", action="rest long", at=1.0), a.Gesture(id="b", at=2.8))}["b"]
