@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass
+from pathlib import Path
 
 from PySide6.QtGui import QColor, QFont, QPalette
 from PySide6.QtWidgets import QApplication
@@ -75,9 +76,12 @@ def palette(look: Theme) -> QPalette:
     return out
 
 
+MARKS = (Path(__file__).parent / "marks").as_posix()  # pictures a style sheet names by their files
+
+
 def style_sheet(look: Theme) -> str:
     """Return the style of the whole window; 8 px grid, 6 px radius, no gradients."""
-    t = look
+    t, marks = look, MARKS
     return f"""
     * {{ font-size: 13px; }}
     QMainWindow, QMainWindow::separator {{ background: {t.ground}; }}
@@ -107,13 +111,19 @@ def style_sheet(look: Theme) -> str:
     QPushButton[strong="true"] {{ background: {t.strong}; color: {t.on_strong}; border-color: {t.strong}; font-weight: 600; }}
     QPushButton[strong="true"]:hover {{ background: {t.text}; }}
     QPushButton[strong="true"]:disabled {{ background: {t.card}; color: {t.dim}; border-color: {t.line}; font-weight: 400; }}
-    QAbstractSpinBox {{ padding-left: 6px; }}
     QLineEdit, QDoubleSpinBox, QSpinBox, QComboBox, QPlainTextEdit {{ background: {t.field}; color: {t.text};
         border: 1px solid {t.line}; border-radius: 6px; padding: 4px 8px;
         selection-background-color: {t.dim}; selection-color: {t.ground}; }}
     QLineEdit:focus, QDoubleSpinBox:focus, QSpinBox:focus, QComboBox:focus {{ border-color: {t.dim}; }}
     QAbstractSpinBox::up-button, QAbstractSpinBox::down-button {{ width: 0; border: none; }}
-    QComboBox::drop-down {{ border: none; width: 20px; }}
+    QComboBox::drop-down {{ border: none; width: 22px; }}
+    QComboBox::down-arrow {{ image: url({marks}/down_{t.name}.svg); width: 12px; height: 12px; }}
+    QCheckBox {{ spacing: 8px; }}
+    QCheckBox::indicator {{ width: 14px; height: 14px; border: 1px solid {t.dim}; border-radius: 4px; background: {t.field}; }}
+    QCheckBox::indicator:checked {{ image: url({marks}/check_{t.name}.svg); }}
+    QCheckBox::indicator:indeterminate {{ image: url({marks}/part_{t.name}.svg); }}
+    QCheckBox::indicator:disabled {{ border-color: {t.line}; }}
+    QCheckBox::indicator:focus {{ border-color: {t.text}; }}
     QComboBox QAbstractItemView {{ background: {t.card}; border: 1px solid {t.line}; outline: none; }}
     QListView, QTreeView, QTableView, QScrollArea, QGraphicsView {{ background: {t.panel}; border: none; outline: none; }}
     QHeaderView::section {{ background: {t.panel}; color: {t.dim}; border: none; padding: 5px 8px; }}

@@ -77,6 +77,7 @@ class TimelinePanel(QWidget):
         row.addWidget(QLabel("Seed", self))
         self.seed = QSpinBox(self, toolTip="Another seed gives another performance of the same graph")
         self.seed.setFixedWidth(84)
+        self.seed.lineEdit().setTextMargins(6, 0, 0, 0)
         self.seed.setRange(0, 999999)
         self.seed.setAccessibleName("Seed")
         self.seed.valueChanged.connect(self._seeded)
