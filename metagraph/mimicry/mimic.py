@@ -7,6 +7,7 @@ from __future__ import annotations
 
 from collections.abc import Collection, Mapping
 from dataclasses import dataclass
+from math import isfinite
 from typing import Any
 
 import numpy as np
@@ -23,6 +24,7 @@ from metagraph.mimicry.tuning import Tuning
 
 Array = NDArray[Any]
 
+FARTHEST = 1e7  # of a coordinate, in any unit; nothing is seen beyond
 FIRST = 0.04  # seconds the first frame stands for
 WIDTH_OFF = 0.12  # of shoulders' width among people, as a share of it
 TURN_USUAL = np.radians(40.0)  # how far people turn away from a camera
@@ -68,9 +70,9 @@ class Mimic:
         self.sightings: list[Sighting] = []
         self.heading = 0.0  # how far the person is turned to the picture's right, radians
         self._gaze = Gaze(body.points(anatomy.base_pose(project))) if gaze else None
-        self._asked: dict[Layer, float] = {}  # when each layer's stance was asked for
+        self._asked: dict[Layer, tuple[float, float]] = {}  # when each layer's stance was asked for, and how long until it may be again
         self._time: float | None = None
-        self._count = 0
+        self._dims = self._count = 0
         self._begin()
 
     def _begin(self) -> None:
@@ -101,12 +103,12 @@ class Mimic:
         anew. Raises ValueError for shapes that do not fit.
         """
         weighted, dims = self._weighted(points, confidence)
-        if self._time is not None and not seconds > self._time:
+        if not isfinite(seconds) or (self._time is not None and seconds <= self._time):
             return []
         elapsed = FIRST if self._time is None else seconds - self._time
-        if elapsed > self.tuning.gap:
+        if elapsed > self.tuning.gap or dims != self._dims:
             self._begin()
-        self._time = seconds
+        self._time, self._dims = seconds, dims
         self._quick.feed(elapsed, weighted)
         views: dict[Layer, View] = {}
         for layer, judge in self.judges.items():
@@ -132,8 +134,9 @@ class Mimic:
         where, sure = choose(given, sure)
         if self.mirror:
             where, sure = swap(where, sure)
-        good = np.isfinite(where).all(1) & np.isfinite(sure)
-        weights = np.where(good, np.clip((sure - self.tuning.seen) / (self.tuning.sure - self.tuning.seen), 0.0, 1.0), 0.0)
+        good = (np.abs(where) <= FARTHEST).all(1) & (sure >= 0)  # what is not a number is neither
+        share = (np.where(good, np.minimum(sure, 1.0), 0.0) - self.tuning.seen) / (self.tuning.sure - self.tuning.seen)
+        weights = np.clip(share, 0.0, 1.0)
         dims = where.shape[1]
         out = np.zeros((len(POINTS), 4))
         out[:, :dims] = np.where(good[:, None], where, 0.0) * weights[:, None]
@@ -153,9 +156,10 @@ class Mimic:
             stance, goal = judge.stance, goals.get(layer)
             if stance is None:
                 continue
-            missed = goal is not None and goal != stance and seconds - self._asked.get(layer, -np.inf) >= self.tuning.again
+            before, wait = self._asked.get(layer, (seconds, 0.0))
+            missed = goal is not None and goal != stance and seconds - before >= wait
             if changed or missed:
-                out.append(self._go(layer, stance, seconds, not changed))
+                out.append(self._go(layer, stance, seconds, self.tuning.again if changed else 2 * wait))
         if self._gaze is not None:
             view = views.get("head") or next(iter(views.values()))
             point = self._gaze.feed(seconds, view.points, view.trust, dims)
@@ -194,9 +198,9 @@ class Mimic:
                 judge.now = None
         return out
 
-    def _go(self, layer: Layer, stance: str, seconds: float, again: bool) -> Go:
-        self._asked[layer] = seconds
-        ident = self._id()
+    def _go(self, layer: Layer, stance: str, seconds: float, wait: float) -> Go:
+        self._asked[layer] = (seconds, wait)
+        ident, again = self._id(), wait > self.tuning.again
         self.sightings.append(Sighting(seconds, layer, stance, self.distances(layer).get(stance, 0.0), ident, again))
         return Go(id=ident, stance=stance, layer=layer, told=seconds, priority=self.priority, stay=True)
 

@@ -37,10 +37,10 @@ class Tuning:
 
     quick: time constant of the running mean that, beside the smooth one, tells the speed. seen: confidence below which a point
     counts for nothing; sure: from which on for all. turning: time constant of the heading of somebody in a picture, looked at
-    every `turned` seconds. using: time constant with which is got used to how a person differs from the character; using_first: the same at
-    first, it grows with the time that somebody has been seen. left: distance beyond which somebody has left a stance, whatever they are
-    in now. again: after which a stance the character is not in is asked for anew. gap: after which all begins anew. lost: after
-    which somebody who is not seen is gone."""
+    every `turned` seconds. using: time constant with which is got used to how a person differs from the character;
+    using_first: the same at first, it grows with the time that somebody has been seen. left: distance beyond which somebody has
+    left a stance, whatever they are in now. again: after which a stance the character is not in is asked for anew; each time
+    twice as long. gap: after which all begins anew. lost: after which somebody who is not seen is gone."""
 
     layers: Mapping[Layer, Judging] = field(default_factory=lambda: JUDGING)
     quick: float = 0.08
