@@ -64,22 +64,20 @@ def _steps(
         now = round(float(at), 3)
         if now > plan.end - AHEAD / 2:
             plan = hear(project, plan, now, [], now + AHEAD, idle=idle)
-        some = mimic.feed(now, where[:, :dims], sure, goals(plan, now, project.settings.wait))
+        some = mimic.feed(now, where[:, :dims], sure, goals(plan, now, mimic.prefix))
         if some:
             plan = hear(project, plan, now, some, max(plan.end, now + AHEAD), idle=idle)
             yield some
 
 
-def goals(plan: Plan, now: float, wait: float) -> dict[Layer, str]:
-    """Return which stance each layer will be in when what is planned for the next `wait` seconds has played."""
+def goals(plan: Plan, now: float, mine: str) -> dict[Layer, str]:
+    """Return which stance each layer is in or on its way to, and will be in when requests of ids that begin with `mine` have played."""
     out: dict[Layer, str] = {}
     for layer in LAYERS:
         of = plan.layers[layer]
-        stance = of.stance_at(now)
-        for cue in reversed(of.cues):
-            if cue.start <= now + wait:
-                stance = cue.then
-                break
+        first = int(of.ends.searchsorted(now, "right"))
+        ahead = [cue.then for n, cue in enumerate(of.cues[first:]) if (n == 0 and cue.start <= now) or cue.meta.startswith(mine)]
+        stance = ahead[-1] if ahead else of.stance_at(now)
         if stance is not None:
             out[layer] = stance
     return out
