@@ -9,6 +9,7 @@ from typing import Any
 
 from metagraph.graph import asks as a
 from metagraph.graph.model import LAYERS, Project
+from metagraph.playback.understand import find_action, find_stance
 
 FARTHEST = 3600.0  # seconds ahead of now, and seconds anything may last
 PENDING = 1000  # requests that have not begun, of all clients
@@ -21,7 +22,7 @@ TAG = 200  # characters that a tag of it counts for besides its own
 HINTS = 4  # words nobody knows that are looked up among those known, in a second
 NAMES = 64  # points a session knows by name
 SPAN = 4.0  # seconds over which these rates are counted
-RATES = {"look": 60, "place": 500, "blink": 16, "say": 16, "mode": 16, "withdraw": 240}  # in SPAN seconds
+RATES = {"look": 60, "place": 500, "blink": 16, "say": 16, "mode": 16, "withdraw": 240, "keypoints": 960}  # in SPAN seconds
 
 BUSY = "too much at once; try again in a moment"
 
@@ -132,3 +133,21 @@ class Limits:
             return f"more than {RATES[lane]} of '{lane}' in {SPAN:g} s; try again in a moment"
         times.append(now)
         return ""
+
+
+def unknown(project: Project, ask: Any, limits: Limits) -> str:
+    """Say that there is nothing of a name that an ask has; for a few asks a tick, which names there are."""
+    limits.hints += 1
+    what, name = (
+        ("line", ask.line) if isinstance(ask, a.Say) else ("action", ask.action) if isinstance(ask, a.Play) else ("stance", ask.stance)
+    )
+    if limits.hints <= HINTS:
+        try:
+            if isinstance(ask, a.Play):
+                find_action(project, ask.action, ask.layer)
+            elif isinstance(ask, a.Go):
+                find_stance(project, ask.stance, ask.layer)
+        except a.AskError as error:
+            return str(error)
+    known = f"; there are {', '.join(list(project.lines)[:6]) or 'none'}" if what == "line" else ""
+    return f"there is no {what} '{str(name)[:60]}'{known}"

@@ -12,6 +12,7 @@ import msgspec
 from msgspec import UNSET, Meta, Struct, UnsetType
 
 from metagraph.graph import asks as a
+from metagraph.graph.words import LAYERS, Layer
 
 LONGEST = 64 * 1024  # bytes of one request
 LONGEST_BML = 256 * 1024  # bytes of one that holds a block of BML
@@ -57,8 +58,26 @@ class Describe(_Own, frozen=True, tag="describe"):
     """What may be asked of this character: its joints, stances, actions, tags, lines and points."""
 
 
-OwnMessage = Hello | Status | Describe
-Message = Union[a.AnyAsk, Hello, Status, Describe]  # noqa: UP007
+Place = Annotated[tuple[Annotated[float, Meta(ge=-1e7, le=1e7)], ...], Meta(min_length=2, max_length=3)]
+Share = Annotated[float, Meta(ge=0, le=1)]
+
+
+class Keypoints(_Own, frozen=True, tag="keypoints"):
+    """Somebody before a camera at this moment, who is mimicked. points: `[x, y]` of a picture or `[x, y, z]` of space, 17 (COCO),
+    18, 25 (OpenPose) or 33 (MediaPipe) of them, y downwards, z away from the camera. confidence: of each point; 0 for what was not
+    found. mirror: the character moves its right where the person moves the left. gaze: it looks where the head is turned,
+    too. layers: which mimic. priority: of what is asked for because of it."""
+
+    points: Annotated[tuple[Place, ...], Meta(min_length=17, max_length=33)]
+    confidence: Annotated[tuple[Share, ...], Meta(max_length=33)] | None = None
+    mirror: bool = True
+    gaze: bool = False
+    layers: tuple[Layer, ...] = LAYERS
+    priority: Annotated[int, Meta(ge=-1000, le=1000)] = 1
+
+
+OwnMessage = Hello | Status | Describe | Keypoints
+Message = Union[a.AnyAsk, Hello, Status, Describe, Keypoints]  # noqa: UP007
 WORDS: tuple[str, ...] = (*a.WORDS, *(str(kind.__struct_config__.tag) for kind in get_args(OwnMessage)))
 
 
@@ -86,7 +105,8 @@ class Part(Struct, frozen=True, kw_only=True, omit_defaults=True):
 
 class Reply(Struct, frozen=True, kw_only=True, omit_defaults=True):
     """What becomes of a request. at, until: seconds of the session at which it plays. actions: what plays. notes: what was
-    left out of it. error: what is wrong with it, where it could not be understood; then nothing else is said."""
+    left out of it. seen: of keypoints, layer -> the stance somebody is in. error: what is wrong with it, where it could not be
+    understood; then nothing else is said."""
 
     id: str | None = None
     state: State | None = None
@@ -97,6 +117,7 @@ class Reply(Struct, frozen=True, kw_only=True, omit_defaults=True):
     why: str = ""
     notes: tuple[str, ...] = ()
     parts: tuple[Part, ...] = ()
+    seen: dict[Layer, str] = {}
     error: str | None = None
 
 

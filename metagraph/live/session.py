@@ -17,10 +17,11 @@ from metagraph.graph import asks as a
 from metagraph.graph.model import LAYERS, Layer, Project
 from metagraph.live import describe
 from metagraph.live.answers import Found, find, owner_of
+from metagraph.live.camera import see
 from metagraph.live.happenings import happenings
 from metagraph.live.ledger import Known, Ledger, key_of, told
-from metagraph.live.limits import BML_PER_TICK, BUSY, FARTHEST, HINTS, NAMES, PENDING, PER_TICK, SPEECH, TAG, Words
-from metagraph.live.messages import Describe, Event, Heard, OwnMessage, Part, Reply, Status, read, rounded, split
+from metagraph.live.limits import BML_PER_TICK, BUSY, FARTHEST, NAMES, PENDING, PER_TICK, SPEECH, TAG, Words, unknown
+from metagraph.live.messages import Describe, Event, Heard, Hello, Keypoints, OwnMessage, Part, Reply, Status, read, rounded, split
 from metagraph.live.poses import Stream, due
 from metagraph.live.tape import Tape
 from metagraph.live.work import Client, Open, Out, Work, thinned
@@ -28,7 +29,6 @@ from metagraph.playback.bml import Block, read_block
 from metagraph.playback.hear import hear, since
 from metagraph.playback.phases import phases
 from metagraph.playback.plan import Plan
-from metagraph.playback.understand import find_action, find_stance
 
 AGAIN = 0.25  # seconds for which a layer without room is not tried again
 SLACK = 2.0  # seconds by which the plan may fall behind its horizon before it is extended
@@ -128,6 +128,8 @@ class LiveSession:
     def _take(self, client: Client, heard: Heard, work: Work, place: int) -> Reply | bytes | None:
         """Return the reply to a request; None for what has to be planned first."""
         message = heard.message
+        if isinstance(message, Keypoints):
+            return self._keypoints(client, message, work, place)
         if isinstance(message, OwnMessage):
             return self._own(client, message)
         ident = message.id
@@ -146,7 +148,7 @@ class LiveSession:
         work.open[key] = Open(place, ident, key)
         return None
 
-    def _own(self, client: Client, message: OwnMessage) -> Reply | bytes:
+    def _own(self, client: Client, message: Hello | Status | Describe) -> Reply | bytes:
         """Answer what is asked of the session itself."""
         if isinstance(message, Status):
             if "status" not in self._told:
@@ -189,7 +191,7 @@ class LiveSession:
             return f"asked for {missed:.1f} s ago; it is {self.now:.1f} s"
         lane = self._words.lane(ask)
         if lane is None:
-            return self._unknown(ask)
+            return unknown(self.project, ask, self.ledger.limits)
         if isinstance(ask, a.Place) and ask.name not in self._names:
             if len(self._names) >= NAMES:
                 return f"{NAMES} points have names already; use one of them again"
@@ -208,23 +210,6 @@ class LiveSession:
         ledger.add(key, Known(client.number, ident, lane, ask.priority, wanted, missed=missed))
         work.asks[key] = msgspec.structs.replace(ask, id=key)
         return ""
-
-    def _unknown(self, ask: Any) -> str:
-        """Say that there is nothing of a name; for a few asks a tick, which names there are."""
-        self.ledger.limits.hints += 1
-        what, name = (
-            ("line", ask.line) if isinstance(ask, a.Say) else ("action", ask.action) if isinstance(ask, a.Play) else ("stance", ask.stance)
-        )
-        if self.ledger.limits.hints <= HINTS:
-            try:
-                if isinstance(ask, a.Play):
-                    find_action(self.project, ask.action, ask.layer)
-                elif isinstance(ask, a.Go):
-                    find_stance(self.project, ask.stance, ask.layer)
-            except a.AskError as error:
-                return str(error)
-        known = f"; there are {', '.join(list(self.project.lines)[:6]) or 'none'}" if what == "line" else ""
-        return f"there is no {what} '{str(name)[:60]}'{known}"
 
     def _withdraw(self, client: Client, ident: str, ask: a.Withdraw, work: Work) -> Reply:
         """Take back what a client asked for itself; what has begun plays on."""
@@ -281,6 +266,23 @@ class LiveSession:
             timed: Any = msgspec.structs.replace(ask, at=at if ask.at is None else ask.at, told=self.now)
             out.append((key, called, word, self._admit(client, called, key, timed, work)))
         return out
+
+    def _keypoints(self, client: Client, message: Keypoints, work: Work, place: int) -> Reply | None:
+        """Look at whoever is before a client's camera; take on what is asked for because of them."""
+        ident = message.id or None
+        if self.ledger.limits.refusal("keypoints", self.now, 0.0, 0, self.now):
+            return Reply(id=ident, state="refused", why=BUSY)
+        try:
+            client.camera, asks, seen = see(client.camera, message, self.project, self.plan, self.now, key_of(client.number, "mimic"))
+        except ValueError as error:
+            return Reply(id=ident, error=str(error))
+        if not asks:
+            return Reply(id=ident, state="done", seen=seen)
+        key = f"{key_of(client.number, 'keypoints')}.{place}"
+        parts = [(key_of(client.number, x.id), x.id, str(x.__struct_config__.tag), x) for x in asks]
+        taken = [(k, called, word, self._admit(client, called, k, x, work)) for k, called, word, x in parts]
+        work.open[key] = Open(place, message.id, key, taken, seen=seen)
+        return None
 
     # --- the plan
 
@@ -340,8 +342,9 @@ class LiveSession:
         starts = [p.at for p in parts if p.at is not None]
         ends = [p.until for p in parts if p.until is not None]
         return Reply(
-            id=open_.ident, state=state, at=min(starts, default=None), until=max(ends, default=None), notes=open_.notes,  # type: ignore[arg-type]
-            actions=tuple(x for p in parts for x in p.actions), parts=tuple(parts), why="" if parts else "nothing in it was understood",
+            id=open_.ident or None, state=state, at=min(starts, default=None), until=max(ends, default=None), notes=open_.notes,  # type: ignore[arg-type]
+            actions=tuple(x for p in parts for x in p.actions), parts=tuple(parts),
+            why="" if parts else "nothing in it was understood", seen=open_.seen,
         )  # fmt: skip
 
     def _tell_changed(self, key: str, ask: Known, found: Found, out: Out) -> None:

@@ -5,6 +5,8 @@ from __future__ import annotations
 from dataclasses import dataclass, field, replace
 
 from metagraph.graph import asks as a
+from metagraph.graph.words import Layer
+from metagraph.live.camera import Camera
 from metagraph.live.messages import Event, Reply
 from metagraph.live.poses import Frame, Stream
 from metagraph.playback.life.track import Track
@@ -23,6 +25,7 @@ class Client:
     events: str = ""
     stream: Stream | None = None
     count: int = 0
+    camera: Camera | None = None
 
 
 @dataclass
@@ -36,8 +39,8 @@ class Out:
 
 @dataclass(slots=True)
 class Open:
-    """A request that waits for the plan. place: among the replies. parts: of a block: key, what it is called, ask, why it was
-    refused already. why: what has become of it in the meantime."""
+    """A request that waits for the plan. place: among the replies. parts: of a block, or of keypoints: key, what it is called, ask,
+    why it was refused already. seen: of keypoints. why: what has become of it in the meantime."""
 
     place: int
     ident: str
@@ -45,6 +48,7 @@ class Open:
     parts: list[tuple[str, str, str, str]] | None = None
     notes: tuple[str, ...] = ()
     why: str = ""
+    seen: dict[Layer, str] = field(default_factory=dict)
 
 
 @dataclass

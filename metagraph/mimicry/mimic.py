@@ -72,7 +72,7 @@ class Mimic:
         self._gaze = Gaze(body.points(anatomy.base_pose(project))) if gaze else None
         self._asked: dict[Layer, tuple[float, float]] = {}  # when each layer's stance was asked for, and how long until it may be again
         self._time: float | None = None
-        self._dims = self._count = 0
+        self._dims = self.count = 0
         self._begin()
 
     def _begin(self) -> None:
@@ -205,5 +205,5 @@ class Mimic:
         return Go(id=ident, stance=stance, layer=layer, told=seconds, priority=self.priority, stay=True)
 
     def _id(self) -> str:
-        self._count += 1
-        return f"{self.prefix}{self._count}"
+        self.count += 1
+        return f"{self.prefix}{self.count}"
