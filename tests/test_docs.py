@@ -38,7 +38,7 @@ def of(*languages: str) -> list[object]:
 @pytest.fixture
 def samples(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
     """A copy of the sample projects to work in."""
-    for name in ("sample.metagraph.yaml", "practice.metagraph.yaml", "mannequin.glb", "clips", "lines", "annotation"):
+    for name in ("sample.metagraph.yaml", "practice.metagraph.yaml", "mannequin.glb", "clips", "lines", "annotation", "keypoints"):
         source = ROOT / "sample_clips" / name
         shutil.copytree(source, tmp_path / name) if source.is_dir() else shutil.copy(source, tmp_path / name)
     monkeypatch.chdir(tmp_path)
@@ -67,7 +67,9 @@ def test_commands_in_the_pages_run(page: Path, n: int, samples: Path, capsys: py
         if words[0] == "render":
             words += ["-s", "0.3", "--size", "96x64", "--frames", "2"]  # as written, but short and small
         assert main(words) == 0, (line, capsys.readouterr().err)
-    assert (samples / "game" / "sample.glb").is_file()
+        if "-o" in words:
+            out = samples / words[words.index("-o") + 1]
+            assert out.is_file() or (out / "sample.glb").is_file()
 
 
 @pytest.mark.parametrize(("page", "n"), of("yaml"))
