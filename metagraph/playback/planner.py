@@ -7,7 +7,6 @@ extending a running plan are the same function; `make_plan` extends an empty pla
 from __future__ import annotations
 
 from collections.abc import Collection, Iterable, Mapping
-from dataclasses import replace
 
 from metagraph.graph.model import LAYERS, Layer, MetaGraph, Project
 from metagraph.playback import markov
@@ -119,7 +118,7 @@ def _extend_layer(
     performer.free = max(now - (performer.ready - performer.free), performer.free)
     asked, delayed = delay(asked, performer.ready, project.settings)
     busy = max((m.end for m in done if not m.written), default=now)  # what runs keeps the time it was wanted for, from the models
-    placed, told = replan([*future, *(m for w in written if (m := _after(w, busy, project.settings.shortest))), *asked], project.settings)
+    placed, told = replan([*future, *written, *asked], project.settings, busy)
     performer.perform(
         [m for m in placed if not (m.written and m.request.kind == "transition" and plan.track.stays_at(layer, m.start))], end
     )
@@ -134,13 +133,6 @@ def _written(project: Project, plan: Plan, layer: Layer, now: float, end: float)
     kinds = {kind for _, kind in project.graphs[layer].index}
     more, cursor = markov.write(markov.model(project, layer), plan.seed, end, kinds, old.cursor)
     return tuple(m for m in (*old.written, *more) if m.start >= now), cursor
-
-
-def _after(meta: MetaAction, seconds: float, shortest: float) -> MetaAction | None:
-    """Return what is left of a written meta action from a time on, None where it is not enough; as `replan` has it."""
-    if meta.start >= seconds:
-        return meta
-    return replace(meta, start=seconds) if meta.end - seconds >= shortest else None
 
 
 def _begin(graph: MetaGraph, old: LayerPlan, stance: str | None) -> str | None:

@@ -7,7 +7,8 @@ keeps its time; the other is delayed past it, or cut where it begins, and then g
 from __future__ import annotations
 
 import heapq
-from collections.abc import Iterable
+from bisect import bisect_right
+from collections.abc import Iterable, Sequence
 from dataclasses import replace
 from itertools import count
 
@@ -31,17 +32,57 @@ def delay(asked: Iterable[MetaAction], free: float, settings: Settings) -> tuple
     return metas, reports
 
 
-def replan(metas: Iterable[MetaAction], settings: Settings) -> tuple[list[MetaAction], list[Report]]:
+def replan(metas: Iterable[MetaAction], settings: Settings, busy: float = float("-inf")) -> tuple[list[MetaAction], list[Report]]:
     """Return the meta plan, ascending and without overlaps, and what became of the rest.
 
-    Meta actions that do not overlap come back as they are. Of equal start and priority, the id that sorts first goes first.
+    What is asked for is placed first; what a model wrote fits into the gaps, from `busy` seconds on. Meta actions that do not
+    overlap come back as they are, so a plan that is placed again stays as it is. Of equal start and priority, the id that
+    sorts first goes first.
     """
+    every = list(metas)
+    placed, reports = _placed([m for m in every if not m.written], settings)
+    written, told = _fitted([m for m in every if m.written], placed, settings.shortest, busy)
+    return sorted([*placed, *written], key=lambda m: (m.start, m.end)), [*reports, *told]
+
+
+def _fitted(
+    written: Iterable[MetaAction], placed: Sequence[MetaAction], shortest: float, busy: float
+) -> tuple[list[MetaAction], list[Report]]:
+    """Return what is left of what a model wrote beside what is placed: the first stretch of each that is long enough."""
+    out: list[MetaAction] = []
+    reports: list[Report] = []
+    starts = [m.start for m in placed]
+    for meta in sorted(written, key=lambda m: (m.start, m.request.id)):
+        start, end, beside = max(meta.start, busy, out[-1].end if out else busy), meta.end, None
+        for other in placed[max(0, bisect_right(starts, start) - 1) :]:
+            if other.start >= end:
+                break
+            if other.end <= start:
+                continue
+            beside = other
+            if other.start - start >= shortest:
+                end = other.start
+                break
+            start = other.end
+        if start == meta.start and end == meta.end:
+            out.append(meta)
+        elif end - start >= shortest:
+            out.append(replace(meta, start=start, end=end))
+            if end < meta.end and beside is not None:
+                reports.append(_told(meta, "cut", f"is cut at {end:.2f} s for '{beside.request.id}', which is asked for", True))
+        else:
+            words = _no_time(beside) if beside is not None else "no time left beside what plays"
+            reports.append(_told(meta, "covered", words))
+    return out, reports
+
+
+def _placed(metas: Iterable[MetaAction], settings: Settings) -> tuple[list[MetaAction], list[Report]]:
     serial = count()  # so that equal entries never compare further
-    queue: list[tuple[float, float, str, int, int, MetaAction]] = []
+    queue: list[tuple[float, int, str, int, int, MetaAction]] = []
     reports: list[Report] = []
 
     def push(meta: MetaAction) -> None:
-        heapq.heappush(queue, (meta.start, -meta.rank, meta.request.id, meta.part, next(serial), meta))
+        heapq.heappush(queue, (meta.start, -meta.request.priority, meta.request.id, meta.part, next(serial), meta))
 
     for meta in metas:
         push(meta)
@@ -52,7 +93,7 @@ def replan(metas: Iterable[MetaAction], settings: Settings) -> tuple[list[MetaAc
         if last is None or last.end <= meta.start:
             placed.append(meta)
             continue
-        if meta.rank > last.rank:
+        if meta.request.priority > last.request.priority:
             placed.pop()
             kept = meta.start - last.start >= settings.shortest
             if kept:
@@ -68,17 +109,11 @@ def replan(metas: Iterable[MetaAction], settings: Settings) -> tuple[list[MetaAc
             message = f"{word} at {meta.start:.2f} s for '{meta.request.id}', which is more important{after}"
             reports.append(_told(last, outcome, message, kept or resumes))
             push(meta)  # it may reach back over what was placed before, too
-        elif meta.written:
-            # What nobody asked for is not worth shifting: it keeps what is left of its time, if that is enough.
-            if meta.end - last.end >= settings.shortest:
-                push(replace(meta, start=last.end))
-            else:
-                reports.append(_told(meta, "covered", _no_time(last)))
         elif last.end - meta.request.start > settings.wait:
             reports.append(_told(meta, "covered", _no_time(last)))
         else:
             push(replace(meta, start=last.end, end=last.end + (meta.end - meta.start)))
-            reports.append(_told(meta, "late", f"waits {last.end - meta.start:.2f} s for '{last.request.id}'", True))
+            reports.append(_told(meta, "late", f"waits {last.end - meta.request.start:.2f} s for '{last.request.id}'", True))
     return placed, reports
 
 
