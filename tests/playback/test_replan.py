@@ -197,3 +197,19 @@ def test_the_most_important_are_never_cut_and_start_on_time_unless_their_equals_
     if len(kings) == 1 and not kings[0].written:
         assert kings[0] in placed
         assert not [r for r in reports if r.request == kings[0].request.id]
+
+
+@given(requests)
+@settings(max_examples=200)
+def test_placing_again_changes_nothing(rows: list[tuple[float, float, int, bool, bool]]) -> None:
+    """What was asked for in its place, and what the models wrote as they wrote it, come out as before."""
+    metas = build(rows)
+    placed, _ = replan(metas, SETTINGS)
+    asked = [m for m in placed if not m.written]
+    again, _ = replan([*asked, *(m for m in metas if m.written)], SETTINGS)
+    assert again == placed
+    assert replan(placed, SETTINGS)[0] == placed
+
+
+def test_what_a_model_wrote_never_moves_what_is_asked_for_however_little_it_matters() -> None:
+    assert run(meta("auto", 0, 3, 0, written=True), meta("a", 1, 2, -5))[0] == [("auto", 0, 1), ("a", 1, 2)]
