@@ -120,6 +120,7 @@ def _lines(project: Project, renew: Callable[[str], str]) -> Mapping[str, Line]:
 
 def absolute(project: Project, folder: Path) -> Project:
     """Return the project with its paths, relative to `folder`, made absolute: for a project without a file."""
+
     def renew(text: str) -> str:
         return (folder / text).resolve().as_posix()
 
