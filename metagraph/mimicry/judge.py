@@ -131,13 +131,13 @@ class Judge:
         if found is None:
             self.forget()
             return False
-        apart, far = found
+        apart, far, sharp = found
         self.distances = np.full(len(self.signature.stances), np.inf)
         np.minimum.at(self.distances, self.signature.of, far)
         if self.moving:
             self._coming = None
             return False
-        changed = self._decide(seconds, self.distances)
+        changed = self._decide(seconds, self.distances, apart, far, sharp)
         if self.now is not None and self._coming is None and self.distances[self.now] < self.how.near:
             self._get_used(elapsed, apart, far, view.share, dims)
         return changed
@@ -149,9 +149,9 @@ class Judge:
         speed = (rows[known] @ (quick - view.points) * SIDEWAYS) / ((self.how.smooth - self.tuning.quick) * view.frame.size)
         return bool((speed**2).sum(1).max(initial=0.0) > self.how.still**2)
 
-    def _measure(self, view: View, heading: float, dims: int) -> tuple[Array, Array] | None:
-        """Return by how much the person differs from each look of a stance, `[T, N, dims]`, and how far that is, `[T]`; None without
-        enough evidence."""
+    def _measure(self, view: View, heading: float, dims: int) -> tuple[Array, Array, Array] | None:
+        """Return by how much the person differs from each look of a stance, `[T, N, dims]`, how far that is, `[T]`, and what squared
+        differences count for, `[N * dims]`; None without enough evidence."""
         every = COUNT[self.layer][:, :dims]
         count = float((every * view.share).sum())
         if count < LEAST_EVIDENCE * float(every.sum()):
@@ -162,14 +162,17 @@ class Judge:
             extra = extra + self._alike[int(np.abs(TURNS - heading).argmin())]
         apart = view.measures[:, :dims] - usual
         off = (apart - self.bias[:, :dims]).reshape(len(apart), -1)
-        return apart, np.sqrt(off**2 @ (sharp * view.share).reshape(-1) / count) + extra
+        sharp = (sharp[:, :dims] * view.share).reshape(-1) / count
+        return apart, np.sqrt(off**2 @ sharp) + extra, sharp
 
-    def _decide(self, seconds: float, near: Array) -> bool:
-        """Change over to the nearest stance once it has been nearest by a margin for long enough; return whether that is now."""
+    def _decide(self, seconds: float, near: Array, apart: Array, far: Array, sharp: Array) -> bool:
+        """Change over to the nearest stance once it has been nearest for long enough; return whether that is now."""
         best = int(near.argmin())
         here = self.now if self.now is not None else self.start
-        if here is not None and near[best] + self.how.margin > near[here] and near[here] < self.tuning.left:
-            best = here
+        if here is not None and here != best and near[here] < self.tuning.left:
+            least = self.how.way if self.now is not None else self.tuning.way_first
+            if self._way(here, best, apart, far, sharp) < least:
+                best = here
         if best == self.now or near[best] > self.how.near:
             self._coming = None
             return False
@@ -179,6 +182,12 @@ class Judge:
             return False
         self.now, self._coming = best, None
         return True
+
+    def _way(self, here: int, other: int, apart: Array, far: Array, sharp: Array) -> float:
+        """Return how much of the way from one stance to another somebody has gone, whatever they do beside it."""
+        a, b = (int(np.where(self.signature.of == stance, far, np.inf).argmin()) for stance in (here, other))
+        between = float(((apart[a] - apart[b]) ** 2).reshape(-1) @ sharp)
+        return 0.5 + float(far[a] ** 2 - far[b] ** 2) / max(2.0 * between, 1e-9)
 
     def _get_used(self, elapsed: float, apart: Array, far: Array, share: Array, dims: int) -> None:
         """Get used to how the person differs from the character in the stance they are in, within limits."""
