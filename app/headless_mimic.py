@@ -39,7 +39,8 @@ def mimic(options: Namespace) -> int:
     from app.headless_common import opened
     from app.headless_render import size_of
     from metagraph.formats.keypoints import read_keypoints
-    from metagraph.mimicry.performing import mimic_performance, placed
+    from metagraph.graph.asks import Performance
+    from metagraph.mimicry.performing import REST, mimic_performance, placed
 
     if options.out is not None and options.out.suffix not in OUT:
         name = options.out.suffix or options.out.name
@@ -48,8 +49,9 @@ def mimic(options: Namespace) -> int:
     size = size_of(options.size)
     project = opened(options.project)
     seen = read_keypoints(options.keypoints, options.fps, picture)
-    name = options.keep or options.keypoints.stem
-    found = mimic_performance(project, seen, not options.no_mirror, options.layer or LAYERS, options.gaze, seed=options.seed, name=name)
+    length = round(seen.seconds + REST, 3)
+    new = Performance(name=options.keep or options.keypoints.stem, seed=options.seed, length=length)
+    found = mimic_performance(project, seen, not options.no_mirror, options.layer or LAYERS, options.gaze, new)
     kept = placed(project, found.performance)
     made = _planned(project, kept)
     written = [str(x) for x in (_keep(options, project, kept), _write(options, project, kept, made, size)) if x is not None]

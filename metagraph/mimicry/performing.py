@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
-from collections.abc import Collection, Iterator
+from collections.abc import Callable, Collection, Iterator
 from dataclasses import dataclass
+from itertools import count
 
 import msgspec
 
@@ -32,42 +33,56 @@ def mimic_performance(
     mirror: bool = True,
     layers: Collection[Layer] = LAYERS,
     gaze: bool = False,
-    asks: Collection[AnyAsk] = (),
-    seed: int | None = None,
-    idle: bool = True,
-    name: str = "Mimicry",
+    into: Performance | None = None,
+    progress: Callable[[int, int], object] | None = None,
 ) -> Mimicry:
     """Return a performance that mimics a recording as it would have been mimicked live; the models do the rest, but change no stances.
 
-    asks: mixed in. Other arguments as for `Mimic` and `perform`. Raises ValueError where there is no character or nobody in the file.
+    into: the performance that what is seen is mixed into: its requests, seed, stances and length; a new one where it is None.
+    progress: told how many frames are done, of how many; what it raises ends it. Other arguments as for `Mimic`. Raises ValueError
+    where there is no character, or nobody in the file.
     """
     if not len(keypoints):
         raise ValueError("there is nobody in the keypoints to mimic")
-    found: list[AnyAsk] = []
-    mimic = Mimic(project, mirror, layers, gaze)
-    for some in _steps(project, keypoints, mimic, asks, seed, idle):
-        found += some
-    length = round(keypoints.seconds + REST, 3)
-    kept = Performance(name=name, asks=(*asks, *found), seed=seed, length=length, idle=idle)
-    return Mimicry(kept, tuple(mimic.sightings))
+    into = into or Performance(name="Mimicry", length=round(keypoints.seconds + REST, 3))
+    mimic = Mimic(project, mirror, layers, gaze, prefix=_prefix(into.asks))
+    asks = [ask for some in _steps(project, keypoints, mimic, into, progress) for ask in some]
+    length = max(into.length, round(keypoints.seconds, 3))
+    return Mimicry(msgspec.structs.replace(into, asks=(*into.asks, *asks), length=length), tuple(mimic.sightings))
+
+
+def _prefix(asks: Collection[AnyAsk]) -> str:
+    """Return what ids begin with that none of these do."""
+    some = ("mimic" + "b" * n for n in count())
+    return next(p for p in some if not any(ask.id.removeprefix(p)[:1].isdigit() for ask in asks if ask.id.startswith(p)))
 
 
 def _steps(
-    project: Project, keypoints: Keypoints, mimic: Mimic, asks: Collection[AnyAsk], seed: int | None, idle: bool
+    project: Project, keypoints: Keypoints, mimic: Mimic, into: Performance, progress: Callable[[int, int], object] | None
 ) -> Iterator[list[AnyAsk]]:
     """Yield what is asked for at each frame at which something is, planning along."""
-    named = [ask if ask.id else msgspec.structs.replace(ask, id=f"asked{n}") for n, ask in enumerate(asks)]
-    plan = hear(project, Plan(project.settings.seed if seed is None else seed, 0.0), 0.0, named, AHEAD, idle=idle)
+    named = [ask if ask.id else msgspec.structs.replace(ask, id=f"asked{n}") for n, ask in enumerate(into.asks)]
+    waiting = sorted(named, key=lambda ask: ask.told or 0.0)
+    plan = Plan(project.settings.seed if into.seed is None else into.seed, 0.0)
+
+    def heard(now: float, asks: list[AnyAsk]) -> Plan:
+        return hear(project, plan, now, asks, max(plan.end, now + AHEAD), dict(into.stances), into.idle)
+
     points, confidence = keypoints.canonical
-    dims = keypoints.dims
-    for at, where, sure in zip(keypoints.times, points, confidence, strict=True):
+    for n, (at, where, sure) in enumerate(zip(keypoints.times, points, confidence, strict=True)):
         now = round(float(at), 3)
+        while waiting and (waiting[0].told or 0.0) <= now:
+            told = waiting[0].told or 0.0
+            plan = heard(told, [ask for ask in waiting if (ask.told or 0.0) == told])
+            waiting = [ask for ask in waiting if (ask.told or 0.0) > told]
         if now > plan.end - AHEAD / 2:
-            plan = hear(project, plan, now, [], now + AHEAD, idle=idle)
-        some = mimic.feed(now, where[:, :dims], sure, goals(plan, now, mimic.prefix))
+            plan = heard(now, [])
+        some = mimic.feed(now, where[:, : keypoints.dims], sure, goals(plan, now, mimic.prefix))
         if some:
-            plan = hear(project, plan, now, some, max(plan.end, now + AHEAD), idle=idle)
+            plan = heard(now, some)
             yield some
+        if progress is not None and n % 50 == 0:
+            progress(n, len(keypoints))
 
 
 def goals(plan: Plan, now: float, mine: str) -> dict[Layer, str]:

@@ -84,7 +84,7 @@ def test_kept_and_placed_it_performs_the_same(sample: Project, talk: Keypoints) 
 
 def test_other_requests_are_mixed_in_and_met(sample: Project, talk: Keypoints) -> None:
     asks = (a.Gesture(id="g", tags=("positive",), at=2.0, priority=2), a.Nod(at=10.0))
-    found = mimic_performance(sample, talk, mirror=False, asks=asks)
+    found = mimic_performance(sample, talk, mirror=False, into=a.Performance(name="mixed", asks=asks))
     plan = perform(sample, found.performance.asks, found.performance.length)
     assert answer(plan, "g").at is not None
     assert found.performance.asks[:2] == asks
@@ -92,7 +92,7 @@ def test_other_requests_are_mixed_in_and_met(sample: Project, talk: Keypoints) -
 
 def test_what_leads_the_character_away_is_taken_back_by_what_is_seen(sample: Project, talk: Keypoints) -> None:
     away = a.Go(id="away", stance="hands clasped", at=10.0, priority=3)
-    found = mimic_performance(sample, talk, mirror=False, asks=[away])
+    found = mimic_performance(sample, talk, mirror=False, into=a.Performance(name="mixed", asks=(away,)))
     again = [s for s in found.sightings if s.again]
     assert again and sample.graphs["arms"].stances[again[0].stance].name == "on hips" and 8.0 < again[0].at < 14.0
     plan = perform(sample, found.performance.asks, found.performance.length)
@@ -110,7 +110,34 @@ def test_goals_are_where_the_character_is_or_goes_and_where_its_own_requests_lea
 
 
 def test_with_no_models_only_the_person_moves_the_character(somebody: Project) -> None:
-    found = mimic_performance(somebody, shown(somebody, [("down", 2), ("hips", 3)]), mirror=False, idle=False)
+    found = mimic_performance(
+        somebody, shown(somebody, [("down", 2), ("hips", 3)]), mirror=False, into=a.Performance(name="still", idle=False, length=5)
+    )
     assert not found.performance.idle
     plan = perform(somebody, found.performance.asks, 6.0, idle=False)
     assert [c.action.kind for c in plan.layers["arms"].cues] == ["transition"]
+
+
+def test_a_performance_is_mixed_into_with_its_seed_stances_and_what_was_told_on_the_way(sample: Project, talk: Keypoints) -> None:
+    crossed = next(s.id for s in sample.graphs["arms"].stances.values() if s.name == "arms crossed")
+    asks = (a.Nod(id="n", at=30.0, told=25.0), a.Gesture(id="mimic1", layer="head", at=3.0))
+    into = a.Performance(name="talk", asks=asks, seed=7, stances={"arms": crossed}, length=10.0)
+    found = mimic_performance(sample, talk, mirror=False, into=into).performance
+    assert (found.name, found.seed, found.stances, found.asks[:2]) == ("talk", 7, into.stances, asks)
+    assert found.length == pytest.approx(talk.seconds, abs=1e-3)
+    ids = [ask.id for ask in found.asks]
+    assert len(set(ids)) == len(ids) and ids[2] == "mimicb1"
+    plan = perform(sample, found.asks, found.length, found.seed, dict(found.stances))
+    assert answer(plan, "n").state in ("planned", "late") and plan.layers["arms"].rests[0].stance == crossed
+
+
+def test_progress_is_told_and_may_end_it(somebody: Project) -> None:
+    told: list[tuple[int, int]] = []
+    mimic_performance(somebody, shown(somebody, [("down", 6)]), progress=lambda n, total: told.append((n, total)))
+    assert told == [(0, 120), (50, 120), (100, 120)]
+
+    def stop(n: int, total: int) -> None:
+        raise KeyboardInterrupt
+
+    with pytest.raises(KeyboardInterrupt):
+        mimic_performance(somebody, shown(somebody, [("down", 6)]), progress=stop)
