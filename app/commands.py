@@ -72,6 +72,8 @@ def commands(window: Window) -> tuple[Command, ...]:
         Command("forward", "&Play", "A frame forward", lambda: window.step(1), (".",)),
         Command("live", "&Play", "Li&ve", window.toggle_live, ("Ctrl+L",), tip="Let programs on this machine drive the character",
                 enabled=lambda: d.project.skeleton is not None, checked=lambda: window.performance.live is not None, line=True),
+        Command("mimic", "&Play", "Mimic &keypoints…", window.mimic, tip="Let the character do as a person before a camera did",
+                enabled=lambda: d.project.skeleton is not None and window.performance.live is None),
         Command("mute", "&Play", "&Mute", lambda: window.sound.set_muted(not window.sound.muted), ("Ctrl+M",),
                 checked=lambda: window.sound.muted),
         Command("loop", "&Play", "&Loop", window.preview.toggle_loop, ("L",), checked=lambda: s.loop),

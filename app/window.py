@@ -385,6 +385,12 @@ class Window(QMainWindow):
 
         open_annotation(self, path)
 
+    def mimic(self, path: str = "") -> None:
+        """Mimic keypoints; without a path they are asked for."""
+        from app.panels.mimic import open_keypoints
+
+        open_keypoints(self, path)
+
     def export(self) -> None:
         from app.panels.export import ExportDialog
 
