@@ -7,7 +7,19 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from PySide6.QtCore import QSettings, Qt
-from PySide6.QtWidgets import QCheckBox, QDialog, QDialogButtonBox, QFileDialog, QFormLayout, QHBoxLayout, QLabel, QMessageBox, QVBoxLayout
+from PySide6.QtGui import QIcon
+from PySide6.QtWidgets import (
+    QCheckBox,
+    QDialog,
+    QDialogButtonBox,
+    QFileDialog,
+    QFormLayout,
+    QHBoxLayout,
+    QLabel,
+    QMessageBox,
+    QPushButton,
+    QVBoxLayout,
+)
 
 from app.jobs import Job
 from app.words import many
@@ -34,9 +46,9 @@ class MimicDialog(QDialog):
         self.window_, self.keypoints, self.name = window, keypoints, name
         self.setAttribute(Qt.WidgetAttribute.WA_DeleteOnClose)
         self.setWindowTitle("Mimic keypoints")
-        self.setMinimumWidth(440)
+        self.setMinimumWidth(480)
         layout = QVBoxLayout(self)
-        deep = "in space" if keypoints.dims == 3 else "in a picture"
+        deep = "with depth" if keypoints.dims == 3 else "without depth"
         facts = QLabel(f"{name}: {many(len(keypoints), 'frame')}, {keypoints.seconds:.1f} s, {deep}", self)
         facts.setWordWrap(True)
         layout.addWidget(facts)
@@ -64,10 +76,12 @@ class MimicDialog(QDialog):
         into = f"What is seen is added to '{kept.name}'." if kept is not None else "What is seen becomes a new performance."
         layout.addWidget(self._dim(f"{into} Gestures and fidgets go on as they do."))
         if keypoints.dims == 2:
-            layout.addWidget(self._dim("A picture has no depth: leaning towards the camera is not seen in it."))
+            layout.addWidget(self._dim("Without depth, leaning towards the camera is not seen."))
         buttons = QDialogButtonBox(QDialogButtonBox.StandardButton.Cancel, self)
-        self.go = buttons.addButton("Mimic", QDialogButtonBox.ButtonRole.AcceptRole)
+        buttons.button(QDialogButtonBox.StandardButton.Cancel).setIcon(QIcon())
+        self.go = QPushButton("Mimic", self)
         self.go.setProperty("strong", True)
+        buttons.addButton(self.go, QDialogButtonBox.ButtonRole.AcceptRole)
         self.go.setDefault(True)
         buttons.accepted.connect(self.accept)
         buttons.rejected.connect(self.reject)
