@@ -29,8 +29,7 @@ from metagraph.mimicry.tuning import Tuning
 Array = NDArray[Any]
 
 TURNS = np.radians(np.arange(-60, 61, 10))  # headings that are tried in a picture
-TURN_OFF = 3  # by how many of them a heading may be mistaken, with its sign, say
-ALIKE = 0.7  # distance below which two stances are not told apart in a picture
+ALIKE = 0.5  # distance below which two stances are not told apart in a picture
 AWAY = 0.15  # width of the shoulders in a picture, torso lengths, below which somebody turns the back
 LEAST_TRUST = 0.1  # of a running mean in a point, below which it is as good as not seen
 SIDEWAYS = np.array([1.0, 1.0, 0.3])  # how much speed counts along each axis; depth jitters
@@ -204,7 +203,7 @@ class Judge:
         order = sorted(range(len(signature.stances)), key=lambda s: s != self.start)
         out = np.zeros((len(TURNS), len(signature.of)))
         for n, flat in enumerate(self.flat):
-            near = self.flat[max(0, n - TURN_OFF) : n + TURN_OFF + 1]
+            near = self.flat[max(0, n - self.how.mistaken) : n + self.how.mistaken + 1]
             apart = flat[None, :, None] - near[:, None]
             far = np.sqrt((apart**2 * SHARP[self.layer][:, :2]).sum((3, 4)).min(0) / COUNT[self.layer][:, :2].sum())
             for place, stance in enumerate(order):

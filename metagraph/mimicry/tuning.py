@@ -13,7 +13,8 @@ class Judging:
     """How one layer is judged. smooth: time constant, seconds, of the running mean that is judged. still: speed, torso lengths a second,
     above which somebody moves: gesturing is no stance. near: distance below which somebody may come into a stance. way: share of
     the way there from the one before that they must have gone. dwell: for how many seconds. used: how much is got used to of how a
-    person differs from the character in the stance they are in, usual differences. Distances are those of `measures`: 1 is as far
+    person differs from the character in the stance they are in, usual differences. mistaken: by how many tens of degrees the heading in a
+    picture may be, for stances to be told apart all the same. Distances are those of `measures`: 1 is as far
     off as is usual."""
 
     smooth: float
@@ -22,12 +23,13 @@ class Judging:
     way: float
     dwell: float
     used: float
+    mistaken: int
 
 
 JUDGING: Mapping[Layer, Judging] = {
-    "body": Judging(smooth=0.3, still=0.3, near=1.3, way=0.65, dwell=0.3, used=1.0),
-    "arms": Judging(smooth=0.2, still=0.6, near=0.9, way=0.65, dwell=0.5, used=0.6),
-    "head": Judging(smooth=0.45, still=0.35, near=1.3, way=0.65, dwell=0.3, used=0.5),
+    "body": Judging(smooth=0.3, still=0.3, near=1.3, way=0.65, dwell=0.3, used=1.0, mistaken=3),
+    "arms": Judging(smooth=0.2, still=0.6, near=0.9, way=0.65, dwell=0.5, used=0.6, mistaken=1),
+    "head": Judging(smooth=0.45, still=0.35, near=1.3, way=0.65, dwell=0.3, used=0.5, mistaken=1),
 }
 
 
