@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from math import cos, exp, sin
 from typing import Any
 
 import numpy as np
@@ -12,6 +13,7 @@ from metagraph.graph.words import Layer
 from metagraph.mimicry.measures import (
     COUNT,
     LEAST_EVIDENCE,
+    MOVED,
     MOVING,
     SCALE,
     SHARP,
@@ -44,7 +46,7 @@ class Mean:
 
     def feed(self, elapsed: float, weighted: Array) -> None:
         """Take points in, `[17, 4]`: x, y, z, each times the confidence, and the confidence."""
-        keep = float(np.exp(-elapsed / self.constant))
+        keep = exp(-elapsed / self.constant)
         self._sums *= keep
         self._sums += (1.0 - keep) * weighted
 
@@ -83,10 +85,11 @@ class Judge:
         self.now: int | None = None
         self.distances: Array | None = None
         self.moving = False
-        self._known = 0.0  # seconds for which the person could be got used to
         self.bias = np.zeros(signature.measures.shape[1:])
         self.flat = np.stack([turned(signature.measures, angle)[..., :2] for angle in TURNS])
         self._alike = self._confused()
+        self._first = np.searchsorted(signature.of, np.arange(len(signature.stances)))  # looks of one stance stand together
+        self._known = 0.0  # seconds for which the person could be got used to
         self._coming: int | None = None
         self._since = 0.0
         self.begin()
@@ -131,8 +134,7 @@ class Judge:
             self.forget()
             return False
         apart, far, sharp = found
-        self.distances = np.full(len(self.signature.stances), np.inf)
-        np.minimum.at(self.distances, self.signature.of, far)
+        self.distances = np.minimum.reduceat(far, self._first)
         if self.moving:
             self._coming = None
             return False
@@ -144,9 +146,10 @@ class Judge:
     def _moves(self, view: View, quick: Array) -> bool:
         """Whether the layer moves too fast for a stance."""
         rows = MOVING[self.layer]
-        known = np.where(rows != 0, view.trust, 1.0).min(1) > 0
-        speed = (rows[known] @ (quick - view.points) * SIDEWAYS) / ((self.how.smooth - self.tuning.quick) * view.frame.size)
-        return bool((speed**2).sum(1).max(initial=0.0) > self.how.still**2)
+        known = np.where(MOVED[self.layer], view.trust, 1.0).min(1) > 0
+        way = rows @ (quick - view.points) * SIDEWAYS
+        most = (self.how.still * (self.how.smooth - self.tuning.quick) * view.frame.size) ** 2
+        return bool((((way * way).sum(1) > most) & known).any())
 
     def _measure(self, view: View, heading: float, dims: int) -> tuple[Array, Array, Array] | None:
         """Return by how much the person differs from each look of a stance, `[T, N, dims]`, how far that is, `[T]`, and what squared
@@ -157,7 +160,8 @@ class Judge:
             return None
         sharp, usual, extra = SHARP[self.layer], self.signature.measures, self.signature.extra
         if dims == 2:
-            sharp, usual = sharp_in_a_picture(self.layer, heading), turned(usual, heading)[..., :2]
+            sharp, usual = sharp_in_a_picture(self.layer, heading), usual[..., :2] * [cos(heading), 1.0]
+            usual[..., 0] += sin(heading) * self.signature.measures[..., 2]
             extra = extra + self._alike[int(np.abs(TURNS - heading).argmin())]
         apart = view.measures[:, :dims] - usual
         off = (apart - self.bias[:, :dims]).reshape(len(apart), -1)
@@ -184,18 +188,26 @@ class Judge:
 
     def _way(self, here: int, other: int, apart: Array, far: Array, sharp: Array) -> float:
         """Return how much of the way from one stance to another somebody has gone, whatever they do beside it."""
-        a, b = (int(np.where(self.signature.of == stance, far, np.inf).argmin()) for stance in (here, other))
+        a, b = self._look(here, far), self._look(other, far)
         between = float(((apart[a] - apart[b]) ** 2).reshape(-1) @ sharp)
         return 0.5 + float(far[a] ** 2 - far[b] ** 2) / max(2.0 * between, 1e-9)
 
+    def _look(self, stance: int, far: Array) -> int:
+        """Return the place of a stance's nearest look."""
+        first = int(self._first[stance])
+        last = int(self._first[stance + 1]) if stance + 1 < len(self._first) else len(far)
+        return first + int(far[first:last].argmin())
+
     def _get_used(self, elapsed: float, apart: Array, far: Array, share: Array, dims: int) -> None:
         """Get used to how the person differs from the character in the stance they are in, within limits."""
-        mine = np.flatnonzero(self.signature.of == self.now)
-        off = apart[mine[far[mine].argmin()]]
+        assert self.now is not None
+        off = apart[self._look(self.now, far)]
         most = self.how.used * SCALE[self.layer][:, :dims]
         self._known += elapsed
         step = min(1.0, elapsed / min(self.tuning.using, self.tuning.using_first + self._known)) * share
-        self.bias[:, :dims] = np.clip(self.bias[:, :dims] + step * (off - self.bias[:, :dims]), -most, most)
+        bias = self.bias[:, :dims]
+        bias += step * (off - bias)
+        np.minimum(np.maximum(bias, -most, out=bias), most, out=bias)
 
     def _confused(self) -> Array:
         """Return `[H, T]` infinity where a picture under a heading cannot tell a stance from one before it, the start stance first."""

@@ -9,7 +9,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
-from math import inf, sin
+from math import atan2, cos, inf, sin, sqrt
 from typing import Any
 
 import numpy as np
@@ -120,6 +120,9 @@ def sharp_in_a_picture(layer: Layer, turn: float) -> Array:
 USED: Mapping[Layer, Array] = {layer: rows != 0 for layer, rows in ROWS.items()}
 
 
+MOVED: Mapping[Layer, Array] = {layer: rows != 0 for layer, rows in MOVING.items()}
+
+
 def trusted(layer: Layer, confidence: Array) -> Array:
     """Return how far each measure `[N]` can be trusted: as far as the least certain of its points, of `confidence [17]`."""
     return np.asarray(np.where(USED[layer], confidence, 1.0).min(1))
@@ -136,13 +139,12 @@ class Frame:
     width: float
 
 
-def _middle(points: Array, name: str) -> Array:
-    return np.asarray((points[PLACE[f"left_{name}"]] + points[PLACE[f"right_{name}"]]) * 0.5)
+_LS, _RS, _LH, _RH, _LE, _RE = (PLACE[f"{side}_{part}"] for part in ("shoulder", "hip", "ear") for side in ("left", "right"))
 
 
 def turned(vectors: Array, angle: float) -> Array:
     """Return `vectors [..., 3]` turned about y by an angle, which takes z to x."""
-    c, s = np.cos(angle), np.sin(angle)
+    c, s = cos(angle), sin(angle)
     out = vectors.copy()
     out[..., 0] = c * vectors[..., 0] + s * vectors[..., 2]
     out[..., 2] = c * vectors[..., 2] - s * vectors[..., 0]
@@ -163,27 +165,27 @@ def frame_of(points: Array, confidence: Array, dims: int, usual_width: float) ->
     Without hips, as at a desk, the torso is taken to be upright, and its length is told from the shoulders' width, of which
     `usual_width` torso lengths are usual, and the ears' height above them; the more of both, since turning away hides the first.
     """
-    left, right = points[PLACE["left_shoulder"]], points[PLACE["right_shoulder"]]
-    if min(confidence[PLACE["left_shoulder"]], confidence[PLACE["right_shoulder"]]) <= 0:
+    sure = confidence.tolist()
+    if min(sure[_LS], sure[_RS]) <= 0:
         return None
+    left, right = points[_LS], points[_RS]
     across, middle = left - right, (left + right) * 0.5
-    heading, up = 0.0, np.array([0.0, 1.0, 0.0])
-    size = 0.0
-    if min(confidence[PLACE["left_hip"]], confidence[PLACE["right_hip"]]) > 0:
-        spine = middle - _middle(points, "hip")
-        size = float(np.sqrt(spine @ spine))
+    heading, up, size = 0.0, np.array([0.0, 1.0, 0.0]), 0.0
+    if min(sure[_LH], sure[_RH]) > 0:
+        spine = middle - (points[_LH] + points[_RH]) * 0.5
+        size = sqrt(float(spine @ spine))
         if size > 0:
             up = spine / size
-        beside = across + points[PLACE["left_hip"]] - points[PLACE["right_hip"]]
+        beside = across + points[_LH] - points[_RH]
     else:
         beside = across
-        size = float(np.sqrt(across @ across)) / usual_width
-        if min(confidence[PLACE["left_ear"]], confidence[PLACE["right_ear"]]) > 0:
-            size = max(size, float((_middle(points, "ear") - middle)[1]) / EARS_UP)
+        size = sqrt(float(across @ across)) / usual_width
+        if min(sure[_LE], sure[_RE]) > 0:
+            size = max(size, float(points[_LE, 1] + points[_RE, 1] - 2 * middle[1]) / (2 * EARS_UP))
     if size <= 0 or up[1] < LEAST_UPRIGHT:
         return None
     if dims == 3:
-        heading = float(np.arctan2(-beside[2], beside[0]))
+        heading = atan2(-float(beside[2]), float(beside[0]))
         up = turned(up, -heading)
     return Frame(size, up, heading, float(across[0]) / size)
 
