@@ -117,7 +117,7 @@ def _extend_layer(
     performer.begun = frozenset(played & waiting)
     performer.free = max(now - (performer.ready - performer.free), performer.free)
     asked, delayed = delay(asked, performer.ready, project.settings)
-    busy = max((m.end for m in done if not m.written), default=now)  # what runs keeps the time it was wanted for, from the models
+    busy = max((m.end for m in done if not m.written), default=float("-inf"))  # what runs keeps the time it was wanted for, from the models
     placed, told = replan([*future, *written, *asked], project.settings, busy)
     performer.perform(
         [m for m in placed if not (m.written and m.request.kind == "transition" and plan.track.stays_at(layer, m.start))], end
