@@ -13,6 +13,7 @@ from metagraph.errors import FileError
 from metagraph.formats.store import relative
 from metagraph.graph import staging
 from metagraph.graph.asks import Line
+from metagraph.graph.edits import free_name
 from metagraph.graph.model import Project
 
 SOUNDS = (".wav", ".flac", ".ogg", ".mp3")
@@ -38,10 +39,10 @@ def read_lines(paths: Iterable[Path], folder: Path | None) -> Lines:
     for path in paths:
         try:
             if path.suffix.lower() in SOUNDS:
-                lines[_free(path.stem, lines)] = _beside(path, folder)
+                lines[free_name(path.stem, lines)] = _beside(path, folder)
             elif path.suffix.lower() in LISTS:
                 for ident, line in _listed(path, folder):
-                    lines[_free(ident, lines)] = line
+                    lines[free_name(ident, lines)] = line
             else:
                 raise FileError(path, "is no sound and no list of lines", remedy=f"Sounds are {', '.join(SOUNDS)}, lists are .csv or .tsv.")
         except FileError as error:
@@ -59,15 +60,6 @@ def read_lines(paths: Iterable[Path], folder: Path | None) -> Lines:
             else:
                 del lines[ident]
     return Lines(lines, voices, (*notes, *told))
-
-
-def _free(ident: str, taken: Mapping[str, Line]) -> str:
-    if ident not in taken:
-        return ident
-    number = 2
-    while f"{ident} {number}" in taken:
-        number += 1
-    return f"{ident} {number}"
 
 
 def _place(path: Path, folder: Path | None) -> str:

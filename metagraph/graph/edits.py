@@ -98,7 +98,7 @@ def remove_clips(project: Project, clips: Collection[str]) -> Project:
 def add_stance(project: Project, layer: Layer, name: str, clips: Sequence[str] = ()) -> Project:
     """Make a stance, with `clips` as its loops. The first stance of a layer is where a performance starts."""
     graph = project.graphs[layer]
-    name = _free_name(_clean(name), {s.name for s in graph.stances.values()})
+    name = free_name(_clean(name), {s.name for s in graph.stances.values()})
     stance = Stance(f"s{project.next_id}", layer, name)
     graph = graph.but(stances={**graph.stances, stance.id: stance}, start=graph.start or stance.id)
     project = project.with_graph(graph, next_id=project.next_id + 1)
@@ -349,7 +349,7 @@ def _clean(name: str) -> str:
     return name
 
 
-def _free_name(name: str, taken: Collection[str]) -> str:
+def free_name(name: str, taken: Collection[str]) -> str:
     candidate, n = name, 1
     while candidate in taken:
         n += 1

@@ -9,26 +9,20 @@ from typing import Any
 import msgspec
 
 from metagraph.graph.asks import AnyAsk, AskError, Line, Performance, Point
-from metagraph.graph.edits import EditError
+from metagraph.graph.edits import EditError, free_name
 from metagraph.graph.model import Project
 
 
 def add_performance(project: Project, performance: Performance) -> tuple[Project, str]:
     """Keep a performance under a name of its own; return the project and the performance's id."""
     ident = f"p{project.next_id}"
-    named = msgspec.structs.replace(performance, name=_free(performance.name or "Performance", project), asks=_numbered(performance.asks))
+    named = msgspec.structs.replace(
+        performance,
+        name=free_name(performance.name or "Performance", {p.name for p in project.performances.values()}),
+        asks=_numbered(performance.asks),
+    )
     kept = {**project.performances, ident: named}
     return replace(project, performances=kept, next_id=project.next_id + 1), ident
-
-
-def _free(name: str, project: Project) -> str:
-    taken = {p.name for p in project.performances.values()}
-    if name not in taken:
-        return name
-    number = 2
-    while f"{name} {number}" in taken:
-        number += 1
-    return f"{name} {number}"
 
 
 def _numbered(asks: Collection[AnyAsk]) -> tuple[AnyAsk, ...]:

@@ -163,11 +163,6 @@ def _words(item: object) -> str:
     return {"LookAt": "look", "Speech": "speech", "ModeFrom": "mode", "PlaceFrom": "place", "BlinkAt": "blink"}[name]
 
 
-def reports_of(plan: Plan, ident: str) -> tuple[Report, ...]:
-    """Return all that was told about an ask."""
-    return tuple(r for r in plan.reports if _belongs(r.request, ident))
-
-
 def since(plan: Plan, seconds: float) -> Plan:
     """Return a running plan without what ended before `seconds`; what is planned on from it stays as it would have been.
 

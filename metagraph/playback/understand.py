@@ -86,8 +86,7 @@ def _meant(project: Project, ask: a.AnyAsk, at: float) -> Sequence[Request | Ite
             return [_head(project, ask, "nod" if isinstance(ask, a.Nod) else "shake", at)]
         case a.Look():
             end = FOREVER if ask.duration is None else at + ask.duration
-            to = find_place(project, ask.to) if isinstance(ask.to, str) else ask.to
-            return [LookAt(ask.id, at, end, to, ask.amount, ask.strict, ask.priority)]
+            return [LookAt(ask.id, at, end, ask.to, ask.amount, ask.strict, ask.priority)]
         case a.Blink():
             return [BlinkAt(ask.id, at)]
         case a.Behave():
@@ -215,11 +214,6 @@ def find_stance(project: Project, word: str, layer: Layer | None = None) -> tupl
                 return each, stance.id
             names[stance.name] = None
     raise a.AskError(f"there is no stance '{word}'{f' in the {layer} layer' if layer else ''}{_hint(word, names)}")
-
-
-def find_place(project: Project, word: str) -> str:
-    """Return a named point as it is; names that are placed later are fine, so any word will do."""
-    return word
 
 
 def _hint(word: str, known: Mapping[str, Any]) -> str:
