@@ -213,3 +213,9 @@ def test_placing_again_changes_nothing(rows: list[tuple[float, float, int, bool,
 
 def test_what_a_model_wrote_never_moves_what_is_asked_for_however_little_it_matters() -> None:
     assert run(meta("auto", 0, 3, 0, written=True), meta("a", 1, 2, -5))[0] == [("auto", 0, 1), ("a", 1, 2)]
+
+
+def test_what_a_model_wrote_waits_for_what_runs_if_enough_is_left_of_it() -> None:
+    written = [meta("auto", 1, 3, 0, written=True), meta("late", 4, 5, 0, written=True)]
+    assert [(m.start, m.end) for m in replan(written, SETTINGS, busy=2.0)[0]] == [(2.0, 3), (4, 5)]
+    assert [m.key for m in replan(written, SETTINGS, busy=2.9)[0]] == ["late"]
