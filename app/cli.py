@@ -73,6 +73,7 @@ def _parser() -> argparse.ArgumentParser:
     exported.add_argument("-o", "--out", type=Path, required=True, help="a folder")
     exported.add_argument("--expanded", action="store_true", help="list the expanded state machine as well")
     exported.add_argument("--no-mesh", action="store_true", help="leave the character's mesh out of the GLB")
+    exported.add_argument("--vectors", action="store_true", help="write conformance vectors for runtimes as well")
     annotated = command("annotate", "learn from an ELAN annotation what follows what, or perform it")
     annotated.add_argument("annotation", type=Path, help="an .eaf file")
     annotated.add_argument("--tier", action="append", default=[], metavar="NAME=ROLE",

@@ -116,11 +116,12 @@ def export(options: Namespace) -> int:
     made = write(project, options.out, options.expanded, not options.no_mesh, character)
     for warning in made.warnings:
         print(f"warning: {warning}", file=sys.stderr)
-    say(
-        options,
-        f"{made.json}\n{made.glb}",
-        {"json": str(made.json), "glb": str(made.glb), "clips": made.clips, "warnings": list(made.warnings)},
-    )
+    data: dict[str, Any] = {"json": str(made.json), "glb": str(made.glb), "clips": made.clips, "warnings": list(made.warnings)}
+    if options.vectors:
+        from metagraph.engines.vectors import write_vectors
+
+        data["vectors"] = str(write_vectors(made.json))
+    say(options, "\n".join(data[key] for key in ("json", "glb", "vectors") if key in data), data)
     return 0
 
 

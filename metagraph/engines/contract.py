@@ -182,6 +182,88 @@ class Expanded(Struct, rename={"targets": "to", "sources": "from"}, forbid_unkno
     blend: list[float]
 
 
+Radians = Annotated[list[Annotated[float, Meta(ge=-100, le=100)]], Meta(min_length=3, max_length=3, description="rotation vector, radians")]
+Direction = Annotated[list[Annotated[float, Meta(ge=-2, le=2)]], Meta(min_length=3, max_length=3)]
+Place = Annotated[int, Meta(ge=-1, le=1_000_000)]
+Four = Annotated[list[Number], Meta(min_length=4, max_length=4)]
+
+
+class RigEye(Struct, forbid_unknown_fields=True):
+    """An eye, or where one would be, in the head's own space: where it is, and its directions to the left, up and ahead.
+    joint: -1 where none is. turn_left, turn_up: rotation vectors in the joint's own space that turn it a radian. down: the product
+    of these four with the joint's own rotation is how far down it looks already, radians."""
+
+    at: Vector
+    left: Direction
+    up: Direction
+    ahead: Direction
+    joint: Place
+    turn_left: Radians
+    turn_up: Radians
+    down: Four
+
+
+class RigShoulder(Struct, forbid_unknown_fields=True):
+    """A joint that breathing lifts. turn: its rotation vector at the top of a breath, in its own space."""
+
+    joint: Place
+    turn: Radians
+
+
+class RigLooker(Struct, forbid_unknown_fields=True):
+    """A joint that takes part in turning the head: its place in the chain, and its share; all shares together are 1."""
+
+    place: Count
+    share: Annotated[float, Meta(ge=0, le=1)]
+
+
+class RigFace(Struct, forbid_unknown_fields=True):
+    """What moves the face. joints: those its channels move. turns: for each channel and joint a rotation vector in the joint's own
+    space, multiplied on the right; shifts: metres in its parent's space; both at 1. The channels: upper_lid_left, upper_lid_right,
+    lower_lid_left, lower_lid_right, blink, jaw_open, then the visemes but silence. follows: how far each lid shuts for an eye that
+    looks down by a radian. lid_joints: the joint of each lid, -1 for none. shut_by: the product of these four with a lid's own
+    rotation is how far it is shut already. morphs: channel -> morph target -> its weight at 1."""
+
+    joints: list[Count]
+    turns: list[list[Radians]]
+    shifts: list[list[Vector]]
+    follows: Four
+    lid_joints: Annotated[list[Place], Meta(min_length=4, max_length=4)]
+    shut_by: Annotated[list[Four], Meta(min_length=4, max_length=4)]
+    morphs: dict[str, dict[str, Number]]
+
+
+class Rig(Struct, forbid_unknown_fields=True):
+    """What of the body breathes and looks. left, up, ahead: the character's directions. chain: the joints from the root to the head.
+    breath: for each of them the axis it turns about in its own space, and the radians at the top of a breath. trunk: its place in
+    the chain; trunk_ahead, head_ahead: ahead in their own space. eyes: left, right. partner: where "user" is unless a point of that
+    name says otherwise, metres; eyes_at_rest: between the eyes in the base pose."""
+
+    left: Direction
+    up: Direction
+    ahead: Direction
+    chain: list[Count]
+    breath: list[Four]
+    shoulders: list[RigShoulder]
+    lookers: list[RigLooker]
+    trunk: Count
+    trunk_ahead: Direction
+    head_ahead: Direction
+    eyes: Annotated[list[RigEye], Meta(min_length=2, max_length=2)]
+    partner: Vector
+    eyes_at_rest: Vector
+    face: RigFace
+
+
+class ExportedVoice(Struct, forbid_unknown_fields=True):
+    """A line's analysed sound. accents: times of its stressed syllables. weights: how much of each of the 15 visemes (sil, PP, FF,
+    TH, DD, kk, CH, SS, nn, RR, aa, E, I, O, U) the mouth shows, rows evenly spaced from 0 to the duration (at least 1 ms)."""
+
+    duration: Seconds
+    accents: list[Seconds]
+    weights: Annotated[list[Annotated[list[Annotated[float, Meta(ge=0, le=1)]], Meta(min_length=15, max_length=15)]], Meta(min_length=2)]
+
+
 class Export(Struct, omit_defaults=True, forbid_unknown_fields=True):
     """A Metagraph export: this JSON and the GLB it names."""
 
@@ -204,6 +286,8 @@ class Export(Struct, omit_defaults=True, forbid_unknown_fields=True):
     points: dict[str, Point] = {}
     lines: dict[str, Line] = {}
     performances: dict[str, Performance] = {}
+    rig: Rig | None = None
+    voices: dict[str, ExportedVoice] = {}
 
 
 def schema() -> dict[str, Any]:

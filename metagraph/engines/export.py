@@ -10,6 +10,7 @@ from pathlib import Path
 import msgspec
 
 from metagraph.engines import contract as c
+from metagraph.engines.rig import read_voices, rig_of, voices_of
 from metagraph.errors import FileError
 from metagraph.formats.atomic import write_atomically
 from metagraph.formats.data import above, markov_from, skeleton_from
@@ -32,6 +33,7 @@ from metagraph.graph.model import (
     Stance,
     Timing,
 )
+from metagraph.motion.character import Character
 from metagraph.motion.clip import Clip
 from metagraph.motion.skeleton import Skeleton, unique_names
 from metagraph.playback import choice, markov
@@ -59,39 +61,53 @@ def export(
     folder: str | Path,
     expanded: bool = False,
     mesh: bool = True,
-    character: Path | None = None,
+    character: Path | Character | None = None,
     progress: Callable[[int, int, str], None] | None = None,
 ) -> Exported:
     """Write `<name>.json` and `<name>.glb` into a folder.
 
-    expanded: list the expanded state machine as well. mesh: put the character's mesh into the GLB; `character` is its
-    file. Raises ExportError while the project has errors, FileError when a file cannot be written.
+    expanded: list the expanded state machine as well. mesh: put the character's mesh into the GLB; `character` is it,
+    or its file. Raises ExportError while the project has errors, FileError when a file cannot be written.
     """
     problems = check(project)
     errors = [p for p in problems if p.severity == "error"]
     if errors:
         more = f" (and {len(errors) - 1} more)" if len(errors) > 1 else ""
         raise ExportError(f"{errors[0].message}. {errors[0].remedy}{more}")
-    tell = progress or (lambda done, total, words: None)
-    used = _used(project)
     if project.skeleton is None or not any(True for _ in project.actions()):
         raise ExportError("no action is placed yet: there is nothing to export")
+    warnings = [f"{p.message}. {p.remedy}" for p in problems if p.severity == "warning"]
+    made = write(project, folder, expanded, character if mesh else None, progress)
+    return replace(made, warnings=(*made.warnings, *warnings))
+
+
+def write(
+    project: Project,
+    folder: str | Path,
+    expanded: bool = False,
+    character: Path | Character | None = None,
+    progress: Callable[[int, int, str], None] | None = None,
+) -> Exported:
+    """Write a project that has clips without asking whether it is sound. Arguments as for `export`."""
+    tell = progress or (lambda done, total, words: None)
+    assert project.skeleton is not None
+    used = _used(project)
     stem = re.sub(r"[^\w.-]+", "_", project.name).strip("._") or "metagraph"
     target = Path(folder)
     glb, json = target / f"{stem}.glb", target / f"{stem}.json"
     names = unique_names([entry.name for entry in used])
     tell(0, 3, "clips")
     clips = [e.motion.renamed(name) for e, name in zip(used, names, strict=True) if e.motion is not None]
-    notes = _write_glb(glb, clips, project.skeleton, character if mesh else None)
+    notes = _write_glb(glb, clips, project.skeleton, character)
     tell(1, 3, "graph")
     document = to_document(project, glb.name, names, expanded)
     tell(2, 3, "writing")
     write_atomically(json, msgspec.json.format(msgspec.json.encode(document), indent=1))
     tell(3, 3, "done")
-    return Exported(json, glb, len(used), (*notes, *(f"{p.message}. {p.remedy}" for p in problems if p.severity == "warning")))
+    return Exported(json, glb, len(used), tuple(notes))
 
 
-def _write_glb(path: Path, clips: list[Clip], skeleton: Skeleton, character: Path | None) -> list[str]:
+def _write_glb(path: Path, clips: list[Clip], skeleton: Skeleton, character: Path | Character | None) -> list[str]:
     """Write the GLB; return what is not in it, in words."""
     from metagraph.formats.gltf import read_character
     from metagraph.formats.gltf_writer import write_glb
@@ -103,10 +119,10 @@ def _write_glb(path: Path, clips: list[Clip], skeleton: Skeleton, character: Pat
             path.parent, f"cannot be made ({error.strerror})", "on making the folder", "Choose a folder you may write to."
         ) from None
     notes = []
-    body = read_character(character) if character is not None else None
-    if body is not None and body.skeleton != skeleton:
+    body = read_character(character) if isinstance(character, Path) else character
+    if body is not None and character is not None and body.skeleton != skeleton:
         body = None  # it would not move with these clips
-        notes.append(f"the mesh of '{character.name if character else ''}' is left out: it has another skeleton than the clips")
+        notes.append(f"the mesh of '{character.name}' is left out: it has another skeleton than the clips")
     write_glb(path, [replace(clip, skeleton=skeleton) for clip in clips], body)
     return notes
 
@@ -160,6 +176,8 @@ def to_document(project: Project, glb: str, names: tuple[str, ...], expanded: bo
         points=dict(project.points),
         lines=dict(project.lines),
         performances=dict(project.performances),
+        rig=rig_of(project),
+        voices=voices_of(project),
     )
 
 
@@ -252,8 +270,9 @@ def _expanded(project: Project, graph: MetaGraph) -> c.Expanded:
     )
 
 
-def read_export(path: str | Path, motions: bool = True) -> Project:
-    """Read an export back into a project with the same graph, ids and constants. motions: load the clips from its GLB.
+def read_export(path: str | Path, motions: bool = True, resolved: bool = False) -> Project:
+    """Read an export back into a project with the same graph, ids and constants. motions: load the clips from its GLB. resolved: take
+    gestures' phases as the export has them, as a runtime does; else those that nobody set are found anew.
 
     Raises FileError naming the field that is wrong as a path into the JSON.
     """
@@ -268,12 +287,12 @@ def read_export(path: str | Path, motions: bool = True) -> Project:
         remedy = "Update Metagraph, or export it again." if where == "$.metagraph" else "Export it again."
         raise FileError(path, cause[:1].lower() + cause[1:], where, remedy) from None
     try:
-        return _project(path, document, motions)
+        return _project(path, document, motions, resolved)
     except DataError as error:
         raise FileError(path, str(error), error.where, "Export it again.") from None
 
 
-def _project(path: Path, document: c.Export, motions: bool) -> Project:
+def _project(path: Path, document: c.Export, motions: bool, resolved: bool) -> Project:
     """Return the project of a decoded export. Raises DataError for what its types alone cannot say."""
     if missing := [layer for layer in LAYERS if layer not in document.layers]:
         raise DataError("$.layers", f"layer '{missing[0]}' is missing")
@@ -298,7 +317,7 @@ def _project(path: Path, document: c.Export, motions: bool) -> Project:
         take = longer.index(clip.animation) if clip.animation in longer else len(longer) + n
         clips[clip.id] = ClipEntry(clip.id, clip.name, document.glb, take, clip.sha256, clip.frames, clip.fps, motion)
     p = document.planner
-    graphs: dict[Layer, MetaGraph] = {layer: _graph(layer, document.layers[layer]) for layer in LAYERS}
+    graphs: dict[Layer, MetaGraph] = {layer: _graph(layer, document.layers[layer], resolved) for layer in LAYERS}
     return Project(
         name=document.name,
         skeleton=skeleton,
@@ -314,6 +333,7 @@ def _project(path: Path, document: c.Export, motions: bool) -> Project:
         points=dict(document.points),
         lines=dict(document.lines),
         performances=dict(document.performances),
+        voices=read_voices(document.voices),
         next_id=above(*clips, *(i for g in graphs.values() for i in (*g.stances, *g.actions))),
     )
 
@@ -340,7 +360,7 @@ def _markov(layer: Layer, model: c.ExportedMarkov) -> Markov:
     return markov_from(layer, {"states": states, "matrix": model.matrix, **more}, f"$.layers.{layer}.markov")
 
 
-def _graph(layer: Layer, data: c.ExportedLayer) -> MetaGraph:
+def _graph(layer: Layer, data: c.ExportedLayer, resolved: bool) -> MetaGraph:
     where = f"$.layers.{layer}"
     stances: dict[str, Stance] = {}
     for n, s in enumerate(data.stances):
@@ -351,8 +371,11 @@ def _graph(layer: Layer, data: c.ExportedLayer) -> MetaGraph:
     for n, a in enumerate(data.actions):
         if a.id in actions:
             raise DataError(f"{where}.actions[{n}].id", f"'{a.id}' is used twice")
-        own = a.own_phases if len(a.own_phases) == 3 else [None] * 3
-        timing = Timing(a.start, None if a.whole_end else a.end, a.blend_in, a.blend_out, a.loop, a.earliest_exit, a.stroke, *own)
+        own: list[float | None] = list(a.own_phases) if len(a.own_phases) == 3 else [None] * 3
+        stroke = a.stroke
+        if resolved and len(a.phases) == 4:
+            (own[0], stroke), own[1:] = a.phases[:2], a.phases[2:]
+        timing = Timing(a.start, None if a.whole_end else a.end, a.blend_in, a.blend_out, a.loop, a.earliest_exit, stroke, *own)
         actions[a.id] = Action(
             a.id, a.clip, a.kind, layer, a.stance, a.name, a.end_stance, timing, a.limb, tuple(a.joints), tuple(a.tags), a.likelihood,
             a.cooldown, a.spacing,

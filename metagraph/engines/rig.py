@@ -1,0 +1,77 @@
+"""What the life layers need of a character, resolved for runtimes: they need not find faces, nor analyse sound."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+
+from metagraph.engines import contract as c
+from metagraph.graph.model import Project
+from metagraph.playback.life.body import EyeAt, body_of
+from metagraph.playback.life.voice import Voice
+
+STEPS = 1e4  # a mouth shape's weight is written in steps of this part of one
+
+
+def rig_of(project: Project) -> c.Rig | None:
+    """Return the resolved body of a project, None where nothing of it can live."""
+    body = body_of(project)
+    if body.empty:
+        return None
+    long, face = len(body.chain), body.face
+    shoulders = body.joints[long : long + len(body.shoulders)].tolist()
+    eye_joints = iter(body.joints[long + len(body.shoulders) :].tolist())
+    return c.Rig(
+        left=list(body.left),
+        up=list(body.up),
+        ahead=list(body.ahead),
+        chain=body.chain.tolist(),
+        breath=[[*axis, angle] for axis, angle in body.breath],
+        shoulders=[c.RigShoulder(joint, list(turn)) for joint, turn in zip(shoulders, body.shoulders, strict=True)],
+        lookers=[c.RigLooker(x.place, x.share) for x in body.lookers],
+        trunk=body.trunk,
+        trunk_ahead=list(body.trunk_ahead),
+        head_ahead=list(body.head_ahead),
+        eyes=[_eye(eye, next(eye_joints) if eye.joint else -1) for eye in body.eyes],
+        partner=list(body.partner),
+        eyes_at_rest=list(body.eyes_at_rest),
+        face=c.RigFace(
+            joints=face.joints.tolist(),
+            turns=face.turns.tolist(),
+            shifts=face.shifts.tolist(),
+            follows=face.follows.tolist(),
+            lid_joints=face.lid_joints.tolist(),
+            shut_by=face.shut_by.tolist(),
+            morphs={channel: dict(targets) for channel, targets in face.morphs.items()},
+        ),
+    )
+
+
+def _eye(eye: EyeAt, joint: int) -> c.RigEye:
+    return c.RigEye(
+        list(eye.at), list(eye.left), list(eye.up), list(eye.ahead), joint, list(eye.turn_left), list(eye.turn_up), list(eye.down)
+    )
+
+
+def voices_of(project: Project) -> dict[str, c.ExportedVoice]:
+    """Return the voices of a project's lines, as far as their sound was read."""
+    return {line: _voice(voice) for line, voice in project.voices.items() if line in project.lines and isinstance(voice, Voice)}
+
+
+def _voice(voice: Voice) -> c.ExportedVoice:
+    weights = np.round(np.clip(voice.weights.astype(float), 0.0, 1.0) * STEPS) / STEPS
+    return c.ExportedVoice(voice.duration, voice.accents.tolist(), weights.tolist())
+
+
+def read_voices(voices: dict[str, c.ExportedVoice]) -> dict[str, Any]:
+    """Return voices as the life layers take them."""
+    return {
+        line: Voice(
+            voice.duration,
+            np.array(voice.accents, float),
+            np.linspace(0.0, max(voice.duration, 1e-3), len(voice.weights)),
+            np.array(voice.weights, np.float32),
+        )
+        for line, voice in voices.items()
+    }

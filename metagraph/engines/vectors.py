@@ -1,0 +1,232 @@
+"""Conformance vectors: what is asked of a graph over time, and the plan and the poses that must come of it.
+
+A runtime conforms when it makes the same plans, ids and order alike and times within `SECONDS`, and when every joint agrees
+within `METRES` in the character's space and within `DEGREES` in its parent's. The cases are scripts over whatever a
+project has; a project without, say, transitions has no cases of transitions.
+"""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Iterable, Mapping, Sequence
+from dataclasses import dataclass, field
+from math import degrees
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from metagraph.engines.export import read_export
+from metagraph.engines.script import Case, Step, cases
+from metagraph.errors import FileError
+from metagraph.formats.atomic import write_atomically
+from metagraph.graph.asks import ask_from
+from metagraph.graph.model import LAYERS, Project
+from metagraph.motion import rotation
+from metagraph.motion.skeleton import Pose
+from metagraph.playback.choice import key32
+from metagraph.playback.hear import hear, since
+from metagraph.playback.life.lane import Lane
+from metagraph.playback.plan import LayerPlan, Plan
+from metagraph.playback.player import morphs_at, pose_at
+
+Array = NDArray[Any]
+
+VERSION = 1
+METRES, DEGREES, SECONDS, WEIGHT = 1e-4, 0.05, 1e-6, 1e-3
+NAME = "vectors.json"
+HASHES: tuple[tuple[int, tuple[str, ...]], ...] = (
+    (1, ("a", "b")),
+    (0, ()),
+    (0, ("",)),
+    (0xFFFFFFFF, ("auto/arms/0", "gap")),
+    (7, ("ab", "")),
+    (7, ("a", "b")),
+    (1, ("Größe", "日本語", "🙂")),
+)
+
+
+def follow(project: Project, case: Case) -> Plan:
+    """Return the plan a case leads to."""
+    plan = Plan(case.seed, 0.0)
+    for step in case.steps:
+        asks = [ask_from(dict(ask)) for ask in step.asks]
+        plan = hear(project, plan, step.now, asks, step.end, case.stances, case.idle)
+        if step.forget is not None:
+            plan = since(plan, step.forget)
+    return plan
+
+
+def write_vectors(export: Path, chosen: Iterable[Case] | None = None) -> Path:
+    """Write the vectors of an export beside its JSON; return the file. chosen: the cases, all that suit it when None.
+
+    Raises FileError when the export cannot be read or the file cannot be written.
+    """
+    project = read_export(export, resolved=True)
+    found = [_expected(project, case) for case in (cases(project) if chosen is None else chosen)]
+    head = {
+        "vectors": VERSION,
+        "export": export.name,
+        "tolerance": {"metres": METRES, "degrees": DEGREES, "seconds": SECONDS, "weight": WEIGHT},
+        "hashes": [[seed, list(words), key32(seed, *words)] for seed, words in HASHES],
+    }
+    lines = ",\n".join(json.dumps(case, ensure_ascii=False, separators=(",", ":")) for case in found)
+    text = json.dumps(head, ensure_ascii=False)[:-1] + f', "cases": [\n{lines}\n]}}\n'
+    path = export.with_name(NAME)
+    write_atomically(path, text.encode())
+    return path
+
+
+def _expected(project: Project, case: Case) -> dict[str, Any]:
+    plan = follow(project, case)
+    times = case.times or _telling(plan)
+    return {
+        "name": case.name,
+        "about": case.about,
+        "seed": case.seed,
+        "idle": case.idle,
+        "stances": dict(case.stances),
+        "steps": [{"now": s.now, "end": s.end, "asks": list(s.asks), "forget": s.forget} for s in case.steps],
+        "plan": plan_data(plan),
+        "life": life_data(plan),
+        "poses": [_pose(project, plan, time, alive) for time in times for alive in case.alive],
+    }
+
+
+def plan_data(plan: Plan) -> dict[str, Any]:
+    """Return what of a plan a runtime must agree with, as plain data."""
+    layers = {layer: _layer(plan.layers[layer]) for layer in LAYERS}
+    reports = [[r.request, r.outcome, r.layer, _time(r.at), r.played] for r in plan.reports]
+    return {"layers": layers, "reports": sorted(reports)}
+
+
+def _layer(plan: LayerPlan) -> dict[str, Any]:
+    return {
+        "metas": [[m.key, _time(m.start), _time(m.end), m.written] for m in plan.metas],
+        "cues": [
+            {
+                "action": c.action.id, "start": _time(c.start), "end": _time(c.end), "entry": _time(c.entry), "blend_in": _time(c.blend_in),
+                "blend_out": _time(c.blend_out), "stance": c.stance, "then": c.then, "meta": c.meta, "hold_from": _time(c.hold_from),
+                "hold_to": _time(c.hold_to), "hold": _time(c.hold),
+            }
+            for c in plan.cues
+        ],
+        "rests": [[r.stance, r.action.id, _time(r.start), _time(r.fade_start), _time(r.fade)] for r in plan.rests],
+    }  # fmt: skip
+
+
+def life_data(plan: Plan) -> dict[str, Any]:
+    """Return what the life layers were drawn to do, as plain data."""
+    life = plan.life
+    targets = [
+        [_time(t.start), t.to if isinstance(t.to, str) else list(t.to), _time(t.since), t.amount, t.strict, t.asked] for t in life.targets
+    ]
+    lanes = {name: _lane(getattr(life, name)) for name in ("modes", "breaths", "aversions", "saccades", "blinks")}
+    return {**lanes, "targets": targets}
+
+
+def _lane(lane: Lane) -> list[list[float]]:
+    return [[_time(start), *map(_time, values)] for start, values in zip(*lane.plain, strict=True)]
+
+
+def _time(seconds: float) -> float:
+    return round(float(seconds), 7)
+
+
+def _pose(project: Project, plan: Plan, time: float, alive: bool) -> dict[str, Any]:
+    pose = pose_at(plan, project, time, alive)
+    assert project.skeleton is not None
+    _, positions = project.skeleton.globals(Pose(pose.rotations.astype(float), pose.translations.astype(float)))
+    return {
+        "time": time,
+        "alive": alive,
+        "rotations": np.round(pose.rotations.astype(float), 5).tolist(),
+        "positions": np.round(positions, 5).tolist(),
+        "morphs": {name: round(value, 5) for name, value in sorted(morphs_at(plan, project, time, alive).items()) if value > 1e-5},
+    }
+
+
+MOST = 6  # times at which a case is looked at
+
+
+def _telling(plan: Plan) -> tuple[float, ...]:
+    """Return times at which most can go wrong: in blends, holds and seams, between cues, before the beginning and after the end."""
+    found: list[float] = []
+    for of in plan.layers.values():
+        for cue in of.cues:
+            found += [cue.start + 0.4 * cue.blend_in, (cue.start + cue.end) / 2, cue.end - 0.3 * cue.blend_out]
+        found += [rest.fade_start + 0.6 * rest.fade for rest in of.rests[1:]]
+    found = sorted(found)
+    chosen = found[:: max(1, len(found) // (MOST - 2))][: MOST - 2]
+    return tuple(round(x, 3) for x in (*chosen, 0.37 * plan.end, plan.end + 1.5))
+
+
+# --- checking
+
+
+@dataclass
+class Outcome:
+    """What checking vectors found. failures: (case, what) in words."""
+
+    passed: int = 0
+    failures: list[tuple[str, str]] = field(default_factory=list)
+
+
+def check_vectors(folder: Path, project: Project | None = None) -> Outcome:
+    """Check this library against a folder's vectors, from its JSON and GLB alone, or for a project.
+
+    Raises FileError when the vectors cannot be read or are of a newer version.
+    """
+    path = folder / NAME
+    try:
+        data = json.loads(path.read_bytes())
+    except OSError as error:
+        raise FileError(
+            path, f"cannot be read ({error.strerror})", "on opening it", "Write vectors with metagraph export --vectors."
+        ) from None
+    except ValueError as error:
+        raise FileError(path, f"is not JSON ({error})", "on reading it", "Write vectors with metagraph export --vectors.") from None
+    if data.get("vectors") != VERSION:
+        raise FileError(
+            path, f"has version {data.get('vectors')}, this is {VERSION}", "$.vectors", "Update Metagraph, or write them again."
+        )
+    if project is None:
+        project = read_export(folder / data["export"], resolved=True)
+    out = Outcome()
+    for seed, words, expected in data["hashes"]:
+        if key32(seed, *words) != expected:
+            out.failures.append(("hashes", f"{seed} {words}"))
+    for case in data["cases"]:
+        wrong = differences(project, case)
+        out.failures += [(case["name"], what) for what in wrong]
+        out.passed += not wrong
+    return out
+
+
+def differences(project: Project, case: Mapping[str, Any]) -> list[str]:
+    """Return in words how what this library makes of a case differs from what the case expects."""
+    steps = tuple(Step(s["now"], s["end"], tuple(s["asks"]), s["forget"]) for s in case["steps"])
+    plan = follow(project, Case(case["name"], "", steps, case["seed"], case["idle"], case["stances"]))
+    out = [*_unlike(plan_data(plan), case["plan"], "plan"), *_unlike(life_data(plan), case["life"], "life")]
+    return out or [words for pose in case["poses"] for words in _apart(project, plan, pose)]
+
+
+def _unlike(ours: Any, theirs: Any, where: str) -> list[str]:
+    if isinstance(theirs, Mapping) and isinstance(ours, Mapping) and ours.keys() == theirs.keys():
+        return [words for key in theirs for words in _unlike(ours[key], theirs[key], f"{where}.{key}")]
+    if isinstance(theirs, list) and isinstance(ours, Sequence) and len(ours) == len(theirs):
+        return [words for n, (a, b) in enumerate(zip(ours, theirs, strict=True)) for words in _unlike(a, b, f"{where}[{n}]")]
+    number = isinstance(theirs, int | float) and isinstance(ours, int | float)
+    alike = abs(ours - theirs) <= SECONDS if number else ours == theirs
+    return [] if alike else [f"{where}: {str(ours)[:80]} instead of {str(theirs)[:80]}"]
+
+
+def _apart(project: Project, plan: Plan, expected: Mapping[str, Any]) -> list[str]:
+    ours = _pose(project, plan, expected["time"], expected["alive"])
+    far = float(np.linalg.norm(np.array(ours["positions"]) - np.array(expected["positions"]), axis=-1).max())
+    turn = float(degrees(rotation.angle_between(np.array(ours["rotations"]), np.array(expected["rotations"])).max()))
+    names = ours["morphs"].keys() | expected["morphs"].keys()
+    weight = max((abs(ours["morphs"].get(n, 0.0) - expected["morphs"].get(n, 0.0)) for n in names), default=0.0)
+    wrong = [(far, METRES, "m"), (turn, DEGREES, "degrees"), (weight, WEIGHT, "of a morph target")]
+    return [f"pose at {expected['time']} s: {value:.2g} {unit} apart" for value, most, unit in wrong if value > most]
