@@ -1,0 +1,160 @@
+/** One character of a game: takes requests as they come, plans ahead, and is posed every frame. */
+
+import { readAsk } from "./asks.js";
+import { answers, hear, since } from "./hear.js";
+import { emptyPlan } from "./plan.js";
+import { Player } from "./pose.js";
+import { LAYERS } from "./words.js";
+
+const SLACK = 2; // seconds the horizon may fall behind before it is moved on
+const FORGETTING = 15; // seconds between forgetting what is over
+const REMEMBERED = 1000; // answers kept after that
+
+export class Character {
+  /**
+   * @param {import("./graph.js").Graph} graph
+   * @param {{seed?: number, idle?: boolean, stances?: Record<string, string>, ahead?: number, recent?: number}} [options]
+   *   seed: 32 bits, the export's when not given; characters of one graph want different ones. idle: whether the models fill the
+   *   time nobody asks for. stances: layer -> id of the stance it begins in. ahead: seconds planned in advance. recent: seconds
+   *   that are remembered.
+   */
+  constructor(graph, { seed = graph.settings.seed, idle = true, stances = {}, ahead = 20, recent = 30 } = {}) {
+    this.graph = graph;
+    this.options = { stances, idle };
+    this.ahead = ahead;
+    this.recent = recent;
+    this.now = 0;
+    this.plan = emptyPlan(seed);
+    this.rotations = Float32Array.from(graph.baseRotations);
+    this.translations = Float32Array.from(graph.baseTranslations);
+    this.weights = new Float32Array(graph.morphs.length);
+    this.player = new Player(graph, this.plan);
+    this.queue = [];
+    this.asked = new Set(); // ids that the plan can tell of
+    this.settled = new Map(); // answers of those it has forgotten or never heard of
+    this.count = 0;
+    this.seen = -Infinity; // up to when events were told
+    this.forgot = 0;
+    this.happened = [];
+  }
+
+  /**
+   * Ask for something; it is taken up at the next update. Returns the request's id, under which `answer` tells what became of it.
+   * Never throws: what cannot be read is refused.
+   * @param {object} request as JSON, with `do`; `after`: seconds from now, instead of `at`; an `id` is made where there is none
+   */
+  ask(request) {
+    const fine = typeof request === "object" && request !== null;
+    const id = fine && typeof request.id === "string" && request.id ? request.id : `#${++this.count}`;
+    if (!fine) return this.refuse(id, "a request should be an object");
+    const { after, ...data } = { ...request, id };
+    if (after !== undefined) {
+      if (!Number.isFinite(after) || after < 0) return this.refuse(id, "after: should be a number of seconds from now");
+      data.at = this.now + after;
+    }
+    const { ask, why } = readAsk(data);
+    if (!ask) return this.refuse(id, why);
+    this.settled.delete(id);
+    this.asked.add(id);
+    this.queue.push(data);
+    return id;
+  }
+
+  refuse(id, why) {
+    this.asked.delete(id);
+    this.settle({ id, state: "refused", at: null, until: null, what: [], why });
+    return id;
+  }
+
+  settle(answer) {
+    this.settled.set(answer.id, answer);
+    if (this.settled.size > REMEMBERED) this.settled.delete(this.settled.keys().next().value);
+  }
+
+  /**
+   * Move on to `now` seconds of the character's own time, which begins at 0 and never goes backwards. Plans what is needed; when
+   * nothing was asked and the horizon is far enough, that is nothing.
+   * @param {number} now
+   */
+  update(now) {
+    if (now > this.now) this.now = Math.min(now, 1e9);
+    try {
+      this.planOn();
+    } catch (error) {
+      // A fault of the runtime's own must not stop the game: the character goes on with the plan it has.
+      for (const { id } of this.queue) this.refuse(id, `the runtime failed: ${error.message}`);
+      this.queue = [];
+    }
+    this.player.setPlan(this.plan);
+    this.listen();
+  }
+
+  planOn() {
+    const { graph, now, queue } = this;
+    const far = this.plan.end >= now + this.ahead - SLACK;
+    if (queue.length || !far) {
+      this.queue = [];
+      this.plan = hear(graph, this.plan, now, queue, far ? this.plan.end : now + this.ahead, this.options);
+    }
+    if (now - this.forgot < FORGETTING) return;
+    this.forgot = now;
+    const over = now - this.recent;
+    for (const answer of answers(this.plan, this.asked).values()) {
+      const played = answer.until !== null && answer.until < over;
+      if (!played && answer.state !== "refused" && answer.state !== "done") continue;
+      this.asked.delete(answer.id);
+      this.settle(played ? { ...answer, state: "done" } : answer);
+    }
+    this.plan = since(this.plan, over);
+  }
+
+  /** Note which actions have begun or ended since the last update. */
+  listen() {
+    const { now, seen } = this;
+    for (const layer of LAYERS) {
+      for (const { start, end, meta, action } of this.plan.layers[layer].cues) {
+        if (start > now) break;
+        const { name } = action;
+        if (start > seen) this.happened.push({ kind: "begin", at: start, layer, action: name, meta });
+        if (end > seen && end <= now) this.happened.push({ kind: "end", at: end, layer, action: name, meta });
+      }
+    }
+    this.seen = now;
+  }
+
+  /** Return what began or ended since this was last asked for, for sounds and game logic: kind, at, layer, action (its name), meta. */
+  events() {
+    const out = this.happened.sort((a, b) => a.at - b.at);
+    this.happened = [];
+    return out;
+  }
+
+  /**
+   * Return what becomes of a request: `state` planned, late, refused or done; `at` and `until` seconds, when it plays, null when that is
+   * not known or never; `what` plays; `why` not as asked.
+   * @param {string} id
+   */
+  answer(id) {
+    const settled = this.settled.get(id);
+    if (settled) return settled;
+    const nothing = { id, at: null, until: null, what: [] };
+    if (!this.asked.has(id)) return { ...nothing, state: "refused", why: `nothing was asked for as '${id}'` };
+    if (this.queue.some((ask) => ask.id === id)) return { ...nothing, state: "planned", why: "taken up at the next update" };
+    return answers(this.plan, [id]).get(id);
+  }
+
+  /**
+   * Return the pose at the updated time: local `rotations` [J, 4] xyzw and `translations` [J, 3], metres, in the arrays given, else in the
+   * character's own, which the next pose overwrites.
+   */
+  pose(rotations = this.rotations, translations = this.translations) {
+    this.player.pose(this.now, rotations, translations);
+    return { rotations, translations };
+  }
+
+  /** Return the weights of the graph's morph targets, in the order of `graph.morphs`, 0..1; likewise. */
+  morphs(out = this.weights) {
+    this.player.morphs(this.now, out);
+    return out;
+  }
+}

@@ -1,0 +1,135 @@
+/**
+ * Does this runtime do what Metagraph does? Runs conformance vectors: `node conformance.mjs FOLDER...`, each with vectors.json and the
+ * export it names. Ends with 1 and a line for each failure where something differs. A page runs them with `runVectors`.
+ */
+
+import { LAYERS, emptyPlan, hear, key32, keyOf, load, morphsAt, poseAt, since } from "./index.js";
+import { positions } from "./rotation.js";
+
+/**
+ * @param {object} vectors the content of vectors.json @param {string} exportJson @param {Uint8Array | ArrayBuffer} glbBytes
+ * @returns {{passed: number, failures: {case: string, what: string}[]}} `passed`: how many cases
+ */
+export function runVectors(vectors, exportJson, glbBytes) {
+  const failures = [];
+  let passed = 0;
+  const graph = load(exportJson, glbBytes, vectors.export);
+  const run = (name, check) => {
+    const found = [];
+    try {
+      check((what) => found.push(what));
+    } catch (error) {
+      found.push(`failed: ${error.stack.split("\n").slice(0, 2).join("")}`);
+    }
+    failures.push(...found.map((what) => ({ case: name, what })));
+    if (!found.length) passed += 1;
+  };
+  run("hashes", (fail) => {
+    for (const [seed, words, hash] of vectors.hashes) {
+      if (key32(seed, ...words) !== hash) fail(`${seed} ${JSON.stringify(words)} is ${key32(seed, ...words)}, should be ${hash}`);
+    }
+  });
+  for (const each of vectors.cases) run(each.name, (fail) => runCase(graph, each, vectors.tolerance, fail));
+  return { passed, failures };
+}
+
+function runCase(graph, { seed, idle, stances, steps, plan: expected, life, poses }, tolerance, fail) {
+  let plan = emptyPlan(seed);
+  for (const { now, end, asks, forget } of steps) {
+    plan = hear(graph, plan, now, asks, end, { stances, idle });
+    if (forget !== null) plan = since(plan, forget);
+  }
+  const same = (where, found, wanted) => compare(where, found, wanted, tolerance.seconds, fail);
+  for (const layer of LAYERS) {
+    const found = plan.layers[layer];
+    const wanted = expected.layers[layer];
+    same(`${layer}.metas`, found.metas.map((m) => [keyOf(m), m.start, m.end, m.written]), wanted.metas);
+    same(`${layer}.cues`, found.cues.map(cueData), wanted.cues);
+    same(`${layer}.rests`, found.rests.map((r) => [r.stance, r.action.id, r.start, r.fadeStart, r.fade]), wanted.rests);
+  }
+  const reports = plan.reports.map((r) => [r.request, r.outcome, r.layer, r.at, r.played]);
+  const sorted = (rows) => [...rows].sort((a, b) => (order(a) < order(b) ? -1 : 1));
+  same("reports", sorted(reports), sorted(expected.reports));
+  for (const lane of ["modes", "breaths", "aversions", "saccades", "blinks"]) {
+    same(`life.${lane}`, plan.life[lane].starts.map((start, n) => [start, ...plan.life[lane].values[n]]), life[lane]);
+  }
+  same("life.targets", plan.life.targets.map((t) => [t.start, t.to, t.since, t.amount, t.strict, t.asked]), life.targets);
+  for (const pose of poses) comparePose(graph, plan, pose, tolerance, fail);
+}
+
+/** Times of equal reports may differ in the last digits. */
+const order = ([request, outcome, layer, at, played]) => JSON.stringify([request, outcome, layer, at.toFixed(5).padStart(20), played]);
+
+function cueData(cue) {
+  return {
+    action: cue.action.id, start: cue.start, end: cue.end, entry: cue.entry, blend_in: cue.blendIn, blend_out: cue.blendOut,
+    stance: cue.stance, then: cue.then, meta: cue.meta, hold_from: cue.holdFrom, hold_to: cue.holdTo, hold: cue.hold,
+  };
+}
+
+/** Compare plain data; the first difference is told. */
+function compare(where, found, wanted, tolerance, fail) {
+  const differ = (a, b, at) => {
+    if (typeof b === "number" && typeof a === "number") return Math.abs(a - b) <= tolerance ? "" : `${at} is ${a}, should be ${b}`;
+    if (typeof b !== "object" || b === null || typeof a !== "object" || a === null) return a === b ? "" : `${at} is ${JSON.stringify(a)}, should be ${JSON.stringify(b)}`;
+    const keys = Object.keys(b);
+    if (Object.keys(a).length !== keys.length) return `${at} has ${Object.keys(a).length} entries, should have ${keys.length}: ${brief(a)}, should be ${brief(b)}`;
+    for (const key of keys) {
+      const words = differ(a[key], b[key], `${at}.${key}`);
+      if (words) return words;
+    }
+    return "";
+  };
+  const words = differ(found, wanted, where);
+  if (words) fail(words);
+}
+
+const brief = (data) => JSON.stringify(data).slice(0, 300);
+
+function comparePose(graph, plan, { time, alive, rotations, positions: places, morphs }, tolerance, fail) {
+  const at = `pose at ${time} s${alive ? ", alive" : ""}`;
+  const pose = poseAt(graph, plan, time, alive);
+  const where = positions(graph.parents, pose.rotations, pose.translations);
+  const worst = { metres: [0, ""], degrees: [0, ""] };
+  graph.joints.forEach((joint, j) => {
+    const q = [0, 1, 2, 3].map((k) => pose.rotations[4 * j + k]);
+    const metres = Math.hypot(...places[j].map((x, k) => x - where[3 * j + k]));
+    const degrees = angle(q, rotations[j]);
+    if (!(metres <= worst.metres[0])) worst.metres = [metres, joint];
+    if (!(degrees <= worst.degrees[0])) worst.degrees = [degrees, joint];
+  });
+  for (const unit of ["metres", "degrees"]) {
+    const [value, joint] = worst[unit];
+    if (!(value <= tolerance[unit])) fail(`${at}: ${joint} is ${value.toPrecision(3)} ${unit} off`);
+  }
+  const found = morphsAt(graph, plan, time, alive);
+  for (const name of new Set([...Object.keys(found), ...Object.keys(morphs)])) {
+    const [is, should] = [found[name] ?? 0, morphs[name] ?? 0];
+    if (!(Math.abs(is - should) <= tolerance.weight)) fail(`${at}: morph target ${name} is ${is}, should be ${should}`);
+  }
+}
+
+/** Return the angle between two rotations, degrees. */
+function angle(a, b) {
+  const [ax, ay, az, aw] = a;
+  const [bx, by, bz, bw] = b;
+  const x = aw * bx - ax * bw - ay * bz + az * by;
+  const y = aw * by + ax * bz - ay * bw - az * bx;
+  const z = aw * bz - ax * by + ay * bx - az * bw;
+  return (360 / Math.PI) * Math.atan2(Math.hypot(x, y, z), Math.abs(ax * bx + ay * by + az * bz + aw * bw));
+}
+
+if (typeof process !== "undefined" && process.argv[1] && import.meta.url.endsWith(process.argv[1].split(/[\\/]/).pop())) {
+  const { readFileSync } = await import("node:fs");
+  const { join } = await import("node:path");
+  let failed = 0;
+  for (const folder of process.argv.slice(2)) {
+    const vectors = JSON.parse(readFileSync(join(folder, "vectors.json"), "utf8"));
+    const json = readFileSync(join(folder, vectors.export), "utf8");
+    const { passed, failures } = runVectors(vectors, json, readFileSync(join(folder, JSON.parse(json).glb)));
+    for (const { case: name, what } of failures) console.log(`${folder}: ${name}: ${what}`);
+    console.log(`${folder}: ${passed} of ${vectors.cases.length + 1} cases pass`);
+    failed += failures.length;
+  }
+  process.exit(failed ? 1 : 0);
+}

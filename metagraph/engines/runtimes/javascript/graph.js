@@ -1,0 +1,221 @@
+/** The exported graph and its clips, loaded once and shared by all characters that use them. */
+
+import { readBody } from "./life/body.js";
+import { Voices } from "./life/voice.js";
+import { Glb, GlbError, resample } from "./glb.js";
+import { multiply } from "./rotation.js";
+import { LAYERS, readLife } from "./words.js";
+
+export const FORMAT = 1; // the newest version of the export that is read here
+const MOVED = 1e-7; // metres below which a translation is none
+
+/** What cannot be loaded: which file, where in it, what is wrong, and what to do about it. */
+export class MetagraphError extends Error {
+  constructor(file, where, what, remedy) {
+    super(`${file}${where ? ` at ${where}` : ""}: ${what}. ${remedy}`);
+    this.name = "MetagraphError";
+  }
+}
+
+/**
+ * Return the graph of an export.
+ *
+ * A clip that the GLB lacks is no error: `graph.problems` lists it, and its actions show their stance.
+ * @param {string} json the export's text @param {Uint8Array | ArrayBuffer} glb the bytes of its GLB
+ * @param {string} [file] what to call the JSON in errors @returns {Graph}
+ * @throws {MetagraphError} when it is newer than this runtime, or no export, or its GLB is truncated or another's
+ */
+export function load(json, glb, file = "the export") {
+  let data;
+  try {
+    data = JSON.parse(json);
+  } catch (error) {
+    throw new MetagraphError(file, "", `is not JSON (${error.message})`, "Export it again.");
+  }
+  if (typeof data?.metagraph !== "number") throw new MetagraphError(file, "metagraph", "is missing", "Choose the JSON that Metagraph exported.");
+  if (data.metagraph > FORMAT) {
+    throw new MetagraphError(file, "metagraph", `is ${data.metagraph}, and this runtime knows ${FORMAT}`, "Update the runtime.");
+  }
+  for (const field of ["joints", "base", "clips", "layers", "planner", ...LAYERS.map((layer) => `layers.${layer}`)]) {
+    const value = field.split(".").reduce((at, name) => at?.[name], data);
+    if (typeof value !== "object" || value === null) throw new MetagraphError(file, field, "is missing", "Export it again.");
+  }
+  try {
+    return new Graph(data, new Glb(glb));
+  } catch (error) {
+    if (error instanceof GlbError) throw new MetagraphError(data.glb ?? "the GLB", "", error.message, "Export it again, and copy both files.");
+    throw new MetagraphError(file, "", `cannot be understood (${error.message})`, "Export it again.");
+  }
+}
+
+/** Everything of an export that planning and posing need. Joints are told by their place; layers by name, in the order of LAYERS. */
+export class Graph {
+  /** @param {object} data the export @param {Glb} glb */
+  constructor(data, glb) {
+    const p = data.planner;
+    this.name = data.name;
+    this.problems = [];
+    this.settings = {
+      seed: p.seed, alpha: p.alpha, neverTwice: p.never_twice, shortest: p.shortest, wait: p.wait, window: p.window, loopFade: p.loop_fade,
+      memory: p.memory ?? 0, rest: p.rest ?? 0, lookahead: p.lookahead ?? 0.1, hurry: p.hurry ?? 2, leastBlend: p.least_blend ?? 0.25,
+    };
+    this.joints = data.joints.map((joint) => joint.name);
+    this.parents = data.joints.map((joint) => (joint.parent === null ? -1 : this.joints.indexOf(joint.parent)));
+    this.baseRotations = Float32Array.from(data.base.rotations.flat()); // [J, 4], local
+    this.baseTranslations = Float32Array.from(data.base.translations.flat()); // [J, 3], local, metres
+    if (this.baseRotations.length !== 4 * this.joints.length || this.baseTranslations.length !== 3 * this.joints.length) {
+      throw new Error(`the base pose is not one of ${this.joints.length} joints`);
+    }
+    this.life = readLife(data.life);
+    this.points = new Map(Object.entries(data.points ?? {}));
+    this.lines = new Map(Object.entries(data.lines ?? {}));
+    this.voices = new Voices(data.voices);
+    this.clips = readClips(data, glb, this.joints, this.problems);
+    const durations = new Map(data.clips.map((clip) => [clip.id, Math.max(0, clip.frames - 1) / clip.fps]));
+    this.layers = Object.fromEntries(LAYERS.map((layer) => [layer, new LayerGraph(layer, data.layers[layer], data.joints, durations, this)]));
+    for (const clip of this.clips.values()) clip.rotations = clip.translations = null; // only offsets are played
+    this.body = data.rig ? readBody(data.rig) : null;
+    const own = [...this.clips.values()].flatMap((clip) => clip.morphs.map((morph) => morph.name));
+    /** Names of all morph targets that anything here moves. */
+    this.morphs = [...new Set([...own, ...(this.body?.face.morphs ?? []).map((morph) => morph.name)])];
+    for (const clip of this.clips.values()) for (const morph of clip.morphs) morph.place = this.morphs.indexOf(morph.name);
+    /** Whether eyes made of morph targets hold while the head moves, rather than being told from the base pose. */
+    this.morphsFollow = Boolean(data.face?.morphs?.length);
+  }
+
+  /** @returns {import("./life/voice.js").Voice} */
+  voiceOf(speech) {
+    return this.voices.of(speech);
+  }
+}
+
+/** One layer: its stances and actions, and how it reaches the joints. */
+export class LayerGraph {
+  constructor(layer, data, joints, durations, graph) {
+    this.layer = layer;
+    this.start = data.start;
+    this.stances = new Map(data.stances.map((stance) => [stance.id, stance]));
+    const weights = joints.map((joint) => data.weights[joint.part] ?? 0);
+    /** Places of the joints this layer moves [n], and its weights on them, null where all are 1. */
+    this.reach = Int32Array.from(joints.keys()).filter((joint) => weights[joint] > 0);
+    this.weights = [...this.reach].every((joint) => weights[joint] === 1) ? null : Float32Array.from(this.reach, (joint) => weights[joint]);
+    const offsets = new Map(); // by clip
+    this.actions = new Map(data.actions.map((action) => [action.id, this.action(action, joints, durations, graph, offsets)]));
+    this.index = new Map();
+    for (const action of this.actions.values()) {
+      const key = `${action.kind} ${action.stance}`;
+      if (!this.index.has(key)) this.index.set(key, []);
+      this.index.get(key).push(action);
+    }
+    this.kinds = new Set([...this.actions.values()].map((action) => action.kind));
+    this.markov = { tags: [], lengths: [], ...data.markov };
+  }
+
+  /** Return the actions of a kind placed on a stance. */
+  of(stance, kind) {
+    return this.index.get(`${kind} ${stance}`) ?? NOTHING;
+  }
+
+  /** Whether an action leaves the layer in a stance that can rest. */
+  arrives(action) {
+    return action.kind !== "transition" || (this.stances.has(action.endStance) && this.of(action.endStance, "stance").length > 0);
+  }
+
+  /**
+   * Return an action: times of its clip in seconds, `phases` of them, `motion` (null where its clip is missing), `offsets` of the
+   * motion from the base pose, and `still`, the places in the reach of joints that show the stance throughout.
+   */
+  action(data, joints, durations, graph, offsets) {
+    const { id, name, clip, kind, stance, limb, likelihood } = data;
+    const length = durations.get(clip) ?? 0;
+    const start = Math.min(Math.max(0, data.start), length);
+    const end = Math.max(start, data.whole_end ? length : Math.min(data.end, length));
+    const middle = (start + end) / 2;
+    const [ready, stroke, strokeEnd, relax] = data.phases?.length === 4 ? data.phases : [middle, data.stroke ?? middle, middle, middle];
+    const motion = graph.clips.get(clip) ?? null;
+    if (motion && !offsets.has(clip)) offsets.set(clip, offsetsOf(motion, this.reach, graph));
+    const other = { left: "right", right: "left" }[limb];
+    const stays = ({ part, side, name: joint }) => (part === "arms" && side === other) || (data.joints.length > 0 && !data.joints.includes(joint));
+    return {
+      id, name, clip, kind, layer: this.layer, stance, limb, likelihood, start, end, motion, tags: data.tags, joints: data.joints,
+      endStance: data.end_stance, blendIn: Math.max(0, data.blend_in), blendOut: Math.max(0, data.blend_out), earliestExit: data.earliest_exit,
+      phases: { ready, stroke, strokeEnd, relax }, cooldown: data.cooldown ?? 0, spacing: data.spacing ?? null,
+      offsets: offsets.get(clip) ?? null,
+      still: Int32Array.from(this.reach.keys()).filter((place) => stays(joints[this.reach[place]])),
+    };
+  }
+}
+
+const NOTHING = [];
+
+/** Return clip id -> fps, frames, rotations [F, J, 4], translations [F, J, 3], morphs: name and weights [F]. */
+function readClips(data, glb, joints, problems) {
+  const nodes = joints.map((joint) => glb.nodes.findIndex((node) => node.name === joint));
+  if (nodes.every((node) => node < 0)) throw new GlbError("has none of the export's joints; it is another's");
+  nodes.forEach((node, n) => {
+    if (node < 0) problems.push(`the GLB has no joint '${joints[n]}'; it stays as in the rest pose`);
+  });
+  const rest = data.joints.map((joint, n) =>
+    nodes[n] < 0 ? joint : { translation: glb.own(nodes[n], "translation"), rotation: glb.own(nodes[n], "rotation") },
+  );
+  const out = new Map();
+  for (const { id, name, animation, fps, frames } of data.clips) {
+    const place = glb.animations[animation]?.name === name ? animation : glb.animations.findIndex((found) => found.name === name);
+    if (place < 0) problems.push(`the GLB has no animation '${name}'; its actions show their stance`);
+    else out.set(id, { fps, frames, ...readClip(glb, glb.tracks(place), nodes, rest, frames, fps) });
+  }
+  return out;
+}
+
+function readClip(glb, tracks, nodes, rest, frames, fps) {
+  const still = (path) => rest.flatMap((joint) => joint[path]);
+  const [rotation, translation] = [still("rotation"), still("translation")];
+  const rotations = new Float32Array(frames * rotation.length);
+  const translations = new Float32Array(frames * translation.length);
+  for (let f = 0; f < frames; f++) {
+    rotations.set(rotation, f * rotation.length);
+    translations.set(translation, f * translation.length);
+  }
+  const joint = new Map(nodes.map((node, n) => [node, n]));
+  const morphs = [];
+  for (const track of tracks) {
+    const values = resample(track, frames, fps);
+    const width = values.length / frames;
+    if (track.path === "weights") {
+      glb.morphNames(track.node).forEach((name, n) => morphs.push({ name, place: -1, weights: Float32Array.from({ length: frames }, (_, f) => values[f * width + n]) }));
+    } else if (joint.has(track.node) && (track.path === "rotation" || track.path === "translation")) {
+      const out = track.path === "rotation" ? rotations : translations;
+      for (let f = 0; f < frames; f++) for (let k = 0; k < width; k++) out[(f * nodes.length + joint.get(track.node)) * width + k] = values[f * width + k];
+    }
+  }
+  return { rotations, translations, morphs };
+}
+
+/**
+ * Return a clip relative to the base pose, for the joints a layer reaches: rotations [F, n, 4], neighbours on the same side;
+ * translations [F, m, 3] for the places `moved` [m] in the reach.
+ */
+function offsetsOf({ frames, rotations, translations }, reach, graph) {
+  const { baseRotations: base, baseTranslations, joints } = graph;
+  const inverse = base.map((x, n) => (n % 4 === 3 ? x : -x));
+  const turned = new Float32Array(frames * reach.length * 4);
+  for (let f = 0, o = 0; f < frames; f++) {
+    for (let n = 0; n < reach.length; n++, o += 4) {
+      multiply(turned, o, inverse, 4 * reach[n], rotations, 4 * (f * joints.length + reach[n]));
+      const before = o - 4 * reach.length;
+      if (f === 0) continue;
+      let dot = 0;
+      for (let k = 0; k < 4; k++) dot += turned[o + k] * turned[before + k];
+      if (dot < 0) for (let k = 0; k < 4; k++) turned[o + k] *= -1;
+    }
+  }
+  const away = (f, n, k) => translations[3 * (f * joints.length + reach[n]) + k] - baseTranslations[3 * reach[n] + k];
+  const moves = (n) => {
+    for (let f = 0; f < frames; f++) for (let k = 0; k < 3; k++) if (Math.abs(away(f, n, k)) > MOVED) return true;
+    return false;
+  };
+  const moved = Int32Array.from(reach.keys()).filter(moves);
+  const shifted = new Float32Array(frames * moved.length * 3);
+  for (let f = 0, o = 0; f < frames; f++) for (const n of moved) for (let k = 0; k < 3; k++) shifted[o++] = away(f, n, k);
+  return { rotations: turned, translations: shifted, moved };
+}

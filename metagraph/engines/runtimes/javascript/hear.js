@@ -1,0 +1,129 @@
+/** Performing what is asked while it comes in: working asks into a running plan, forgetting what is over, and answering. */
+
+import { keyOf, remember } from "./plan.js";
+import { extend } from "./planner.js";
+import { plus, sinceTrack, trackItems, without } from "./life/track.js";
+import { sinceSchedule } from "./life/schedule.js";
+import { understand } from "./understand.js";
+import { LAYERS } from "./words.js";
+
+/**
+ * Return the plan with asks worked in that became known at `now`, and the horizon moved to `end`.
+ *
+ * What begins before now + lookahead stays as it was, but at the very beginning, when nothing has been shown. Asks need ids; of
+ * two with one id the later counts. What cannot be understood is in the plan's reports; nothing is thrown.
+ * @param {import("./graph.js").Graph} graph @param {import("./plan.js").Plan} plan @param {number} now @param {object[]} asks
+ * @param {number} end @param {{stances?: Record<string, string>, idle?: boolean}} [options] @returns {import("./plan.js").Plan}
+ */
+export function hear(graph, plan, now, asks, end, options = {}) {
+  const fixed = now > 0 ? now + graph.settings.lookahead : 0;
+  const meant = understand(graph, asks, fixed);
+  const gone = new Set([...meant.withdrawn, ...[...meant.requests, ...meant.items].map((x) => x.id), ...meant.refused.map((r) => r.request)]);
+  const every = meant.withdrawn.has("");
+  const before = [...plan.requests, ...trackItems(plan.track)].map((x) => x.id);
+  const withdrawn = new Set(before.filter((id) => every || owners(id).some((owner) => gone.has(owner))));
+  const isStay = (item) => item.kind === "stay";
+  const meantStays = meant.items.filter(isStay);
+  const staying = new Set([...plan.track.stays, ...meantStays].filter((stay) => stay.on).map((stay) => stay.layer));
+  const items = meant.items.filter((item) => !isStay(item) || staying.has(item.layer));
+  const touched = new Set([
+    ...meant.requests.map((r) => r.layer),
+    ...plan.requests.filter((r) => withdrawn.has(r.id)).map((r) => r.layer),
+    ...[...plan.track.stays, ...items.filter(isStay)].filter((stay) => gone.has(stay.id) || withdrawn.has(stay.id)).map((stay) => stay.layer),
+  ]);
+  // Without any asks everything is planned on; with some, what they have to do with.
+  const leave = asks.length && now > 0 && end === plan.end ? LAYERS.filter((layer) => !touched.has(layer)) : [];
+  const track = plus(without(plan.track, withdrawn, fixed), items);
+  const after = extend(graph, { ...plan, track }, fixed, meant.requests, end, options, withdrawn, leave);
+  return meant.refused.length ? { ...after, reports: [...after.reports, ...meant.refused] } : after;
+}
+
+/** Return the asks a request may have been made by: that of its own id, and those of which it would be a part. */
+function owners(id) {
+  const out = [id];
+  for (let part = /^(.*)\.[0-9]+$/s.exec(id); part; part = /^(.*)\.[0-9]+$/s.exec(part[1])) out.push(part[1]);
+  return out;
+}
+
+/**
+ * Say what a plan does about asks: when each will play, or why it will not.
+ * @param {import("./plan.js").Plan} plan @param {Iterable<string>} ids
+ * @returns {Map<string, {id: string, state: string, at: ?number, until: ?number, what: string[], why: string}>}
+ */
+export function answers(plan, ids) {
+  const found = new Map([...ids].map((id) => [id, { plays: [], told: [], waiting: [] }]));
+  const each = (made, note) => {
+    for (const owner of owners(made)) if (found.has(owner)) note(found.get(owner));
+  };
+  for (const { cues, metas } of Object.values(plan.layers)) {
+    for (const cue of cues) each(cue.meta.split("+")[0], (x) => x.plays.push({ start: cue.start, end: cue.end, what: cue.action.name }));
+    for (const meta of metas) if (meta.start >= plan.end) each(meta.request.id, (x) => x.waiting.push(meta.start));
+  }
+  for (const item of trackItems(plan.track)) {
+    const { id, kind, start, end = start } = item;
+    if (kind !== "stay") each(id, (x) => x.plays.push({ start, end, what: kind }));
+  }
+  for (const told of plan.reports) each(told.request, (x) => x.told.push(told));
+  return new Map([...found].map(([id, x]) => [id, { id, ...answer(x) }]));
+}
+
+function answer({ plays, told, waiting }) {
+  const why = [...new Set(told.map((r) => r.message))].join("; ");
+  const is = (...outcomes) => told.some((r) => outcomes.includes(r.outcome));
+  if (plays.length) {
+    return {
+      state: is("late", "queued", "resumed") ? "late" : "planned",
+      at: Math.min(...plays.map((p) => p.start)), until: Math.max(...plays.map((p) => p.end)), what: plays.map((p) => p.what), why,
+    };
+  }
+  const nothing = { at: null, until: null, what: [] };
+  if (is("already-there")) return { state: "done", ...nothing, why };
+  if (waiting.length && told.every((r) => r.played)) {
+    return { state: told.length ? "late" : "planned", ...nothing, at: waiting[0], why: why || "chosen when its time is nearer" };
+  }
+  return { state: "refused", ...nothing, why: why || "nothing came of it" };
+}
+
+/**
+ * Return a running plan without what ended before `seconds`; what is planned on from it stays as it would have been. Poses before
+ * `seconds` are lost.
+ * @param {import("./plan.js").Plan} plan @param {number} seconds @returns {import("./plan.js").Plan}
+ */
+export function since(plan, seconds) {
+  const layers = Object.fromEntries(LAYERS.map((layer) => [layer, sinceLayer(plan.layers[layer], seconds)]));
+  const known = new Set(Object.values(layers).flatMap((of) => of.metas.map((m) => m.request.id)));
+  return {
+    ...plan,
+    layers,
+    reports: plan.reports.filter((r) => r.at >= seconds),
+    requests: plan.requests.filter((r) => r.start >= seconds || known.has(r.id)),
+    track: sinceTrack(plan.track, seconds),
+    life: sinceSchedule(plan.life, seconds),
+  };
+}
+
+function sinceLayer(plan, seconds) {
+  const first = plan.cues.findIndex((cue) => cue.end >= seconds);
+  const gone = plan.cues.slice(0, first < 0 ? plan.cues.length : first);
+  const cues = plan.cues.slice(gone.length);
+  const played = new Set(cues.map((cue) => cue.meta));
+  let under = 0; // the last rest that has taken over by then
+  plan.rests.forEach((rest, n) => {
+    if (rest.fadeStart + rest.fade <= seconds) under = n;
+  });
+  return {
+    ...plan,
+    cues,
+    metas: plan.metas.filter((m) => m.end >= seconds || played.has(keyOf(m))),
+    rests: plan.rests.slice(under),
+    past: pastOf(plan.past, gone),
+  };
+}
+
+function pastOf(past, gone) {
+  if (!gone.length) return past;
+  const last = gone[gone.length - 1];
+  const out = { free: last.end, stance: last.then, uses: new Map(past.uses), recent: new Map(past.recent), ended: new Map(past.ended) };
+  for (const cue of gone) remember(cue, out);
+  return out;
+}

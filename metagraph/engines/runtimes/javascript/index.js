@@ -1,0 +1,9 @@
+/** Metagraph's runtime: loads an export, plans what is asked, and poses characters. No dependencies; Node and browsers. */
+
+export { key32 } from "./choice.js";
+export { Character } from "./character.js";
+export { FORMAT, Graph, MetagraphError, load } from "./graph.js";
+export { answers, hear, since } from "./hear.js";
+export { emptyPlan, keyOf } from "./plan.js";
+export { Player, morphsAt, poseAt } from "./pose.js";
+export { LAYERS } from "./words.js";
