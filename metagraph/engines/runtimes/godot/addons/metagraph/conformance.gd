@@ -1,0 +1,194 @@
+extends SceneTree
+# Checks this runtime against conformance vectors: folders with an export, its GLB and vectors.json.
+#
+#     godot3-server --no-window -s addons/metagraph/conformance.gd FOLDER...     (Godot 4: godot --headless -s ... -- FOLDER...)
+#
+# Prints a line for each case that fails and exits with 1; `--only WORD` checks cases whose name has the word.
+
+const CORE = "res://addons/metagraph/core/"
+const VERSION = 1
+const Graph = preload("core/graph.gd")
+const Asks = preload("core/asks.gd")
+const Hear = preload("core/hear.gd")
+const Planner = preload("core/planner.gd")
+const Pose = preload("core/pose.gd")
+const Util = preload("core/util.gd")
+const Turns = preload("core/turns.gd")
+
+var _shim
+var _passed = 0
+var _failed = 0
+var _poses = 0
+var _posed = 0  # microseconds
+var _planned = 0
+var _steps = 0
+
+
+func _init():
+	_shim = load(CORE + "shim%d.gd" % Engine.get_version_info()["major"])
+	var only = ""
+	var folders = []
+	var skip = true
+	var args = OS.get_cmdline_args()
+	if OS.has_method("get_cmdline_user_args"):
+		args = OS.call("get_cmdline_user_args")
+		skip = false
+	for n in range(args.size()):
+		if skip:
+			skip = not args[n].ends_with("conformance.gd")
+		elif n > 0 and args[n - 1] == "--only":
+			only = args[n]
+		elif args[n] != "--only":
+			folders.append(args[n])
+	for folder in folders:
+		_check(folder, only)
+	if folders.size() == 0:
+		_fail("", "which folders? Give them behind the script's name")
+	print("%d passed, %d failed" % [_passed, _failed])
+	if _poses > 0:
+		print("%.2f ms a pose, %.2f ms a step of planning" % [_posed / 1000.0 / _poses, _planned / 1000.0 / Util.most(_steps, 1)])
+	quit(1 if _failed > 0 else 0)
+
+
+func _fail(name, words):
+	_failed += 1
+	print("FAIL %s: %s" % [name, words])
+
+
+func _text(path):
+	var bytes = _shim.read_bytes(path)
+	return _shim.text_of(bytes) if bytes != null else ""
+
+
+func _check(folder, only):
+	var data = _shim.parse(_text(folder + "/vectors.json"))
+	if typeof(data) != TYPE_DICTIONARY or not Util.is_number(data.get("vectors")):
+		_fail(folder, "vectors.json cannot be read")
+		return
+	if data.vectors != VERSION:
+		_fail(folder, "the vectors are of version %s, this checks %d" % [str(data.vectors), VERSION])
+		return
+	var begun = _micros()
+	var json = _text(folder + "/" + data.export)
+	var found = _shim.parse(json)
+	var glb = found.get("glb", "") if typeof(found) == TYPE_DICTIONARY else ""
+	var graph = Graph.new(json, _shim.read_bytes(folder + "/" + glb))
+	if graph.error != "":
+		_fail(folder, graph.error)
+		return
+	print("%s: read in %.0f ms" % [folder, (_micros() - begun) / 1000.0])
+	for each in data.hashes:
+		if graph.choice.key32(int(each[0]), each[1]) != int(each[2]):
+			_fail("hashes", str(each))
+	for case in data.cases:
+		if only != "" and case.name.find(only) < 0:
+			continue
+		var wrong = _differences(graph, case, data.tolerance)
+		if wrong == "":
+			_passed += 1
+		else:
+			_fail(case.name, wrong)
+
+
+func _micros():
+	return _shim.micros()
+
+
+# Returns how what this runtime makes of a case differs, "" where it does not.
+func _differences(graph, case, tolerance):
+	var plan = Planner.empty_plan(int(case["seed"]))
+	for step in case.steps:
+		var asks = []
+		for data in step.asks:
+			var ask = Asks.read(data)
+			if ask[0] == null:
+				return "request %s: %s" % [str(data), ask[1]]
+			asks.append(ask[0])
+		var begun = _micros()
+		plan = Hear.hear(graph, plan, step.now, asks, step.end, case.stances, case.idle)
+		if step.forget != null:
+			plan = Planner.since(plan, step.forget)
+		_planned += _micros() - begun
+		_steps += 1
+	var wrong = _unlike(_plan_data(plan), case.plan, "plan", tolerance.seconds)
+	if wrong == "":
+		wrong = _unlike(_life_data(plan.life), case.life, "life", tolerance.seconds)
+	for expected in case.poses:
+		if wrong == "":
+			wrong = _apart(graph, plan, expected, tolerance)
+	return wrong
+
+
+func _plan_data(plan):
+	var layers = {}
+	for layer in Util.LAYERS:
+		var of = plan.layers[layer]
+		var metas = []
+		for m in of.metas:
+			metas.append([m.key, m.start, m.end, m.written])
+		var cues = []
+		for c in of.cues:
+			var cue = c.duplicate()
+			cue.action = c.action.id
+			cues.append(cue)
+		var rests = []
+		for r in of.rests:
+			rests.append([r.stance, r.action.id, r.start, r.fade_start, r.fade])
+		layers[layer] = {metas = metas, cues = cues, rests = rests}
+	var reports = []
+	var keys = []
+	for r in plan.reports:
+		reports.append([r.request, r.outcome, r.layer, r.at, r.played])
+		keys.append([r.request, r.outcome, r.layer, r.at])
+	return {layers = layers, reports = Util.ordered(reports, keys)}
+
+
+func _life_data(life):
+	var out = {targets = []}
+	for t in life.targets:
+		out.targets.append([t.start, t.to, t.since, t.amount, t.strict, t.asked])
+	for name in ["modes", "breaths", "aversions", "saccades", "blinks"]:
+		out[name] = []
+		for n in range(life[name].starts.size()):
+			out[name].append([life[name].starts[n]] + life[name].rows[n])
+	return out
+
+
+func _unlike(ours, theirs, where, seconds):
+	if Util.is_number(ours) and Util.is_number(theirs):
+		return "" if abs(ours - theirs) <= seconds else "%s: %s instead of %s" % [where, str(ours), str(theirs)]
+	if typeof(ours) != typeof(theirs):
+		return "%s: %s instead of %s" % [where, str(ours), str(theirs)]
+	if typeof(ours) == TYPE_ARRAY:
+		for n in range(Util.least(ours.size(), theirs.size())):
+			var wrong = _unlike(ours[n], theirs[n], "%s[%d]" % [where, n], seconds)
+			if wrong != "":
+				return wrong
+		return "" if ours.size() == theirs.size() else "%s: %d instead of %d" % [where, ours.size(), theirs.size()]
+	if typeof(ours) == TYPE_DICTIONARY:
+		if ours.size() != theirs.size():
+			return "%s: %s instead of %s" % [where, str(ours.keys()), str(theirs.keys())]
+		for name in theirs:
+			var wrong = _unlike(ours.get(name), theirs[name], "%s.%s" % [where, name], seconds)
+			if wrong != "":
+				return wrong
+		return ""
+	return "" if ours == theirs else "%s: %s instead of %s" % [where, str(ours), str(theirs)]
+
+
+func _apart(graph, plan, expected, tolerance):
+	var begun = _micros()
+	var pose = Pose.pose_at(graph, plan, expected.time, expected.alive)
+	_posed += _micros() - begun
+	_poses += 1
+	var places = Pose.positions(graph, pose)
+	for joint in range(graph.names.size()):
+		var far = places[joint].distance_to(Util.vector(expected.positions[joint]))
+		var d = Turns.back(pose.rotations[joint]) * Util.quaternion(expected.rotations[joint], _shim)
+		var turn = 2.0 * atan2(Vector3(d.x, d.y, d.z).length(), abs(d.w)) * 180.0 / PI
+		if not (far <= tolerance.metres and turn <= tolerance.degrees):
+			return "pose at %s s: %s is %f m and %f degrees apart" % [str(expected.time), graph.names[joint], far, turn]
+	for name in pose.morphs.keys() + expected.morphs.keys():
+		if not abs(pose.morphs.get(name, 0.0) - expected.morphs.get(name, 0.0)) <= tolerance.weight:
+			return "pose at %s s: morph target %s is %s" % [str(expected.time), name, str(pose.morphs.get(name))]
+	return ""

@@ -1,0 +1,35 @@
+# The life layers' dials and what each mode makes of them, see docs/format.md.
+
+const DIALS = {
+	on = true, stillness = 0.0, breathing = 1.0, breath_rate = 14.0, gaze = 1.0, head_share = 0.6, aversion_rate = 12.0,
+	aversion_length = 0.93, aversion_angle = 14.0, saccades = 1.0, saccade_rate = 60.0, lids = 1.0, blinks = 17.0, accent_blinks = 1.0,
+	blink_close = 0.07, blink_open = 0.10, lips = 1.0, lip_smoothing = 0.03
+}
+const FACTORS = {
+	breathing = 1.0, breath_rate = 1.0, aversion_rate = 1.0, aversion_length = 1.0, aversion_angle = 1.0, saccades = 1.0,
+	saccade_rate = 1.0, blinks = 1.0
+}
+const MANNERS = {
+	idle = {aversion_rate = 1.1, aversion_length = 2.4, aversion_angle = 1.4, saccade_rate = 0.85},
+	listening = {aversion_rate = 0.6, aversion_length = 0.46, aversion_angle = 0.8, saccades = 0.9},
+	talking = {breathing = 1.15, breath_rate = 1.1, aversion_rate = 1.25}
+}
+
+
+# Returns all dials from those that an export says; `manners` {mode: factors} among them.
+static func life_of(said):
+	var out = _over(DIALS, said)
+	var own = said.get("modes", {})
+	var manners = {}
+	for mode in MANNERS:
+		manners[mode] = _over(FACTORS, own.get(mode, MANNERS[mode]))
+	out.manners = manners
+	return out
+
+
+static func _over(usual, said):
+	var out = usual.duplicate()
+	for name in said:
+		if out.has(name):
+			out[name] = said[name]
+	return out

@@ -1,0 +1,108 @@
+# What was asked for and lasts: where to look, what to say, which mode to be in, which stance to stay in.
+#
+# A track is {looks, speeches, modes, places, blinks, stays}, each by start; speeches do not overlap. Items have `list` (which of
+# these), id, start, and: looks end, to (a name or [x, y, z] metres), amount, strict, priority; speeches end, line, text, priority, length
+# (seconds it would have taken, where something cut it short); modes mode; places name, point; stays layer, on, end.
+
+const Util = preload("util.gd")
+const LISTS = ["looks", "speeches", "modes", "places", "blinks", "stays"]
+
+
+static func empty_track():
+	return {looks = [], speeches = [], modes = [], places = [], blinks = [], stays = []}
+
+
+# Returns all items.
+static func items(track):
+	var out = []
+	for list in LISTS:
+		out += track[list]
+	return out
+
+
+# Returns whether the models may not change a layer's stance at a time.
+static func stays_at(track, layer, seconds):
+	for n in range(track.stays.size() - 1, -1, -1):
+		var stay = track.stays[n]
+		if stay.layer == layer and stay.start <= seconds:
+			return stay.on and seconds < stay.end
+	return false
+
+
+# Returns the track without items of these ids {id: true} that begin at `now` or later; what has begun ends now, if it can.
+static func without(track, idents, now):
+	var out = {}
+	for list in LISTS:
+		out[list] = []
+		for item in track[list]:
+			if not idents.has(item.id):
+				out[list].append(item)
+			elif item.start < now:
+				if list == "speeches":
+					item = _cut(item, now)
+				elif list == "looks" or list == "stays":
+					item = Util.but(item, {end = Util.least(item.end, now)})
+				out[list].append(item)
+	return out
+
+
+# Returns the track with more items; of speeches that overlap the later or more important cuts the other short.
+static func plus(track, more):
+	var out = {}
+	for list in LISTS:
+		out[list] = track[list].duplicate()
+	var spoken = false
+	for item in Util.by(more, "start", "id"):
+		var into = out[item.list]
+		var place = into.size()
+		while place > 0 and Util.less([item.start, item.id], [into[place - 1].start, into[place - 1].id]):
+			place -= 1
+		into.insert(place, item)
+		spoken = spoken or item.list == "speeches"
+	if spoken:
+		out.speeches = _apart(out.speeches)
+	return out
+
+
+# Returns the track without what no time from `seconds` on needs.
+static func since(track, seconds):
+	var out = {}
+	for list in LISTS:
+		out[list] = []
+		var last = {}  # of each thing, the place of the item that holds at `seconds`
+		for n in range(track[list].size()):
+			if track[list][n].start <= seconds:
+				last[_thing(track[list][n])] = n
+		for n in range(track[list].size()):
+			var item = track[list][n]
+			var goes_on = (list == "looks" or list == "speeches") and item.end > seconds
+			var holds = list != "speeches" and list != "blinks" and last.get(_thing(item), -1) == n
+			if item.start > seconds or goes_on or holds:
+				out[list].append(item)
+	return out
+
+
+static func _thing(item):
+	return item.name if item.list == "places" else (item.layer if item.list == "stays" else "")
+
+
+# Returns a speech ending no later than `at`; how long it would have been is remembered.
+static func _cut(speech, at):
+	if speech.end <= at:
+		return speech
+	return Util.but(speech, {end = at, length = speech.end - speech.start if speech.length == null else speech.length})
+
+
+# Returns speeches without overlaps: one that is at least as important cuts the running one, a lesser one is not said.
+static func _apart(speeches):
+	var out = []
+	for speech in speeches:
+		if out.size() > 0 and out[-1].end > speech.start:
+			if speech.priority < out[-1].priority:
+				continue
+			if out[-1].start >= speech.start:
+				out.pop_back()
+			else:
+				out[-1] = _cut(out[-1], speech.start)
+		out.append(speech)
+	return out

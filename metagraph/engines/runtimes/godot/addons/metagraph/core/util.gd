@@ -1,0 +1,193 @@
+# Small things that lists and records need everywhere. Records are dictionaries and are never changed once made: `but` copies.
+
+const LAYERS = ["body", "arms", "head"]
+const MODES = ["idle", "listening", "talking"]
+
+
+# Returns the smaller of two numbers. Godot 3's own min and max round to 32 bits.
+static func least(a, b):
+	return a if a < b else b
+
+
+# Returns the larger of two numbers.
+static func most(a, b):
+	return b if a < b else a
+
+
+# Returns a number kept between two.
+static func within(x, low, high):
+	return low if x < low else (high if x > high else x)
+
+
+# Returns a copy of a record with fields changed.
+static func but(record, changes):
+	var out = record.duplicate()
+	for name in changes:
+		out[name] = changes[name]
+	return out
+
+
+# Returns items from place `first` to before `last`.
+static func part(items, first, last):
+	var out = []
+	for n in range(first, last):
+		out.append(items[n])
+	return out
+
+
+# Returns the place behind all items whose field is at most `value`; items ascend by it.
+static func after(items, field, value):
+	var low = 0
+	var high = items.size()
+	while low < high:
+		var middle = (low + high) >> 1
+		if value < items[middle][field]:
+			high = middle
+		else:
+			low = middle + 1
+	return low
+
+
+# Returns the place of the first item whose field is at least `value`; items ascend by it.
+static func before(items, field, value):
+	var low = 0
+	var high = items.size()
+	while low < high:
+		var middle = (low + high) >> 1
+		if items[middle][field] < value:
+			low = middle + 1
+		else:
+			high = middle
+	return low
+
+
+# Returns the place behind all numbers that are at most `value`.
+static func right_of(numbers, value):
+	var low = 0
+	var high = numbers.size()
+	while low < high:
+		var middle = (low + high) >> 1
+		if value < numbers[middle]:
+			high = middle
+		else:
+			low = middle + 1
+	return low
+
+
+# Returns the place of the first number that is at least `value`.
+static func left_of(numbers, value):
+	var low = 0
+	var high = numbers.size()
+	while low < high:
+		var middle = (low + high) >> 1
+		if numbers[middle] < value:
+			low = middle + 1
+		else:
+			high = middle
+	return low
+
+
+# Returns items by their keys, each a list of numbers or texts; equal ones keep their order, which the engine's own sort does not.
+static func ordered(items, keys):
+	var out = []
+	var taken = []
+	for n in range(items.size()):
+		var low = 0
+		var high = taken.size()
+		while low < high:
+			var middle = (low + high) >> 1
+			if less(keys[n], taken[middle]):
+				high = middle
+			else:
+				low = middle + 1
+		taken.insert(low, keys[n])
+		out.insert(low, items[n])
+	return out
+
+
+# Returns items by one or two of their fields.
+static func by(items, field, second = null):
+	var keys = []
+	for item in items:
+		keys.append([item[field]] if second == null else [item[field], item[second]])
+	return ordered(items, keys)
+
+
+# Returns whether key `a` comes before key `b`, place by place.
+static func less(a, b):
+	for n in range(a.size()):
+		if a[n] < b[n]:
+			return true
+		if b[n] < a[n]:
+			return false
+	return false
+
+
+# Returns whether a value is a number.
+static func is_number(value):
+	return typeof(value) == TYPE_INT or typeof(value) == typeof(0.5)
+
+
+# Returns whether two values are the same; lists and records by what they hold.
+static func same(a, b):
+	if is_number(a) and is_number(b):
+		return a == b
+	if typeof(a) != typeof(b):
+		return false
+	if typeof(a) == TYPE_ARRAY:
+		if a.size() != b.size():
+			return false
+		for n in range(a.size()):
+			if not same(a[n], b[n]):
+				return false
+		return true
+	if typeof(a) == TYPE_DICTIONARY:
+		if a.size() != b.size():
+			return false
+		for name in a:
+			if not b.has(name) or not same(a[name], b[name]):
+				return false
+		return true
+	return a == b
+
+
+# Returns whether a list holds all of others.
+static func has_all(items, others):
+	for other in others:
+		if not items.has(other):
+			return false
+	return true
+
+
+# Returns 3x^2 - 2x^3 of x clamped to 0..1: the curve of every blend.
+static func smooth(x):
+	if x <= 0:
+		return 0.0
+	return 1.0 if x >= 1 else x * x * (3.0 - 2.0 * x)
+
+
+# Returns seconds with three decimals, rounding the exact binary value, halves to even, as other languages print it.
+static func thousandths(seconds):
+	var whole = floor(seconds)
+	var rest = seconds - whole
+	# Halves of 26 bits times 1000 are exact, so what decides the rounding is.
+	var high = floor(rest * 67108864.0) / 67108864.0
+	var low = (rest - high) * 1000.0
+	var count = floor(high * 1000.0)
+	var over = high * 1000.0 - count - 0.5
+	if over > -low or (over == -low and int(count) % 2 == 1):
+		count += 1.0
+	if count >= 1000.0:
+		whole += 1.0
+		count -= 1000.0
+	return "%d.%03d" % [int(whole), int(count)]
+
+
+# Returns the vector of three numbers.
+static func vector(numbers):
+	return Vector3(numbers[0], numbers[1], numbers[2])
+
+
+# Returns the unit quaternion of four numbers, xyzw.
+static func quaternion(numbers, shim):
+	return shim.quat(numbers[0], numbers[1], numbers[2], numbers[3]).normalized()
