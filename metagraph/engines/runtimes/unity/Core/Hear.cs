@@ -1,0 +1,143 @@
+using System;
+using System.Collections.Generic;
+using System.Linq;
+
+namespace Metagraph
+{
+    /// <summary>What became of an ask. State: planned, late, refused or done. At, Until: seconds, when it plays, null when not.</summary>
+    public sealed class Answer
+    {
+        public string Id, State, Why = "";
+        public double? At, Until;
+        public string[] What = Basics.None;
+    }
+
+    /// <summary>Working into a running plan what has just been asked, forgetting what is over, and saying what became of asks.</summary>
+    public static class Hearing
+    {
+        /// <summary>
+        /// The plan with asks worked in that became known at `now`, and the horizon moved to `end`. What begins before now + lookahead
+        /// stays, but at the very beginning. Asks need ids; of two with one id the later counts. stances: layer -> where it begins.
+        /// </summary>
+        public static Plan Hear(
+            Graph graph, Plan plan, double now, IList<Ask> asks, double end, IDictionary<string, string> stances = null, bool idle = true)
+        {
+            double begins = now > 0 ? now + graph.Planner.Lookahead : 0.0;
+            Understood meant = Understood.From(graph, asks, begins);
+            var gone = new HashSet<string>(meant.Withdrawn);
+            gone.UnionWith(meant.Requests.Select(r => r.Id));
+            gone.UnionWith(meant.Items.Select(i => i.Id));
+            gone.UnionWith(meant.Refused.Select(r => r.Request));
+            var withdrawn = new HashSet<string>(plan.Requests.Select(r => r.Id).Concat(plan.Track.Items.Select(i => i.Id)));
+            if (!meant.Withdrawn.Contains(""))
+            {
+                withdrawn.RemoveWhere(id => !Owners(id).Any(gone.Contains));
+            }
+            // Where the models may change stances again means nothing where they always might.
+            var staying = new HashSet<string>(
+                plan.Track.Stays.Concat(meant.Items.OfType<StayFrom>()).Where(s => s.On).Select(s => s.Layer));
+            List<Item> items = meant.Items.FindAll(i => !(i is StayFrom) || staying.Contains(((StayFrom)i).Layer));
+            var touched = new HashSet<string>(meant.Requests.Select(r => r.Layer));
+            touched.UnionWith(plan.Requests.Where(r => withdrawn.Contains(r.Id)).Select(r => r.Layer));
+            touched.UnionWith(plan.Track.Stays.Concat(items.OfType<StayFrom>())
+                .Where(s => gone.Contains(s.Id) || withdrawn.Contains(s.Id)).Select(s => s.Layer));
+            bool partly = asks.Count > 0 && now > 0 && end == plan.End;
+            string[] leave = partly ? Basics.Layers.Where(layer => !touched.Contains(layer)).ToArray() : Basics.None;
+            plan = plan.With(plan.Track.Without(withdrawn, begins).Plus(items));
+            Plan after = Planner.Extend(graph, plan, begins, meant.Requests, end, stances, idle, withdrawn, leave);
+            after.Reports.AddRange(meant.Refused);
+            return after;
+        }
+
+        /// <summary>The asks a request may have been made by: that of its own id, and those of which it would be a part.</summary>
+        private static IEnumerable<string> Owners(string id)
+        {
+            yield return id;
+            for (int dot = id.LastIndexOf('.'); dot >= 0 && dot < id.Length - 1; dot = id.LastIndexOf('.'))
+            {
+                if (!id.Substring(dot + 1).All(char.IsDigit))
+                {
+                    yield break;
+                }
+                id = id.Substring(0, dot);
+                yield return id;
+            }
+        }
+
+        /// <summary>What a plan does about an ask: when it will play, or why it will not.</summary>
+        public static Answer AnswerTo(Plan plan, string id)
+        {
+            List<Cue> cues = plan.Layers.Values.SelectMany(layer => layer.Cues).Where(cue => Of(cue.Meta.Split('+')[0], id)).ToList();
+            List<Item> items = plan.Track.Items.Where(i => !(i is StayFrom) && Of(i.Id, id)).ToList();
+            List<Report> told = plan.Reports.FindAll(r => Of(r.Request, id));
+            List<MetaAction> waiting = plan.Layers.Values.SelectMany(layer => layer.Metas)
+                .Where(m => m.Start >= plan.End && Of(m.Request.Id, id)).ToList();
+            var answer = new Answer { Id = id, Why = string.Join("; ", told.Select(r => r.Message).Distinct().ToArray()) };
+            if (cues.Count > 0 || items.Count > 0)
+            {
+                answer.State = told.Exists(r => r.Outcome == "late" || r.Outcome == "queued" || r.Outcome == "resumed") ? "late" : "planned";
+                answer.At = cues.Select(c => c.Start).Concat(items.Select(i => i.Start)).Min();
+                answer.Until = cues.Select(c => c.End).Concat(items.Select(i => i.End)).Max();
+                answer.What = cues.Select(c => c.Action.Name).Concat(items.Select(i => i.Word)).ToArray();
+            }
+            else if (told.Exists(r => r.Outcome == "already-there"))
+            {
+                answer.State = "done";
+            }
+            else if (waiting.Count > 0 && told.All(r => r.Played))
+            {
+                answer.State = told.Count > 0 ? "late" : "planned";
+                answer.At = waiting[0].Start;
+                answer.Why = answer.Why.Length > 0 ? answer.Why : "chosen when its time is nearer";
+            }
+            else
+            {
+                answer.State = "refused";
+                answer.Why = answer.Why.Length > 0 ? answer.Why : "nothing came of it";
+            }
+            return answer;
+        }
+
+        private static bool Of(string made, string ask)
+        {
+            return made.StartsWith(ask, StringComparison.Ordinal) && Owners(made).Contains(ask);
+        }
+
+        /// <summary>
+        /// A running plan without what ended before `seconds`; what is planned on from it stays as it would have been. Poses before
+        /// `seconds` are lost. What must not be forgotten is the settings' memory.
+        /// </summary>
+        public static Plan Since(Plan plan, double seconds)
+        {
+            var layers = new Dictionary<string, LayerPlan>();
+            foreach (KeyValuePair<string, LayerPlan> one in plan.Layers)
+            {
+                layers[one.Key] = Since(one.Value, seconds);
+            }
+            var known = new HashSet<string>(layers.Values.SelectMany(layer => layer.Metas).Select(m => m.Request.Id));
+            return new Plan(
+                plan.Seed, plan.End, layers, plan.Reports.FindAll(r => r.At >= seconds),
+                plan.Requests.FindAll(r => r.Start >= seconds || known.Contains(r.Id)), plan.Track.Since(seconds), plan.Life.Since(seconds));
+        }
+
+        private static LayerPlan Since(LayerPlan plan, double seconds)
+        {
+            int gone = plan.Cues.FindIndex(cue => cue.End >= seconds);
+            gone = gone < 0 ? plan.Cues.Count : gone;
+            List<Cue> cues = plan.Cues.GetRange(gone, plan.Cues.Count - gone);
+            var played = new HashSet<string>(cues.Select(cue => cue.Meta));
+            List<MetaAction> metas = plan.Metas.FindAll(m => m.End >= seconds || played.Contains(m.Key));
+            int first = Math.Max(0, plan.Rests.FindLastIndex(rest => rest.FadeStart + rest.Fade <= seconds));
+            List<Rest> rests = plan.Rests.GetRange(first, plan.Rests.Count - first);
+            Past past = plan.Past;
+            if (gone > 0)
+            {
+                past = past.Copy();
+                plan.Cues.GetRange(0, gone).ForEach(past.Remember);
+                past.Free = plan.Cues[gone - 1].End;
+                past.Stance = plan.Cues[gone - 1].Then;
+            }
+            return new LayerPlan(plan.Layer, metas, cues, rests, past, plan.Cursor, plan.Written);
+        }
+    }
+}

@@ -1,0 +1,61 @@
+using System;
+
+namespace Metagraph
+{
+    /// <summary>Which shape the mouth has: the voices of what is said, at any time.</summary>
+    internal static class Lips
+    {
+        private const double Closing = 0.12; // seconds the mouth takes to close where speech was cut
+        private static readonly Func<Speech, double> Start = speech => speech.Start, End = speech => speech.End;
+
+        /// <summary>Write how much of each shape but silence the mouth shows at a time [14].</summary>
+        public static void Shapes(Track track, double smoothing, double time, double[] shapes)
+        {
+            Array.Clear(shapes, 0, shapes.Length);
+            int last = Basics.BisectRight(track.Speeches, time + smoothing, Start);
+            for (int n = Basics.BisectLeft(track.Speeches, time - Closing - smoothing, End); n < last; n++)
+            {
+                Speech speech = track.Speeches[n];
+                if (!(time > speech.Start - smoothing && time < speech.End + Closing + smoothing))
+                {
+                    continue;
+                }
+                if (smoothing <= 0)
+                {
+                    Add(speech, time, 1.0, shapes);
+                    continue;
+                }
+                Add(speech, time - smoothing, 0.25, shapes);
+                Add(speech, time, 0.5, shapes);
+                Add(speech, time + smoothing, 0.25, shapes);
+            }
+            double sum = 0.0; // two speeches may meet; together they are one mouth
+            foreach (double shape in shapes)
+            {
+                sum += shape;
+            }
+            for (int v = 0; v < shapes.Length && sum > 1.0; v++)
+            {
+                shapes[v] /= sum;
+            }
+        }
+
+        private static void Add(Speech speech, double time, double share, double[] shapes)
+        {
+            if (time < speech.Start)
+            {
+                return;
+            }
+            Voice voice = speech.Voice;
+            double said = Math.Min(time, speech.End) - speech.Start;
+            int low = Math.Min(Math.Max(Basics.BisectRight(voice.Times, said) - 1, 0), voice.Times.Length - 2);
+            double gap = Math.Max(voice.Times[low + 1] - voice.Times[low], 1e-9);
+            double part = Basics.Clamp((said - voice.Times[low]) / gap, 0.0, 1.0);
+            share *= 1 - Basics.Ease((time - speech.End) / Closing);
+            for (int v = 0; v < shapes.Length; v++)
+            {
+                shapes[v] += share * (voice.Weights[low][v + 1] * (1 - part) + voice.Weights[low + 1][v + 1] * part);
+            }
+        }
+    }
+}

@@ -1,0 +1,330 @@
+using System;
+using System.Collections.Generic;
+using System.Linq;
+
+namespace Metagraph
+{
+    /// <summary>Where to look: a name ("user", "ahead", a named point), or a point, metres in the character's space.</summary>
+    public sealed class Spot
+    {
+        public readonly string Name;
+        public readonly double[] Point;
+
+        public Spot(string name)
+        {
+            Name = name;
+        }
+
+        public Spot(double[] point)
+        {
+            Point = point;
+        }
+
+        public bool Same(Spot other)
+        {
+            return Name == other.Name && (Point == null) == (other.Point == null) && (Point == null || Point.SequenceEqual(other.Point));
+        }
+    }
+
+    /// <summary>Something that was asked for and lasts. End: its start where it has none.</summary>
+    public abstract class Item
+    {
+        public readonly string Id;
+        public readonly double Start, End;
+
+        protected Item(string id, double start, double end)
+        {
+            Id = id;
+            Start = start;
+            End = end;
+        }
+
+        /// <summary>What answers call it.</summary>
+        public abstract string Word { get; }
+
+        public virtual bool Same(Item other)
+        {
+            return Id == other.Id && Start == other.Start && End == other.End;
+        }
+
+        /// <summary>The item as it is when it is taken back while it lasts.</summary>
+        public virtual Item Ended(double now)
+        {
+            return this;
+        }
+    }
+
+    /// <summary>Look somewhere until End, or until the next look. Strict: without averting.</summary>
+    public sealed class LookAt : Item
+    {
+        public readonly Spot To;
+        public readonly double Amount;
+        public readonly bool Strict;
+        public readonly int Priority;
+
+        public LookAt(string id, double start, double end, Spot to, double amount, bool strict, int priority) : base(id, start, end)
+        {
+            To = to;
+            Amount = amount;
+            Strict = strict;
+            Priority = priority;
+        }
+
+        public override string Word
+        {
+            get { return "look"; }
+        }
+
+        public override bool Same(Item other)
+        {
+            var look = (LookAt)other;
+            return base.Same(other) && To.Same(look.To) && Amount == look.Amount && Strict == look.Strict && Priority == look.Priority;
+        }
+
+        public override Item Ended(double now)
+        {
+            return new LookAt(Id, Start, Math.Min(End, now), To, Amount, Strict, Priority);
+        }
+    }
+
+    /// <summary>Something said: a line, or text alone. Length: seconds it would have taken, where something cut it short.</summary>
+    public sealed class Speech : Item
+    {
+        public readonly Line Line;
+        public readonly string LineId, Text;
+        public readonly int Priority;
+        public readonly double? Length;
+        private Voice voice;
+
+        public Speech(string id, double start, double end, Line line, string lineId, string text, int priority, double? length)
+            : base(id, start, end)
+        {
+            Line = line;
+            LineId = lineId;
+            Text = text;
+            Priority = priority;
+            Length = length;
+        }
+
+        public override string Word
+        {
+            get { return "speech"; }
+        }
+
+        /// <summary>Its line's voice as exported, else one guessed from its text.</summary>
+        public Voice Voice
+        {
+            get
+            {
+                if (voice == null)
+                {
+                    bool known = Line != null && Line.Voice != null;
+                    voice = known ? Line.Voice : Voice.FromText(Text, Math.Max(0.0, Length ?? End - Start));
+                }
+                return voice;
+            }
+        }
+
+        public override bool Same(Item other)
+        {
+            var speech = (Speech)other;
+            return base.Same(other) && LineId == speech.LineId && Text == speech.Text && Priority == speech.Priority && Length == speech.Length;
+        }
+
+        /// <summary>The speech, ending no later than `now`; how long it would have been is remembered.</summary>
+        public override Item Ended(double now)
+        {
+            return End <= now ? this : new Speech(Id, Start, now, Line, LineId, Text, Priority, Length ?? End - Start);
+        }
+    }
+
+    /// <summary>The mode from Start on; null for talking while something is said and idling otherwise.</summary>
+    public sealed class ModeFrom : Item
+    {
+        public readonly string Mode;
+
+        public ModeFrom(string id, double start, string mode) : base(id, start, start)
+        {
+            Mode = mode;
+        }
+
+        public override string Word
+        {
+            get { return "mode"; }
+        }
+
+        public override bool Same(Item other)
+        {
+            return base.Same(other) && Mode == ((ModeFrom)other).Mode;
+        }
+    }
+
+    /// <summary>Where a named point is from Start on.</summary>
+    public sealed class PlaceFrom : Item
+    {
+        public readonly string Name;
+        public readonly Spot Point;
+
+        public PlaceFrom(string id, double start, string name, Spot point) : base(id, start, start)
+        {
+            Name = name;
+            Point = point;
+        }
+
+        public override string Word
+        {
+            get { return "place"; }
+        }
+
+        public override bool Same(Item other)
+        {
+            var place = (PlaceFrom)other;
+            return base.Same(other) && Name == place.Name && Point.Same(place.Point);
+        }
+    }
+
+    /// <summary>A blink asked for.</summary>
+    public sealed class BlinkAt : Item
+    {
+        public BlinkAt(string id, double start) : base(id, start, start) { }
+
+        public override string Word
+        {
+            get { return "blink"; }
+        }
+    }
+
+    /// <summary>From Start on the models change no stance of a layer (or, with On false, may again), until End or the next of these.</summary>
+    public sealed class StayFrom : Item
+    {
+        public readonly string Layer;
+        public readonly bool On;
+
+        public StayFrom(string id, double start, string layer, bool on, double end = double.PositiveInfinity) : base(id, start, end)
+        {
+            Layer = layer;
+            On = on;
+        }
+
+        public override string Word
+        {
+            get { return "stay"; }
+        }
+
+        public override bool Same(Item other)
+        {
+            var stay = (StayFrom)other;
+            return base.Same(other) && Layer == stay.Layer && On == stay.On;
+        }
+
+        public override Item Ended(double now)
+        {
+            return new StayFrom(Id, Start, Layer, On, Math.Min(End, now));
+        }
+    }
+
+    /// <summary>All that was asked for and lasts, each kind by start. Speeches do not overlap. Never changed.</summary>
+    public sealed class Track
+    {
+        public static readonly Track Empty = new Track(new List<Item>());
+        public readonly List<LookAt> Looks;
+        public readonly List<Speech> Speeches;
+        public readonly List<ModeFrom> Modes;
+        public readonly List<PlaceFrom> Places;
+        public readonly List<BlinkAt> Blinks;
+        public readonly List<StayFrom> Stays;
+
+        /// <summary>A track of items in any order.</summary>
+        public Track(IEnumerable<Item> items)
+        {
+            List<Item> every = items.OrderBy(i => i.Start).ThenBy(i => i.Id, Comparer<string>.Create(Basics.Compare)).ToList();
+            Looks = every.OfType<LookAt>().ToList();
+            Speeches = Apart(every.OfType<Speech>());
+            Modes = every.OfType<ModeFrom>().ToList();
+            Places = every.OfType<PlaceFrom>().ToList();
+            Blinks = every.OfType<BlinkAt>().ToList();
+            Stays = every.OfType<StayFrom>().ToList();
+        }
+
+        public IEnumerable<Item> Items
+        {
+            get { return Looks.Concat<Item>(Speeches).Concat(Modes).Concat(Places).Concat(Blinks).Concat(Stays); }
+        }
+
+        /// <summary>Whether the models may not change a layer's stance at a time.</summary>
+        public bool StaysAt(string layer, double seconds)
+        {
+            StayFrom last = Stays.FindLast(s => s.Layer == layer && s.Start <= seconds);
+            return last != null && last.On && seconds < last.End;
+        }
+
+        /// <summary>The track without items of these ids that begin at `now` or later; what has begun ends now, if it can.</summary>
+        public Track Without(HashSet<string> ids, double now)
+        {
+            if (!Items.Any(item => ids.Contains(item.Id)))
+            {
+                return this;
+            }
+            IEnumerable<Item> kept = Items.Where(item => !ids.Contains(item.Id) || item.Start < now);
+            return new Track(kept.Select(item => ids.Contains(item.Id) ? item.Ended(now) : item));
+        }
+
+        /// <summary>The track with more items; of speeches that overlap the later or more important cuts the other short.</summary>
+        public Track Plus(List<Item> items)
+        {
+            return items.Count == 0 ? this : new Track(Items.Concat(items));
+        }
+
+        /// <summary>The track without what no time from `seconds` on needs.</summary>
+        public Track Since(double seconds)
+        {
+            var old = new HashSet<Item>();
+            old.UnionWith(Places.Where(p => p.Start <= seconds).GroupBy(p => p.Name).Select(group => group.Last()));
+            old.UnionWith(Stays.Where(s => s.Start <= seconds).GroupBy(s => s.Layer).Select(group => group.Last()));
+            old.Add(Looks.LastOrDefault(x => x.Start <= seconds));
+            old.Add(Modes.LastOrDefault(x => x.Start <= seconds));
+            return new Track(Items.Where(
+                i => i.Start > seconds || old.Contains(i) || ((i is LookAt || i is Speech) && i.End > seconds)));
+        }
+
+        public bool Same(Track other)
+        {
+            return SameDraws(other) && Same(Places, other.Places) && Same(Stays, other.Stays);
+        }
+
+        /// <summary>Whether all that chance depends on is the same: what stays and where things are does not matter.</summary>
+        public bool SameDraws(Track other)
+        {
+            return Same(Looks, other.Looks) && Same(Speeches, other.Speeches) && Same(Modes, other.Modes) && Same(Blinks, other.Blinks);
+        }
+
+        private static bool Same<T>(List<T> a, List<T> b) where T : Item
+        {
+            return a.Count == b.Count && !a.Where((item, n) => !ReferenceEquals(item, b[n]) && !item.Same(b[n])).Any();
+        }
+
+        /// <summary>Speeches without overlaps: one at least as important cuts the running one, a lesser one is not said.</summary>
+        private static List<Speech> Apart(IEnumerable<Speech> speeches)
+        {
+            var found = new List<Speech>();
+            foreach (Speech speech in speeches)
+            {
+                Speech last = found.Count > 0 ? found[found.Count - 1] : null;
+                if (last != null && last.End > speech.Start)
+                {
+                    if (speech.Priority < last.Priority)
+                    {
+                        continue;
+                    }
+                    found.RemoveAt(found.Count - 1);
+                    if (last.Start < speech.Start)
+                    {
+                        found.Add((Speech)last.Ended(speech.Start));
+                    }
+                }
+                found.Add(speech);
+            }
+            return found;
+        }
+    }
+}

@@ -1,0 +1,397 @@
+using System;
+using System.Collections.Generic;
+
+namespace Metagraph
+{
+    /// <summary>Reads an export: its JSON and its GLB.</summary>
+    public sealed partial class Graph
+    {
+        /// <summary>Version of the format that this runtime reads.</summary>
+        public const int Format = 1;
+
+        /// <summary>
+        /// The graph of an export. A clip that the GLB lacks is a problem, not an error: its actions show their stance. name: of the
+        /// JSON, for messages. Raises MetagraphException, which says what is wrong, where, and what to do.
+        /// </summary>
+        public static Graph Load(string json, byte[] glb, string name = "export")
+        {
+            object parsed;
+            try
+            {
+                parsed = Json.Parse(json ?? "");
+            }
+            catch (FormatException error)
+            {
+                throw new MetagraphException(name, error.Message, "Export it again.");
+            }
+            var root = new Node(parsed, name);
+            int version = root["metagraph"].Count;
+            if (version > Format)
+            {
+                string what = "has format " + version + ", this runtime reads " + Format;
+                throw new MetagraphException(name, what, "Update the runtime.");
+            }
+            if (root["randomness"]["hash"].Text != "fnv1a32-mix")
+            {
+                throw new MetagraphException(name, "draws by another hash than this runtime's", "Update the runtime.");
+            }
+            return new Graph(root, glb);
+        }
+
+        private Graph(Node root, byte[] data)
+        {
+            Name = root["name"].Text;
+            ReadJoints(root);
+            ReadPlanner(root["planner"]);
+            foreach (Node one in root["clips"].Items)
+            {
+                var entry = new ClipEntry
+                {
+                    Id = one["id"].Text, Name = one["name"].Text, Animation = one["animation"].Count, Fps = one["fps"].Number,
+                    Frames = one["frames"].Count,
+                };
+                if (entry.Frames < 1 || !(entry.Fps > 0))
+                {
+                    throw one.Wrong("should have frames, and some each second");
+                }
+                Clips[entry.Id] = entry;
+            }
+            Node layers = root["layers"], found;
+            foreach (string layer in Basics.Layers)
+            {
+                Layers[layer] = ReadLayer(layer, layers[layer]);
+            }
+            Life = root.Maybe("life", out found) ? LifeSettings.From(found) : Life;
+            if (root.Maybe("points", out found))
+            {
+                foreach (string name in found.Names)
+                {
+                    Points[name] = found[name].Numbers(3);
+                }
+            }
+            ReadLines(root);
+            string glb = root["glb"].Text;
+            var clips = new ClipReader(new Glb(data, glb), this, glb);
+            foreach (ClipEntry entry in Clips.Values)
+            {
+                entry.Motion = clips.Read(entry);
+                if (entry.Motion == null)
+                {
+                    Problems.Add("the GLB '" + glb + "' lacks clip '" + entry.Name + "'; its actions show their stance. Export it again.");
+                }
+            }
+            Node face, morphs;
+            KnowsMorphs = root.Maybe("face", out face) && face.Maybe("morphs", out morphs) && morphs.Items.Count > 0;
+            Body = root.Maybe("rig", out found) && !found.IsNull ? ReadBody(found) : null;
+        }
+
+        private void ReadJoints(Node root)
+        {
+            List<Node> joints = root["joints"].Items;
+            var places = new Dictionary<string, int>();
+            Joints = new JointInfo[joints.Count];
+            for (int j = 0; j < Joints.Length; j++)
+            {
+                string parent = joints[j]["parent"].TextOrNull;
+                var joint = new JointInfo
+                {
+                    Name = joints[j]["name"].Text, Part = joints[j]["part"].OneOf(Basics.Parts), Side = joints[j]["side"].Text, Parent = -1,
+                };
+                if (parent != null && !places.TryGetValue(parent, out joint.Parent))
+                {
+                    throw joints[j].Wrong("its parent '" + parent + "' should stand before it");
+                }
+                places[joint.Name] = j;
+                Joints[j] = joint;
+            }
+            BaseRotations = Rows(root["base"]["rotations"], 4);
+            BaseTranslations = Rows(root["base"]["translations"], 3);
+        }
+
+        private float[] Rows(Node rows, int width)
+        {
+            List<Node> items = rows.Items;
+            if (items.Count != Joints.Length || Joints.Length == 0)
+            {
+                throw rows.Wrong("should have a row for each of " + Joints.Length + " joints");
+            }
+            var found = new List<float>();
+            items.ForEach(row => found.AddRange(Array.ConvertAll(row.Numbers(width), x => (float)x)));
+            return found.ToArray();
+        }
+
+        private void ReadPlanner(Node json)
+        {
+            double seed = json["seed"].Number;
+            if (json["blend"].Text != "3x^2-2x^3")
+            {
+                throw json["blend"].Wrong("is a curve that this runtime does not know");
+            }
+            Planner = new PlannerSettings
+            {
+                Seed = (uint)Basics.Clamp(seed, 0, uint.MaxValue), Alpha = json["alpha"].Number, NeverTwice = json["never_twice"].Flag,
+                Shortest = json["shortest"].Number, Wait = json["wait"].Number, Window = json["window"].Number,
+                LoopFade = json["loop_fade"].Number,
+            };
+            Node found;
+            Planner.Memory = json.Maybe("memory", out found) ? found.Number : Planner.Memory;
+            Planner.Rest = json.Maybe("rest", out found) ? found.Number : Planner.Rest;
+            Planner.Lookahead = json.Maybe("lookahead", out found) ? found.Number : Planner.Lookahead;
+            Planner.Hurry = json.Maybe("hurry", out found) ? found.Number : Planner.Hurry;
+            Planner.LeastBlend = json.Maybe("least_blend", out found) ? found.Number : Planner.LeastBlend;
+        }
+
+        private LayerGraph ReadLayer(string layer, Node json)
+        {
+            var graph = new LayerGraph(layer) { Start = json["start"].TextOrNull, Markov = ReadMarkov(json["markov"]) };
+            foreach (Node stance in json["stances"].Items)
+            {
+                if (!graph.Add(stance["id"].Text, stance["name"].Text))
+                {
+                    throw stance["id"].Wrong("is used twice");
+                }
+            }
+            foreach (Node action in json["actions"].Items)
+            {
+                if (!graph.Add(ReadAction(layer, action)))
+                {
+                    throw action["id"].Wrong("is used twice");
+                }
+            }
+            var reach = new List<int>();
+            var weights = new List<double>();
+            for (int j = 0; j < Joints.Length; j++)
+            {
+                Node weight;
+                double own = json["weights"].Maybe(Joints[j].Part, out weight) ? (float)weight.Number : 0.0;
+                if (own > 0)
+                {
+                    reach.Add(j);
+                    weights.Add(own);
+                }
+            }
+            graph.Reach = reach.ToArray();
+            graph.Weights = weights.ToArray();
+            return graph;
+        }
+
+        private GraphAction ReadAction(string layer, Node json)
+        {
+            var action = new GraphAction
+            {
+                Id = json["id"].Text, Name = json["name"].Text, Kind = json["kind"].OneOf(Basics.Kinds), Layer = layer,
+                Stance = json["stance"].Text, EndStance = json["end_stance"].TextOrNull, Limb = json["limb"].OneOf(Basics.Limbs),
+                Start = json["start"].Number, End = json["end"].Number, BlendIn = json["blend_in"].Number,
+                BlendOut = json["blend_out"].Number, Likelihood = json["likelihood"].Number,
+                EarliestExit = json["earliest_exit"].NumberOrNull, Joints = json["joints"].Texts, Tags = json["tags"].Texts,
+            };
+            if (!Clips.TryGetValue(json["clip"].Text, out action.Clip))
+            {
+                throw json["clip"].Wrong("is no clip of the export");
+            }
+            Node found;
+            action.Cooldown = json.Maybe("cooldown", out found) ? found.Number : 0.0;
+            action.Spacing = json.Maybe("spacing", out found) && !found.IsNull ? found.Count : (int?)null;
+            double[] phases = json.Maybe("phases", out found) ? found.Numbers(-1) : new double[0];
+            if (phases.Length != 4) // only gestures have phases; of others the stroke is as told, or the middle
+            {
+                double middle = (action.Start + action.End) / 2, stroke = json["stroke"].NumberOrNull ?? middle;
+                stroke = Basics.Clamp(stroke, action.Start, action.End);
+                phases = new[] { Math.Min(middle, stroke), stroke, Math.Max(middle, stroke), Math.Max(middle, stroke) };
+            }
+            action.Phases = new Phases { Ready = phases[0], Stroke = phases[1], StrokeEnd = phases[2], Relax = phases[3] };
+            action.Mask = Mask(action);
+            return action;
+        }
+
+        /// <summary>A one-armed action leaves the other arm alone; `Joints`, if any, names the only joints it moves.</summary>
+        private bool[] Mask(GraphAction action)
+        {
+            if (action.Limb == "both" && action.Joints.Length == 0)
+            {
+                return null;
+            }
+            string other = action.Limb == "left" ? "right" : "left";
+            return Array.ConvertAll(Joints, joint =>
+                !(action.Limb != "both" && joint.Part == "arms" && joint.Side == other)
+                && (action.Joints.Length == 0 || Array.IndexOf(action.Joints, joint.Name) >= 0));
+        }
+
+        private static MarkovModel ReadMarkov(Node json)
+        {
+            List<Node> states = json["states"].Items;
+            Node found;
+            var model = new MarkovModel
+            {
+                Limbs = states.ConvertAll(state => state.Items[0].OneOf(Basics.Limbs)).ToArray(),
+                Kinds = states.ConvertAll(state => state.Items[1].OneOf(Basics.Kinds)).ToArray(),
+                Matrix = json["matrix"].Items.ConvertAll(row => row.Numbers(states.Count)).ToArray(),
+                Gap = json["gap"].Number, Positive = json["positive"].Number, Negative = json["negative"].Number,
+                Tags = json.Maybe("tags", out found) ? found.Texts : Basics.None,
+                Lengths = new double[0][],
+            };
+            model.Lengths = json.Maybe("lengths", out found) ? found.Items.ConvertAll(pair => pair.Numbers(2)).ToArray() : model.Lengths;
+            bool tagged = model.Tags.Length == 0 || model.Tags.Length == states.Count;
+            if (model.Matrix.Length != states.Count || !tagged || (model.Lengths.Length != 0 && model.Lengths.Length != states.Count))
+            {
+                throw json.Wrong("should have a row of everything for each state");
+            }
+            if (!(model.Gap > 0) || Array.Exists(model.Matrix, row => Array.Exists(row, x => !(x >= 0))))
+            {
+                throw json.Wrong("should have a gap above 0 and no chance below 0");
+            }
+            return model;
+        }
+
+        private void ReadLines(Node root)
+        {
+            Node found, part;
+            if (!root.Maybe("lines", out found))
+            {
+                return;
+            }
+            foreach (string id in found.Names)
+            {
+                var line = new Line();
+                line.Text = found[id].Maybe("text", out part) ? part.Text : "";
+                line.Duration = found[id].Maybe("duration", out part) ? part.NumberOrNull : null;
+                foreach (Node ask in Glb.List(found[id], "asks"))
+                {
+                    try
+                    {
+                        line.Asks.Add(Ask.From(ask.Value));
+                    }
+                    catch (AskException error)
+                    {
+                        throw ask.Wrong(error.Message);
+                    }
+                }
+                Lines[id] = line;
+            }
+            if (!root.Maybe("voices", out found))
+            {
+                return;
+            }
+            foreach (string id in found.Names)
+            {
+                Node voice = found[id];
+                float[][] weights = voice["weights"].Items.ConvertAll(
+                    row => Array.ConvertAll(row.Numbers(Voice.Visemes.Length), x => (float)x)).ToArray();
+                if (weights.Length < 2)
+                {
+                    throw voice["weights"].Wrong("should have two rows or more");
+                }
+                if (Lines.ContainsKey(id))
+                {
+                    Lines[id].Voice = new Voice(voice["duration"].Number, voice["accents"].Numbers(-1), weights);
+                }
+            }
+        }
+
+        private Body ReadBody(Node json)
+        {
+            List<Node> breath = json["breath"].Items, shoulders = json["shoulders"].Items, lookers = json["lookers"].Items;
+            var body = new Body
+            {
+                Left = Vector(json["left"]), Up = Vector(json["up"]), Ahead = Vector(json["ahead"]), Chain = Indices(json["chain"]),
+                Breath = breath.ConvertAll(row => Vector(row.Numbers(4))).ToArray(),
+                Angles = breath.ConvertAll(row => row.Numbers(4)[3]).ToArray(),
+                Shoulders = shoulders.ConvertAll(one => Index(one["joint"], 0)).ToArray(),
+                ShoulderTurns = shoulders.ConvertAll(one => Vector(one["turn"])).ToArray(),
+                Lookers = lookers.ConvertAll(one => new Looker { Place = one["place"].Count, Share = one["share"].Number }).ToArray(),
+                Trunk = json["trunk"].Count, TrunkAhead = Vector(json["trunk_ahead"]), HeadAhead = Vector(json["head_ahead"]),
+                Partner = Vector(json["partner"]), EyesAtRest = Vector(json["eyes_at_rest"]),
+                Eyes = json["eyes"].Items.ConvertAll(ReadEye).ToArray(), Face = ReadFace(json["face"]),
+            };
+            int count = body.Chain.Length;
+            bool placed = Array.TrueForAll(body.Lookers, x => x.Place >= 0 && x.Place < count) && body.Trunk >= 0 && body.Trunk < count;
+            if (!placed || body.Angles.Length != count || body.Eyes.Length != 2)
+            {
+                throw json.Wrong("should have a chain of joints, a breath for each, two eyes, and lookers within the chain");
+            }
+            return body;
+        }
+
+        private EyeAt ReadEye(Node json)
+        {
+            return new EyeAt
+            {
+                At = Vector(json["at"]), Left = Vector(json["left"]), Up = Vector(json["up"]), Ahead = Vector(json["ahead"]),
+                TurnLeft = Vector(json["turn_left"]), TurnUp = Vector(json["turn_up"]), Joint = Index(json["joint"], -1),
+                Down = Quaternion(json["down"]),
+            };
+        }
+
+        private FaceRig ReadFace(Node json)
+        {
+            var face = new FaceRig
+            {
+                Joints = Indices(json["joints"]), LidJoints = json["lid_joints"].Items.ConvertAll(lid => Index(lid, -1)).ToArray(),
+                Turns = Shapes(json["turns"]), Shifts = Shapes(json["shifts"]), Follows = json["follows"].Numbers(4),
+                ShutBy = json["shut_by"].Items.ConvertAll(Quaternion).ToArray(),
+            };
+            bool whole = Array.TrueForAll(face.Turns, row => row.Length == face.Joints.Length)
+                && Array.TrueForAll(face.Shifts, row => row.Length == face.Joints.Length);
+            if (!whole || face.LidJoints.Length != 4 || face.ShutBy.Length != 4)
+            {
+                throw json.Wrong("should have a turn and a shift of each joint for each channel, and four lids");
+            }
+            face.Shifted = Array.Exists(face.Shifts, row => Array.Exists(row, v => v.X != 0 || v.Y != 0 || v.Z != 0));
+            Node morphs = json["morphs"];
+            foreach (string channel in morphs.Names)
+            {
+                int value = Enliven.ValueOf(channel);
+                foreach (string target in morphs[channel].Names)
+                {
+                    int place = Morph(target);
+                    if (value >= 0)
+                    {
+                        face.Morphs.Add(new MorphShare { Value = value, Target = place, Weight = morphs[channel][target].Number });
+                    }
+                }
+            }
+            return face;
+        }
+
+        private static Vec[][] Shapes(Node json)
+        {
+            List<Node> rows = json.Items;
+            if (rows.Count != FaceRig.Channels)
+            {
+                throw json.Wrong("should have " + FaceRig.Channels + " channels");
+            }
+            return rows.ConvertAll(row => row.Items.ConvertAll(Vector).ToArray()).ToArray();
+        }
+
+        private int Index(Node json, int least)
+        {
+            int found = json.Count;
+            if (found < least || found >= Joints.Length)
+            {
+                throw json.Wrong("is no joint");
+            }
+            return found;
+        }
+
+        private int[] Indices(Node json)
+        {
+            return json.Items.ConvertAll(one => Index(one, 0)).ToArray();
+        }
+
+        private static Vec Vector(Node json)
+        {
+            return Vector(json.Numbers(3));
+        }
+
+        private static Vec Vector(double[] numbers)
+        {
+            return new Vec(numbers[0], numbers[1], numbers[2]);
+        }
+
+        private static Quat Quaternion(Node json)
+        {
+            double[] q = json.Numbers(4);
+            return new Quat(q[0], q[1], q[2], q[3]);
+        }
+    }
+}

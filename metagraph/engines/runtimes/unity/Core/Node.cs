@@ -1,0 +1,177 @@
+using System;
+using System.Collections.Generic;
+
+namespace Metagraph
+{
+    /// <summary>A value of an export with its place in the JSON, so that what is wrong can be named.</summary>
+    internal struct Node
+    {
+        private const string Remedy = "Export it again.";
+        public readonly object Value;
+        public readonly string Where;
+
+        public Node(object value, string where)
+        {
+            Value = value;
+            Where = where;
+        }
+
+        public MetagraphException Wrong(string what)
+        {
+            return new MetagraphException(Where, what, Remedy);
+        }
+
+        public bool IsNull
+        {
+            get { return Value == null; }
+        }
+
+        /// <summary>A field that must be there.</summary>
+        public Node this[string name]
+        {
+            get
+            {
+                Node found;
+                if (!Maybe(name, out found))
+                {
+                    throw Wrong("'" + name + "' is missing");
+                }
+                return found;
+            }
+        }
+
+        /// <summary>A field that may be missing; whether it is there.</summary>
+        public bool Maybe(string name, out Node found)
+        {
+            JsonObject fields = Object;
+            bool there = fields.Has(name);
+            found = new Node(there ? fields[name] : null, Where + "." + name);
+            return there;
+        }
+
+        private JsonObject Object
+        {
+            get
+            {
+                var fields = Value as JsonObject;
+                if (fields == null)
+                {
+                    throw Wrong("should be an object");
+                }
+                return fields;
+            }
+        }
+
+        public IEnumerable<string> Names
+        {
+            get { return Object.Names; }
+        }
+
+        public List<Node> Items
+        {
+            get
+            {
+                var values = Value as List<object>;
+                if (values == null)
+                {
+                    throw Wrong("should be a list");
+                }
+                var found = new List<Node>(values.Count);
+                for (int n = 0; n < values.Count; n++)
+                {
+                    found.Add(new Node(values[n], Where + "[" + n + "]"));
+                }
+                return found;
+            }
+        }
+
+        public string Text
+        {
+            get
+            {
+                var text = Value as string;
+                if (text == null)
+                {
+                    throw Wrong("should be a text");
+                }
+                return text;
+            }
+        }
+
+        public string TextOrNull
+        {
+            get { return Value == null ? null : Text; }
+        }
+
+        public string OneOf(string[] words)
+        {
+            if (Array.IndexOf(words, Text) < 0)
+            {
+                throw Wrong("should be one of " + string.Join(", ", words));
+            }
+            return Text;
+        }
+
+        public double Number
+        {
+            get
+            {
+                if (Value is long)
+                {
+                    return (long)Value;
+                }
+                if (Value is double)
+                {
+                    return (double)Value;
+                }
+                throw Wrong("should be a number");
+            }
+        }
+
+        public double? NumberOrNull
+        {
+            get { return Value == null ? (double?)null : Number; }
+        }
+
+        public int Count
+        {
+            get
+            {
+                double number = Number;
+                if (number != Math.Floor(number) || number < -1 || number > 1e9)
+                {
+                    throw Wrong("should be a whole number");
+                }
+                return (int)number;
+            }
+        }
+
+        public bool Flag
+        {
+            get
+            {
+                if (!(Value is bool))
+                {
+                    throw Wrong("should be true or false");
+                }
+                return (bool)Value;
+            }
+        }
+
+        public string[] Texts
+        {
+            get { return Items.ConvertAll(item => item.Text).ToArray(); }
+        }
+
+        /// <summary>A list of so many numbers; any number of them where count is negative.</summary>
+        public double[] Numbers(int count)
+        {
+            double[] found = Items.ConvertAll(item => item.Number).ToArray();
+            if (count >= 0 && found.Length != count)
+            {
+                throw Wrong("should have " + count + " numbers");
+            }
+            return found;
+        }
+    }
+}
