@@ -12,6 +12,7 @@ from typing import Any
 
 from app.headless_annotate import annotate as annotate
 from app.headless_common import opened, say, staged
+from app.headless_export import export as export
 from app.headless_live import live as live
 from app.headless_mimic import mimic as mimic
 from app.headless_render import draw_to, figure_of, sound_of
@@ -108,23 +109,6 @@ def plan(options: Namespace) -> int:
     return 0
 
 
-def export(options: Namespace) -> int:
-    from metagraph.engines.export import export as write
-
-    project = opened(options.project)
-    character = options.project.resolve().parent / project.character if project.character else None
-    made = write(project, options.out, options.expanded, not options.no_mesh, character)
-    for warning in made.warnings:
-        print(f"warning: {warning}", file=sys.stderr)
-    data: dict[str, Any] = {"json": str(made.json), "glb": str(made.glb), "clips": made.clips, "warnings": list(made.warnings)}
-    if options.vectors:
-        from metagraph.engines.vectors import write_vectors
-
-        data["vectors"] = str(write_vectors(made.json))
-    say(options, "\n".join(data[key] for key in ("json", "glb", "vectors") if key in data), data)
-    return 0
-
-
 def info(options: Namespace) -> int:
     path: Path = options.path
     if path.suffix.lower() in SUFFIXES:
@@ -173,7 +157,7 @@ def info(options: Namespace) -> int:
 
 def demo(options: Namespace) -> int:
     """The main job without a window: graph, performance, contact sheet, video, export; say where the results are."""
-    from metagraph.engines.export import export as write
+    from metagraph.engines.export import export as write_export
 
     source: Path = getattr(options, "project", None) or SAMPLE
     project = opened(source)
@@ -196,7 +180,7 @@ def demo(options: Namespace) -> int:
     draw_to(video, project, figure, made, None, made.end, (640, 360), 30, 0, "dark", sound_of(project, folder, made, made.end))
     if not quiet:
         print(f"video          {video.resolve()}", flush=True)
-    exported = write(project, out, character=folder / project.character if project.character else None)
+    exported = write_export(project, out, character=folder / project.character if project.character else None)
     results = {"sheet": sheet, "video": video, "json": exported.json, "glb": exported.glb}
     if quiet:
         print(json.dumps({k: str(v.resolve()) for k, v in results.items()}))

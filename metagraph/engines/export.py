@@ -69,6 +69,13 @@ def export(
     expanded: list the expanded state machine as well. mesh: put the character's mesh into the GLB; `character` is it,
     or its file. Raises ExportError while the project has errors, FileError when a file cannot be written.
     """
+    warnings = sound(project)
+    made = write(project, folder, expanded, character if mesh else None, progress)
+    return replace(made, warnings=(*made.warnings, *warnings))
+
+
+def sound(project: Project) -> tuple[str, ...]:
+    """Return the warnings about a project that can be exported, in words. Raises ExportError with what must be mended first."""
     problems = check(project)
     errors = [p for p in problems if p.severity == "error"]
     if errors:
@@ -76,9 +83,12 @@ def export(
         raise ExportError(f"{errors[0].message}. {errors[0].remedy}{more}")
     if project.skeleton is None or not any(True for _ in project.actions()):
         raise ExportError("no action is placed yet: there is nothing to export")
-    warnings = [f"{p.message}. {p.remedy}" for p in problems if p.severity == "warning"]
-    made = write(project, folder, expanded, character if mesh else None, progress)
-    return replace(made, warnings=(*made.warnings, *warnings))
+    return tuple(f"{p.message}. {p.remedy}" for p in problems if p.severity == "warning")
+
+
+def stem_of(project: Project) -> str:
+    """Return what a project's exported files are called."""
+    return re.sub(r"[^\w.-]+", "_", project.name).strip("._") or "metagraph"
 
 
 def write(
@@ -92,8 +102,7 @@ def write(
     tell = progress or (lambda done, total, words: None)
     assert project.skeleton is not None
     used = _used(project)
-    stem = re.sub(r"[^\w.-]+", "_", project.name).strip("._") or "metagraph"
-    target = Path(folder)
+    stem, target = stem_of(project), Path(folder)
     glb, json = target / f"{stem}.glb", target / f"{stem}.json"
     names = unique_names([entry.name for entry in used])
     tell(0, 3, "clips")

@@ -172,9 +172,9 @@ def _stances(project: Project) -> Iterator[Case]:
             yield _once(
                 f"{layer}: an action of another stance", "transitions lead there first; playing a loop means to go there", asks, 24.0
             )
-            steps: tuple[Step, ...] = (Step(0.0, 20.0, (_ask("p", "action", 1.0, action=there[0].id),)),)
-            steps += (Step(1.2, 20.0, (_ask("u", "stance", layer=layer, stance=begin, priority=4),)), Step(3.0, 22.0))
-            yield Case(f"{layer}: a way that is interrupted", "something more important comes while on the way", steps)
+            hops: tuple[Step, ...] = (Step(0.0, 20.0, (_ask("p", "action", 1.0, action=there[0].id),)),)
+            hops += (Step(1.2, 20.0, (_ask("u", "stance", layer=layer, stance=begin, priority=4),)), Step(3.0, 22.0))
+            yield Case(f"{layer}: a way that is interrupted", "something more important comes while on the way", hops)
         hop = _some(project, layer, "transition")[0]
         asks = [_ask("t", "action", 1.0, action=hop.id), _ask("t2", "action", 6.0, action=hop.name, layer=layer)]
         yield _once(f"{layer}: a transition by name", "found by its id and by its name", asks)

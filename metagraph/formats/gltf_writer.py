@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import struct
-from collections.abc import Sequence
+from collections.abc import Collection, Mapping, Sequence
 from pathlib import Path
 from typing import Any
 
@@ -15,7 +15,7 @@ from metagraph.formats.atomic import write_atomically
 from metagraph.motion import rotation
 from metagraph.motion.character import Character
 from metagraph.motion.clip import Clip
-from metagraph.motion.skeleton import Skeleton
+from metagraph.motion.skeleton import Pose, Skeleton
 
 Array = NDArray[Any]
 
@@ -75,6 +75,9 @@ class Body:
         return self._known[key]
 
 
+SCENE = "Character"  # what the scene of a GLB that stands in a pose is called
+
+
 def write_glb(
     path: str | Path,
     clips: Sequence[Clip],
@@ -82,6 +85,9 @@ def write_glb(
     quantize: bool = True,
     tolerance: float | None = None,
     pose_nodes: bool = False,
+    stand: Pose | None = None,
+    moved: Mapping[str, Collection[int]] | None = None,
+    extensions: Mapping[str, Any] | None = None,
 ) -> None:
     """Write one skeleton, its skin and every clip as an animation.
 
@@ -89,7 +95,9 @@ def write_glb(
     integers (error below 0.003 degrees). tolerance: how far keys may be thinned out: the largest change of a
     quaternion component or, in metres, of a translation; by default 5e-5 when quantizing, else 0. A rotation that
     stays the same keeps one key. pose_nodes: joints that stand still, alike in every clip, are posed by their nodes and
-    cost no key at all; the rest pose is then only in the inverse bind matrices, as in many exporters' files. Raises
+    cost no key at all; the rest pose is then only in the inverse bind matrices, as in many exporters' files. stand: the pose the
+    joints' nodes have (the scene then has a name, which paths of some engines begin with), the rest pose when None; the skin stays bound to the rest pose.
+    moved: clip name -> the joints it moves, all where None. extensions: of the document, by name. Raises
     FileError when the file cannot be written, ValueError for mixed skeletons.
     """
     path = Path(path)
@@ -102,7 +110,7 @@ def write_glb(
     tolerance = (5e-5 if quantize else 0.0) if tolerance is None else tolerance
     body = Body()
     document: dict[str, Any] = {"asset": {"version": "2.0", "generator": "Metagraph"}, "scene": 0}
-    document["nodes"] = nodes = _joint_nodes(skeleton)
+    document["nodes"] = nodes = _joint_nodes(skeleton, skeleton.rest if stand is None else stand)
     roots = [i for i, p in enumerate(skeleton.parents) if p < 0]
     # Two roots need a common node above them for the skin to be valid.
     if len(roots) > 1:
@@ -126,11 +134,14 @@ def write_glb(
         mesh_node = _add_character(document, body, character)
         morphs = character.morphs
         roots = [*roots, mesh_node]
-    document["scenes"] = [{"nodes": roots}]
+    document["scenes"] = [{"nodes": roots} if stand is None else {"name": SCENE, "nodes": roots}]
     posed = _pose_still_nodes(nodes, clips, tolerance) if pose_nodes and clips else frozenset()
-    animations = [_animation(body, clip, quantize, tolerance, morphs, mesh_node, posed) for clip in clips]
+    animations = [_animation(body, clip, quantize, tolerance, morphs, mesh_node, posed, moved) for clip in clips]
     if animations:
         document["animations"] = animations
+    if extensions:
+        document["extensionsUsed"] = sorted(extensions)
+        document["extensions"] = dict(extensions)
     write_atomically(path, glb_bytes(document, body))
 
 
@@ -146,13 +157,13 @@ def glb_bytes(document: dict[str, Any], body: Body) -> bytes:
     return b"".join((start, head, struct.pack("<II", len(body.data), 0x004E4942), body.data))
 
 
-def _joint_nodes(skeleton: Skeleton) -> list[dict[str, Any]]:
+def _joint_nodes(skeleton: Skeleton, pose: Pose) -> list[dict[str, Any]]:
     out: list[dict[str, Any]] = []
     for i, name in enumerate(skeleton.names):
         node: dict[str, Any] = {
             "name": name,
-            "translation": skeleton.rest_translations[i].tolist(),
-            "rotation": skeleton.rest_rotations[i].tolist(),
+            "translation": pose.translations[i].tolist(),
+            "rotation": pose.rotations[i].tolist(),
         }
         if skeleton.children[i]:
             node["children"] = list(skeleton.children[i])
@@ -232,8 +243,10 @@ def _pose_still_nodes(nodes: list[dict[str, Any]], clips: Sequence[Clip], tolera
 
 
 def _animation(
-    body: Body, clip: Clip, quantize: bool, tolerance: float, morphs: tuple[str, ...], mesh_node: int | None, posed: frozenset[int]
-) -> dict[str, Any]:
+    body: Body, clip: Clip, quantize: bool, tolerance: float, morphs: tuple[str, ...], mesh_node: int | None, posed: frozenset[int],
+    moved: Mapping[str, Collection[int]] | None,
+) -> dict[str, Any]:  # fmt: skip
+    chosen = range(len(clip.skeleton)) if moved is None else moved[clip.name]
     times = np.arange(clip.frames) / clip.fps
     samplers: list[dict[str, Any]] = []
     channels: list[dict[str, Any]] = []
@@ -247,14 +260,18 @@ def _animation(
 
     rotations = clip.rotations.astype(np.float64)
     for joint, kept in enumerate(_keys(rotations, tolerance, True)):
-        if joint in posed:
+        if joint in posed or joint not in chosen:
             continue
+        if moved is not None and joint == min(chosen) and joint != 0 and clip.frames > 1 and len(kept) == 1:
+            kept = np.array([0, clip.frames - 1])  # keeps the clip's length, whatever else stands still
         values = rotations[kept, joint]
         if quantize:
             values = np.round(rotation.normalize(values) * 32767)
         add(joint, "rotation", kept, values, _SHORT if quantize else _FLOAT)
     translations = clip.translations.astype(np.float64)
     for place, kept in zip(clip.translated, _keys(translations, tolerance, False), strict=True):
+        if place not in chosen:
+            continue
         if place == 0 and clip.frames > 1 and len(kept) == 1:
             kept = np.array([0, clip.frames - 1])  # keeps the clip's length, whatever else stands still
         add(place, "translation", kept, translations[kept, clip.translated.index(place)], _FLOAT)

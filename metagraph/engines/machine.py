@@ -1,0 +1,188 @@
+"""The expanded machine with names, numbers and conditions, as engines' own state machines want it.
+
+Every layer becomes one machine: a state for each action, an arrow for each implied connection. What asks for an arrow:
+
+    "done"    the source has come to its end (or to where it may be left)
+    "action"  the layer's number `<layer>_action` is the target's, and the trigger `<layer>_play` was pulled
+    "stance"  the layer's number `<layer>_stance` is that of a stance whose shortest way leads over the target
+"""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass, replace
+from functools import cached_property
+from pathlib import Path
+from typing import Any, Literal
+
+import numpy as np
+from numpy.typing import NDArray
+
+from metagraph.graph import anatomy
+from metagraph.graph.expand import chain, connections, ends_in
+from metagraph.graph.model import LAYERS, REACH, Action, Layer, MetaGraph, Project
+from metagraph.motion.character import Character
+from metagraph.motion.clip import Clip
+from metagraph.motion.skeleton import unique_names
+
+Array = NDArray[Any]
+
+
+@dataclass(frozen=True, slots=True)
+class State:
+    """An action as a state. number: from 1 on, unique in its layer. name: unique in the whole export, letters, digits and "_";
+    its animation bears it, too. seconds: how long it plays. loop: whether it repeats until something else is asked."""
+
+    number: int
+    name: str
+    action: Action
+    seconds: float
+    loop: bool
+
+
+@dataclass(frozen=True, slots=True)
+class Arrow:
+    """A connection between states `source` and `target`. leave: seconds of the source's animation from which it may be taken,
+    None for at any time. blend: seconds. values: of `<layer>_action` or `<layer>_stance`, one of which must be set."""
+
+    source: State
+    target: State
+    leave: float | None
+    blend: float
+    on: Literal["done", "action", "stance"]
+    values: tuple[int, ...] = ()
+
+
+@dataclass(frozen=True)
+class Machine:
+    """One layer. stances: id -> number, from 0 on, the start's first. joints: the names of those it moves."""
+
+    layer: Layer
+    graph: MetaGraph
+    states: tuple[State, ...]
+    arrows: tuple[Arrow, ...]
+    stances: Mapping[str, int]
+    joints: tuple[str, ...]
+
+    @property
+    def start(self) -> State:
+        """The loop it begins in."""
+        return self.rest(next(iter(self.stances)))
+
+    def rest(self, stance: str) -> State:
+        """Return the loop that plays of itself in a stance: the first that was placed."""
+        return next(s for s in self.states if s.action.kind == "stance" and s.action.stance == stance)
+
+    @cached_property
+    def leaving(self) -> Mapping[str, tuple[Arrow, ...]]:
+        """State name -> the arrows that leave it."""
+        out: dict[str, list[Arrow]] = {s.name: [] for s in self.states}
+        for arrow in self.arrows:
+            out[arrow.source.name].append(arrow)
+        return {name: tuple(arrows) for name, arrows in out.items()}
+
+
+def machines(project: Project) -> tuple[Machine, ...]:
+    """Return the machines of the layers that have a stance with a loop, in the layers' order."""
+    every = [a for layer in LAYERS for a in _playing(project.graphs[layer])]
+    names = unique_names([f"{a.layer}_{_word(a.name)}" for a in every])
+    named = {a.id: name for a, name in zip(every, names, strict=True)}
+    found = (_machine(project, project.graphs[layer], named) for layer in LAYERS)
+    return tuple(m for m in found if m is not None)
+
+
+def _word(name: str) -> str:
+    return re.sub(r"[^A-Za-z0-9]+", "_", name).strip("_") or "action"
+
+
+def _playing(graph: MetaGraph) -> Iterator[Action]:
+    """Yield the actions that can play: their stances have loops."""
+    for action in graph.actions.values():
+        ends = ends_in(action)
+        if ends is not None and graph.of(action.stance, "stance") and graph.of(ends, "stance"):
+            yield action
+
+
+def _machine(project: Project, graph: MetaGraph, named: Mapping[str, str]) -> Machine | None:
+    resting = [s for s in graph.stances if graph.of(s, "stance")]
+    begin = graph.start if graph.start in resting else next(iter(resting), None)
+    if begin is None or project.skeleton is None:
+        return None
+    stances = {s: n for n, s in enumerate(sorted(resting, key=lambda s: s != begin))}
+    states: dict[str, State] = {}
+    for number, action in enumerate(_playing(graph), 1):
+        start, end = project.span(action)
+        states[action.id] = State(number, named[action.id], action, end - start, action.kind == "stance")
+    part = anatomy.parts(project)
+    joints = tuple(n for n, p in zip(project.skeleton.names, part, strict=True) if p in REACH[graph.layer] and graph.weight(p) > 0)
+    machine = Machine(graph.layer, graph, tuple(states.values()), (), stances, joints)
+    arrows = tuple(arrow for arrow in _arrows(project, machine, states))
+    return replace(machine, arrows=arrows)
+
+
+def _arrows(project: Project, machine: Machine, states: Mapping[str, State]) -> Iterator[Arrow]:
+    graph = machine.graph
+    first: dict[tuple[str, str], str] = {}  # the transition that stands for all between two stances
+    for state in states.values():
+        if state.action.kind == "transition":
+            first.setdefault((state.action.stance, str(state.action.end_stance)), state.action.id)
+    goals: dict[tuple[str, str], list[int]] = {}  # (stance, next on the way) -> the goals it leads to
+    for here in machine.stances:
+        for goal, number in machine.stances.items():
+            way = chain(graph, here, goal)
+            if way:
+                goals.setdefault((here, way[0]), []).append(number)
+    for row in connections(project, graph):
+        if row.source not in states or row.target not in states:
+            continue
+        source, target = states[row.source], states[row.target]
+        begin = project.span(source.action)[0]
+        leave = None if row.leave is None else min(max(0.0, row.leave - begin), source.seconds)
+        if target.action.kind == "stance" and source.action.kind != "stance" and target is machine.rest(target.action.stance):
+            last = max(0.0, source.seconds - source.action.timing.blend_out)  # so that the blend ends with the action
+            yield Arrow(source, target, last, row.blend, "done")
+            continue
+        ends = (target.action.stance, str(target.action.end_stance))
+        if target.action.kind == "transition" and first[ends] == target.action.id and ends in goals:
+            yield Arrow(source, target, leave, row.blend, "stance", tuple(goals[ends]))
+        yield Arrow(source, target, leave, row.blend, "action", (target.number,))
+
+
+def animations(project: Project, machines: tuple[Machine, ...]) -> list[Clip]:
+    """Return an animation for every state: the part of its clip that plays; joints that the action does not move stand as its
+    stance begins. Actions whose clip is missing stand in it, too."""
+    return [_animation(project, machine, state) for machine in machines for state in machine.states]
+
+
+def _animation(project: Project, machine: Machine, state: State) -> Clip:
+    assert project.skeleton is not None
+    rest = machine.rest(ends_in(state.action) or "").action
+    loop, motion = project.clips[rest.clip].motion, project.clips[state.action.clip].motion
+    playing = state.action if motion is not None else rest
+    clip = motion if motion is not None else loop
+    if clip is None:
+        raise ValueError(f"the file of clip '{project.clips[state.action.clip].name}' is missing")
+    start, end = project.span(playing)
+    frames = max(2, round((end - start) * clip.fps) + 1)
+    times = np.linspace(start, end, frames)
+    pose = clip.pose_at(times)
+    rotations, translations = np.array(pose.rotations), np.array(pose.translations)
+    mask = anatomy.mask(project, state.action)
+    if mask is not None and loop is not None:
+        still = np.flatnonzero(mask == 0)
+        stance = loop.pose_at(project.span(rest)[0])
+        rotations[:, still], translations[:, still] = stance.rotations[still], stance.translations[still]
+    moved = np.flatnonzero(np.abs(translations - anatomy.base_pose(project).translations).max((0, 2)) > 1e-6)
+    translated = tuple(sorted({0, *moved.tolist()}))
+    fps = (frames - 1) / max(end - start, 1e-3) if end > start else clip.fps
+    return Clip(state.name, project.skeleton, fps, rotations, translations[:, list(translated)], translated)
+
+
+def write_machine_glb(project: Project, machines: tuple[Machine, ...], path: Path, character: Character | None) -> None:
+    """Write the GLB engines' own state machines play: the joints' nodes stand in the base pose, against which additive layers are
+    taken, and every state has an animation of its name. Raises FileError."""
+    from metagraph.formats.gltf_writer import write_glb
+
+    assert project.skeleton is not None
+    write_glb(path, animations(project, machines), character, stand=anatomy.base_pose(project))

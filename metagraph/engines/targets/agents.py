@@ -1,0 +1,181 @@
+"""For agents of other systems: BML blocks, a gesture map for SmartBody, a gesture.json as Amazon's Sumerian Hosts read it."""
+
+from __future__ import annotations
+
+import json
+import re
+from collections.abc import Iterator
+from pathlib import Path
+from typing import Any
+
+import msgspec
+
+from metagraph.engines.machine import Machine, State, animations, machines, write_machine_glb
+from metagraph.engines.targets.losses import MACHINE
+from metagraph.engines.targets.meshes import mesh_of
+from metagraph.engines.targets.target import Loss, Made, Order, Target
+from metagraph.formats.atomic import write_atomically
+from metagraph.graph import asks as a
+from metagraph.graph.model import LAYERS, Project
+from metagraph.playback.bml_writer import write_bml
+from metagraph.playback.phases import phases
+
+# --- BML
+
+
+def blocks(project: Project) -> Iterator[tuple[str, tuple[a.AnyAsk, ...]]]:
+    """Yield a name and the asks of each block: the kept performances, then the lines."""
+    for performance in project.performances.values():
+        yield performance.name, tuple(x for x in performance.asks if not isinstance(x, a.Bml))
+    for ident, line in project.lines.items():
+        said = a.Say(id="say", line=ident, at=0.0, gestures=False)
+        yield f"line {ident}", (said, *(x for x in line.asks if not isinstance(x, a.Bml)))
+
+
+def vocabulary(project: Project) -> dict[str, Any]:
+    """Return the words blocks may use: lexemes (tags and names) by layer and stance, postures, speech."""
+    gestures: dict[str, Any] = {}
+    for layer in LAYERS:
+        graph = project.graphs[layer]
+        for action in graph.actions.values():
+            if action.kind == "gesture" and action.stance in graph.stances:
+                of = gestures.setdefault(layer, {}).setdefault(graph.stances[action.stance].name, [])
+                of.append({"lexeme": list(action.tags) or [action.name], "name": action.name, "mode": f"{action.limb.upper()}_HAND"})
+    postures = {layer: [s.name for s in project.graphs[layer].stances.values()] for layer in LAYERS}
+    return {"gestures": gestures, "postures": postures, "lines": {i: line.text for i, line in project.lines.items()}}
+
+
+def write_blocks(order: Order) -> Made:
+    """Write a file for each block, and the vocabulary."""
+    files: list[Path] = []
+    for name, asks in blocks(order.project):
+        path = order.folder / f"{_file(name, files)}.bml"
+        write_atomically(path, write_bml(_numbered(asks)).encode())
+        files.append(path)
+    words = order.folder / f"{order.stem}.vocabulary.json"
+    write_atomically(words, json.dumps(vocabulary(order.project), indent=1, ensure_ascii=False).encode())
+    none = () if files else ("no performance is kept and no line has requests of its own: there is the vocabulary alone",)
+    return Made((*files, words), none)
+
+
+def _numbered(asks: tuple[a.AnyAsk, ...]) -> Iterator[a.AnyAsk]:
+    """Yield asks with ids that are unique in their block."""
+    seen: set[str] = set()
+    for n, ask in enumerate(asks, 1):
+        ident = ask.id if ask.id and ask.id not in seen else f"b{n}"
+        seen.add(ident)
+        yield msgspec.structs.replace(ask, id=ident)
+
+
+def _file(name: str, taken: list[Path]) -> str:
+    stem = re.sub(r"[^\w-]+", "_", name).strip("_") or "block"
+    count = sum(1 for path in taken if path.stem == stem or path.stem.startswith(f"{stem}-"))
+    return stem if not count else f"{stem}-{count + 1}"
+
+
+# --- SmartBody
+
+HANDS = {"left": "LEFT_HAND", "right": "RIGHT_HAND", "both": "BOTH_HANDS"}
+
+
+def gesture_map(name: str, built: tuple[Machine, ...]) -> str:
+    """Return a Python script for SmartBody that maps lexeme, type, hand and posture to animations."""
+    rows = [
+        '"""Gestures of ' + json.dumps(name) + ' for SmartBody: run it after the motions of this folder are loaded."""',
+        "",
+        f"gestures = scene.getGestureMapManager().createGestureMap({json.dumps(name)})",
+    ]
+    for machine in built:
+        for state in machine.states:
+            if state.action.kind == "gesture":
+                lexeme, kind = _words(state)
+                posture = machine.rest(state.action.stance).name
+                words = (state.name, lexeme, kind, HANDS[state.action.limb], "", posture)
+                rows.append(f"gestures.addGestureMapping({', '.join(json.dumps(w) for w in words)})")
+    return "\n".join(rows) + "\n"
+
+
+def _words(state: State) -> tuple[str, str]:
+    """Return a gesture's lexeme and type: its tags, else its name."""
+    tags = [re.sub(r"\W+", "_", tag).upper() for tag in state.action.tags]
+    return (tags[0] if tags else re.sub(r"\W+", "_", state.action.name).upper()), (tags[1] if len(tags) > 1 else "")
+
+
+def write_smartbody(order: Order) -> Made:
+    """Write the map, and a BVH for each animation it names and each posture."""
+    from metagraph.formats.bvh import write_bvh
+
+    built = machines(order.project)
+    script = order.folder / f"{order.stem}_gestures.py"
+    write_atomically(script, gesture_map(order.stem, built).encode())
+    wanted = {s.name for m in built for s in m.states if s.action.kind in ("gesture", "stance")}
+    clips = [clip for clip in animations(order.project, built) if clip.name in wanted]
+    files = [script]
+    for n, clip in enumerate(clips):
+        order.tell(n, len(clips), clip.name)
+        files.append(order.folder / "motions" / f"{clip.name}.bvh")
+        write_bvh(clip, files[-1])
+    return Made(tuple(files))
+
+
+# --- Sumerian
+
+FPS = 30.0  # frames a second that "from" and "to" count
+
+
+def gestures(project: Project, built: tuple[Machine, ...]) -> dict[str, Any]:
+    """Return gesture.json: each gesture's way in, its hold, which repeats, and its way out; frames."""
+    out: dict[str, Any] = {}
+    for machine in built:
+        for state in machine.states:
+            if state.action.kind == "gesture":
+                found = phases(project, state.action)
+                hold, relax, end = (round((x - found.start) * FPS) for x in (found.stroke_end, found.relax, found.end))
+                out[state.name] = {
+                    "queueOptions": [
+                        {"name": "in", "from": 0, "to": hold, "loopCount": 1},
+                        {"name": "hold", "from": hold, "to": relax},
+                        {"name": "out", "from": relax, "to": end, "loopCount": 1},
+                    ]
+                }
+    return out
+
+
+def write_sumerian(order: Order) -> Made:
+    """Write gesture.json and the GLB with its animations."""
+    built = machines(order.project)
+    table, glb = order.folder / "gesture.json", order.folder / f"{order.stem}.glb"
+    body, notes = mesh_of(order)
+    write_machine_glb(order.project, built, glb, body)
+    write_atomically(table, json.dumps(gestures(order.project, built), indent=1).encode())
+    return Made((table, glb), notes)
+
+
+def _unsaid(project: Project) -> int:
+    return sum(isinstance(x, a.Bml) for p in project.performances.values() for x in p.asks)
+
+
+_ALONE = "written by its documentation; the system was not at hand to run it"
+TARGETS = (
+    Target(
+        "bml", "BML blocks", "a block for each kept performance and each line, and the vocabulary they may use", write_blocks,
+        (
+            Loss("what was asked, not what is played: the planner that hears a block chooses actions of its own"),
+            Loss("when an ask became known is not kept"),
+            Loss("{n} asks that are blocks themselves are left out", _unsaid),
+        ),
+        group="Agents",
+    ),
+    Target(
+        "smartbody", "SmartBody gesture map", "a Python script that maps lexemes to animations, and a BVH for each", write_smartbody,
+        (
+            *MACHINE, Loss("transitions and fidgets: SmartBody moves between postures by itself"),
+            Loss("a gesture has one lexeme and one type: its first two tags"),
+        ),
+        _ALONE, "Agents",
+    ),
+    Target(
+        "sumerian", "Sumerian Hosts (gesture.json)", "gesture.json with in, hold and out, and one GLB", write_sumerian,
+        (*MACHINE, Loss("stances, fidgets and transitions are in the GLB alone; gesture.json has no word for them")), _ALONE, "Agents",
+    ),
+)  # fmt: skip

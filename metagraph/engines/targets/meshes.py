@@ -1,0 +1,19 @@
+"""The character's mesh as targets write it."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+from metagraph.engines.targets.target import Order
+from metagraph.motion.character import Character
+
+
+def mesh_of(order: Order) -> tuple[Character | None, tuple[str, ...]]:
+    """Return the mesh that goes with an order, and what there is to say about it. Raises FileError."""
+    from metagraph.formats.gltf import read_character
+
+    given = order.character
+    body = read_character(given) if isinstance(given, Path) else given
+    if body is not None and given is not None and body.skeleton != order.project.skeleton:
+        return None, (f"the mesh of '{given.name}' is left out: it has another skeleton than the clips",)
+    return body, ()

@@ -1,0 +1,69 @@
+"""The targets there are, and writing for one: `write(project, "playcanvas", folder)`."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from difflib import get_close_matches
+from functools import cache
+from importlib import import_module
+from pathlib import Path
+
+from metagraph.engines.export import ExportError, sound, stem_of
+from metagraph.engines.targets.target import Order, Report, Target, Tell
+from metagraph.errors import FileError
+from metagraph.graph.model import Project
+from metagraph.motion.character import Character
+
+# Modules of this package that have TARGETS, in the order they are offered.
+MODULES = ("runtimes", "playcanvas", "interactivity", "statecharts", "agents")
+DEFAULT = "metagraph"
+
+
+@cache
+def targets() -> Mapping[str, Target]:
+    """Return all targets by name."""
+    found: dict[str, Target] = {}
+    for module in MODULES:
+        found |= {target.name: target for target in import_module(f"metagraph.engines.targets.{module}").TARGETS}
+    return found
+
+
+def target(name: str) -> Target:
+    """Return a target. Raises ExportError naming those there are."""
+    known = targets()
+    if name in known:
+        return known[name]
+    near = get_close_matches(name, known, 1)
+    raise ExportError(f"there is no target '{name}'; " + (f"did you mean '{near[0]}'?" if near else f"there are {', '.join(known)}"))
+
+
+def losses(project: Project, name: str) -> tuple[str, ...]:
+    """Return in words what a target loses of a project."""
+    return tuple(words for loss in target(name).losses if (words := loss.told(project)) is not None)
+
+
+def write(
+    project: Project,
+    name: str,
+    folder: str | Path,
+    character: Path | Character | None = None,
+    expanded: bool = False,
+    tell: Tell | None = None,
+) -> Report:
+    """Write a project for a target into a folder, which is made.
+
+    character: the mesh or its file, None to leave it out. expanded: list the state machine in the JSON as well. Raises ExportError
+    while the project has errors, FileError when a file cannot be written.
+    """
+    chosen = target(name)
+    warnings = sound(project)
+    place = Path(folder)
+    try:
+        place.mkdir(parents=True, exist_ok=True)
+    except OSError as error:
+        raise FileError(place, f"cannot be made ({error.strerror})", "on making the folder", "Choose a folder you may write to.") from None
+    order = Order(project, place, stem_of(project), character, expanded)
+    made = chosen.write(order if tell is None else Order(project, place, order.stem, character, expanded, tell))
+    return Report(
+        name, made.files, len(project.uses.keys() | {project.base.clip} - {None}), losses(project, name), (*made.notes, *warnings)
+    )

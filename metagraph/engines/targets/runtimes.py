@@ -1,0 +1,71 @@
+"""The export itself, alone or with a runtime beside it that plays it as the preview does."""
+
+from __future__ import annotations
+
+import shutil
+from collections.abc import Callable
+from pathlib import Path
+
+from metagraph import engines
+from metagraph.engines.export import write
+from metagraph.engines.targets.target import Loss, Made, Order, Target
+from metagraph.errors import FileError
+
+RUNTIMES = Path(engines.__file__).with_name("runtimes")
+BML = Loss("requests in Behaviour Markup Language are read by the desktop alone")
+
+
+def written(order: Order) -> Made:
+    """Write JSON and GLB."""
+    made = write(order.project, order.folder, order.expanded, order.character, order.tell)
+    return Made((made.json, made.glb), made.warnings)
+
+
+def copied(source: Path, target: Path, leave: tuple[str, ...] = ()) -> list[Path]:
+    """Copy a runtime's files; return them. leave: names that are not copied. Raises FileError."""
+    out = []
+    for path in sorted(source.rglob("*")):
+        inside = path.relative_to(source)
+        if path.is_dir() or any(part in leave or part.startswith((".", "__")) for part in inside.parts):
+            continue
+        place = target / inside
+        try:
+            place.parent.mkdir(parents=True, exist_ok=True)
+            shutil.copyfile(path, place)
+        except OSError as error:
+            raise FileError(
+                place,
+                f"cannot be written ({error.strerror})",
+                "on copying the runtime",
+                "Choose a place you may write to, with space left.",
+            ) from None
+        out.append(place)
+    return out
+
+
+def _with(runtime: str, under: str) -> Callable[[Order], Made]:
+    def write(order: Order) -> Made:
+        made = written(order)
+        return Made((*made.files, *copied(RUNTIMES / runtime, order.folder / under)), made.notes)
+
+    return write
+
+
+TARGETS = (
+    Target(
+        "metagraph", "Metagraph (JSON + GLB)", "one JSON, the graph, and one GLB, its clips", written, group="Played as the preview does",
+    ),
+    Target(
+        "javascript", "JavaScript, three.js", "JSON and GLB, and in metagraph/ the runtime: ES modules for browsers, Node and three.js",
+        _with("javascript", "metagraph"), (BML,), group="Played as the preview does",
+    ),
+    Target(
+        "godot", "Godot 4 add-on", "JSON and GLB, and in addons/metagraph/ the runtime in GDScript", _with("godot", "."), (BML,),
+        group="Played as the preview does",
+    ),
+    Target(
+        "unity", "Unity package", "JSON and GLB, and in Metagraph/ the runtime in C#",
+        _with("unity", "Metagraph"), (BML,),
+        untried="compiled and checked outside Unity; not run in Unity", group="Played as the preview does",
+    ),
+)  # fmt: skip

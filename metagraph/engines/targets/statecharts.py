@@ -1,0 +1,174 @@
+"""State charts: XState's JSON and W3C SCXML. They decide; whoever runs them plays the animations they name.
+
+Each layer is a region. Events ask: `<layer>.action.<state>` for an action, `<layer>.stance.<stance>` for a stance. An action ends, and may
+be left, by the clock.
+"""
+
+from __future__ import annotations
+
+import json
+import re
+from collections.abc import Iterator
+from typing import Any
+from xml.etree import ElementTree as Xml
+
+from metagraph.engines.machine import Arrow, Machine, State, machines, write_machine_glb
+from metagraph.engines.targets.losses import MACHINE
+from metagraph.engines.targets.meshes import mesh_of
+from metagraph.engines.targets.target import Loss, Made, Order, Target
+from metagraph.formats.atomic import write_atomically
+
+HOST = Loss(
+    "it decides only: who runs it plays each state's animation, blends for as long as the arrow says, and adds the layers"
+)
+FORGETFUL = Loss("what is asked while an action plays that may not be left yet is not remembered")
+
+
+def stance_words(machine: Machine) -> dict[int, str]:
+    """Return the word of each stance's number in events: its name, made of letters, digits and "_"."""
+    out: dict[int, str] = {}
+    for ident, number in machine.stances.items():
+        word = re.sub(r"[^A-Za-z0-9]+", "_", machine.graph.stances[ident].name).strip("_") or "stance"
+        out[number] = f"{word}_{number}" if word in out.values() else word
+    return out
+
+
+def _events(machine: Machine, arrow: Arrow) -> Iterator[str]:
+    """Yield the events that take an arrow."""
+    if arrow.on == "action":
+        yield f"{machine.layer}.action.{arrow.target.name}"
+    elif arrow.on == "stance":
+        words = stance_words(machine)
+        yield from (f"{machine.layer}.stance.{words[value]}" for value in arrow.values)
+
+
+def _ends(machine: Machine, state: State) -> tuple[Arrow | None, float]:
+    """Return the arrow that leaves an action of itself, and the seconds from which others may be taken."""
+    done = next((a for a in machine.leaving[state.name] if a.on == "done"), None)
+    others = [a.leave or 0.0 for a in machine.leaving[state.name] if a.on != "done"]
+    return done, min(others, default=0.0) if done is not None else 0.0
+
+
+def xstate(name: str, built: tuple[Machine, ...]) -> dict[str, Any]:
+    """Return the machine as XState 5's `createMachine` takes it; the action `play` says what to play."""
+    return {"id": name, "type": "parallel", "states": {machine.layer: _region(machine) for machine in built}}
+
+
+def _play(arrow: Arrow) -> dict[str, Any]:
+    return {"type": "play", "params": {"animation": arrow.target.name, "blend": round(arrow.blend, 4), "loop": arrow.target.loop}}
+
+
+def _region(machine: Machine) -> dict[str, Any]:
+    return {"initial": machine.start.name, "states": {state.name: _node(machine, state) for state in machine.states}}
+
+
+def _node(machine: Machine, state: State) -> dict[str, Any]:
+    done, leave = _ends(machine, state)
+    events: dict[str, Any] = {}
+    for arrow in machine.leaving[state.name]:
+        for event in _events(machine, arrow):
+            events.setdefault(event, {"target": f"#{arrow.target.name}", "actions": [_play(arrow)]})
+    node: dict[str, Any] = {"id": state.name, "meta": {"animation": state.name, "loop": state.loop, "kind": state.action.kind}}
+    if done is None:
+        return {**node, "on": events}
+    end = done.leave or 0.0
+    over = {"target": f"#{done.target.name}", "actions": [_play(done)]}
+    if leave >= end:
+        return {**node, "after": {_ms(end): over}}
+    free = {"after": {_ms(end - leave): over}, "on": events}
+    return {**node, "initial": "bound", "states": {"bound": {"after": {_ms(leave): "free"}}, "free": free}}
+
+
+def _ms(seconds: float) -> str:
+    return str(max(1, round(seconds * 1000)))
+
+
+NAMESPACE, OURS = "http://www.w3.org/2005/07/scxml", "urn:metagraph:scxml"
+
+
+def scxml(name: str, built: tuple[Machine, ...]) -> bytes:
+    """Return the machine as SCXML 1.0 with the null data model; attributes of our own name animation, loop and blend."""
+    Xml.register_namespace("", NAMESPACE)
+    Xml.register_namespace("metagraph", OURS)
+    root = _tag(None, "scxml", version="1.0", name=re.sub(r"\W+", "_", name), datamodel="null", initial="layers")
+    every = _tag(root, "parallel", id="layers")
+    for machine in built:
+        region = _tag(every, "state", id=machine.layer, initial=machine.start.name)
+        for state in machine.states:
+            _state(region, machine, state)
+    Xml.indent(root, " ")
+    text: str = Xml.tostring(root, encoding="unicode")
+    return f'<?xml version="1.0" encoding="UTF-8"?>\n{text}\n'.encode()
+
+
+def _tag(parent: Xml.Element | None, tag: str, **attributes: str) -> Xml.Element:
+    named = {(f"{{{OURS}}}{key[3:]}" if key.startswith("my_") else key): value for key, value in attributes.items()}
+    if parent is None:
+        return Xml.Element(f"{{{NAMESPACE}}}{tag}", named)
+    return Xml.SubElement(parent, f"{{{NAMESPACE}}}{tag}", named)
+
+
+def _state(region: Xml.Element, machine: Machine, state: State) -> None:
+    done, leave = _ends(machine, state)
+    end = (done.leave or 0.0) if done is not None else 0.0
+    bound = done is not None and leave > 0
+    node = _tag(region, "state", id=state.name, my_animation=state.name, my_loop=str(state.loop).lower())
+    taking = node
+    if bound and leave < end:
+        node.set("initial", f"{state.name}.bound")
+        waiting = _tag(node, "state", id=f"{state.name}.bound")
+        taking = _tag(node, "state", id=f"{state.name}.free")
+        _timer(waiting, f"{state.name}.leave", leave)
+        _tag(waiting, "transition", event=f"{state.name}.leave", target=f"{state.name}.free")
+    if done is not None:
+        _timer(node, f"{state.name}.done", end)
+        _tag(node, "transition", event=f"{state.name}.done", target=done.target.name, my_blend=f"{done.blend:.4g}")
+    if bound and leave >= end:
+        return
+    for arrow in machine.leaving[state.name]:
+        events = " ".join(_events(machine, arrow))
+        if events:
+            _tag(taking, "transition", event=events, target=arrow.target.name, my_blend=f"{arrow.blend:.4g}")
+
+
+def _timer(node: Xml.Element, event: str, seconds: float) -> None:
+    """Send an event after some seconds, unless the state is left before."""
+    entry, leaving = Xml.Element(f"{{{NAMESPACE}}}onentry"), Xml.Element(f"{{{NAMESPACE}}}onexit")
+    _tag(entry, "send", event=event, id=event, delay=f"{max(1, round(seconds * 1000))}ms")
+    _tag(leaving, "cancel", sendid=event)
+    node.insert(0, entry)
+    node.insert(1, leaving)
+
+
+def _write(order: Order, suffix: str, text: bytes, built: tuple[Machine, ...]) -> Made:
+    chart, glb = order.folder / f"{order.stem}.{suffix}", order.folder / f"{order.stem}.glb"
+    body, notes = mesh_of(order)
+    order.tell(0, 2, "clips")
+    write_machine_glb(order.project, built, glb, body)
+    order.tell(1, 2, "chart")
+    write_atomically(chart, text)
+    order.tell(2, 2, "done")
+    return Made((chart, glb), notes)
+
+
+def write_xstate(order: Order) -> Made:
+    built = machines(order.project)
+    text = json.dumps(xstate(order.stem, built), indent=1, ensure_ascii=False)
+    return _write(order, "xstate.json", text.encode(), built)
+
+
+def write_scxml(order: Order) -> Made:
+    built = machines(order.project)
+    return _write(order, "scxml", scxml(order.stem, built), built)
+
+
+TARGETS = (
+    Target(
+        "xstate",
+        "XState (JSON)",
+        "one state chart for XState 5, and one GLB with an animation for each state",
+        write_xstate,
+        (*MACHINE, HOST, FORGETFUL),
+    ),
+    Target("scxml", "SCXML", "one W3C state chart, and one GLB with an animation for each state", write_scxml, (*MACHINE, HOST, FORGETFUL)),
+)

@@ -1,0 +1,72 @@
+"""What every target says of itself and does."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass, field
+from pathlib import Path
+
+from metagraph.graph.model import Project
+from metagraph.motion.character import Character
+
+Tell = Callable[[int, int, str], None]
+
+
+@dataclass(frozen=True)
+class Loss:
+    """Something of a performance that a format cannot say. words: for people; "{n}" stands for what `count` finds in a project, and the
+    loss is told only where that is not 0."""
+
+    words: str
+    count: Callable[[Project], int] | None = None
+
+    def told(self, project: Project) -> str | None:
+        """Return the words for a project, None where it loses nothing."""
+        number = 1 if self.count is None else self.count(project)
+        return self.words.replace("{n}", str(number)) if number else None
+
+
+@dataclass(frozen=True)
+class Order:
+    """What is to be written: a sound project into a folder that is there. stem: what its files are called. character: the mesh, or
+    None to leave it out. expanded: the state machine in the JSON, where there is one."""
+
+    project: Project
+    folder: Path
+    stem: str
+    character: Path | Character | None = None
+    expanded: bool = False
+    tell: Tell = lambda done, total, words: None
+
+
+@dataclass(frozen=True)
+class Made:
+    """The files of an export, and what else there is to say."""
+
+    files: tuple[Path, ...]
+    notes: tuple[str, ...] = ()
+
+
+@dataclass(frozen=True)
+class Target:
+    """name: on the command line. title: in the window. files: what will be written, in words. write: does it. losses: what it
+    loses. untried: why it is experimental; empty where it was run."""
+
+    name: str
+    title: str
+    files: str
+    write: Callable[[Order], Made]
+    losses: tuple[Loss, ...] = ()
+    untried: str = ""
+    group: str = "Formats"
+
+
+@dataclass(frozen=True)
+class Report:
+    """What was written for a target. losses: in words, for this project."""
+
+    target: str
+    files: tuple[Path, ...]
+    clips: int
+    losses: tuple[str, ...] = ()
+    warnings: tuple[str, ...] = field(default_factory=tuple)

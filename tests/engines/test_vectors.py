@@ -1,0 +1,137 @@
+"""Conformance vectors: the shipped ones hold for this library, cover every rule, and fail where a rule is broken."""
+
+from __future__ import annotations
+
+import json
+from collections import Counter
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+
+from metagraph import engines
+from metagraph.engines import vectors
+from metagraph.engines.export import export, read_export
+from metagraph.errors import FileError
+from metagraph.graph.model import Project
+from metagraph.playback import choice, markov, pick, player, replan
+from metagraph.playback.life import evaluate, gaze, solve
+from metagraph.playback.planner import make_plan
+from metagraph.playback.player import pose_at
+from sample_clips.make import conformance
+
+FOLDERS = sorted(path for path in Path(engines.__file__).with_name("conformance").iterdir() if path.is_dir())
+
+
+@pytest.fixture(scope="module", params=FOLDERS, ids=lambda path: path.name)
+def shipped(request: Any) -> tuple[Path, Project, dict[str, Any]]:
+    folder: Path = request.param
+    return folder, read_export(folder / f"{folder.name}.json", resolved=True), json.loads((folder / vectors.NAME).read_bytes())
+
+
+def test_this_library_conforms_from_the_export_alone(shipped: Any) -> None:
+    folder, project, data = shipped
+    found = vectors.check_vectors(folder, project)
+    assert not found.failures
+    assert found.passed == len(data["cases"]) > 30
+
+
+def test_the_shipped_vectors_are_those_the_maker_makes(tmp_path: Path) -> None:
+    made = conformance.write(conformance.sparse(), tmp_path)
+    path = vectors.write_vectors(made.json)
+    folder = next(f for f in FOLDERS if f.name == "sparse")
+    assert json.loads(made.json.read_bytes()) == json.loads((folder / made.json.name).read_bytes())
+    again, kept = json.loads(path.read_bytes()), json.loads((folder / vectors.NAME).read_bytes())
+    assert [c["name"] for c in again["cases"]] == [c["name"] for c in kept["cases"]]
+    assert not vectors._unlike([c["plan"] for c in again["cases"]], [c["plan"] for c in kept["cases"]], "plan")
+
+
+def test_all_shipped_vectors_together_meet_every_outcome_the_planner_has() -> None:
+    told: Counter[str] = Counter()
+    for folder in FOLDERS:
+        for case in json.loads((folder / vectors.NAME).read_bytes())["cases"]:
+            told += Counter(report[1] for report in case["plan"]["reports"])
+    planner = {
+        "late", "cut", "resumed", "covered", "no-room", "no-candidate", "no-way", "no-stance", "past", "already-there", "cooling",
+        "not-understood",
+    }  # fmt: skip
+    assert planner <= set(told)
+
+
+def test_the_vectors_look_at_every_combination_of_layers_and_at_empty_ones() -> None:
+    names = {case["name"] for f in FOLDERS for case in json.loads((f / vectors.NAME).read_bytes())["cases"]}
+    assert {f"layers {x}" for x in ("body", "arms", "head", "body arms", "body head", "arms head", "body arms head")} <= names
+    sparse = next(f for f in FOLDERS if f.name == "sparse")
+    assert json.loads((sparse / "sparse.json").read_bytes())["layers"]["head"]["stances"] == []
+
+
+def test_an_export_plays_what_the_preview_plays(sample: Project, tmp_path: Path) -> None:
+    back = read_export(export(sample, tmp_path).json, resolved=True)
+    assert sample.skeleton is not None
+    times = np.linspace(0.0, 40.0, 161)
+    poses = [pose_at(make_plan(project, 40.0), project, times) for project in (sample, back)]
+    (_, ours), (_, theirs) = (sample.skeleton.globals(pose) for pose in poses)
+    assert np.linalg.norm(ours - theirs, axis=-1).max() < vectors.METRES
+
+
+# --- breaking one rule at a time
+
+
+def _broken_key32(seed: int, *words: str) -> int:
+    return choice.mix(choice.OFFSET ^ len("".join(words)) ^ seed)
+
+
+MUTATIONS: dict[str, tuple[Any, str, Any]] = {
+    "the blend curve": (player, "ease", lambda x: np.clip(x, 0.0, 1.0)),
+    "the hash of draws": (choice, "key32", _broken_key32),
+    "the counter of uses": (pick.Performer, "_count", lambda self, ident, now: 0.0),
+    "never twice and spacing": (pick.Performer, "_spaced", lambda self, candidates: candidates),
+    "the loop's seam": (player, "loop_seconds", lambda p, a, t: (p.span(a)[0] + t * 0, p.span(a)[0] + t * 0, t * 0)),
+    "leading a clip in from its stance": (player, "_lead", lambda shown, stance, edge, weight: shown),
+    "the cooldown": (pick.Performer, "_cooled", lambda self, action, stance: float("-inf")),
+    "the shortest chain": (pick, "chain", lambda graph, start, goal: None),
+    "how late a request may start": (replan, "delay", lambda asked, free, settings: (list(asked), [])),
+    "lengths of the models": (markov, "length", lambda chain, state, seed, key: 2.0),
+    "a breath's shape": (evaluate, "breath_at", lambda lane, life, time: 0.0),
+    "a blink's shape": (evaluate, "blink_at", lambda lane, life, time: 0.0),
+    "how the head settles": (gaze, "settle", gaze.ease),
+    "the head's share": (solve, "head_part", lambda angle, share: share * angle),
+    "what eyes can do": (solve, "within_reach", lambda left, up: (left, up)),
+}
+
+
+@pytest.mark.parametrize("rule", MUTATIONS)
+def test_breaking_a_rule_fails_some_vector(rule: str, monkeypatch: pytest.MonkeyPatch) -> None:
+    module, name, broken = MUTATIONS[rule]
+    monkeypatch.setattr(module, name, broken)
+    if rule == "how late a request may start":
+        monkeypatch.setattr("metagraph.playback.planner.delay", broken)
+    for folder in FOLDERS:
+        project = read_export(folder / f"{folder.name}.json", resolved=True)
+        for case in json.loads((folder / vectors.NAME).read_bytes())["cases"]:
+            if vectors.differences(project, case):
+                return
+    pytest.fail("no vector noticed")
+
+
+# --- files
+
+
+def test_vectors_that_are_missing_broken_or_newer_are_told(tmp_path: Path) -> None:
+    with pytest.raises(FileError, match="cannot be read"):
+        vectors.check_vectors(tmp_path)
+    (tmp_path / vectors.NAME).write_text("{")
+    with pytest.raises(FileError, match="not JSON"):
+        vectors.check_vectors(tmp_path)
+    (tmp_path / vectors.NAME).write_text('{"vectors": 99}')
+    with pytest.raises(FileError, match="version 99"):
+        vectors.check_vectors(tmp_path)
+
+
+def test_vectors_of_another_performance_are_told_apart(shipped: Any) -> None:
+    _, project, data = shipped
+    case = json.loads(json.dumps(next(c for c in data["cases"] if any(of["cues"] for of in c["plan"]["layers"].values()))))
+    layer = next(of for of in case["plan"]["layers"].values() if of["cues"])
+    layer["cues"][0]["start"] += 0.01
+    assert any("start" in words for words in vectors.differences(project, case))
