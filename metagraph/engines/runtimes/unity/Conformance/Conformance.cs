@@ -131,7 +131,8 @@ public static class Conformance
     private static object Reports(Plan plan)
     {
         IEnumerable<Report> sorted = plan.Reports.OrderBy(r => r.Request, Comparer<string>.Create(Basics.Compare))
-            .ThenBy(r => r.Outcome, StringComparer.Ordinal).ThenBy(r => r.Layer, StringComparer.Ordinal).ThenBy(r => r.At).ThenBy(r => r.Played);
+            .ThenBy(r => r.Outcome, StringComparer.Ordinal).ThenBy(r => r.Layer, StringComparer.Ordinal)
+            .ThenBy(r => r.At).ThenBy(r => r.Played);
         return sorted.Select(r => (object)Row(r.Request, r.Outcome, r.Layer, r.At, r.Played)).ToList();
     }
 
@@ -140,13 +141,13 @@ public static class Conformance
         List<object> targets = life.Targets.ConvertAll<object>(t => Row(
             t.Start, t.To.Point == null ? (object)t.To.Name : t.To.Point.Cast<object>().ToList(), t.Since, t.Amount, t.Strict, t.Asked));
         return Fields(
-            "modes", Lanes(life.Modes), "breaths", Lanes(life.Breaths), "aversions", Lanes(life.Aversions), "saccades", Lanes(life.Saccades),
-            "blinks", Lanes(life.Blinks), "targets", targets);
+            "modes", Lanes(life.Modes), "breaths", Lanes(life.Breaths), "aversions", Lanes(life.Aversions),
+            "saccades", Lanes(life.Saccades), "blinks", Lanes(life.Blinks), "targets", targets);
     }
 
     private static List<object> Lanes(Lane lane)
     {
-        return lane.Starts.Select((start, n) => (object)Row(new object[] { start }.Concat(lane.Values[n].Cast<object>()).ToArray())).ToList();
+        return lane.Starts.Select((start, n) => (object)new object[] { start }.Concat(lane.Values[n].Cast<object>()).ToList()).ToList();
     }
 
     // --- comparing

@@ -68,27 +68,17 @@ namespace Metagraph
         }
 
         /// <summary>
-        /// A number with three decimals: its exact binary value, rounded half to even. It keys draws, and ToString("F3") rounds
-        /// otherwise, or from fewer digits, depending on the platform.
+        /// A number of at least 1 with three decimals: its exact binary value, rounded half to even. It keys draws, and ToString("F3")
+        /// rounds otherwise, or from fewer digits, depending on the platform.
         /// </summary>
         public static string ThreeDecimals(double value)
         {
-            double size = Math.Abs(value), whole = Math.Floor(size);
-            double scaled = (size - whole) * 4503599627370496.0; // 2^52; a product with a power of two is exact
-            ulong fraction = (ulong)Math.Floor(scaled) * 1000UL;
-            ulong digits = fraction >> 52, rest = fraction & 0xFFFFFFFFFFFFFUL, half = 1UL << 51;
-            // What lies below 2^-52 of a number under 1 can only break a tie upwards.
-            if (rest > half || (rest == half && (digits % 2 == 1 || scaled > Math.Floor(scaled))))
-            {
-                digits++;
-            }
-            if (digits == 1000)
-            {
-                whole++;
-                digits = 0;
-            }
-            string sign = value < 0 ? "-" : "";
-            return sign + whole.ToString("0", CultureInfo.InvariantCulture) + "." + digits.ToString("000", CultureInfo.InvariantCulture);
+            double whole = Math.Floor(value);
+            ulong scaled = (ulong)((value - whole) * 4503599627370496.0) * 1000UL; // 2^52: nothing is lost of a number above 1
+            ulong digits = scaled >> 52, rest = scaled & 0xFFFFFFFFFFFFFUL, half = 1UL << 51;
+            digits += rest > half || (rest == half && digits % 2 == 1) ? 1UL : 0UL;
+            whole += digits == 1000 ? 1 : 0;
+            return whole.ToString("0", CultureInfo.InvariantCulture) + "." + (digits % 1000).ToString("000", CultureInfo.InvariantCulture);
         }
 
         /// <summary>The number of values, ascending, that are at most x.</summary>

@@ -34,17 +34,20 @@ namespace Metagraph
     {
         private const double Slack = 2.0; // seconds by which the plan may fall behind its horizon before it is extended
         private const double Cut = 15.0; // seconds between two cuts
-        private const int Remembered = 1000; // refusals
+        private const double Latest = 1e9; // seconds; no time comes after
+        private const int Remembered = 1000; // answers kept after that
 
         public readonly Graph Graph;
         private readonly CharacterOptions options;
         private readonly Player player;
         private readonly BodyPose pose;
         private readonly List<KeyValuePair<Ask, double?>> queue = new List<KeyValuePair<Ask, double?>>(); // with "after"
-        private readonly Dictionary<string, string> refused = new Dictionary<string, string>();
+        private readonly HashSet<string> asked = new HashSet<string>(); // ids that the plan can tell of
+        private readonly Dictionary<string, Answer> settled = new Dictionary<string, Answer>(); // of what it forgot or never heard of
+        private readonly Queue<string> settling = new Queue<string>(); // their ids, the oldest first
         private readonly List<CharacterEvent> events = new List<CharacterEvent>();
         private int count;
-        private double cutAt;
+        private double seen = double.NegativeInfinity, cutAt;
 
         public Character(Graph graph, CharacterOptions options = null)
         {
@@ -53,13 +56,11 @@ namespace Metagraph
             player = new Player(graph);
             pose = new BodyPose(graph);
             Plan = Plan.Empty(this.options.Seed ?? graph.Planner.Seed);
-            Plan = Hearing.Hear(graph, Plan, 0.0, new Ask[0], this.options.Ahead, this.options.Stances, this.options.Idle);
-            Now = double.NegativeInfinity; // so that what begins at 0 is told of at the first update
         }
 
         public Plan Plan { get; private set; }
 
-        /// <summary>Seconds of the performance at the last update; negative infinity before the first.</summary>
+        /// <summary>Seconds of the performance at the last update.</summary>
         public double Now { get; private set; }
 
         /// <summary>
@@ -88,18 +89,27 @@ namespace Metagraph
                 id = ask.Id.Length > 0 ? ask.Id : NextId();
                 ask.Id = id;
                 queue.Add(new KeyValuePair<Ask, double?>(ask, after));
-                refused.Remove(id);
+                settled.Remove(id);
+                asked.Add(id);
             }
             catch (Exception error) when (error is AskException || error is FormatException)
             {
                 id = id.Length > 0 ? id : NextId();
-                if (refused.Count >= Remembered)
-                {
-                    refused.Clear();
-                }
-                refused[id] = error.Message;
+                Settle(new Answer { Id = id, State = "refused", Why = error.Message });
             }
             return id;
+        }
+
+        /// <summary>Keep an answer that will not change any more.</summary>
+        private void Settle(Answer answer)
+        {
+            asked.Remove(answer.Id);
+            settled[answer.Id] = answer;
+            settling.Enqueue(answer.Id);
+            if (settling.Count > Remembered)
+            {
+                settled.Remove(settling.Dequeue());
+            }
         }
 
         private string NextId()
@@ -124,24 +134,53 @@ namespace Metagraph
         /// <summary>Move on to a time, seconds since the performance began; time never goes back. Works in what was asked.</summary>
         public void Update(double now)
         {
-            double before = Now;
-            now = double.IsNaN(now) || double.IsInfinity(now) ? Math.Max(before, 0.0) : Math.Max(Math.Max(before, now), 0.0);
-            Now = now;
+            Now = now > Now ? Math.Min(now, Latest) : Now;
+            try
+            {
+                PlanOn();
+            }
+            catch (Exception error) // a fault of the runtime's own must not stop the game: the plan stays as it is
+            {
+                queue.ForEach(one => Settle(new Answer { Id = one.Key.Id, State = "refused", Why = "the runtime failed: " + error }));
+                queue.Clear();
+            }
             events.Clear();
-            double horizon = now + options.Ahead;
-            bool far = Plan.End >= horizon - Slack;
+            Notice(seen, Now);
+            seen = Now;
+        }
+
+        private void PlanOn()
+        {
+            bool far = Plan.End >= Now + options.Ahead - Math.Min(Slack, options.Ahead / 2);
             if (queue.Count > 0 || !far)
             {
-                List<Ask> asks = queue.Select(one => one.Value == null ? one.Key : one.Key.With(one.Key.Id, now + one.Value.Value)).ToList();
+                List<Ask> asks = queue.ConvertAll(one => one.Value == null ? one.Key : one.Key.With(one.Key.Id, Now + one.Value.Value));
+                double end = far ? Plan.End : Now + options.Ahead;
+                Plan = Hearing.Hear(Graph, Plan, Now, asks, end, options.Stances, options.Idle);
+                asks.FindAll(ask => ask.Do == "withdraw").ForEach(ask => Settle(new Answer { Id = ask.Id, State = "done" }));
                 queue.Clear();
-                Plan = Hearing.Hear(Graph, Plan, now, asks, far ? Plan.End : horizon, options.Stances, options.Idle);
             }
-            Notice(before, now);
-            if (now - cutAt >= Cut)
+            if (Now - cutAt >= Cut)
             {
-                cutAt = now;
-                Plan = Hearing.Since(Plan, now - options.Recent);
+                cutAt = Now;
+                Forget(Now - options.Recent);
             }
+        }
+
+        /// <summary>Forget what is over, and settle the answers of what was asked for then.</summary>
+        private void Forget(double over)
+        {
+            foreach (string id in asked.ToList())
+            {
+                Answer answer = Hearing.AnswerTo(Plan, id);
+                bool played = answer.Until < over;
+                if (played || answer.State == "refused" || answer.State == "done")
+                {
+                    answer.State = played ? "done" : answer.State;
+                    Settle(answer);
+                }
+            }
+            Plan = Hearing.Since(Plan, over);
         }
 
         /// <summary>Note what began or ended after `before`, until `now`.</summary>
@@ -190,25 +229,29 @@ namespace Metagraph
             get { return events; }
         }
 
-        /// <summary>What became of an ask: when it will play, or why it will not. Known for as long as the past is kept.</summary>
+        /// <summary>What became of an ask: when it will play, or why it will not.</summary>
         public Answer AnswerTo(string id)
         {
-            string why;
-            if (refused.TryGetValue(id ?? "", out why))
+            Answer known;
+            if (settled.TryGetValue(id ?? "", out known))
             {
-                return new Answer { Id = id, State = "refused", Why = why };
+                return known;
+            }
+            if (!asked.Contains(id ?? ""))
+            {
+                return new Answer { Id = id, State = "refused", Why = "nothing was asked for as '" + id + "'" };
             }
             if (queue.Exists(one => one.Key.Id == id))
             {
                 return new Answer { Id = id, State = "planned", Why = "taken up at the next update" };
             }
-            return Hearing.AnswerTo(Plan, id ?? "");
+            return Hearing.AnswerTo(Plan, id);
         }
 
         /// <summary>The pose at the updated time; the same arrays each time. alive: with the life layers.</summary>
         public BodyPose Pose(bool alive = true)
         {
-            player.PoseAt(Plan, Math.Max(Now, 0.0), alive, pose);
+            player.PoseAt(Plan, Now, alive, pose);
             return pose;
         }
     }

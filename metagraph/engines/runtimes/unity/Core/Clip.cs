@@ -81,10 +81,12 @@ namespace Metagraph
             {
                 int mesh = Glb.Integer(nodes[n], "mesh", -1);
                 Node extras, targets;
-                if (mesh >= 0 && mesh < meshes.Count && meshes[mesh].Maybe("extras", out extras) && extras.Maybe("targetNames", out targets))
+                if (mesh < 0 || mesh >= meshes.Count || !meshes[mesh].Maybe("extras", out extras)
+                    || !extras.Maybe("targetNames", out targets))
                 {
-                    morphs[n] = Array.ConvertAll(targets.Texts, graph.Morph);
+                    continue;
                 }
+                morphs[n] = Array.ConvertAll(targets.Texts, graph.Morph);
             }
         }
 
@@ -101,14 +103,14 @@ namespace Metagraph
         /// <summary>The clip of an entry; null where the GLB has none of its place and name.</summary>
         public Clip Read(ClipEntry entry)
         {
-            Node called, found = default(Node);
+            Node called;
             int place = entry.Animation;
             bool there = place >= 0 && place < animations.Count && animations[place].Maybe("name", out called) && called.Text == entry.Name;
             if (!there)
             {
                 return null;
             }
-            found = animations[place];
+            Node found = animations[place];
             int count = graph.Joints.Length;
             var clip = new Clip(entry.Frames, entry.Fps, count, stillPlaces);
             for (int f = 0; f < entry.Frames; f++)

@@ -12,6 +12,7 @@ namespace Metagraph
         private readonly string name;
         private readonly byte[] data;
         private readonly int start, length; // of the binary chunk
+        private readonly List<Node> accessors, views;
         private readonly Dictionary<int, float[]> known = new Dictionary<int, float[]>();
 
         /// <summary>Raises MetagraphException for what is no GLB or is cut off; name: for messages.</summary>
@@ -46,6 +47,8 @@ namespace Metagraph
             {
                 throw new MetagraphException(name, error.Message, Again);
             }
+            accessors = List(Json, "accessors");
+            views = List(Json, "bufferViews");
         }
 
         private long Word(int at)
@@ -79,7 +82,6 @@ namespace Metagraph
 
         private float[] Read(int accessor)
         {
-            List<Node> accessors = List(Json, "accessors"), views = List(Json, "bufferViews");
             if (accessor < 0 || accessor >= accessors.Count)
             {
                 throw new MetagraphException(name, "has no accessor " + accessor, Again);

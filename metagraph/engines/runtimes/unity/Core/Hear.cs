@@ -75,7 +75,8 @@ namespace Metagraph
             var answer = new Answer { Id = id, Why = string.Join("; ", told.Select(r => r.Message).Distinct().ToArray()) };
             if (cues.Count > 0 || items.Count > 0)
             {
-                answer.State = told.Exists(r => r.Outcome == "late" || r.Outcome == "queued" || r.Outcome == "resumed") ? "late" : "planned";
+                string[] late = { "late", "queued", "resumed" };
+                answer.State = told.Exists(r => late.Contains(r.Outcome)) ? "late" : "planned";
                 answer.At = cues.Select(c => c.Start).Concat(items.Select(i => i.Start)).Min();
                 answer.Until = cues.Select(c => c.End).Concat(items.Select(i => i.End)).Max();
                 answer.What = cues.Select(c => c.Action.Name).Concat(items.Select(i => i.Word)).ToArray();
@@ -117,7 +118,8 @@ namespace Metagraph
             var known = new HashSet<string>(layers.Values.SelectMany(layer => layer.Metas).Select(m => m.Request.Id));
             return new Plan(
                 plan.Seed, plan.End, layers, plan.Reports.FindAll(r => r.At >= seconds),
-                plan.Requests.FindAll(r => r.Start >= seconds || known.Contains(r.Id)), plan.Track.Since(seconds), plan.Life.Since(seconds));
+                plan.Requests.FindAll(r => r.Start >= seconds || known.Contains(r.Id)), plan.Track.Since(seconds),
+                plan.Life.Since(seconds));
         }
 
         private static LayerPlan Since(LayerPlan plan, double seconds)

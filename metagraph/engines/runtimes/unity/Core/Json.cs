@@ -54,6 +54,18 @@ namespace Metagraph
             return found;
         }
 
+        /// <summary>A text as JSON: in quotes, with what may not stand in them escaped.</summary>
+        public static string Quote(string text)
+        {
+            var found = new StringBuilder("\"");
+            foreach (char c in text ?? "")
+            {
+                bool plain = c >= ' ' && c != '"' && c != '\\';
+                found.Append(plain ? c.ToString() : "\\u" + ((int)c).ToString("x4", CultureInfo.InvariantCulture));
+            }
+            return found.Append('"').ToString();
+        }
+
         private FormatException Wrong(string what)
         {
             return new FormatException("not JSON: " + what + " (character " + at.ToString(CultureInfo.InvariantCulture) + ")");

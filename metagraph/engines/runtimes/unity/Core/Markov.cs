@@ -40,7 +40,8 @@ namespace Metagraph
                 else if (chain.Kinds[state] == "gesture")
                 {
                     double draw = Choice.Uniform(seed, key, "tag");
-                    tags = draw < chain.Positive ? new[] { "positive" } : draw < chain.Positive + chain.Negative ? new[] { "negative" } : tags;
+                    string tag = draw < chain.Positive ? "positive" : draw < chain.Positive + chain.Negative ? "negative" : null;
+                    tags = tag == null ? tags : new[] { tag };
                 }
                 var request = new Request
                 {

@@ -4,16 +4,32 @@ using System.Collections.Generic;
 namespace Metagraph
 {
     /// <summary>A value of an export with its place in the JSON, so that what is wrong can be named.</summary>
-    internal struct Node
+    internal sealed class Node
     {
         private const string Remedy = "Export it again.";
         public readonly object Value;
-        public readonly string Where;
+        private readonly Node parent;
+        private readonly string name; // of the file, or the field in the parent
+        private readonly int place; // in the parent, -1 for a field
 
-        public Node(object value, string where)
+        public Node(object value, string name)
         {
             Value = value;
-            Where = where;
+            this.name = name;
+        }
+
+        private Node(object value, Node parent, string name, int place)
+        {
+            Value = value;
+            this.parent = parent;
+            this.name = name;
+            this.place = place;
+        }
+
+        /// <summary>Put together only for messages: an export has a hundred thousand values.</summary>
+        public string Where
+        {
+            get { return parent == null ? name : parent.Where + (place >= 0 ? "[" + place + "]" : "." + name); }
         }
 
         public MetagraphException Wrong(string what)
@@ -45,7 +61,7 @@ namespace Metagraph
         {
             JsonObject fields = Object;
             bool there = fields.Has(name);
-            found = new Node(there ? fields[name] : null, Where + "." + name);
+            found = new Node(there ? fields[name] : null, this, name, -1);
             return there;
         }
 
@@ -79,7 +95,7 @@ namespace Metagraph
                 var found = new List<Node>(values.Count);
                 for (int n = 0; n < values.Count; n++)
                 {
-                    found.Add(new Node(values[n], Where + "[" + n + "]"));
+                    found.Add(new Node(values[n], this, null, n));
                 }
                 return found;
             }

@@ -5,16 +5,9 @@ using System.Linq;
 namespace Metagraph
 {
     /// <summary>From a meta plan to specific actions: one layer being planned, cue after cue. Nothing of it leaves the planner.</summary>
-    internal sealed class Performer
+    internal sealed partial class Performer
     {
         public const double Fits = 1e-6; // seconds by which sums of times may be off
-
-        /// <summary>One action of a chain: who may play it, and for a transition on the way the stance it leads to.</summary>
-        private struct Step
-        {
-            public List<GraphAction> Candidates;
-            public string Hop;
-        }
 
         /// <summary>How an action would play: from Start on, Length seconds, at least Shortest; the rest as in a cue.</summary>
         private struct Shape
@@ -175,104 +168,6 @@ namespace Metagraph
             return action.Cooldown > 0 && past.Ended.TryGetValue(action.Id, out ended) ? ended + action.Cooldown : double.NegativeInfinity;
         }
 
-        /// <summary>Each action in turn: the transitions to get there, then the action itself; null if impossible or needless.</summary>
-        private List<Step> Steps(MetaAction meta)
-        {
-            Request request = meta.Request;
-            if (request.Action != null)
-            {
-                GraphAction action = graph.Action(request.Action);
-                if (action == null || !graph.HasStance(action.Stance))
-                {
-                    Tell(meta, "unknown-action", "there is no action '" + request.Action + "' in the " + graph.Layer + " layer");
-                    return null;
-                }
-                if (action.Kind == "stance")
-                {
-                    return Way(meta, action.Stance);
-                }
-                if (!Arrives(action))
-                {
-                    Tell(meta, "no-stance", "'" + action.Name + "' ends in a stance that has no loop");
-                    return null;
-                }
-                List<Step> way = action.Stance == past.Stance ? new List<Step>() : Way(meta, action.Stance);
-                if (way != null)
-                {
-                    way.Add(new Step { Candidates = new List<GraphAction> { action } });
-                }
-                return way;
-            }
-            if (request.Stance != null && (request.Kind == "transition" || request.Kind == "stance"))
-            {
-                if (!graph.HasStance(request.Stance))
-                {
-                    Tell(meta, "no-stance", "there is no stance '" + request.Stance + "' in the " + graph.Layer + " layer");
-                    return null;
-                }
-                return Way(meta, request.Stance);
-            }
-            List<GraphAction> every = graph.Of(past.Stance, request.Kind).FindAll(Usable);
-            if (request.Among.Length > 0)
-            {
-                every = every.FindAll(a => request.Among.Contains(a.Id));
-            }
-            List<GraphAction> found = every.FindAll(a => a.HasTags(request.Tags));
-            List<GraphAction> exact = request.Limb != null ? found.FindAll(a => a.Limb == request.Limb) : found;
-            if (meta.Written) // the model's limb and tags are wishes, not orders, nor worth playing the same again
-            {
-                List<string> recent;
-                past.Recent.TryGetValue(LayerGraph.Node(past.Stance, request.Kind), out recent);
-                string again = recent == null ? null : recent[recent.Count - 1];
-                exact = new[] { exact, found, every }.FirstOrDefault(some => some.Exists(a => a.Id != again)) ?? every;
-            }
-            if (exact.Count == 0)
-            {
-                string[] words = new[] { request.Limb ?? "" }.Concat(request.Tags).Concat(new[] { request.Kind }).ToArray();
-                string wanted = string.Join(" ", words.Where(word => word.Length > 0).ToArray());
-                Tell(meta, "no-candidate", "stance '" + graph.NameOf(past.Stance) + "' has no " + wanted);
-                return null;
-            }
-            return new List<Step> { new Step { Candidates = exact } };
-        }
-
-        /// <summary>The transitions hop by hop from the current stance to `goal`.</summary>
-        private List<Step> Way(MetaAction meta, string goal)
-        {
-            if (goal == past.Stance)
-            {
-                Tell(meta, "already-there", "the layer is in '" + graph.NameOf(goal) + "' already", true);
-                return null;
-            }
-            List<string> stances = graph.Chain(past.Stance, goal);
-            if (stances == null)
-            {
-                string ends = "'" + graph.NameOf(past.Stance) + "' to '" + graph.NameOf(goal) + "'";
-                Tell(meta, "no-way", "no chain of transitions leads from " + ends);
-                return null;
-            }
-            var steps = new List<Step>();
-            string at = past.Stance;
-            foreach (string following in stances)
-            {
-                List<GraphAction> hops = graph.Of(at, "transition").FindAll(a => a.EndStance == following && Usable(a));
-                steps.Add(new Step { Candidates = hops, Hop = following });
-                at = following;
-            }
-            return steps;
-        }
-
-        /// <summary>Whether an action leaves the layer in a stance that can rest.</summary>
-        private bool Arrives(GraphAction action)
-        {
-            return action.Kind != "transition" || (graph.HasStance(action.EndStance) && graph.Of(action.EndStance, "stance").Count > 0);
-        }
-
-        private bool Usable(GraphAction action)
-        {
-            return action.Likelihood > 0 && Arrives(action);
-        }
-
         /// <summary>How an action would play for a request from `now` on, or, without one, as a step on the way to it.</summary>
         private Shape ShapeOf(GraphAction action, Request request, double now)
         {
@@ -312,11 +207,12 @@ namespace Metagraph
             return shape;
         }
 
-        /// <summary>Draw with p_k ~ likelihood_k / max(c_k, 1), leaving out those used too recently as long as any others are left.</summary>
+        /// <summary>Draw with p_k ~ likelihood_k / max(c_k, 1), leaving out those used too recently while any others are left.</summary>
         private GraphAction Draw(List<GraphAction> candidates, string key, double now)
         {
             List<GraphAction> left = Spaced(candidates);
-            string chosen = Choice.Pick(seed, key, "action", left.Select(a => Weighed(a, a.Likelihood / Math.Max(Count(a.Id, now), 1.0))));
+            IEnumerable<KeyValuePair<string, double>> weights = left.Select(a => Weighed(a, a.Likelihood / Math.Max(Count(a.Id, now), 1.0)));
+            string chosen = Choice.Pick(seed, key, "action", weights);
             return left.Find(a => a.Id == chosen) ?? left[0];
         }
 
@@ -325,7 +221,7 @@ namespace Metagraph
             return new KeyValuePair<string, double>(action.Id, weight);
         }
 
-        /// <summary>Leave out what needs more other actions before it plays again; where that leaves nothing, all need one less, and so on.</summary>
+        /// <summary>Leave out what needs more other actions before it plays again; where nothing is left, all need one less, and so on.</summary>
         private List<GraphAction> Spaced(List<GraphAction> candidates)
         {
             List<string> before;

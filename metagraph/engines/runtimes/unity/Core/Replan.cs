@@ -152,7 +152,7 @@ namespace Metagraph
             return placed;
         }
 
-        /// <summary>Put a meta action in line: by start, priority, id and part; of those that are equal in all, the first come first.</summary>
+        /// <summary>Put a meta action in line: by start, priority, id and part; of equals the first come first.</summary>
         private static void Push(List<MetaAction> queue, MetaAction meta)
         {
             int low = 0, high = queue.Count;
@@ -188,7 +188,8 @@ namespace Metagraph
         {
             return new Report
             {
-                Request = meta.Request.Id, Outcome = outcome, Message = message, Layer = meta.Request.Layer, At = meta.Start, Played = played,
+                Request = meta.Request.Id, Outcome = outcome, Message = message, Layer = meta.Request.Layer, At = meta.Start,
+                Played = played,
             };
         }
     }

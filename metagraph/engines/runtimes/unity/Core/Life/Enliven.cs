@@ -239,7 +239,8 @@ namespace Metagraph
                 return 0.0;
             }
             double gone = (time - lane.Starts[n]) / lane.Values[n][0];
-            return life.Breathing * (1 - life.Stillness) * lane.Values[n][1] * Basics.Ease(Math.Min(gone / Inhale, (1 - gone) / (1 - Inhale)));
+            double depth = life.Breathing * (1 - life.Stillness) * lane.Values[n][1];
+            return depth * Basics.Ease(Math.Min(gone / Inhale, (1 - gone) / (1 - Inhale)));
         }
 
         /// <summary>How far a blink has shut the eyes, 0..1.</summary>

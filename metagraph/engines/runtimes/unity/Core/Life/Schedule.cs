@@ -169,7 +169,7 @@ namespace Metagraph
             return life.Manner(modeAt[Math.Max(0, Basics.BisectRight(edges, seconds) - 1)]);
         }
 
-        /// <summary>When `need` has passed since `seconds`, for a clock that runs at speed(manner, strict); infinite where not before the end.</summary>
+        /// <summary>When `need` has passed since `seconds`, of a clock that runs at speed(manner, strict); infinite if too late.</summary>
         private double After(double seconds, double need, Func<Manner, bool, double> speed)
         {
             int place = Math.Max(0, Basics.BisectRight(edges, seconds) - 1);
@@ -291,7 +291,8 @@ namespace Metagraph
         private Lane Blinks(Lane lane)
         {
             double shut = life.BlinkClose + life.BlinkOpen, mean = life.Blinks > 0 && calm > 0 ? 60 / life.Blinks : Inf;
-            double last = lane.Count > 0 ? lane.Starts[lane.Count - 1] : -0.5 * Math.Min(mean, 10.0) * Choice.Uniform(seed, "blink", "first");
+            double last = -0.5 * Math.Min(mean, 10.0) * Choice.Uniform(seed, "blink", "first");
+            last = lane.Count > 0 ? lane.Starts[lane.Count - 1] : last;
             var accents = new List<KeyValuePair<double, bool>>();
             if (calm > 0 && life.AccentBlinks > 0)
             {
@@ -321,7 +322,7 @@ namespace Metagraph
             }
         }
 
-        /// <summary>Whether a stressed syllable may bring a blink: the first of a speech always, the others some time after the last blink.</summary>
+        /// <summary>Whether a stressed syllable may bring a blink: a speech's first always, others some time after the last blink.</summary>
         private bool Suits(double at, bool first, double last, double shut)
         {
             return at >= cut && at >= last + (first ? shut + 0.1 : AfterBlink / calm);

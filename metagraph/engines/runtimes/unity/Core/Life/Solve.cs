@@ -115,7 +115,7 @@ namespace Metagraph
             }
         }
 
-        /// <summary>The head's turn towards a target `left` and `up` of ahead: a rotation vector in the character's space, its size.</summary>
+        /// <summary>The head's turn towards a target `left` and `up` of ahead: a rotation vector of the character's, its size.</summary>
         private Vec Head(double left, double up, double amount, double share, out double size)
         {
             double beyond = Math.Min(1.0, 2 * share);

@@ -128,7 +128,8 @@ namespace Metagraph
         public override bool Same(Item other)
         {
             var speech = (Speech)other;
-            return base.Same(other) && LineId == speech.LineId && Text == speech.Text && Priority == speech.Priority && Length == speech.Length;
+            return base.Same(other) && LineId == speech.LineId && Text == speech.Text && Priority == speech.Priority
+                && Length == speech.Length;
         }
 
         /// <summary>The speech, ending no later than `now`; how long it would have been is remembered.</summary>
@@ -194,7 +195,7 @@ namespace Metagraph
         }
     }
 
-    /// <summary>From Start on the models change no stance of a layer (or, with On false, may again), until End or the next of these.</summary>
+    /// <summary>From Start on the models change no stance of a layer (with On false, may again), until End or the next of these.</summary>
     public sealed class StayFrom : Item
     {
         public readonly string Layer;

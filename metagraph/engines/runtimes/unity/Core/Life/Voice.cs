@@ -53,7 +53,8 @@ namespace Metagraph
         private static double[] Stressed(List<double> peaks, List<double> strengths)
         {
             var taken = new List<double>();
-            IEnumerable<int> order = Enumerable.Range(0, peaks.Count).OrderBy(i => i > 0).ThenByDescending(i => strengths[i]).ThenBy(i => peaks[i]);
+            IEnumerable<int> order = Enumerable.Range(0, peaks.Count)
+                .OrderBy(i => i > 0).ThenByDescending(i => strengths[i]).ThenBy(i => peaks[i]);
             foreach (int i in order)
             {
                 if (taken.All(t => Math.Abs(peaks[i] - t) >= Accent))

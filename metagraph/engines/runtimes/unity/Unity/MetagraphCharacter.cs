@@ -1,0 +1,203 @@
+using System;
+using System.Collections.Generic;
+using System.Globalization;
+using System.IO;
+using UnityEngine;
+using UnityEngine.Events;
+
+namespace Metagraph
+{
+    /// <summary>
+    /// Performs a Metagraph export on the joints below this object, which are found by name. glTF is right-handed, Unity left-handed:
+    /// both glTFast and UnityGLTF mirror the X axis when they import, so that is what is done to poses, too.
+    /// </summary>
+    [DisallowMultipleComponent]
+    [AddComponentMenu("Metagraph/Metagraph Character")]
+    public sealed class MetagraphCharacter : MonoBehaviour
+    {
+        /// <summary>Layer (or "speech"), name of the action (or id of the line), key of what was asked for.</summary>
+        [Serializable]
+        public sealed class ActionEvent : UnityEvent<string, string, string> { }
+
+        [Tooltip("The exported JSON")]
+        public TextAsset export;
+        [Tooltip("The exported GLB, renamed to end in .glb.bytes")]
+        public TextAsset glb;
+        [Tooltip("Or its path below StreamingAssets (not on Android and the web, where these are no files)")]
+        public string glbPath = "";
+        [Tooltip("-1: the project's")]
+        public long seed = -1;
+        [Tooltip("Whether it performs when nobody asks for anything")]
+        public bool idle = true;
+        [Tooltip("Whether it breathes, looks and blinks")]
+        public bool alive = true;
+        public ActionEvent begin = new ActionEvent();
+        public ActionEvent end = new ActionEvent();
+
+        private struct Shape
+        {
+            public SkinnedMeshRenderer Renderer;
+            public int Index, Morph;
+            public float Full; // the weight at which it shows in full: 1 or 100, as the importer has it
+        }
+
+        private readonly List<Shape> shapes = new List<Shape>();
+        private Character character;
+        private Transform[] joints;
+        private double time;
+
+        /// <summary>The character that performs; null where its export could not be loaded.</summary>
+        public Character Character
+        {
+            get { return character; }
+        }
+
+        private void Awake()
+        {
+            try
+            {
+                byte[] bytes = glb != null ? glb.bytes : File.ReadAllBytes(Path.Combine(Application.streamingAssetsPath, glbPath));
+                Graph graph = Graph.Load(export != null ? export.text : "", bytes, export != null ? export.name : "export");
+                graph.Problems.ForEach(problem => Debug.LogWarning(problem, this));
+                character = new Character(graph, new CharacterOptions { Seed = seed < 0 ? (uint?)null : (uint)seed, Idle = idle });
+                Bind(graph);
+            }
+            catch (Exception error) when (error is MetagraphException || error is IOException || error is UnauthorizedAccessException)
+            {
+                Debug.LogError(error.Message, this);
+                enabled = false;
+            }
+        }
+
+        /// <summary>Find joints and blend shapes by their names.</summary>
+        private void Bind(Graph graph)
+        {
+            var found = new Dictionary<string, Transform>();
+            foreach (Transform one in GetComponentsInChildren<Transform>(true))
+            {
+                if (!found.ContainsKey(one.name))
+                {
+                    found[one.name] = one;
+                }
+            }
+            joints = new Transform[graph.Joints.Length];
+            var lost = new List<string>();
+            for (int j = 0; j < joints.Length; j++)
+            {
+                if (!found.TryGetValue(graph.Joints[j].Name, out joints[j]))
+                {
+                    lost.Add(graph.Joints[j].Name);
+                }
+            }
+            if (lost.Count > 0)
+            {
+                string names = string.Join(", ", lost.ToArray());
+                Debug.LogWarning("no object below is called " + names + "; these joints stay as they are", this);
+            }
+            foreach (SkinnedMeshRenderer renderer in GetComponentsInChildren<SkinnedMeshRenderer>(true))
+            {
+                Mesh mesh = renderer.sharedMesh;
+                for (int k = 0; mesh != null && k < graph.Morphs.Count; k++)
+                {
+                    int index = mesh.GetBlendShapeIndex(graph.Morphs[k]);
+                    if (index >= 0)
+                    {
+                        float full = mesh.GetBlendShapeFrameWeight(index, mesh.GetBlendShapeFrameCount(index) - 1);
+                        shapes.Add(new Shape { Renderer = renderer, Index = index, Morph = k, Full = full });
+                    }
+                }
+            }
+        }
+
+        /// <summary>After animators, so that this has the last word.</summary>
+        private void LateUpdate()
+        {
+            if (character == null)
+            {
+                return;
+            }
+            time += Time.deltaTime;
+            character.Update(time);
+            BodyPose pose = character.Pose(alive);
+            float[] q = pose.Rotations, t = pose.Translations;
+            for (int j = 0; j < joints.Length; j++)
+            {
+                if (joints[j] != null)
+                {
+                    joints[j].localRotation = new Quaternion(q[4 * j], -q[4 * j + 1], -q[4 * j + 2], q[4 * j + 3]);
+                    joints[j].localPosition = new Vector3(-t[3 * j], t[3 * j + 1], t[3 * j + 2]);
+                }
+            }
+            for (int n = 0; n < shapes.Count; n++)
+            {
+                shapes[n].Renderer.SetBlendShapeWeight(shapes[n].Index, pose.Morphs[shapes[n].Morph] * shapes[n].Full);
+            }
+            for (int n = 0; n < character.Events.Count; n++)
+            {
+                CharacterEvent one = character.Events[n];
+                (one.Kind == "begin" ? begin : end).Invoke(one.Layer, one.Action, one.Meta);
+            }
+        }
+
+        /// <summary>Ask for anything, as JSON with "do"; returns the request's id, null while nothing is loaded.</summary>
+        public string Ask(string json)
+        {
+            return character == null ? null : character.Ask(json);
+        }
+
+        /// <summary>What became of a request; null while nothing is loaded.</summary>
+        public Answer AnswerTo(string id)
+        {
+            return character == null ? null : character.AnswerTo(id);
+        }
+
+        /// <summary>Make a gesture that has all the tags.</summary>
+        public string Gesture(params string[] tags)
+        {
+            return Ask("{\"do\":\"gesture\",\"tags\":[" + string.Join(",", Array.ConvertAll(tags ?? new string[0], Json.Quote)) + "]}");
+        }
+
+        /// <summary>Go to a stance, by id or name; stay: the models do not leave it of their own accord.</summary>
+        public string Go(string stance, bool stay = false)
+        {
+            return Ask("{\"do\":\"stance\",\"stance\":" + Json.Quote(stance) + ",\"stay\":" + (stay ? "true" : "false") + "}");
+        }
+
+        /// <summary>Look at a named point: "user", "ahead", or one that `Place` has put somewhere.</summary>
+        public string Look(string name)
+        {
+            return Ask("{\"do\":\"look\",\"to\":" + Json.Quote(name) + "}");
+        }
+
+        /// <summary>Look at a point of the world.</summary>
+        public string Look(Vector3 world)
+        {
+            return Ask("{\"do\":\"look\",\"to\":" + Point(world) + "}");
+        }
+
+        /// <summary>Put a named point somewhere in the world; who looks at it follows it.</summary>
+        public string Place(string name, Vector3 world)
+        {
+            return Ask("{\"do\":\"place\",\"name\":" + Json.Quote(name) + ",\"point\":" + Point(world) + "}");
+        }
+
+        /// <summary>Say a line of the project, by its id; or, where there is none of that id, these words.</summary>
+        public string Say(string lineOrText)
+        {
+            bool line = character != null && character.Graph.Lines.ContainsKey(lineOrText ?? "");
+            return Ask("{\"do\":\"say\",\"" + (line ? "line" : "text") + "\":" + Json.Quote(lineOrText) + "}");
+        }
+
+        /// <summary>A point of the world in the character's space, right-handed again.</summary>
+        private string Point(Vector3 world)
+        {
+            Vector3 own = transform.InverseTransformPoint(world);
+            return "[" + Word(-own.x) + "," + Word(own.y) + "," + Word(own.z) + "]";
+        }
+
+        private static string Word(float value)
+        {
+            return value.ToString("R", CultureInfo.InvariantCulture);
+        }
+    }
+}
