@@ -8,6 +8,7 @@ import { LAYERS } from "./words.js";
 
 const SLACK = 2; // seconds the horizon may fall behind before it is moved on
 const FORGETTING = 15; // seconds between forgetting what is over
+const LEAP = 3600; // seconds an update may move on: all that lies between is planned
 const REMEMBERED = 1000; // answers kept after that
 
 export class Character {
@@ -25,8 +26,7 @@ export class Character {
     this.recent = recent;
     this.now = 0;
     this.plan = emptyPlan(seed);
-    this.rotations = Float32Array.from(graph.baseRotations);
-    this.translations = Float32Array.from(graph.baseTranslations);
+    this.posed = { rotations: Float32Array.from(graph.baseRotations), translations: Float32Array.from(graph.baseTranslations) };
     this.weights = new Float32Array(graph.morphs.length);
     this.player = new Player(graph, this.plan);
     this.queue = [];
@@ -61,23 +61,24 @@ export class Character {
   }
 
   refuse(id, why) {
-    this.asked.delete(id);
-    this.settle({ id, state: "refused", at: null, until: null, what: [], why });
+    this.finish({ id, state: "refused", at: null, until: null, what: [], why });
     return id;
   }
 
-  settle(answer) {
+  /** Keep an answer that will not change any more. */
+  finish(answer) {
+    this.asked.delete(answer.id);
     this.settled.set(answer.id, answer);
     if (this.settled.size > REMEMBERED) this.settled.delete(this.settled.keys().next().value);
   }
 
   /**
-   * Move on to `now` seconds of the character's own time, which begins at 0 and never goes backwards. Plans what is needed; when
-   * nothing was asked and the horizon is far enough, that is nothing.
+   * Move on to `now` seconds of the character's own time, which begins at 0, never goes backwards, and leaps an hour at most. Plans
+   * what is needed; when nothing was asked and the horizon is far enough, that is nothing.
    * @param {number} now
    */
   update(now) {
-    if (now > this.now) this.now = Math.min(now, 1e9);
+    if (Number.isFinite(now) && now > this.now) this.now = Math.min(now, this.now + LEAP);
     try {
       this.planOn();
     } catch (error) {
@@ -91,9 +92,10 @@ export class Character {
 
   planOn() {
     const { graph, now, queue } = this;
-    const far = this.plan.end >= now + this.ahead - SLACK;
+    const far = this.plan.end >= now + this.ahead - Math.min(SLACK, this.ahead / 2);
     if (queue.length || !far) {
       this.queue = [];
+      for (const ask of queue) if (ask.do === "withdraw") this.finish({ id: ask.id, state: "done", at: null, until: null, what: [], why: "" });
       this.plan = hear(graph, this.plan, now, queue, far ? this.plan.end : now + this.ahead, this.options);
     }
     if (now - this.forgot < FORGETTING) return;
@@ -102,8 +104,7 @@ export class Character {
     for (const answer of answers(this.plan, this.asked).values()) {
       const played = answer.until !== null && answer.until < over;
       if (!played && answer.state !== "refused" && answer.state !== "done") continue;
-      this.asked.delete(answer.id);
-      this.settle(played ? { ...answer, state: "done" } : answer);
+      this.finish(played ? { ...answer, state: "done" } : answer);
     }
     this.plan = since(this.plan, over);
   }
@@ -144,17 +145,17 @@ export class Character {
   }
 
   /**
-   * Return the pose at the updated time: local `rotations` [J, 4] xyzw and `translations` [J, 3], metres, in the arrays given, else in the
-   * character's own, which the next pose overwrites.
+   * Return the pose at the updated time: local `rotations` [J, 4] xyzw and `translations` [J, 3], metres, of `graph.joints`. The arrays
+   * are the character's own, and the next pose overwrites them; `player.pose` writes into others.
    */
-  pose(rotations = this.rotations, translations = this.translations) {
-    this.player.pose(this.now, rotations, translations);
-    return { rotations, translations };
+  pose() {
+    this.player.pose(this.now, this.posed.rotations, this.posed.translations);
+    return this.posed;
   }
 
-  /** Return the weights of the graph's morph targets, in the order of `graph.morphs`, 0..1; likewise. */
-  morphs(out = this.weights) {
-    this.player.morphs(this.now, out);
-    return out;
+  /** Return the weights of the graph's morph targets, 0..1, in the order of `graph.morphs`; likewise. */
+  morphs() {
+    this.player.morphs(this.now, this.weights);
+    return this.weights;
   }
 }

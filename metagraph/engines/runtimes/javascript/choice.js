@@ -81,14 +81,27 @@ export function compareText(a, b) {
 /** Surrogates stand for what comes after all other units. */
 const rank = (unit16) => (unit16 < 0xd800 ? unit16 : unit16 < 0xe000 ? unit16 + 0x2000 : unit16 - 0x800);
 
-/** Return how many of an ascending list come before `value`; with `after`, also those equal to it. */
-export function bisect(list, value, after, of = (item) => item) {
+/** Return how many of an ascending list of numbers come before `value`; with `after`, also those equal to it. */
+export function bisect(list, value, after) {
   let low = 0;
   let high = list.length;
   while (low < high) {
     const middle = (low + high) >> 1;
-    const x = of(list[middle]);
+    const x = list[middle];
     if (x < value || (after && x === value)) low = middle + 1;
+    else high = middle;
+  }
+  return low;
+}
+
+/** Return how many of items that ascend by `start` begin before `time`, or with `after` no later. */
+export function begunBy(items, time, after = true) {
+  let low = 0;
+  let high = items.length;
+  while (low < high) {
+    const middle = (low + high) >> 1;
+    const x = items[middle].start;
+    if (x < time || (after && x === time)) low = middle + 1;
     else high = middle;
   }
   return low;

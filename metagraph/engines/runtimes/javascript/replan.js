@@ -5,7 +5,7 @@
  * its time; the other is delayed past it, or cut where it begins, and then goes on with its remainder if it asked to.
  */
 
-import { bisect, compareText } from "./choice.js";
+import { begunBy, compareText } from "./choice.js";
 import { report } from "./plan.js";
 
 /** Let new requests wait until `free` seconds, the end of the running action; what would wait too long is past. */
@@ -46,7 +46,7 @@ function fit(written, placed, shortest, busy, reports) {
     let start = Math.max(meta.start, busy, out.length ? out[out.length - 1].end : busy);
     let end = meta.end;
     let beside = null;
-    for (let n = Math.max(0, bisect(placed, start, true, (m) => m.start) - 1); n < placed.length; n++) {
+    for (let n = Math.max(0, begunBy(placed, start) - 1); n < placed.length; n++) {
       const other = placed[n];
       if (other.start >= end) break;
       if (other.end <= start) continue;

@@ -7,8 +7,7 @@
  *     angle(t) = sum over targets i of angle_i (S_i(t) - S_{i+1}(t)),  S_i: how far the move to target i has come, 0..1
  */
 
-import { bisect } from "../choice.js";
-import { begunBy } from "./track.js";
+import { begunBy, bisect } from "../choice.js";
 import { AHEAD, PARTNER } from "./wanted.js";
 
 const [EYE_TIME, EYE_TIME_PER_DEGREE] = [0.021, 0.0022]; // seconds
@@ -53,7 +52,7 @@ export class Gaze {
   at(time) {
     const { targets, aversions, saccades } = this.schedule;
     const last = Math.max(0, begunBy(targets, time) - 1);
-    let [came, turned, strict] = [0, 0, 0];
+    let came = 0, turned = 0, strict = 0;
     this.count = 0;
     for (let place = last; place >= 0 && (came < 1 || turned < 1); place--) {
       const aim = (this.known[place] ??= this.aim(place));
@@ -77,7 +76,7 @@ export class Gaze {
   avert({ starts, values }, time, strict, since) {
     const n = bisect(starts, time, true) - 1;
     if (n < 0 || !(this.averting > 0)) return;
-    const [end, x, y] = values[n];
+    const end = values[n][0], x = values[n][1], y = values[n][2];
     const size = Math.hypot(x, y) * this.angle;
     let scale = this.averting * (1 - strict);
     if (since > starts[n]) scale *= 1 - ease((time - since) / ENDING); // a new look ends it
@@ -97,7 +96,7 @@ export class Gaze {
   dart({ starts, values }, time) {
     const n = bisect(starts, time, true) - 1;
     if (n < 0 || !(this.darting > 0)) return;
-    const [x, y] = values[n];
+    const x = values[n][0], y = values[n][1];
     const fromX = n > 0 ? values[n - 1][0] : 0;
     const fromY = n > 0 ? values[n - 1][1] : 0;
     const way = ease((time - starts[n]) / eyeTime(Math.hypot(x - fromX, y - fromY)));

@@ -5,9 +5,9 @@
  * lingers after it; what the mouth shows is the mean of all pieces weighted by how much each rules.
  */
 
+import { begunBy } from "../choice.js";
 import { VISEMES } from "../words.js";
 import { ease } from "./gaze.js";
-import { begunBy } from "./track.js";
 
 // How much a shape rules its neighbours, in the order of VISEMES: closed lips must be seen, tongue and palate need not.
 const RULE = [0.8, 6, 4, 1, 0.7, 0.5, 1.6, 1.2, 0.7, 0.9, 1.5, 1.3, 1.2, 1.7, 1.9];

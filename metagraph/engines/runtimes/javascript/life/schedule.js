@@ -5,10 +5,10 @@
  * as a plan does: what has begun stays, tick by tick gives what one call gives, and what lies behind can be forgotten.
  */
 
-import { bisect, uniform } from "../choice.js";
+import { begunBy, bisect, uniform } from "../choice.js";
 import { MODES } from "../words.js";
 import { emptyLane, longer, nextOf, sinceLane, until } from "./lane.js";
-import { alike, begunBy } from "./track.js";
+import { alike } from "./track.js";
 import { alikeTargets, modesBetween, targetsBetween } from "./wanted.js";
 
 const BLOCK = 8; // seconds drawn at a time, so that a running plan need not draw at every tick

@@ -6,7 +6,7 @@
  * place `name` and `point`; a stay `layer`, `on`, `end`.
  */
 
-import { bisect, compareText } from "../choice.js";
+import { compareText } from "../choice.js";
 
 const LANES = { look: "looks", speech: "speeches", mode: "modes", place: "places", blink: "blinks", stay: "stays" };
 
@@ -92,7 +92,3 @@ function apart(speeches) {
   }
   return out;
 }
-
-/** Return how many items begin before `time`, or with `after` no later. */
-export const begunBy = (items, time, after = true) => bisect(items, time, after, startOf);
-const startOf = (item) => item.start;

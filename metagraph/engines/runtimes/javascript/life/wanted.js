@@ -4,8 +4,9 @@
  *   looked at from `start` on. `since`: when the look at it began; its place may have changed meanwhile. `asked`: not of its own accord.
  */
 
+import { begunBy } from "../choice.js";
 import { MODES } from "../words.js";
-import { begunBy, samePlace } from "./track.js";
+import { samePlace } from "./track.js";
 
 export const PARTNER = "user"; // whom the character talks with, and looks at when nothing else is asked for
 export const AHEAD = "ahead"; // nothing in particular: eyes and head as the layers have them

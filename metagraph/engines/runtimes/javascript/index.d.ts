@@ -1,0 +1,224 @@
+/** Metagraph's runtime. Times are seconds, lengths metres (Y up, right-handed), quaternions xyzw; joints are told by their place. */
+
+export type Layer = "body" | "arms" | "head";
+export type Kind = "stance" | "gesture" | "fidget" | "transition";
+export type Limb = "left" | "right" | "both";
+export type Mode = "idle" | "listening" | "talking";
+export type Point = [number, number, number];
+export const LAYERS: readonly Layer[];
+
+/** What every request may say. `after`: seconds from now, instead of `at`; only a Character knows it. */
+export interface Common {
+  id?: string;
+  at?: number | null;
+  after?: number;
+  priority?: number;
+  told?: number | null;
+}
+
+/** What can be asked for; docs/live.md says what each means. */
+export type Ask = Common &
+  (
+    | {
+        do: "gesture"; layer?: Layer; tags?: string[]; limb?: Limb | null; duration?: number | null; stroke?: number | null;
+        hold?: number | null; prepare?: boolean; resume?: boolean;
+      }
+    | { do: "fidget"; layer?: Layer; tags?: string[]; limb?: Limb | null; duration?: number | null; resume?: boolean }
+    | { do: "action"; action: string; layer?: Layer | null; stroke?: number | null; hold?: number | null; prepare?: boolean }
+    | { do: "stance"; stance: string; layer?: Layer | null; stay?: boolean }
+    | { do: "change"; layer?: Layer; limb?: Limb | null; duration?: number | null }
+    | { do: "nod" | "shake"; tags?: string[] }
+    | { do: "look"; to?: string | Point; duration?: number | null; amount?: number; strict?: boolean }
+    | { do: "blink" }
+    | { do: "say"; line?: string | number | null; text?: string; duration?: number | null; gestures?: boolean }
+    | { do: "mode"; mode?: Mode | null }
+    | { do: "place"; name: string; point: Point }
+    | { do: "withdraw"; what?: string }
+  );
+
+export interface Action {
+  readonly id: string;
+  readonly name: string;
+  readonly kind: Kind;
+  readonly layer: Layer;
+  readonly stance: string;
+  readonly endStance: string | null;
+  readonly limb: Limb;
+  readonly tags: readonly string[];
+  /** Clip seconds of the part that plays. */
+  readonly start: number;
+  readonly end: number;
+}
+
+export interface LayerGraph {
+  readonly layer: Layer;
+  readonly start: string | null;
+  readonly stances: ReadonlyMap<string, { readonly id: string; readonly name: string }>;
+  readonly actions: ReadonlyMap<string, Action>;
+}
+
+/** A loaded export, shared by all characters that use it. */
+export interface Graph {
+  readonly name: string;
+  readonly joints: readonly string[];
+  /** Place of each joint's parent, -1 for none; parents come first. */
+  readonly parents: readonly number[];
+  /** The pose that offsets are taken against, local: [J, 4] and [J, 3]. */
+  readonly baseRotations: Float32Array;
+  readonly baseTranslations: Float32Array;
+  /** Names of the morph targets that are moved. */
+  readonly morphs: readonly string[];
+  readonly layers: Readonly<Record<Layer, LayerGraph>>;
+  readonly lines: ReadonlyMap<string, { readonly text?: string; readonly duration?: number }>;
+  /** What is missing in the GLB, in words; the rest plays all the same. */
+  readonly problems: readonly string[];
+}
+
+/** Which file, where in it, what is wrong, and what to do about it. */
+export class MetagraphError extends Error {}
+
+/** The newest version of the export that is read. */
+export const FORMAT: number;
+
+/** Return an export's graph. `file`: what to call the JSON in errors. Throws MetagraphError. */
+export function load(json: string, glb: Uint8Array | ArrayBuffer, file?: string): Graph;
+
+export interface Options {
+  /** Layer -> id of the stance it begins in. */
+  stances?: Partial<Record<Layer, string>>;
+  /** Whether the models fill the time nobody asks for; true when not given. */
+  idle?: boolean;
+}
+
+export interface Cue {
+  readonly action: Action;
+  readonly start: number;
+  readonly end: number;
+  readonly entry: number;
+  readonly blendIn: number;
+  readonly blendOut: number;
+  readonly stance: string;
+  readonly then: string;
+  readonly meta: string;
+  readonly holdFrom: number;
+  readonly holdTo: number;
+  readonly hold: number;
+}
+
+export interface Rest {
+  readonly stance: string;
+  readonly action: Action;
+  readonly start: number;
+  readonly fadeStart: number;
+  readonly fade: number;
+}
+
+export interface MetaAction {
+  readonly request: { readonly id: string; readonly layer: Layer; readonly kind: Kind };
+  readonly start: number;
+  readonly end: number;
+  readonly part: number;
+  readonly written: boolean;
+}
+
+export interface Report {
+  readonly request: string;
+  readonly outcome: string;
+  readonly message: string;
+  readonly layer: Layer;
+  readonly at: number;
+  readonly played: boolean;
+  readonly written: boolean;
+}
+
+/** A value: planning makes new ones. */
+export interface Plan {
+  readonly seed: number;
+  readonly end: number;
+  readonly layers: Readonly<
+    Record<Layer, { readonly metas: readonly MetaAction[]; readonly cues: readonly Cue[]; readonly rests: readonly Rest[] }>
+  >;
+  readonly reports: readonly Report[];
+}
+
+export interface Answer {
+  readonly id: string;
+  readonly state: "planned" | "late" | "refused" | "done";
+  readonly at: number | null;
+  readonly until: number | null;
+  readonly what: readonly string[];
+  readonly why: string;
+}
+
+export interface Pose {
+  /** [J, 4] xyzw, local. */
+  rotations: Float32Array;
+  /** [J, 3] metres, local. */
+  translations: Float32Array;
+}
+
+/** Return a plan of nothing, up to 0 seconds. `seed`: 32 bits. */
+export function emptyPlan(seed: number): Plan;
+/** Return the plan with asks (which need ids) worked in that became known at `now`, and the horizon moved to `end`. Throws nothing. */
+export function hear(graph: Graph, plan: Plan, now: number, asks: readonly object[], end: number, options?: Options): Plan;
+/** Return the plan without what ended before `seconds`. */
+export function since(plan: Plan, seconds: number): Plan;
+/** Say what a plan does about asks. */
+export function answers(plan: Plan, ids: Iterable<string>): Map<string, Answer>;
+/** What keys a meta action's draws, and names it in cues. */
+export function keyOf(meta: MetaAction): string;
+/** Return the 32-bit hash of a seed and words that every draw comes from. */
+export function key32(seed: number, ...words: string[]): number;
+/** Return a plan's pose at a time. */
+export function poseAt(graph: Graph, plan: Plan, time: number, alive?: boolean): Pose;
+/** Return the weights of morph targets at a time, by name, 0..1. */
+export function morphsAt(graph: Graph, plan: Plan, time: number, alive?: boolean): Record<string, number>;
+
+/** Poses one plan after the other, into arrays of yours; nothing is allocated. */
+export class Player {
+  constructor(graph: Graph, plan: Plan);
+  readonly plan: Plan;
+  setPlan(plan: Plan): void;
+  pose(time: number, rotations: Float32Array, translations: Float32Array, alive?: boolean): void;
+  /** `out`: a weight for each of `graph.morphs`. */
+  morphs(time: number, out: Float32Array, alive?: boolean): void;
+}
+
+export interface CharacterOptions extends Options {
+  /** 32 bits, the export's when not given; characters of one graph want different ones. */
+  seed?: number;
+  /** Seconds planned in advance, 20. */
+  ahead?: number;
+  /** Seconds that are remembered, 30. */
+  recent?: number;
+}
+
+export interface Happening {
+  readonly kind: "begin" | "end";
+  readonly at: number;
+  readonly layer: Layer;
+  /** Name of the action. */
+  readonly action: string;
+  /** Id of the request it is for, or "auto/..." of what the models wrote; with "+n" for what went on after a cut. */
+  readonly meta: string;
+}
+
+/** One character of a game. Nothing here throws. */
+export class Character {
+  constructor(graph: Graph, options?: CharacterOptions);
+  readonly graph: Graph;
+  readonly now: number;
+  readonly plan: Plan;
+  readonly player: Player;
+  /** Ask for something; returns its id. It is taken up at the next update. */
+  ask(request: Ask): string;
+  /** Move on to `now`, seconds of the character's own time, which begins at 0. */
+  update(now: number): void;
+  answer(id: string): Answer;
+  /** What began or ended since this was last asked for. */
+  events(): Happening[];
+  /** The pose at the updated time; the arrays are overwritten by the next. */
+  pose(): Pose;
+  /** Weights of `graph.morphs` at the updated time; likewise. */
+  morphs(): Float32Array;
+}

@@ -1,0 +1,15 @@
+import type { Answer, Ask, Character, CharacterOptions, Graph, Happening } from "./index.js";
+
+/** A character that moves the bones and morph targets of a scene that three.js loaded. */
+export class MetagraphObject {
+  /** `scene`: an Object3D, such as GLTFLoader makes of the export's GLB. */
+  constructor(graph: Graph, scene: { traverse(callback: (object: any) => void): void }, options?: CharacterOptions);
+  readonly character: Character;
+  /** Joints and morph targets that the scene lacks. */
+  readonly missing: readonly string[];
+  ask(request: Ask): string;
+  answer(id: string): Answer;
+  events(): Happening[];
+  /** Move on by `delta` seconds and pose the scene; once a frame. */
+  update(delta: number): void;
+}

@@ -1,0 +1,477 @@
+"""The JavaScript runtime: it conforms, refuses what is wrong as it says, plays in three.js, and its conformance vectors would notice."""
+
+from __future__ import annotations
+
+import json
+import shutil
+import struct
+import subprocess
+import sys
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+ROOT = Path(__file__).resolve().parents[2]
+RUNTIME = ROOT / "metagraph" / "engines" / "runtimes" / "javascript"
+VECTORS = sorted(p.parent for p in (ROOT / "metagraph" / "engines" / "conformance").glob("*/vectors.json"))
+STICK = ROOT / "metagraph" / "engines" / "conformance" / "stick"
+VARIED = ROOT / "metagraph" / "engines" / "conformance" / "varied"
+NODE = shutil.which("node")
+
+pytestmark = pytest.mark.skipif(NODE is None, reason="needs Node 18 or newer")
+
+
+def conformance(*folders: Path, runtime: Path = RUNTIME) -> subprocess.CompletedProcess[str]:
+    return subprocess.run(
+        ["node", str(runtime / "conformance.mjs"), *map(str, folders)], capture_output=True, text=True, timeout=120, check=False
+    )
+
+
+HEAD = """
+import { readFileSync } from "node:fs";
+import { join } from "node:path";
+import { pathToFileURL } from "node:url";
+const [runtime, folder, ...rest] = process.argv.slice(1);
+const of = (name) => import(pathToFileURL(join(runtime, name)));
+const metagraph = await of("index.js");
+const { Character, Player, emptyPlan, hear, load, poseAt, morphsAt, since } = metagraph;
+const name = folder.split("/").pop();
+const text = readFileSync(join(folder, `${name}.json`), "utf8");
+const glb = readFileSync(join(folder, `${name}.glb`));
+const say = (data) => console.log(JSON.stringify(data));
+"""
+
+
+def run(script: str, folder: Path = STICK, *arguments: str) -> Any:
+    """Return what a script prints as JSON; it has HEAD's names, `folder` and the arguments in `rest`."""
+    command = ["node", "--expose-gc", "--input-type=module", "-e", HEAD + script, str(RUNTIME), str(folder), *arguments]
+    done = subprocess.run(command, capture_output=True, text=True, timeout=120, check=False, cwd=ROOT / "tests")
+    assert done.returncode == 0, done.stderr
+    return json.loads(done.stdout)
+
+
+# --- conformance
+
+
+@pytest.mark.parametrize("folder", VECTORS, ids=lambda folder: folder.name)
+def test_it_does_what_the_shipped_vectors_say(folder: Path) -> None:
+    done = conformance(folder)
+    assert done.returncode == 0, done.stdout + done.stderr
+
+
+def test_it_does_what_the_sample_project_does(tmp_path: Path) -> None:
+    project = ROOT / "sample_clips" / "sample.metagraph.yaml"
+    command = [sys.executable, "-m", "app.cli", "export", str(project), "--no-mesh", "--vectors", "-o", str(tmp_path)]
+    subprocess.run(command, check=True, cwd=ROOT, capture_output=True, timeout=120)
+    done = conformance(tmp_path)
+    assert done.returncode == 0, done.stdout + done.stderr
+
+
+# --- what is wrong with files
+
+
+def refused(folder: Path, change: str) -> str:
+    return str(
+        run(
+            f"let json = text; let bytes = glb; {change}; try {{ load(json, bytes, 'x.json'); say(''); }} catch (e) {{ say(e.message); }}",
+            folder,
+        )
+    )
+
+
+@pytest.mark.parametrize(
+    ("change", "words"),
+    [
+        ("json = json.replace(/\"metagraph\":\\s*1/, '\"metagraph\": 2')", ("x.json at metagraph", "Update the runtime")),
+        ("json = json.slice(0, 100)", ("x.json", "is not JSON", "Export it again")),
+        ("json = '[]'", ("x.json at metagraph", "is missing")),
+        ("json = 'null'", ("x.json at metagraph", "is missing")),
+        ("const d = JSON.parse(json); delete d.layers.arms; json = JSON.stringify(d)", ("x.json at layers.arms", "is missing")),
+        ("const d = JSON.parse(json); delete d.planner; json = JSON.stringify(d)", ("x.json at planner", "is missing")),
+        ("const d = JSON.parse(json); d.layers.arms.actions = 3; json = JSON.stringify(d)", ("x.json", "cannot be understood")),
+        ("const d = JSON.parse(json); d.joints.pop(); json = JSON.stringify(d)", ("x.json", "base pose")),
+        ("bytes = glb.subarray(0, glb.length - 1000)", ("stick.glb", "cut short", "copy both files")),
+        ("bytes = glb.subarray(0, 10)", ("stick.glb", "is no GLB")),
+        ("bytes = new Uint8Array(1000)", ("stick.glb", "is no GLB")),
+        ("const d = JSON.parse(json); d.joints.forEach((j) => j.name += 1); json = JSON.stringify(d)", ("none of the export's joints",)),
+    ],
+)  # fmt: skip
+def test_a_file_that_cannot_be_loaded_is_refused_with_place_and_remedy(change: str, words: tuple[str, ...]) -> None:
+    message = refused(STICK, change)
+    assert all(word in message for word in words), message
+
+
+def test_every_truncation_of_the_files_is_refused_clearly() -> None:
+    found = run(
+        """
+        const out = [];
+        for (let n = 0; n < 40; n++) {
+          try { load(text, glb.subarray(0, Math.floor((n * glb.length) / 40))); out.push("loaded"); }
+          catch (e) { out.push(e.name); }
+          try { load(text.slice(0, Math.floor((n * text.length) / 40)), glb); out.push("loaded"); }
+          catch (e) { out.push(e.name); }
+        }
+        say([...new Set(out)]);
+        """
+    )
+    assert found == ["MetagraphError"]
+
+
+def test_unknown_fields_of_an_export_are_passed_over() -> None:
+    script = (
+        "const d = JSON.parse(text); d.news = 1; d.layers.arms.news = 2; d.joints[0].news = []; say(load(JSON.stringify(d), glb).problems)"
+    )
+    assert run(script) == []
+
+
+def changed(folder: Path, target: Path, change: Any) -> Path:
+    """Copy an export, its GLB's document changed."""
+    copy = target / folder.name
+    shutil.copytree(folder, copy)
+    path = copy / f"{folder.name}.glb"
+    raw = path.read_bytes()
+    length = struct.unpack_from("<I", raw, 12)[0]
+    document = json.loads(raw[20 : 20 + length])
+    change(document)
+    head = json.dumps(document).encode()
+    head += b" " * (-len(head) % 4)
+    rest = raw[20 + length :]
+    path.write_bytes(struct.pack("<4sIIII", b"glTF", 2, 20 + len(head) + len(rest), len(head), 0x4E4F534A) + head + rest)
+    return copy
+
+
+def test_a_clip_that_the_glb_lacks_is_listed_and_shows_its_stance(tmp_path: Path) -> None:
+    copy = changed(STICK, tmp_path, lambda document: document["animations"].pop(3))
+    found = run(
+        """
+        const graph = load(text, glb);
+        const lost = JSON.parse(text).clips[3];
+        const action = Object.values(graph.layers).flatMap((l) => [...l.actions.values()]).find((a) => a.clip === lost.id);
+        const plan = hear(graph, emptyPlan(1), 0, [{ do: "action", action: action.id, id: "a" }], 20, { idle: false });
+        const cue = plan.layers[action.layer].cues.at(-1);
+        const far = Math.max(...poseAt(graph, plan, (cue.start + cue.end) / 2).rotations.map((x) => Math.abs(x)));
+        say({ problems: graph.problems, name: lost.name, cue: cue.action.id === action.id, far });
+        """,
+        copy,
+    )
+    assert found["problems"] == [f"the GLB has no animation '{found['name']}'; its actions show their stance"]
+    assert found["cue"]
+    assert 0.5 < found["far"] <= 1.0001
+
+
+def test_a_joint_that_the_glb_lacks_is_listed_and_stays() -> None:
+    found = run(
+        """
+        const d = JSON.parse(text);
+        d.joints.at(-1).name = "Tail";
+        const graph = load(JSON.stringify(d), glb);
+        const pose = poseAt(graph, hear(graph, emptyPlan(1), 0, [], 10), 5);
+        say({ problems: graph.problems, finite: pose.rotations.every(Number.isFinite) });
+        """
+    )
+    assert len(found["problems"]) == 1
+    assert "Tail" in found["problems"][0]
+    assert found["finite"]
+
+
+# --- a character in a game
+
+
+def test_a_character_answers_and_tells_what_happens() -> None:
+    found = run(
+        """
+        const character = new Character(load(text, glb), { seed: 5, idle: false });
+        const first = character.ask({ do: "gesture", after: 1 });
+        const before = character.answer(first);
+        const events = [];
+        for (let t = 0; t < 60; t += 1 / 30) { character.update(t); events.push(...character.events()); }
+        say({ first, before, after: character.answer(first), unknown: character.answer("nobody"), events });
+        """
+    )
+    assert found["first"] == "#1"
+    assert found["before"]["state"] == "planned"
+    assert found["after"]["state"] == "done"
+    assert found["after"]["at"] == pytest.approx(1, abs=0.2)
+    assert found["unknown"]["state"] == "refused"
+    assert [(e["kind"], e["meta"]) for e in found["events"]] == [("begin", "#1"), ("end", "#1")]
+    assert found["events"][0]["action"] in found["after"]["what"]
+
+
+MALFORMED = [
+    None, 3, "nod", [], {}, {"do": "dance"}, {"do": 3}, {"do": "gesture", "layer": "legs"}, {"do": "gesture", "tags": "positive"},
+    {"do": "gesture", "at": -1}, {"do": "gesture", "at": "soon"}, {"do": "gesture", "at": 1e300}, {"do": "gesture", "priority": 1.5},
+    {"do": "gesture", "extra": 1}, {"do": "action"}, {"do": "action", "action": ""}, {"do": "action", "action": "nothing of the name"},
+    {"do": "stance", "stance": "nowhere at all"}, {"do": "look", "to": [1, 2]}, {"do": "look", "to": [1, 2, None]},
+    {"do": "look", "amount": 7}, {"do": "say"}, {"do": "say", "line": "no such line"}, {"do": "place", "name": "x"},
+    {"do": "mode", "mode": "sleeping"},
+    {"do": "gesture", "after": -3}, {"do": "gesture", "after": "1"}, {"do": "bml", "bml": "<bml/>"}, {"do": "gesture", "id": "x" * 300},
+    {"do": "gesture", "duration": None, "limb": "tail"}, {"do": "__proto__"}, {"do": "constructor"}, {"do": "gesture", "hold": 1e9},
+]  # fmt: skip
+
+
+def test_what_cannot_be_understood_is_refused_with_words_and_never_thrown() -> None:
+    found = run(
+        """
+        const character = new Character(load(text, glb), { idle: false });
+        const ids = JSON.parse(rest[0]).map((request) => character.ask(request));
+        ids.push(character.ask(undefined), character.ask({ do: "gesture", at: NaN }), character.ask(() => 1));
+        for (const t of [0, 1, NaN, -5, Infinity, "later", undefined, 3]) { character.update(t); character.pose(); character.morphs(); }
+        say(ids.map((id) => character.answer(id)));
+        """,
+        STICK,
+        json.dumps(MALFORMED),
+    )
+    for request, reply in zip([*MALFORMED, "undefined", "NaN", "function"], found, strict=True):
+        assert reply["state"] == "refused", (request, reply)
+        assert reply["why"], request
+
+
+def test_bml_is_not_understood_by_a_runtime() -> None:
+    script = "const plan = hear(load(text, glb), emptyPlan(1), 0, [{ do: 'bml', bml: '<bml/>', id: 'b' }], 5); say(plan.reports.at(-1))"
+    assert run(script)["outcome"] == "not-understood"
+
+
+def test_random_requests_never_break_a_character() -> None:
+    found = run(
+        """
+        let state = 12345;
+        const draw = (n) => (state = (Math.imul(state, 1103515245) + 12345) >>> 0) % n;
+        const values = [0, 1, -1, 2.5, 1e9, "", "hello", "arms", "head", "user", null, true, false, [], [1, 2, 3], ["positive"], {}, "#3"];
+        const words = ["gesture", "fidget", "action", "stance", "change", "nod", "shake", "look", "blink", "say", "mode", "place"];
+        const fields = ["id", "at", "after", "priority", "layer", "tags", "limb", "duration", "stroke", "hold", "prepare", "resume",
+          "action", "stance", "stay", "to", "amount", "strict", "line", "text", "gestures", "mode", "name", "point", "what"];
+        const graph = load(text, glb);
+        const character = new Character(graph, { seed: 1 });
+        let finite = true;
+        for (let n = 0; n < 3000; n++) {
+          const request = { do: words[draw(words.length)] };
+          for (let k = draw(4); k > 0; k--) request[fields[draw(fields.length)]] = values[draw(values.length)];
+          const id = character.ask(request);
+          character.update(n / 20);
+          finite &&= character.pose().rotations.every(Number.isFinite) && typeof character.answer(id).why === "string";
+        }
+        const failed = [...character.settled.values()].filter((answer) => answer.why.includes("failed"));
+        say({ finite, failed, cues: character.plan.layers.arms.cues.length, kept: character.settled.size });
+        """
+    )
+    assert found["finite"]
+    assert found["failed"] == []
+    assert found["cues"] < 100
+    assert found["kept"] <= 1000
+
+
+def test_time_never_goes_backwards_and_nothing_is_planned_without_need() -> None:
+    found = run(
+        """
+        const character = new Character(load(text, glb), { seed: 3 });
+        character.update(5);
+        const { plan } = character;
+        character.update(2);
+        const back = character.now;
+        for (let t = 5; t < 6.9; t += 0.1) character.update(t);
+        const same = character.plan === plan;
+        for (let t = 7; t < 200; t += 0.25) character.update(t);
+        say({ back, same, first: character.plan.layers.arms.cues[0].end, end: character.plan.end });
+        """
+    )
+    assert found["back"] == 5
+    assert found["same"]
+    assert found["first"] > 150, "what is over was not forgotten"
+    assert found["end"] >= 217
+
+
+def test_a_character_that_lives_tick_by_tick_plays_what_one_plan_would() -> None:
+    found = run(
+        """
+        const graph = load(text, glb);
+        const character = new Character(graph, { seed: 9 });
+        const whole = hear(graph, emptyPlan(9), 0, [], 300);
+        let worst = 0;
+        for (let t = 0; t < 100; t += 0.37) {
+          character.update(t);
+          const a = character.pose().rotations;
+          const b = poseAt(graph, whole, t).rotations;
+          for (let k = 0; k < a.length; k++) worst = Math.max(worst, Math.abs(a[k] - b[k]));
+        }
+        say(worst);
+        """
+    )
+    assert found < 1e-6
+
+
+def test_posing_makes_no_garbage_to_speak_of() -> None:
+    bytes_a_pose = run(
+        """
+        const graph = load(text, glb);
+        const player = new Player(graph, hear(graph, emptyPlan(1), 0, [{ do: "say", text: "So what do you say?", at: 3, id: "s" }], 60));
+        const [r, t, m] = [4, 3, 0].map((n) => new Float32Array(n ? n * graph.joints.length : graph.morphs.length));
+        const poses = () => { for (let n = 0; n < 20000; n++) { player.pose(n * 0.003, r, t); player.morphs(n * 0.003, m); } };
+        poses();
+        gc();
+        const before = process.memoryUsage().heapUsed;
+        poses();
+        say((process.memoryUsage().heapUsed - before) / 20000);
+        """,
+        VARIED,
+    )
+    assert bytes_a_pose < 500  # a few boxed numbers; one array of joints would be thousands
+
+
+# --- three.js
+
+
+def renamed(document: Any) -> None:
+    for node in document["nodes"]:
+        if node["name"] == "Head":
+            node["name"] = "He ad:1.x"
+
+
+def test_it_plays_in_three_js(tmp_path: Path) -> None:
+    if not (ROOT / "tests" / "node_modules" / "three").is_dir():
+        pytest.skip("needs three.js: npm install --prefix tests --no-save --no-package-lock three@0.187.0 gltf-validator@2.0.0-dev.3.10")
+    copy = changed(VARIED, tmp_path, renamed)
+    path = copy / "varied.json"
+    path.write_text(path.read_text().replace('"Head"', '"He ad:1.x"'))
+    found = run(
+        """
+        globalThis.self ??= globalThis;
+        globalThis.ProgressEvent ??= class extends Event {};
+        const from = (path) => import(pathToFileURL(join(process.cwd(), "node_modules", "three", path)));
+        const THREE = await from("build/three.module.js");
+        const { GLTFLoader } = await from("examples/jsm/loaders/GLTFLoader.js");
+        const { MetagraphObject } = await of("three.js");
+        const { positions } = await of("rotation.js");
+        const graph = load(text, glb);
+        const gltf = await new GLTFLoader().parseAsync(glb.buffer.slice(glb.byteOffset, glb.byteOffset + glb.byteLength), "");
+        const object = new MetagraphObject(graph, gltf.scene, { seed: 4 });
+        object.ask({ do: "say", text: "Hello over there, my friend", id: "s", at: 0.5 });
+        let worst = 0;
+        let heaviest = 0;
+        const faces = [];
+        gltf.scene.traverse((mesh) => mesh.morphTargetDictionary && faces.push(mesh));
+        for (let n = 0; n < 90; n++) {
+          object.update(1 / 30);
+          gltf.scene.updateMatrixWorld(true);
+          const { rotations, translations } = poseAt(graph, object.character.plan, object.time);
+          const places = positions(graph.parents, rotations, translations);
+          graph.joints.forEach((joint, j) => {
+            const bone = gltf.scene.getObjectByName(THREE.PropertyBinding.sanitizeNodeName(joint));
+            const at = new THREE.Vector3().setFromMatrixPosition(bone.matrixWorld);
+            worst = Math.max(worst, at.distanceTo(new THREE.Vector3(...places.subarray(3 * j, 3 * j + 3))));
+          });
+          for (const [name, value] of Object.entries(morphsAt(graph, object.character.plan, object.time))) {
+            for (const mesh of faces) {
+              if (!(name in mesh.morphTargetDictionary)) continue;
+              const shown = mesh.morphTargetInfluences[mesh.morphTargetDictionary[name]];
+              worst = Math.max(worst, Math.abs(shown - value));
+              heaviest = Math.max(heaviest, shown);
+            }
+          }
+        }
+        say({ worst, heaviest, faces: faces.length, missing: object.missing });
+        """,
+        copy,
+    )
+    assert found["worst"] < 1e-5
+    assert not [name for name in found["missing"] if "He" in name]
+    if found["faces"]:
+        assert found["heaviest"] > 0.2
+
+
+# --- the vectors notice
+
+MUTATIONS = [
+    ("life/gaze.js", "x * x * (3 - 2 * x)", "x", "the blending curve"),
+    ("choice.js", "return close(plain);", "return plain;", "the zero byte that closes a word"),
+    ("choice.js", "value ^= value >>> 13;", "value ^= value >>> 12;", "the mixing"),
+    ("choice.js", "(hash + 0.5)", "hash", "the half in a uniform number"),
+    ("choice.js", "UTF8.encode(word).reduce", "[...word].map((c) => c.charCodeAt(0)).reduce", "bytes of UTF-8"),
+    ("choice.js", "/ weights[n];", "* weights[n];", "the weight of a candidate"),
+    ("pick.js", "Math.max(this.count(a.id, now), 1)", "(1 + this.count(a.id, now))", "the count under a likelihood"),
+    ("pick.js", "return alpha * (this.uses.get(id) ?? 0);", "return this.uses.get(id) ?? 0;", "alpha"),
+    ("pick.js", "a.spacing ?? (this.settings.neverTwice ? 1 : 0)", "a.spacing ?? 0", "never the same twice"),
+    ("pick.js", "needs[n] - less", "needs[n] - 2 * less", "spacing that gives way by one"),
+    ("pick.js", "if (before.has(action.endStance) ||", "if (", "the first of equally short chains"),
+    ("pick.js", "if (action.endStance !== goal) continue;", "if (action.endStance !== goal || before.size > 2) continue;", "ways"),
+    ("pick.js", "hop ? `${keyOf(meta)}/${hop}` : keyOf(meta)", "keyOf(meta)", "the key of a hop"),
+    ("pick.js", "exact = [exact, found, every].find", "exact = [exact, every].find", "the model's wishes, one after the other"),
+    ("pick.js", "Math.max(shape.shortest, Math.min(limit, wish) - shape.start)", "shape.length", "the earliest exit"),
+    ("pick.js", "Math.max(0, left) + action.blendOut", "Math.max(0, left)", "blending out of an early exit"),
+    ("pick.js", "found.ready - Math.max(action.blendIn, leastBlend)", "found.ready", "where a gesture without preparation begins"),
+    ("pick.js", "request.stroke - (found.stroke - entry)", "request.stroke", "a stroke in time"),
+    ("pick.js", "(holdTo - holdFrom) / hurry", "holdTo - holdFrom", "how short a hold can be"),
+    ("pick.js", "if (shape.entry > action.start) into", "if (false) into", "the least blend of what is cut into"),
+    ("pick.js", "const squeeze = blends > 0 ? Math.min(1, length / blends) : 1;", "const squeeze = 1;", "blends that must fit"),
+    ("pick.js", "a.cooldown <= 0 || this.cooled(a)", "true || this.cooled(a)", "cooling down"),
+    ("pick.js", "waits > this.settings.wait", "false", "how long what was asked for waits"),
+    ("pick.js", "const until = cue.end - cue.blendOut;", "const until = cue.end;", "when a loop begins anew"),
+    ("plan.js", "held * ((cue.holdTo - cue.holdFrom) / cue.hold)", "held", "the stretch of a hold"),
+    ("replan.js", "y.request.priority - x.request.priority ||", "", "priority at equal starts"),
+    ("replan.js", "|| compareText(x.request.id, y.request.id)", "", "ids at equal starts and priorities"),
+    ("replan.js", "start: meta.end, part: kept ? last.part + 1 : last.part", "start: meta.end, part: last.part", "the key of a remainder"),
+    ("replan.js", "const resumes = last.request.resume &&", "const resumes =", "what goes on after a cut"),
+    ("replan.js", "const kept = meta.start - last.start >= settings.shortest;", "const kept = true;", "the shortest part worth keeping"),
+    ("replan.js", "late > settings.wait", "late > 1e9", "what is past"),
+    ("replan.js", "if (other.start - start >= shortest) {", "if (other.start > start) {", "gaps for what models write"),
+    ("markov.js", "0.35 + 1.3 *", "0.3 + 1.3 *", "the gap between what a model writes"),
+    ("markov.js", "return 1 + 2 * u;", "return 1 + u;", "how long what a model writes lasts"),
+    ("markov.js", "draw < model.positive + model.negative", "draw < model.negative", "the share of negative gestures"),
+    ("planner.js", "Math.max(length, request.stroke - request.start + FITS)", "length", "the window of a stroke"),
+    ("planner.js", "const leaves = (m) => m.written &&", "const leaves = (m) => false &&", "staying in a stance"),
+    ("planner.js", "(m.written ? latest : Math.max(latest, m.end))", "latest", "time that models leave to what runs"),
+    ("hear.js", "const fixed = now > 0 ? now + graph.settings.lookahead : 0;", "const fixed = now;", "the lookahead"),
+    ("hear.js", "owners(id).some((owner) => gone.has(owner))", "gone.has(id)", "parts that are withdrawn with their owner"),
+    ("understand.js", "Math.max(0, stroke - longestLead(graph, layer, tags))", "at", "how early a gesture with a stroke may begin"),
+    ("understand.js", "tags: [word, ...tags]", "tags", "the tag of a nod"),
+    ("words.js", "aversion_rate: 1.1,", "aversion_rate: 1,", "the idle manner"),
+    ("words.js", "breath_rate: 14,", "breath_rate: 15,", "the usual rate of breath"),
+    ("pose.js", "rotations, 4 * joint, added.rotations, 4 * i)", "added.rotations, 4 * i, rotations, 4 * joint)", "the side of offsets"),
+    ("words.js", 'LAYERS = ["body", "arms", "head"]', 'LAYERS = ["head", "arms", "body"]', "the order of the layers"),
+    ("pose.js", "power(added.rotations, 4 * i, weights[i])", "power(added.rotations, 4 * i, 1)", "weights of turns"),
+    ("pose.js", "entering ? cue.entry : cue.last", "cue.entry", "the edge a cue is led out from"),
+    ("pose.js", "w * added.translations", "added.translations", "weights of translations"),
+    ("pose.js", "return rise * fall;", "return Math.min(rise, fall);", "the product of rise and fall"),
+    ("pose.js", "Math.min(period + phase, length)", "phase", "the seam of a loop"),
+    ("pose.js", "action.end - action.start - seam;", "action.end - action.start;", "the period of a loop with a seam"),
+    ("pose.js", "if (at === 0 || rest.fadeStart + rest.fade <= time) return stance;", "return stance;", "the fade from loop to loop"),
+    ("pose.js", "for (let s = 0; s < action.still.length; s++) {", "for (let s = 0; s < 0; s++) {", "the other arm of a one-armed action"),
+    ("life/evaluate.js", "const INHALE = 0.4;", "const INHALE = 0.5;", "the shape of a breath"),
+    ("life/evaluate.js", "(whole - gone) / life.blink_open)));", "1));", "the shape of a blink"),
+    ("life/evaluate.js", "channels[n] = shut[n] - already;", "channels[n] = shut[n];", "lids that a clip has shut already"),
+    ("life/evaluate.js", "MORPH_LOOK = 30 * RADIANS", "MORPH_LOOK = 25 * RADIANS", "morph targets of a look"),
+    ("life/solve.js", "const SMALL = 15 * RADIANS;", "const SMALL = 10 * RADIANS;", "the head's part of a turn"),
+    ("life/solve.js", "turns[3 * n + k] *= lookers[n].share", "turns[3 * n + k] *= 1 / lookers.length", "the shares of neck and chest"),
+    ("life/solve.js", "const TILT_SHARE = 0.8;", "const TILT_SHARE = 1;", "the head's part up and down"),
+    ("life/solve.js", "shut + blink * (1 - shut)", "Math.max(shut, blink)", "what a blink closes"),
+    ("life/solve.js", "const NEAREST = 0.25;", "const NEAREST = 0;", "things nearer than the nose"),
+    ("life/gaze.js", "const HEAD_LAG = 0.04;", "const HEAD_LAG = 0;", "the head that follows the eyes"),
+    ("life/gaze.js", "const SPRING = 8;", "const SPRING = 6;", "how the head settles"),
+    ("life/gaze.js", "if (since > starts[n]) scale", "if (false) scale", "a look that ends an aversion"),
+    ("life/gaze.js", "EYE_TIME_PER_DEGREE] = [0.021, 0.0022]", "EYE_TIME_PER_DEGREE] = [0.021, 0.003]", "how fast eyes jump"),
+    ("life/schedule.js", "const FIXATION = 0.2;", "const FIXATION = 0.3;", "the shortest fixation"),
+    ("life/schedule.js", "const AFTER_BLINK = 1;", "const AFTER_BLINK = 0.5;", "blinks on stressed syllables"),
+    ("life/schedule.js", "(first ? shut + 0.1 : AFTER_BLINK / calm)", "AFTER_BLINK / calm", "the blink that opens a speech"),
+    ("life/schedule.js", "if (strict || rate <= 0) return 0;", "if (rate <= 0) return 0;", "strict looks"),
+    ("life/schedule.js", "last + BETWEEN_AVERSIONS, ", "", "the time between aversions"),
+    ("life/schedule.js", "UPRIGHT] = [1.2, 4, 0.6]", "UPRIGHT] = [1.2, 4, 0.5]", "jumps up and down"),
+    ("life/wanted.js", "look.priority > what.priority", "false", "looks that wait beneath a more important one"),
+    ("life/track.js", "if (speech.priority < last.priority) continue;", "", "a lesser speech"),
+    ("life/mouth.js", "const [EARLY, LATE] = [0.075, 0.065];", "const [EARLY, LATE] = [0.05, 0.065];", "how early a mouth shapes itself"),
+    ("life/mouth.js", "const CLOSING = 0.12;", "const CLOSING = 0.3;", "a mouth that closes where speech was cut"),
+    ("life/letters.js", "th TH", "th DD", "spelling"),
+    ("life/letters.js", "const silentE = ", "const silentE = false && ", "the silent e"),
+    ("glb.js", "const scale = accessor.normalized ? most : 1;", "const scale = accessor.normalized ? most + 1 : 1;", "normalised integers"),
+    ("glb.js", "slerp(out, o, values, a, values, b, part);", "slerp(out, o, values, a, values, b, 0);", "keys that were thinned out"),
+]  # fmt: skip
+
+
+@pytest.mark.parametrize(("file", "rule", "instead", "about"), MUTATIONS, ids=[m[3].replace(" ", "-") for m in MUTATIONS])
+def test_the_vectors_notice_when_a_rule_is_broken(tmp_path: Path, file: str, rule: str, instead: str, about: str) -> None:
+    runtime = tmp_path / "javascript"
+    shutil.copytree(RUNTIME, runtime)
+    path = runtime / file
+    source = path.read_text()
+    assert source.count(rule) == 1, f"{file} has '{rule}' {source.count(rule)} times"
+    path.write_text(source.replace(rule, instead))
+    assert any(conformance(folder, runtime=runtime).returncode != 0 for folder in (VARIED, STICK, *VECTORS)), about
