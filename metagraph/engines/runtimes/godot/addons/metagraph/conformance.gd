@@ -56,8 +56,7 @@ func _fail(name, words):
 
 
 func _text(path):
-	var bytes = _shim.read_bytes(path)
-	return _shim.text_of(bytes) if bytes != null else ""
+	return _shim.text_of(_shim.read_bytes(path))
 
 
 func _check(folder, only):

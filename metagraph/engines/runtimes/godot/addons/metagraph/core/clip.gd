@@ -38,7 +38,7 @@ func _init(glb, channels, nodes, clip, pose, kept, shim):
 		_shift(_shifts, joint, pose[1][joint])
 	for channel in channels:
 		var times = glb.numbers(channel.times)
-		var view = glb.view(channel.values)
+		var view = glb.view(channel.rows)
 		var joint = nodes.get(channel.node, -1)
 		if channel.path == "weights":
 			var names = glb.morphs_of(channel.node)

@@ -65,7 +65,7 @@ func _open(shim):
 					return "animation '%s': %s" % [animation.get("name", ""), why]
 			channels.append({
 				node = int(channel["target"].get("node", -1)), path = channel["target"]["path"], times = int(sampler["input"]),
-				values = int(sampler["output"])
+				rows = int(sampler["output"])
 			})
 		animations.append({name = animation.get("name", ""), channels = channels})
 	return ""
@@ -81,21 +81,21 @@ func _wrong(accessor):
 		return "accessor %d is of a kind that is not read" % accessor
 	if int(a["bufferView"]) >= _data.get("bufferViews", []).size():
 		return "accessor %d has no buffer view" % accessor
-	var view = _view(accessor)
-	if a["count"] < 1 or view.at + view.stride * (int(a["count"]) - 1) + view.width * view.size > _begin + _size:
+	var own = view(accessor)
+	if a["count"] < 1 or own.at + own.stride * (int(a["count"]) - 1) + own.width * own.bytes > _begin + _size:
 		return "accessor %d reaches beyond the file's end" % accessor
 	return ""
 
 
-# Returns where an accessor's numbers lie: {at: byte, stride: bytes, width: numbers a row, kind, size: bytes a number, scale}.
-func _view(accessor):
+# Returns where an accessor's numbers lie: {at: byte, stride: bytes, width: numbers a row, kind, bytes: a number's, scale}.
+func view(accessor):
 	var a = _data["accessors"][accessor]
 	var of = _data["bufferViews"][int(a["bufferView"])]
 	var kind = int(a["componentType"])
 	var width = WIDTHS[a["type"]]
 	var stride = int(of.get("byteStride", 0))
 	return {
-		at = _begin + int(of.get("byteOffset", 0)) + int(a.get("byteOffset", 0)), width = width, kind = kind, size = SIZES[kind],
+		at = _begin + int(of.get("byteOffset", 0)) + int(a.get("byteOffset", 0)), width = width, kind = kind, bytes = SIZES[kind],
 		stride = stride if stride > 0 else width * SIZES[kind], scale = STEPS[kind] if a.get("normalized", false) else 1.0
 	}
 
@@ -104,9 +104,9 @@ func _view(accessor):
 func numbers(accessor):
 	if not _times.has(accessor):
 		var out = []
-		var view = _view(accessor)
+		var own = view(accessor)
 		for n in range(int(_data["accessors"][accessor]["count"])):
-			out += row(view, n, view.width)
+			out += row(own, n, own.width)
 		_times[accessor] = out
 	return _times[accessor]
 
@@ -116,11 +116,6 @@ func morphs_of(node):
 	if node < 0 or node >= nodes.size() or not nodes[node].has("mesh"):
 		return []
 	return meshes[int(nodes[node]["mesh"])].get("extras", {}).get("targetNames", [])
-
-
-# Returns the view of an accessor that `row` reads.
-func view(accessor):
-	return _view(accessor)
 
 
 # Returns row n of a view; of numbers that come one by one, the n-th `width` of them.

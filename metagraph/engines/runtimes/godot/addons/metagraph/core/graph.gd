@@ -2,6 +2,7 @@
 # what is merely lacking, in `problems`. Nothing here changes once it is read, so many characters share one graph.
 
 const Util = preload("util.gd")
+const Check = preload("check.gd")
 const Choice = preload("choice.gd")
 const Clip = preload("clip.gd")
 const Glb = preload("glb.gd")
@@ -10,22 +11,6 @@ const Rig = preload("rig.gd")
 const Text = preload("text.gd")
 const FORMAT = 1  # the newest version of exports that is understood
 const CORE = "res://addons/metagraph/core/"
-# What an export must have: field -> what it is; "x?" may be null, and [] means a list of such.
-const EXPORT = {joints = "[]", base = "{}", clips = "[]", layers = "{}", planner = "{}"}
-const JOINT = {name = "text", parent = "text?", part = "text", side = "text", translation = "3", rotation = "4"}
-const CLIP = {id = "text", name = "text", animation = "number", fps = "number", frames = "number"}
-const LAYER = {start = "text?", weights = "{}", stances = "[]", actions = "[]", markov = "{}"}
-const STANCE = {id = "text", name = "text"}
-const ACTION = {
-	id = "text", name = "text", clip = "text", kind = "text", stance = "text", end_stance = "text?", start = "number", end = "number",
-	blend_in = "number", blend_out = "number", earliest_exit = "number?", stroke = "number?", limb = "text", joints = "[]", tags = "[]",
-	likelihood = "number"
-}
-const MARKOV = {states = "[]", matrix = "[]", gap = "number", positive = "number", negative = "number"}
-const PLANNER = {
-	"seed": "number", "alpha": "number", "never_twice": "switch", "shortest": "number", "wait": "number", "window": "number",
-	"loop_fade": "number"
-}
 const PLANNER_USUAL = {memory = 0.0, rest = 0.0, lookahead = 0.1, hurry = 2.0, least_blend = 0.25}
 
 var error = ""
@@ -75,25 +60,25 @@ func _read(json, bytes):
 		return "$.metagraph: this is no Metagraph export; choose the JSON that Metagraph wrote"
 	if version > FORMAT:
 		return "$.metagraph: the export is of version %s, this reads up to %d; update the runtime" % [str(version), FORMAT]
-	var wrong = _wrong(data)
+	var wrong = Check.wrong(data)
 	if wrong != "":
 		return wrong + "; export it again"
 	for name in PLANNER_USUAL:
 		settings[name] = float(data.planner.get(name, PLANNER_USUAL[name]))
-	for name in PLANNER:
+	for name in Check.PLANNER:
 		settings[name] = data.planner[name]
 	settings.seed32 = int(data.planner["seed"])
 	_read_skeleton(data)
-	life = Life.life_of(data.get("life", {}))
-	lines = data.get("lines", {})
-	for name in data.get("points", {}):
+	life = Life.life_of(data.life)
+	lines = data.lines
+	for name in data.points:
 		points[name] = Util.vector(data.points[name])
-	for line in data.get("voices", {}):
+	for line in data.voices:
 		voices[line] = data.voices[line]
-	face_morphs = data.get("face", {}).get("morphs", []).size() > 0
+	face_morphs = data.face.get("morphs", []).size() > 0
 	for layer in Util.LAYERS:
 		_read_layer(layer, data.layers[layer])
-	if data.get("rig") != null:
+	if data.rig != null:
 		rig = Rig.rig_of(data.rig, shim)
 	if not shim.are_bytes(bytes):
 		return "the GLB cannot be read; check that '%s' is beside the JSON" % str(data.get("glb", "it"))
@@ -101,79 +86,6 @@ func _read(json, bytes):
 	if glb.error != "":
 		return "the GLB: %s; export it again" % glb.error
 	return _read_clips(data, glb)
-
-
-# Returns what is missing or of the wrong kind, as a path and words; "" when nothing is.
-static func _wrong(data):
-	var out = _lacks(data, EXPORT, "$")
-	if out == "":
-		out = _lacks(data.planner, PLANNER, "$.planner")
-	if out == "":
-		out = _lacks(data.base, {rotations = "[]", translations = "[]"}, "$.base")
-	if out == "":
-		out = _all_lack(data.joints, JOINT, "$.joints")
-	if out == "":
-		out = _all_lack(data.clips, CLIP, "$.clips")
-	if out != "":
-		return out
-	if data.base.rotations.size() != data.joints.size() or data.base.translations.size() != data.joints.size():
-		return "$.base: should have a rotation and a translation for each joint"
-	for layer in Util.LAYERS:
-		var where = "$.layers." + layer
-		if typeof(data.layers.get(layer)) != TYPE_DICTIONARY:
-			return where + ": it is missing"
-		var of = data.layers[layer]
-		out = _lacks(of, LAYER, where)
-		if out == "":
-			out = _all_lack(of.stances, STANCE, where + ".stances")
-		if out == "":
-			out = _all_lack(of.actions, ACTION, where + ".actions")
-		if out == "":
-			out = _lacks(of.markov, MARKOV, where + ".markov")
-		if out != "":
-			return out
-	return ""
-
-
-static func _all_lack(items, fields, where):
-	for n in range(items.size()):
-		var out = _lacks(items[n], fields, "%s[%d]" % [where, n])
-		if out != "":
-			return out
-	return ""
-
-
-static func _lacks(record, fields, where):
-	if typeof(record) != TYPE_DICTIONARY:
-		return where + ": should be a record"
-	for name in fields:
-		var kind = fields[name]
-		var value = record.get(name)
-		if value == null and kind.ends_with("?"):
-			continue
-		if not _is(value, kind.trim_suffix("?")):
-			return "%s.%s: %s" % [where, name, "it is missing" if value == null else "is of the wrong kind"]
-	return ""
-
-
-static func _is(value, kind):
-	match kind:
-		"text":
-			return typeof(value) == TYPE_STRING
-		"number":
-			return Util.is_number(value)
-		"switch":
-			return typeof(value) == TYPE_BOOL
-		"{}":
-			return typeof(value) == TYPE_DICTIONARY
-		"[]":
-			return typeof(value) == TYPE_ARRAY
-	if typeof(value) != TYPE_ARRAY or value.size() != int(kind):
-		return false
-	for number in value:
-		if not Util.is_number(number):
-			return false
-	return true
 
 
 func _read_skeleton(data):
@@ -199,17 +111,16 @@ func _read_layer(layer, data):
 	for each in data.actions:
 		var action = each.duplicate()
 		action.layer = layer
-		action.phases = each.get("phases", [])
-		action.cooldown = each.get("cooldown", 0.0)
-		action.spacing = each.get("spacing")
+		action.phases = [] if each.phases == null else each.phases
+		action.cooldown = 0.0 if each.cooldown == null else each.cooldown
 		action.still = _still(action)
 		actions[action.id] = action
 		kinds[action.kind] = true
 		var node = "%s/%s/%s" % [layer, action.kind, action.stance]
 		_index[node] = _index.get(node, []) + [action]
 	var markov = data.markov.duplicate()
-	markov.tags = data.markov.get("tags", [])
-	markov.lengths = data.markov.get("lengths", [])
+	markov.tags = [] if data.markov.tags == null else data.markov.tags
+	markov.lengths = [] if data.markov.lengths == null else data.markov.lengths
 	var reach = []  # [joint, weight] of those it moves
 	for joint in range(names.size()):
 		var weight = data.weights.get(parts[joint], 0.0)

@@ -39,9 +39,9 @@ static func are_bytes(value):
 	return typeof(value) == TYPE_PACKED_BYTE_ARRAY
 
 
-# Returns the text of UTF-8 bytes.
+# Returns the text of UTF-8 bytes; none of what could not be read.
 static func text_of(bytes):
-	return bytes.get_string_from_utf8()
+	return "" if bytes == null else bytes.get_string_from_utf8()
 
 
 # Returns microseconds of a clock.

@@ -1,0 +1,118 @@
+# What an export must have for this runtime to read it. More than this it may have; what is not known is passed over.
+
+const Util = preload("util.gd")
+# Field -> what it is: a text, a number, a switch, a record, a list, or so many numbers; "?": null, or not there, which is made null.
+const EXPORT = {joints = "list", base = "record", clips = "list", layers = "record", planner = "record"}
+const OPTIONAL = {life = "record?", face = "record?", points = "record?", lines = "record?", voices = "record?", rig = "record?"}
+const EMPTY = ["life", "face", "points", "lines", "voices"]  # where these are not there
+const BASE = {rotations = "list", translations = "list"}
+const JOINT = {name = "text", parent = "text?", part = "text", side = "text", translation = "3", rotation = "4"}
+const CLIP = {id = "text", name = "text", animation = "number", fps = "number", frames = "number"}
+const LAYER = {start = "text?", weights = "record", stances = "list", actions = "list", markov = "record"}
+const STANCE = {id = "text", name = "text"}
+const ACTION = {
+	id = "text", name = "text", clip = "text", kind = "text", stance = "text", end_stance = "text?", start = "number", end = "number",
+	blend_in = "number", blend_out = "number", earliest_exit = "number?", stroke = "number?", limb = "text", joints = "list", tags = "list",
+	likelihood = "number", phases = "list?", cooldown = "number?", spacing = "number?"
+}
+const MARKOV = {states = "list", matrix = "list", gap = "number", positive = "number", negative = "number", tags = "list?", lengths = "list?"}
+const PLANNER = {
+	"seed": "number", "alpha": "number", "never_twice": "switch", "shortest": "number", "wait": "number", "window": "number",
+	"loop_fade": "number"
+}
+const RIG = {
+	left = "3", up = "3", ahead = "3", chain = "list", breath = "list", shoulders = "list", lookers = "list", trunk = "number",
+	trunk_ahead = "3", head_ahead = "3", eyes = "list", partner = "3", eyes_at_rest = "3", face = "record"
+}
+const EYE = {at = "3", left = "3", up = "3", ahead = "3", joint = "number", turn_left = "3", turn_up = "3", down = "4"}
+const FACE = {joints = "list", turns = "list", shifts = "list", follows = "4", lid_joints = "4", shut_by = "list", morphs = "record"}
+const VOICE = {duration = "number", accents = "list", weights = "list"}
+
+
+# Returns what is missing or of the wrong kind, as a path and words; "" when nothing is.
+static func wrong(data):
+	var checks = [
+		[[data], EXPORT, "$"], [[data], OPTIONAL, "$"], [[data.get("planner")], PLANNER, "$.planner"], [[data.get("base")], BASE, "$.base"],
+		[data.get("joints"), JOINT, "$.joints"], [data.get("clips"), CLIP, "$.clips"]
+	]
+	for layer in Util.LAYERS:
+		var where = "$.layers." + layer
+		var of = data.layers.get(layer) if typeof(data.get("layers")) == TYPE_DICTIONARY else null
+		checks.append([[of], LAYER, where])
+		if typeof(of) == TYPE_DICTIONARY:
+			checks.append([of.get("stances"), STANCE, where + ".stances"])
+			checks.append([of.get("actions"), ACTION, where + ".actions"])
+			checks.append([[of.get("markov")], MARKOV, where + ".markov"])
+	for name in EMPTY:
+		if data.get(name) == null:
+			data[name] = {}
+	var rig = data.get("rig")
+	if typeof(rig) == TYPE_DICTIONARY:
+		checks.append([[rig], RIG, "$.rig"])
+		checks.append([rig.get("eyes"), EYE, "$.rig.eyes"])
+		checks.append([[rig.get("face")], FACE, "$.rig.face"])
+	if typeof(data.voices) == TYPE_DICTIONARY:
+		checks.append([data.voices.values(), VOICE, "$.voices"])
+	for check in checks:
+		var out = _lack(check[0], check[1], check[2])
+		if out != "":
+			return out
+	return _unlike(data)
+
+
+# Returns what does not fit together.
+static func _unlike(data):
+	var joints = {}
+	for joint in data.joints:
+		if joint.parent != null and not joints.has(joint.parent):
+			return "$.joints: '%s' should come after its parent '%s'" % [joint.name, joint.parent]
+		joints[joint.name] = true
+	for name in BASE:
+		if data.base[name].size() != data.joints.size():
+			return "$.base.%s: should be one for each joint" % name
+		for each in data.base[name]:
+			if not _is(each, "4" if name == "rotations" else "3"):
+				return "$.base.%s: should be lists of numbers" % name
+	for layer in Util.LAYERS:
+		var markov = data.layers[layer].markov
+		if markov.matrix.size() != markov.states.size():
+			return "$.layers.%s.markov.matrix: should have a row for each state" % layer
+	return ""
+
+
+static func _lack(items, fields, where):
+	if typeof(items) != TYPE_ARRAY:
+		return where + ": should be a list"
+	for n in range(items.size()):
+		var place = where if items.size() == 1 else "%s[%d]" % [where, n]
+		if typeof(items[n]) != TYPE_DICTIONARY:
+			return place + ": it is missing or of the wrong kind"
+		for name in fields:
+			var kind = fields[name]
+			var value = items[n].get(name)
+			if value == null and kind.ends_with("?"):
+				items[n][name] = null
+				continue
+			if not _is(value, kind.trim_suffix("?")):
+				return "%s.%s: %s" % [place, name, "it is missing" if value == null else "is of the wrong kind"]
+	return ""
+
+
+static func _is(value, kind):
+	match kind:
+		"text":
+			return typeof(value) == TYPE_STRING
+		"number":
+			return Util.is_number(value)
+		"switch":
+			return typeof(value) == TYPE_BOOL
+		"record":
+			return typeof(value) == TYPE_DICTIONARY
+		"list":
+			return typeof(value) == TYPE_ARRAY
+	if typeof(value) != TYPE_ARRAY or value.size() != int(kind):
+		return false
+	for number in value:
+		if not Util.is_number(number):
+			return false
+	return true

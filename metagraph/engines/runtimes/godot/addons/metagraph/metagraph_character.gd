@@ -1,0 +1,127 @@
+class_name MetagraphCharacter
+extends Node
+## Plays a Metagraph export on a Skeleton3D: gestures, stances, gaze, breathing and speech, by requests.
+##
+## Every request returns an id; answer(id) says what became of it. Nothing here fails while the game runs: what cannot be read
+## when the node gets ready is pushed as an error, and the skeleton stays as it is.
+
+## An action began to play. layer: body, arms or head; meta: the request it belongs to, or what a model wrote.
+signal began(action: String, layer: String, meta: String)
+## An action has ended.
+signal ended(action: String, layer: String, meta: String)
+
+const Graph = preload("core/graph.gd")
+const Performer = preload("core/character.gd")
+const Bones = preload("core/bones.gd")
+const Shim = preload("core/shim4.gd")
+
+@export_file("*.json") var json_path := ""
+## A copy of the export's GLB under a name that Godot does not import, so that it is there in an exported game.
+@export_file var glb_path := ""
+@export var skeleton_path: NodePath
+## Chance: the same seed and requests give the same performance. -1: the project's.
+@export var chance := -1
+## Whether the models fill the time nobody asks for.
+@export var idle := true
+## Whether breathing, gaze, blinks and lips come on top.
+@export var alive := true
+
+var graph  ## may be given before the node gets ready, so that characters share one
+var character
+
+var _skeleton: Skeleton3D
+var _bones := {}
+var _faces := []  # [mesh instance, its blend shapes' names]
+var _seconds := 0.0
+
+
+func _ready() -> void:
+	if not skeleton_path.is_empty():
+		_skeleton = get_node_or_null(skeleton_path) as Skeleton3D
+	if graph == null:
+		graph = Graph.new(Shim.text_of(Shim.read_bytes(json_path)), Shim.read_bytes(glb_path))
+	if graph.error != "":
+		push_error("Metagraph: %s: %s" % [json_path, graph.error])
+		return
+	for problem in graph.problems:
+		push_warning("Metagraph: %s: %s" % [json_path, problem])
+	var options := {"idle": idle}
+	if chance >= 0:
+		options["seed"] = chance
+	character = Performer.new(graph, options)
+	if _skeleton == null:
+		push_error("Metagraph: skeleton_path leads to no Skeleton3D; only requests and events are worked out")
+		return
+	var names := []
+	for bone in _skeleton.get_bone_count():
+		names.append(_skeleton.get_bone_name(bone))
+	_bones = Bones.places(graph.names, names)
+	if _bones.size() < graph.names.size():
+		push_warning("Metagraph: %d of %d joints are bones of the skeleton" % [_bones.size(), graph.names.size()])
+	for node in _skeleton.find_children("*", "MeshInstance3D", true, false):
+		var mesh = node.get("mesh")
+		if mesh is ArrayMesh and mesh.get_blend_shape_count() > 0:
+			var targets := []
+			for place in mesh.get_blend_shape_count():
+				targets.append(str(mesh.get_blend_shape_name(place)))
+			_faces.append([node, targets])
+
+
+func _process(delta: float) -> void:
+	if character == null:
+		return
+	_seconds += delta
+	character.alive = alive
+	character.update(_seconds)
+	for event in character.events():
+		if event.kind == "begin":
+			began.emit(event.action, event.layer, event.meta)
+		else:
+			ended.emit(event.action, event.layer, event.meta)
+	if _skeleton == null:
+		return
+	var pose = character.pose()
+	for joint in _bones:
+		_skeleton.set_bone_pose_rotation(_bones[joint], pose.rotations[joint])
+		_skeleton.set_bone_pose_position(_bones[joint], pose.translations[joint])
+	for face in _faces:
+		for place in face[1].size():
+			face[0].set_blend_shape_value(place, pose.morphs.get(face[1][place], 0.0))
+
+
+## Asks for anything, a Dictionary with "do"; "after" is seconds from now. Returns its id.
+func ask(request: Dictionary) -> String:
+	return character.ask(request) if character != null else ""
+
+
+## Returns what became of a request: a Dictionary with state ("planned", "late", "done", "refused"), at, until, what, why.
+func answer(id: String) -> Dictionary:
+	return character.answer(id) if character != null else {"state": "refused", "why": "the export was not read"}
+
+
+## Asks for a gesture with all of these tags.
+func gesture(tags := [], more := {}) -> String:
+	return _ask("gesture", {"tags": tags}, more)
+
+
+## Goes to a stance, by id or name.
+func go(stance: String, more := {}) -> String:
+	return _ask("stance", {"stance": stance}, more)
+
+
+## Looks at a point of the character's space (Vector3), or at a name: "user", "ahead", a point of the project.
+func look(to, more := {}) -> String:
+	return _ask("look", {"to": [to.x, to.y, to.z] if to is Vector3 else to}, more)
+
+
+## Says a line of the project, by id, or else the text itself.
+func say(words: String, more := {}) -> String:
+	var known = graph != null and graph.error == "" and graph.lines.has(words)
+	return _ask("say", {"line" if known else "text": words}, more)
+
+
+func _ask(what: String, fields: Dictionary, more: Dictionary) -> String:
+	var request := {"do": what}
+	request.merge(fields)
+	request.merge(more, true)
+	return ask(request)
