@@ -7,7 +7,7 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from PySide6.QtGui import QColor, QFont, QPalette
-from PySide6.QtWidgets import QApplication
+from PySide6.QtWidgets import QApplication, QPushButton
 
 from metagraph.graph.model import Kind
 
@@ -142,6 +142,8 @@ def style_sheet(look: Theme) -> str:
     QSlider::groove:horizontal {{ height: 4px; background: {t.line}; border-radius: 2px; }}
     QSlider::handle:horizontal {{ width: 14px; margin: -5px 0; border-radius: 7px; background: {t.text}; }}
     QLabel[dim="true"] {{ color: {t.dim}; }}
+    QLabel[heading="true"] {{ font-size: 16px; font-weight: 600; }}
+    QDialogButtonBox {{ dialogbuttonbox-buttons-have-icons: 0; }}
     QLabel[title="true"] {{ font-weight: 600; }}
     QGroupBox {{ border: none; margin-top: 18px; font-weight: 600; color: {t.dim}; }}
     QGroupBox::title {{ subcontrol-origin: margin; left: 0; }}
@@ -158,3 +160,10 @@ def apply(app: QApplication, look: Theme) -> None:
         app.setFont(font)
     app.setPalette(palette(look))
     app.setStyleSheet(style_sheet(look))
+
+
+def strengthen(button: QPushButton) -> None:
+    """Make a button the filled one; a button of a button box is styled before it can be told."""
+    button.setProperty("strong", True)
+    button.setDefault(True)
+    button.style().polish(button)

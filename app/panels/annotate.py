@@ -32,7 +32,7 @@ from app.panels.choices import ChoiceTable, Entries, Row
 from app.panels.fields import Seconds
 from app.panels.strip import Strip, clock
 from app.session import Session
-from app.theme import KIND_MARKS, theme
+from app.theme import KIND_MARKS, strengthen, theme
 from app.words import many
 from metagraph.formats.elan import read_elan
 from metagraph.graph.model import LAYERS
@@ -147,7 +147,7 @@ class AnnotateDialog(QDialog):
         self.buttons = QDialogButtonBox(QDialogButtonBox.StandardButton.Cancel, self)
         self.buttons.button(QDialogButtonBox.StandardButton.Cancel).setIcon(QIcon())
         self.go = QPushButton("Import", self)
-        self.go.setProperty("strong", True)
+        strengthen(self.go)
         self.buttons.addButton(self.go, QDialogButtonBox.ButtonRole.AcceptRole)
         self.go.setDefault(True)
         self.buttons.accepted.connect(self.accept)

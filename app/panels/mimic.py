@@ -22,6 +22,7 @@ from PySide6.QtWidgets import (
 )
 
 from app.jobs import Job
+from app.theme import strengthen
 from app.words import many
 from metagraph.formats.keypoints import read_keypoints
 from metagraph.graph import staging
@@ -80,7 +81,7 @@ class MimicDialog(QDialog):
         buttons = QDialogButtonBox(QDialogButtonBox.StandardButton.Cancel, self)
         buttons.button(QDialogButtonBox.StandardButton.Cancel).setIcon(QIcon())
         self.go = QPushButton("Mimic", self)
-        self.go.setProperty("strong", True)
+        strengthen(self.go)
         buttons.addButton(self.go, QDialogButtonBox.ButtonRole.AcceptRole)
         self.go.setDefault(True)
         buttons.accepted.connect(self.accept)

@@ -26,6 +26,7 @@ from app.jobs import Job, Jobs
 from app.performance import Performance
 from app.rendering import SUFFIXES, Wanted, write
 from app.session import Session
+from app.theme import strengthen
 
 SIZES = ((640, 360), (960, 540), (1280, 720), (1920, 1080))
 
@@ -85,8 +86,7 @@ class RenderDialog(QDialog):
         self.show_button.setEnabled(False)
         self.show_button.clicked.connect(lambda: QDesktopServices.openUrl(QUrl.fromLocalFile(str(Path(self.file.text()).parent))))
         self.go = self.buttons.addButton("Write", QDialogButtonBox.ButtonRole.AcceptRole)
-        self.go.setProperty("strong", True)
-        self.go.setDefault(True)
+        strengthen(self.go)
         self.buttons.accepted.connect(self._write)
         self.buttons.rejected.connect(self.reject)
         layout.addWidget(self.buttons)

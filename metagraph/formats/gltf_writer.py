@@ -96,8 +96,8 @@ def write_glb(
     quaternion component or, in metres, of a translation; by default 5e-5 when quantizing, else 0. A rotation that
     stays the same keeps one key. pose_nodes: joints that stand still, alike in every clip, are posed by their nodes and
     cost no key at all; the rest pose is then only in the inverse bind matrices, as in many exporters' files. stand: the pose the
-    joints' nodes have (the scene then has a name, which paths of some engines begin with), the rest pose when None; the skin stays bound to the rest pose.
-    moved: clip name -> the joints it moves, all where None. extensions: of the document, by name. Raises
+    joints' nodes have, the rest pose when None; the skin stays bound to the rest pose, and the scene gets a name, with which
+    some engines' paths begin. moved: clip name -> the joints it moves, all where None. extensions: of the document, by name. Raises
     FileError when the file cannot be written, ValueError for mixed skeletons.
     """
     path = Path(path)

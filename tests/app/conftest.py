@@ -187,3 +187,14 @@ def drive(qapp: object, qtbot: object, monkeypatch: pytest.MonkeyPatch) -> Itera
     window.close()
     window.deleteLater()
     qtbot.wait(20)  # type: ignore[attr-defined]
+
+
+@pytest.fixture
+def toys(drive, toy):
+    """A window on the toy project."""
+    drive.document.load(toy.project(), None)
+    drive.files.opened.emit()
+    drive.wait(lambda: drive.performance.skeleton() is not None)
+    drive.id = lambda name: toy.id(drive.document.project, name)
+    drive.action = lambda name: drive.document.project.action(drive.id(name))
+    return drive

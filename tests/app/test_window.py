@@ -18,17 +18,6 @@ KEY, CTRL, ALT, SHIFT = Qt.Key, Qt.KeyboardModifier.ControlModifier, Qt.Keyboard
 
 
 @pytest.fixture
-def toys(drive, toy):
-    """A window on the toy project."""
-    drive.document.load(toy.project(), None)
-    drive.files.opened.emit()
-    drive.wait(lambda: drive.performance.skeleton() is not None)
-    drive.id = lambda name: toy.id(drive.document.project, name)
-    drive.action = lambda name: drive.document.project.action(drive.id(name))
-    return drive
-
-
-@pytest.fixture
 def folder(toy, tmp_path):
     """A folder of clip files: two that rest and three that move."""
     place = tmp_path / "clips"
