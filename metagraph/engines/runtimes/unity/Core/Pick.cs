@@ -211,7 +211,7 @@ namespace Metagraph
         private GraphAction Draw(List<GraphAction> candidates, string key, double now)
         {
             List<GraphAction> left = Spaced(candidates);
-            IEnumerable<KeyValuePair<string, double>> weights = left.Select(a => Weighed(a, a.Likelihood / Math.Max(Count(a.Id, now), 1.0)));
+            var weights = left.Select(a => Weighed(a, a.Likelihood / Math.Max(Count(a.Id, now), 1.0)));
             string chosen = Choice.Pick(seed, key, "action", weights);
             return left.Find(a => a.Id == chosen) ?? left[0];
         }
@@ -221,7 +221,7 @@ namespace Metagraph
             return new KeyValuePair<string, double>(action.Id, weight);
         }
 
-        /// <summary>Leave out what needs more other actions before it plays again; where nothing is left, all need one less, and so on.</summary>
+        /// <summary>Leave out what needs more other actions before it plays again; where nothing is left, all need one less, etc.</summary>
         private List<GraphAction> Spaced(List<GraphAction> candidates)
         {
             List<string> before;

@@ -56,8 +56,12 @@ namespace Metagraph
         {
             try
             {
+                if (export == null || (glb == null && string.IsNullOrEmpty(glbPath)))
+                {
+                    throw new MetagraphException(name, "has no export", "Set Export and Glb, or Glb Path, in the inspector.");
+                }
                 byte[] bytes = glb != null ? glb.bytes : File.ReadAllBytes(Path.Combine(Application.streamingAssetsPath, glbPath));
-                Graph graph = Graph.Load(export != null ? export.text : "", bytes, export != null ? export.name : "export");
+                Graph graph = Graph.Load(export.text, bytes, export.name);
                 graph.Problems.ForEach(problem => Debug.LogWarning(problem, this));
                 character = new Character(graph, new CharacterOptions { Seed = seed < 0 ? (uint?)null : (uint)seed, Idle = idle });
                 Bind(graph);

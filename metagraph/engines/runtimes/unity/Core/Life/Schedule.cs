@@ -322,7 +322,7 @@ namespace Metagraph
             }
         }
 
-        /// <summary>Whether a stressed syllable may bring a blink: a speech's first always, others some time after the last blink.</summary>
+        /// <summary>Whether a stressed syllable may bring a blink: a speech's first always, others some time after the last.</summary>
         private bool Suits(double at, bool first, double last, double shut)
         {
             return at >= cut && at >= last + (first ? shut + 0.1 : AfterBlink / calm);
