@@ -6,7 +6,8 @@
 import { LAYERS, MODES } from "./words.js";
 
 const number = (low, high) => (x) => (Number.isFinite(x) && x >= low && x <= high ? "" : `should be a number from ${low} to ${high}`);
-const text = (low, high) => (x) => (typeof x === "string" && x.length >= low && x.length <= high ? "" : `should be a text of ${low} to ${high} letters`);
+const text = (low, high) => (x) =>
+  typeof x === "string" && x.length >= low && x.length <= high ? "" : `should be a text of ${low} to ${high} letters`;
 const one = (words) => (x) => (words.includes(x) ? "" : `should be one of ${words.join(", ")}`);
 const flag = (x) => (typeof x === "boolean" ? "" : "should be true or false");
 const tags = (x) => (Array.isArray(x) && x.every((tag) => !text(0, 200)(tag)) ? "" : "should be a list of texts");
@@ -54,7 +55,8 @@ export function readAsk(data) {
     return refuse(`do: nothing is known of '${String(data.do)}'; known are ${Object.keys(FIELDS).join(", ")}`);
   }
   const fields = { ...COMMON, ...FIELDS[data.do] };
-  for (const key of Object.keys(data)) if (key !== "do" && !Object.hasOwn(fields, key)) return refuse(`${key}: '${data.do}' has no such field`);
+  const strange = Object.keys(data).find((key) => key !== "do" && !Object.hasOwn(fields, key));
+  if (strange !== undefined) return refuse(`${strange}: '${data.do}' has no such field`);
   const ask = { do: data.do };
   for (const [field, [usual, check]] of Object.entries(fields)) {
     const value = data[field] === undefined ? usual : data[field];

@@ -95,7 +95,8 @@ export class Character {
     const far = this.plan.end >= now + this.ahead - Math.min(SLACK, this.ahead / 2);
     if (queue.length || !far) {
       this.queue = [];
-      for (const ask of queue) if (ask.do === "withdraw") this.finish({ id: ask.id, state: "done", at: null, until: null, what: [], why: "" });
+      const done = { state: "done", at: null, until: null, what: [], why: "" };
+      for (const { id, do: what } of queue) if (what === "withdraw") this.finish({ id, ...done });
       this.plan = hear(graph, this.plan, now, queue, far ? this.plan.end : now + this.ahead, this.options);
     }
     if (now - this.forgot < FORGETTING) return;

@@ -71,9 +71,11 @@ function cueData(cue) {
 function compare(where, found, wanted, tolerance, fail) {
   const differ = (a, b, at) => {
     if (typeof b === "number" && typeof a === "number") return Math.abs(a - b) <= tolerance ? "" : `${at} is ${a}, should be ${b}`;
-    if (typeof b !== "object" || b === null || typeof a !== "object" || a === null) return a === b ? "" : `${at} is ${JSON.stringify(a)}, should be ${JSON.stringify(b)}`;
+    const plain = (x) => typeof x !== "object" || x === null;
+    if (plain(a) || plain(b)) return a === b ? "" : `${at} is ${brief(a)}, should be ${brief(b)}`;
     const keys = Object.keys(b);
-    if (Object.keys(a).length !== keys.length) return `${at} has ${Object.keys(a).length} entries, should have ${keys.length}: ${brief(a)}, should be ${brief(b)}`;
+    const count = Object.keys(a).length;
+    if (count !== keys.length) return `${at} has ${count} entries, should have ${keys.length}: ${brief(a)}, should be ${brief(b)}`;
     for (const key of keys) {
       const words = differ(a[key], b[key], `${at}.${key}`);
       if (words) return words;
@@ -84,7 +86,7 @@ function compare(where, found, wanted, tolerance, fail) {
   if (words) fail(words);
 }
 
-const brief = (data) => JSON.stringify(data).slice(0, 300);
+const brief = (data) => String(JSON.stringify(data)).slice(0, 300);
 
 function comparePose(graph, plan, { time, alive, rotations, positions: places, morphs }, tolerance, fail) {
   const at = `pose at ${time} s${alive ? ", alive" : ""}`;

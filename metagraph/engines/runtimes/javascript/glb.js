@@ -65,7 +65,8 @@ export class Glb {
     return this.animations[animation].channels.map(({ sampler, target }) => {
       const { input, output, interpolation = "LINEAR" } = this.animations[animation].samplers[sampler];
       if (interpolation === "CUBICSPLINE") throw new GlbError("has cubic animations; Metagraph writes linear ones");
-      return { node: target.node, path: target.path, times: this.values(input), values: this.values(output), steps: interpolation === "STEP" };
+      const [times, values] = [this.values(input), this.values(output)];
+      return { node: target.node, path: target.path, times, values, steps: interpolation === "STEP" };
     });
   }
 

@@ -32,7 +32,9 @@ export function load(json, glb, file = "the export") {
   } catch (error) {
     throw new MetagraphError(file, "", `is not JSON (${error.message})`, "Export it again.");
   }
-  if (typeof data?.metagraph !== "number") throw new MetagraphError(file, "metagraph", "is missing", "Choose the JSON that Metagraph exported.");
+  if (typeof data?.metagraph !== "number") {
+    throw new MetagraphError(file, "metagraph", "is missing", "Choose the JSON that Metagraph exported.");
+  }
   if (data.metagraph > FORMAT) {
     throw new MetagraphError(file, "metagraph", `is ${data.metagraph}, and this runtime knows ${FORMAT}`, "Update the runtime.");
   }
@@ -43,7 +45,8 @@ export function load(json, glb, file = "the export") {
   try {
     return new Graph(data, new Glb(glb));
   } catch (error) {
-    if (error instanceof GlbError) throw new MetagraphError(data.glb ?? "the GLB", "", error.message, "Export it again, and copy both files.");
+    const again = "Export it again, and copy both files.";
+    if (error instanceof GlbError) throw new MetagraphError(data.glb ?? "the GLB", "", error.message, again);
     throw new MetagraphError(file, "", `cannot be understood (${error.message})`, "Export it again.");
   }
 }
@@ -72,7 +75,8 @@ export class Graph {
     this.voices = new Voices(data.voices);
     this.clips = readClips(data, glb, this.joints, this.problems);
     const durations = new Map(data.clips.map((clip) => [clip.id, Math.max(0, clip.frames - 1) / clip.fps]));
-    this.layers = Object.fromEntries(LAYERS.map((layer) => [layer, new LayerGraph(layer, data.layers[layer], data.joints, durations, this)]));
+    const layerGraph = (layer) => new LayerGraph(layer, data.layers[layer], data.joints, durations, this);
+    this.layers = Object.fromEntries(LAYERS.map((layer) => [layer, layerGraph(layer)]));
     for (const clip of this.clips.values()) clip.rotations = clip.translations = null; // only offsets are played
     this.body = data.rig ? readBody(data.rig) : null;
     const own = [...this.clips.values()].flatMap((clip) => clip.morphs.map((morph) => morph.name));
@@ -135,11 +139,12 @@ export class LayerGraph {
     const motion = graph.clips.get(clip) ?? null;
     if (motion && !offsets.has(clip)) offsets.set(clip, offsetsOf(motion, this.reach, graph));
     const other = { left: "right", right: "left" }[limb];
-    const stays = ({ part, side, name: joint }) => (part === "arms" && side === other) || (data.joints.length > 0 && !data.joints.includes(joint));
+    const masked = (joint) => data.joints.length > 0 && !data.joints.includes(joint.name);
+    const stays = (joint) => (joint.part === "arms" && joint.side === other) || masked(joint);
     return {
       id, name, clip, kind, layer: this.layer, stance, limb, likelihood, start, end, motion, tags: data.tags, joints: data.joints,
-      endStance: data.end_stance, blendIn: Math.max(0, data.blend_in), blendOut: Math.max(0, data.blend_out), earliestExit: data.earliest_exit,
-      phases: { ready, stroke, strokeEnd, relax }, cooldown: data.cooldown ?? 0, spacing: data.spacing ?? null,
+      endStance: data.end_stance, blendIn: Math.max(0, data.blend_in), blendOut: Math.max(0, data.blend_out),
+      earliestExit: data.earliest_exit, phases: { ready, stroke, strokeEnd, relax }, cooldown: data.cooldown ?? 0, spacing: data.spacing ?? null,
       offsets: offsets.get(clip) ?? null,
       still: Int32Array.from(this.reach.keys()).filter((place) => stays(joints[this.reach[place]])),
     };
@@ -182,10 +187,12 @@ function readClip(glb, tracks, nodes, rest, frames, fps) {
     const values = resample(track, frames, fps);
     const width = values.length / frames;
     if (track.path === "weights") {
-      glb.morphNames(track.node).forEach((name, n) => morphs.push({ name, place: -1, weights: Float32Array.from({ length: frames }, (_, f) => values[f * width + n]) }));
+      const column = (n) => Float32Array.from({ length: frames }, (_, f) => values[f * width + n]);
+      glb.morphNames(track.node).forEach((name, n) => morphs.push({ name, place: -1, weights: column(n) }));
     } else if (joint.has(track.node) && (track.path === "rotation" || track.path === "translation")) {
       const out = track.path === "rotation" ? rotations : translations;
-      for (let f = 0; f < frames; f++) for (let k = 0; k < width; k++) out[(f * nodes.length + joint.get(track.node)) * width + k] = values[f * width + k];
+      const at = (f) => (f * nodes.length + joint.get(track.node)) * width;
+      for (let f = 0; f < frames; f++) out.set(values.subarray(f * width, (f + 1) * width), at(f));
     }
   }
   return { rotations, translations, morphs };

@@ -18,7 +18,8 @@ import { LAYERS } from "./words.js";
 export function hear(graph, plan, now, asks, end, options = {}) {
   const fixed = now > 0 ? now + graph.settings.lookahead : 0;
   const meant = understand(graph, asks, fixed);
-  const gone = new Set([...meant.withdrawn, ...[...meant.requests, ...meant.items].map((x) => x.id), ...meant.refused.map((r) => r.request)]);
+  const asked = [...meant.requests, ...meant.items].map((x) => x.id);
+  const gone = new Set([...meant.withdrawn, ...asked, ...meant.refused.map((r) => r.request)]);
   const every = meant.withdrawn.has("");
   const before = [...plan.requests, ...trackItems(plan.track)].map((x) => x.id);
   const withdrawn = new Set(before.filter((id) => every || owners(id).some((owner) => gone.has(owner))));
@@ -26,10 +27,11 @@ export function hear(graph, plan, now, asks, end, options = {}) {
   const meantStays = meant.items.filter(isStay);
   const staying = new Set([...plan.track.stays, ...meantStays].filter((stay) => stay.on).map((stay) => stay.layer));
   const items = meant.items.filter((item) => !isStay(item) || staying.has(item.layer));
+  const changed = (stay) => gone.has(stay.id) || withdrawn.has(stay.id);
   const touched = new Set([
     ...meant.requests.map((r) => r.layer),
     ...plan.requests.filter((r) => withdrawn.has(r.id)).map((r) => r.layer),
-    ...[...plan.track.stays, ...items.filter(isStay)].filter((stay) => gone.has(stay.id) || withdrawn.has(stay.id)).map((stay) => stay.layer),
+    ...[...plan.track.stays, ...items.filter(isStay)].filter(changed).map((stay) => stay.layer),
   ]);
   // Without any asks everything is planned on; with some, what they have to do with.
   const leave = asks.length && now > 0 && end === plan.end ? LAYERS.filter((layer) => !touched.has(layer)) : [];

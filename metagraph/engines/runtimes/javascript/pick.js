@@ -235,8 +235,8 @@ export class Performer {
     const blends = into + action.blendOut;
     const squeeze = blends > 0 ? Math.min(1, length / blends) : 1;
     const cue = {
-      action, start: shape.start, end: shape.start + length, entry: shape.entry, blendIn: into * squeeze, blendOut: action.blendOut * squeeze,
-      stance, then: (action.kind === "transition" && action.endStance) || stance, meta,
+      action, start: shape.start, end: shape.start + length, entry: shape.entry,
+      blendIn: into * squeeze, blendOut: action.blendOut * squeeze, stance, then: (action.kind === "transition" && action.endStance) || stance, meta,
       holdFrom: shape.holdFrom, holdTo: shape.holdTo, hold: shape.hold, last: 0,
     };
     cue.last = clipSeconds(cue, cue.end); // clip seconds shown at its end

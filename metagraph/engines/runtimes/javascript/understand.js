@@ -105,7 +105,8 @@ function said(graph, ask, at, item, refuse) {
   const text = ask.text || (line?.text ?? "");
   if (!line && !text) throw new AskError("say what: a line's id, or text");
   const { priority } = ask;
-  const out = [item({ kind: "speech", end: at + spokenSeconds(graph, name, text, ask.duration), line: name, text, priority, length: null })];
+  const end = at + spokenSeconds(graph, name, text, ask.duration);
+  const out = [item({ kind: "speech", end, line: name, text, priority, length: null })];
   (ask.gestures ? (line?.asks ?? []) : []).forEach((data, n) => {
     const id = `${ask.id}.${n + 1}`;
     const { ask: inner, why } = readAsk(data);

@@ -26,8 +26,8 @@ export function readBody(rig) {
 }
 
 /**
- * joints [F]: those that shapes move. turns, shifts [C, F, 3]: rotation vectors in the joints' own space and metres in the parents', both at
- * 1, in the order of CHANNELS. follows [4]: how much each lid shuts for an eye that looks down by a radian. lids: its joint, -1 for
+ * joints [F]: those that shapes move. turns, shifts [C, F, 3]: rotation vectors in the joints' own space and metres in the parents',
+ * both at 1, in the order of CHANNELS. follows [4]: how much each lid shuts for an eye that looks down by a radian. lids: its joint, -1 for
  * none. shutBy [4][4]: what a lid's own rotation says about how far it is shut already. morphs: channel, name of the target, its
  * weight at 1.
  */
@@ -40,6 +40,8 @@ function readFace(face) {
     follows: face.follows,
     lids: face.lid_joints,
     shutBy: face.shut_by,
-    morphs: Object.entries(face.morphs).flatMap(([channel, targets]) => Object.entries(targets).map(([name, weight]) => ({ channel, name, weight }))),
+    morphs: Object.entries(face.morphs).flatMap(([channel, targets]) =>
+      Object.entries(targets).map(([name, weight]) => ({ channel, name, weight })),
+    ),
   };
 }

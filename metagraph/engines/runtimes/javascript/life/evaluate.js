@@ -107,7 +107,8 @@ export class Enlivener {
     const count = body.joints.length;
     const chained = body.chain.length;
     // First all from the pose as it was, then written: a joint may be in it twice, and then the last counts.
-    for (let n = 0; n < count; n++) for (let k = 0; k < 4; k++) results[4 * n + k] = n < chained ? chain[4 * n + k] : rotations[4 * body.joints[n] + k];
+    results.set(chain);
+    for (let n = chained; n < count; n++) for (let k = 0; k < 4; k++) results[4 * n + k] = rotations[4 * body.joints[n] + k];
     for (let n = 0; n < body.lookers.length; n++) {
       this.add(body.lookers[n].place, solver.turns[3 * n], solver.turns[3 * n + 1], solver.turns[3 * n + 2]);
     }
