@@ -27,8 +27,8 @@ var _events = []
 var _pose = null
 
 
-# options: seed: 0..2^32 - 1, the project's when left out; idle: whether the models fill the time nobody asks for; stances {layer: stance id};
-# ahead: seconds planned; recent: seconds of the past kept.
+# options: seed: 0..2^32 - 1, the project's when left out; idle: whether the models fill the time nobody asks for; stances {layer:
+# stance id}; ahead: seconds planned; recent: seconds of the past kept.
 func _init(read_graph, options = {}):
 	graph = read_graph
 	idle = options.get("idle", true)
@@ -103,7 +103,7 @@ func answer(ident):
 	return Hear.answer(plan, ident)
 
 
-# Returns what began and what ended since the update before the last: [{kind: "begin" or "end", layer, action: its name, meta, at}].
+# Returns what began and what ended in the last update: [{kind: "begin" or "end", layer, action: its name, meta, at}].
 func events():
 	return _events
 

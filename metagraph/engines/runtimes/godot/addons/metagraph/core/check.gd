@@ -15,7 +15,9 @@ const ACTION = {
 	blend_in = "number", blend_out = "number", earliest_exit = "number?", stroke = "number?", limb = "text", joints = "list", tags = "list",
 	likelihood = "number", phases = "list?", cooldown = "number?", spacing = "number?"
 }
-const MARKOV = {states = "list", matrix = "list", gap = "number", positive = "number", negative = "number", tags = "list?", lengths = "list?"}
+const MARKOV = {
+	states = "list", matrix = "list", gap = "number", positive = "number", negative = "number", tags = "list?", lengths = "list?"
+}
 const PLANNER = {
 	"seed": "number", "alpha": "number", "never_twice": "switch", "shortest": "number", "wait": "number", "window": "number",
 	"loop_fade": "number"
@@ -25,6 +27,8 @@ const RIG = {
 	trunk_ahead = "3", head_ahead = "3", eyes = "list", partner = "3", eyes_at_rest = "3", face = "record"
 }
 const EYE = {at = "3", left = "3", up = "3", ahead = "3", joint = "number", turn_left = "3", turn_up = "3", down = "4"}
+const SHOULDER = {joint = "number", turn = "3"}
+const LOOKER = {place = "number", share = "number"}
 const FACE = {joints = "list", turns = "list", shifts = "list", follows = "4", lid_joints = "4", shut_by = "list", morphs = "record"}
 const VOICE = {duration = "number", accents = "list", weights = "list"}
 
@@ -50,6 +54,8 @@ static func wrong(data):
 	if typeof(rig) == TYPE_DICTIONARY:
 		checks.append([[rig], RIG, "$.rig"])
 		checks.append([rig.get("eyes"), EYE, "$.rig.eyes"])
+		checks.append([rig.get("shoulders"), SHOULDER, "$.rig.shoulders"])
+		checks.append([rig.get("lookers"), LOOKER, "$.rig.lookers"])
 		checks.append([[rig.get("face")], FACE, "$.rig.face"])
 	if typeof(data.voices) == TYPE_DICTIONARY:
 		checks.append([data.voices.values(), VOICE, "$.voices"])
@@ -77,6 +83,25 @@ static func _unlike(data):
 		var markov = data.layers[layer].markov
 		if markov.matrix.size() != markov.states.size():
 			return "$.layers.%s.markov.matrix: should have a row for each state" % layer
+	return "" if data.rig == null else _strays(data.rig, data.joints.size())
+
+
+# Returns what of a rig names a joint, or a place in the chain, that is not there.
+static func _strays(rig, count):
+	var joints = rig.chain + rig.face.joints + rig.face.lid_joints
+	for each in rig.eyes + rig.shoulders:
+		joints.append(each.joint)
+	for joint in joints:
+		if not Util.is_number(joint) or joint < -1 or joint >= count:
+			return "$.rig: there is no joint %s" % str(joint)
+	var places = [rig.trunk]
+	for looker in rig.lookers:
+		places.append(looker.place)
+	for place in places:
+		if place < 0 or place >= rig.chain.size():
+			return "$.rig: there is no place %s in the chain" % str(place)
+	if rig.breath.size() != rig.chain.size() or rig.eyes.size() != 2:
+		return "$.rig: should have a breath for each joint of the chain, and two eyes"
 	return ""
 
 

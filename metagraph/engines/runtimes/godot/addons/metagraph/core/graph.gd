@@ -111,7 +111,9 @@ func _read_layer(layer, data):
 	for each in data.actions:
 		var action = each.duplicate()
 		action.layer = layer
-		action.phases = [] if each.phases == null else each.phases
+		if action.kind == "gesture" and (each.phases == null or each.phases.size() != 4):
+			var middle = (each.start + each.end) / 2.0
+			action.phases = [middle, middle, middle, middle]  # ready, stroke, stroke end, relax
 		action.cooldown = 0.0 if each.cooldown == null else each.cooldown
 		action.still = _still(action)
 		actions[action.id] = action

@@ -1,5 +1,6 @@
 # The model that performs when nobody asks for anything: a first-order chain over (limb, kind), see docs/format.md.
 
+const Request = preload("request.gd")
 const START = {number = 0, state = -1, time = 0.0}  # before meta action `number`, in state `state` (-1: none yet), which ended at `time`
 
 
@@ -43,22 +44,11 @@ static func write(choice, model, layer, seed32, until, kinds, cursor):
 				tags = ["positive"]
 			elif draw < model.positive + model.negative:
 				tags = ["negative"]
-		var asked = request(key, layer, kind, start, {duration = seconds, tags = tags, limb = limb, priority = 0})
+		var asked = Request.make(key, layer, kind, start, {duration = seconds, tags = tags, limb = limb, priority = 0})
 		out.append({request = asked, start = start, end = start + seconds, part = 0, written = true, key = key})
 		number += 1
 		time = start + seconds
 	return [out, {number = number, state = state, time = time}]
-
-
-# Returns a request: what is asked of a layer, by an agent or by a model. action, stance: ids; stroke, hold, duration: seconds or null.
-static func request(ident, layer, kind, start, more):
-	var out = {
-		id = ident, layer = layer, kind = kind, start = float(start), duration = null, action = null, tags = [], limb = null,
-		stance = null, priority = 1, resume = false, stroke = null, hold = null, prepare = true, among = []
-	}
-	for name in more:
-		out[name] = more[name]
-	return out
 
 
 static func _any(weights):

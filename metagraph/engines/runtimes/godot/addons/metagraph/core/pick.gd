@@ -6,6 +6,7 @@
 
 const Util = preload("util.gd")
 const Replan = preload("replan.gd")
+const Shape = preload("shape.gd")
 const FITS = 1e-6  # seconds by which sums of times may be off
 const REMEMBERED = 32  # draws of a stance and kind that spacing can look back on
 
@@ -98,8 +99,8 @@ func _realise(meta, now, limit, wish):
 		var fitting = []
 		for action in step.candidates:
 			if limit < INF:  # else all fit
-				var shape = _shape(action, asked, now)
-				if not shape.start + shape.shortest <= limit + FITS:
+				var likely = Shape.shape_of(action, asked, now, settings)
+				if likely.start + likely.shortest > limit + FITS:
 					continue
 			fitting.append(action)
 		if fitting.size() == 0:
@@ -110,14 +111,15 @@ func _realise(meta, now, limit, wish):
 			var soonest = INF
 			for action in fitting:
 				soonest = Util.least(soonest, _cooled(action))
-				if action.cooldown <= 0 or _cooled(action) <= _shape(action, asked, now).start + FITS:
+				if action.cooldown <= 0 or _cooled(action) <= Shape.shape_of(action, asked, now, settings).start + FITS:
 					warm.append(action)
 			if warm.size() == 0:
 				_tell(meta, "cooling", "all that fit are cooling down; the first may play again at %.2f s" % soonest)
 				return
 			fitting = warm
 		var chosen = _draw(fitting, meta.key + "/" + step.hop if step.hop != "" else meta.key, now)
-		var cue = _cue(chosen, _shape(chosen, asked, now), limit, INF if step.hop != "" else wish, at, meta.key)
+		var shape = Shape.shape_of(chosen, asked, now, settings)
+		var cue = Shape.cue_of(chosen, shape, limit, INF if step.hop != "" else wish, at, meta.key, settings)
 		made.append(cue)
 		now = cue.end
 		at = cue.then
@@ -234,38 +236,6 @@ func _usable(action):
 	return action.likelihood > 0 and _arrives(action)
 
 
-# Returns how an action would play for a request from `now` on, or (null) as a step on the way to it.
-func _shape(action, request, now):
-	var begin = now
-	var entry = action.start
-	var hold_from = 0.0
-	var hold_to = 0.0
-	var hold = 0.0
-	var special = request != null and (request.hold != null or request.stroke != null or not request.prepare)
-	if special and action.kind == "gesture":
-		var phases = action.phases  # ready, stroke, stroke end, relax
-		var latest = Util.most(action.start, phases[0] - Util.most(action.blend_in, settings.least_blend))
-		entry = action.start if request.prepare else latest
-		if request.stroke != null:  # wait for the stroke, or catch up with it by cutting the preparation
-			begin = Util.most(now, request.stroke - (phases[1] - entry))
-			entry = Util.least(Util.most(entry, phases[1] - Util.most(0.0, request.stroke - begin)), Util.most(entry, latest))
-		if request.hold != null:
-			hold_from = phases[2]
-			hold_to = phases[3]
-			hold = Util.most(request.hold, (hold_to - hold_from) / settings.hurry)
-			if hold <= 0:
-				hold_from = 0.0
-				hold_to = 0.0
-	var length = action.end - entry + hold - (hold_to - hold_from)
-	var shortest = length
-	if action.earliest_exit != null:
-		var left = action.earliest_exit - entry + (hold - (hold_to - hold_from) if action.earliest_exit >= hold_to else 0.0)
-		shortest = Util.least(length, Util.most(0.0, left) + action.blend_out)
-	return {
-		start = begin, entry = entry, length = length, shortest = shortest, hold_from = hold_from, hold_to = hold_to, hold = hold
-	}
-
-
 # Draws with p_k ~ likelihood_k / Util.most(c_k, 1), leaving out those used too recently as long as any others are left.
 func _draw(candidates, key, now):
 	candidates = _spaced(candidates)
@@ -309,23 +279,6 @@ func _count(ident, now):
 		if cues[n].action.id == ident:
 			used += 1
 	return settings.alpha * used
-
-
-func _cue(action, shape, limit, wish, before, meta):
-	var length = shape.length
-	if action.earliest_exit != null:
-		length = Util.least(length, Util.most(shape.shortest, Util.least(limit, wish) - shape.start))
-	var into = action.blend_in
-	if shape.entry > action.start:
-		into = Util.most(into, settings.least_blend)
-	var whole = into + action.blend_out
-	var squeeze = Util.least(1.0, length / whole) if whole > 0 else 1.0
-	var then = action.end_stance if action.kind == "transition" and action.end_stance != null else before
-	return {
-		action = action, start = shape.start, end = shape.start + length, entry = shape.entry, blend_in = into * squeeze,
-		blend_out = action.blend_out * squeeze, stance = before, then = then, meta = meta,
-		hold_from = shape.hold_from, hold_to = shape.hold_to, hold = shape.hold
-	}
 
 
 func _keep(cue):

@@ -68,9 +68,9 @@ static func look(rig, chain, places, moves, amount, calm, share):
 		moved_to += Turns.rotate(Turns.of(vector * so_far, rig.one), end - at[rig.lookers[n].place])
 	var head = Turns.of(vector, rig.one) * turned[-1]
 	# The point looked at, in the head's space; each eye turns to it the shortest way, so that it does not roll.
-	var sideways = eyes_x + moves.eyes[0]
-	var upwards = eyes_y + moves.eyes[1]
-	var ahead = rig.left * (sin(sideways) * cos(upwards)) + rig.up * sin(upwards) + rig.ahead * (cos(sideways) * cos(upwards))
+	eyes_x += moves.eyes[0]
+	eyes_y += moves.eyes[1]
+	var ahead = rig.left * (sin(eyes_x) * cos(eyes_y)) + rig.up * sin(eyes_y) + rig.ahead * (cos(eyes_x) * cos(eyes_y))
 	var inside = Turns.rotate(Turns.back(head), eye + ahead / Util.most(near, 1e-3) - moved_to)
 	var eyes = []
 	for side in rig.eyes:

@@ -2,7 +2,7 @@
 
 const Util = preload("util.gd")
 const Asks = preload("asks.gd")
-const Markov = preload("markov.gd")
+const Request = preload("request.gd")
 const FOREVER = 1e9  # seconds; a look that lasts until the next
 const PACE = 14.0  # characters a second of speech whose sound is not there: about 150 words a minute
 const SHORTEST_LINE = 0.4  # seconds
@@ -82,7 +82,7 @@ static func _mean(graph, ask, at, out):
 
 static func _want(out, ask, layer, kind, start, more):
 	more.priority = ask.priority
-	out.requests.append(Markov.request(ask.id, layer, kind, start, more))
+	out.requests.append(Request.make(ask.id, layer, kind, start, more))
 
 
 static func _say(graph, ask, at, out):
@@ -164,7 +164,7 @@ static func _longest_lead(graph, layer, tags):
 
 # Returns the seconds from an action's start to its stroke; its middle where the export says nothing.
 static func _lead(action):
-	if action.phases.size() == 4:
+	if action.kind == "gesture":
 		return action.phases[1] - action.start
 	if action.stroke != null:
 		return Util.within(action.stroke, action.start, action.end) - action.start
