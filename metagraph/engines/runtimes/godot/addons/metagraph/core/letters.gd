@@ -6,7 +6,8 @@ const Util = preload("util.gd")
 const SPELLINGS = {
 	"tion": "CH nn", "sch": "CH", "tch": "CH", "igh": "aa I", "eau": "O", "ough": "O", "th": "TH", "sh": "CH", "ch": "CH", "ph": "FF",
 	"ck": "kk", "ng": "nn", "qu": "kk U", "wh": "U", "oo": "U", "ou": "aa U", "ow": "O U", "ee": "I", "ea": "I", "ai": "E I", "ay": "E I",
-	"oi": "O I", "oy": "O I", "au": "O", "aw": "O", "ie": "I", "ei": "E I", "ue": "U", "oa": "O", "a": "aa", "e": "E", "i": "I",
+	"oi": "O I", "oy": "O I", "au": "O", "aw": "O", "ie": "I", "ei": "E I", "ue": "U",
+	"oa": "O", "a": "aa", "e": "E", "i": "I",
 	"o": "O", "u": "U", "y": "I", "ø": "U", "œ": "U", "æ": "E", "ı": "I", "b": "PP", "p": "PP", "m": "PP", "f": "FF", "v": "FF", "d": "DD", "t": "DD",
 	"l": "nn", "n": "nn", "k": "kk", "g": "kk", "c": "kk", "q": "kk", "x": "kk SS", "h": "kk", "j": "CH", "s": "SS", "z": "SS", "r": "RR",
 	"w": "U", "ß": "SS", "ð": "TH", "þ": "TH", "ł": "nn", "đ": "DD"
