@@ -387,6 +387,18 @@ def test_posing_makes_no_garbage_to_speak_of() -> None:
     assert bytes_a_pose < 500  # a few boxed numbers; one array of joints would be thousands
 
 
+def test_the_readme_plays(tmp_path: Path) -> None:
+    shutil.copytree(RUNTIME, tmp_path / "metagraph")
+    for kind in ("json", "glb"):
+        shutil.copy(STICK / f"stick.{kind}", tmp_path / f"character.{kind}")
+    code = (RUNTIME / "README.md").read_text().split("```js\n")[1].split("```")[0]
+    (tmp_path / "play.mjs").write_text(code)
+    done = subprocess.run(["node", "play.mjs"], cwd=tmp_path, capture_output=True, text=True, timeout=60, check=False)
+    assert done.returncode == 0, done.stderr
+    assert "begin" in done.stdout
+    assert "state: 'done'" in done.stdout or "state: 'planned'" in done.stdout or "state: 'late'" in done.stdout
+
+
 # --- three.js
 
 

@@ -25,7 +25,7 @@ export class Character {
     this.ahead = ahead;
     this.recent = recent;
     this.now = 0;
-    this.plan = emptyPlan(seed);
+    this.plan = hear(graph, emptyPlan(seed), 0, [], ahead, this.options);
     this.posed = { rotations: Float32Array.from(graph.baseRotations), translations: Float32Array.from(graph.baseTranslations) };
     this.weights = new Float32Array(graph.morphs.length);
     this.player = new Player(graph, this.plan);
@@ -33,7 +33,7 @@ export class Character {
     this.asked = new Set(); // ids that the plan can tell of
     this.settled = new Map(); // answers of those it has forgotten or never heard of
     this.count = 0;
-    this.seen = -Infinity; // up to when events were told
+    this.seen = -Infinity; // when the update before was
     this.forgot = 0;
     this.happened = [];
   }
@@ -45,7 +45,8 @@ export class Character {
    */
   ask(request) {
     const fine = typeof request === "object" && request !== null;
-    const id = fine && typeof request.id === "string" && request.id ? request.id : `#${++this.count}`;
+    this.count += 1;
+    const id = fine && typeof request.id === "string" && request.id ? request.id : `#${this.count}`;
     if (!fine) return this.refuse(id, "a request should be an object");
     const { after, ...data } = { ...request, id };
     if (after !== undefined) {
@@ -94,10 +95,10 @@ export class Character {
     const { graph, now, queue } = this;
     const far = this.plan.end >= now + this.ahead - Math.min(SLACK, this.ahead / 2);
     if (queue.length || !far) {
-      this.queue = [];
+      this.plan = hear(graph, this.plan, now, queue, far ? this.plan.end : now + this.ahead, this.options);
       const done = { state: "done", at: null, until: null, what: [], why: "" };
       for (const { id, do: what } of queue) if (what === "withdraw") this.finish({ id, ...done });
-      this.plan = hear(graph, this.plan, now, queue, far ? this.plan.end : now + this.ahead, this.options);
+      this.queue = [];
     }
     if (now - this.forgot < FORGETTING) return;
     this.forgot = now;
@@ -113,22 +114,24 @@ export class Character {
   /** Note which actions have begun or ended since the last update. */
   listen() {
     const { now, seen } = this;
+    if (this.happened.length) this.happened = [];
     for (const layer of LAYERS) {
-      for (const { start, end, meta, action } of this.plan.layers[layer].cues) {
+      for (const { start, end, meta: key, action } of this.plan.layers[layer].cues) {
         if (start > now) break;
+        if (end <= seen || (start <= seen && end > now)) continue;
         const { name } = action;
+        const meta = key.split("+")[0]; // what goes on after a cut is the same request
         if (start > seen) this.happened.push({ kind: "begin", at: start, layer, action: name, meta });
         if (end > seen && end <= now) this.happened.push({ kind: "end", at: end, layer, action: name, meta });
       }
     }
+    this.happened.sort((a, b) => a.at - b.at);
     this.seen = now;
   }
 
-  /** Return what began or ended since this was last asked for, for sounds and game logic: kind, at, layer, action (its name), meta. */
+  /** Return what began or ended between the last two updates, for sounds and game logic: kind, at, layer, action (its name), meta. */
   events() {
-    const out = this.happened.sort((a, b) => a.at - b.at);
-    this.happened = [];
-    return out;
+    return this.happened;
   }
 
   /**
@@ -147,16 +150,16 @@ export class Character {
 
   /**
    * Return the pose at the updated time: local `rotations` [J, 4] xyzw and `translations` [J, 3], metres, of `graph.joints`. The arrays
-   * are the character's own, and the next pose overwrites them; `player.pose` writes into others.
+   * are the character's own, and the next pose overwrites them; `player.pose` writes into others. alive: with the life layers.
    */
-  pose() {
-    this.player.pose(this.now, this.posed.rotations, this.posed.translations);
+  pose(alive = true) {
+    this.player.pose(this.now, this.posed.rotations, this.posed.translations, alive);
     return this.posed;
   }
 
   /** Return the weights of the graph's morph targets, 0..1, in the order of `graph.morphs`; likewise. */
-  morphs() {
-    this.player.morphs(this.now, this.weights);
+  morphs(alive = true) {
+    this.player.morphs(this.now, this.weights, alive);
     return this.weights;
   }
 }

@@ -199,7 +199,7 @@ export interface Happening {
   readonly layer: Layer;
   /** Name of the action. */
   readonly action: string;
-  /** Id of the request it is for, or "auto/..." of what the models wrote; with "+n" for what went on after a cut. */
+  /** Id of the request it is for, or "auto/..." of what the models wrote. */
   readonly meta: string;
 }
 
@@ -215,10 +215,10 @@ export class Character {
   /** Move on to `now`, seconds of the character's own time, which begins at 0. */
   update(now: number): void;
   answer(id: string): Answer;
-  /** What began or ended since this was last asked for. */
-  events(): Happening[];
-  /** The pose at the updated time; the arrays are overwritten by the next. */
-  pose(): Pose;
+  /** What began or ended between the last two updates. */
+  events(): readonly Happening[];
+  /** The pose at the updated time; the arrays are overwritten by the next. `alive`: with the life layers; true when not given. */
+  pose(alive?: boolean): Pose;
   /** Weights of `graph.morphs` at the updated time; likewise. */
-  morphs(): Float32Array;
+  morphs(alive?: boolean): Float32Array;
 }

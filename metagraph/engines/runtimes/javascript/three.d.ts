@@ -9,7 +9,7 @@ export class MetagraphObject {
   readonly missing: readonly string[];
   ask(request: Ask): string;
   answer(id: string): Answer;
-  events(): Happening[];
+  events(): readonly Happening[];
   /** Move on by `delta` seconds and pose the scene; once a frame. */
   update(delta: number): void;
 }
