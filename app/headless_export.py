@@ -65,7 +65,7 @@ def _once(options: Namespace) -> None:
 
     project = opened(options.project)
     character = options.project.resolve().parent / project.character if project.character and not options.no_mesh else None
-    made = registry.write(project, options.target, options.out, character, options.expanded)
+    made = registry.write(project, options.target, options.out, character, options.expanded, base=options.project.resolve().parent)
     files = list(made.files)
     if options.vectors:
         from metagraph.engines.vectors import write_vectors

@@ -199,9 +199,9 @@ class ExportDialog(QDialog):
 
     def _export(self) -> None:
         project, folder, name = self.document.project, Path(self.folder.text()), self.target.name
-        base = self.document.folder or Path()
+        base = self.document.folder
         expanded, vectors = self.expanded.isChecked(), self.vectors.isChecked() and not self.vectors.isHidden()
-        character = base / project.character if project.character and self.mesh.isChecked() else None
+        character = (base or Path()) / project.character if project.character and self.mesh.isChecked() else None
         chosen = {"target": name, "folder": str(folder), "mesh": self.mesh.isChecked(), "expanded": expanded, "vectors": vectors}
         QSettings().setValue(self._key(), json.dumps(chosen))
         self.go.setEnabled(False)
@@ -210,7 +210,7 @@ class ExportDialog(QDialog):
         self.progress.show()
 
         def work(job: Job) -> Report:
-            made = registry.write(project, name, folder, character, expanded, job.tell)
+            made = registry.write(project, name, folder, character, expanded, job.tell, base)
             if vectors:
                 write_vectors(next(path for path in made.files if path.suffix == ".json"))
             return made

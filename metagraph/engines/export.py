@@ -48,12 +48,13 @@ class ExportError(ValueError):
 
 @dataclass(frozen=True)
 class Exported:
-    """What was written. warnings: problems that do not stop an export, in words."""
+    """What was written. warnings: problems that do not stop an export, in words. sounds: of lines."""
 
     json: Path
     glb: Path
     clips: int
     warnings: tuple[str, ...] = ()
+    sounds: tuple[Path, ...] = ()
 
 
 def export(
@@ -97,8 +98,11 @@ def write(
     expanded: bool = False,
     character: Path | Character | None = None,
     progress: Callable[[int, int, str], None] | None = None,
+    base: Path | None = None,
 ) -> Exported:
-    """Write a project that has clips without asking whether it is sound. Arguments as for `export`."""
+    """Write a project that has clips without asking whether it is sound. Arguments as for `export`. base: the folder its lines' sounds are
+    relative to; they are copied into `lines/`, where it is given.
+    """
     tell = progress or (lambda done, total, words: None)
     assert project.skeleton is not None
     used = _used(project)
@@ -110,10 +114,30 @@ def write(
     notes = _write_glb(glb, clips, project.skeleton, character)
     tell(1, 3, "graph")
     document = to_document(project, glb.name, names, expanded)
+    sounds, missing = _sounds(document, target, base) if base is not None else ((), ())
     tell(2, 3, "writing")
     write_atomically(json, msgspec.json.format(msgspec.json.encode(document), indent=1))
     tell(3, 3, "done")
-    return Exported(json, glb, len(used), tuple(notes))
+    return Exported(json, glb, len(used), (*notes, *missing), sounds)
+
+
+def _sounds(document: c.Export, folder: Path, base: Path) -> tuple[tuple[Path, ...], tuple[str, ...]]:
+    """Copy the sounds of a document's lines beside it, and name them there; return the files, and what is missing, in words."""
+    lines = [(ident, line) for ident, line in document.lines.items() if line.audio]
+    names = unique_names([Path(str(line.audio)).stem for _, line in lines])
+    files, missing = [], []
+    for (ident, line), name in zip(lines, names, strict=True):
+        source = base / str(line.audio)
+        inside = f"lines/{name}{source.suffix}"
+        try:
+            content = source.read_bytes()
+        except OSError as error:
+            missing.append(f"the sound of line '{ident}' is left out: {source.name} cannot be read ({error.strerror})")
+            continue
+        write_atomically(folder / inside, content)
+        document.lines[ident] = msgspec.structs.replace(line, audio=inside)
+        files.append(folder / inside)
+    return tuple(files), tuple(missing)
 
 
 def _write_glb(path: Path, clips: list[Clip], skeleton: Skeleton, character: Path | Character | None) -> list[str]:

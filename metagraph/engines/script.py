@@ -98,6 +98,8 @@ def _requests(project: Project) -> Iterator[Case]:
             _ask("stroke", "gesture", layer=layer, stroke=6.0),
             _ask("soon", "action", 11.0, action=one.id, stroke=11.1),
         ]
+        others = _some(project, layer, "fidget", "transition")
+        asks += [_ask("other", "action", action=others[0].id, stroke=16.0)] if others else []
         yield _once(f"{layer}: strokes in time", "start late enough, or skip the preparation", asks, 20.0)
         asks = [
             _ask("long", "action", 1.0, action=one.id, hold=2.5),
@@ -219,6 +221,13 @@ def _over_time(project: Project) -> Iterator[Case]:
         times=(33.5, 35.0, 41.0, 44.0),
         alive=(True, False),
     )
+    busy = [Step(0.0, 12.0)]
+    for n in range(1, 25):
+        asked = tuple(_ask(f"n{n}.{x}x", "gesture", layer=x, duration=0.5) for x in LAYERS if _some(project, x, "gesture"))
+        busy.append(Step(n * 3.0, 12.0 + n * 3.0, asked, max(0.0, n * 3.0 - 1.0)))
+    late = [_ask(f"z{n}{x}x", "gesture", 76.0 + 3 * n, layer=x, duration=0.5) for n in range(16) for x in LAYERS]
+    busy.append(Step(75.0, 130.0, tuple(ask for ask in late if _some(project, ask["layer"], "gesture"))))
+    yield Case("much that is forgotten", "counts, spacing and cooldown reach back over what is forgotten", tuple(busy), idle=True)
     steps: tuple[Step, ...]
     asks: tuple[Ask, ...] = (_ask("keep", "gesture", 4.0, layer=layer), _ask("gone", "gesture", 9.0, layer=layer))
     steps = (

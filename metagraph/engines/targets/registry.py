@@ -15,7 +15,7 @@ from metagraph.graph.model import Project
 from metagraph.motion.character import Character
 
 # Modules of this package that have TARGETS, in the order they are offered.
-MODULES = ("runtimes", "playcanvas", "interactivity", "statecharts", "agents")
+MODULES = ("runtimes", "web", "playcanvas", "interactivity", "statecharts", "agents")
 DEFAULT = "metagraph"
 
 
@@ -49,11 +49,13 @@ def write(
     character: Path | Character | None = None,
     expanded: bool = False,
     tell: Tell | None = None,
+    base: Path | None = None,
 ) -> Report:
     """Write a project for a target into a folder, which is made.
 
-    character: the mesh or its file, None to leave it out. expanded: list the state machine in the JSON as well. Raises ExportError
-    while the project has errors, FileError when a file cannot be written.
+    character: the mesh or its file, None to leave it out. expanded: list the state machine in the JSON as well. base: the folder
+    the lines' sounds are relative to, None to leave them where they are. Raises ExportError while the project has errors, FileError
+    when a file cannot be written.
     """
     chosen = target(name)
     warnings = sound(project)
@@ -62,8 +64,8 @@ def write(
         place.mkdir(parents=True, exist_ok=True)
     except OSError as error:
         raise FileError(place, f"cannot be made ({error.strerror})", "on making the folder", "Choose a folder you may write to.") from None
-    order = Order(project, place, stem_of(project), character, expanded)
-    made = chosen.write(order if tell is None else Order(project, place, order.stem, character, expanded, tell))
+    order = Order(project, place, stem_of(project), character, expanded, tell or (lambda done, total, words: None), base)
+    made = chosen.write(order)
     return Report(
         name, made.files, len(project.uses.keys() | {project.base.clip} - {None}), losses(project, name), (*made.notes, *warnings)
     )

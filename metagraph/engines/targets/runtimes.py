@@ -16,9 +16,9 @@ BML = Loss("requests in Behaviour Markup Language are read by the desktop alone"
 
 
 def written(order: Order) -> Made:
-    """Write JSON and GLB."""
-    made = write(order.project, order.folder, order.expanded, order.character, order.tell)
-    return Made((made.json, made.glb), made.warnings)
+    """Write JSON, GLB and the lines' sounds."""
+    made = write(order.project, order.folder, order.expanded, order.character, order.tell, order.base)
+    return Made((made.json, made.glb, *made.sounds), made.warnings)
 
 
 def copied(source: Path, target: Path, leave: tuple[str, ...] = ()) -> list[Path]:

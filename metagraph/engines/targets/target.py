@@ -29,7 +29,8 @@ class Loss:
 @dataclass(frozen=True)
 class Order:
     """What is to be written: a sound project into a folder that is there. stem: what its files are called. character: the mesh, or
-    None to leave it out. expanded: the state machine in the JSON, where there is one."""
+    None to leave it out. expanded: the state machine in the JSON, where there is one. base: the folder the project's own paths are
+    relative to."""
 
     project: Project
     folder: Path
@@ -37,6 +38,7 @@ class Order:
     character: Path | Character | None = None
     expanded: bool = False
     tell: Tell = lambda done, total, words: None
+    base: Path | None = None
 
 
 @dataclass(frozen=True)

@@ -27,7 +27,7 @@ _SPELLINGS: dict[str, tuple[str, ...]] = {
 }  # fmt: skip
 # Greek and Cyrillic letters that stand for the Latin ones.
 _ALIKE = dict(zip("αεηιουωβπμφδτλνκγχξσςζρθабвгдеёжзийклмнопрстуфхцчшщыэюяієї",
-                  "aeeioyobpmfdtlnkghxssztþabvgdeejzijklmnoprstufhccssiеuaiei", strict=False))  # fmt: skip
+                  "aeeioyobpmfdtlnkghxsszrþabvgdeejzijklmnoprstufhccssieuaiei", strict=False))  # fmt: skip
 _ALIKE.update({"е": "e", "ж": "j", "ч": "j", "ш": "j", "щ": "j", "ц": "s", "х": "h", "θ": "þ"})
 VOWELS = frozenset(("aa", "E", "I", "O", "U"))
 _LENGTH = {"vowel": 1.25, "consonant": 0.8}  # of one character's time

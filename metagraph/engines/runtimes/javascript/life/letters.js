@@ -14,8 +14,8 @@ const SPELLINGS = read(`
   h kk, j CH, s SS, z SS, r RR, w U, ß SS, ð TH, þ TH, ł nn, đ DD`);
 // Greek and Cyrillic letters that stand for the Latin ones.
 const ALIKE = new Map(
-  ["αa εe ηe ιi οo υy ωo βb πp μm φf δd τt λl νn κk γg χh ξx σs ςs ζz ρt θþ",
-    "аa бb вv гg дd еe ёe жj зz иi йj кk лl мm нn оo пp рr сs тt уu фf хh цs чj шj щj ыi эе юu яa іi єe їi"]
+  ["αa εe ηe ιi οo υy ωo βb πp μm φf δd τt λl νn κk γg χh ξx σs ςs ζz ρr θþ",
+    "аa бb вv гg дd еe ёe жj зz иi йj кk лl мm нn оo пp рr сs тt уu фf хh цs чj шj щj ыi эe юu яa іi єe їi"]
     .join(" ").split(" ").map((pair) => [pair[0], pair[1]]),
 );
 const VOWELS = new Set(["aa", "E", "I", "O", "U"]);

@@ -35,7 +35,7 @@ namespace Metagraph
 
         // Greek and Cyrillic letters, and the Latin ones they stand for; \u0435 is not Latin and stays unknown.
         private const string Alike = "αεηιουωβπμφδτλνκγχξσςζρθабвгдеёжзийклмнопрстуфхцчшщыэюяієї";
-        private const string Latin = "aeeioyobpmfdtlnkghxssztþabvgdeejzijklmnoprstufhsjjji\u0435uaiei";
+        private const string Latin = "aeeioyobpmfdtlnkghxsszrþabvgdeejzijklmnoprstufhsjjjieuaiei";
         private const string Stops = ",;:.!?…-–—()"; // and how many characters' time of pause each brings
         private static readonly double[] Pauses = { 1.5, 2.0, 2.0, 3.0, 3.0, 3.0, 3.0, 0.3, 1.5, 1.5, 1.0, 1.0 };
         private static readonly string[] Vowels = { "aa", "E", "I", "O", "U" }, Consonants = { "DD", "nn", "SS", "kk", "PP" };

@@ -1,0 +1,37 @@
+// node browser.mjs FOLDER STEPS.json: serves a folder on the loopback, opens it in headless Chromium, and runs steps in the page.
+// STEPS: [{"url": path}, {"run": "JavaScript whose value is printed"}, {"wait": ms}, {"shot": "file.png"}, {"click": selector}, ...]
+import fs from "node:fs";
+import http from "node:http";
+import path from "node:path";
+import { chromium } from "playwright-core";
+
+const [folder, script] = process.argv.slice(2);
+const KINDS = { ".html": "text/html", ".js": "text/javascript", ".mjs": "text/javascript", ".css": "text/css", ".json": "application/json", ".glb": "model/gltf-binary" };
+const server = http.createServer((request, answer) => {
+  const file = path.join(folder, decodeURIComponent(new URL(request.url, "http://x").pathname).replace(/\/$/, "/index.html"));
+  if (!file.startsWith(path.resolve(folder)) || !fs.existsSync(file)) return answer.writeHead(404).end();
+  answer.writeHead(200, { "content-type": KINDS[path.extname(file)] ?? "application/octet-stream" }).end(fs.readFileSync(file));
+});
+await new Promise((done) => server.listen(0, "127.0.0.1", done));
+const base = `http://127.0.0.1:${server.address().port}/`;
+const executablePath = process.env.CHROMIUM ?? ["/usr/bin/chromium", "/usr/bin/chromium-browser", "/usr/bin/google-chrome"].find(fs.existsSync);
+const browser = await chromium.launch({ executablePath, args: ["--no-sandbox", "--use-gl=angle", "--use-angle=swiftshader", "--enable-unsafe-swiftshader"] });
+const page = await browser.newPage({ viewport: { width: 1280, height: 800 }, colorScheme: process.env.SCHEME ?? "dark" });
+const errors = [];
+page.on("console", (message) => message.type() === "error" && errors.push(message.text()));
+page.on("pageerror", (error) => errors.push(String(error)));
+try {
+  for (const step of JSON.parse(fs.readFileSync(script))) {
+    if (step.url !== undefined) await page.goto(new URL(step.url, base).href);
+    if (step.until) await page.waitForFunction(step.until, null, { timeout: 30000 });
+    if (step.run) console.log(JSON.stringify({ value: await page.evaluate(step.run) ?? null }));
+    if (step.click) await page.click(step.click);
+    if (step.fill) await page.fill(...step.fill);
+    if (step.wait) await page.waitForTimeout(step.wait);
+    if (step.shot) await page.screenshot({ path: step.shot });
+  }
+} finally {
+  console.log(JSON.stringify({ errors }));
+  await browser.close();
+  server.close();
+}
