@@ -288,6 +288,10 @@ def test_a_newer_format_is_refused_and_says_what_to_do(probe: Path, tmp_path: Pa
         (lambda d: d["rig"]["chain"].append(10**6), "is no joint"),
         (lambda d: d["randomness"].update(hash="md5"), "another hash"),
         (lambda d: d["planner"].update(wait="long"), "planner.wait: should be a number"),
+        (lambda d: d["planner"].update(hurry=0), "planner.hurry: is out of range"),
+        (lambda d: d["clips"][0].update(frames=10**9), "clips[0].frames: is out of range"),
+        (lambda d: d["layers"]["arms"]["markov"]["states"].append([]), "should be a limb and a kind"),
+        (lambda d: d.update(life={"blinks": 1e9}), "life.blinks: is out of range"),
     ],
 )  # fmt: skip
 def test_a_broken_json_is_refused_by_the_place_that_is_wrong(probe: Path, tmp_path: Path, change: Any, words: str) -> None:
@@ -498,6 +502,7 @@ namespace UnityEngine
     public static class Application { public static string streamingAssetsPath = ""; }
     public static class Debug
     {
+        public static void Log(object message) { Console.WriteLine(message); }
         public static void LogWarning(object message, Object context) { Console.WriteLine("warning: " + message); }
         public static void LogError(object message, Object context) { Console.WriteLine("error: " + message); }
     }
@@ -623,6 +628,16 @@ def test_a_component_without_its_files_says_so_and_stays_quiet(scene: Path) -> N
     assert done.stdout.splitlines()[-1] == "False nothing nothing"
 
 
+def test_what_the_readme_shows_compiles(scene: Path) -> None:
+    shown = [block.split("```")[0] for block in (RUNTIME / "README.md").read_text().split("```csharp")[1:]]
+    assert len(shown) == 2
+    source = scene.with_name("readme.cs")
+    inner = "public static class Shown { public static void Main() { float seconds = 0; " + shown[1] + " System.Console.Write(pose); } }"
+    source.write_text("using UnityEngine; using System.IO; using Metagraph;\n" + shown[0] + inner)
+    references = tuple(scene.with_name(name) for name in ("metagraph.dll", "UnityEngine.dll", "component.dll"))
+    compiled(scene.with_name("readme.exe"), source, references=references)
+
+
 def test_the_package_is_one_that_unity_can_take() -> None:
     package = json.loads((RUNTIME / "package.json").read_bytes())
     assert package["unity"] == "2019.4"
@@ -642,8 +657,12 @@ MUTATIONS = [
     ("Pick.cs", "int usual = settings.NeverTwice ? 1 : 0;", "int usual = 0;", "never the same twice"),
     ("Pick.cs", "Math.Max(shape.Shortest, until - shape.Start)", "shape.Length", "the earliest exit"),
     ("Pick.cs", "/ settings.Hurry);", ");", "how short a hold can be"),
-    ("Pick.cs", "double squeeze = blends > 0 ? Math.Min(1.0, length / blends) : 1.0;", "double squeeze = 1.0;", "blends that must fit"),
-    ("Steps.cs", "new[] { exact, found, every }.First", "new[] { exact, every }.First", "the model's wishes, one after the other"),
+    ("Pick.cs", "Math.Min(1.0, length / blends)", "1.0", "blends that must fit"),
+    ("Pick.cs", "a.Cooldown <= 0 ||", "a.Cooldown <= 1e9 ||", "cooling down"),
+    ("Pick.cs", "waits > settings.Wait", "waits > 1e9", "how long what was asked for waits"),
+    ("Pick.cs", "Basics.ThreeDecimals(change)", "Basics.Words(change)", "the decimals that key a loop"),
+    ("Steps.cs", "some.Exists(a => a.Id != again)", "some.Exists(a => a.Id != again + 1)", "models that do not repeat themselves"),
+    ("Planner.cs", "return meta.Written &&", "return meta.Part > 99 &&", "staying in a stance"),
     ("Plan.cs", "held * ((HoldTo - HoldFrom) / Hold)", "held", "the stretch of a hold"),
     ("Replan.cs", "b.Request.Priority.CompareTo(a.Request.Priority)", "0", "priority at equal starts"),
     ("Replan.cs", "Basics.Compare(a.Request.Id, b.Request.Id)", "Basics.Compare(b.Request.Id, a.Request.Id)",
@@ -656,7 +675,8 @@ MUTATIONS = [
      "composed[j] = (weight == 1 ? found.Turns[j] : found.Turns[j].Power(weight)) * composed[j];", "the order in which layers add"),
     ("Pose.cs", "entering ? cue.Entry : cue.ClipSeconds(cue.End)", "cue.ClipSeconds(cue.End)", "the edge a clip is led in from"),
     ("Pose.cs", "old = 1 - Basics.Ease(phase / seam);", "old = 0.0;", "the seam of a loop"),
-    ("Clip.cs", "Quat.Slerp(", "Quat.Nlerp(", "thinned keys that turn at constant speed"),
+    ("Clip.cs", "Basics.Clamp((time - keys[low]) / gap, 0, 1)", "0.0", "keys that were thinned out"),
+    ("Loading.cs", "joint.Side == other", "joint.Side != other", "the arm that a gesture leaves alone"),
     ("Life/Gaze.cs", "private const double HeadLag = 0.04;", "private const double HeadLag = 0.0;", "a head that sets off later"),
     ("Life/Schedule.cs", "first ? shut + 0.1 : AfterBlink / calm", "AfterBlink / calm", "a blink at the first stressed syllable"),
     ("Life/Solve.cs", "shut + blink * (1 - shut)", "shut + blink", "lids that meet and go no farther"),

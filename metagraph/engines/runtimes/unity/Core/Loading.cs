@@ -8,6 +8,7 @@ namespace Metagraph
     {
         /// <summary>Version of the format that this runtime reads.</summary>
         public const int Format = 1;
+        private const double Largest = 1e8; // rotations of a clip
 
         /// <summary>
         /// The graph of an export. A clip that the GLB lacks is a problem, not an error: its actions show their stance. name: of the
@@ -47,12 +48,12 @@ namespace Metagraph
             {
                 var entry = new ClipEntry
                 {
-                    Id = one["id"].Text, Name = one["name"].Text, Animation = one["animation"].Count, Fps = one["fps"].Number,
+                    Id = one["id"].Text, Name = one["name"].Text, Animation = one["animation"].Count, Fps = one["fps"].Within(1e-3, 1e6),
                     Frames = one["frames"].Count,
                 };
-                if (entry.Frames < 1 || !(entry.Fps > 0))
+                if (entry.Frames < 1 || (double)entry.Frames * Joints.Length > Largest)
                 {
-                    throw one.Wrong("should have frames, and some each second");
+                    throw one["frames"].Wrong("is out of range");
                 }
                 Clips[entry.Id] = entry;
             }
@@ -129,16 +130,16 @@ namespace Metagraph
             }
             Planner = new PlannerSettings
             {
-                Seed = (uint)Basics.Clamp(seed, 0, uint.MaxValue), Alpha = json["alpha"].Number, NeverTwice = json["never_twice"].Flag,
-                Shortest = json["shortest"].Number, Wait = json["wait"].Number, Window = json["window"].Number,
-                LoopFade = json["loop_fade"].Number,
+                Seed = (uint)Basics.Clamp(seed, 0, uint.MaxValue), Alpha = json["alpha"].Within(0, 1e15),
+                NeverTwice = json["never_twice"].Flag, Shortest = json["shortest"].Within(0, 1e9), Wait = json["wait"].Within(0, 1e9),
+                Window = json["window"].Within(0, 1e9), LoopFade = json["loop_fade"].Within(0, 1e9),
             };
             Node found;
-            Planner.Memory = json.Maybe("memory", out found) ? found.Number : Planner.Memory;
-            Planner.Rest = json.Maybe("rest", out found) ? found.Number : Planner.Rest;
-            Planner.Lookahead = json.Maybe("lookahead", out found) ? found.Number : Planner.Lookahead;
-            Planner.Hurry = json.Maybe("hurry", out found) ? found.Number : Planner.Hurry;
-            Planner.LeastBlend = json.Maybe("least_blend", out found) ? found.Number : Planner.LeastBlend;
+            Planner.Memory = json.Maybe("memory", out found) ? found.Within(0, 600) : Planner.Memory;
+            Planner.Rest = json.Maybe("rest", out found) ? found.Within(0, 600) : Planner.Rest;
+            Planner.Lookahead = json.Maybe("lookahead", out found) ? found.Within(0, 10) : Planner.Lookahead;
+            Planner.Hurry = json.Maybe("hurry", out found) ? found.Within(1, 100) : Planner.Hurry;
+            Planner.LeastBlend = json.Maybe("least_blend", out found) ? found.Within(0, 1e9) : Planner.LeastBlend;
         }
 
         private LayerGraph ReadLayer(string layer, Node json)
@@ -181,17 +182,17 @@ namespace Metagraph
             {
                 Id = json["id"].Text, Name = json["name"].Text, Kind = json["kind"].OneOf(Basics.Kinds), Layer = layer,
                 Stance = json["stance"].Text, EndStance = json["end_stance"].TextOrNull, Limb = json["limb"].OneOf(Basics.Limbs),
-                Start = json["start"].Number, End = json["end"].Number, BlendIn = json["blend_in"].Number,
-                BlendOut = json["blend_out"].Number, Likelihood = json["likelihood"].Number,
-                EarliestExit = json["earliest_exit"].NumberOrNull, Joints = json["joints"].Texts, Tags = json["tags"].Texts,
+                Start = json["start"].Within(0, 1e9), BlendIn = json["blend_in"].Within(0, 1e9), BlendOut = json["blend_out"].Within(0, 1e9),
+                Likelihood = json["likelihood"].Within(0, 1e15), EarliestExit = json["earliest_exit"].NumberOrNull, Joints = json["joints"].Texts, Tags = json["tags"].Texts,
             };
+            action.End = json["end"].Within(action.Start, 1e9);
             if (!Clips.TryGetValue(json["clip"].Text, out action.Clip))
             {
                 throw json["clip"].Wrong("is no clip of the export");
             }
             Node found;
-            action.Cooldown = json.Maybe("cooldown", out found) ? found.Number : 0.0;
-            action.Spacing = json.Maybe("spacing", out found) && !found.IsNull ? found.Count : (int?)null;
+            action.Cooldown = json.Maybe("cooldown", out found) ? found.Within(0, 1e9) : 0.0;
+            action.Spacing = json.Maybe("spacing", out found) && !found.IsNull ? (int)found.Within(0, 1000) : (int?)null;
             double[] phases = json.Maybe("phases", out found) ? found.Numbers(-1) : new double[0];
             if (phases.Length != 4) // only gestures have phases; of others the stroke is as told, or the middle
             {
@@ -223,10 +224,10 @@ namespace Metagraph
             Node found;
             var model = new MarkovModel
             {
-                Limbs = states.ConvertAll(state => state.Items[0].OneOf(Basics.Limbs)).ToArray(),
-                Kinds = states.ConvertAll(state => state.Items[1].OneOf(Basics.Kinds)).ToArray(),
+                Limbs = states.ConvertAll(state => Half(state, 0).OneOf(Basics.Limbs)).ToArray(),
+                Kinds = states.ConvertAll(state => Half(state, 1).OneOf(Basics.Kinds)).ToArray(),
                 Matrix = json["matrix"].Items.ConvertAll(row => row.Numbers(states.Count)).ToArray(),
-                Gap = json["gap"].Number, Positive = json["positive"].Number, Negative = json["negative"].Number,
+                Gap = json["gap"].Within(1e-3, 1e9), Positive = json["positive"].Number, Negative = json["negative"].Number,
                 Tags = json.Maybe("tags", out found) ? found.Texts : Basics.None,
                 Lengths = new double[0][],
             };
@@ -236,11 +237,22 @@ namespace Metagraph
             {
                 throw json.Wrong("should have a row of everything for each state");
             }
-            if (!(model.Gap > 0) || Array.Exists(model.Matrix, row => Array.Exists(row, x => !(x >= 0))))
+            if (Array.Exists(model.Matrix, row => Array.Exists(row, x => !(x >= 0))) || Array.Exists(model.Lengths, pair => !(pair[0] > 0)))
             {
-                throw json.Wrong("should have a gap above 0 and no chance below 0");
+                throw json.Wrong("should have no chance below 0, and lengths above 0");
             }
             return model;
+        }
+
+        /// <summary>Limb or kind of a state.</summary>
+        private static Node Half(Node state, int place)
+        {
+            List<Node> both = state.Items;
+            if (both.Count != 2)
+            {
+                throw state.Wrong("should be a limb and a kind");
+            }
+            return both[place];
         }
 
         private void ReadLines(Node root)
@@ -286,112 +298,6 @@ namespace Metagraph
                     Lines[id].Voice = new Voice(voice["duration"].Number, voice["accents"].Numbers(-1), weights);
                 }
             }
-        }
-
-        private Body ReadBody(Node json)
-        {
-            List<Node> breath = json["breath"].Items, shoulders = json["shoulders"].Items, lookers = json["lookers"].Items;
-            var body = new Body
-            {
-                Left = Vector(json["left"]), Up = Vector(json["up"]), Ahead = Vector(json["ahead"]), Chain = Indices(json["chain"]),
-                Breath = breath.ConvertAll(row => Vector(row.Numbers(4))).ToArray(),
-                Angles = breath.ConvertAll(row => row.Numbers(4)[3]).ToArray(),
-                Shoulders = shoulders.ConvertAll(one => Index(one["joint"], 0)).ToArray(),
-                ShoulderTurns = shoulders.ConvertAll(one => Vector(one["turn"])).ToArray(),
-                Lookers = lookers.ConvertAll(one => new Looker { Place = one["place"].Count, Share = one["share"].Number }).ToArray(),
-                Trunk = json["trunk"].Count, TrunkAhead = Vector(json["trunk_ahead"]), HeadAhead = Vector(json["head_ahead"]),
-                Partner = Vector(json["partner"]), EyesAtRest = Vector(json["eyes_at_rest"]),
-                Eyes = json["eyes"].Items.ConvertAll(ReadEye).ToArray(), Face = ReadFace(json["face"]),
-            };
-            int count = body.Chain.Length;
-            bool placed = Array.TrueForAll(body.Lookers, x => x.Place >= 0 && x.Place < count) && body.Trunk >= 0 && body.Trunk < count;
-            if (!placed || body.Angles.Length != count || body.Eyes.Length != 2)
-            {
-                throw json.Wrong("should have a chain of joints, a breath for each, two eyes, and lookers within the chain");
-            }
-            return body;
-        }
-
-        private EyeAt ReadEye(Node json)
-        {
-            return new EyeAt
-            {
-                At = Vector(json["at"]), Left = Vector(json["left"]), Up = Vector(json["up"]), Ahead = Vector(json["ahead"]),
-                TurnLeft = Vector(json["turn_left"]), TurnUp = Vector(json["turn_up"]), Joint = Index(json["joint"], -1),
-                Down = Quaternion(json["down"]),
-            };
-        }
-
-        private FaceRig ReadFace(Node json)
-        {
-            var face = new FaceRig
-            {
-                Joints = Indices(json["joints"]), LidJoints = json["lid_joints"].Items.ConvertAll(lid => Index(lid, -1)).ToArray(),
-                Turns = Shapes(json["turns"]), Shifts = Shapes(json["shifts"]), Follows = json["follows"].Numbers(4),
-                ShutBy = json["shut_by"].Items.ConvertAll(Quaternion).ToArray(),
-            };
-            bool whole = Array.TrueForAll(face.Turns, row => row.Length == face.Joints.Length)
-                && Array.TrueForAll(face.Shifts, row => row.Length == face.Joints.Length);
-            if (!whole || face.LidJoints.Length != 4 || face.ShutBy.Length != 4)
-            {
-                throw json.Wrong("should have a turn and a shift of each joint for each channel, and four lids");
-            }
-            face.Shifted = Array.Exists(face.Shifts, row => Array.Exists(row, v => v.X != 0 || v.Y != 0 || v.Z != 0));
-            Node morphs = json["morphs"];
-            foreach (string channel in morphs.Names)
-            {
-                int value = Enliven.ValueOf(channel);
-                foreach (string target in morphs[channel].Names)
-                {
-                    int place = Morph(target);
-                    if (value >= 0)
-                    {
-                        face.Morphs.Add(new MorphShare { Value = value, Target = place, Weight = morphs[channel][target].Number });
-                    }
-                }
-            }
-            return face;
-        }
-
-        private static Vec[][] Shapes(Node json)
-        {
-            List<Node> rows = json.Items;
-            if (rows.Count != FaceRig.Channels)
-            {
-                throw json.Wrong("should have " + FaceRig.Channels + " channels");
-            }
-            return rows.ConvertAll(row => row.Items.ConvertAll(Vector).ToArray()).ToArray();
-        }
-
-        private int Index(Node json, int least)
-        {
-            int found = json.Count;
-            if (found < least || found >= Joints.Length)
-            {
-                throw json.Wrong("is no joint");
-            }
-            return found;
-        }
-
-        private int[] Indices(Node json)
-        {
-            return json.Items.ConvertAll(one => Index(one, 0)).ToArray();
-        }
-
-        private static Vec Vector(Node json)
-        {
-            return Vector(json.Numbers(3));
-        }
-
-        private static Vec Vector(double[] numbers)
-        {
-            return new Vec(numbers[0], numbers[1], numbers[2]);
-        }
-
-        private static Quat Quaternion(Node json)
-        {
-            double[] q = json.Numbers(4);
-            return new Quat(q[0], q[1], q[2], q[3]);
         }
     }
 }

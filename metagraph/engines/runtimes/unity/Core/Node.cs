@@ -144,6 +144,16 @@ namespace Metagraph
             }
         }
 
+        /// <summary>A number of a range.</summary>
+        public double Within(double low, double high)
+        {
+            if (!(Number >= low && Number <= high))
+            {
+                throw Wrong("is out of range");
+            }
+            return Number;
+        }
+
         public double? NumberOrNull
         {
             get { return Value == null ? (double?)null : Number; }

@@ -7,19 +7,26 @@ namespace Metagraph
     {
         public double Breathing = 1.0, BreathRate = 1.0, AversionRate = 1.0, AversionLength = 1.0, AversionAngle = 1.0;
         public double Saccades = 1.0, SaccadeRate = 1.0, Blinks = 1.0;
+        private const double Most = 4.0;
 
         internal static Manner From(Node json)
         {
             var manner = new Manner();
-            Node found;
-            manner.Breathing = json.Maybe("breathing", out found) ? found.Number : manner.Breathing;
-            manner.BreathRate = json.Maybe("breath_rate", out found) ? found.Number : manner.BreathRate;
-            manner.AversionRate = json.Maybe("aversion_rate", out found) ? found.Number : manner.AversionRate;
-            manner.AversionLength = json.Maybe("aversion_length", out found) ? found.Number : manner.AversionLength;
-            manner.AversionAngle = json.Maybe("aversion_angle", out found) ? found.Number : manner.AversionAngle;
-            manner.Saccades = json.Maybe("saccades", out found) ? found.Number : manner.Saccades;
-            manner.SaccadeRate = json.Maybe("saccade_rate", out found) ? found.Number : manner.SaccadeRate;
-            manner.Blinks = json.Maybe("blinks", out found) ? found.Number : manner.Blinks;
+            foreach (string name in json.Names)
+            {
+                Node value = json[name];
+                switch (name)
+                {
+                    case "breathing": manner.Breathing = value.Within(0, Most); break;
+                    case "breath_rate": manner.BreathRate = value.Within(0, Most); break;
+                    case "aversion_rate": manner.AversionRate = value.Within(0, Most); break;
+                    case "aversion_length": manner.AversionLength = value.Within(0, Most); break;
+                    case "aversion_angle": manner.AversionAngle = value.Within(0, Most); break;
+                    case "saccades": manner.Saccades = value.Within(0, Most); break;
+                    case "saccade_rate": manner.SaccadeRate = value.Within(0, Most); break;
+                    case "blinks": manner.Blinks = value.Within(0, Most); break;
+                }
+            }
             return manner;
         }
     }
@@ -56,23 +63,23 @@ namespace Metagraph
                 switch (name)
                 {
                     case "on": life.On = value.Flag; break;
-                    case "stillness": life.Stillness = value.Number; break;
-                    case "breathing": life.Breathing = value.Number; break;
-                    case "breath_rate": life.BreathRate = value.Number; break;
-                    case "gaze": life.Gaze = value.Number; break;
-                    case "head_share": life.HeadShare = value.Number; break;
-                    case "aversion_rate": life.AversionRate = value.Number; break;
-                    case "aversion_length": life.AversionLength = value.Number; break;
-                    case "aversion_angle": life.AversionAngle = value.Number; break;
-                    case "saccades": life.Saccades = value.Number; break;
-                    case "saccade_rate": life.SaccadeRate = value.Number; break;
-                    case "lids": life.Lids = value.Number; break;
-                    case "blinks": life.Blinks = value.Number; break;
-                    case "accent_blinks": life.AccentBlinks = value.Number; break;
-                    case "blink_close": life.BlinkClose = value.Number; break;
-                    case "blink_open": life.BlinkOpen = value.Number; break;
-                    case "lips": life.Lips = value.Number; break;
-                    case "lip_smoothing": life.LipSmoothing = value.Number; break;
+                    case "stillness": life.Stillness = value.Within(0, 1); break;
+                    case "breathing": life.Breathing = value.Within(0, 2); break;
+                    case "breath_rate": life.BreathRate = value.Within(0, 40); break;
+                    case "gaze": life.Gaze = value.Within(0, 1); break;
+                    case "head_share": life.HeadShare = value.Within(0, 1); break;
+                    case "aversion_rate": life.AversionRate = value.Within(0, 40); break;
+                    case "aversion_length": life.AversionLength = value.Within(0, 5); break;
+                    case "aversion_angle": life.AversionAngle = value.Within(0, 40); break;
+                    case "saccades": life.Saccades = value.Within(0, 2); break;
+                    case "saccade_rate": life.SaccadeRate = value.Within(0, 180); break;
+                    case "lids": life.Lids = value.Within(0, 2); break;
+                    case "blinks": life.Blinks = value.Within(0, 60); break;
+                    case "accent_blinks": life.AccentBlinks = value.Within(0, 1); break;
+                    case "blink_close": life.BlinkClose = value.Within(0.02, 1); break;
+                    case "blink_open": life.BlinkOpen = value.Within(0.02, 1); break;
+                    case "lips": life.Lips = value.Within(0, 2); break;
+                    case "lip_smoothing": life.LipSmoothing = value.Within(0, 0.2); break;
                     case "modes":
                         foreach (string mode in value.Names)
                         {
