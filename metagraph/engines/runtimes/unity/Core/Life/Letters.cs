@@ -33,7 +33,7 @@ namespace Metagraph
             + "ea=I ai=E,I ay=E,I oi=O,I oy=O,I au=O aw=O ie=I ei=E,I ue=U oa=O a=aa e=E i=I o=O u=U y=I ø=U œ=U æ=E ı=I b=PP p=PP m=PP "
             + "f=FF v=FF d=DD t=DD l=nn n=nn k=kk g=kk c=kk q=kk x=kk,SS h=kk j=CH s=SS z=SS r=RR w=U ß=SS ð=TH þ=TH ł=nn đ=DD";
 
-        // Greek and Cyrillic letters, and the Latin ones they stand for; \u0435 is not Latin and stays unknown.
+        // Greek and Cyrillic letters, and the Latin ones they stand for.
         private const string Alike = "αεηιουωβπμφδτλνκγχξσςζρθабвгдеёжзийклмнопрстуфхцчшщыэюяієї";
         private const string Latin = "aeeioyobpmfdtlnkghxsszrþabvgdeejzijklmnoprstufhsjjjieuaiei";
         private const string Stops = ",;:.!?…-–—()"; // and how many characters' time of pause each brings
