@@ -671,6 +671,7 @@ MUTATIONS = [
     ("Replan.cs", "bool resumes = last.Request.Resume &&", "bool resumes =", "what goes on after a cut"),
     ("Markov.cs", "0.35 + 1.3 *", "0.3 + 1.3 *", "the gap between what a model writes"),
     ("Hear.cs", "now + graph.Planner.Lookahead", "now", "the lookahead"),
+    ("Hear.cs", "ForEach(past.Remember)", "ForEach(cue => { })", "the uses of what was forgotten"),
     ("Pose.cs", "composed[j] *= weight == 1 ? found.Turns[j] : found.Turns[j].Power(weight);",
      "composed[j] = (weight == 1 ? found.Turns[j] : found.Turns[j].Power(weight)) * composed[j];", "the order in which layers add"),
     ("Pose.cs", "entering ? cue.Entry : cue.ClipSeconds(cue.End)", "cue.ClipSeconds(cue.End)", "the edge a clip is led in from"),

@@ -194,10 +194,13 @@ namespace Metagraph
         public bool NeverTwice;
     }
 
-    /// <summary>A line of dialogue. Voice: null where the export has none. Asks: times from the line's start.</summary>
+    /// <summary>
+    /// A line of dialogue. Audio: path of its sound relative to the export, null for none; playing it is the game's. Voice: null where
+    /// the export has none. Asks: times from the line's start.
+    /// </summary>
     public sealed class Line
     {
-        public string Text = "";
+        public string Text = "", Audio;
         public double? Duration;
         public Voice Voice;
         public readonly List<Ask> Asks = new List<Ask>();

@@ -266,6 +266,7 @@ namespace Metagraph
             {
                 var line = new Line();
                 line.Text = found[id].Maybe("text", out part) ? part.Text : "";
+                line.Audio = found[id].Maybe("audio", out part) ? part.TextOrNull : null;
                 line.Duration = found[id].Maybe("duration", out part) ? part.NumberOrNull : null;
                 foreach (Node ask in Glb.List(found[id], "asks"))
                 {
