@@ -16,6 +16,7 @@ import pytest
 from metagraph.engines.export import export, read_export
 from metagraph.engines.script import Case, Step
 from metagraph.engines.vectors import write_vectors
+from metagraph.playback.life.voice import voice_from_text
 
 ROOT = Path(__file__).resolve().parents[2]
 RUNTIME = ROOT / "metagraph" / "engines" / "runtimes" / "javascript"
@@ -137,6 +138,36 @@ def test_it_does_what_few_exports_need(rare: Path) -> None:
     assert done.returncode == 0, done.stdout + done.stderr
 
 
+TEXTS = [
+    "Hello! How are you?", "Through the queue, one rhythm at a time...", "Straße, ﬁne, İstanbul ıl", "ΑΒΓ ρέμα θάλασσας",
+    "Это ещё не всё, эхо",
+    "日本語 2024 ② ²³", "naïve café — déjà-vu…", "हिन्दी ตัวอย่าง 각각", "a", "", "  . ", "x̂́y̶ 'tis’",
+]  # fmt: skip
+
+
+def test_letters_become_the_same_mouth_shapes() -> None:
+    found = run(
+        """
+        const { voiceFromText } = await of("life/voice.js");
+        const asked = JSON.parse(rest[0]).flatMap((words) => [null, 1.3].map((duration) => voiceFromText(words, duration)));
+        say(asked.map(({ duration, accents, weights }) => ({ duration, accents, weights: [...weights] })));
+        """,
+        STICK,
+        json.dumps(TEXTS),
+    )
+    wanted = [voice_from_text(text, duration) for text in TEXTS for duration in (None, 1.3)]
+    for voice, got in zip(wanted, found, strict=True):
+        assert got["duration"] == pytest.approx(voice.duration)
+        assert got["accents"] == pytest.approx(voice.accents.tolist())
+        assert got["weights"] == pytest.approx(voice.weights.reshape(-1).tolist(), abs=1e-5)
+
+
+def test_seconds_that_key_draws_are_written_as_python_writes_them() -> None:
+    times = [n / 16 for n in range(1, 200)] + [n * 0.37 for n in range(200)] + [1e5 + 0.0625, 2.0005, 1.0015]
+    found = run('const { thousandths } = await of("pick.js"); say(JSON.parse(rest[0]).map(thousandths))', STICK, json.dumps(times))
+    assert found == [f"{x:.3f}" for x in times]
+
+
 # --- what is wrong with files
 
 
@@ -185,6 +216,44 @@ def test_every_truncation_of_the_files_is_refused_clearly() -> None:
         """
     )
     assert found == ["MetagraphError"]
+
+
+def test_whatever_is_changed_in_an_export_is_refused_or_plays() -> None:
+    found = run(
+        """
+        let state = 4321;
+        const draw = (n) => (state = (Math.imul(state, 1103515245) + 12345) >>> 0) % n;
+        const values = [null, "", "x", -1, 1e9, NaN, [], {}, true];
+        const names = new Set();
+        const thrown = [];
+        for (let n = 0; n < 400; n++) {
+          const data = JSON.parse(text);
+          let at = data;
+          let path = "";
+          for (;;) {
+            const keys = Object.keys(at);
+            const key = keys[draw(keys.length)];
+            path += `.${key}`;
+            if (typeof at[key] === "object" && at[key] !== null && Object.keys(at[key]).length && draw(5)) { at = at[key]; continue; }
+            if (draw(3)) at[key] = values[draw(values.length)];
+            else delete at[key];
+            break;
+          }
+          let graph;
+          try { graph = load(JSON.stringify(data), glb); } catch (error) { names.add(error.name); continue; }
+          names.add("loaded");
+          try {
+            const character = new Character(graph, { seed: n });
+            character.ask({ do: "say", line: "hello" });
+            for (const t of [0.1, 1, 2, 5, 9, 21]) { character.update(t); character.pose(); character.morphs(); }
+          } catch (error) { thrown.push(`${path}: ${error.stack.split("\\n").slice(0, 2).join("")}`); }
+        }
+        say({ names: [...names].sort(), thrown });
+        """,
+        VARIED,
+    )
+    assert found["names"] == ["MetagraphError", "loaded"]
+    assert found["thrown"] == []
 
 
 def test_unknown_fields_of_an_export_are_passed_over() -> None:

@@ -3,8 +3,11 @@
 import { readBody } from "./life/body.js";
 import { Voices } from "./life/voice.js";
 import { Glb, GlbError, resample } from "./glb.js";
+import { hear } from "./hear.js";
+import { emptyPlan } from "./plan.js";
+import { morphsAt, poseAt } from "./pose.js";
 import { multiply } from "./rotation.js";
-import { LAYERS, readLife } from "./words.js";
+import { LAYERS, inRange, readLife } from "./words.js";
 
 export const FORMAT = 1; // the newest version of the export that is read here
 const MOVED = 1e-7; // metres below which a translation is none
@@ -43,7 +46,7 @@ export function load(json, glb, file = "the export") {
     if (typeof value !== "object" || value === null) throw new MetagraphError(file, field, "is missing", "Export it again.");
   }
   try {
-    return new Graph(data, new Glb(glb));
+    return tried(new Graph(data, new Glb(glb)));
   } catch (error) {
     const again = "Export it again, and copy both files.";
     if (error instanceof GlbError) throw new MetagraphError(data.glb ?? "the GLB", "", error.message, again);
@@ -51,16 +54,30 @@ export function load(json, glb, file = "the export") {
   }
 }
 
+/** Plan and pose once, so that what does not fit together shows now rather than in a game's loop. */
+function tried(graph) {
+  const plan = hear(graph, emptyPlan(graph.settings.seed), 0, [], 10);
+  for (const time of [0, 2.5, 5]) {
+    const { rotations, translations } = poseAt(graph, plan, time);
+    const weights = Object.values(morphsAt(graph, plan, time));
+    if (![...rotations, ...translations, ...weights].every(Number.isFinite)) throw new Error("its poses are no numbers");
+  }
+  return graph;
+}
+
 /** Everything of an export that planning and posing need. Joints are told by their place; layers by name, in the order of LAYERS. */
 export class Graph {
   /** @param {object} data the export @param {Glb} glb */
   constructor(data, glb) {
     const p = data.planner;
+    const constant = (name, usual, low = 0, high = 1e9) => inRange(p[name] ?? usual, low, high, `planner.${name}`);
     this.name = data.name;
     this.problems = [];
     this.settings = {
-      seed: p.seed, alpha: p.alpha, neverTwice: p.never_twice, shortest: p.shortest, wait: p.wait, window: p.window, loopFade: p.loop_fade,
-      memory: p.memory ?? 0, rest: p.rest ?? 0, lookahead: p.lookahead ?? 0.1, hurry: p.hurry ?? 2, leastBlend: p.least_blend ?? 0.25,
+      seed: constant("seed", 1, 0, 0xffffffff), alpha: constant("alpha", 4), neverTwice: p.never_twice ?? true,
+      shortest: constant("shortest", 0.4), wait: constant("wait", 4), window: constant("window", 1), loopFade: constant("loop_fade", 0.6),
+      memory: constant("memory", 0), rest: constant("rest", 0), lookahead: constant("lookahead", 0.1), hurry: constant("hurry", 2, 1),
+      leastBlend: constant("least_blend", 0.25),
     };
     this.joints = data.joints.map((joint) => joint.name);
     this.parents = data.joints.map((joint) => (joint.parent === null ? -1 : this.joints.indexOf(joint.parent)));
@@ -74,7 +91,7 @@ export class Graph {
     this.lines = new Map(Object.entries(data.lines ?? {}));
     this.voices = new Voices(data.voices);
     this.clips = readClips(data, glb, this.joints, this.problems);
-    const durations = new Map(data.clips.map((clip) => [clip.id, Math.max(0, clip.frames - 1) / clip.fps]));
+    const durations = new Map(data.clips.map((clip) => [clip.id, (clip.frames - 1) / clip.fps]));
     const layerGraph = (layer) => new LayerGraph(layer, data.layers[layer], data.joints, durations, this);
     this.layers = Object.fromEntries(LAYERS.map((layer) => [layer, layerGraph(layer)]));
     for (const clip of this.clips.values()) clip.rotations = clip.translations = null; // only offsets are played
@@ -113,6 +130,8 @@ export class LayerGraph {
     }
     this.kinds = new Set([...this.actions.values()].map((action) => action.kind));
     this.markov = { tags: [], lengths: [], ...data.markov };
+    inRange(this.markov.gap, 1e-3, 1e9, `layers.${layer}.markov.gap`);
+    for (const row of this.markov.matrix) for (const p of row) inRange(p, 0, 1, `layers.${layer}.markov.matrix`);
   }
 
   /** Return the actions of a kind placed on a stance. */
@@ -130,10 +149,11 @@ export class LayerGraph {
    * motion from the base pose, and `still`, the places in the reach of joints that show the stance throughout.
    */
   action(data, joints, durations, graph, offsets) {
-    const { id, name, clip, kind, stance, limb, likelihood } = data;
+    const { id, name, clip, kind, stance, limb } = data;
+    const number = (field, usual) => inRange(data[field] ?? usual, 0, 1e15, `action ${id}'s ${field}`);
     const length = durations.get(clip) ?? 0;
-    const start = Math.min(Math.max(0, data.start), length);
-    const end = Math.max(start, data.whole_end ? length : Math.min(data.end, length));
+    const start = Math.min(number("start"), length);
+    const end = Math.max(start, data.whole_end ? length : Math.min(number("end"), length));
     const middle = (start + end) / 2;
     const [ready, stroke, strokeEnd, relax] = data.phases?.length === 4 ? data.phases : [middle, data.stroke ?? middle, middle, middle];
     const motion = graph.clips.get(clip) ?? null;
@@ -142,9 +162,9 @@ export class LayerGraph {
     const masked = (joint) => data.joints.length > 0 && !data.joints.includes(joint.name);
     const stays = (joint) => (joint.part === "arms" && joint.side === other) || masked(joint);
     return {
-      id, name, clip, kind, layer: this.layer, stance, limb, likelihood, start, end, motion, tags: data.tags, joints: data.joints,
-      endStance: data.end_stance, blendIn: Math.max(0, data.blend_in), blendOut: Math.max(0, data.blend_out),
-      earliestExit: data.earliest_exit, phases: { ready, stroke, strokeEnd, relax }, cooldown: data.cooldown ?? 0, spacing: data.spacing ?? null,
+      id, name, clip, kind, layer: this.layer, stance, limb, likelihood: number("likelihood"), start, end, motion, tags: data.tags, joints: data.joints,
+      endStance: data.end_stance, blendIn: number("blend_in"), blendOut: number("blend_out"), earliestExit: data.earliest_exit,
+      phases: { ready, stroke, strokeEnd, relax }, cooldown: number("cooldown", 0), spacing: data.spacing ?? null,
       offsets: offsets.get(clip) ?? null,
       still: Int32Array.from(this.reach.keys()).filter((place) => stays(joints[this.reach[place]])),
     };
@@ -165,6 +185,8 @@ function readClips(data, glb, joints, problems) {
   );
   const out = new Map();
   for (const { id, name, animation, fps, frames } of data.clips) {
+    inRange(fps, 1e-3, 1e6, `clip ${id}'s fps`);
+    inRange(frames, 1, 1e6, `clip ${id}'s frames`);
     const place = glb.animations[animation]?.name === name ? animation : glb.animations.findIndex((found) => found.name === name);
     if (place < 0) problems.push(`the GLB has no animation '${name}'; its actions show their stance`);
     else out.set(id, { fps, frames, ...readClip(glb, glb.tracks(place), nodes, rest, frames, fps) });

@@ -19,7 +19,7 @@ export function write(model, layer, seed, until, kinds, cursor) {
   while (open.some((x) => x > 0)) {
     const key = `auto/${layer}/${number}`;
     const start = time + model.gap * (0.35 + 1.3 * uniform(seed, key, "gap"));
-    if (start >= until) break;
+    if (!(start < until)) break; // nor when it is no number
     const row = state >= 0 && state < open.length ? model.matrix[state].map((p, n) => p * open[n]) : open;
     state = Number(pick(seed, key, "state", places, row.some((p) => p > 0) ? row : open));
     const [limb, kind] = model.states[state];

@@ -276,7 +276,7 @@ export class Performer {
       let current = rest.action;
       for (let change = rest.start; ; ) {
         change += Math.max(1, current.end - current.start - current.blendIn);
-        if (change > until) return out;
+        if (!(change <= until)) return out;
         const action = this.loop(rest.stance, `${this.graph.layer}/${thousandths(change)}`);
         if (action.id === current.id) continue;
         current = action;

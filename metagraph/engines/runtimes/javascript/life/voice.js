@@ -1,5 +1,6 @@
 /** What is known of a spoken line's sound: how long it is, where it is stressed, and which mouth shapes it goes through. */
 
+import { inRange } from "../words.js";
 import { spelled } from "./letters.js";
 import { mouthTrack } from "./mouth.js";
 
@@ -11,7 +12,10 @@ import { mouthTrack } from "./mouth.js";
 const ACCENT = 2; // seconds round a stressed syllable without another: with it, speakers blink as often as people do
 
 /** @returns {Voice} */
-export const readVoice = ({ duration, accents, weights }) => ({ duration, accents, weights: Float32Array.from(weights.flat()) });
+function readVoice({ duration, accents, weights }, where) {
+  for (const x of [duration, ...accents]) inRange(x, 0, 1e9, where);
+  return { duration, accents, weights: Float32Array.from(weights.flat(), (x) => inRange(x, 0, 1, where)) };
+}
 
 /** Return a voice guessed from letters alone. @param {string} text @param {?number} duration seconds @returns {Voice} */
 export function voiceFromText(text, duration) {
@@ -32,7 +36,7 @@ function accentsOf(peaks, strengths) {
 export class Voices {
   /** @param {Record<string, object>} data of the export */
   constructor(data = {}) {
-    this.known = new Map(Object.entries(data).map(([line, voice]) => [line, readVoice(voice)]));
+    this.known = new Map(Object.entries(data).map(([line, voice]) => [line, readVoice(voice, `voices.${line}`)]));
     this.guessed = new WeakMap();
   }
 
