@@ -574,7 +574,7 @@ MUTATIONS = [
     ("understand.js", "Math.max(0, stroke - longestLead(graph, layer, tags))", "at", "how early a gesture with a stroke may begin"),
     ("understand.js", "tags: [word, ...tags]", "tags", "the tag of a nod"),
     ("words.js", "aversion_rate: 1.1,", "aversion_rate: 1,", "the idle manner"),
-    ("words.js", "breath_rate: 14,", "breath_rate: 15,", "the usual rate of breath"),
+    ("words.js", "breath_rate: [14,", "breath_rate: [15,", "the usual rate of breath"),
     ("pose.js", "rotations, 4 * joint, added.rotations, 4 * i)", "added.rotations, 4 * i, rotations, 4 * joint)", "the side of offsets"),
     ("words.js", 'LAYERS = ["body", "arms", "head"]', 'LAYERS = ["head", "arms", "body"]', "the order of the layers"),
     ("pose.js", "power(added.rotations, 4 * i, weights[i])", "power(added.rotations, 4 * i, 1)", "weights of turns"),

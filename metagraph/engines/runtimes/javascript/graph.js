@@ -162,7 +162,8 @@ export class LayerGraph {
     const masked = (joint) => data.joints.length > 0 && !data.joints.includes(joint.name);
     const stays = (joint) => (joint.part === "arms" && joint.side === other) || masked(joint);
     return {
-      id, name, clip, kind, layer: this.layer, stance, limb, likelihood: number("likelihood"), start, end, motion, tags: data.tags, joints: data.joints,
+      id, name, clip, kind, layer: this.layer, stance, limb, likelihood: number("likelihood"), start, end, motion,
+      tags: data.tags, joints: data.joints,
       endStance: data.end_stance, blendIn: number("blend_in"), blendOut: number("blend_out"), earliestExit: data.earliest_exit,
       phases: { ready, stroke, strokeEnd, relax }, cooldown: number("cooldown", 0), spacing: data.spacing ?? null,
       offsets: offsets.get(clip) ?? null,
