@@ -8,6 +8,7 @@ from dataclasses import dataclass, replace
 from pathlib import Path
 
 import msgspec
+import numpy as np
 
 from metagraph.engines import contract as c
 from metagraph.engines.rig import read_voices, rig_of, voices_of
@@ -18,6 +19,7 @@ from metagraph.formats.fields import DataError
 from metagraph.graph import anatomy
 from metagraph.graph.check import check
 from metagraph.graph.expand import connections
+from metagraph.graph.life import Face
 from metagraph.graph.model import (
     KINDS,
     LAYERS,
@@ -305,7 +307,7 @@ def _expanded(project: Project, graph: MetaGraph) -> c.Expanded:
 
 def read_export(path: str | Path, motions: bool = True, resolved: bool = False) -> Project:
     """Read an export back into a project with the same graph, ids and constants. motions: load the clips from its GLB. resolved: take
-    gestures' phases as the export has them, as a runtime does; else those that nobody set are found anew.
+    gestures' phases, the base pose and the face's morph targets as the export has them, as a runtime does, instead of finding them anew.
 
     Raises FileError naming the field that is wrong as a path into the JSON.
     """
@@ -350,25 +352,50 @@ def _project(path: Path, document: c.Export, motions: bool, resolved: bool) -> P
         take = longer.index(clip.animation) if clip.animation in longer else len(longer) + n
         clips[clip.id] = ClipEntry(clip.id, clip.name, document.glb, take, clip.sha256, clip.frames, clip.fps, motion)
     p = document.planner
+    base, face = BasePose(document.base.clip, document.base.frame), document.face
+    if resolved:
+        clips[BASE] = _base(document, skeleton)
+        base = BasePose(BASE)
+        face = _with_targets(face, document.rig)
     graphs: dict[Layer, MetaGraph] = {layer: _graph(layer, document.layers[layer], resolved) for layer in LAYERS}
     return Project(
         name=document.name,
         skeleton=skeleton,
         clips=clips,
         graphs=graphs,
-        base=BasePose(document.base.clip, document.base.frame),
+        base=base,
         roles=dict(document.roles),
         parts=dict(document.parts),
         markov={layer: _markov(layer, document.layers[layer].markov) for layer in LAYERS if document.layers[layer].own_markov},
         settings=Settings(p.alpha, p.seed, p.never_twice, p.shortest, p.wait, p.memory, p.rest, p.lookahead),
         life=document.life,
-        face=document.face,
+        face=face,
         points=dict(document.points),
         lines=dict(document.lines),
         performances=dict(document.performances),
         voices=read_voices(document.voices),
         next_id=above(*clips, *(i for g in graphs.values() for i in (*g.stances, *g.actions))),
     )
+
+
+BASE = "base pose"  # id of a clip of one frame that stands for the exported base pose
+
+
+def _base(document: c.Export, skeleton: Skeleton) -> ClipEntry:
+    """Return a clip of the base pose as the export has it; that of the GLB's clip is rounded."""
+    base, joints = document.base, len(skeleton)
+    for field, rows in (("rotations", base.rotations), ("translations", base.translations)):
+        if len(rows) != joints:
+            raise DataError(f"$.base.{field}", f"should be {joints} rows, one for each joint")
+    motion = Clip(BASE, skeleton, 30.0, np.array([base.rotations]), np.array([base.translations]), tuple(range(joints)))
+    return ClipEntry(BASE, BASE, document.glb, 0, "", 1, 30.0, motion)
+
+
+def _with_targets(face: Face, rig: c.Rig | None) -> Face:
+    """Return the face with the morph targets an export moves, which its GLB may lack."""
+    known = dict.fromkeys(face.morphs)
+    wanted = {name for targets in rig.face.morphs.values() for name in targets} if rig is not None else set()
+    return msgspec.structs.replace(face, morphs=(*known, *sorted(wanted - known.keys())))
 
 
 def _skeleton(joints: list[c.Joint]) -> Skeleton:

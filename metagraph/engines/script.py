@@ -100,7 +100,9 @@ def _requests(project: Project) -> Iterator[Case]:
         ]
         others = _some(project, layer, "fidget", "transition")
         asks += [_ask("other", "action", action=others[0].id, stroke=16.0)] if others else []
-        yield _once(f"{layer}: strokes in time", "start late enough, or skip the preparation", asks, 20.0)
+        late = [_ask(f"s{n}", "gesture", layer=layer, stroke=20.0 + 1.1 * n, priority=2) for n in range(4)]
+        asks += [*late, _ask("low", "gesture", 19.5, layer=layer, duration=6.0, resume=True)]
+        yield _once(f"{layer}: strokes in time", "start late enough, or skip the preparation", asks, 32.0)
         asks = [
             _ask("long", "action", 1.0, action=one.id, hold=2.5),
             _ask("short", "action", 9.0, action=one.id, hold=0.0),
@@ -162,7 +164,8 @@ def _stances(project: Project) -> Iterator[Case]:
         far = max(ways, key=lambda s: len(ways[s]))
         asks = [_ask("there", "stance", 1.0, layer=layer, stance=far), _ask("again", "stance", 8.0, layer=layer, stance=far)]
         asks += [_ask("back", "stance", 9.0, layer=layer, stance=begin)]
-        yield _once(f"{layer}: to a stance and back", "the shortest chain of transitions; already there", asks, 20.0, alive=(False, True))
+        asks += [_ask(f"hop{n}", "stance", 20.0 + 5 * n, layer=layer, stance=far if n % 2 == 0 else begin) for n in range(8)]
+        yield _once(f"{layer}: to a stance and back", "the shortest chain of transitions; already there", asks, 64.0, alive=(False, True))
         asks = [_ask("stay", "stance", 1.0, layer=layer, stance=far, stay=True), _ask("leave", "withdraw", 30.0, what="stay")]
         steps = (Step(0.0, 40.0, (asks[0],)), Step(20.0, 40.0, (asks[1],)))
         yield Case(f"{layer}: to stay", "the models do not leave a stance that was asked to stay", steps, idle=True)
@@ -256,6 +259,8 @@ def _life(project: Project) -> Iterator[Case]:
         _ask("l3", "look", 7.0, to=[-1.0, 0.6, 0.2], amount=0.5),
     ]
     yield _once("looks", "eyes first, the head after; back when a look ends", asks, idle=False, times=times, alive=both)
+    near = [_ask("l4", "look", 1.0, to=[0.06, 1.58, 0.2]), _ask("l5", "look", 4.0, to=[0.0, 3.0, 0.4], duration=2.0)]
+    yield _once("something near", "what is nearer than a hand is looked at as if it were farther", near, times=times, alive=both)
     asks = [_ask("s1", "look", 1.0, to="thing", strict=True), _ask("p1", "place", 0.0, name="thing", point=[0.5, 1.0, 1.0])]
     asks += [_ask(f"m{n}", "place", 2.0 + 0.25 * n, name="thing", point=[0.5 - 0.1 * n, 1.0 + 0.05 * n, 1.0]) for n in range(8)]
     asks += [_ask("s2", "look", 6.0, to=[0.0, 1.5, -2.0], priority=0), _ask("s3", "look", 8.0, to="user")]
@@ -282,6 +287,18 @@ def _life(project: Project) -> Iterator[Case]:
         "mouth shapes from letters; what interrupts, what is not said",
         asks,
         times=(1.2, 1.5, 2.0, 4.7, 5.3, 9.3, 9.8, 10.4),
+        alive=both,
+    )
+    long = (
+        "This is a rather long sentence, which goes on and on, so that many of its syllables are stressed, and nobody stops it for a while."
+    )
+    asks = [_ask("long", "say", 1.0, text=long), _ask("cut", "say", 14.0, text="Nobody hears the end of this one, ever, at all.")]
+    steps = (Step(0.0, 24.0, tuple(asks)), Step(15.0, 24.0, (_ask("w", "withdraw", what="cut"),)))
+    yield Case(
+        "stressed syllables",
+        "blinks on them; a mouth that is cut short closes",
+        steps,
+        times=(2.3, 5.1, 8.7, 15.11, 15.15, 15.2),
         alive=both,
     )
     said = list(project.lines)[:2]

@@ -180,7 +180,7 @@ def _longest_lead(project: Project, layer: Layer, tags: tuple[str, ...]) -> floa
 
 
 def lead(project: Project, action: Action) -> float:
-    """Return the seconds from an action's start to its stroke; gestures alone have one of themselves, others where it was set, or halfway."""
+    """Return the seconds from an action's start to its stroke; what is no gesture has it where it was set, or halfway."""
     if action.kind != "gesture":
         start, end = project.span(action)
         stroke = action.timing.stroke

@@ -32,11 +32,12 @@ LEFT_OUT = ("Thumb", "Index", "Middle", "Ring", "Little", "Brow", "LowerLid", "T
 FPS = 24.0
 
 
-def stick_skeleton() -> Skeleton:
-    """Return the mannequin's skeleton with few joints, each turned some way, so that no rest rotation is the identity."""
+def stick_skeleton(more: tuple[str, ...] = ()) -> Skeleton:
+    """Return the mannequin's skeleton with few joints, each turned some way, so that no rest rotation is the identity. more: parts of the
+    names of joints that are left out as well."""
     whole = mannequin_skeleton()
     _, at = whole.globals(whole.rest)
-    kept = [i for i, name in enumerate(whole.names) if not any(word in name for word in LEFT_OUT)]
+    kept = [i for i, name in enumerate(whole.names) if not any(word in name for word in (*LEFT_OUT, *more))]
     names = [whole.names[i] for i in kept]
     parents = []
     for i in kept:
@@ -63,6 +64,10 @@ class Moves:
         self.skeleton = skeleton
         self.morphs: tuple[str, ...] = ()
 
+    def there(self, joints: Sequence[str]) -> list[str]:
+        """Return those of some joints that the skeleton has."""
+        return [name for name in joints if name in self.skeleton]
+
     def stance(self, seed: int, joints: Sequence[str], size: float = 0.3) -> Array:
         """Return rotation vectors `[J, 3]`."""
         out = np.zeros((len(self.skeleton), 3))
@@ -80,7 +85,7 @@ class Moves:
         ease = x * x * (3 - 2 * x)
         turns = start + ((start if end is None else end) - start) * ease
         chance = np.random.default_rng(seed)
-        for joint in wave:
+        for joint in self.there(wave):
             place = self.skeleton.index(joint)
             a, b = chance.normal(0.0, size, 3), chance.normal(0.0, 0.4 * size, 3)
             turns[:, place] += np.sin(np.pi * x[:, 0]) ** 2 * a + np.sin(2 * np.pi * x[:, 0]) * np.sin(np.pi * x[:, 0]) * b
@@ -101,13 +106,15 @@ class Moves:
 ARMS = tuple(f"{side}{part}" for side in ("Left", "Right") for part in ("Shoulder", "UpperArm", "LowerArm", "Hand"))
 TRUNK = ("Hips", "Spine", "Chest")
 HEAD = ("Neck", "Head")
+SHARED = (*ARMS, "Spine", "Chest", *HEAD)  # layers whose turns of these are added the other way round end elsewhere
 
 
 class Builder:
     """A project being built."""
 
     def __init__(self, name: str, morphs: tuple[str, ...] = ()) -> None:
-        self.moves = Moves(stick_skeleton())
+        # A face of morph targets has no joints.
+        self.moves = Moves(stick_skeleton(("Eye", "Lid", "Jaw") if morphs else ()))
         self.moves.morphs = morphs
         self.project = Project(name=name)
 
@@ -155,7 +162,7 @@ def stick(name: str = "stick", morphs: tuple[str, ...] = ()) -> Project:
     b.act("body", "transition", s_stand, m.clip("to lean", 14, 1.0, stand, lean, sway, 0.2), s_lean)
     b.act("body", "transition", s_lean, m.clip("to stand", 15, 0.9, lean, stand, sway, 0.2), s_stand, timing={"blend_in": 0.1})
     b.act("body", "fidget", s_stand, m.clip("shift", 16, 1.6, stand, None, TRUNK, 0.3))
-    b.act("body", "gesture", s_stand, m.clip("bow", 17, 1.8, stand, None, TRUNK, 0.5), tags=("positive",))
+    b.act("body", "gesture", s_stand, m.clip("bow", 17, 1.8, stand, None, (*TRUNK, *HEAD), 0.5), tags=("positive",))
     b.act("body", "gesture", s_lean, m.clip("rock", 18, 1.2, lean, None, TRUNK, 0.4))
 
     sides, hips, crossed = m.stance(3, ARMS, 0.4), m.stance(4, ARMS, 0.6), m.stance(5, ARMS, 0.8)
@@ -172,9 +179,22 @@ def stick(name: str = "stick", morphs: tuple[str, ...] = ()) -> Project:
     b.act("arms", "transition", s_hips, m.clip("to crossed", 27, 0.9, hips, crossed, ARMS, 0.2), s_crossed)
     b.act("arms", "transition", s_crossed, m.clip("to sides", 28, 1.0, crossed, sides, ARMS, 0.2), s_sides)
     b.act("arms", "transition", s_hips, m.clip("drop right", 29, 0.7, hips, sides, ARMS[4:], 0.2), s_sides, limb="right")
+    pocket = m.stance(8, ARMS, 0.5)
+    s_pocket = b.stance("arms", "in pockets", m.clip("pockets", 51, 1.1, pocket, None, fist, 0.1))
+    b.act("arms", "transition", s_sides, m.clip("to pockets", 52, 0.8, sides, pocket, ARMS, 0.2), s_pocket)
+    b.act("arms", "transition", s_pocket, m.clip("pockets to crossed", 53, 0.8, pocket, crossed, ARMS, 0.2), s_crossed)  # as short a way
+    b.act("arms", "transition", s_hips, m.clip("to crossed too", 54, 1.1, hips, crossed, ARMS, 0.2), s_crossed)
     right, left = ARMS[4:], ARMS[:4]
     wave = {"ready": 0.5, "stroke": 0.8, "stroke_end": 1.1, "relax": 1.5}
-    b.act("arms", "gesture", s_sides, m.clip("wave", 31, 2.1, sides, None, right), limb="right", tags=("greeting", "positive"), timing=wave)
+    b.act(
+        "arms",
+        "gesture",
+        s_sides,
+        m.clip("wave", 31, 2.1, sides, None, (*right, "Chest", "Head")),
+        limb="right",
+        tags=("greeting", "positive"),
+        timing=wave,
+    )
     b.act(
         "arms", "gesture", s_sides, m.clip("point", 32, 1.5, sides, None, left), limb="left", tags=("there",), timing={"earliest_exit": 0.9}
     )
@@ -182,7 +202,7 @@ def stick(name: str = "stick", morphs: tuple[str, ...] = ()) -> Project:
         "arms",
         "gesture",
         s_sides,
-        m.clip("shrug", 33, 1.3, sides, None, ARMS),
+        m.clip("shrug", 33, 1.3, sides, None, SHARED),
         tags=("negative", "unsure"),
         likelihood=2.0,
         timing={"start": 0.1, "end": 1.2},
@@ -214,10 +234,10 @@ def stick(name: str = "stick", morphs: tuple[str, ...] = ()) -> Project:
     s_tilted = b.stance("head", "tilted", m.clip("tilted", 42, 1.2, tilted, None, HEAD, 0.03))
     b.act("head", "transition", s_level, m.clip("tilt", 43, 0.6, level, tilted, HEAD, 0.1), s_tilted)
     b.act("head", "transition", s_tilted, m.clip("straighten", 44, 0.6, tilted, level, HEAD, 0.1), s_level)
-    b.act("head", "gesture", s_level, m.clip("nod yes", 45, 0.9, level, None, HEAD, 0.4), tags=("nod", "positive"))
-    b.act("head", "gesture", s_level, m.clip("shake it", 46, 1.1, level, None, HEAD, 0.4), limb="left")
+    b.act("head", "gesture", s_level, m.clip("nod yes", 45, 0.9, level, None, HEAD, 0.4), tags=("nod", "positive"), spacing=3)
+    b.act("head", "gesture", s_level, m.clip("shake it", 46, 1.1, level, None, HEAD, 0.4), limb="left", tags=("negative",), spacing=2)
     b.act("head", "gesture", s_tilted, m.clip("nod tilted", 47, 0.8, tilted, None, HEAD, 0.4), tags=("nod",))
-    b.act("head", "fidget", s_level, m.clip("glance", 48, 1.0, level, None, HEAD, 0.3))
+    b.act("head", "fidget", s_level, m.clip("glance", 48, 1.0, level, None, (*HEAD, "LeftUpperLid", "RightUpperLid", "LeftEye"), 0.3))
     greeting = (Gesture(tags=("greeting",), at=0.2, stroke=0.9, priority=2), Nod(at=0.5))
     lines = {"hello": Line(text="Hello. I am a stick.", asks=greeting), "7": Line(text="Seven!", duration=0.8)}
     voices = {"hello": voice_from_text(lines["hello"].text, 1.7)}
@@ -226,14 +246,24 @@ def stick(name: str = "stick", morphs: tuple[str, ...] = ()) -> Project:
 
 def varied() -> Project:
     """Return the same character with every constant and dial off its usual value, weights that share joints, and a morph face."""
-    morphs = ("blink", "viseme_aa", "viseme_PP", "jawOpen", "eyeLookUpLeft")
+    morphs = (
+        "eyeBlinkLeft", "eyeBlinkRight", "eyeWideLeft", "eyeLookUpLeft", "eyeLookDownLeft", "eyeLookInLeft", "eyeLookOutLeft",
+        "eyeLookUpRight", "eyeLookDownRight", "jawOpen", "mouthFunnel", "mouthPucker", "viseme_aa", "viseme_PP",
+    )  # fmt: skip
     project = with_morphs(stick("varied", morphs), morphs)
     project = edits.set_settings(
         project, alpha=1.5, never_twice=False, shortest=0.6, wait=2.0, memory=8.0, rest=0.3, lookahead=0.5, seed=0xDEADBEEF
     )
-    for layer, part, weight in (("arms", "spine", 0.5), ("head", "head", 0.6), ("head", "spine", 0.3), ("body", "arms", 0.2)):
+    for layer, part, weight in (
+        ("arms", "spine", 0.5),
+        ("head", "head", 0.6),
+        ("head", "spine", 0.3),
+        ("body", "arms", 0.2),
+        ("body", "legs", 0.7),
+        ("body", "spine", 0.8),
+    ):
         project = edits.set_weight(project, layer, part, weight)  # type: ignore[arg-type]
-    states: tuple[tuple[Limb, Kind], ...] = (("right", "gesture"), ("both", "gesture"), ("left", "fidget"), ("both", "transition"))
+    states: tuple[tuple[Limb, Kind], ...] = (("left", "gesture"), ("both", "gesture"), ("left", "fidget"), ("both", "transition"))
     rows = ((0.1, 0.4, 0.3, 0.2), (0.5, 0.0, 0.25, 0.25), (0.25, 0.25, 0.25, 0.25), (1.0, 0.0, 0.0, 0.0))
     lengths = ((1.5, 0.5), (2.0, 1.0), (1.0, 0.1), (1.2, 0.0))
     project = edits.set_markov(project, Markov("arms", states, rows, 0.8, 0.0, 0.0, ("greeting", "negative unsure", "", ""), lengths))

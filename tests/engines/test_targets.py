@@ -72,7 +72,7 @@ def test_every_target_writes_what_it_says_and_glbs_the_validator_accepts(written
     report = written(name)
     assert report.files and all(path.is_file() and path.stat().st_size for path in report.files)
     if glbs := [path for path in report.files if path.suffix == ".glb"]:
-        khronos(*glbs)
+        khronos(*glbs, warnings=False)
 
 
 @pytest.mark.parametrize("name", registry.targets())

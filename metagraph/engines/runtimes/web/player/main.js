@@ -34,7 +34,7 @@ async function start() {
   const object = new MetagraphObject(graph, scene, { seed, idle: options.get("idle") !== "0" });
   const voice = new Voice(JSON.parse(text).lines ?? {}, new URL(url, location.href));
   const lanes = new Lanes(document.getElementById("lanes"), object);
-  const state = { paused: options.has("paused"), first: performance.now() };
+  const state = { paused: options.has("paused") };
   const panel = fillPanel(document.getElementById("panel"), object, stage, state);
   document.title = `${graph.name} – Metagraph`;
   message.textContent = graph.problems.join(" · ");
@@ -47,6 +47,7 @@ async function start() {
     stage.follow(object, panel);
     voice.update(object.character);
     stage.draw();
+    if (delta === 0 && !performance.getEntriesByName("first pose").length) performance.mark("first pose");
     lanes.draw();
     panel.update();
     requestAnimationFrame(frame);
