@@ -18,9 +18,7 @@ from metagraph.engines.targets.meshes import mesh_of
 from metagraph.engines.targets.target import Loss, Made, Order, Target
 from metagraph.formats.atomic import write_atomically
 
-HOST = Loss(
-    "it decides only: who runs it plays each state's animation, blends for as long as the arrow says, and adds the layers"
-)
+HOST = Loss("it decides only: who runs it plays each state's animation, blends for as long as the arrow says, and adds the layers")
 FORGETFUL = Loss("what is asked while an action plays that may not be left yet is not remembered")
 
 
