@@ -33,6 +33,15 @@ WINDOW = {
     "libportaudio.so.2": "libportaudio2",
 }
 TESTING = {"Xvfb": "xvfb", "xauth": "xauth", "xdotool": "xdotool"}
+# Exports are run in these; without one its tests skip, and say so.
+ENGINES = {
+    "node": "nodejs",
+    "npm": "npm",
+    "mcs": "mono-mcs",
+    "mono": "mono-runtime",
+    "godot3-server": "godot3-server",
+    "chromium": "chromium",
+}
 
 
 def main(arguments):
@@ -45,6 +54,7 @@ def main(arguments):
     if trouble:
         return trouble
     if testing:
+        engines()
         return run_tests(arguments[1:])
     return subprocess.call([str(PYTHON), "-m", "app.cli", *(arguments or (["window", "--sample"] if screen else ["demo"]))], cwd=ROOT)
 
@@ -95,6 +105,32 @@ def system_libraries(screen, testing):
     return f"Still missing after the installation: {' '.join(left)}" if left else None
 
 
+def engines():
+    """Install what exports are run in, as far as this system offers it."""
+    absent = [package for program, package in ENGINES.items() if shutil.which(program) is None]
+    if not absent or not sys.platform.startswith("linux") or shutil.which("apt-get") is None:
+        return
+    install = ["apt-get", "install", "-y", "--no-install-recommends"]
+    if os.geteuid() == 0:
+        prefix = []
+    elif shutil.which("sudo") and sys.stdin.isatty():
+        if input(f"Install {', '.join(absent)} as well, to test exports in engines? [Y/n] ").strip().lower() not in ("", "y", "yes"):
+            return
+        prefix = ["sudo"]
+    else:
+        print("(Tests in engines are skipped; to run them: sudo " + " ".join([*install, *absent]) + ")")
+        return
+    print("Installing engines to test exports in: " + " ".join(absent), flush=True)
+    environ = {**os.environ, "DEBIAN_FRONTEND": "noninteractive"}
+    quiet = {"stdout": subprocess.DEVNULL, "stderr": subprocess.DEVNULL, "env": environ}
+    subprocess.call([*prefix, "apt-get", "update", "-qq"], **quiet)
+    if subprocess.call([*prefix, *install, *absent], **quiet) == 0:
+        return
+    for package in absent:  # not every system has all of them
+        if subprocess.call([*prefix, *install, package], **quiet) != 0:
+            print(f"({package} could not be installed: its tests are skipped)")
+
+
 # --- the environment
 
 
@@ -141,8 +177,9 @@ def run_tests(arguments):
         return str(PYTHON.with_name(name + (".exe" if WINDOWS else "")))
 
     npm = shutil.which("npm")
-    stamp, wanted = ROOT / "tests" / "node_modules" / ".installed", (ROOT / "tests" / "package.json").read_text()
-    if npm and not (stamp.exists() and stamp.read_text() == wanted):
+    stamp, wanted = ROOT / "tests" / "node_modules" / ".installed", ROOT / "tests" / "package.json"
+    wanted = wanted.read_text() if wanted.exists() else None
+    if npm and wanted and not (stamp.exists() and stamp.read_text() == wanted):
         # The engines exports are checked in; their tests skip where there is no Node.
         options = ["--prefix", str(ROOT / "tests"), "--no-package-lock", "--no-audit", "--no-fund", "--silent", "--fetch-retries=1"]
         if subprocess.call([npm, "install", *options], stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL) == 0:

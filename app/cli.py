@@ -75,6 +75,7 @@ def _parser() -> argparse.ArgumentParser:
     exported.add_argument("-t", "--target", default="metagraph", help="what to write for (default: metagraph, one JSON and one GLB)")
     exported.add_argument("--targets", action="store_true", help="list the targets there are")
     exported.add_argument("--watch", action="store_true", help="go on, and write again whenever the project is saved")
+    exported.add_argument("--serve", action="store_true", help="go on, and show the web page to this machine's browser")
     exported.add_argument("--vectors", action="store_true", help="write conformance vectors for runtimes as well")
     exported.add_argument("--expanded", action="store_true", help="list the expanded state machine in the JSON as well")
     exported.add_argument("--no-mesh", action="store_true", help="leave the character's mesh out of the GLB")

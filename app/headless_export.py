@@ -27,14 +27,32 @@ def export(options: Namespace) -> int:
         print("metagraph export: which project, and where to? metagraph export my.metagraph.yaml -o game/", file=sys.stderr)
         return 2
     registry.target(options.target)  # a wrong name is told before anything is read
-    if not options.watch:
+    if options.serve and options.target != "web":
+        print("metagraph export: only the web page can be served: --target web --serve", file=sys.stderr)
+        return 2
+    if not (options.watch or options.serve):
         _once(options)
         return 0
     try:
-        _watch(options)
+        _go_on(options)
     except KeyboardInterrupt:
         print("stopped", file=sys.stderr)
     return 0
+
+
+def _go_on(options: Namespace) -> None:
+    """Export and go on: serving, watching, or both."""
+    from metagraph.engines.serve import Served
+
+    if not options.watch:
+        _once(options)
+    if options.serve:
+        options.out.mkdir(parents=True, exist_ok=True)
+        print(f"the page is at {Served(options.out).url} (Ctrl+C stops)", file=sys.stderr, flush=True)
+    if options.watch:
+        _watch(options)
+    while True:
+        time.sleep(3600)
 
 
 def _watch(options: Namespace) -> None:

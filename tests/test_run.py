@@ -228,3 +228,49 @@ def test_the_tests_are_lint_types_imports_and_pytest_and_one_failure_is_a_failur
     monkeypatch.setattr(run.subprocess, "call", calls)
     assert run.run_tests(["-k", "journal"]) == 0
     assert [command[1:] for command in calls] == [["-m", "pytest", "-k", "journal"]]
+
+
+# --- engines exports are tested in
+
+
+@pytest.fixture
+def without(run: ModuleType, monkeypatch: pytest.MonkeyPatch) -> ModuleType:
+    """A Debian that has apt and nothing to test exports in."""
+    monkeypatch.setattr(run.sys, "platform", "linux")
+    monkeypatch.setattr(run.shutil, "which", lambda program: "/usr/bin/apt-get" if program == "apt-get" else None)
+    return run
+
+
+def test_what_exports_are_run_in_is_installed_as_far_as_there_is_any(
+    without: ModuleType, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    packages = list(without.ENGINES.values())
+    monkeypatch.setattr(without.os, "geteuid", lambda: 0, raising=False)
+    calls = Started(0, 0)
+    monkeypatch.setattr(without.subprocess, "call", calls)
+    without.engines()
+    assert calls[1][4:] == packages
+    calls = Started(0, 100, *(0 for _ in packages[1:]), 100)  # together they fail, then the last of them alone
+    monkeypatch.setattr(without.subprocess, "call", calls)
+    without.engines()
+    assert [command[-1] for command in calls[2:]] == packages
+    assert f"({packages[-1]} could not be installed: its tests are skipped)" in capsys.readouterr().out
+
+
+def test_engines_are_not_asked_for_where_nobody_answers(
+    without: ModuleType, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    monkeypatch.setattr(without.os, "geteuid", lambda: 1000, raising=False)
+    calls = Started()
+    monkeypatch.setattr(without.subprocess, "call", calls)
+    without.engines()
+    assert not calls and "sudo apt-get install" in capsys.readouterr().out
+
+
+def test_nothing_is_installed_where_all_engines_are_or_no_apt_is(run: ModuleType, monkeypatch: pytest.MonkeyPatch) -> None:
+    calls = Started()
+    monkeypatch.setattr(run.subprocess, "call", calls)
+    for which in (lambda program: f"/usr/bin/{program}", lambda program: None):
+        monkeypatch.setattr(run.shutil, "which", which)
+        run.engines()
+    assert not calls

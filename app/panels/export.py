@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 from dataclasses import dataclass
+from functools import cache
 from html import escape
 from pathlib import Path
 from typing import Any
@@ -51,6 +52,14 @@ class Choice:
     vectors: bool = False
 
 
+@cache
+def served(folder: str) -> str:
+    """Return the address at which this program shows a folder to the browser, as long as it runs."""
+    from metagraph.engines.serve import Served
+
+    return Served(folder).url
+
+
 class ExportDialog(QDialog):
     def __init__(self, document: Document, jobs: Jobs, parent: QWidget | None = None) -> None:
         super().__init__(parent)
@@ -58,6 +67,7 @@ class ExportDialog(QDialog):
         self.setAttribute(Qt.WidgetAttribute.WA_DeleteOnClose)  # a running export goes on; the status bar shows it
         self.setWindowTitle("Export for engines")
         self.resize(860, 560)
+        self.written = ""  # the target that was last written
         chosen = self._remembered()
         self.targets = self._list()
         self.title = QLabel(self)
@@ -137,7 +147,7 @@ class ExportDialog(QDialog):
         buttons = QDialogButtonBox(QDialogButtonBox.StandardButton.Close, self)
         self.open_button = buttons.addButton("Open folder", QDialogButtonBox.ButtonRole.ActionRole)
         self.open_button.setEnabled(False)
-        self.open_button.clicked.connect(lambda: QDesktopServices.openUrl(QUrl.fromLocalFile(self.folder.text())))
+        self.open_button.clicked.connect(self._open)
         self.go = buttons.addButton("Export", QDialogButtonBox.ButtonRole.AcceptRole)
         strengthen(self.go)
         buttons.accepted.connect(self._export)
@@ -195,6 +205,11 @@ class ExportDialog(QDialog):
         if name:
             self.folder.setText(name)
 
+    def _open(self) -> None:
+        """Show what was written: a web page in the browser, all else as a folder."""
+        folder = self.folder.text()
+        QDesktopServices.openUrl(QUrl(served(folder)) if self.written == "web" else QUrl.fromLocalFile(folder))
+
     # --- writing
 
     def _export(self) -> None:
@@ -226,6 +241,8 @@ class ExportDialog(QDialog):
         self.progress.hide()
         self.go.setEnabled(True)
         self.open_button.setEnabled(True)
+        self.written = made.target
+        self.open_button.setText("Open in browser" if made.target == "web" else "Open folder")
         kb = [f"{p.name} ({p.stat().st_size / 1e6:.1f} MB)" for p in made.files[:3]]
         more = f" and {len(made.files) - 3} more files" if len(made.files) > 3 else ""
         self.words.setText(f"Written: {', '.join(kb)}{more}, with {made.clips} clips.")

@@ -46,6 +46,7 @@ def test_vectors_are_written_beside_the_graph_they_are_of(tmp_path, capsys):
         (["export"], 2, "which project"),
         (["export", str(SAMPLE)], 2, "where to"),
         (["export", str(SAMPLE), "-o", "x", "-t", "godott"], 1, "did you mean 'godot'"),
+        (["export", str(SAMPLE), "-o", "x", "--serve"], 2, "--target web --serve"),
     ],
 )
 def test_what_is_missing_or_misspelt_is_told(arguments, code, words, capsys):
@@ -82,3 +83,21 @@ def test_watching_writes_again_after_each_saving_and_survives_a_broken_project(t
             _, told = running.communicate(timeout=20)
     assert running.returncode == 0
     assert "error:" in told and "stopped" in told
+
+
+@pytest.mark.skipif(os.name == "nt", reason="is stopped by a signal")
+def test_the_web_page_is_served_until_it_is_stopped(tmp_path):
+    import urllib.request
+
+    command = [sys.executable, "-m", "app.cli", "export", str(SAMPLE), "-t", "web", "-o", str(tmp_path / "page"), "--serve", "--no-mesh"]
+    environ = {**os.environ, "PATH": "", "XDG_CACHE_HOME": str(tmp_path)}  # without npm nothing is fetched
+    with subprocess.Popen(command, cwd=ROOT, stdout=subprocess.DEVNULL, stderr=subprocess.PIPE, text=True, env=environ) as running:
+        try:
+            line = next(line for line in running.stderr if "the page is at" in line)
+            url = line.split("the page is at ")[1].split()[0]
+            with urllib.request.urlopen(url + "sample.json", timeout=10) as answer:
+                assert json.loads(answer.read())["glb"] == "sample.glb"
+        finally:
+            running.send_signal(signal.SIGINT)
+            running.communicate(timeout=20)
+    assert running.returncode == 0

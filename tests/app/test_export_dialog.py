@@ -96,3 +96,27 @@ def test_a_memory_that_cannot_be_read_is_as_none(toys, kept):
     QSettings().setValue(first._key(), kept)
     first.reject()
     assert opened(drive).target.name == registry.DEFAULT
+
+
+def test_a_web_page_is_opened_in_the_browser_and_all_else_as_a_folder(toys, tmp_path, monkeypatch):
+    import urllib.request
+
+    from app.panels import export as panel
+    from metagraph.engines.targets import web
+
+    opened_urls = []
+    monkeypatch.setattr(panel.QDesktopServices, "openUrl", opened_urls.append)
+    monkeypatch.setattr(web, "three_js", lambda folder: None)
+    drive = toys
+    dialog = opened(drive)
+    for name, words in (("web", "Open in browser"), ("bml", "Open folder")):
+        pick(drive, dialog, name)
+        dialog.folder.setText(str(tmp_path / name))
+        QTest.mouseClick(dialog.go, Qt.MouseButton.LeftButton)
+        drive.wait(lambda words=words: dialog.open_button.isEnabled() and dialog.open_button.text() == words and dialog.go.isEnabled(), 60)
+        QTest.mouseClick(dialog.open_button, Qt.MouseButton.LeftButton)
+    page, folder = opened_urls
+    with urllib.request.urlopen(page.toString(), timeout=10) as answer:
+        assert b"player/main.js" in answer.read()
+    assert folder.toLocalFile() == str(tmp_path / "bml")
+    dialog.reject()
