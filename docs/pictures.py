@@ -1,10 +1,13 @@
 """Take the pictures of the documentation from the real window: `python docs/pictures.py` (on a screen, or under `xvfb-run`).
 
-Writes docs/window.png, practice.png, empty.png, light.png, requests.png, models.png and performance.png, from our own sample clips only.
+Writes docs/window.png, practice.png, empty.png, light.png, requests.png, models.png, export.png, web.png and performance.png, from our own
+sample clips only; with names behind it, only those. The web page needs Node, Chromium and what tests/package.json names.
 """
 
 from __future__ import annotations
 
+import json
+import subprocess
 import sys
 import tempfile
 from collections.abc import Callable
@@ -150,24 +153,87 @@ def models() -> None:
     close(out)
 
 
+def exporting() -> None:
+    """The export dialog, on a target that loses something."""
+    from app.files import SAMPLE
+    from app.panels.export import ExportDialog
+
+    out = window()
+    out.files.open(SAMPLE, template=True)  # type: ignore[attr-defined]
+    wait(20000, lambda: bool(out.document.project.clips))  # type: ignore[attr-defined]
+    dialog = ExportDialog(out.document, out.jobs, out)  # type: ignore[attr-defined]
+    dialog.folder.setText("game/playcanvas")
+    dialog.open()
+    dialog._select("playcanvas")
+    wait(600)
+    shoot(dialog, "export.png")
+    dialog.reject()
+    close(out)
+
+
+def page() -> None:
+    """The web page, in a browser, having been asked to wave."""
+    from metagraph.engines.targets import registry, web
+    from metagraph.formats.store import open_project
+
+    samples = ROOT / "sample_clips"
+    with tempfile.TemporaryDirectory() as place:
+        folder = Path(place)
+        web.three_js = lambda folder: ROOT / "tests" / "node_modules" / "three"  # type: ignore[assignment]
+        project = open_project(samples / "sample.metagraph.yaml").project
+        registry.write(project, "web", folder, samples / "mannequin.glb", base=samples)
+        steps = [
+            {"url": "?seed=7&paused", "until": "window.metagraph"},
+            {"click": "#panel button:text-is('greeting') >> nth=0"},
+            {"run": "metagraph.seek(0.3)"},
+            {"click": "#panel button:text-is('arms crossed')"},
+            {"click": "#panel button:text-is('question') >> nth=1"},
+            {"run": "metagraph.seek(1.35)"},
+            {"wait": 300},
+            {"shot": str(ROOT / "docs" / "web.png")},
+        ]
+        (folder / "steps.json").write_text(json.dumps(steps))
+        script = ROOT / "tests" / "engines" / "run" / "browser.mjs"
+        subprocess.run(["node", str(script), str(folder), str(folder / "steps.json")], check=True, stdout=subprocess.DEVNULL)
+    print("docs/web.png")
+
+
+def performance() -> None:
+    """A contact sheet of a performance."""
+    from app.cli import main as command
+
+    sample = str(ROOT / "sample_clips" / "sample.metagraph.yaml")
+    command(["render", sample, "-s", "46", "--seed", "7", "-o", str(ROOT / "docs" / "performance.png")])
+
+
+def nothing() -> None:
+    """The window before anything is in it."""
+    out = window()
+    shoot(out, "empty.png")
+    close(out)
+
+
+PICTURES: dict[str, Callable[[], None]] = {
+    "empty": nothing,
+    "window": lambda: finished("window.png", "dark", False, "shrug_bt_01"),
+    "light": lambda: finished("light.png", "light", True, "beat_large_bt_01"),
+    "practice": half_labelled,
+    "requests": requests,
+    "models": models,
+    "export": exporting,
+    "web": page,
+    "performance": performance,
+}
+
+
 def main() -> None:
     QStandardPaths.setTestModeEnabled(True)
     app = prepare()
     with tempfile.TemporaryDirectory() as folder:
         QSettings.setDefaultFormat(QSettings.Format.IniFormat)
         QSettings.setPath(QSettings.Format.IniFormat, QSettings.Scope.UserScope, folder)
-        out = window()
-        shoot(out, "empty.png")
-        close(out)
-        finished("window.png", "dark", False, "shrug_bt_01")
-        finished("light.png", "light", True, "beat_large_bt_01")
-        half_labelled()
-        requests()
-        models()
-    from app.cli import main as command
-
-    sample = str(ROOT / "sample_clips" / "sample.metagraph.yaml")
-    command(["render", sample, "-s", "46", "--seed", "7", "-o", str(ROOT / "docs" / "performance.png")])
+        for name in sys.argv[1:] or PICTURES:
+            PICTURES[name]()
     app.quit()
 
 
