@@ -1,0 +1,264 @@
+"""Godot without a plug-in: the root of an AnimationTree as a text resource, once for Godot 4 and once for Godot 3.
+
+The root is a blend tree that adds the layers one after the other onto nothing, each through a filter of the joints it moves:
+
+    base - add_body - add_arms - add_head - output          base: an empty blend space; Add2 needs something to add to
+              |          |          |
+             body       arms       head                     a state machine each: `parameters/<layer>/playback`
+
+`parameters/add_<layer>/add_amount` is 0 in a new AnimationTree and has to be set to 1; a resource cannot say so.
+
+Godot 4 takes every animation as its offset from the bones' rest, which here is the base pose, and multiplies the offsets in the
+tree's order: the composition of the contract. Godot 3 takes the mean of what it should add; there each joint is left to one layer.
+
+Filters hold the paths of tracks as the importers name them, from the scene's root: `Skeleton3D:<joint>` in Godot 4,
+`Skeleton:<joint>` in Godot 3, whose older importers also spell `LeftHand` as `left_hand`; paths that are not there do no harm.
+A skeleton of several roots hangs below `Armature`.
+
+`travel()` looks for a way by the states' places, with their distance to the goal as the only cost (priority 0 takes the way behind
+out of it). So the states of a stance and the transitions that lead to it stand together, and far from the next stance's: whatever
+leads straight to a stance is nearer to it than all else.
+"""
+
+from __future__ import annotations
+
+import json
+import math
+import re
+from collections.abc import Iterator, Mapping
+from typing import Literal
+
+from metagraph.engines.machine import Arrow, Machine, State, machines, write_machine_glb
+from metagraph.engines.targets.losses import CROSSFADE, MACHINE, WEIGHTS
+from metagraph.engines.targets.meshes import mesh_of
+from metagraph.engines.targets.target import Loss, Made, Order, Target
+from metagraph.formats.atomic import write_atomically
+from metagraph.graph import anatomy
+from metagraph.graph.expand import ends_in
+from metagraph.graph.model import Layer, Part, Project
+
+Version = Literal[3, 4]
+Place = tuple[float, float]
+
+OWNER: Mapping[Part, Layer] = {"legs": "body", "spine": "body", "arms": "arms", "head": "head", "face": "head"}
+AT_END, AUTO = 2, 2  # of Godot's enumerations of switch and advance modes
+CELL = (240, 60)  # pixels a state takes up in the editor
+
+
+class _Resources:
+    """The sub-resources of a file, each kept once, as text. version: 3 numbers them, 4 names them."""
+
+    def __init__(self, version: Version) -> None:
+        self.version = version
+        self._known: dict[str, int] = {}
+
+    def add(self, kind: str, *fields: str) -> str:
+        """Add one and return how others refer to it."""
+        number = self._known.setdefault("\n".join((kind, *fields)), len(self._known) + 1)
+        return f"SubResource( {number} )" if self.version == 3 else f'SubResource("{number}")'
+
+    def text(self, kind: str, *fields: str) -> str:
+        """Return the whole file, whose resource has these fields."""
+        steps = f" load_steps={len(self._known) + 1} format=2" if self.version == 3 else " format=3"
+        lines = [f'[gd_resource type="{kind}"{steps}]', ""]
+        for known, number in self._known.items():
+            name, *rest = known.split("\n")
+            ident = f"{number}" if self.version == 3 else f'"{number}"'
+            lines += [f'[sub_resource type="{name}" id={ident}]', *rest, ""]
+        return "\n".join((*lines, "[resource]", *fields, ""))
+
+
+def tree(project: Project, built: tuple[Machine, ...], version: Version) -> str:
+    """Return the AnimationTree's root as the text of a .tres file."""
+    out = _Resources(version)
+    filters = {m.layer: m.joints for m in built} if version == 4 else owned(project, built)
+    fields = [f"nodes/base/node = {out.add('AnimationNodeBlendSpace1D')}", "nodes/base/position = Vector2(0, 0)"]
+    wires: list[tuple[str, int, str]] = []
+    before = "base"
+    for column, machine in enumerate(built, 1):
+        layer, adder = machine.layer, f"add_{machine.layer}"
+        paths = ", ".join(json.dumps(p, ensure_ascii=False) for j in filters[layer] for p in paths_of(project, j, version))
+        add = out.add("AnimationNodeAdd2", "filter_enabled = true", f"filters = [{paths}]")
+        fields += [f"nodes/{layer}/node = {_machine(out, machine)}", f"nodes/{layer}/position = Vector2({column * 300 - 200}, 200)"]
+        fields += [f"nodes/{adder}/node = {add}", f"nodes/{adder}/position = Vector2({column * 300}, 0)"]
+        wires += [(adder, 0, before), (adder, 1, layer)]
+        before = adder
+    fields.append(f"nodes/output/position = Vector2({len(built) * 300 + 300}, 0)")
+    fields.append("node_connections = " + json.dumps([end for wire in [("output", 0, before), *wires] for end in wire]))
+    return out.text("AnimationNodeBlendTree", *fields)
+
+
+def owned(project: Project, built: tuple[Machine, ...]) -> dict[Layer, tuple[str, ...]]:
+    """Return for each layer the joints it alone moves where layers cannot be added: the one its part belongs to, or else the first
+    that reaches it."""
+    assert project.skeleton is not None
+    out: dict[Layer, list[str]] = {m.layer: [] for m in built}
+    for joint, part in zip(project.skeleton.names, anatomy.parts(project), strict=True):
+        reaching = [m.layer for m in built if joint in m.joints]
+        if reaching:
+            out[OWNER[part] if OWNER[part] in reaching else reaching[0]].append(joint)
+    return {layer: tuple(joints) for layer, joints in out.items()}
+
+
+def paths_of(project: Project, joint: str, version: Version) -> tuple[str, ...]:
+    """Return the paths that a joint's tracks may have in an imported scene."""
+    assert project.skeleton is not None
+    name = re.sub(r"[:/]", "_", joint)
+    node = ("Armature/" if sum(p < 0 for p in project.skeleton.parents) > 1 else "") + ("Skeleton3D" if version == 4 else "Skeleton")
+    names = (name,) if version == 4 else (name, old_name(joint))
+    return tuple(f"{node}:{n}" for n in dict.fromkeys(names))
+
+
+def old_name(joint: str) -> str:
+    """Return a joint's name as Godot 3 imports it unless told otherwise: LeftThumb1 -> left_thumb_1."""
+    word = r"(?<![A-Z0-9])(?=[A-Z])|(?<=[A-Z])(?=[A-Z][a-z]{2})|(?<![0-9])(?=[0-9])|(?<=[0-9])(?=[^0-9][a-z0-9])"
+    return re.sub(r"[^a-z0-9_ ]", "", re.sub(f"(?<=.)(?:{word})", "_", joint).lower())
+
+
+def _machine(out: _Resources, machine: Machine) -> str:
+    fields: list[str] = []
+    for state, (x, y) in _places(machine):
+        fields += [f"states/{state.name}/node = {_state(out, state)}", f"states/{state.name}/position = Vector2({x:.0f}, {y:.0f})"]
+    triplets = [f'"{a.source.name}", "{a.target.name}", {_transition(out, a)}' for a in _ways(machine)]
+    if out.version == 4:
+        first = out.add("AnimationNodeStateMachineTransition", f"advance_mode = {AUTO}")
+        triplets.insert(0, f'"Start", "{machine.start.name}", {first}')
+    fields.append(f"transitions = [{', '.join(triplets)}]")
+    if out.version == 3:
+        fields.append(f'start_node = "{machine.start.name}"')
+    return out.add("AnimationNodeStateMachine", *fields)
+
+
+def _state(out: _Resources, state: State) -> str:
+    if out.version == 3:
+        return out.add("AnimationNodeAnimation", f'animation = "{state.name}"')
+    own = (f"timeline_length = {state.seconds:.4f}", "stretch_time_scale = false", "start_offset = 0.0", "loop_mode = 1")
+    loop = ("use_custom_timeline = true", *own) if state.loop and state.seconds > 0 else ()  # from Godot 4.3 on; glTF has no loops
+    return out.add("AnimationNodeAnimation", f'animation = &"{state.name}"', *loop)
+
+
+def _ways(machine: Machine) -> Iterator[Arrow]:
+    """Yield an arrow for each pair of states, since Godot has but one: what it is asked by does not matter to `travel()`."""
+    seen: set[tuple[str, str]] = set()
+    for arrow in machine.arrows:
+        if (pair := (arrow.source.name, arrow.target.name)) not in seen:
+            seen.add(pair)
+            yield arrow
+
+
+def _transition(out: _Resources, arrow: Arrow) -> str:
+    fields = [f"xfade_time = {arrow.blend:.4g}", "priority = 0"]
+    if arrow.leave is not None:
+        fields.append(f"switch_mode = {AT_END}")
+    if arrow.on == "done":
+        fields.append("auto_advance = true" if out.version == 3 else f"advance_mode = {AUTO}")
+    return out.add("AnimationNodeStateMachineTransition", *fields)
+
+
+def _places(machine: Machine) -> Iterator[tuple[State, Place]]:
+    """Yield the states with their places: a block for each stance, its loop first, blocks further apart than any is wide and high."""
+    blocks: dict[str | None, list[State]] = {stance: [machine.rest(stance)] for stance in machine.stances}
+    for state in sorted(machine.states, key=lambda s: s.action.kind != "transition"):
+        if state is not machine.rest(str(ends_in(state.action))):
+            blocks[ends_in(state.action)].append(state)
+    largest = max(len(b) for b in blocks.values())
+    columns = math.ceil(math.sqrt(largest / 3))
+    size = columns * CELL[0], math.ceil(largest / columns) * CELL[1]
+    step = size[0] + math.hypot(*size)
+    for number, block in enumerate(blocks.values()):
+        for n, state in enumerate(block):
+            yield state, (number * step + n % columns * CELL[0], n // columns * CELL[1])
+
+
+def write(order: Order) -> Made:
+    """Write both trees, the GLB and a guide."""
+    project, stem = order.project, order.stem
+    built = machines(project)
+    glb = order.folder / f"{stem}.glb"
+    body, notes = mesh_of(order)
+    order.tell(0, 2, "clips")
+    write_machine_glb(project, built, glb, body)
+    order.tell(1, 2, "trees")
+    texts = {
+        f"{stem}.tres": tree(project, built, 4),
+        f"{stem}.godot3.tres": tree(project, built, 3),
+        f"{stem}.godot.md": guide(stem, built),
+    }
+    for name, text in texts.items():
+        write_atomically(order.folder / name, text.encode())
+    order.tell(2, 2, "done")
+    return Made((*(order.folder / name for name in texts), glb), notes)
+
+
+def guide(stem: str, built: tuple[Machine, ...]) -> str:
+    """Return in Markdown how a scene plays the tree, and the states there are."""
+    layers = ", ".join(f'"{m.layer}"' for m in built)
+    loops = ", ".join(f'"{s.name}"' for m in built for s in m.states if s.loop)
+    parts = [GUIDE.format(stem=stem, layers=layers, loops=loops)]
+    for machine in built:
+        parts.append(f"\n### {machine.layer}\n\n| stance | loop |\n|---|---|\n")
+        names = {ident: stance.name.replace("|", "\\|") for ident, stance in machine.graph.stances.items()}
+        parts += [f"| {names[ident]} | `{machine.rest(ident).name}` |\n" for ident in machine.stances]
+        parts.append("\n| action | seconds | in | then |\n|---|---|---|---|\n")
+        for state in machine.states:
+            if state is not machine.rest(state.action.stance):
+                here, there = names[state.action.stance], names[str(ends_in(state.action))]
+                parts.append(f"| `{state.name}` | {state.seconds:.2f} | {here} | {there if there != here else ''} |\n")
+    return "".join(parts)
+
+
+GUIDE = """# {stem} in Godot
+
+`{stem}.tres` is the root of an AnimationTree for Godot 4, `{stem}.godot3.tres` the same for Godot 3; delete the one you do not need.
+`{stem}.glb` holds the character and an animation for each state.
+
+Put the files into the project. Leave the GLB's import settings as they are: no retargeting and no bone map, since layers are added
+to the skeleton's rest, which is the base pose. Filters expect the skeleton at `Skeleton3D` below the scene's root (Godot 3:
+`Skeleton`), where the importer puts it. Instance the GLB in a scene, give it an AnimationTree as a child, and that this script:
+
+    extends AnimationTree
+
+    func _ready():
+        var player = get_node("../AnimationPlayer")
+        for loop in [{loops}]:
+            player.get_animation(loop).loop_mode = Animation.LOOP_LINEAR  # Godot 3: .loop = true
+        tree_root = load("res://{stem}.tres")  # Godot 3: {stem}.godot3.tres
+        anim_player = get_path_to(player)
+        for layer in [{layers}]:
+            set("parameters/add_" + layer + "/add_amount", 1.0)
+        active = true
+
+    func play(layer, state):
+        get("parameters/" + layer + "/playback").travel(state)
+
+From Godot 4.3 on the tree itself loops its loops; the first three lines are for older ones. Instead of the script, `tree_root`,
+`anim_player` and the amounts can be set in the inspector.
+
+## Asking
+
+`play(layer, state)` goes by the transitions: to a stance by asking for its loop, to a gesture or fidget by its name. What is not of
+the stance the layer is in goes to that stance first. Gestures and fidgets come back to the loop by themselves. What plays is not
+begun anew; use `start(state)` instead of `travel(state)` for that, which does not blend.
+
+## States
+"""
+
+
+def _left_early(project: Project) -> int:
+    return sum(1 for a in project.actions() if a.kind != "stance" and a.timing.earliest_exit is not None)
+
+
+LOSSES: tuple[Loss, ...] = (
+    Loss("Godot 4: layers are added to the skeleton's rest; retargeting on import changes it, and with it the poses"),
+    Loss("Godot 3: layers are not added: spine and legs are the body's alone, arms the arms', head and face the head's"),
+    Loss("{n} actions that may be left early are left at their end", _left_early),
+    Loss("what plays is not begun anew when it is asked for again"),
+    Loss("where no transition joins two stances, the way between them need not be the planner's"),
+)
+TARGETS = (
+    Target(
+        "godot-tree", "Godot AnimationTree (.tres)",
+        "an AnimationTree's root for Godot 4 and one for Godot 3, a guide to their states, and one GLB with an animation for each state",
+        write, (*MACHINE, WEIGHTS, CROSSFADE, *LOSSES), "the tree for Godot 4 was not run there; the one for Godot 3 was, in 3.2.3",
+    ),
+)  # fmt: skip
