@@ -292,8 +292,9 @@ def test_bones_are_named_as_godot_3_imports_them(joint: str, bone: str) -> None:
 
 def test_a_skeleton_of_two_roots_hangs_below_the_node_that_holds_them(sample: Project) -> None:
     assert sample.skeleton is not None and paths_of(sample, "LeftHand", 3) == ("Skeleton:LeftHand", "Skeleton:left_hand")
-    parents = [-1 if joint == "LeftUpperLeg" else p for joint, p in zip(sample.skeleton.names, sample.skeleton.parents, strict=True)]
-    two = replace(sample, skeleton=replace(sample.skeleton, parents=tuple(parents)))
+    parents = sample.skeleton.parents.copy()
+    parents[sample.skeleton.index("LeftUpperLeg")] = -1
+    two = replace(sample, skeleton=replace(sample.skeleton, parents=parents))
     assert paths_of(two, "LeftHand", 4) == ("Armature/Skeleton3D:LeftHand",)
 
 
