@@ -276,6 +276,11 @@ def test_states_of_other_stances_stand_further_off_than_those_that_lead_to_a_sta
         assert len({place for _, place in places}) == len(places) == len(machine.states)
         for goal in machine.stances:
             block = [np.array(p) for s, p in places if ends_in(s.action) == goal]
+            leading = [np.array(p) for s, p in places if s.action.kind == "transition" and s.action.end_stance == goal]
+            away = [float(np.linalg.norm(p - block[0])) for p in block]
+            assert away == sorted(away) and np.array_equal(
+                leading, block[1 : 1 + len(leading)]
+            )  # of several, the first placed is the nearest
             others = [np.array(p) for s, p in places if ends_in(s.action) != goal]
             wide = max((float(np.linalg.norm(a - b)) for a in block for b in block), default=0.0)
             assert all(np.linalg.norm(a - b) > wide for a in block for b in others)

@@ -156,18 +156,21 @@ def _transition(out: _Resources, arrow: Arrow) -> str:
 
 
 def _places(machine: Machine) -> Iterator[tuple[State, Place]]:
-    """Yield the states with their places: a block for each stance, its loop first, blocks further apart than any is wide and high."""
+    """Yield the states with their places: a block for each stance, blocks further apart than any is wide and high. From the loop in its
+    corner outwards come the transitions in the order they were placed, since the nearest is taken, and then all else."""
     blocks: dict[str | None, list[State]] = {stance: [machine.rest(stance)] for stance in machine.stances}
     for state in sorted(machine.states, key=lambda s: s.action.kind != "transition"):
         if state is not machine.rest(str(ends_in(state.action))):
             blocks[ends_in(state.action)].append(state)
     largest = max(len(b) for b in blocks.values())
     columns = math.ceil(math.sqrt(largest / 3))
-    size = columns * CELL[0], math.ceil(largest / columns) * CELL[1]
+    rows = math.ceil(largest / columns)
+    cells = sorted(((x * CELL[0], y * CELL[1]) for y in range(rows) for x in range(columns)), key=lambda cell: math.hypot(*cell))
+    size = columns * CELL[0], rows * CELL[1]
     step = size[0] + math.hypot(*size)
     for number, block in enumerate(blocks.values()):
-        for n, state in enumerate(block):
-            yield state, (number * step + n % columns * CELL[0], n // columns * CELL[1])
+        for state, (x, y) in zip(block, cells, strict=False):
+            yield state, (number * step + x, y)
 
 
 def write(order: Order) -> Made:
