@@ -11,7 +11,8 @@ It is the desktop's planner and composer, as the runtimes for engines are theirs
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
+from math import inf, isfinite
 from pathlib import Path
 from typing import Any, Literal
 
@@ -21,21 +22,24 @@ from metagraph.engines.export import read_export
 from metagraph.graph import asks as a
 from metagraph.graph.model import LAYERS, Layer, Project
 from metagraph.motion.skeleton import Pose
-from metagraph.playback.hear import Answer, answer, hear, since
+from metagraph.playback.hear import Answer, answer, answers, hear, since
 from metagraph.playback.plan import Plan
 from metagraph.playback.player import morphs_at, pose_at
 
 SLACK = 2.0  # seconds by which the plan may fall behind its horizon before it is extended
 CUT = 15.0  # seconds between two cuts of the past
+LEAP = 3600.0  # seconds an update may move on: all that lies between is planned
+REMEMBERED = 1000  # answers that are kept after what they tell of was forgotten, and happenings nobody asked for
 
 
 @dataclass(frozen=True, slots=True)
 class Happening:
-    """What began or ended since the update before. at: seconds. action: its name. meta: the id that was asked with, or the model's."""
+    """What began or ended. at: seconds. layer: "speech" for what is said. action: its name; of what is said the line's id, else the
+    text. meta: the id that was asked with, or the model's."""
 
     kind: Literal["begin", "end"]
     at: float
-    layer: Layer
+    layer: Layer | Literal["speech"]
     action: str
     meta: str
 
@@ -59,11 +63,13 @@ class Character:
         self.project = export if isinstance(export, Project) else read_export(export, resolved=True)
         self.now = 0.0
         self._idle, self._stances, self._ahead, self._recent = idle, dict(stances or {}), ahead, recent
-        self._asked: list[a.AnyAsk] = []
-        self._refused: dict[str, str] = {}
-        self._events: tuple[Happening, ...] = ()
+        self._queue: list[a.AnyAsk] = []
+        self._asked: set[str] = set()  # ids that the plan can tell of
+        self._settled: dict[str, Answer] = {}  # answers of those it has forgotten or never heard of
+        self._happened: list[Happening] = []
         self._count = 0
         self._cut = 0.0
+        self._seen = -inf  # when the update before was
         empty = Plan(self.project.settings.seed if seed is None else seed & 0xFFFFFFFF, 0.0)
         self.plan = hear(self.project, empty, 0.0, [], ahead, self._stances, idle)
 
@@ -73,62 +79,122 @@ class Character:
         return tuple(f"clip '{clip.name}' is missing" for clip in self.project.clips.values() if clip.motion is None)
 
     def ask(self, request: Mapping[str, Any] | a.AnyAsk) -> str:
-        """Ask for something; return the id it goes by. It is worked in at the next update. `after`: seconds from now, instead of `at`.
+        """Ask for something; return the id it goes by, made where there is none. It is worked in at the next update.
 
-        What cannot be read is refused, as `answer` tells; nothing is raised.
+        `after`: seconds from now; it wins over `at`. What cannot be read is refused, as `answer` tells; nothing is raised.
         """
         self._count += 1
+        made = f"#{self._count}"
+        if isinstance(request, a.Ask):
+            ask: a.AnyAsk = request if request.id else msgspec.structs.replace(request, id=made)
+            return self._take(ask)
         if not isinstance(request, Mapping):
-            named = request if request.id else msgspec.structs.replace(request, id=f"#{self._count}")
-            self._asked.append(named)
-            return named.id
+            return self._refuse(made, "a request should be an object")
         data = dict(request)
-        ident = data.setdefault("id", f"#{self._count}")
-        if not isinstance(ident, str) or not ident:
-            ident = data["id"] = f"#{self._count}"
-        after = data.pop("after", None)
-        if isinstance(after, int | float) and not isinstance(after, bool):
-            data["at"] = self.now + after
+        ident = data.get("id")
+        data["id"] = ident = ident if isinstance(ident, str) and ident else made
         try:
-            self._asked.append(a.ask_from(data))
-            self._refused.pop(ident, None)
+            if "after" in data:
+                after = _seconds(data.pop("after"))
+                if after is None or after < 0:
+                    return self._refuse(ident, "after: should be a number of seconds from now")
+                data["at"] = self.now + after
+            return self._take(a.ask_from(data))
         except a.AskError as error:
-            self._refused[ident] = str(error)
-        return str(ident)
+            return self._refuse(ident, str(error))
+
+    def _take(self, ask: a.AnyAsk) -> str:
+        self._settled.pop(ask.id, None)
+        self._asked.add(ask.id)
+        self._queue.append(ask)
+        return ask.id
+
+    def _refuse(self, ident: str, why: str) -> str:
+        self._settle(Answer(ident, "refused", None, None, (), why))
+        return ident
+
+    def _settle(self, final: Answer) -> None:
+        """Keep an answer that will not change any more."""
+        self._asked.discard(final.id)
+        self._settled.pop(final.id, None)
+        self._settled[final.id] = final
+        if len(self._settled) > REMEMBERED:
+            del self._settled[next(iter(self._settled))]
 
     def update(self, now: float) -> Pose:
-        """Move on to `now`, seconds that never decrease, and return the pose there (rotations `[J, 4]`, translations `[J, 3]`)."""
-        before, self.now = self.now, max(self.now, now)
-        end = self.plan.end if self.plan.end >= self.now + self._ahead - SLACK else self.now + self._ahead
-        if self._asked or end > self.plan.end:
-            asked, self._asked = self._asked, []
-            self.plan = hear(self.project, self.plan, self.now, asked, end, self._stances, self._idle)
-        if self.now >= self._cut + CUT:
-            self._cut, self.plan = self.now, since(self.plan, self.now - self._recent)
-        self._events = tuple(self._happened(before))
+        """Move on to `now` and return the pose there (rotations `[J, 4]`, translations `[J, 3]`).
+
+        Seconds of the character's own time, which begins at 0, never goes backwards, and leaps an hour at most.
+        """
+        seconds = _seconds(now)
+        if seconds is not None and seconds > self.now:
+            self.now = min(seconds, self.now + LEAP)
+        try:
+            self._plan_on()
+        except Exception as error:  # a fault of our own must not stop the game: the character goes on with the plan it has
+            for ask in self._queue:
+                self._refuse(ask.id, f"the planner failed: {error}")
+            self._queue = []
+        self._listen()
         return self.pose()
 
-    def _happened(self, before: float) -> list[Happening]:
-        out = []
+    def _plan_on(self) -> None:
+        far = self.plan.end >= self.now + self._ahead - min(SLACK, self._ahead / 2)
+        if self._queue or not far:
+            end = self.plan.end if far else self.now + self._ahead
+            self.plan = hear(self.project, self.plan, self.now, self._queue, end, self._stances, self._idle)
+            for ask in self._queue:
+                if isinstance(ask, a.Withdraw):
+                    self._settle(Answer(ask.id, "done", None, None, (), ""))
+            self._queue = []
+        if self.now - self._cut >= CUT:
+            self._cut = self.now
+            self._forget(self.now - self._recent)
+
+    def _forget(self, over: float) -> None:
+        """Forget what is over, and settle the answers of what was asked for then."""
+        known = answers(self.plan, self._asked)
+        self.plan = since(self.plan, over)
+        left = answers(self.plan, self._asked)
+        for ident, told in known.items():
+            # What the plan no longer knows was played; so was a look without an end that another has replaced.
+            if told.until is not None and (told.until < over or left[ident].until is None):
+                self._settle(replace(told, state="done"))
+            elif told.state in ("refused", "done"):
+                self._settle(told)
+
+    def _listen(self) -> None:
+        """Note what has begun or ended since the update before."""
+        found: list[Happening] = []
+
+        def note(start: float, end: float, layer: Layer | Literal["speech"], action: str, meta: str) -> None:
+            if self._seen < start <= self.now:
+                found.append(Happening("begin", start, layer, action, meta))
+            if self._seen < end <= self.now:
+                found.append(Happening("end", end, layer, action, meta))
+
         for layer in LAYERS:
             for cue in self.plan.layers[layer].cues:
-                meta = cue.meta.partition("+")[0]
-                if before < cue.start <= self.now or (cue.start == before == 0.0 < self.now):
-                    out.append(Happening("begin", cue.start, layer, cue.action.name, meta))
-                if before < cue.end <= self.now:
-                    out.append(Happening("end", cue.end, layer, cue.action.name, meta))
-        return sorted(out, key=lambda event: event.at)
+                note(cue.start, cue.end, layer, cue.action.name, cue.meta.partition("+")[0])  # what goes on after a cut is the same
+        for speech in self.plan.track.speeches:
+            note(speech.start, speech.end, "speech", speech.line or speech.text, speech.id)
+        self._seen = self.now
+        if found:
+            self._happened = [*self._happened, *sorted(found, key=lambda event: event.at)][-REMEMBERED:]
 
     def events(self) -> tuple[Happening, ...]:
-        """Return what began and ended between the last two updates, in order."""
-        return self._events
+        """Return what began and ended since this was last asked for, in order of time; of more than 1000 the latest."""
+        happened, self._happened = self._happened, []
+        return tuple(happened)
 
     def answer(self, ident: str) -> Answer:
         """Say what became of a request: when it plays, or why it does not."""
-        if ident in self._refused:
-            return Answer(ident, "refused", None, None, (), self._refused[ident])
-        if any(ask.id == ident for ask in self._asked):
-            return Answer(ident, "planned", None, None, (), "worked in at the next update")
+        if ident in self._settled:
+            return self._settled[ident]
+        if ident not in self._asked:
+            return Answer(ident, "refused", None, None, (), f"nothing was asked for as '{ident}'")
+        if any(ask.id == ident for ask in self._queue):
+            return Answer(ident, "planned", None, None, (), "taken up at the next update")
         return answer(self.plan, ident)
 
     def pose(self, alive: bool = True) -> Pose:
@@ -138,3 +204,12 @@ class Character:
     def morphs(self, alive: bool = True) -> dict[str, float]:
         """Return the morph target weights, 0..1, at the time of the last update."""
         return morphs_at(self.plan, self.project, self.now, alive)
+
+
+def _seconds(value: Any) -> float | None:
+    """Return a finite number, None where it is none."""
+    try:
+        number = inf if isinstance(value, bool | str | bytes) else float(value)
+    except (TypeError, ValueError, OverflowError):
+        return None
+    return number if isfinite(number) else None

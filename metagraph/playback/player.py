@@ -16,6 +16,7 @@ from metagraph.motion import rotation
 from metagraph.motion.clip import Clip
 from metagraph.motion.skeleton import Pose
 from metagraph.playback.composer import Ground, Reach, rig
+from metagraph.playback.life.body import body_of
 from metagraph.playback.life.evaluate import enliven, face_weights
 from metagraph.playback.plan import Cue, LayerPlan, Plan, Rest
 
@@ -223,7 +224,8 @@ def morphs_at(plan: Plan, project: Project, seconds: float, alive: bool = True) 
                 for name, value in motion.morphs_at(at).items():
                     out[name] = out.get(name, 0.0) + share * value
     if alive and project.life.on and plan.life.end > 0:
-        composed = pose_at(plan, project, seconds, alive=False) if project.face.morphs else None  # what the eyes hold against
+        by_morphs = project.skeleton is not None and bool(body_of(project).face.morphs)
+        composed = pose_at(plan, project, seconds, alive=False) if by_morphs else None  # what the eyes hold against
         for name, value in face_weights(project, plan.life, plan.track, seconds, composed).items():
             out[name] = out.get(name, 0.0) + value
     return {name: min(1.0, max(0.0, value)) for name, value in out.items()}

@@ -42,6 +42,9 @@ def write(order: Order) -> Made:
         for name in NEEDED:
             files.append(order.folder / "three" / name)
             write_atomically(files[-1], (found / name).read_bytes())
+    early = [f'<link rel="preload" href="{order.stem}.{kind}" as="fetch" crossorigin>' for kind in ("json", "glb")]
+    early += [f'<link rel="modulepreload" href="{path.relative_to(order.folder).as_posix()}">' for path in files if path.suffix == ".js"]
+    page = page.replace("<!-- fetch early -->", "\n    ".join(early))  # else each module waits for the one that names it
     index = order.folder / "index.html"
     write_atomically(index, page.encode())
     return Made((index, *made.files, *files), tuple(notes))

@@ -130,11 +130,14 @@ class Track:
     def since(self, seconds: float) -> Track:
         """Return the track without what no time from `seconds` on needs."""
         places = {p.name: p for p in self.places if p.start <= seconds}
-        looks = [x for x in self.looks if x.start <= seconds][-1:]
         modes = [x for x in self.modes if x.start <= seconds][-1:]
         stays = {s.layer: s for s in self.stays if s.start <= seconds}
+        looks: list[LookAt] = []  # those that no later one has replaced; also what is over: it tells since when what shows has shown
+        for look in self.looks:
+            if look.start <= seconds:
+                looks = [*(x for x in looks if x.priority > look.priority), look]
         old = {id(x) for x in (*places.values(), *looks, *modes, *stays.values())}
-        return track_of(i for i in self.items if i.start > seconds or id(i) in old or (isinstance(i, LookAt | Speech) and i.end > seconds))
+        return track_of(i for i in self.items if i.start > seconds or id(i) in old or (isinstance(i, Speech) and i.end > seconds))
 
 
 def track_of(items: object) -> Track:

@@ -4,10 +4,11 @@ from __future__ import annotations
 
 from dataclasses import replace
 
-from hypothesis import given
+from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from metagraph.playback.life.track import BlinkAt, Item, LookAt, ModeFrom, PlaceFrom, Speech, Track, cut, track_of
+from metagraph.playback.life.wanted import targets_between
 
 starts = st.integers(0, 12).map(float)
 names = st.sampled_from("abcdef")
@@ -48,3 +49,33 @@ def test_what_is_taken_out_is_gone_from_then_on(old: list[Item], gone: set[str],
     kept = {i for i in track.items if i.id in gone and i.start < now}
     ended = {cut(i, now) if isinstance(i, Speech) else replace(i, end=min(i.end, now)) if isinstance(i, LookAt) else i for i in kept}
     assert {i for i in left.items if i.id in gone} == ended
+
+
+INF = 1e9
+lookings = st.lists(
+    st.builds(
+        lambda i, s, n, to, p: LookAt(i, s, s + n, to, priority=p),
+        names, starts, st.sampled_from((1.0, 2.0, 5.0, INF)), st.sampled_from(("user", "door", (0.0, 1.0, 1.0))), st.integers(0, 3),
+    ),
+    max_size=8,
+)  # fmt: skip
+puttings = st.lists(st.builds(lambda i, s: PlaceFrom(i, s, "user", (0.0, 0.0, s)), names, starts), max_size=3)
+
+
+@given(lookings, puttings, starts)
+def test_the_gaze_is_the_same_after_what_no_time_needs_was_forgotten(looks: list[Item], places: list[Item], seconds: float) -> None:
+    track = track_of((*looks, *places))
+    assert list(targets_between(track.since(seconds), seconds, 30.0)) == list(targets_between(track, seconds, 30.0))
+
+
+@given(st.lists(st.integers(0, 3), min_size=600, max_size=600))
+@settings(max_examples=5)
+def test_looks_without_an_end_are_forgotten_once_others_have_replaced_them(priorities: list[int]) -> None:
+    whole = track = Track()
+    for second, priority in enumerate(priorities):
+        look = LookAt(f"#{second}", float(second), INF, "user" if second % 2 else "door", priority=priority)
+        whole, track = whole.plus([look]), track.plus([look])
+        if second % 15 == 0:
+            track = track.since(second - 30.0)
+        assert len(track.looks) <= 45 + 4  # what has come since the cut, and one of each importance
+    assert list(targets_between(track.since(599.0), 599.0, 700.0)) == list(targets_between(whole, 599.0, 700.0))
