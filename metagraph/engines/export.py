@@ -11,7 +11,7 @@ import msgspec
 import numpy as np
 
 from metagraph.engines import contract as c
-from metagraph.engines.rig import read_voices, rig_of, voices_of
+from metagraph.engines.rig import read_rig, read_voices, rig_of, voices_of
 from metagraph.errors import FileError
 from metagraph.formats.atomic import write_atomically
 from metagraph.formats.data import above, markov_from, skeleton_from
@@ -19,7 +19,7 @@ from metagraph.formats.fields import DataError
 from metagraph.graph import anatomy
 from metagraph.graph.check import check
 from metagraph.graph.expand import connections
-from metagraph.graph.life import Face
+from metagraph.graph.face import CHANNELS
 from metagraph.graph.model import (
     KINDS,
     LAYERS,
@@ -39,6 +39,7 @@ from metagraph.motion.character import Character
 from metagraph.motion.clip import Clip
 from metagraph.motion.skeleton import Skeleton, unique_names
 from metagraph.playback import choice, markov
+from metagraph.playback.life.body import Body
 from metagraph.playback.phases import LEAST_BLEND, phases
 from metagraph.playback.pick import HURRY, LOOP_FADE
 from metagraph.playback.planner import WINDOW
@@ -307,7 +308,7 @@ def _expanded(project: Project, graph: MetaGraph) -> c.Expanded:
 
 def read_export(path: str | Path, motions: bool = True, resolved: bool = False) -> Project:
     """Read an export back into a project with the same graph, ids and constants. motions: load the clips from its GLB. resolved: take
-    gestures' phases, the base pose and the face's morph targets as the export has them, as a runtime does, instead of finding them anew.
+    gestures' phases, the base pose and the rig as the export has them, as a runtime does, instead of finding them anew.
 
     Raises FileError naming the field that is wrong as a path into the JSON.
     """
@@ -352,11 +353,15 @@ def _project(path: Path, document: c.Export, motions: bool, resolved: bool) -> P
         take = longer.index(clip.animation) if clip.animation in longer else len(longer) + n
         clips[clip.id] = ClipEntry(clip.id, clip.name, document.glb, take, clip.sha256, clip.frames, clip.fps, motion)
     p = document.planner
-    base, face = BasePose(document.base.clip, document.base.frame), document.face
+    base = BasePose(document.base.clip, document.base.frame)
+    life, body = document.life, None
     if resolved:
         clips[BASE] = _base(document, skeleton)
         base = BasePose(BASE)
-        face = _with_targets(face, document.rig)
+        if document.rig is None:
+            life = msgspec.structs.replace(life, on=False)
+        else:
+            body = _body(document.rig, skeleton)
     graphs: dict[Layer, MetaGraph] = {layer: _graph(layer, document.layers[layer], resolved) for layer in LAYERS}
     return Project(
         name=document.name,
@@ -368,8 +373,9 @@ def _project(path: Path, document: c.Export, motions: bool, resolved: bool) -> P
         parts=dict(document.parts),
         markov={layer: _markov(layer, document.layers[layer].markov) for layer in LAYERS if document.layers[layer].own_markov},
         settings=Settings(p.alpha, p.seed, p.never_twice, p.shortest, p.wait, p.memory, p.rest, p.lookahead),
-        life=document.life,
-        face=face,
+        life=life,
+        body=body,
+        face=document.face,
         points=dict(document.points),
         lines=dict(document.lines),
         performances=dict(document.performances),
@@ -391,11 +397,15 @@ def _base(document: c.Export, skeleton: Skeleton) -> ClipEntry:
     return ClipEntry(BASE, BASE, document.glb, 0, "", 1, 30.0, motion)
 
 
-def _with_targets(face: Face, rig: c.Rig | None) -> Face:
-    """Return the face with the morph targets an export moves, which its GLB may lack."""
-    known = dict.fromkeys(face.morphs)
-    wanted = {name for targets in rig.face.morphs.values() for name in targets} if rig is not None else set()
-    return msgspec.structs.replace(face, morphs=(*known, *sorted(wanted - known.keys())))
+def _body(rig: c.Rig, skeleton: Skeleton) -> Body:
+    """Return the body of an export's rig. Raises DataError where it does not fit the joints."""
+    faces = {len(rig.face.joints)} | {len(row) for row in (*rig.face.turns, *rig.face.shifts)}
+    joints = [*rig.chain, *rig.face.joints, *rig.face.lid_joints, *(s.joint for s in rig.shoulders), *(e.joint for e in rig.eyes)]
+    places = [rig.trunk, *(x.place for x in rig.lookers)]
+    fits = rig.chain and len(rig.breath) == len(rig.chain) and max(joints) < len(skeleton) and max(places) < len(rig.chain)
+    if not fits or len(faces) > 1 or {len(rig.face.turns), len(rig.face.shifts)} != {len(CHANNELS)}:
+        raise DataError("$.rig", "does not fit the joints")
+    return read_rig(rig)
 
 
 def _skeleton(joints: list[c.Joint]) -> Skeleton:

@@ -2,13 +2,15 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from typing import Any
 
 import numpy as np
 
 from metagraph.engines import contract as c
+from metagraph.graph.face import CHANNELS, FaceRig
 from metagraph.graph.model import Project
-from metagraph.playback.life.body import EyeAt, body_of
+from metagraph.playback.life.body import Body, EyeAt, Looker, Quaternion, Vector, body_of
 from metagraph.playback.life.voice import Voice
 
 STEPS = 1e4  # a mouth shape's weight is written in steps of this part of one
@@ -52,6 +54,59 @@ def _eye(eye: EyeAt, joint: int) -> c.RigEye:
     return c.RigEye(
         list(eye.at), list(eye.left), list(eye.up), list(eye.ahead), joint, list(eye.turn_left), list(eye.turn_up), list(eye.down)
     )
+
+
+def read_rig(rig: c.Rig) -> Body:
+    """Return an exported body as the life layers take it."""
+    eyes = tuple(
+        EyeAt(
+            _three(e.at), _three(e.left), _three(e.up), _three(e.ahead), e.joint >= 0, _three(e.turn_left), _three(e.turn_up), _four(e.down)
+        )
+        for e in rig.eyes
+    )
+    face = rig.face
+    seeing = [e.joint for e in rig.eyes if e.joint >= 0]
+    joints = [*rig.chain, *(s.joint for s in rig.shoulders), *seeing, *face.joints]
+    read = [*rig.chain, *seeing, *(j for j in face.lid_joints if j >= 0)]
+    shape = (len(CHANNELS), len(face.joints), 3)
+    found = FaceRig(
+        (),
+        np.array(face.joints, int),
+        np.array(face.turns, float).reshape(shape),
+        np.array(face.shifts, float).reshape(shape),
+        np.array(face.follows),
+        np.array(face.lid_joints, int),
+        np.array(face.shut_by),
+        {channel: tuple(targets.items()) for channel, targets in face.morphs.items()},
+    )
+    return Body(
+        left=_three(rig.left),
+        up=_three(rig.up),
+        ahead=_three(rig.ahead),
+        chain=np.array(rig.chain, int),
+        breath=tuple((_three(row[:3]), row[3]) for row in rig.breath),
+        joints=np.array(joints, int),
+        read=np.array(read, int),
+        shoulders=tuple(_three(s.turn) for s in rig.shoulders),
+        lookers=tuple(Looker(x.place, x.share) for x in rig.lookers),
+        trunk=rig.trunk,
+        trunk_ahead=_three(rig.trunk_ahead),
+        head_ahead=_three(rig.head_ahead),
+        eyes=(eyes[0], eyes[1]),
+        partner=_three(rig.partner),
+        eyes_at_rest=_three(rig.eyes_at_rest),
+        face=found,
+    )
+
+
+def _three(values: Sequence[float]) -> Vector:
+    x, y, z = values
+    return x, y, z
+
+
+def _four(values: Sequence[float]) -> Quaternion:
+    x, y, z, w = values
+    return x, y, z, w
 
 
 def voices_of(project: Project) -> dict[str, c.ExportedVoice]:

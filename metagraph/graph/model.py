@@ -301,6 +301,7 @@ class Project:
     character: path of the GLB to draw, relative to the project file, or None for a stick figure. points: named places to look
     at, metres. lines: the dialogue an agent calls by id. performances: those kept, by id. tiers: annotation tier -> what it
     was last read as. voices: line -> its analysed sound (`playback.life.voice.Voice`), as far as read; never saved.
+    body: what of it breathes and looks (`playback.life.body.Body`) as an export says; None to find it. Never saved.
     """
 
     name: str = "untitled"
@@ -321,6 +322,7 @@ class Project:
     tiers: Mapping[str, str] = field(default_factory=dict)
     labels: Mapping[str, str] = field(default_factory=dict)
     voices: Mapping[str, Any] = field(default_factory=dict, compare=False, repr=False)
+    body: Any = field(default=None, compare=False, repr=False)
     next_id: int = 1
 
     def actions(self) -> Iterable[Action]:

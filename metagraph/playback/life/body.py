@@ -99,6 +99,8 @@ _known: OrderedDict[tuple[Any, ...], tuple[tuple[Any, ...], Body]] = OrderedDict
 
 def body_of(project: Project) -> Body:
     """Return the body of a project with a skeleton; the same object as long as nothing it depends on changes."""
+    if isinstance(project.body, Body):
+        return project.body
     base = project.base
     parts = (project.skeleton, project.roles, project.parts, project.face, project.clips)
     key = (*map(id, parts), base.clip, base.frame)

@@ -1,0 +1,56 @@
+"""Exports of clips nobody here made: their vectors hold for the library and in JavaScript, odd skeletons and faces included."""
+
+from __future__ import annotations
+
+import shutil
+import subprocess
+from itertools import cycle
+from pathlib import Path
+
+import pytest
+
+from metagraph import engines
+from metagraph.engines.export import write
+from metagraph.engines.vectors import check_vectors, write_vectors
+from metagraph.formats.imports import gather, import_files
+from metagraph.graph import edits
+from metagraph.graph.model import LAYERS, Kind, Project
+
+RUNNER = Path(engines.__file__).with_name("runtimes") / "javascript" / "conformance.mjs"
+PLACED: tuple[tuple[Kind, bool, bool, int], ...] = (  # kind, from the first stance, to the other, how many
+    ("gesture", True, False, 5),
+    ("fidget", True, False, 2),
+    ("transition", True, True, 1),
+    ("transition", False, True, 1),
+    ("gesture", False, False, 2),
+)
+
+
+def project_of(files: list[Path], name: str) -> Project:
+    """Return a project with two stances a layer, whatever the clips show."""
+    project = import_files(Project(name), None, files).into(Project(name))
+    clips = [i for i, e in project.clips.items() if e.motion is not None and e.motion.skeleton == project.skeleton]
+    take = cycle(clips)
+    for layer in LAYERS:
+        for stance in ("rest", "other"):
+            project = edits.add_stance(project, layer, stance, [next(take)])
+        a, b = project.graphs[layer].stances
+        for kind, first, leads, count in PLACED:
+            here, there = (a, b) if first else (b, a)
+            project = edits.place(project, [next(take) for _ in range(count)], layer, kind, here, there if leads else None)
+    return project
+
+
+@pytest.mark.parametrize(
+    ("folder", "pattern"),
+    [("sumerian-hosts", "adult_male"), ("sumerian-hosts", "alien"), ("kaykit-rogue", ""), ("robot-expressive", ""), ("bandai-namco-1", "")],
+)
+def test_vectors_of_real_clips_hold(shared_data: Path, tmp_path: Path, folder: str, pattern: str) -> None:
+    files = [path for path in gather([shared_data / folder]) if pattern in path.as_posix()]
+    made = write(project_of(files, f"{folder}{pattern}"), tmp_path)
+    write_vectors(made.json)
+    assert check_vectors(tmp_path).failures == []
+    if shutil.which("node") is None:
+        pytest.skip("needs Node")
+    done = subprocess.run(["node", str(RUNNER), str(tmp_path)], capture_output=True, text=True, timeout=120)
+    assert done.returncode == 0, done.stdout[-1000:]
