@@ -1,0 +1,262 @@
+"""Unity without a plug-in: an Animator Controller, an Avatar Mask for each layer, and the clips, as Unity's own text assets.
+
+Parameters, for each layer: the integers `<layer>_stance` and `<layer>_action`, and the trigger `<layer>_play`, see
+`metagraph.engines.machine`. At the bottom is a layer that holds the base pose; the body overwrites it, arms and head add to it what their
+clips differ from it.
+"""
+
+from __future__ import annotations
+
+from collections import Counter
+from collections.abc import Iterator, Mapping
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from metagraph.engines.machine import Arrow, Machine, State, animations, machines
+from metagraph.engines.targets.losses import CROSSFADE, MACHINE, WEIGHTS
+from metagraph.engines.targets.meshes import mesh_of
+from metagraph.engines.targets.target import Loss, Made, Order, Target
+from metagraph.engines.targets.unity_yaml import (
+    CLIP,
+    CONTROLLER,
+    MASK,
+    NOTHING,
+    STATE,
+    STATES,
+    TRANSITION,
+    Inline,
+    Moving,
+    asset,
+    clip_asset,
+    fields,
+    guid,
+    joint_path,
+    local_id,
+    main_id,
+    meta,
+    to,
+)
+from metagraph.formats.atomic import write_atomically
+from metagraph.graph import anatomy
+from metagraph.graph.model import Project
+from metagraph.motion.clip import Clip
+from metagraph.motion.skeleton import Skeleton, unique_names
+
+BASE = "base"  # the layer at the bottom, its state and clip
+IF, EQUALS = 1, 6  # modes of conditions
+INTEGER, TRIGGER = 3, 9  # types of parameters
+Row = tuple[int, int, str, Mapping[str, Any]]
+
+MOMENT = Loss("what is asked for after the moment from which an action may be left waits until it has ended: an exit time is one moment")
+UNTRIED = "written field by field as Unity writes its own files; there was no Unity to open it with"
+
+
+def controller(project: Project, name: str, built: tuple[Machine, ...], clips: Mapping[str, str], seconds: Mapping[str, float]) -> bytes:
+    """Return the AnimatorController. clips: state name -> what its clip's file is called, without ending. seconds: of each clip."""
+    parameters, layers = [], [_layer(BASE, NOTHING, False)]
+    for machine in built:
+        for word, kind in (("stance", INTEGER), ("action", INTEGER), ("play", TRIGGER)):
+            parameter: dict[str, Any] = {"m_Name": f"{machine.layer}_{word}", "m_Type": kind, "m_DefaultFloat": 0, "m_DefaultInt": 0}
+            parameters.append(parameter | {"m_DefaultBool": 0, "m_Controller": Inline(fileID=main_id(CONTROLLER))})
+        layers.append(_layer(machine.layer, to(MASK, project.name, f"{machine.layer}.mask"), machine.layer != "body"))
+    whole = fields(0, name, serializedVersion=5, m_AnimatorParameters=parameters, m_AnimatorLayers=layers)
+    objects: list[Row] = [(CONTROLLER, main_id(CONTROLLER), "AnimatorController", whole)]
+    objects += [_machine(BASE, [(BASE, 0, 0)], BASE), _state(BASE, to(CLIP, project.name, f"{BASE}.anim"), [])]
+    for machine in built:
+        objects.append(_machine(machine.layer, list(_places(machine)), machine.start.name))
+        for state in machine.states:
+            leaving = list(_transitions(machine, state, seconds[state.name]))
+            objects.append(_state(state.name, to(CLIP, project.name, f"{clips[state.name]}.anim"), leaving))
+            objects += leaving
+    return asset(*objects)
+
+
+def _layer(name: str, mask: Inline, adds: bool) -> dict[str, Any]:
+    out: dict[str, Any] = {"serializedVersion": 5, "m_Name": name, "m_StateMachine": Inline(fileID=local_id("layer", name)), "m_Mask": mask}
+    out |= {"m_Motions": [], "m_Behaviours": [], "m_BlendingMode": int(adds), "m_SyncedLayerIndex": -1, "m_DefaultWeight": 1}
+    return out | {"m_IKPass": 0, "m_SyncedLayerAffectsTiming": 0, "m_Controller": Inline(fileID=main_id(CONTROLLER))}
+
+
+def _places(machine: Machine) -> Iterator[tuple[str, int, int]]:
+    """Yield the states with their column and row in the window: a column for each stance."""
+    columns = {stance: column for column, stance in enumerate(machine.stances)}
+    filled: Counter[int] = Counter()
+    for state in machine.states:
+        column = columns[state.action.stance]
+        yield state.name, column, filled[column]
+        filled[column] += 1
+
+
+def _machine(layer: str, places: list[tuple[str, int, int]], start: str) -> Row:
+    children = [
+        {"serializedVersion": 1, "m_State": Inline(fileID=local_id(name)), "m_Position": _at(300 + 260 * column, 120 + 60 * row)}
+        for name, column, row in places
+    ]
+    own: dict[str, Any] = {"m_ChildStates": children, "m_ChildStateMachines": [], "m_AnyStateTransitions": [], "m_EntryTransitions": []}
+    own |= {"m_StateMachineTransitions": Inline(), "m_StateMachineBehaviours": [], "m_AnyStatePosition": _at(50, 20)}
+    own |= {"m_EntryPosition": _at(50, 120), "m_ExitPosition": _at(50, 220), "m_ParentStateMachinePosition": _at(50, 320)}
+    own |= {"m_DefaultState": Inline(fileID=local_id(start))}
+    return STATES, local_id("layer", layer), "AnimatorStateMachine", fields(1, layer, 6, **own)
+
+
+def _state(name: str, motion: Inline, leaving: list[Row]) -> Row:
+    own: dict[str, Any] = {"m_Speed": 1, "m_CycleOffset": 0, "m_Transitions": [Inline(fileID=row[1]) for row in leaving]}
+    own |= {"m_StateMachineBehaviours": [], "m_Position": _at(50, 50), "m_IKOnFeet": 0, "m_WriteDefaultValues": 1, "m_Mirror": 0}
+    own |= dict.fromkeys(("m_SpeedParameterActive", "m_MirrorParameterActive", "m_CycleOffsetParameterActive", "m_TimeParameterActive"), 0)
+    own |= {"m_Motion": motion, "m_Tag": "", "m_SpeedParameter": "", "m_MirrorParameter": "", "m_CycleOffsetParameter": ""}
+    return STATE, local_id(name), "AnimatorState", fields(1, name, 6, **own, m_TimeParameter="")
+
+
+def _at(x: int, y: int) -> Inline:
+    return Inline(x=x, y=y, z=0)
+
+
+def _transitions(machine: Machine, state: State, seconds: float) -> Iterator[Row]:
+    """Yield the transitions that leave a state, those that come first to be taken first: one for each value, since all of a
+    transition's conditions must hold."""
+    order = ("action", "stance", "done")
+    # What ends while it is still blended in would miss its exit, and stay for ever.
+    shown = max((a.blend for arrows in machine.leaving.values() for a in arrows if a.target is state), default=0.0) + 0.05
+    for arrow in sorted(machine.leaving[state.name], key=lambda a: order.index(a.on)):
+        leave = arrow.leave or 0.0
+        if arrow.on == "done":
+            yield _transition(arrow, "", [], max(leave, shown) / seconds)
+        for value in arrow.values:
+            conditions = [_condition(EQUALS, f"{machine.layer}_{arrow.on}", value)]
+            if arrow.on == "action":
+                conditions.append(_condition(IF, f"{machine.layer}_play", 0))
+            yield _transition(arrow, str(value), conditions, leave / seconds)
+
+
+def _condition(mode: int, parameter: str, value: int) -> dict[str, Any]:
+    return {"m_ConditionMode": mode, "m_ConditionEvent": parameter, "m_EventTreshold": value}  # (sic)
+
+
+def _transition(arrow: Arrow, value: str, conditions: list[dict[str, Any]], leave: float) -> Row:
+    own: dict[str, Any] = {
+        "m_Conditions": conditions,
+        "m_DstStateMachine": NOTHING,
+        "m_DstState": Inline(fileID=local_id(arrow.target.name)),
+    }
+    own |= {"m_Solo": 0, "m_Mute": 0, "m_IsExit": 0, "serializedVersion": 3, "m_TransitionDuration": arrow.blend, "m_TransitionOffset": 0}
+    own |= {"m_ExitTime": leave, "m_HasExitTime": int(leave > 0), "m_HasFixedDuration": 1, "m_InterruptionSource": 0}
+    ident = local_id(arrow.source.name, arrow.target.name, arrow.on, value)
+    return TRANSITION, ident, "AnimatorStateTransition", fields(1, "", **own, m_OrderedInterruption=1, m_CanTransitionToSelf=1)
+
+
+def mask(skeleton: Skeleton, machine: Machine) -> bytes:
+    """Return a layer's AvatarMask: all joints, those of the layer with weight 1."""
+    elements = [{"m_Path": "", "m_Weight": 1}]
+    elements += [{"m_Path": joint_path(skeleton, j), "m_Weight": int(name in machine.joints)} for j, name in enumerate(skeleton.names)]
+    human = "01000000" * 13  # the body parts of humanoid rigs
+    whole = fields(0, machine.layer, m_Mask=human, m_Elements=elements)
+    return asset((MASK, main_id(MASK), "AvatarMask", whole))
+
+
+def write(order: Order) -> Made:
+    """Write controller, masks, clips and a guide, each with its `.meta`, and the mesh as a GLB, where there is one."""
+    from metagraph.formats.gltf_writer import write_glb
+
+    project, built = order.project, machines(order.project)
+    skeleton = project.skeleton
+    assert skeleton is not None
+    body, notes = mesh_of(order)
+    made: list[Path] = []
+
+    def put(name: str, content: bytes, klass: int | None) -> None:
+        for path, data in ((order.folder / name, content), (order.folder / f"{name}.meta", meta(guid(project.name, name), klass))):
+            write_atomically(path, data)
+            made.append(path)
+
+    states = [state for machine in built for state in machine.states]
+    clips = {clip.name: clip for clip in animations(project, built)}
+    # Not all file systems tell "Wave" from "wave".
+    names = dict(zip((s.name for s in states), unique_names([s.name.lower() for s in states]), strict=True))
+    base = anatomy.base_pose(project)
+    off = np.abs(base.translations - skeleton.rest_translations).max(1) > 1e-6
+    shifted = {*np.flatnonzero(off).tolist()}.union(*(clip.translated for clip in clips.values()))
+    still = Clip(BASE, skeleton, 30, np.stack([base.rotations] * 2), np.stack([base.translations[:1]] * 2))
+    put(f"{BASE}.anim", clip_asset(still, BASE, _moving(range(len(skeleton)), shifted), base, True, None), CLIP)
+    reference = to(CLIP, project.name, f"{BASE}.anim")
+    for machine in built:
+        put(f"{machine.layer}.mask", mask(skeleton, machine), MASK)
+        moving = _moving([skeleton.index(name) for name in machine.joints], shifted)
+        for state in machine.states:
+            order.tell(len(made) // 2, len(states) + len(built) + 3, state.name)
+            pose = None if machine.layer == "body" else reference
+            name = names[state.name]
+            put(f"{name}.anim", clip_asset(clips[state.name], name, moving, base, state.loop, pose), CLIP)
+    seconds = {name: clip.duration for name, clip in clips.items()}
+    put(f"{order.stem}.controller", controller(project, order.stem, built, names, seconds), CONTROLLER)
+    put(f"{order.stem}.unity.md", guide(order.stem, skeleton, built).encode(), None)
+    if body is not None:
+        made.append(order.folder / f"{order.stem}.glb")
+        write_glb(made[-1], [], body)
+    order.tell(len(made) // 2, len(made) // 2, "done")
+    slashed = [name for name in skeleton.names if "/" in name]
+    if slashed:
+        notes += (f"Unity's paths cannot lead to joints with a slash in their names: {', '.join(slashed)}",)
+    return Made(tuple(made), notes)
+
+
+def _moving(joints: Any, shifted: set[int]) -> Moving:
+    return Moving(tuple(joints), tuple(joint for joint in joints if joint in shifted))
+
+
+def guide(stem: str, skeleton: Skeleton, built: tuple[Machine, ...]) -> str:
+    """Return what to do with the folder in Unity, and which number stands for which action and stance."""
+    roots = " and ".join(f"`{skeleton.names[j]}`" for j in range(len(skeleton)) if skeleton.parents[j] < 0)
+    machine = max(built, key=lambda m: len(m.states))
+    layer, (stance, number) = machine.layer, list(machine.stances.items())[-1]
+    play = next((s for s in machine.states if s.action.kind == "gesture"), machine.start)
+    tables = "".join(_table(machine) for machine in built)
+    return f"""# {stem} in Unity
+
+These are Unity's own text assets; they need no plug-in. {UNTRIED[0].upper()}{UNTRIED[1:]}.
+
+1. Drop the whole folder, `.meta` files included, into `Assets`. Asset Serialization (project settings, Editor): Force Text, the default.
+2. The character must be the skeleton the clips were made for, its joints with the same names in the same hierarchy, in metres: the export's
+   GLB (imported by the glTFast or UnityGLTF package) or an FBX file. In the import settings: rig Generic, root node None, Optimize Game
+   Objects off. Not Humanoid: clips and masks go by the joints' names.
+3. Put an `Animator` on the object that {roots} is directly in (paths begin there), with `{stem}.controller` as its Controller. Avatar:
+   the rig's, or none. Apply Root Motion: off.
+
+## Asking
+
+```csharp
+animator.SetInteger("{layer}_stance", {number});   // go to "{_cell(machine.graph.stances[stance].name)}" by whatever leads there, and stay
+animator.SetInteger("{layer}_action", {play.number});   // play "{_cell(play.action.name)}" ...
+animator.SetTrigger("{layer}_play");        // ... once, as soon as what plays may be left
+```
+
+An action plays from the stance it belongs to: go there first. After a transition that was asked for as an action, set `<layer>_stance` to
+where it led, or the layer goes back. A trigger waits until it is used; `ResetTrigger` takes it back.
+
+The layer `{BASE}` holds the base pose; `body` overwrites it; arms and head are additive to it, for which their clips have it as additive
+reference pose (`{BASE}.anim`).
+{tables}"""
+
+
+def _table(machine: Machine) -> str:
+    rows = [f"\n## {machine.layer}\n", f"| `{machine.layer}_stance` | stance |", "| --- | --- |"]
+    rows += [f"| {number} | {_cell(machine.graph.stances[ident].name)} |" for ident, number in machine.stances.items()]
+    rows += ["", f"| `{machine.layer}_action` | action | kind | in stance | state |", "| --- | --- | --- | --- | --- |"]
+    for state in machine.states:
+        action, stance = state.action, machine.graph.stances[state.action.stance]
+        rows.append(f"| {state.number} | {_cell(action.name)} | {action.kind} | {_cell(stance.name)} | `{state.name}` |")
+    return "\n".join(rows) + "\n"
+
+
+def _cell(words: str) -> str:
+    return " ".join(words.replace("|", "\\|").split())
+
+
+TARGETS = (
+    Target(
+        "unity-controller", "Unity Animator Controller",
+        "an Animator Controller with Avatar Masks and clips as Unity's own text assets, a guide to them, and the mesh as a GLB",
+        write, (*MACHINE, WEIGHTS, CROSSFADE, MOMENT), UNTRIED,
+    ),
+)  # fmt: skip

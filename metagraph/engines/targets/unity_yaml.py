@@ -1,0 +1,235 @@
+"""Unity's text assets: its YAML, its ids and `.meta` files, and animation clips.
+
+Unity is left-handed. Its importers mirror the X axis of what is right-handed, so that is what is done to clips, too: positions become
+`(-x, y, z)`, rotations `(x, -y, -z, w)`.
+"""
+
+from __future__ import annotations
+
+import hashlib
+import math
+import re
+import zlib
+from collections.abc import Iterable, Iterator, Mapping
+from dataclasses import dataclass
+from itertools import pairwise
+from typing import Any
+
+import numpy as np
+import yaml
+from numpy.typing import NDArray
+
+from metagraph.motion import rotation
+from metagraph.motion.clip import Clip
+from metagraph.motion.skeleton import Pose, Skeleton
+
+Array = NDArray[Any]
+
+# Unity's numbers for its classes. An asset's main object has the id `klass * 100000`.
+CLIP, CONTROLLER, MASK, TRANSITION, STATE, STATES = 74, 91, 319, 1101, 1102, 1107
+TURN, SHIFT = 4e-4, 2e-4  # how far thinned curves may be off: length of a quaternion's error (0.05 degrees), metres
+
+
+class Inline(dict[str, Any]):
+    """A mapping that is written on one line."""
+
+
+class Written(str):
+    """The items of a list, written already."""
+
+
+NOTHING = Inline(fileID=0)
+_HEAD = {"m_CorrespondingSourceObject": NOTHING, "m_PrefabInstance": NOTHING, "m_PrefabAsset": NOTHING}
+
+
+def main_id(klass: int) -> int:
+    """Return the id of an asset's main object."""
+    return klass * 100000
+
+
+def local_id(*words: str) -> int:
+    """Return an object's id in its file; the same words give the same id in every export."""
+    return 1 + (int.from_bytes(hashlib.sha256("\n".join(words).encode()).digest()[:8], "big") >> 1)
+
+
+def guid(project: str, file: str) -> str:
+    """Return a file's id in Unity's project."""
+    return hashlib.md5(f"{project}\n{file}".encode(), usedforsecurity=False).hexdigest()
+
+
+def to(klass: int, project: str, file: str) -> Inline:
+    """Return a reference to a file's main object."""
+    return Inline(fileID=main_id(klass), guid=guid(project, file), type=2)
+
+
+def asset(*objects: tuple[int, int, str, Mapping[str, Any]]) -> bytes:
+    """Return a file of objects: class, id, type and fields."""
+    lines = ["%YAML 1.1", "%TAG !u! tag:unity3d.com,2011:"]
+    for klass, ident, kind, fields in objects:
+        lines += [f"--- !u!{klass} &{ident}", f"{kind}:", *_block(fields, "  ")]
+    return ("\n".join(lines) + "\n").encode()
+
+
+def fields(hidden: int, name: str, version: int = 0, **more: Any) -> dict[str, Any]:
+    """Return the fields that all objects begin with, and their own."""
+    first = {"serializedVersion": version} if version else {}
+    return {**first, "m_ObjectHideFlags": hidden, **_HEAD, "m_Name": name, **more}
+
+
+def meta(ident: str, klass: int | None) -> bytes:
+    """Return the `.meta` of a file: of an asset with a main object, of a text where None."""
+    native = "" if klass is None else f"  mainObjectFileID: {main_id(klass)}\n"
+    kind = "TextScriptImporter" if klass is None else "NativeFormatImporter"
+    rest = "  userData: \n  assetBundleName: \n  assetBundleVariant: \n"
+    return f"fileFormatVersion: 2\nguid: {ident}\n{kind}:\n  externalObjects: {{}}\n{native}{rest}".encode()
+
+
+def _block(mapping: Mapping[str, Any], pad: str) -> Iterator[str]:
+    for key, value in mapping.items():
+        if isinstance(value, Written):
+            yield f"{pad}{key}:\n{value}" if value else f"{pad}{key}: []"
+        elif isinstance(value, list) and value:
+            yield f"{pad}{key}:"
+            for item in value:
+                first, *rest = [_scalar(item)] if isinstance(item, Inline) else _block(item, "")
+                yield f"{pad}- {first}"
+                yield from (f"{pad}  {line}" for line in rest)
+        elif isinstance(value, dict) and not isinstance(value, Inline):
+            yield f"{pad}{key}:"
+            yield from _block(value, pad + "  ")
+        else:
+            yield f"{pad}{key}: {_scalar(value)}"
+
+
+def _scalar(value: Any) -> str:
+    if isinstance(value, Inline):
+        return "{" + ", ".join(f"{key}: {_scalar(v)}" for key, v in value.items()) + "}"
+    if isinstance(value, str):
+        return text(value)
+    return "[]" if isinstance(value, list) else number(value)
+
+
+def text(value: str) -> str:
+    """Return a text as YAML on one line: plain where it can be, even where it looks like a number, for Unity reads by type."""
+    if re.fullmatch(r"\w*", value, re.ASCII):
+        return value
+    written = yaml.safe_dump(value, width=math.inf, default_style=None if value.isprintable() else '"')
+    return written.removesuffix("...\n").rstrip("\n")
+
+
+def number(value: float, digits: int = 6) -> str:
+    """Return a number without an exponent, which YAML 1.1 reads as a text where there is no point."""
+    if isinstance(value, int):
+        return str(int(value))
+    short = f"{value:.{digits}f}".rstrip("0").rstrip(".")
+    return "0" if short == "-0" else short
+
+
+def joint_path(skeleton: Skeleton, joint: int) -> str:
+    """Return the way to a joint from the object that the skeleton's roots are in."""
+    return "/".join(skeleton.names[at] for at in skeleton.chain(joint))
+
+
+# --- clips
+
+
+@dataclass(frozen=True)
+class Moving:
+    """What a clip moves. joints, shifted: those that it turns and those that it also shifts."""
+
+    joints: tuple[int, ...]
+    shifted: tuple[int, ...]
+
+
+def clip_asset(clip: Clip, name: str, moving: Moving, base: Pose, loop: bool, reference: Inline | None) -> bytes:
+    """Return an AnimationClip. base: where joints stand that the clip does not shift. reference: the clip of the pose that is
+    subtracted in an additive layer, None for other layers."""
+    skeleton, last = clip.skeleton, clip.frames - 1
+    turns = rotation.continuous(clip.rotations[:, list(moving.joints)].astype(np.float64)) * [1, -1, -1, 1]
+    curves: dict[int, list[str]] = {1: [], 2: []}  # 1: position, 2: rotation
+    bound: list[dict[str, Any]] = []
+
+    def add(kind: int, joint: int, values: Array, tolerance: float) -> None:
+        slopes = np.gradient(values, axis=0)
+        keys = _keys(values, slopes, tolerance)
+        if keys == [0]:
+            slopes = np.zeros_like(slopes)
+            keys = [0, last] if kind == 2 and joint == moving.joints[0] else keys  # keeps the clip's length
+        path = joint_path(skeleton, joint)
+        curves[kind] += ["  - curve:", "      serializedVersion: 2", "      m_Curve:"]
+        into, away = _tangents(values, slopes, keys)
+        for place, key in enumerate(keys):
+            curves[kind].append(_key(key / clip.fps, values[key], into[place] * clip.fps, away[place] * clip.fps))
+        curves[kind] += ["      m_PreInfinity: 2", "      m_PostInfinity: 2", "      m_RotationOrder: 4", f"    path: {text(path)}"]
+        hashed = zlib.crc32(path.encode())
+        bound.append({"serializedVersion": 2, "path": hashed, "attribute": kind, "script": NOTHING, "typeID": 4, "customType": 0})
+        bound[-1]["isPPtrCurve"] = 0
+
+    for joint in moving.shifted:
+        track = np.broadcast_to(base.translations[joint], (clip.frames, 3))
+        if joint in clip.translated:
+            track = clip.translations[:, clip.translated.index(joint)]
+        add(1, joint, track * np.array([-1.0, 1, 1]), SHIFT)
+    for place, joint in enumerate(moving.joints):
+        add(2, joint, turns[:, place], TURN)
+    zero = Inline(x=0, y=0, z=0)
+    whole = fields(0, name, serializedVersion=6, m_Legacy=0, m_Compressed=0, m_UseHighQualityCurve=1)
+    whole |= {"m_RotationCurves": Written("\n".join(curves[2])), "m_CompressedRotationCurves": [], "m_EulerCurves": []}
+    whole |= {"m_PositionCurves": Written("\n".join(curves[1])), "m_ScaleCurves": [], "m_FloatCurves": [], "m_PPtrCurves": []}
+    whole |= {"m_SampleRate": clip.fps, "m_WrapMode": 0, "m_Bounds": {"m_Center": zero, "m_Extent": zero}}
+    whole |= {"m_ClipBindingConstant": {"genericBindings": bound, "pptrCurveMapping": []}}
+    whole |= {"m_AnimationClipSettings": _settings(clip.duration, loop, reference)}
+    whole |= {"m_EditorCurves": [], "m_EulerEditorCurves": [], "m_HasGenericRootTransform": 0, "m_HasMotionFloatCurves": 0}
+    return asset((CLIP, main_id(CLIP), "AnimationClip", whole | {"m_Events": []}))
+
+
+def _settings(seconds: float, loop: bool, reference: Inline | None) -> dict[str, Any]:
+    out: dict[str, Any] = {"serializedVersion": 2, "m_AdditiveReferencePoseClip": reference or NOTHING, "m_AdditiveReferencePoseTime": 0}
+    out |= {"m_StartTime": 0, "m_StopTime": seconds, "m_OrientationOffsetY": 0, "m_Level": 0, "m_CycleOffset": 0}
+    out |= {"m_HasAdditiveReferencePose": int(reference is not None), "m_LoopTime": int(loop), "m_LoopBlend": 0}
+    out |= dict.fromkeys(("m_LoopBlendOrientation", "m_LoopBlendPositionY", "m_LoopBlendPositionXZ", "m_KeepOriginalOrientation"), 0)
+    return out | {"m_KeepOriginalPositionY": 1, "m_KeepOriginalPositionXZ": 0, "m_HeightFromFeet": 0, "m_Mirror": 0}
+
+
+def _key(time: float, value: Array, into: Array, away: Array) -> str:
+    """Return a key. Version 2 is that of Unity 5.5 to 2017, which newer ones read: half the size, for it has no tangents' weights."""
+    return (
+        f"      - serializedVersion: 2\n        time: {number(time)}\n        value: {_vector(value, 6)}\n"
+        f"        inSlope: {_vector(into, 4)}\n        outSlope: {_vector(away, 4)}\n        tangentMode: 0"
+    )
+
+
+def _vector(values: Iterable[float], digits: int) -> str:
+    return "{" + ", ".join(f"{axis}: {number(v, digits)}" for axis, v in zip("xyzw", values, strict=False)) + "}"
+
+
+def _keys(values: Array, slopes: Array, tolerance: float) -> list[int]:
+    """Return the frames of `values [F, n]` to keep, so that cubics through them with their `slopes` (a frame) are within the tolerance of
+    the straight lines between all frames; a stretch of one frame is a straight line. It starts with the ends and is split at the worst
+    frame; only the first is kept where all are the same."""
+    if np.linalg.norm(values - values[0], axis=1).max() <= tolerance:
+        return [0]
+    halves = np.stack([values, np.concatenate([(values[1:] + values[:-1]) / 2, values[-1:]])], 1).reshape(-1, values.shape[1])
+    kept, stretches = {0, len(values) - 1}, [(0, len(values) - 1)]
+    while stretches:
+        first, last = stretches.pop()
+        if last - first < 2:
+            continue
+        u = np.linspace(0, 1, 2 * (last - first) + 1)[1:-1, None]
+        guess = (2 * u**3 - 3 * u**2 + 1) * values[first] + (3 * u**2 - 2 * u**3) * values[last]
+        guess += ((u**3 - 2 * u**2 + u) * slopes[first] + (u**3 - u**2) * slopes[last]) * (last - first)
+        off = np.linalg.norm(guess - halves[2 * first + 1 : 2 * last], axis=1)
+        if off.max() > tolerance:
+            worst = min(max((2 * first + 2 + int(off.argmax())) // 2, first + 1), last - 1)
+            kept.add(worst)
+            stretches += [(first, worst), (worst, last)]
+    return sorted(kept)
+
+
+def _tangents(values: Array, slopes: Array, keys: list[int]) -> tuple[Array, Array]:
+    """Return the slopes (a frame) into and out of the keys `[K, n]`."""
+    into, away = slopes[keys].copy(), slopes[keys].copy()
+    for place, (key, after) in enumerate(pairwise(keys)):
+        if after == key + 1:
+            away[place] = into[place + 1] = values[after] - values[key]
+    return into, away
