@@ -1,7 +1,7 @@
 /**
  * What a pose costs: Metagraph's JavaScript runtime beside three.js's AnimationMixer, in one process, by turns.
  *
- *     npm install --prefix tests --no-save --no-package-lock three@0.187.0 gltf-validator@2.0.0-dev.3.10
+ *     npm install --prefix tests --no-package-lock
  *     metagraph export sample_clips/sample.metagraph.yaml -o /tmp/sample
  *     node tests/benchmarks/bench_javascript.mjs [FOLDER of an export, /tmp/sample] [characters, 1000] [rounds, 60]
  *

@@ -15,7 +15,7 @@ from metagraph.graph.model import Project
 from metagraph.motion.character import Character
 
 # Modules of this package that have TARGETS, in the order they are offered.
-MODULES = ("runtimes", "web", "playcanvas", "godot_tree", "interactivity", "statecharts", "agents")
+MODULES = ("runtimes", "web", "playcanvas", "godot_tree", "unity_controller", "interactivity", "statecharts", "agents")
 DEFAULT = "metagraph"
 
 
