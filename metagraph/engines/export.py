@@ -11,7 +11,7 @@ import msgspec
 import numpy as np
 
 from metagraph.engines import contract as c
-from metagraph.engines.rig import read_rig, read_voices, rig_of, voices_of
+from metagraph.engines.rig import LIFELESS, read_rig, read_voices, rig_of, voices_of
 from metagraph.errors import FileError
 from metagraph.formats.atomic import write_atomically
 from metagraph.formats.data import above, markov_from, skeleton_from
@@ -354,14 +354,11 @@ def _project(path: Path, document: c.Export, motions: bool, resolved: bool) -> P
         clips[clip.id] = ClipEntry(clip.id, clip.name, document.glb, take, clip.sha256, clip.frames, clip.fps, motion)
     p = document.planner
     base = BasePose(document.base.clip, document.base.frame)
-    life, body = document.life, None
+    body = None
     if resolved:
         clips[BASE] = _base(document, skeleton)
         base = BasePose(BASE)
-        if document.rig is None:
-            life = msgspec.structs.replace(life, on=False)
-        else:
-            body = _body(document.rig, skeleton)
+        body = _body(document.rig, skeleton) if document.rig is not None else LIFELESS
     graphs: dict[Layer, MetaGraph] = {layer: _graph(layer, document.layers[layer], resolved) for layer in LAYERS}
     return Project(
         name=document.name,
@@ -373,7 +370,7 @@ def _project(path: Path, document: c.Export, motions: bool, resolved: bool) -> P
         parts=dict(document.parts),
         markov={layer: _markov(layer, document.layers[layer].markov) for layer in LAYERS if document.layers[layer].own_markov},
         settings=Settings(p.alpha, p.seed, p.never_twice, p.shortest, p.wait, p.memory, p.rest, p.lookahead),
-        life=life,
+        life=document.life,
         body=body,
         face=document.face,
         points=dict(document.points),
@@ -445,6 +442,9 @@ def _graph(layer: Layer, data: c.ExportedLayer, resolved: bool) -> MetaGraph:
         stroke = a.stroke
         if resolved and len(a.phases) == 4:
             (own[0], stroke), own[1:] = a.phases[:2], a.phases[2:]
+        elif resolved and a.kind == "gesture":  # an export that does not tell them yet
+            stroke = (a.start + a.end) / 2 if stroke is None else stroke
+            own = [stroke] * 3
         timing = Timing(a.start, None if a.whole_end else a.end, a.blend_in, a.blend_out, a.loop, a.earliest_exit, stroke, *own)
         actions[a.id] = Action(
             a.id, a.clip, a.kind, layer, a.stance, a.name, a.end_stance, timing, a.limb, tuple(a.joints), tuple(a.tags), a.likelihood,

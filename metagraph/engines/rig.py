@@ -99,6 +99,20 @@ def read_rig(rig: c.Rig) -> Body:
     )
 
 
+def _lifeless() -> Body:
+    """Return a body of which nothing can live."""
+    axes: tuple[Vector, Vector, Vector] = ((1.0, 0.0, 0.0), (0.0, 1.0, 0.0), (0.0, 0.0, 1.0))
+    none: Vector = (0.0, 0.0, 0.0)
+    eye = EyeAt(none, *axes, False, none, none, (0.0, 0.0, 0.0, 0.0))
+    shapes, first = np.zeros((len(CHANNELS), 0, 3)), np.zeros(1, int)
+    face = FaceRig((), np.zeros(0, int), shapes, shapes, np.zeros(4), np.full(4, -1), np.zeros((4, 4)), {})
+    breath = ((axes[0], 0.0),)
+    return Body(*axes, first, breath, first, first, (), (), 0, axes[2], axes[2], (eye, eye), axes[2], none, face)
+
+
+LIFELESS = _lifeless()  # of an export without a rig
+
+
 def _three(values: Sequence[float]) -> Vector:
     x, y, z = values
     return x, y, z

@@ -154,8 +154,9 @@ export class LayerGraph {
     const length = durations.get(clip) ?? 0;
     const start = Math.min(number("start"), length);
     const end = Math.max(start, data.whole_end ? length : Math.min(number("end"), length));
-    const middle = (start + end) / 2;
-    const [ready, stroke, strokeEnd, relax] = data.phases?.length === 4 ? data.phases : [middle, data.stroke ?? middle, middle, middle];
+    // Where none are told, all of them are at the stroke, and that is halfway unless it was set.
+    const told = Math.min(Math.max(data.stroke ?? (start + end) / 2, start), end);
+    const [ready, stroke, strokeEnd, relax] = data.phases?.length === 4 ? data.phases : [told, told, told, told];
     const motion = graph.clips.get(clip) ?? null;
     if (motion && !offsets.has(clip)) offsets.set(clip, offsetsOf(motion, this.reach, graph));
     const other = { left: "right", right: "left" }[limb];

@@ -194,11 +194,11 @@ namespace Metagraph
             action.Cooldown = json.Maybe("cooldown", out found) ? found.Within(0, 1e9) : 0.0;
             action.Spacing = json.Maybe("spacing", out found) && !found.IsNull ? (int)found.Within(0, 1000) : (int?)null;
             double[] phases = json.Maybe("phases", out found) ? found.Numbers(-1) : new double[0];
-            if (phases.Length != 4) // only gestures have phases; of others the stroke is as told, or the middle
+            if (phases.Length != 4) // where none are told, all are at the stroke, and that is halfway unless it was set
             {
-                double middle = (action.Start + action.End) / 2, stroke = json["stroke"].NumberOrNull ?? middle;
+                double stroke = json["stroke"].NumberOrNull ?? (action.Start + action.End) / 2;
                 stroke = Basics.Clamp(stroke, action.Start, action.End);
-                phases = new[] { Math.Min(middle, stroke), stroke, Math.Max(middle, stroke), Math.Max(middle, stroke) };
+                phases = new[] { stroke, stroke, stroke, stroke };
             }
             action.Phases = new Phases { Ready = phases[0], Stroke = phases[1], StrokeEnd = phases[2], Relax = phases[3] };
             action.Mask = Mask(action);
