@@ -88,9 +88,7 @@ class Character:
         if isinstance(request, a.Ask):
             ask: a.AnyAsk = request if request.id else msgspec.structs.replace(request, id=made)
             return self._take(ask)
-        if not isinstance(request, Mapping):
-            return self._refuse(made, "a request should be an object")
-        data = dict(request)
+        data = dict(request) if isinstance(request, Mapping) else {}  # which is refused
         ident = data.get("id")
         data["id"] = ident = ident if isinstance(ident, str) and ident else made
         try:

@@ -276,7 +276,7 @@ out.append([first, named, none, same, told, character.now, character.answer(firs
     assert none["state"] == bml["state"] == "refused"
     assert "no such" in none["why"]
     assert "BML" in bml["why"]
-    assert rest[:4] == ["#1", "there", "#2", True]
+    assert rest[:4] == ["#1", "there", "#3", True]
     begins = [event for event in rest[4] if event[0] == "begin"]
     assert len(begins) == len(rest[4]) - len(begins) == 1
     assert all(0 <= now - at < 1 / 59 for _, _, at, now in rest[4])
@@ -294,7 +294,7 @@ def test_malformed_requests_are_refused_and_nothing_fails(game: Path) -> None:
         {"do": "gesture", "hold": 1e9}, {"do": "gesture", "prepare": 1}, {"do": "gesture", "colour": "red"}, {"do": "action"},
         {"do": "action", "action": ""}, {"do": "stance", "stance": None}, {"do": "look", "to": [1, 2]}, {"do": "look", "to": [1, 2, "3"]},
         {"do": "look", "amount": 2}, {"do": "say"}, {"do": "say", "line": 1.5}, {"do": "say", "line": "none"}, {"do": "mode", "mode": "x"},
-        {"do": "place", "name": "x"}, {"do": "place", "point": [1, 2, 3]}, {"do": "gesture", "id": 7}, {"do": "blink", "after": "x"},
+        {"do": "place", "name": "x"}, {"do": "place", "point": [1, 2, 3]}, {"do": "blink", "after": "x"},
         {"do": "stance", "stance": "none"}, {"do": "bml", "bml": ""}, {"do": "gesture", "tags": ["none such"]},
     ]  # fmt: skip
     right: list[Any] = [

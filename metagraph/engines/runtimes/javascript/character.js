@@ -9,7 +9,7 @@ import { LAYERS } from "./words.js";
 const SLACK = 2; // seconds the horizon may fall behind before it is moved on
 const FORGETTING = 15; // seconds between forgetting what is over
 const LEAP = 3600; // seconds an update may move on: all that lies between is planned
-const REMEMBERED = 1000; // answers kept after that
+const REMEMBERED = 1000; // answers kept after that, and happenings nobody asked for
 
 export class Character {
   /**
@@ -41,7 +41,7 @@ export class Character {
   /**
    * Ask for something; it is taken up at the next update. Returns the request's id, under which `answer` tells what became of it.
    * Never throws: what cannot be read is refused.
-   * @param {object} request as JSON, with `do`; `after`: seconds from now, instead of `at`; an `id` is made where there is none
+   * @param {object} request as JSON, with `do`; `after`: seconds from now, wins over `at`; an `id` is made where there is none
    */
   ask(request) {
     const fine = typeof request === "object" && request !== null;
@@ -69,6 +69,7 @@ export class Character {
   /** Keep an answer that will not change any more. */
   finish(answer) {
     this.asked.delete(answer.id);
+    this.settled.delete(answer.id);
     this.settled.set(answer.id, answer);
     if (this.settled.size > REMEMBERED) this.settled.delete(this.settled.keys().next().value);
   }
@@ -102,36 +103,51 @@ export class Character {
     }
     if (now - this.forgot < FORGETTING) return;
     this.forgot = now;
-    const over = now - this.recent;
-    for (const answer of answers(this.plan, this.asked).values()) {
-      const played = answer.until !== null && answer.until < over;
-      if (!played && answer.state !== "refused" && answer.state !== "done") continue;
-      this.finish(played ? { ...answer, state: "done" } : answer);
-    }
-    this.plan = since(this.plan, over);
+    this.forget(now - this.recent);
   }
 
-  /** Note which actions have begun or ended since the last update. */
+  /** Forget what is over, and settle the answers of what was asked for then. */
+  forget(over) {
+    const known = answers(this.plan, this.asked);
+    this.plan = since(this.plan, over);
+    const left = answers(this.plan, this.asked);
+    for (const answer of known.values()) {
+      // What the plan no longer knows was played; so was a look without an end that another has replaced.
+      if (answer.until !== null && (answer.until < over || left.get(answer.id).until === null)) this.finish({ ...answer, state: "done" });
+      else if (answer.state === "refused" || answer.state === "done") this.finish(answer);
+    }
+  }
+
+  /** Note what has begun or ended since the update before. */
   listen() {
     const { now, seen } = this;
-    if (this.happened.length) this.happened = [];
+    const from = this.happened.length;
     for (const layer of LAYERS) {
-      for (const { start, end, meta: key, action } of this.plan.layers[layer].cues) {
+      for (const { start, end, meta, action } of this.plan.layers[layer].cues) {
         if (start > now) break;
-        if (end <= seen || (start <= seen && end > now)) continue;
-        const { name } = action;
-        const meta = key.split("+")[0]; // what goes on after a cut is the same request
-        if (start > seen) this.happened.push({ kind: "begin", at: start, layer, action: name, meta });
-        if (end > seen && end <= now) this.happened.push({ kind: "end", at: end, layer, action: name, meta });
+        if (end > seen) this.note(start, end, layer, action.name, meta.split("+")[0]); // what goes on after a cut is the same request
       }
     }
-    this.happened.sort((a, b) => a.at - b.at);
+    for (const { start, end, line, text, id } of this.plan.track.speeches) this.note(start, end, "speech", line ?? text, id);
     this.seen = now;
+    if (this.happened.length === from) return;
+    this.happened.sort((a, b) => a.at - b.at);
+    this.happened.splice(0, this.happened.length - REMEMBERED);
   }
 
-  /** Return what began or ended between the last two updates, for sounds and game logic: kind, at, layer, action (its name), meta. */
+  note(start, end, layer, action, meta) {
+    if (start > this.seen && start <= this.now) this.happened.push({ kind: "begin", at: start, layer, action, meta });
+    if (end > this.seen && end <= this.now) this.happened.push({ kind: "end", at: end, layer, action, meta });
+  }
+
+  /**
+   * Return what began and ended since this was last asked for, in order of time, of more than 1000 the latest: for sounds and game logic.
+   * kind, at, layer ("speech" for what is said), action (its name; of what is said the line's id, else the text), meta (the request's id).
+   */
   events() {
-    return this.happened;
+    const { happened } = this;
+    if (happened.length) this.happened = [];
+    return happened;
   }
 
   /**

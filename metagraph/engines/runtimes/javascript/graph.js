@@ -100,8 +100,6 @@ export class Graph {
     /** Names of all morph targets that anything here moves. */
     this.morphs = [...new Set([...own, ...(this.body?.face.morphs ?? []).map((morph) => morph.name)])];
     for (const clip of this.clips.values()) for (const morph of clip.morphs) morph.place = this.morphs.indexOf(morph.name);
-    /** Whether eyes made of morph targets hold while the head moves, rather than being told from the base pose. */
-    this.morphsFollow = Boolean(data.face?.morphs?.length);
   }
 
   /** @returns {import("./life/voice.js").Voice} */

@@ -7,7 +7,7 @@ export type Mode = "idle" | "listening" | "talking";
 export type Point = [number, number, number];
 export const LAYERS: readonly Layer[];
 
-/** What every request may say. `after`: seconds from now, instead of `at`; only a Character knows it. */
+/** What every request may say. `after`: seconds from now, wins over `at`; only a Character knows it. */
 export interface Common {
   id?: string;
   at?: number | null;
@@ -196,8 +196,9 @@ export interface CharacterOptions extends Options {
 export interface Happening {
   readonly kind: "begin" | "end";
   readonly at: number;
-  readonly layer: Layer;
-  /** Name of the action. */
+  /** "speech": something was said. */
+  readonly layer: Layer | "speech";
+  /** Name of the action; of what is said the line's id, else the text. */
   readonly action: string;
   /** Id of the request it is for, or "auto/..." of what the models wrote. */
   readonly meta: string;
@@ -215,7 +216,7 @@ export class Character {
   /** Move on to `now`, seconds of the character's own time, which begins at 0. */
   update(now: number): void;
   answer(id: string): Answer;
-  /** What began or ended between the last two updates. */
+  /** What began and ended since this was last asked for, by time; of more than 1000 the latest. */
   events(): readonly Happening[];
   /** The pose at the updated time; the arrays are overwritten by the next. `alive`: with the life layers; true when not given. */
   pose(alive?: boolean): Pose;

@@ -84,10 +84,9 @@ export class Player {
       if (rest) addMorphs(rest.action, rest.action.start + phaseOf(rest.action, time - rest.start), 1 - weight, out);
     }
     if (alive && this.lives && this.graph.body.face.morphs.length) {
-      const { pose, base, life } = this.room;
-      if (this.graph.morphsFollow) this.compose(time);
-      const { rotations, translations } = this.graph.morphsFollow ? pose : base;
-      life.find(rotations, translations, this.plan, this.gaze, time);
+      const { pose, life } = this.room;
+      this.compose(time); // eyes made of morph targets hold while the head moves
+      life.find(pose.rotations, pose.translations, this.plan, this.gaze, time);
       life.morphs(out);
     }
     for (let n = 0; n < out.length; n++) out[n] = Math.min(1, Math.max(0, out[n]));

@@ -50,10 +50,10 @@ export function plus(track, items) {
 export function sinceTrack(track, seconds) {
   const begun = (lane) => track[lane].filter((item) => item.start <= seconds);
   const last = (lane, of) => [...new Map(begun(lane).map((item) => [of(item), item])).values()];
-  const one = () => "";
-  const old = new Set([...last("looks", one), ...last("modes", one), ...last("places", (p) => p.name), ...last("stays", (s) => s.layer)]);
-  const lasts = (item) => (item.kind === "look" || item.kind === "speech") && item.end > seconds;
-  const kept = (item) => item.start > seconds || old.has(item) || lasts(item);
+  let looks = []; // those that no later one has replaced; also what is over: it tells since when what shows has shown
+  for (const look of begun("looks")) looks = [...looks.filter((x) => x.priority > look.priority), look];
+  const old = new Set([...looks, ...last("modes", () => ""), ...last("places", (p) => p.name), ...last("stays", (s) => s.layer)]);
+  const kept = (item) => item.start > seconds || old.has(item) || (item.kind === "speech" && item.end > seconds);
   return Object.fromEntries(Object.values(LANES).map((lane) => [lane, track[lane].filter(kept)]));
 }
 

@@ -25,7 +25,7 @@ namespace Metagraph
         public Spot To = new Spot(Wanted.Partner);
         public double[] Point;
 
-        private const double Longest = 1e6;
+        internal const double Longest = 1e6;
 
         private static readonly Dictionary<string, string> Fields = new Dictionary<string, string>
         {

@@ -18,7 +18,7 @@ namespace Metagraph
 
     /// <summary>
     /// What began or ended. Kind: begin or end. Layer: body, arms, head, or speech. Action: name of the action; of a speech the id of
-    /// its line, or its text. Meta: key of what it realises; an ask's id, followed by + or / where it is a part.
+    /// its line, else its text. Meta: the ask's id, or the model's. At: seconds.
     /// </summary>
     public struct CharacterEvent
     {
@@ -34,18 +34,19 @@ namespace Metagraph
     {
         private const double Slack = 2.0; // seconds by which the plan may fall behind its horizon before it is extended
         private const double Cut = 15.0; // seconds between two cuts
-        private const double Latest = 1e9; // seconds; no time comes after
-        private const int Remembered = 1000; // answers kept after that
+        private const double Leap = 3600.0; // seconds an update may move on: all that lies between is planned
+        private const int Remembered = 1000; // answers kept after that, and events nobody asked for
+        private static readonly CharacterEvent[] Nothing = new CharacterEvent[0];
 
         public readonly Graph Graph;
         private readonly CharacterOptions options;
         private readonly Player player;
         private readonly BodyPose pose;
-        private readonly List<KeyValuePair<Ask, double?>> queue = new List<KeyValuePair<Ask, double?>>(); // with "after"
+        private readonly List<Ask> queue = new List<Ask>();
         private readonly HashSet<string> asked = new HashSet<string>(); // ids that the plan can tell of
         private readonly Dictionary<string, Answer> settled = new Dictionary<string, Answer>(); // of what it forgot or never heard of
-        private readonly Queue<string> settling = new Queue<string>(); // their ids, the oldest first
-        private readonly List<CharacterEvent> events = new List<CharacterEvent>();
+        private readonly List<string> settling = new List<string>(); // their ids, the oldest first
+        private List<CharacterEvent> events = new List<CharacterEvent>();
         private int count;
         private double seen = double.NegativeInfinity, cutAt;
 
@@ -56,6 +57,7 @@ namespace Metagraph
             player = new Player(graph);
             pose = new BodyPose(graph);
             Plan = Plan.Empty(this.options.Seed ?? graph.Planner.Seed);
+            Plan = Hearing.Hear(graph, Plan, 0.0, new Ask[0], this.options.Ahead, this.options.Stances, this.options.Idle);
         }
 
         public Plan Plan { get; private set; }
@@ -65,39 +67,45 @@ namespace Metagraph
 
         /// <summary>
         /// Ask for something; taken up at the next update. The request is JSON with "do", as an agent sends it; "after": seconds from
-        /// now, instead of "at". Returns its id, made up where it has none. What cannot be read is refused: see `AnswerTo`.
+        /// now, wins over "at". Returns its id, made up where it has none. What cannot be read is refused: see `AnswerTo`.
         /// </summary>
         public string Ask(string json)
         {
-            string id = "";
+            count++;
+            string id = "#" + count.ToString(CultureInfo.InvariantCulture);
             try
             {
                 object parsed = Json.Parse(json ?? "");
                 var fields = parsed as JsonObject;
-                double? after = null;
                 if (fields != null)
                 {
-                    id = fields.Has("id") ? fields["id"] as string ?? "" : "";
-                    parsed = Without(fields, "after");
-                    after = fields.Has("after") && fields["after"] != null ? Metagraph.Ask.Number("after", fields["after"], 0, 1e6) : after;
+                    string own = fields.Has("id") ? fields["id"] as string : null;
+                    id = string.IsNullOrEmpty(own) ? id : own;
+                    parsed = Named(fields, id);
                 }
-                Ask ask = Metagraph.Ask.From(parsed);
-                if (after != null && ask.At != null)
-                {
-                    throw new AskException("after: says something else than 'at'; give one of them");
-                }
-                id = ask.Id.Length > 0 ? ask.Id : NextId();
-                ask.Id = id;
-                queue.Add(new KeyValuePair<Ask, double?>(ask, after));
+                queue.Add(Metagraph.Ask.From(parsed));
                 settled.Remove(id);
+                settling.Remove(id);
                 asked.Add(id);
             }
             catch (Exception error) when (error is AskException || error is FormatException)
             {
-                id = id.Length > 0 ? id : NextId();
                 Settle(new Answer { Id = id, State = "refused", Why = error.Message });
             }
             return id;
+        }
+
+        /// <summary>The request with its id, and with "at" for "after".</summary>
+        private JsonObject Named(JsonObject fields, string id)
+        {
+            var named = new JsonObject();
+            fields.Names.FindAll(name => name != "after").ForEach(name => named[name] = fields[name]);
+            named["id"] = id;
+            if (fields.Has("after"))
+            {
+                named["at"] = Now + Metagraph.Ask.Number("after", fields["after"], 0, Metagraph.Ask.Longest);
+            }
+            return named;
         }
 
         /// <summary>Keep an answer that will not change any more.</summary>
@@ -105,48 +113,35 @@ namespace Metagraph
         {
             asked.Remove(answer.Id);
             settled[answer.Id] = answer;
-            settling.Enqueue(answer.Id);
+            settling.Remove(answer.Id);
+            settling.Add(answer.Id);
             if (settling.Count > Remembered)
             {
-                settled.Remove(settling.Dequeue());
+                settled.Remove(settling[0]);
+                settling.RemoveAt(0);
             }
         }
 
-        private string NextId()
-        {
-            count++;
-            return "#" + count.ToString(CultureInfo.InvariantCulture);
-        }
-
-        private static JsonObject Without(JsonObject fields, string gone)
-        {
-            var kept = new JsonObject();
-            foreach (string name in fields.Names)
-            {
-                if (name != gone)
-                {
-                    kept[name] = fields[name];
-                }
-            }
-            return kept;
-        }
-
-        /// <summary>Move on to a time, seconds since the performance began; time never goes back. Works in what was asked.</summary>
+        /// <summary>
+        /// Move on to a time, seconds of the character's own, which begins at 0, never goes backwards, and leaps an hour at most. Works in
+        /// what was asked.
+        /// </summary>
         public void Update(double now)
         {
-            Now = now > Now ? Math.Min(now, Latest) : Now;
+            if (now > Now && !double.IsInfinity(now))
+            {
+                Now = Math.Min(now, Now + Leap);
+            }
             try
             {
                 PlanOn();
             }
             catch (Exception error) // a fault of the runtime's own must not stop the game: the plan stays as it is
             {
-                queue.ForEach(one => Settle(new Answer { Id = one.Key.Id, State = "refused", Why = "the runtime failed: " + error }));
+                queue.ForEach(ask => Settle(new Answer { Id = ask.Id, State = "refused", Why = "the runtime failed: " + error.Message }));
                 queue.Clear();
             }
-            events.Clear();
-            Notice(seen, Now);
-            seen = Now;
+            Listen();
         }
 
         private void PlanOn()
@@ -154,10 +149,9 @@ namespace Metagraph
             bool far = Plan.End >= Now + options.Ahead - Math.Min(Slack, options.Ahead / 2);
             if (queue.Count > 0 || !far)
             {
-                List<Ask> asks = queue.ConvertAll(one => one.Value == null ? one.Key : one.Key.With(one.Key.Id, Now + one.Value.Value));
                 double end = far ? Plan.End : Now + options.Ahead;
-                Plan = Hearing.Hear(Graph, Plan, Now, asks, end, options.Stances, options.Idle);
-                asks.FindAll(ask => ask.Do == "withdraw").ForEach(ask => Settle(new Answer { Id = ask.Id, State = "done" }));
+                Plan = Hearing.Hear(Graph, Plan, Now, queue, end, options.Stances, options.Idle);
+                queue.FindAll(ask => ask.Do == "withdraw").ForEach(ask => Settle(new Answer { Id = ask.Id, State = "done" }));
                 queue.Clear();
             }
             if (Now - cutAt >= Cut)
@@ -170,45 +164,58 @@ namespace Metagraph
         /// <summary>Forget what is over, and settle the answers of what was asked for then.</summary>
         private void Forget(double over)
         {
-            foreach (string id in asked.ToList())
+            List<Answer> known = Hearing.Answers(Plan, asked);
+            Plan = Hearing.Since(Plan, over);
+            List<Answer> left = Hearing.Answers(Plan, asked);
+            for (int n = 0; n < known.Count; n++)
             {
-                Answer answer = Hearing.AnswerTo(Plan, id);
-                bool played = answer.Until < over;
-                if (played || answer.State == "refused" || answer.State == "done")
+                // What the plan no longer knows was played; so was a look without an end that another has replaced.
+                bool played = known[n].Until != null && (known[n].Until < over || left[n].Until == null);
+                if (played || known[n].State == "refused" || known[n].State == "done")
                 {
-                    answer.State = played ? "done" : answer.State;
-                    Settle(answer);
+                    known[n].State = played ? "done" : known[n].State;
+                    Settle(known[n]);
                 }
             }
-            Plan = Hearing.Since(Plan, over);
         }
 
-        /// <summary>Note what began or ended after `before`, until `now`.</summary>
-        private void Notice(double before, double now)
+        /// <summary>Note what has begun or ended since the update before.</summary>
+        private void Listen()
         {
             foreach (string layer in Basics.Layers)
             {
                 List<Cue> cues = Plan.Layers[layer].Cues;
-                for (int n = cues.Count - 1; n >= 0 && cues[n].End > before; n--)
+                for (int n = 0; n < cues.Count && cues[n].Start <= Now; n++)
                 {
-                    Note(cues[n].Start, cues[n].End, before, now, layer, cues[n].Action.Name, cues[n].Meta);
+                    Note(cues[n].Start, cues[n].End, layer, cues[n].Action.Name, cues[n].Meta);
                 }
             }
-            foreach (Speech speech in Plan.Track.Speeches)
+            for (int n = 0; n < Plan.Track.Speeches.Count; n++)
             {
-                Note(speech.Start, speech.End, before, now, "speech", speech.LineId ?? speech.Text, speech.Id);
+                Speech speech = Plan.Track.Speeches[n];
+                Note(speech.Start, speech.End, "speech", speech.LineId ?? speech.Text, speech.Id);
+            }
+            seen = Now;
+            if (events.Count > Remembered)
+            {
+                events.RemoveRange(0, events.Count - Remembered);
             }
         }
 
-        private void Note(double start, double end, double before, double now, string layer, string action, string meta)
+        private void Note(double start, double end, string layer, string action, string key)
         {
-            if (end > before && end <= now)
+            bool begins = start > seen && start <= Now, ends = end > seen && end <= Now;
+            if (begins || ends)
             {
-                Insert(new CharacterEvent { Kind = "end", Layer = layer, Action = action, Meta = meta, At = end });
-            }
-            if (start > before && start <= now)
-            {
-                Insert(new CharacterEvent { Kind = "begin", Layer = layer, Action = action, Meta = meta, At = start });
+                string meta = layer == "speech" ? key : key.Split('+')[0]; // what goes on after a cut is the same
+                if (begins)
+                {
+                    Insert(new CharacterEvent { Kind = "begin", Layer = layer, Action = action, Meta = meta, At = start });
+                }
+                if (ends)
+                {
+                    Insert(new CharacterEvent { Kind = "end", Layer = layer, Action = action, Meta = meta, At = end });
+                }
             }
         }
 
@@ -223,10 +230,16 @@ namespace Metagraph
             events.Insert(place, one);
         }
 
-        /// <summary>What began or ended at the last update, in order; the list is filled anew by the next.</summary>
-        public IList<CharacterEvent> Events
+        /// <summary>What began and ended since this was last asked for, by time; of more than 1000 the latest.</summary>
+        public IList<CharacterEvent> Events()
         {
-            get { return events; }
+            if (events.Count == 0)
+            {
+                return Nothing;
+            }
+            List<CharacterEvent> happened = events;
+            events = new List<CharacterEvent>();
+            return happened;
         }
 
         /// <summary>What became of an ask: when it will play, or why it will not.</summary>
@@ -241,7 +254,7 @@ namespace Metagraph
             {
                 return new Answer { Id = id, State = "refused", Why = "nothing was asked for as '" + id + "'" };
             }
-            if (queue.Exists(one => one.Key.Id == id))
+            if (queue.Exists(ask => ask.Id == id))
             {
                 return new Answer { Id = id, State = "planned", Why = "taken up at the next update" };
             }

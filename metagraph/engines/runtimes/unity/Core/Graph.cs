@@ -223,8 +223,6 @@ namespace Metagraph
         public readonly Dictionary<string, Line> Lines = new Dictionary<string, Line>();
         /// <summary>Names of all morph targets that clips or the face may move; poses have a weight for each.</summary>
         public readonly List<string> Morphs = new List<string>();
-        /// <summary>Whether the project knows its character's morph targets: then eyes made of them hold while the head moves.</summary>
-        public bool KnowsMorphs;
         /// <summary>What is not as it should be, in words; nothing of it stops a performance.</summary>
         public readonly List<string> Problems = new List<string>();
 

@@ -67,28 +67,61 @@ namespace Metagraph
         /// <summary>What a plan does about an ask: when it will play, or why it will not.</summary>
         public static Answer AnswerTo(Plan plan, string id)
         {
-            List<Cue> cues = plan.Layers.Values.SelectMany(layer => layer.Cues).Where(cue => Of(cue.Meta.Split('+')[0], id)).ToList();
-            List<Item> items = plan.Track.Items.Where(i => !(i is StayFrom) && Of(i.Id, id)).ToList();
-            List<Report> told = plan.Reports.FindAll(r => Of(r.Request, id));
-            List<MetaAction> waiting = plan.Layers.Values.SelectMany(layer => layer.Metas)
-                .Where(m => m.Start >= plan.End && Of(m.Request.Id, id)).ToList();
+            return Answers(plan, new[] { id })[0];
+        }
+
+        /// <summary>What a plan does about each of many asks, in time that grows with the plan alone.</summary>
+        public static List<Answer> Answers(Plan plan, ICollection<string> ids)
+        {
+            Dictionary<string, Found> found = ids.ToDictionary(id => id, id => new Found());
+            Func<string, IEnumerable<Found>> of = made => Owners(made).Where(found.ContainsKey).Select(owner => found[owner]);
+            foreach (LayerPlan layer in plan.Layers.Values)
+            {
+                layer.Cues.ForEach(cue => Each(of(cue.Meta.Split('+')[0]), one => one.Cues.Add(cue)));
+                layer.Metas.FindAll(m => m.Start >= plan.End).ForEach(m => Each(of(m.Request.Id), one => one.Waiting.Add(m.Start)));
+            }
+            Each(plan.Track.Items.Where(i => !(i is StayFrom)), item => Each(of(item.Id), one => one.Items.Add(item)));
+            plan.Reports.ForEach(report => Each(of(report.Request), one => one.Told.Add(report)));
+            return ids.Select(id => AnswerOf(id, found[id])).ToList();
+        }
+
+        private static void Each<T>(IEnumerable<T> items, Action<T> act)
+        {
+            foreach (T item in items)
+            {
+                act(item);
+            }
+        }
+
+        /// <summary>What in a plan belongs to one ask. Waiting: seconds at which what is not chosen yet begins.</summary>
+        private sealed class Found
+        {
+            public readonly List<Cue> Cues = new List<Cue>();
+            public readonly List<Item> Items = new List<Item>();
+            public readonly List<Report> Told = new List<Report>();
+            public readonly List<double> Waiting = new List<double>();
+        }
+
+        private static Answer AnswerOf(string id, Found found)
+        {
+            List<Report> told = found.Told;
             var answer = new Answer { Id = id, Why = string.Join("; ", told.Select(r => r.Message).Distinct().ToArray()) };
-            if (cues.Count > 0 || items.Count > 0)
+            if (found.Cues.Count > 0 || found.Items.Count > 0)
             {
                 string[] late = { "late", "queued", "resumed" };
                 answer.State = told.Exists(r => late.Contains(r.Outcome)) ? "late" : "planned";
-                answer.At = cues.Select(c => c.Start).Concat(items.Select(i => i.Start)).Min();
-                answer.Until = cues.Select(c => c.End).Concat(items.Select(i => i.End)).Max();
-                answer.What = cues.Select(c => c.Action.Name).Concat(items.Select(i => i.Word)).ToArray();
+                answer.At = found.Cues.Select(c => c.Start).Concat(found.Items.Select(i => i.Start)).Min();
+                answer.Until = found.Cues.Select(c => c.End).Concat(found.Items.Select(i => i.End)).Max();
+                answer.What = found.Cues.Select(c => c.Action.Name).Concat(found.Items.Select(i => i.Word)).ToArray();
             }
             else if (told.Exists(r => r.Outcome == "already-there"))
             {
                 answer.State = "done";
             }
-            else if (waiting.Count > 0 && told.All(r => r.Played))
+            else if (found.Waiting.Count > 0 && told.All(r => r.Played))
             {
                 answer.State = told.Count > 0 ? "late" : "planned";
-                answer.At = waiting[0].Start;
+                answer.At = found.Waiting[0];
                 answer.Why = answer.Why.Length > 0 ? answer.Why : "chosen when its time is nearer";
             }
             else
@@ -97,11 +130,6 @@ namespace Metagraph
                 answer.Why = answer.Why.Length > 0 ? answer.Why : "nothing came of it";
             }
             return answer;
-        }
-
-        private static bool Of(string made, string ask)
-        {
-            return made.StartsWith(ask, StringComparison.Ordinal) && Owners(made).Contains(ask);
         }
 
         /// <summary>

@@ -81,8 +81,6 @@ namespace Metagraph
                     Problems.Add("the GLB '" + glb + "' lacks clip '" + entry.Name + "'; its actions show their stance. Export it again.");
                 }
             }
-            Node face, morphs;
-            KnowsMorphs = root.Maybe("face", out face) && face.Maybe("morphs", out morphs) && morphs.Items.Count > 0;
             Body = root.Maybe("rig", out found) && !found.IsNull ? ReadBody(found) : null;
         }
 

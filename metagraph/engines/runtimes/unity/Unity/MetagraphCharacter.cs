@@ -15,7 +15,7 @@ namespace Metagraph
     [AddComponentMenu("Metagraph/Metagraph Character")]
     public sealed class MetagraphCharacter : MonoBehaviour
     {
-        /// <summary>Layer (or "speech"), name of the action (or id of the line), key of what was asked for.</summary>
+        /// <summary>Layer (or "speech"), name of the action (or the line's id, or the words), id of the request.</summary>
         [Serializable]
         public sealed class ActionEvent : UnityEvent<string, string, string> { }
 
@@ -136,9 +136,10 @@ namespace Metagraph
             {
                 shapes[n].Renderer.SetBlendShapeWeight(shapes[n].Index, pose.Morphs[shapes[n].Morph] * shapes[n].Full);
             }
-            for (int n = 0; n < character.Events.Count; n++)
+            IList<CharacterEvent> events = character.Events();
+            for (int n = 0; n < events.Count; n++)
             {
-                CharacterEvent one = character.Events[n];
+                CharacterEvent one = events[n];
                 (one.Kind == "begin" ? begin : end).Invoke(one.Layer, one.Action, one.Meta);
             }
         }

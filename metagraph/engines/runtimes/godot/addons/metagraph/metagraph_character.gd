@@ -5,7 +5,8 @@ extends Node
 ## Every request returns an id; answer(id) says what became of it. Nothing here fails while the game runs: what cannot be read
 ## when the node gets ready is pushed as an error, and the skeleton stays as it is.
 
-## An action began to play. layer: body, arms or head; meta: the request it belongs to, or what a model wrote.
+## An action began to play. layer: body, arms or head, or "speech": then action is the line's id, or the words; meta: the request it
+## belongs to, or what a model wrote.
 signal began(action: String, layer: String, meta: String)
 ## An action has ended.
 signal ended(action: String, layer: String, meta: String)

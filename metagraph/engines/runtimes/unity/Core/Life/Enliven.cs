@@ -59,17 +59,8 @@ namespace Metagraph
         /// <summary>Add breathing, gaze, lids and lips to a composed pose and its morph target weights.</summary>
         public void Add(Plan plan, double time, BodyPose pose)
         {
-            bool any = body.Face.Morphs.Count > 0;
-            if (any && !graph.KnowsMorphs)
-            {
-                Find(plan, time, graph.BaseRotations, graph.BaseTranslations);
-                Morphs(pose.Morphs);
-            }
             Find(plan, time, pose.Rotations, pose.Translations);
-            if (any && graph.KnowsMorphs)
-            {
-                Morphs(pose.Morphs);
-            }
+            Morphs(pose.Morphs);
             Turn(pose);
         }
 

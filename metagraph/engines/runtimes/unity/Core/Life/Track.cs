@@ -282,10 +282,15 @@ namespace Metagraph
             var old = new HashSet<Item>();
             old.UnionWith(Places.Where(p => p.Start <= seconds).GroupBy(p => p.Name).Select(group => group.Last()));
             old.UnionWith(Stays.Where(s => s.Start <= seconds).GroupBy(s => s.Layer).Select(group => group.Last()));
-            old.Add(Looks.LastOrDefault(x => x.Start <= seconds));
             old.Add(Modes.LastOrDefault(x => x.Start <= seconds));
-            return new Track(Items.Where(
-                i => i.Start > seconds || old.Contains(i) || ((i is LookAt || i is Speech) && i.End > seconds)));
+            var looks = new List<LookAt>(); // that no later one has replaced; what is over tells since when what shows has shown
+            foreach (LookAt look in Looks.Where(x => x.Start <= seconds))
+            {
+                looks.RemoveAll(x => x.Priority <= look.Priority);
+                looks.Add(look);
+            }
+            old.UnionWith(looks);
+            return new Track(Items.Where(i => i.Start > seconds || old.Contains(i) || (i is Speech && i.End > seconds)));
         }
 
         public bool Same(Track other)

@@ -8,7 +8,8 @@ const Planner = preload("planner.gd")
 const Pose = preload("pose.gd")
 const SLACK = 2.0  # seconds by which the horizon may fall behind before it is moved
 const FORGET_EVERY = 15.0  # seconds
-const REMEMBERED = 256  # answers kept of what is over or was never understood
+const LEAP = 3600.0  # seconds an update may move on: all that lies between is planned
+const REMEMBERED = 1000  # answers kept of what is over or was never understood, and happenings nobody asked for
 
 var graph
 var plan
@@ -19,10 +20,11 @@ var recent
 var idle
 var stances
 var _queue = []
-var _answers = {}  # of what is over, or was refused at once
-var _asked = {}
-var _number = 0
+var _asked = {}  # ids that the plan can tell of
+var _settled = {}  # answers of those it has forgotten or never heard of
+var _count = 0
 var _forgot_at = 0.0
+var _seen = -1.0  # when the update before was
 var _events = []
 var _pose = null
 
@@ -36,76 +38,143 @@ func _init(read_graph, options = {}):
 	ahead = float(options.get("ahead", 20.0))
 	recent = float(options.get("recent", 30.0))
 	plan = Planner.empty_plan(int(options.get("seed", graph.settings.get("seed32", 1))))
+	if graph.error == "":
+		plan = Hear.hear(graph, plan, 0.0, [], ahead, stances, idle)
 
 
-# Takes a request, to be worked in at the next update; returns its id. In place of `at` it may have `after`: seconds from now.
+# Takes a request, to be worked in at the next update; returns its id, made where there is none. It may have `after`: seconds from now,
+# which wins over `at`.
 func ask(request):
-	var data = request.duplicate() if typeof(request) == TYPE_DICTIONARY else request
-	if typeof(data) == TYPE_DICTIONARY and data.has("after"):
-		if Util.is_number(data["after"]):
-			data["at"] = now + Util.most(0.0, data["after"])
-			data.erase("after")
-	var found = Asks.read(data)
-	var ident = ""
-	if found[0] != null:
-		ident = found[0].id
-	elif typeof(data) == TYPE_DICTIONARY and typeof(data.get("id")) == TYPE_STRING:
+	_count += 1
+	var ident = "#%d" % _count
+	if graph.error != "":
+		return _refuse(ident, graph.error)
+	if typeof(request) != TYPE_DICTIONARY:
+		return _refuse(ident, "a request should be a record with 'do'")
+	var data = request.duplicate()
+	if typeof(data.get("id")) == TYPE_STRING and data["id"] != "":
 		ident = data["id"]
-	if ident == "":
-		_number += 1
-		ident = "#%d" % _number
+	data["id"] = ident
+	if data.has("after"):
+		var after = data["after"]
+		if not Util.is_finite_number(after) or after < 0:
+			return _refuse(ident, "after: should be a number of seconds from now")
+		data["at"] = now + after
+		data.erase("after")
+	var found = Asks.read(data)
 	if found[0] == null:
-		_keep_answer(ident, {state = "refused", at = null, until = null, what = [], why = found[1]})
-		return ident
-	found[0].id = ident
-	_answers.erase(ident)
+		return _refuse(ident, found[1])
+	_settled.erase(ident)
 	_asked[ident] = true
 	_queue.append(found[0])
 	return ident
 
 
-# Moves the clock on to `seconds`, never back, and plans what is to be planned.
+func _refuse(ident, why):
+	_settle(_told(ident, "refused", why))
+	return ident
+
+
+# Keeps an answer that will not change any more.
+func _settle(found):
+	_asked.erase(found.id)
+	_settled.erase(found.id)
+	_settled[found.id] = found
+	if _settled.size() > REMEMBERED:
+		_settled.erase(_settled.keys()[0])
+
+
+static func _told(ident, state, why):
+	return {id = ident, state = state, at = null, until = null, what = [], why = why}
+
+
+# Moves on to `seconds` of the character's own time, which begins at 0, never goes backwards, and leaps an hour at most. Plans what is
+# needed.
 func update(seconds):
 	if graph.error != "":
 		return
-	var before = now
-	var first = plan.end <= 0
-	now = Util.most(now, float(seconds))
+	if Util.is_finite_number(seconds) and seconds > now:
+		now = Util.least(float(seconds), now + LEAP)
 	_pose = null
-	var short = plan.end < now + ahead - SLACK
-	if _queue.size() > 0 or short or first:
+	_plan_on()
+	_listen()
+
+
+func _plan_on():
+	var far = plan.end >= now + ahead - Util.least(SLACK, ahead / 2.0)
+	if _queue.size() > 0 or not far:
 		var asks = _queue
 		_queue = []
-		plan = Hear.hear(graph, plan, now, asks, now + ahead if short or first else plan.end, stances, idle)
-	_events = []
-	for layer in Util.LAYERS:
-		for cue in plan.layers[layer].cues:
-			if cue.start <= now and (cue.start > before or first):
-				_events.append({kind = "begin", layer = layer, action = cue.action.name, meta = cue.meta, at = cue.start})
-			if cue.end <= now and (cue.end > before or first):
-				_events.append({kind = "end", layer = layer, action = cue.action.name, meta = cue.meta, at = cue.end})
-	_events = Util.by(_events, "at")
+		var heard = Hear.hear(graph, plan, now, asks, plan.end if far else now + ahead, stances, idle)
+		if heard != null:
+			plan = heard
+		for request in asks:
+			if heard == null:  # a fault of the runtime's own must not stop the game: the character goes on with the plan it has
+				_refuse(request.id, "the runtime failed")
+			elif request["do"] == "withdraw":
+				_settle(_told(request.id, "done", ""))
 	if now - _forgot_at >= FORGET_EVERY:
 		_forgot_at = now
-		_remember_answers(now - recent)
-		plan = Planner.since(plan, now - recent)
+		_forget(now - recent)
 
 
-# Returns what became of a request: {state: planned, late, done or refused, at, until: seconds or null, what: names of what plays, why}.
+# Forgets what is over, and settles the answers of what was asked for then.
+func _forget(over):
+	var known = Hear.answers(plan, _asked)
+	plan = Planner.since(plan, over)
+	var left = Hear.answers(plan, _asked)
+	for ident in known:
+		var found = known[ident]
+		# What the plan no longer knows was played; so was a look without an end that another has replaced.
+		if found.until != null and (found.until < over or left[ident].until == null):
+			found.state = "done"
+			_settle(found)
+		elif found.state == "refused" or found.state == "done":
+			_settle(found)
+
+
+# Notes what has begun or ended since the update before.
+func _listen():
+	var new = []
+	for layer in Util.LAYERS:
+		for cue in plan.layers[layer].cues:
+			if cue.start > now:
+				break
+			if cue.end > _seen:
+				_note(new, cue.start, cue.end, layer, cue.action.name, cue.meta.split("+")[0])  # what goes on after a cut is the same
+	for speech in plan.track.speeches:
+		_note(new, speech.start, speech.end, "speech", speech.text if speech.line == null else speech.line, speech.id)
+	_seen = now
+	if new.size() > 0:
+		_events += Util.by(new, "at")
+		_events = Util.part(_events, Util.most(0, _events.size() - REMEMBERED), _events.size())
+
+
+func _note(into, start, end, layer, action, meta):
+	if start > _seen and start <= now:
+		into.append({kind = "begin", at = start, layer = layer, action = action, meta = meta})
+	if end > _seen and end <= now:
+		into.append({kind = "end", at = end, layer = layer, action = action, meta = meta})
+
+
+# Returns what became of a request: {id, state: planned, late, done or refused, at, until: seconds or null, what: names of what plays, why}.
 func answer(ident):
-	if _answers.has(ident):
-		return _answers[ident]
+	if _settled.has(ident):
+		return _settled[ident]
+	if not _asked.has(ident):
+		return _told(ident, "refused", "nothing was asked for as '%s'" % str(ident))
 	for waiting in _queue:
 		if waiting.id == ident:
-			return {state = "planned", at = null, until = null, what = [], why = "taken up at the next update"}
-	if not _asked.has(ident):
-		return {state = "refused", at = null, until = null, what = [], why = "nothing of this id was asked"}
+			return _told(ident, "planned", "taken up at the next update")
 	return Hear.answer(plan, ident)
 
 
-# Returns what began and what ended in the last update: [{kind: "begin" or "end", layer, action: its name, meta, at}].
+# Returns what began and ended since this was last asked for, by time, of more than 1000 the latest: [{kind: "begin" or "end", at, layer:
+# "speech" for what is said, action: its name, of what is said the line's id, else the text, meta: the request's id}].
 func events():
-	return _events
+	var happened = _events
+	_events = []
+	return happened
 
 
 # Returns the pose of now: {rotations [J] local quaternions, translations [J] local metres, morphs {name: weight}}, of `graph.names`.
@@ -118,23 +187,3 @@ func pose():
 func morphs():
 	var found = pose()
 	return found.morphs if found != null else {}
-
-
-# Keeps the answers of what will be forgotten.
-func _remember_answers(seconds):
-	for ident in _asked.keys():
-		var found = Hear.answer(plan, ident)
-		if found.until != null and found.until < seconds:
-			_asked.erase(ident)
-			found.state = "done"
-			_keep_answer(ident, found)
-		elif found.until == null and found.state != "planned" and found.state != "late":
-			_asked.erase(ident)
-			_keep_answer(ident, found)
-
-
-func _keep_answer(ident, found):
-	_answers.erase(ident)
-	_answers[ident] = found
-	while _answers.size() > REMEMBERED:
-		_answers.erase(_answers.keys()[0])

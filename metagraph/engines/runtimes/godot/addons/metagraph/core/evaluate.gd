@@ -124,11 +124,6 @@ static func blink_at(lane, life, time):
 	return out
 
 
-# Returns the morph target weights of the life layers alone. pose: the composed pose, against which eyes hold.
-static func face_weights(graph, plan, time, pose):
-	return _morphs(graph.rig.face, _found(graph, plan, time, pose))
-
-
 static func _morphs(face, found):
 	if face.morphs.size() == 0:
 		return {}

@@ -35,7 +35,6 @@ var points = {}  # name -> Vector3
 var lines = {}
 var voices = {}  # line -> voice, see voice.gd
 var said = {}  # voices made from letters, by text and length
-var face_morphs = false
 var still_frame = {turns = [], shifts = {}}  # the base pose, as a clip's frame
 var frames = {}  # those of clips that were made so far, see clip.gd
 var _index = {}  # layer/kind/stance -> actions, in the order they were placed
@@ -75,7 +74,6 @@ func _read(json, bytes):
 		points[name] = Util.vector(data.points[name])
 	for line in data.voices:
 		voices[line] = data.voices[line]
-	face_morphs = data.face.get("morphs", []).size() > 0
 	for layer in Util.LAYERS:
 		_read_layer(layer, data.layers[layer])
 	if data.rig != null:
@@ -112,8 +110,8 @@ func _read_layer(layer, data):
 		var action = each.duplicate()
 		action.layer = layer
 		if action.kind == "gesture" and (each.phases == null or each.phases.size() != 4):
-			var middle = (each.start + each.end) / 2.0
-			action.phases = [middle, middle, middle, middle]  # ready, stroke, stroke end, relax
+			var stroke = (each.start + each.end) / 2.0 if each.stroke == null else Util.within(each.stroke, each.start, each.end)
+			action.phases = [stroke, stroke, stroke, stroke]  # ready, stroke, stroke end, relax
 		action.cooldown = 0.0 if each.cooldown == null else each.cooldown
 		action.still = _still(action)
 		actions[action.id] = action

@@ -69,46 +69,72 @@ static func owners(ident):
 		out.append(ident)
 
 
-# Says what a plan does about an ask: {state: planned, late, done or refused, at, until: seconds or null, what: words, why}.
+# Says what a plan does about an ask: {id, state: planned, late, done or refused, at, until: seconds or null, what: words, why}.
 static func answer(plan, ident):
-	var starts = []
-	var ends = []
-	var what = []
-	var waiting = []
+	return answers(plan, [ident])[ident]
+
+
+# Says what a plan does about each of many asks, {id: answer}, in time that grows with the plan alone.
+static func answers(plan, idents):
+	var found = {}
+	for ident in idents:
+		found[ident] = {starts = [], ends = [], what = [], waiting = [], why = [], late = false, there = false, all_played = true}
 	for layer in plan.layers:
 		for cue in plan.layers[layer].cues:
-			if owners(cue.meta.split("+")[0]).has(ident):
-				starts.append(cue.start)
-				ends.append(cue.end)
-				what.append(cue.action.name)
+			for each in _of(found, cue.meta.split("+")[0]):
+				_plays(each, cue.start, cue.end, cue.action.name)
 		for meta in plan.layers[layer].metas:
-			if meta.start >= plan.end and owners(meta.request.id).has(ident):
-				waiting.append(meta.start)
+			if meta.start >= plan.end:
+				for each in _of(found, meta.request.id):
+					each.waiting.append(meta.start)
 	for item in Track.items(plan.track):
-		if item.list != "stays" and owners(item.id).has(ident):
-			starts.append(item.start)
-			ends.append(item.get("end", item.start))
-			what.append(WORDS[item.list])
-	var why = []
-	var late = false
-	var there = false
-	var all_played = true
+		if item.list != "stays":
+			for each in _of(found, item.id):
+				_plays(each, item.start, item.get("end", item.start), WORDS[item.list])
 	for report in plan.reports:
-		if owners(report.request).has(ident):
-			if not why.has(report.message):
-				why.append(report.message)
-			late = late or ["late", "queued", "resumed"].has(report.outcome)
-			there = there or report.outcome == "already-there"
-			all_played = all_played and report.played
-	var told = why.size() > 0
-	var words = ""
-	for message in why:
-		words += message if words == "" else "; " + message
-	if starts.size() > 0:
-		return {state = "late" if late else "planned", at = starts.min(), until = ends.max(), what = what, why = words}
-	if there:
-		return {state = "done", at = null, until = null, what = [], why = words}
-	if waiting.size() > 0 and all_played:
-		var state = "late" if told else "planned"
-		return {state = state, at = waiting[0], until = null, what = [], why = words if told else "chosen when its time is nearer"}
-	return {state = "refused", at = null, until = null, what = [], why = words if told else "nothing came of it"}
+		for each in _of(found, report.request):
+			if not each.why.has(report.message):
+				each.why.append(report.message)
+			each.late = each.late or ["late", "queued", "resumed"].has(report.outcome)
+			each.there = each.there or report.outcome == "already-there"
+			each.all_played = each.all_played and report.played
+	var out = {}
+	for ident in found:
+		out[ident] = _answer(ident, found[ident])
+	return out
+
+
+# Returns what was found so far of the asks that something in the plan belongs to.
+static func _of(found, made):
+	var out = []
+	for owner in owners(made):
+		if found.has(owner):
+			out.append(found[owner])
+	return out
+
+
+static func _plays(each, start, end, word):
+	each.starts.append(start)
+	each.ends.append(end)
+	each.what.append(word)
+
+
+static func _answer(ident, found):
+	var told = found.why.size() > 0
+	var why = ""
+	for message in found.why:
+		why += message if why == "" else "; " + message
+	var out = {id = ident, state = "refused", at = null, until = null, what = found.what, why = why}
+	if found.starts.size() > 0:
+		out.state = "late" if found.late else "planned"
+		out.at = found.starts.min()
+		out.until = found.ends.max()
+	elif found.there:
+		out.state = "done"
+	elif found.waiting.size() > 0 and found.all_played:
+		out.state = "late" if told else "planned"
+		out.at = found.waiting[0]
+		out.why = why if told else "chosen when its time is nearer"
+	elif not told:
+		out.why = "nothing came of it"
+	return out

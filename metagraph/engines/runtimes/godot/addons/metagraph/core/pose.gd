@@ -12,14 +12,9 @@ static func pose_at(graph, plan, time, alive = true):
 	var composed = _compose(graph, plan, time)
 	var morphs = _layers_morphs(graph, plan, time)
 	if alive and graph.life.on and graph.rig != null and not graph.rig.empty and plan.life.end > 0:
-		var out = Evaluate.enliven(graph, plan, time, composed)
-		var more = out.morphs
-		if graph.rig.face.morphs.size() > 0 and not graph.face_morphs:
-			var base = {rotations = graph.base_rotations, translations = graph.base_translations}
-			more = Evaluate.face_weights(graph, plan, time, base)
-		composed = out
-		for name in more:
-			morphs[name] = morphs.get(name, 0.0) + more[name]
+		composed = Evaluate.enliven(graph, plan, time, composed)
+		for name in composed.morphs:
+			morphs[name] = morphs.get(name, 0.0) + composed.morphs[name]
 	for name in morphs:
 		morphs[name] = Util.least(1.0, Util.most(0.0, morphs[name]))
 	composed.morphs = morphs

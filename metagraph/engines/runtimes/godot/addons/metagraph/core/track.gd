@@ -75,10 +75,22 @@ static func since(track, seconds):
 				last[_thing(track[list][n])] = n
 		for n in range(track[list].size()):
 			var item = track[list][n]
-			var goes_on = (list == "looks" or list == "speeches") and item.end > seconds
-			var holds = list != "speeches" and list != "blinks" and last.get(_thing(item), -1) == n
+			var goes_on = list == "speeches" and item.end > seconds
+			var holds = ["modes", "places", "stays"].has(list) and last.get(_thing(item), -1) == n
 			if item.start > seconds or goes_on or holds:
 				out[list].append(item)
+	out.looks = _standing(track.looks, seconds) + out.looks
+	return out
+
+
+# Returns the looks begun by `seconds` that no later one has replaced; what is over, too: it tells since when what shows has shown.
+static func _standing(looks, seconds):
+	var out = []
+	for look in looks:
+		if look.start <= seconds:
+			while out.size() > 0 and out[-1].priority <= look.priority:
+				out.pop_back()
+			out.append(look)
 	return out
 
 

@@ -128,6 +128,11 @@ static func is_number(value):
 	return typeof(value) == TYPE_INT or typeof(value) == typeof(0.5)
 
 
+# Returns whether a value is a number, and a finite one.
+static func is_finite_number(value):
+	return is_number(value) and not is_nan(value) and not is_inf(value)
+
+
 # Returns whether two values are the same; lists and records by what they hold.
 static func same(a, b):
 	if is_number(a) and is_number(b):
