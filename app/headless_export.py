@@ -13,6 +13,7 @@ from metagraph.engines.export import ExportError
 from metagraph.errors import FileError
 
 LOOK = 0.3  # seconds between two looks at the project file
+SHOWN = 8  # files named on the screen
 
 
 def export(options: Namespace) -> int:
@@ -108,5 +109,8 @@ def _once(options: Namespace) -> None:
         "losses": list(made.losses),
         "warnings": list(made.warnings),
     }
-    say(options, "\n".join(data["files"]), data)
+    shown = (
+        data["files"] if len(files) <= SHOWN else [*data["files"][: SHOWN - 1], f"... and {len(files) - SHOWN + 1} more in {options.out}"]
+    )
+    say(options, "\n".join(shown), data)
     sys.stdout.flush()

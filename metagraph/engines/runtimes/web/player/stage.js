@@ -63,6 +63,8 @@ export class Stage {
     const look = getComputedStyle(document.documentElement);
     this.scene.background = new Color(look.getPropertyValue("--ground").trim());
     this.floor.material.color.set(look.getPropertyValue("--floor").trim());
+    const line = new Color(look.getPropertyValue("--dim").trim());
+    this.bones?.setColors(line, line);
   }
 
   view(target = TARGET, scale = 1) {
@@ -92,7 +94,9 @@ export class Stage {
     this.scene.add(scene);
     if (!drawn) {
       scene.traverse((object) => (object.isBone = object.isBone || (!object.isMesh && object !== scene)));
-      this.scene.add(new SkeletonHelper(scene));
+      this.bones = new SkeletonHelper(scene);
+      this.scene.add(this.bones);
+      this.paint();
     }
     const bounds = new Box3().setFromObject(scene);
     const height = bounds.max.y - bounds.min.y;
