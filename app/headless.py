@@ -130,7 +130,7 @@ def info(options: Namespace) -> int:
         say(options, "\n".join(lines), data)
         return 0
     if path.suffix == ".json":
-        from metagraph.engines.export import read_export
+        from metagraph.engines.reading import read_export
 
         project = read_export(path, motions=False)
     else:

@@ -18,7 +18,7 @@ from typing import Any, Literal
 
 import msgspec
 
-from metagraph.engines.export import read_export
+from metagraph.engines.reading import read_export
 from metagraph.graph import asks as a
 from metagraph.graph.model import LAYERS, Layer, Project
 from metagraph.motion.skeleton import Pose

@@ -8,38 +8,28 @@ from dataclasses import dataclass, replace
 from pathlib import Path
 
 import msgspec
-import numpy as np
 
 from metagraph.engines import contract as c
-from metagraph.engines.rig import LIFELESS, read_rig, read_voices, rig_of, voices_of
+from metagraph.engines.rig import rig_of, voices_of
 from metagraph.errors import FileError
 from metagraph.formats.atomic import write_atomically
-from metagraph.formats.data import above, markov_from, skeleton_from
-from metagraph.formats.fields import DataError
 from metagraph.graph import anatomy
 from metagraph.graph.check import check
 from metagraph.graph.expand import connections
-from metagraph.graph.face import CHANNELS
 from metagraph.graph.model import (
     KINDS,
     LAYERS,
     REACH,
     Action,
-    BasePose,
     ClipEntry,
-    Layer,
-    Markov,
     MetaGraph,
     Project,
     Settings,
-    Stance,
-    Timing,
 )
 from metagraph.motion.character import Character
 from metagraph.motion.clip import Clip
 from metagraph.motion.skeleton import Skeleton, unique_names
 from metagraph.playback import choice, markov
-from metagraph.playback.life.body import Body
 from metagraph.playback.phases import LEAST_BLEND, phases
 from metagraph.playback.pick import HURRY, LOOP_FADE
 from metagraph.playback.planner import WINDOW
@@ -304,155 +294,6 @@ def _expanded(project: Project, graph: MetaGraph) -> c.Expanded:
         [-1.0 if r.leave is None else r.leave for r in rows],
         [r.blend for r in rows],
     )
-
-
-def read_export(path: str | Path, motions: bool = True, resolved: bool = False) -> Project:
-    """Read an export back into a project with the same graph, ids and constants. motions: load the clips from its GLB. resolved: take
-    gestures' phases, the base pose and the rig as the export has them, as a runtime does, instead of finding them anew.
-
-    Raises FileError naming the field that is wrong as a path into the JSON.
-    """
-    path = Path(path)
-    try:
-        document = msgspec.json.decode(path.read_bytes(), type=c.Export)
-    except OSError as error:
-        raise FileError(path, f"cannot be read ({error.strerror})", "on opening it", "Check that it is there.") from None
-    except (msgspec.MsgspecError, RecursionError, UnicodeDecodeError) as error:
-        cause, _, where = str(error).partition(" - at ")
-        where = where.strip("`") or "$"
-        remedy = "Update Metagraph, or export it again." if where == "$.metagraph" else "Export it again."
-        raise FileError(path, cause[:1].lower() + cause[1:], where, remedy) from None
-    try:
-        return _project(path, document, motions, resolved)
-    except DataError as error:
-        raise FileError(path, str(error), error.where, "Export it again.") from None
-
-
-def _project(path: Path, document: c.Export, motions: bool, resolved: bool) -> Project:
-    """Return the project of a decoded export. Raises DataError for what its types alone cannot say."""
-    if missing := [layer for layer in LAYERS if layer not in document.layers]:
-        raise DataError("$.layers", f"layer '{missing[0]}' is missing")
-    if "/" in document.glb or "\\" in document.glb:
-        raise DataError("$.glb", "should be the name of a file beside this one")
-    skeleton = _skeleton(document.joints)
-    takes: list[Clip] = []
-    if motions:
-        from metagraph.formats.gltf import read_gltf_clips
-
-        takes = read_gltf_clips(path.parent / document.glb)
-    # Clips of one frame are passed over where a file has longer ones, so they do not count as takes.
-    longer = sorted(x.animation for x in document.clips if x.frames > 1) or [x.animation for x in document.clips]
-    clips: dict[str, ClipEntry] = {}
-    for n, clip in enumerate(document.clips):
-        if clip.id in clips:
-            raise DataError(f"$.clips[{n}].id", f"'{clip.id}' is used twice")
-        if motions and clip.animation >= len(takes):
-            raise DataError(f"$.clips[{n}].animation", f"the GLB has {len(takes)} animations, no number {clip.animation}")
-        motion = takes[clip.animation] if motions else None
-        motion = replace(motion, skeleton=skeleton) if motion is not None and motion.skeleton.names == skeleton.names else motion
-        take = longer.index(clip.animation) if clip.animation in longer else len(longer) + n
-        clips[clip.id] = ClipEntry(clip.id, clip.name, document.glb, take, clip.sha256, clip.frames, clip.fps, motion)
-    p = document.planner
-    base = BasePose(document.base.clip, document.base.frame)
-    body = None
-    if resolved:
-        clips[BASE] = _base(document, skeleton)
-        base = BasePose(BASE)
-        body = _body(document.rig, skeleton) if document.rig is not None else LIFELESS
-    graphs: dict[Layer, MetaGraph] = {layer: _graph(layer, document.layers[layer], resolved) for layer in LAYERS}
-    return Project(
-        name=document.name,
-        skeleton=skeleton,
-        clips=clips,
-        graphs=graphs,
-        base=base,
-        roles=dict(document.roles),
-        parts=dict(document.parts),
-        markov={layer: _markov(layer, document.layers[layer].markov) for layer in LAYERS if document.layers[layer].own_markov},
-        settings=Settings(p.alpha, p.seed, p.never_twice, p.shortest, p.wait, p.memory, p.rest, p.lookahead),
-        life=document.life,
-        body=body,
-        face=document.face,
-        points=dict(document.points),
-        lines=dict(document.lines),
-        performances=dict(document.performances),
-        voices=read_voices(document.voices),
-        next_id=above(*clips, *(i for g in graphs.values() for i in (*g.stances, *g.actions))),
-    )
-
-
-BASE = "base pose"  # id of a clip of one frame that stands for the exported base pose
-
-
-def _base(document: c.Export, skeleton: Skeleton) -> ClipEntry:
-    """Return a clip of the base pose as the export has it; that of the GLB's clip is rounded."""
-    base, joints = document.base, len(skeleton)
-    for field, rows in (("rotations", base.rotations), ("translations", base.translations)):
-        if len(rows) != joints:
-            raise DataError(f"$.base.{field}", f"should be {joints} rows, one for each joint")
-    motion = Clip(BASE, skeleton, 30.0, np.array([base.rotations]), np.array([base.translations]), tuple(range(joints)))
-    return ClipEntry(BASE, BASE, document.glb, 0, "", 1, 30.0, motion)
-
-
-def _body(rig: c.Rig, skeleton: Skeleton) -> Body:
-    """Return the body of an export's rig. Raises DataError where it does not fit the joints."""
-    faces = {len(rig.face.joints)} | {len(row) for row in (*rig.face.turns, *rig.face.shifts)}
-    joints = [*rig.chain, *rig.face.joints, *rig.face.lid_joints, *(s.joint for s in rig.shoulders), *(e.joint for e in rig.eyes)]
-    places = [rig.trunk, *(x.place for x in rig.lookers)]
-    fits = rig.chain and len(rig.breath) == len(rig.chain) and max(joints) < len(skeleton) and max(places) < len(rig.chain)
-    if not fits or len(faces) > 1 or {len(rig.face.turns), len(rig.face.shifts)} != {len(CHANNELS)}:
-        raise DataError("$.rig", "does not fit the joints")
-    return read_rig(rig)
-
-
-def _skeleton(joints: list[c.Joint]) -> Skeleton:
-    rows = [{"name": j.name, "parent": j.parent, "at": j.translation, "turn": j.rotation} for j in joints]
-    try:
-        found = skeleton_from(rows, "$.joints")
-    except DataError as error:
-        where = error.where.replace(".at", ".translation").replace(".turn", ".rotation")
-        raise DataError(where, str(error)) from None
-    if found is None:
-        raise DataError("$.joints", "should not be empty")
-    return found
-
-
-def _markov(layer: Layer, model: c.ExportedMarkov) -> Markov:
-    if model.tags and len(model.tags) != len(model.states):
-        raise DataError(f"$.layers.{layer}.markov.tags", f"should be {len(model.states)} texts, one for each state")
-    states = [
-        f"{limb} {kind} {tag}".rstrip() for (limb, kind), tag in zip(model.states, model.tags or [""] * len(model.states), strict=True)
-    ]
-    more = {"gap": model.gap, "positive": model.positive, "negative": model.negative, "lengths": model.lengths}
-    return markov_from(layer, {"states": states, "matrix": model.matrix, **more}, f"$.layers.{layer}.markov")
-
-
-def _graph(layer: Layer, data: c.ExportedLayer, resolved: bool) -> MetaGraph:
-    where = f"$.layers.{layer}"
-    stances: dict[str, Stance] = {}
-    for n, s in enumerate(data.stances):
-        if s.id in stances:
-            raise DataError(f"{where}.stances[{n}].id", f"'{s.id}' is used twice")
-        stances[s.id] = Stance(s.id, layer, s.name)
-    actions: dict[str, Action] = {}
-    for n, a in enumerate(data.actions):
-        if a.id in actions:
-            raise DataError(f"{where}.actions[{n}].id", f"'{a.id}' is used twice")
-        own: list[float | None] = list(a.own_phases) if len(a.own_phases) == 3 else [None] * 3
-        stroke = a.stroke
-        if resolved and len(a.phases) == 4:
-            (own[0], stroke), own[1:] = a.phases[:2], a.phases[2:]
-        elif resolved and a.kind == "gesture":  # an export that does not tell them yet
-            stroke = (a.start + a.end) / 2 if stroke is None else stroke
-            own = [stroke] * 3
-        timing = Timing(a.start, None if a.whole_end else a.end, a.blend_in, a.blend_out, a.loop, a.earliest_exit, stroke, *own)
-        actions[a.id] = Action(
-            a.id, a.clip, a.kind, layer, a.stance, a.name, a.end_stance, timing, a.limb, tuple(a.joints), tuple(a.tags), a.likelihood,
-            a.cooldown, a.spacing,
-        )  # fmt: skip
-    if unknown := [part for part in data.own_weights if part not in data.weights]:
-        raise DataError(f"{where}.own_weights", f"weights say nothing of '{unknown[0]}'")
-    return MetaGraph(layer, stances, actions, data.start, {part: data.weights[part] for part in data.own_weights})
 
 
 def schema_text() -> bytes:

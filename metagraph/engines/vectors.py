@@ -17,7 +17,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from metagraph.engines.export import read_export
+from metagraph.engines.reading import read_export
 from metagraph.engines.script import Case, Step, cases
 from metagraph.errors import FileError
 from metagraph.formats.atomic import write_atomically

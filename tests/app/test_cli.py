@@ -11,7 +11,7 @@ from pathlib import Path
 import pytest
 
 from app.cli import COMMANDS, main
-from metagraph.engines.export import read_export
+from metagraph.engines.reading import read_export
 from metagraph.formats.gltf import write_glb
 from metagraph.formats.store import SUFFIX, open_project, read_project, save_project
 from metagraph.graph import edits

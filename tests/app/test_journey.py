@@ -15,7 +15,8 @@ from PySide6.QtCore import QPoint, Qt
 from PySide6.QtTest import QTest
 from PySide6.QtWidgets import QFileDialog, QMessageBox
 
-from metagraph.engines.export import read_export, schema_text
+from metagraph.engines.export import schema_text
+from metagraph.engines.reading import read_export
 from metagraph.formats.store import open_project
 from metagraph.graph import asks as a
 

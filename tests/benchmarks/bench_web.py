@@ -1,7 +1,7 @@
 """How soon the web page shows its first pose: python tests/benchmarks/bench_web.py [project]
 
-From the navigation to the first frame drawn, in headless Chromium with a software renderer, from a server on this machine; median of five, of the
-sample project (152 clips) or another. Needs Node, Chromium and what tests/package.json names.
+From the navigation to the first frame drawn, in headless Chromium with a software renderer, from a server on this machine; median of
+five, of the sample project (152 clips) or another. Needs Node, Chromium and what tests/package.json names.
 """
 
 from __future__ import annotations

@@ -16,7 +16,8 @@ from hypothesis import strategies as st
 
 import metagraph
 from metagraph import Character
-from metagraph.engines.export import export, read_export
+from metagraph.engines.export import export
+from metagraph.engines.reading import read_export
 from metagraph.errors import FileError
 from metagraph.graph.asks import Gesture
 from metagraph.graph.model import Project

@@ -21,7 +21,8 @@ from hypothesis import strategies as st
 
 from metagraph.engines import export as engine
 from metagraph.engines.contract import FORMAT, schema
-from metagraph.engines.export import ExportError, export, read_export, schema_text, to_document
+from metagraph.engines.export import ExportError, export, schema_text, to_document
+from metagraph.engines.reading import read_export
 from metagraph.errors import FileError
 from metagraph.formats.gltf import read_gltf_clips
 from metagraph.formats.imports import gather, import_files

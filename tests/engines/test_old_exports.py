@@ -14,7 +14,7 @@ import numpy as np
 import pytest
 
 from metagraph import Character, engines
-from metagraph.engines.export import read_export
+from metagraph.engines.reading import read_export
 from metagraph.engines.vectors import check_vectors, write_vectors
 from metagraph.graph.check import check
 

@@ -13,7 +13,8 @@ from typing import Any
 
 import pytest
 
-from metagraph.engines.export import export, read_export
+from metagraph.engines.export import export
+from metagraph.engines.reading import read_export
 from metagraph.engines.script import Case, Step
 from metagraph.engines.vectors import write_vectors
 from metagraph.playback.life.voice import voice_from_text

@@ -14,7 +14,8 @@ from typing import Any
 import numpy as np
 import pytest
 
-from metagraph.engines.export import export, read_export
+from metagraph.engines.export import export
+from metagraph.engines.reading import read_export
 from metagraph.engines.vectors import write_vectors
 from metagraph.graph.asks import ask_from
 from metagraph.graph.model import LAYERS, Project

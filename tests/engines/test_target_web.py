@@ -15,7 +15,7 @@ import numpy as np
 import pytest
 from PIL import Image
 
-from metagraph.engines.export import read_export
+from metagraph.engines.reading import read_export
 from metagraph.engines.targets import registry, web
 from metagraph.engines.vectors import write_vectors
 from metagraph.graph.model import Project

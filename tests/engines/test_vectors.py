@@ -12,7 +12,8 @@ import pytest
 
 from metagraph import engines
 from metagraph.engines import vectors
-from metagraph.engines.export import export, read_export
+from metagraph.engines.export import export
+from metagraph.engines.reading import read_export
 from metagraph.errors import FileError
 from metagraph.graph.model import Project
 from metagraph.playback import choice, markov, pick, player, replan
