@@ -37,9 +37,8 @@ def main() -> None:
         told = subprocess.run(command, capture_output=True, text=True, check=True).stdout.splitlines()
         size = sum(p.stat().st_size for p in made.files if p.suffix in (".json", ".glb")) / 1e6
     times = [row["value"] for row in map(json.loads, told) if "value" in row]
-    print(
-        f"{made.clips} clips, {size:.1f} MB: first pose after {statistics.median(times):.0f} ms, median of {RUNS} ({min(times):.0f} to {max(times):.0f})"
-    )
+    spread = f"median of {RUNS} ({min(times):.0f} to {max(times):.0f})"
+    print(f"{made.clips} clips, {size:.1f} MB: first pose after {statistics.median(times):.0f} ms, {spread}")
 
 
 if __name__ == "__main__":
