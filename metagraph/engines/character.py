@@ -145,9 +145,9 @@ class Character:
                 if isinstance(ask, a.Withdraw):
                     self._settle(Answer(ask.id, "done", None, None, (), ""))
             self._queue = []
-        if self.now - self._cut >= CUT:
-            self._cut = self.now
-            self._forget(self.now - self._recent)
+        if self._seen - self._cut >= CUT:  # what has begun and ended since then is still to be told
+            self._cut = self._seen
+            self._forget(self._seen - self._recent)
 
     def _forget(self, over: float) -> None:
         """Forget what is over, and settle the answers of what was asked for then."""

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import math
 import re
 import subprocess
 import sys
@@ -74,6 +75,60 @@ def test_time_does_not_run_backwards(stick: Project) -> None:
     character.update(3.0)
     character.update(1.0)
     assert character.now == 3.0
+
+
+def test_a_leap_is_an_hour_at_most_and_what_is_no_time_is_ignored(stick: Project) -> None:
+    character = Character(stick)
+    character.update(1e9)
+    assert character.now == 3600.0
+    for odd in (math.nan, math.inf, -math.inf, "7200", None, True, 10**400):
+        character.update(odd)
+    assert character.now == 3600.0
+    character.update(np.float32(3601.5))
+    assert character.now == 3601.5
+
+
+@pytest.mark.parametrize(
+    "odd", [None, 3, "nod", [], {"do": "nod", "after": 10**400}, {"do": "nod", "after": True}, {"do": "nod", "at": 10**400}]
+)
+def test_what_is_no_request_is_refused(stick: Project, odd: Any) -> None:
+    character = Character(stick)
+    ident = character.ask(odd)
+    character.update(1.0)
+    assert ident == "#1"
+    assert character.answer(ident).state == "refused"
+
+
+def test_a_fault_of_the_planner_does_not_stop_the_game(stick: Project, monkeypatch: pytest.MonkeyPatch) -> None:
+    character = Character(stick)
+    plan = character.plan
+    with monkeypatch.context() as broken:
+        broken.setattr("metagraph.engines.character.hear", lambda *_: 1 // 0)
+        ident = character.ask({"do": "nod"})
+        character.update(1.0)
+        assert character.answer(ident).state == "refused"
+        assert "failed" in character.answer(ident).why
+        assert character.plan is plan
+    again = character.ask({"do": "nod", "id": ident})
+    character.update(1.1)
+    assert character.answer(again).state in ("planned", "late")
+
+
+def test_a_thousand_answers_are_remembered(stick: Project) -> None:
+    character = Character(stick)
+    idents = [character.ask({"do": "dance"}) for _ in range(1001)]
+    assert "known" in character.answer(idents[1]).why
+    assert "nothing was asked for" in character.answer(idents[0]).why
+
+
+def test_a_look_that_another_replaced_was_played_and_is_forgotten(stick: Project) -> None:
+    character = Character(stick)
+    idents = []
+    for second in range(200):
+        idents.append(character.ask({"do": "look", "to": "door" if second % 2 else "ahead"}))
+        character.update(float(second))
+    assert {character.answer(ident).state for ident in idents[:150]} == {"done"}
+    assert len(character.plan.track.looks) < 60
 
 
 anything = st.recursive(

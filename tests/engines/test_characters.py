@@ -22,6 +22,7 @@ CONFORMANCE = Path(engines.__file__).with_name("conformance")
 SEED, AHEAD, RECENT = 5, 20.0, 5.0  # a short memory, so that much is forgotten within the script
 STEPS = (0.013, 0.047, 0.2, 0.111, 0.029)  # seconds between updates
 FRAMES = 500
+UNHEARD = 120  # more updates, quarters of a minute apart, after which it is asked for the first time again what happened
 SHOWN = range(49, FRAMES, 50)  # frames at which answers, poses and morph targets are compared
 
 ASKED: dict[int, list[Any]] = {
@@ -34,6 +35,8 @@ ASKED: dict[int, list[Any]] = {
         {"do": "nod", "id": "", "after": 0.4},
     ],
     80: [{"do": "stance", "stance": "on hips", "stay": True, "id": "stay"}],
+    90: [{"do": "fidget", "layer": "head", "id": "r", "duration": 9, "resume": True, "after": 1.5}],
+    100: [{"do": "shake", "priority": 5, "after": 4}],
     130: [{"do": "say", "line": "hello", "id": "say"}, {"do": "look", "to": "user", "duration": 1.5, "priority": 3}],
     170: [{"do": "say", "text": "No, wait!"}],
     200: [{"do": "withdraw", "what": "g"}, {"do": "withdraw", "what": "stay", "id": "w"}, {"do": "gesture", "id": "g", "after": 1.5}],
@@ -59,7 +62,9 @@ def script() -> list[dict[str, Any]]:
         looks = [{"do": "look", "to": "ahead" if frame % 2 else "door", "priority": frame % 3}] if frame % 13 == 12 else []
         out.append({"now": told, "ask": [*ASKED.get(frame, []), *looks], "hear": frame % 7 == 6, "show": frame in SHOWN})
         now += STEPS[frame % len(STEPS)]
-    return [*out, {"now": 1e9, "ask": [], "hear": True, "show": True}]
+    unheard = [{"now": now + 15.0 * n, "ask": [], "hear": n == UNHEARD, "show": n == UNHEARD} for n in range(1, UNHEARD + 1)]
+    leap = {"now": 1e9, "ask": [], "hear": True, "show": True}
+    return [*out, *unheard, leap, leap]
 
 
 def in_python(export: Path, steps: list[dict[str, Any]], folder: Path) -> dict[str, Any]:
@@ -277,9 +282,12 @@ def test_the_script_has_something_of_everything(wanted: Made) -> None:
     assert states == {"planned", "late", "refused", "done"}
     assert {layer for _, _, layer, _, _ in found["events"]} == {"body", "arms", "head", "speech"}
     assert found["ids"][:5] == ["#1", "#2", "#3", "#4", "g"]
-    *times, leapt = [shown["now"] for shown in found["shown"]]
-    assert times == sorted(times)
-    assert leapt == pytest.approx(sum(STEPS[frame % len(STEPS)] for frame in range(FRAMES - 1)) + 3600)
+    *times, heard, once, twice = [shown["now"] for shown in found["shown"]]
+    assert (once, twice) == pytest.approx((heard + 3600, heard + 7200))
+    told = [event[1] for event in found["events"]]
+    assert told == sorted(told)
+    assert sum(times[-1] < at <= heard for at in told) == 1000, "the latest are kept, and no more"
+    assert sum(heard < at <= once for at in told) > 5, "what a leap has passed over is told"
 
 
 needs_node = pytest.mark.skipif(shutil.which("node") is None, reason="needs Node 18 or newer")

@@ -37,22 +37,22 @@ def game(tmp_path: Path) -> Path:
     return folder
 
 
-def godot(game: Path, script: str, *words: object) -> tuple[int, str]:
-    """Run a script of the project until it quits; return its exit code and what it printed. No script may run into an error."""
+def godot(game: Path, script: str, *words: object, fails: bool = False) -> tuple[int, str]:
+    """Run a script of the project until it quits; return its exit code and what it printed. fails: whether it runs into an error."""
     env = {**os.environ, "HOME": str(game), "LC_ALL": "C.UTF-8"}
     command = [str(GODOT), "--no-window", "-s", script, *map(str, words)]
     done = subprocess.run(command, cwd=game, env=env, capture_output=True, text=True, errors="replace", timeout=300)
     told = done.stdout + done.stderr
-    assert "SCRIPT ERROR" not in told, told[-2000:]
+    assert ("SCRIPT ERROR" in told) == fails, told[-2000:]
     return done.returncode, done.stdout
 
 
-def run(game: Path, body: str, *words: object) -> Any:
-    """Run a function body that fills `out`, with `args`, and return `out`."""
+def run(game: Path, body: str, *words: object, fails: bool = False) -> Any:
+    """Run a function body that fills `out`, with `words()`, and return `out`."""
     lines = "\n".join("\t" + line for line in body.strip().splitlines())
     (game / "test.gd").write_text(f"{HEAD}\nfunc _init():\n\tvar out = []\n{lines}\n\tprint('OUT ' + to_json(out))\n\tquit()\n")
     (game / "words.json").write_text(json.dumps(words, ensure_ascii=False))
-    code, told = godot(game, "test.gd")
+    code, told = godot(game, "test.gd", fails=fails)
     assert code == 0, told
     return json.loads(next(line for line in told.splitlines() if line.startswith("OUT "))[4:])
 
@@ -320,6 +320,27 @@ for id in ids:
     for request in right:
         (answer,) = run(game, body, str(PERFORM), [request])
         assert answer["why"] in ("", "nothing came of it") or answer["state"] != "refused", request
+
+
+@needs_godot
+def test_a_fault_of_its_own_does_not_stop_the_game(game: Path) -> None:
+    body = """
+var graph = read(words()[0])
+var character = Character.new(graph, {"seed": 3})
+var settings = graph.settings
+graph.settings = {}
+var id = character.ask({"do": "nod"})
+character.update(1.0)
+out.append(character.answer(id).state)
+graph.settings = settings
+var again = character.ask({"do": "nod"})
+character.update(2.0)
+out.append(character.answer(again).state)
+out.append(character.pose().rotations.size())
+"""
+    failed, again, joints = run(game, body, str(PERFORM), fails=True)
+    assert (failed, joints) == ("refused", 18)
+    assert again in ("planned", "late")
 
 
 @needs_godot

@@ -362,6 +362,28 @@ def test_what_cannot_be_understood_is_refused_with_words_and_never_thrown() -> N
         assert reply["why"], request
 
 
+def test_a_fault_of_its_own_does_not_stop_the_game() -> None:
+    found = run(
+        """
+        const graph = load(text, glb);
+        const character = new Character(graph, { seed: 3 });
+        const { settings } = graph;
+        graph.settings = null;
+        const id = character.ask({ do: "nod" });
+        character.update(1);
+        const failed = character.answer(id);
+        graph.settings = settings;
+        const again = character.ask({ do: "nod" });
+        character.update(2);
+        say({ failed, again: character.answer(again), finite: character.pose().rotations.every(Number.isFinite) });
+        """
+    )
+    assert found["failed"]["state"] == "refused"
+    assert "failed" in found["failed"]["why"]
+    assert found["again"]["state"] in ("planned", "late")
+    assert found["finite"]
+
+
 def test_bml_is_not_understood_by_a_runtime() -> None:
     script = "const plan = hear(load(text, glb), emptyPlan(1), 0, [{ do: 'bml', bml: '<bml/>', id: 'b' }], 5); say(plan.reports.at(-1))"
     assert run(script)["outcome"] == "not-understood"

@@ -101,9 +101,9 @@ export class Character {
       for (const { id, do: what } of queue) if (what === "withdraw") this.finish({ id, ...done });
       this.queue = [];
     }
-    if (now - this.forgot < FORGETTING) return;
-    this.forgot = now;
-    this.forget(now - this.recent);
+    if (this.seen - this.forgot < FORGETTING) return;
+    this.forgot = this.seen; // what has begun and ended since then is still to be told
+    this.forget(this.seen - this.recent);
   }
 
   /** Forget what is over, and settle the answers of what was asked for then. */
@@ -125,7 +125,8 @@ export class Character {
     for (const layer of LAYERS) {
       for (const { start, end, meta, action } of this.plan.layers[layer].cues) {
         if (start > now) break;
-        if (end > seen) this.note(start, end, layer, action.name, meta.split("+")[0]); // what goes on after a cut is the same request
+        if (end <= seen || (start <= seen && end > now)) continue;
+        this.note(start, end, layer, action.name, meta.split("+")[0]); // what goes on after a cut is the same request
       }
     }
     for (const { start, end, line, text, id } of this.plan.track.speeches) this.note(start, end, "speech", line ?? text, id);

@@ -154,10 +154,10 @@ namespace Metagraph
                 queue.FindAll(ask => ask.Do == "withdraw").ForEach(ask => Settle(new Answer { Id = ask.Id, State = "done" }));
                 queue.Clear();
             }
-            if (Now - cutAt >= Cut)
+            if (seen - cutAt >= Cut)
             {
-                cutAt = Now;
-                Forget(Now - options.Recent);
+                cutAt = seen; // what has begun and ended since then is still to be told
+                Forget(seen - options.Recent);
             }
         }
 

@@ -113,9 +113,9 @@ func _plan_on():
 				_refuse(request.id, "the runtime failed")
 			elif request["do"] == "withdraw":
 				_settle(_told(request.id, "done", ""))
-	if now - _forgot_at >= FORGET_EVERY:
-		_forgot_at = now
-		_forget(now - recent)
+	if _seen - _forgot_at >= FORGET_EVERY:
+		_forgot_at = _seen  # what has begun and ended since then is still to be told
+		_forget(_seen - recent)
 
 
 # Forgets what is over, and settles the answers of what was asked for then.
@@ -140,7 +140,7 @@ func _listen():
 		for cue in plan.layers[layer].cues:
 			if cue.start > now:
 				break
-			if cue.end > _seen:
+			if cue.end > _seen and (cue.start > _seen or cue.end <= now):
 				_note(new, cue.start, cue.end, layer, cue.action.name, cue.meta.split("+")[0])  # what goes on after a cut is the same
 	for speech in plan.track.speeches:
 		_note(new, speech.start, speech.end, "speech", speech.text if speech.line == null else speech.line, speech.id)
