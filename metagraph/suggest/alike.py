@@ -1,0 +1,198 @@
+"""What is labelled already teaches what is like it: words of names and measures of motion, counted anew whenever they are asked.
+
+Words vote as in naive Bayes (each word's counts by label, one added to each), measures by their nearest neighbours. How sure a guess is
+comes from the labelled clips themselves: each is guessed from all the others, and of those that were guessed as firmly as this one, the
+share that was right is the confidence.
+"""
+
+from __future__ import annotations
+
+from collections import Counter
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from functools import cached_property
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from metagraph.suggest.belief import Belief
+
+Array = NDArray[Any]
+
+NEIGHBOURS = 5
+LEAST = 4  # labelled clips below which nothing is said
+WORDS_PART = 0.6  # how much words count beside motion, where there are both
+
+
+@dataclass(frozen=True, eq=False)
+class Example:
+    """A labelled clip. words: of its name, small letters. measures `[d]`: of its motion, nan where one is not known; may be empty.
+    labels: field -> what it was labelled as."""
+
+    words: tuple[str, ...]
+    measures: Array
+    labels: Mapping[str, str]
+
+    def to_data(self) -> dict[str, Any]:
+        """Return it as plain data, to be kept for later projects."""
+        measures = [round(float(x), 6) if np.isfinite(x) else None for x in self.measures]
+        return {"words": list(self.words), "measures": measures, "labels": dict(self.labels)}
+
+
+def example_from(data: Any) -> Example:
+    """Return the example plain data says. Raises ValueError naming what is wrong."""
+    if not isinstance(data, Mapping):
+        raise ValueError("an example should be an object")
+    words, measures, labels = data.get("words"), data.get("measures", []), data.get("labels")
+    if not isinstance(words, list) or not all(isinstance(w, str) for w in words):
+        raise ValueError("words: should be texts")
+    if not isinstance(measures, list) or not all(x is None or _number(x) for x in measures):
+        raise ValueError("measures: should be numbers")
+    if not isinstance(labels, Mapping) or not all(isinstance(k, str) and isinstance(v, str) for k, v in labels.items()):
+        raise ValueError("labels: should be texts")
+    return Example(tuple(words), np.array([np.nan if x is None else x for x in measures], float), dict(labels))
+
+
+def _number(x: object) -> bool:
+    return isinstance(x, int | float) and not isinstance(x, bool)
+
+
+class Alike:
+    """A classifier of all fields that examples are labelled with. Examples whose measures have another length than most are read by
+    their words alone."""
+
+    def __init__(self, examples: Sequence[Example]) -> None:
+        self.examples = tuple(examples)
+        lengths = Counter(len(e.measures) for e in examples if len(e.measures))
+        self.width = lengths.most_common(1)[0][0] if lengths else 0
+        rows = [e.measures if len(e.measures) == self.width else np.full(self.width, np.nan) for e in self.examples]
+        self.measures = np.array(rows, float).reshape(len(rows), self.width)
+        known = np.isfinite(self.measures)
+        middle = [float(np.median(column[there])) if there.any() else 0.0 for column, there in zip(self.measures.T, known.T, strict=True)]
+        spread = [float(np.std(column[there])) if there.any() else 0.0 for column, there in zip(self.measures.T, known.T, strict=True)]
+        self.middle, self.spread = np.array(middle), np.maximum(np.array(spread), 1e-9)
+        self._scaled = np.where(known, (self.measures - self.middle) / self.spread, 0.0)
+
+    @cached_property
+    def fields(self) -> tuple[str, ...]:
+        """The fields examples are labelled with, in the order they are met."""
+        return tuple(dict.fromkeys(field for e in self.examples for field in e.labels))
+
+    def guess(self, words: Sequence[str], measures: Array) -> dict[str, Belief[str]]:
+        """Return what a clip with these words and measures is taken for, by field; nothing of fields with too few examples."""
+        out = {}
+        for field in self.fields:
+            model = self._model(field)
+            if model is None:
+                continue
+            scores = model.scores(tuple(words), self._scale(measures), None)
+            value, firm, near = model.best(scores, tuple(words))
+            out[field] = Belief(value, model.confidence(firm), f"like {near}" if near else "like what is labelled so")
+        return out
+
+    def _scale(self, measures: Array) -> Array | None:
+        if len(measures) != self.width or not self.width or not np.isfinite(measures).any():
+            return None
+        return np.where(np.isfinite(measures), (measures - self.middle) / self.spread, 0.0)
+
+    @cached_property
+    def _models(self) -> dict[str, _Field | None]:
+        return {}
+
+    def _model(self, field: str) -> _Field | None:
+        if field not in self._models:
+            places = [n for n, e in enumerate(self.examples) if field in e.labels]
+            model = _Field(self, field, places) if len(places) >= LEAST else None
+            self._models[field] = model if model is not None and len(model.values) > 0 else None
+        return self._models[field]
+
+
+class _Field:
+    """One field's model: counts of words by label, and the labelled measures."""
+
+    def __init__(self, alike: Alike, field: str, places: Sequence[int]) -> None:
+        self.alike, self.places = alike, list(places)
+        self.labels = [alike.examples[n].labels[field] for n in places]
+        self.values = list(dict.fromkeys(self.labels))
+        self.index = np.array([self.values.index(label) for label in self.labels])
+        self.count = np.bincount(self.index, minlength=len(self.values)).astype(float)
+        self.words: dict[str, Array] = {}
+        for place, label in zip(self.places, self.index.tolist(), strict=True):
+            for word in set(alike.examples[place].words):
+                self.words.setdefault(word, np.zeros(len(self.values)))[label] += 1
+        self.scaled = alike._scaled[self.places]
+        self.moving = np.isfinite(alike.measures[self.places]).any(1) if alike.width else np.zeros(len(places), bool)
+
+    def scores(self, words: Sequence[str], scaled: Array | None, leave: int | None) -> Array:
+        """Return the probability of each value; leave: the place among the examples that does not count."""
+        count = self.count.copy()
+        own: set[str] = set()
+        if leave is not None:
+            count[self.index[leave]] -= 1
+            own = set(self.alike.examples[self.places[leave]].words)
+        prior = np.log((count + 1) / (count.sum() + len(count)))
+        said = prior.copy()
+        heard = False
+        for word in set(words):
+            seen = self.words.get(word)
+            if seen is None:
+                continue
+            if leave is not None and word in own:
+                seen = seen.copy()
+                seen[self.index[leave]] -= 1
+            if seen.any():
+                heard = True
+                said += np.log((seen + 0.5) / (count + 1.0))
+        by_words = _shares(said)
+        by_motion = self._near(scaled, leave)
+        if by_motion is None:
+            return by_words
+        return by_words**WORDS_PART * by_motion ** (1 - WORDS_PART) if heard else by_motion
+
+    def _near(self, scaled: Array | None, leave: int | None) -> Array | None:
+        usable = self.moving.copy()
+        if leave is not None:
+            usable[leave] = False
+        if scaled is None or not usable.any():
+            return None
+        away = np.sqrt(((self.scaled - scaled) ** 2).mean(1))
+        away[~usable] = np.inf
+        nearest = np.argsort(away, kind="stable")[:NEIGHBOURS]
+        nearest = nearest[np.isfinite(away[nearest])]
+        votes = np.full(len(self.values), 0.05)
+        np.add.at(votes, self.index[nearest], 1 / (0.1 + away[nearest]))
+        return np.asarray(votes / votes.sum())
+
+    def best(self, scores: Array, words: Sequence[str]) -> tuple[str, float, str]:
+        """Return the likeliest value, how firmly it is held, and the example that speaks for it most, as words."""
+        shares = scores / scores.sum()
+        place = int(shares.argmax())
+        same = [n for n, label in zip(self.places, self.index.tolist(), strict=True) if label == place]
+        near = max(same, key=lambda n: len(set(words) & set(self.alike.examples[n].words)), default=None)
+        shared = set(words) & set(self.alike.examples[near].words) if near is not None else set()
+        named = " ".join(self.alike.examples[near].words) if near is not None and shared else ""
+        return self.values[place], float(shares[place]), f"'{named}'" if named else ""
+
+    @cached_property
+    def _trial(self) -> tuple[Array, Array]:
+        """Each example guessed from the others: how firmly `[n]`, and whether rightly `[n]`."""
+        firm, right = [], []
+        for n, place in enumerate(self.places):
+            measures = self.scaled[n] if self.moving[n] else None
+            shares = self.scores(self.alike.examples[place].words, measures, n)
+            shares = shares / shares.sum()
+            firm.append(float(shares.max()))
+            right.append(float(int(shares.argmax()) == self.index[n]))
+        return np.array(firm), np.array(right)
+
+    def confidence(self, firm: float) -> float:
+        """Return how often guesses held about as firmly were right; one of each outcome is added, so that few examples stay unsure."""
+        firmness, right = self._trial
+        order = np.argsort(np.abs(firmness - firm), kind="stable")[: max(8, len(firmness) // 4)]
+        return float((right[order].sum() + 1) / (len(order) + 2))
+
+
+def _shares(logs: Array) -> Array:
+    out = np.exp(logs - logs.max())
+    return np.asarray(out / out.sum())
