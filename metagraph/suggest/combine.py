@@ -1,0 +1,62 @@
+"""Several beliefs about one thing made one: each source votes for its value with its confidence, and against all others with the rest.
+
+For values v and sources i with value x_i and confidence c_i, of `count` values there might be,
+
+    p(v) ~ product over i of  c_i where v = x_i, else (1 - c_i) / (count - 1)
+
+so agreement makes surer, conflict unsure, and a source that says nothing changes nothing.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from math import exp, log
+from typing import Generic, TypeVar
+
+from metagraph.suggest.belief import Belief
+
+T = TypeVar("T")
+
+LEAST, MOST = 0.02, 0.995  # nothing is certain: the sources are not independent, and not always right about themselves
+FIRM = 0.7  # from here on two sources that disagree are a conflict worth telling
+
+
+@dataclass(frozen=True, slots=True)
+class Agreed(Generic[T]):
+    """belief: what they say together; its reason joins those that agree. conflict: in words, where firm ones disagree, else empty."""
+
+    belief: Belief[T]
+    conflict: str = ""
+
+
+def combine(votes: Sequence[Belief[T]], count: int) -> Agreed[T] | None:
+    """Return what sources say together of a thing that has `count` possible values; None where none says anything."""
+    if not votes:
+        return None
+    values = list(dict.fromkeys(v.value for v in votes))
+    others = max(count - 1, len(values) - 1, 1)
+    logs = []
+    for value in values:
+        total = 0.0
+        for vote in votes:
+            sure = min(MOST, max(LEAST, vote.confidence))
+            total += log(sure if vote.value == value else (1 - sure) / others)
+        logs.append(total)
+    # What nobody named may be it, too.
+    unnamed = max(0, others + 1 - len(values))
+    rest = sum(log((1 - min(MOST, max(LEAST, v.confidence))) / others) for v in votes)
+    top = max([*logs, rest])
+    shares = [exp(x - top) for x in logs]
+    whole = sum(shares) + unnamed * exp(rest - top)
+    best = max(range(len(values)), key=lambda n: (shares[n], -n))
+    chosen = values[best]
+    agreeing = [v for v in votes if v.value == chosen]
+    against = [v for v in votes if v.value != chosen and v.confidence >= FIRM]
+    reason = "; ".join(dict.fromkeys(v.reason for v in sorted(agreeing, key=lambda v: -v.confidence)))
+    conflict = ""
+    if against and max(v.confidence for v in agreeing) >= FIRM:
+        strongest = max(against, key=lambda v: v.confidence)
+        conflict = f"{agreeing[0].reason}, but {strongest.reason}"
+    confidence = min(MOST, max(LEAST, shares[best] / whole))
+    return Agreed(Belief(chosen, confidence, reason), conflict)
