@@ -44,6 +44,7 @@ class Session(QObject):
         self.seconds = 0.0
         self.performance: str | None = None  # the kept performance on stage, None while the models improvise
         self.asks: tuple[str, ...] = ()  # selected in the timeline
+        self.copied: str | None = None  # the action whose properties can be pasted
         self.theme: Literal["dark", "light"] = "dark"
         document.changed.connect(self._follow)
 

@@ -78,6 +78,7 @@ class Window(QMainWindow):
         self.docks.fill("library", self.library)
         self.docks.fill("preview", self.preview)
         self.actions = Actions(self, commands(self))
+        self.canvas.row_actions = [self.actions[name] for name in ("rename", "copy", "paste", "replace_clip")]
         self._menus()
         self.header = Header(self.document, self.session, self.actions, self)
         self.addToolBar(self.header)
@@ -322,12 +323,30 @@ class Window(QMainWindow):
     def rename(self) -> None:
         if len(self.session.clips) == 1:
             self.library.rename(self.session.clips[0])
+        elif len(self.session.actions) > 1:
+            self.batch("rename")
         elif len(self.session.actions) == 1 and self.ready:
             self.show_dock("properties")
             self.properties.name.setFocus()
             self.properties.name.selectAll()
         else:
             self.canvas.rename_stance()
+
+    def batch(self, what: str) -> None:
+        """Edit the selected actions together: "rename", "paste" or "replace"."""
+        from app.panels import batch
+
+        actions, copied = self.session.actions, self.session.copied
+        if what == "paste" and copied is not None:
+            batch.PasteDialog(self.document, copied, actions, self).open()
+        elif what != "paste" and actions:
+            kind = batch.RenameDialog if what == "rename" else batch.ReplaceDialog
+            kind(self.document, actions, self).open()
+
+    def copy_properties(self) -> None:
+        """Remember the selected action, so that others can be given its properties."""
+        self.session.copied = self.session.actions[0]
+        self.actions.refresh()
 
     def select_all(self) -> None:
         if self.library.isAncestorOf(QApplication.focusWidget() or self):

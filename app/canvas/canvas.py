@@ -6,6 +6,7 @@ from typing import Protocol
 
 from PySide6.QtCore import QEvent, QPoint, QPointF, QSizeF, Qt, QTimer, Signal
 from PySide6.QtGui import (
+    QAction,
     QContextMenuEvent,
     QDrag,
     QDragEnterEvent,
@@ -136,6 +137,7 @@ class Canvas(QWidget):
         self.document, self.session, self.performance, self.thumbnails = document, session, performance, thumbnails
         self.gesture: MouseGesture | None = None
         self.scroll: dict[Kind, int] = {}
+        self.row_actions: list[QAction] = []  # the window's commands that go into an action's menu
         self.hover = NOTHING
         self.focus: str | None = None
         self.misfits: dict[str, str] = {}
@@ -521,6 +523,8 @@ class Canvas(QWidget):
             for stance in self.document.project.graphs[self.session.layer].stances.values():
                 move.addAction(stance.name, lambda s=stance.id: self._move_to(s))
             menu.addAction("Show clip in the library", self._show_clip)
+            menu.addSeparator()
+            menu.addActions(self.row_actions)
             menu.addSeparator()
             menu.addAction("Remove from the graph\tDel", self.remove_selection)
         elif hit.area in ("chip", "card") and hit.ident:
