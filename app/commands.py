@@ -30,6 +30,8 @@ def commands(window: Window) -> tuple[Command, ...]:
         Command("import", "&File", "&Import folder…", f.ask_import_folder, ("Ctrl+I",), line=True, icon="folder"),
         Command("import_files", "&File", "Import &files…", f.ask_import_files, ("Ctrl+Shift+I",)),
         Command("annotate", "&File", "Import &annotation…", window.annotate, tip="Learn from an ELAN file what follows what"),
+        Command("watch", "&File", "Follow changed &files", window.toggle_watching, checked=lambda: window.watcher.on,
+                tip="Clips that are exported again are read again, in place"),
         Command("find_missing", "&File", "Find missing files…", f.find_missing),
         Command("character", "&File", "Choose &character…", window.choose_character, line=True, tip="The GLB that is drawn"),
         Command("no_character", "&File", "Draw a stick figure",

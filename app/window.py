@@ -35,6 +35,7 @@ from app.session import Session
 from app.sound import Sound
 from app.theme import KIND_MARKS, apply, theme
 from app.thumbnails import Thumbnails
+from app.watching import Watcher
 from metagraph.formats.imports import Imported
 from metagraph.graph import edits
 from metagraph.graph.check import Problem, check
@@ -58,9 +59,11 @@ class Window(QMainWindow):
         self.performance = Performance(self.document, self.session, self.jobs, self)
         self.thumbnails = Thumbnails(self.document, self.session, self.figures, self)
         self.files = Files(self.document, self.jobs, self)
+        self.watcher = Watcher(self.document, self.jobs, self)
         self.sound = Sound(self.document, self.session, self.performance, self.jobs, self)
         self.problems: tuple[Problem, ...] = ()
         settings = QSettings()
+        self.watcher.set_on(str(settings.value("watch", "true")) == "true")
         if settings.value("theme") in ("dark", "light"):
             self.session.theme = str(settings.value("theme"))  # type: ignore[assignment]
         apply(QApplication.instance(), theme(self.session.theme))  # type: ignore[arg-type]
@@ -188,6 +191,7 @@ class Window(QMainWindow):
         self.canvas.refused.connect(self.tell)
         self.preview.view.failed.connect(self.tell)
         self.files.told.connect(self.tell)
+        self.watcher.told.connect(self.tell)
         self.sound.told.connect(self.tell)
         self.files.report.connect(self._report)
         self.files.imported.connect(self._imported)
@@ -346,6 +350,12 @@ class Window(QMainWindow):
     def copy_properties(self) -> None:
         """Remember the selected action, so that others can be given its properties."""
         self.session.copied = self.session.actions[0]
+        self.actions.refresh()
+
+    def toggle_watching(self) -> None:
+        """Begin or end reading changed clip files anew."""
+        self.watcher.set_on(not self.watcher.on)
+        QSettings().setValue("watch", "true" if self.watcher.on else "false")
         self.actions.refresh()
 
     def select_all(self) -> None:
