@@ -1,0 +1,316 @@
+"""What clips' names say of their labels. The names of a batch are read together: what several share tells the stances."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from typing import Final, cast
+
+from metagraph.graph.words import Kind, Layer, Limb
+from metagraph.suggest.belief import Belief
+from metagraph.suggest.words_patterns import Patterns, PatternsError, forget, recalled, remembered
+from metagraph.suggest.words_stances import Found, Stances, Words, is_low, label
+from metagraph.suggest.words_tokens import Phrase, is_number, phrases, take_apart, variant, without_numbers, without_shared
+
+__all__ = ["NameGuess", "Patterns", "PatternsError", "forget", "learn", "read_names"]
+
+_UP: Final = frozenset(("up", "stand", "rise", "get"))
+
+
+@dataclass(frozen=True, slots=True)
+class NameGuess:
+    """What one name says; None where it says nothing. stance, end_stance: words for stances, "arms crossed".
+
+    number: which of several like it, as the name counts them.
+    """
+
+    kind: Belief[Kind] | None = None
+    stance: Belief[str] | None = None
+    end_stance: Belief[str] | None = None
+    layer: Belief[Layer] | None = None
+    limb: Belief[Limb] | None = None
+    tags: Belief[tuple[str, ...]] | None = None
+    number: Belief[int] | None = None
+
+
+@dataclass(frozen=True, slots=True)
+class _Parse:
+    """A name taken apart. stance: where it begins; act: the words of what is done, numbers left out.
+
+    own: how many words at the beginning are its stance's, 0 for a stance that only follows from what is done. joined: the words that
+    make it a transition, "" if none do; end, end_words: the stance it ends in, or words for one, with their confidence. sure: that it
+    is a transition.
+    """
+
+    words: Words
+    stance: Found | None
+    own: int
+    act: Words
+    joined: str = ""
+    end: Found | None = None
+    end_words: Words = ()
+    end_confidence: float = 0.0
+    sure: float = 0.9
+
+
+def read_names(names: Sequence[str], patterns: Patterns | None = None) -> dict[str, NameGuess]:
+    """Return what each distinct name says, with the others of the batch in mind. Never raises; the order does not matter."""
+    reader = _Reader(names, patterns or Patterns())
+    return {name: reader.guess(name) for name in dict.fromkeys(names)}
+
+
+def learn(patterns: Patterns, name: str, field: str, value: str | Sequence[str], names: Sequence[str] = ()) -> Patterns:
+    """Remember a correction: the words of `name` mean `value`. names: the batch it stands in, which tells its stance from its act."""
+    reader = _Reader([*names, name], patterns)
+    said = " ".join(value.split()) if isinstance(value, str) else " ".join(value)
+    return remembered(patterns, field, reader.key(reader.parse(name), field), said)
+
+
+class _Reader:
+    def __init__(self, names: Sequence[str], patterns: Patterns) -> None:
+        distinct = sorted(set(names))
+        taken = without_shared([take_apart(name, patterns) for name in distinct], patterns)
+        self._taken = dict(zip(distinct, taken, strict=True))
+        self._patterns = patterns
+        self._kinds = patterns.meanings["kinds"]
+        self._joins = patterns.meanings["joins"]
+        self._stances = Stances(taken, patterns)
+
+    # -- taking apart
+
+    def parse(self, name: str) -> _Parse:
+        taken = self._taken[name]
+        words = taken.words
+        begun = self._stances.of(words, taken.split)
+        stance, used = begun or (None, 0)
+        rest = words[used:]
+        while rest and is_number(rest[0]) and not self._two(rest):
+            rest = rest[1:]
+        return self._passing(words, stance, rest) or _Parse(words, stance, used, self._act(rest))
+
+    def _two(self, rest: Words) -> bool:
+        return rest[0] == "2" and len(rest) > 1 and self._stances.named(rest[1:]) is not None
+
+    def _act(self, rest: Words) -> Words:
+        return without_numbers(rest[: len(rest) - variant(rest)] or rest)
+
+    def _passing(self, words: Words, stance: Found | None, rest: Words) -> _Parse | None:
+        """Read a transition: from one stance to another, down into one, up out of one."""
+        if rest and self._joins.get(rest[0]) == "to" and (stance is not None or self._stances.named(rest[1:]) is not None):
+            return self._to(words, stance, rest[0], rest[1:], 0.97 if stance else 0.85)
+        if rest and self._joins.get(rest[0]) == "from" and len(rest) > 1:
+            at = next((i for i, w in enumerate(rest) if i and self._joins.get(w) == "to"), len(rest))
+            start = self._stances.named(rest[1:at])
+            if start and at == len(rest):  # "crossed from sides"
+                return _Parse(words, start[0], 0, (), rest[0], stance, stance.words if stance else (), 0.9, 0.85)
+            if at < len(rest) - 1:
+                return self._to(words, start[0] if start else None, rest[at], rest[at + 1 :], 0.95 if start else 0.8)
+        if stance is None or not stance.prefixes & {words, words[: len(words) - variant(words)]}:
+            for at in range(1, len(words) - 1):
+                if self._joins.get(words[at]) == "to" and at >= len(words) - len(rest):
+                    left, right = self._stances.named(words[:at]), self._stances.named(words[at + 1 :])
+                    telling = self._stances.postural(words[:at]) and self._stances.postural(words[at + 1 :])
+                    if telling or (right and right[1] > 0.9 and (left or words[at] != "2")):
+                        return self._to(words, left[0] if left else None, words[at], words[at + 1 :], 0.9 if left else 0.75)
+        return self._moving(words, stance, rest)
+
+    def _to(self, words: Words, stance: Found | None, joined: str, end: Words, sure: float) -> _Parse:
+        end = end[: len(end) - variant(end)] or end
+        found = self._stances.named(end, stance.words if stance else ())
+        shown = f"{joined} {label(end)}".strip()
+        if found:
+            return _Parse(words, stance, int(stance is not None), (), shown, found[0], end, found[1], sure)
+        return _Parse(words, stance, int(stance is not None), (), shown, None, end, 0.6 if end else 0.0, sure)
+
+    def _moving(self, words: Words, stance: Found | None, rest: Words) -> _Parse | None:
+        told = next((p for p in phrases(words, self._kinds) if p.meaning == "transition"), None)
+        text = without_numbers(rest)
+        if stance is not None and len(text) == 1 and (text[0] in ("in", "enter") or (text[0] == "down" and is_low(stance.words))):
+            return _Parse(words, self._stances.standing(), 0, (), text[0], stance, stance.words, 0.95, 0.95)
+        if stance is not None and text:
+            rising = is_low(stance.words) and all(w in _UP for w in text)
+            if rising or text in (("out",), ("exit",)):
+                return _Parse(words, stance, 1, (), " ".join(text), *self._end(self._stances.standing(), ("stand",)), 0.95)
+        if told is None:
+            return None
+        if told.text.endswith("down"):
+            low = self._stances.low(words)
+            verb = told.text.split()[:1]
+            return _Parse(words, self._stances.standing(), 0, (), told.text, *self._end(low, tuple(verb)), 0.9)
+        if told.text in ("stand up", "get up", "rise"):
+            low = self._stances.low([w for w in words if w not in _UP])
+            return _Parse(words, low, 0, (), told.text, *self._end(self._stances.standing(), ("stand",)), 0.9)
+        others = without_numbers((*words[: told.start], *words[told.end :]))
+        about = self._stances.named(others) if others else None
+        if told.text == "exit":
+            return _Parse(words, about[0] if about else stance, 0, (), told.text, None, (), 0.0, 0.85)
+        start = stance if told.start else None
+        after = self._stances.named(without_numbers(words[told.end :]), start.words if start else ())
+        return _Parse(
+            words, start, int(start is not None), (), told.text, after[0] if after else None, (), after[1] if after else 0.0, 0.85
+        )
+
+    def _end(self, found: Found | None, otherwise: Words) -> tuple[Found | None, Words, float]:
+        return (found, found.words, 0.9) if found else (None, otherwise, 0.5)
+
+    # -- what it says
+
+    def key(self, parse: _Parse, field: str) -> Words:
+        """Return the words a correction of a field is remembered by."""
+        limbs = self._patterns.meanings["limbs"]
+        if field == "stance" and parse.stance and parse.own:
+            return without_numbers(parse.stance.words)
+        if field == "end_stance" and parse.joined:
+            return without_numbers(parse.end_words)
+        words = parse.act or without_numbers(parse.words)
+        return words if field == "limb" else tuple(w for w in words if w not in limbs or len(w) > 5) or words
+
+    def guess(self, name: str) -> NameGuess:
+        parse = self.parse(name)
+        words = parse.words
+        if not any(not is_number(w) for w in words):
+            return NameGuess(number=self._number(words))
+        kind = self._kind(parse)
+        return NameGuess(
+            kind=kind,
+            stance=self._stance(parse, kind),
+            end_stance=self._end_stance(parse),
+            layer=self._layer(parse, kind),
+            limb=self._limb(parse),
+            tags=self._tags(parse),
+            number=self._number(words),
+        )
+
+    def _recalled(self, parse: _Parse, field: str) -> Belief[str] | None:
+        found = recalled(self._patterns, field, self.key(parse, field))
+        if found is None:
+            return None
+        value, words, count = found
+        times = "once" if count == 1 else f"{count} times"
+        return Belief(value, 1 - 0.2 / (count + 1), f"'{words}' was corrected to {value} {times}")
+
+    def _kind(self, parse: _Parse) -> Belief[Kind] | None:
+        learned = self._recalled(parse, "kind")
+        if learned is not None:
+            return cast("Belief[Kind]", learned)
+        if parse.joined:
+            return Belief("transition", parse.sure, f"name says '{parse.joined}'")
+        stance = parse.stance
+        if stance and parse.own and all(self._kinds.get(w) == "stance" for w in parse.act):
+            return Belief("stance", stance.confidence, f"name says '{stance.why}'" if " names " not in stance.why else stance.why)
+        if any(p.meaning == "other" for p in phrases(parse.words, self._kinds)):
+            return None  # walking, fighting: none of the four
+        said = [p for p in phrases(parse.act, self._kinds) if p.meaning in ("gesture", "fidget")]
+        if said:
+            best = max(said, key=lambda p: (p.end - p.start, -p.start))
+            if any(p.meaning != best.meaning and p.end - p.start == best.end - best.start for p in said):
+                both = " and ".join(f"'{p.text}'" for p in said)
+                return Belief(cast("Kind", best.meaning), 0.55, f"name says {both}")
+            return Belief(cast("Kind", best.meaning), 0.95 if parse.own else 0.85, f"name says '{best.text}'")
+        if stance and parse.own and any(len(w) > 2 for w in parse.act):  # shorter ones are directions: "head_dl"
+            idle = "idle" in (stance.words[0] if len(stance.words) == 1 else "", self._before(parse))
+            reason = f"name adds '{' '.join(parse.act)}' to the stance \"{stance.text}\""
+            return Belief("fidget" if idle else "gesture", 0.55, reason)
+        return None
+
+    def _before(self, parse: _Parse) -> str:
+        """Return the word before what is done: acts of an "idle" are fidgets."""
+        at = parse.words.index(parse.act[0])
+        return parse.words[at - 1] if at else ""
+
+    def _stance(self, parse: _Parse, kind: Belief[Kind] | None) -> Belief[str] | None:
+        learned = self._recalled(parse, "stance")
+        if learned is not None:
+            return learned
+        if parse.stance and parse.own:
+            return Belief(
+                parse.stance.text, min(0.97, parse.stance.confidence + 0.05), f"name begins with '{' '.join(parse.stance.words)}'"
+            )
+        if parse.stance:
+            return Belief(self._called(parse.stance), 0.8, f"name says '{parse.joined}', which begins there")
+        usual = self._stances.usual()
+        if kind is None or kind.value in ("stance", "transition") or usual is None:
+            return None
+        return Belief(self._called(usual[0]), usual[1], f"no other stance is named and '{usual[0].text}' is the plain one")
+
+    def _end_stance(self, parse: _Parse) -> Belief[str] | None:
+        if not parse.joined:
+            return None
+        learned = self._recalled(parse, "end_stance")
+        if learned is not None:
+            return learned
+        reason = f"name says '{parse.joined}'"
+        if parse.end is not None:
+            return Belief(self._called(parse.end), parse.end_confidence, reason)
+        return Belief(label(parse.end_words), parse.end_confidence, reason) if parse.end_words else None
+
+    def _called(self, stance: Found) -> str:
+        """Return a stance's name, as the user corrected it where that happened."""
+        found = recalled(self._patterns, "stance", without_numbers(stance.words))
+        return found[0] if found else stance.text
+
+    def _layer(self, parse: _Parse, kind: Belief[Kind] | None) -> Belief[Layer] | None:
+        learned = self._recalled(parse, "layer")
+        if learned is not None:
+            return cast("Belief[Layer]", learned)
+        layers = self._patterns.meanings["layers"]
+        stood = parse.stance.words if parse.stance and parse.own else ()
+        from_stance = next(iter(phrases(stood, layers)), None)
+        from_act = self._told(parse.act, layers)
+        if from_stance and (from_stance.meaning != "body" or from_stance.text == "body"):
+            return _layer(from_stance, 0.95 if len(stood) > 1 else 0.85)
+        if from_act:
+            if from_stance and from_act.meaning != "body":
+                return _layer(from_act, 0.65)
+            return _layer(from_act, 0.85)
+        side = next(iter(phrases(parse.act, self._patterns.meanings["limbs"])), None)
+        if side and not (kind and kind.value == "stance"):
+            return Belief("arms", 0.8, f"name says '{side.text}', a hand")
+        if from_stance:  # what is done there may well be another layer's
+            still = parse.joined or (kind and kind.value == "stance")
+            return _layer(from_stance, (0.95 if len(stood) > 1 else 0.85) if still else 0.6)
+        about = parse.end.words if parse.end else parse.end_words
+        from_words = self._told((*about, *parse.words), layers)
+        return _layer(from_words, 0.8 if about else 0.7) if from_words else None
+
+    def _told(self, words: Words, table: Mapping[str, str]) -> Phrase | None:
+        """Return the longest phrase of a table in the words, the first of equal ones."""
+        return max(phrases(words, table), key=lambda p: (p.end - p.start, -p.start), default=None)
+
+    def _limb(self, parse: _Parse) -> Belief[Limb] | None:
+        if parse.joined:
+            return None
+        limbs = self._patterns.meanings["limbs"]
+        said = phrases(parse.act, limbs)
+        sides = [p for p in said if len(p.text) <= 5 or " " in p.text]
+        learned = self._recalled(parse, "limb")
+        if learned is not None and (not sides or learned.reason.startswith((f"'{' '.join(parse.act)}'", *(f"'{p.text}'" for p in sides)))):
+            return cast("Belief[Limb]", learned)
+        if not said:
+            return None
+        explicit = [p for p in said if p.text not in ("hands", "arms", "palms", "shrug", "clap")]
+        chosen = (explicit or said)[-1]
+        other = {p.meaning for p in explicit} - {chosen.meaning}
+        if other == {"left"} or other == {"right"}:
+            return Belief("both", 0.5, f"name says {' and '.join(repr(p.text) for p in explicit)}")
+        sure = 0.75 if chosen not in explicit else 0.85 if len(chosen.text) == 1 else 0.95
+        return Belief(cast("Limb", chosen.meaning), sure, f"name says '{chosen.text}'")
+
+    def _tags(self, parse: _Parse) -> Belief[tuple[str, ...]] | None:
+        learned = self._recalled(parse, "tags")
+        if learned is not None:
+            return Belief(tuple(learned.value.split()), learned.confidence, learned.reason)
+        said = phrases(parse.act, self._patterns.meanings["tags"]) if not parse.joined else []
+        if not said:
+            return None
+        words = " and ".join(f"'{p.text}'" for p in said)
+        return Belief(tuple(dict.fromkeys(t for p in said for t in p.meaning.split())), 0.8, f"name says {words}")
+
+    def _number(self, words: Words) -> Belief[int] | None:
+        if not words or not is_number(words[-1]) or len(words[-1]) > 9:
+            return None
+        return Belief(int(words[-1]), 0.95, f"name ends in '{words[-1]}'")
+
+
+def _layer(said: Phrase, confidence: float) -> Belief[Layer]:
+    return Belief(cast("Layer", said.meaning), confidence, f"name says '{said.text}'")

@@ -1,0 +1,183 @@
+"""Names taken apart: words, sides and numbers at separators and capitals, without what exporters and character names add."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterable, Sequence
+from dataclasses import dataclass
+from functools import lru_cache
+
+from metagraph.suggest.words_defaults import Meanings
+from metagraph.suggest.words_patterns import Patterns
+
+_EXTENSION = re.compile(r"\.(?:fbx|bvh|glb|gltf|anim|dae|c3d|ma|mb|blend|uasset)$", re.IGNORECASE)
+_PIECES = re.compile(r"\d+[hH](?![^\W_])|\d+|[^\W\d_]+|[\W_]+")
+_LONGEST = 4  # words in a phrase
+_GLUED = range(6, 25)  # letters of a word that may be several written as one
+
+
+@dataclass(frozen=True, slots=True)
+class Taken:
+    """words: lower case, numbers as written. splits: how many words stand before each double underscore."""
+
+    words: tuple[str, ...]
+    splits: tuple[int, ...] = ()
+
+    @property
+    def split(self) -> int:
+        """How many words stand before the first double underscore, 0 without one."""
+        return self.splits[0] if self.splits else 0
+
+    def without(self, count: int) -> Taken:
+        """Return what is left without the first words."""
+        return Taken(self.words[count:], tuple(n - count for n in self.splits if n > count))
+
+
+@dataclass(frozen=True, slots=True)
+class Phrase:
+    """A phrase found at words[start:end]."""
+
+    start: int
+    end: int
+    text: str
+    meaning: str
+
+
+def take_apart(name: str, patterns: Patterns) -> Taken:
+    """Split a name into words, leaving out file endings and what exporters add ("Armature|mixamo.com|Layer0", "Take 001")."""
+    segments = [_segment(part, patterns) for part in re.split(r"[|:]", _EXTENSION.sub("", name))]
+    words: list[str] = []
+    splits: list[int] = []
+    for segment in [s for s in segments if any(not w.isdecimal() for w in s.words)] or segments:
+        splits += (len(words) + n for n in segment.splits)
+        words += segment.words
+    return Taken(tuple(words), tuple(splits))
+
+
+def _segment(text: str, patterns: Patterns) -> Taken:
+    words: list[str] = []
+    splits: list[int] = []
+    for piece in _PIECES.findall(text):
+        if piece[0].isalpha() or piece[0].isdecimal():
+            for word in _camel(piece) if piece[0].isalpha() else [piece]:
+                words += _known(word.lower(), patterns.vocabulary)
+        elif "__" in piece and words:
+            splits.append(len(words))
+    junk, kinds = patterns.meanings["junk"], patterns.meanings["kinds"]
+    while words and (n := _junk_at(words, junk, front=False)):
+        del words[-n:]
+    if len(words) > 1 and words[-1].isdecimal() and words[-2] in junk and " ".join(words[-3:-1]) not in kinds:
+        if len(words) == 2 and words[0] != "take":
+            return Taken(())  # "Layer0" counts nothing
+        del words[-2]  # "Shrug_Take2": the number stays
+    return _without_junk(Taken(tuple(words), tuple(n for n in splits if n < len(words))), patterns)
+
+
+def _without_junk(taken: Taken, patterns: Patterns) -> Taken:
+    """Leave out what exporters write before a name, unless it is part of a phrase ("take item")."""
+    junk = patterns.meanings["junk"]
+    while (n := _junk_at(taken.words, junk, front=True)) and (n > 1 or " ".join(taken.words[:2]) not in patterns.meanings["kinds"]):
+        taken = taken.without(n)
+    return taken
+
+
+def _junk_at(words: Sequence[str], junk: Meanings, *, front: bool) -> int:
+    for n in (2, 1):
+        if len(words) >= n and " ".join(words[:n] if front else words[-n:]) in junk:
+            return n
+    return 0
+
+
+def _camel(run: str) -> list[str]:
+    cuts = [0]
+    for i in range(1, len(run)):
+        rises = run[i - 1].islower() and run[i].isupper()
+        ends = run[i - 1].isupper() and run[i].isupper() and i + 1 < len(run) and run[i + 1].islower()
+        if rises or ends:
+            cuts.append(i)
+    return [run[a:b] for a, b in zip(cuts, [*cuts[1:], len(run)], strict=True)]
+
+
+@lru_cache(maxsize=8192)
+def _known(word: str, vocabulary: frozenset[str]) -> tuple[str, ...]:
+    """Return a word as the vocabulary has it: "shrugging" as "shrug", "crossarms" as two; as it is where it is not known."""
+    if word in vocabulary or not word.isascii():
+        return (word,)
+    for ending in ("ing", "ed", "s"):
+        base = word.removesuffix(ending)
+        if base != word and len(base) > 2:
+            for form in (base, base + "e", base[:-1] if base[-1] == base[-2] else base):
+                if form in vocabulary:
+                    return (form,)
+    return _unglued(word, vocabulary) if len(word) in _GLUED else (word,)
+
+
+def _unglued(word: str, vocabulary: frozenset[str]) -> tuple[str, ...]:
+    """Split a word where every part is known, into as few as possible; otherwise leave it whole."""
+    best: dict[int, tuple[str, ...]] = {0: ()}
+    for end in range(2, len(word) + 1):
+        for start in sorted(best):
+            part = word[start:end]
+            fits = part in vocabulary and (len(part) > 2 or part in ("to", "up", "on"))
+            if fits and (end not in best or len(best[start]) + 1 < len(best[end])):
+                best[end] = (*best[start], part)
+    return best.get(len(word), (word,))
+
+
+def without_shared(taken: Sequence[Taken], patterns: Patterns) -> list[Taken]:
+    """Leave out the words all names begin with (a character, a project) as far as they mean nothing; a name keeps one word at least."""
+    named = [t.words for t in taken if t.words]
+    if len(named) < 2:
+        return list(taken)
+    first, last = min(named), max(named)
+    count = 0
+    while count < min(map(len, named)) - 1 and first[count] == last[count] and first[count] not in patterns.vocabulary:
+        count += 1
+    return [_without_junk(t.without(count), patterns) if count and t.words else t for t in taken]
+
+
+def phrases(words: Sequence[str], table: Meanings) -> list[Phrase]:
+    """Find the table's phrases, from the left, the longest first, none overlapping."""
+    out: list[Phrase] = []
+    at = 0
+    while at < len(words):
+        for n in range(min(_LONGEST, len(words) - at), 0, -1):
+            text = " ".join(words[at : at + n])
+            if text in table:
+                out.append(Phrase(at, at + n, text, table[text]))
+                at += n
+                break
+        else:
+            at += 1
+    return out
+
+
+def is_number(word: str) -> bool:
+    return word.isdecimal()
+
+
+def without_numbers(words: Iterable[str]) -> tuple[str, ...]:
+    return tuple(w for w in words if not w.isdecimal())
+
+
+def variant(words: Sequence[str]) -> int:
+    """Return how many words at the end only tell variants apart: numbers, or one letter a to d."""
+    n = 0
+    while n < len(words) and (words[-1 - n].isdecimal() or (n == 0 and len(words) > 1 and words[-1] in ("a", "b", "c", "d"))):
+        n += 1
+    return n
+
+
+_STEMS = {
+    "sitting": "sit", "seated": "sit", "sat": "sit", "seat": "sit", "standing": "stand", "stood": "stand", "crossed": "cross",
+    "crossing": "cross", "lying": "lie", "lay": "lie", "laying": "lie", "kneeling": "kneel", "crouching": "crouch", "leaning": "lean",
+    "clasped": "clasp", "folded": "fold", "tilted": "tilt", "idling": "idle", "feet": "foot",
+}  # fmt: skip
+
+
+def stem(word: str) -> str:
+    """Return the word in the form in which stances are compared: "seated" and "sit" are the same."""
+    known = _STEMS.get(word)
+    if known:
+        return known
+    return word[:-1] if len(word) > 3 and word.endswith("s") and not word.endswith("ss") else word
