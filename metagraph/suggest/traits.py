@@ -1,0 +1,491 @@
+"""What a clip's motion looks like, in measures that compare between characters: poses seen from their own ground, and how much moves when.
+
+Lengths are in character heights, so that size does not matter; directions are the character's own (x left, y up, z ahead), so that
+neither does where it stands or what its rest pose is. Each layer is seen from what carries it: the arms from the chest, the head from
+the chest as the hips face, the body from between the feet.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterable, Mapping, Sequence
+from dataclasses import dataclass
+from functools import lru_cache
+from typing import Any
+from weakref import WeakKeyDictionary
+
+import numpy as np
+from numpy.typing import NDArray
+
+from metagraph.graph import anatomy
+from metagraph.graph.model import Project
+from metagraph.graph.words import LAYERS, Layer
+from metagraph.motion import rotation
+from metagraph.motion.clip import Clip
+from metagraph.motion.roles import find_roles
+from metagraph.motion.skeleton import Pose, Skeleton
+
+Array = NDArray[Any]
+
+RATE = 30.0  # frames a second looked at, about
+BATCH = 6000  # frames posed at once
+SMOOTH = 0.06  # seconds, standard deviation of the filter on speeds
+RESTING = 0.05  # heights a second: slower is rest
+_BACK = np.array([-1.0, 1.0])  # turns a facing into what undoes it
+FINGERS = 5  # of a hand, looked at
+TOUCH = 0.12  # heights from a wrist to what its hand touches, at most
+AHEAD = 0.12  # heights from the middle of the head to its nose and its top, about
+NAMES: Mapping[Layer, tuple[str, ...]] = {
+    "arms": tuple(f"{side}_{part}" for side in ("left", "right") for part in ("hand", "tip", "lower_arm", "upper_arm")),
+    "head": ("head", "nose", "crown"),
+    "body": ("hips", "trunk", "trunk_ahead", "left_lower_leg", "left_foot", "right_lower_leg", "right_foot"),
+}
+PARTS = ("left_arm", "right_arm", "fingers", "head", "trunk", "hips", "legs")
+
+
+@dataclass(frozen=True, eq=False)
+class LayerTraits:
+    """One layer of a clip. All lengths are in heights.
+
+    names: which points there are, n (see NAMES; fewer on characters that lack them). first, last, typical `[n, 3]`: the poses at
+    the ends and the median. loop_error: how far the last pose is from the first, of the farthest point. steady: speed at the ends
+    beside the greatest, 0..1. extent, extent_at: how far any point goes from the line between both ends, and when, seconds.
+    energy: mean speed; peak, peak_at: the greatest speed and when, seconds. rest: share of the time below RESTING.
+    bouts: how often it speeds up. farthest `[n, 3]`: the pose at extent_at; low, high `[n, 3]`: the least and the greatest of
+    each coordinate. stroke_at: when it is fastest on its way to there, seconds.
+    """
+
+    names: tuple[str, ...]
+    first: Array
+    last: Array
+    typical: Array
+    farthest: Array
+    low: Array
+    high: Array
+    loop_error: float
+    steady: float
+    extent: float
+    extent_at: float
+    energy: float
+    peak: float
+    peak_at: float
+    stroke_at: float
+    rest: float
+    bouts: int
+
+
+@dataclass(frozen=True, eq=False)
+class Traits:
+    """height: metres. duration: seconds. energy: speed of each of PARTS, heights a second, the root of
+    its mean square, so that slow drifts count little beside movements. travel: how far the character goes
+    over the ground. symmetry: -1 only the right arm moves, 0 both alike, 1 only the left. mirrored: 0..1, how far the arms move as
+    mirror images. out, near: how much farther from, and nearer to, the trunk and head the hands come than where they begin.
+    touch: how near a moving hand comes to the other arm, the neck or the head, beyond how near it was."""
+
+    height: float
+    duration: float
+    frames: int
+    layers: Mapping[Layer, LayerTraits]
+    energy: Mapping[str, float]
+    travel: float
+    symmetry: float
+    mirrored: float
+    out: float
+    near: float
+    touch: float
+
+
+@dataclass(frozen=True, eq=False)
+class _Figure:
+    """What of a skeleton is posed. keep: joints, every parent among them; places: role -> its place among them. turned: role -> the
+    turn that takes its axes to the character's. tips: side -> the places of the fingertips, the farthest from the wrist first."""
+
+    small: Skeleton
+    keep: Array
+    places: Mapping[str, int]
+    turned: Mapping[str, Array]
+    tips: Mapping[str, tuple[int, ...]]
+    height: float
+
+
+_CARRIERS = ("upper_chest", "chest", "spine", "hips")
+_LIMBS = ("upper_arm", "lower_arm", "hand", "upper_leg", "lower_leg", "foot")
+
+
+@lru_cache(maxsize=64)
+def _figure(skeleton: Skeleton, named: tuple[tuple[str, int], ...]) -> _Figure:
+    roles = dict(named)
+    wanted = {r: j for r, j in roles.items() if r in (*_CARRIERS, "head") or r.endswith(_LIMBS)}
+    if "hips" not in wanted:
+        wanted["hips"] = 0
+    tips: dict[str, list[int]] = {}
+    turns, at = skeleton.globals(skeleton.rest)
+    for side in ("left", "right"):
+        if (hand := roles.get(f"{side}_hand")) is not None:
+            ends = [j for j in skeleton.descendants(hand) if not skeleton.children[j] and j != hand]
+            if ends:
+                tips[side] = sorted(ends, key=lambda j: (-round(float(np.linalg.norm(at[j] - at[hand])), 5), j))[:FINGERS]
+    if len(wanted) < 3:  # no figure that we know: its joints from the root on, a handful
+        wanted |= {f"joint {j}": int(j) for j in np.unique(np.linspace(0, len(skeleton) - 1, min(len(skeleton), 12)).astype(int))}
+    keep = np.array(sorted({j for end in (*wanted.values(), *(t for some in tips.values() for t in some)) for j in skeleton.chain(end)}))
+    place = {int(j): i for i, j in enumerate(keep)}
+    parents = np.array([place.get(int(skeleton.parents[j]), -1) for j in keep])
+    small = Skeleton(tuple(skeleton.names[j] for j in keep), parents, skeleton.rest_rotations[keep], skeleton.rest_translations[keep])
+    axes = _axes_at_rest({r: at[j] for r, j in wanted.items()})
+    turned = {r: rotation.multiply(rotation.conjugate(turns[j]), axes) for r, j in wanted.items()}
+    return _Figure(
+        small,
+        keep,
+        {r: place[j] for r, j in wanted.items()},
+        turned,
+        {s: tuple(place[j] for j in some) for s, some in tips.items()},
+        skeleton.height,
+    )
+
+
+def _axes_at_rest(at: Mapping[str, Array]) -> Array:
+    """Return the turn whose axes are the character's left, up and ahead in its rest pose."""
+    across = left_of(at)
+    top = at.get("head", at.get("upper_chest", at.get("chest")))
+    up = np.array([0.0, 1.0, 0.0]) if top is None else top - at["hips"]
+    if across is None or np.linalg.norm(across) < 1e-6 or np.linalg.norm(up) < 1e-6:
+        return np.array([0.0, 0.0, 0.0, 1.0])
+    if up[1] > 0.7 * np.linalg.norm(up):
+        up = np.array([0.0, 1.0, 0.0])
+    up = up / np.linalg.norm(up)
+    left = across - up * (across @ up)
+    if np.linalg.norm(left) < 1e-6:
+        return np.array([0.0, 0.0, 0.0, 1.0])
+    left = left / np.linalg.norm(left)
+    return rotation.from_matrix(np.stack([left, up, np.cross(left, up)], axis=-1))
+
+
+def left_of(at: Mapping[str, Array]) -> Array | None:
+    """Return from right to left, of hips and shoulders together; None without either."""
+    pairs = [
+        at[f"left_{part}"] - at[f"right_{part}"] for part in ("upper_leg", "upper_arm") if {f"left_{part}", f"right_{part}"} <= set(at)
+    ]
+    return np.sum(pairs, axis=0) if pairs else None
+
+
+# Clips are values that never change, so what was found of one holds for as long as it lives.
+_KNOWN: WeakKeyDictionary[Clip, tuple[tuple[tuple[str, int], ...], Traits]] = WeakKeyDictionary()
+
+
+def traits(skeleton: Skeleton, roles: Mapping[str, int] | None, clip: Clip) -> Traits:
+    """Return what a clip's motion looks like. roles: role -> joint of the skeleton, None to find them. Never raises."""
+    named = _named(skeleton if clip.skeleton == skeleton else clip.skeleton, roles if clip.skeleton == skeleton else None)
+    return _all([clip], lambda _: named)[0]
+
+
+def traits_of(
+    source: Project | Iterable[Clip],
+    cancelled: Callable[[], bool] | None = None,
+    progress: Callable[[int, int], None] | None = None,
+) -> dict[str, Traits]:
+    """Return clip id -> traits of a project, or name -> traits of clips; those found until `cancelled`. progress: done, of how many."""
+    if isinstance(source, Project):
+        clips = [(ident, entry.motion) for ident, entry in source.clips.items() if entry.motion is not None]
+        own = dict(anatomy.roles(source))
+        mine = source.skeleton
+    else:
+        clips, own, mine = [(clip.name, clip) for clip in source], {}, None
+    named: dict[int, tuple[tuple[str, int], ...]] = {}
+
+    def roles(clip: Clip) -> tuple[tuple[str, int], ...]:
+        key = id(clip.skeleton)
+        if key not in named:
+            named[key] = _named(clip.skeleton, own if clip.skeleton == mine else None)
+        return named[key]
+
+    out: dict[str, Traits] = {}
+    ahead = 0
+    while ahead < len(clips) and not (cancelled is not None and cancelled()):
+        last, frames = ahead, 0
+        while last < len(clips) and (last == ahead or frames + len(_frames(clips[last][1])) <= BATCH):
+            frames += len(_frames(clips[last][1]))
+            last += 1
+        part = clips[ahead:last]
+        out.update(zip((ident for ident, _ in part), _all([clip for _, clip in part], roles), strict=True))
+        ahead = last
+        if progress is not None:
+            progress(ahead, len(clips))
+    return out
+
+
+def _named(skeleton: Skeleton, roles: Mapping[str, int] | None) -> tuple[tuple[str, int], ...]:
+    return tuple(sorted((find_roles(skeleton) if roles is None else roles).items()))
+
+
+def _frames(clip: Clip) -> Array:
+    """Return which frames are looked at, ascending, the first and the last among them."""
+    step = max(1, int(clip.fps / RATE + 0.5))
+    return np.unique(np.append(np.arange(0, clip.frames, step), clip.frames - 1))
+
+
+def _all(clips: Sequence[Clip], roles: Callable[[Clip], tuple[tuple[str, int], ...]]) -> list[Traits]:
+    groups: dict[Any, list[Clip]] = {}
+    for clip in clips:
+        named = roles(clip)
+        known = _KNOWN.get(clip)
+        if known is None or known[0] != named:
+            groups.setdefault((clip.skeleton, named), []).append(clip)
+    for (skeleton, named), some in groups.items():
+        figure = _figure(skeleton, named)
+        frames = [_frames(clip) for clip in some]
+        points, world = _points(figure, some, frames)
+        ends = np.cumsum([0, *(len(f) for f in frames)])
+        for clip, index, a, b in zip(some, frames, ends, ends[1:], strict=False):
+            times = index / clip.fps
+            _KNOWN[clip] = named, _of(figure, {k: v[a:b] for k, v in points.items()}, {k: v[a:b] for k, v in world.items()}, times)
+    return [_KNOWN[clip][1] for clip in clips]
+
+
+def _points(figure: _Figure, clips: Sequence[Clip], frames: Sequence[Array]) -> tuple[dict[str, Array], dict[str, Array]]:
+    """Return name -> `[F, 3]` of all NAMES there are, each from its ground, and of what is in world space; in heights."""
+    small = figure.small
+    total = sum(map(len, frames))
+    translations = np.broadcast_to(small.rest_translations.astype(np.float32), (total, len(small), 3)).copy()
+    where = {int(j): i for i, j in enumerate(figure.keep)}
+    at = 0
+    for clip, index in zip(clips, frames, strict=True):
+        for k, joint in enumerate(clip.translated):
+            if joint in where:
+                translations[at : at + len(index), where[joint]] = clip.translations[index, k]
+        at += len(index)
+    rotations = np.concatenate([clip.rotations[np.ix_(index, figure.keep)] for clip, index in zip(clips, frames, strict=True)])
+    turns, places = small.globals(Pose(rotations, translations))
+    places = places / np.float32(figure.height)
+    p = {role: places[:, i] for role, i in figure.places.items()}
+    p |= {f"{side}_tip": places[:, some[0]] for side, some in figure.tips.items()}
+
+    def axis(role: str, direction: Sequence[float]) -> Array:
+        return rotation.rotate(turns[:, figure.places[role]], rotation.rotate(figure.turned[role], np.array(direction)).astype(np.float32))
+
+    carrier = next(role for role in _CARRIERS if role in figure.places)
+    facing = facing_of(p, turns[:, figure.places["hips"]], figure.turned["hips"])
+    back = rotation.conjugate(rotation.multiply(turns[:, figure.places[carrier]], figure.turned[carrier].astype(np.float32)))
+    out: dict[str, Array] = {}
+    for name in NAMES["arms"]:
+        if name in p:
+            out[name] = rotation.rotate(back, p[name] - p[carrier])
+    if "head" in p and carrier != "head":
+        ahead, up = axis("head", (0, 0, 1)), axis("head", (0, 1, 0))
+        middle = p["head"] - p[carrier]
+        for name, v in (("head", middle), ("nose", middle + AHEAD * ahead), ("crown", middle + AHEAD * up)):
+            out[name] = seen_from(facing, v)
+    if "left_foot" in p and "right_foot" in p:
+        ground = (p["left_foot"] + p["right_foot"]) / 2 * np.array([1, 0, 1], np.float32)
+    else:
+        ground = p["hips"] * np.array([1, 0, 1], np.float32)
+    for name in ("hips", *(f"{side}_{part}" for side in ("left", "right") for part in ("lower_leg", "foot"))):
+        if name in p:
+            out[name] = seen_from(facing, p[name] - ground)
+    out["trunk"] = seen_from(facing, p[carrier] - ground)
+    out["trunk_ahead"] = seen_from(facing, p[carrier] - ground + AHEAD * axis(carrier, (0, 0, 1)))
+    for role in p:
+        if role.startswith("joint "):
+            out[role] = seen_from(facing, p[role] - ground)
+    for side, some in figure.tips.items():
+        hand = rotation.conjugate(turns[:, figure.places[f"{side}_hand"]])
+        out[f"{side}_fingers"] = rotation.rotate(hand[:, None], places[:, some] - p[f"{side}_hand"][:, None])
+    world = {"facing": facing, "hips": p["hips"], **{name: p[name] for name in p if name.endswith(("_hand", "_lower_arm"))}}
+    for name in ("head", carrier):
+        if name in p:
+            world["head" if name == "head" else "carrier"] = p[name]
+    return out, world
+
+
+def facing_of(p: Mapping[str, Array], hips: Array, turned: Array) -> Array:
+    """Return `[F, 2]` sine and cosine of where the hips and shoulders face, about y from +z."""
+    across = left_of(p)
+    if across is None:
+        across = rotation.rotate(hips, rotation.rotate(turned, np.array([1.0, 0, 0])).astype(np.float32))
+    flat = np.stack([-across[:, 2], across[:, 0]], axis=-1)
+    length = np.linalg.norm(flat, axis=-1, keepdims=True)
+    return np.where(length > 1e-6, flat / np.maximum(length, 1e-6), np.array([0.0, 1.0])).astype(np.float32)
+
+
+def seen_from(facing: Array, v: Array) -> Array:
+    """Return vectors as seen by somebody who faces there. facing `[..., 2]`, see `facing_of`; v `[..., 3]`."""
+    s, c = facing[..., 0], facing[..., 1]
+    return np.stack([c * v[..., 0] - s * v[..., 2], v[..., 1], s * v[..., 0] + c * v[..., 2]], axis=-1)
+
+
+def _smoothed(x: Array, seconds: float) -> Array:
+    """Return `[F, ...]` filtered along time; seconds: from frame to frame."""
+    reach = int(3 * SMOOTH / seconds + 0.5) if seconds > 0 else 0
+    if reach < 1 or len(x) < 3:
+        return x
+    kernel = np.exp(-0.5 * (np.arange(-reach, reach + 1) * seconds / SMOOTH) ** 2)
+    kernel /= kernel.sum()
+    padded = np.concatenate([np.repeat(x[:1], reach, 0), x, np.repeat(x[-1:], reach, 0)])
+    flat = padded.reshape(len(padded), -1)
+    out = np.zeros((len(x), flat.shape[1]))
+    for k, share in enumerate(kernel):
+        out += share * flat[k : k + len(x)]
+    return out.reshape(x.shape)
+
+
+def _speeds(tracks: Array, times: Array) -> Array:
+    """Return `[F, n]` speeds of `[F, n, 3]`, smoothed; zeros of a single frame."""
+    if len(tracks) < 2 or tracks.shape[1] == 0:
+        return np.zeros(tracks.shape[:2])
+    velocity = np.gradient(tracks.astype(np.float64), times, axis=0)
+    return _smoothed(np.linalg.norm(velocity, axis=-1), float(times[1] - times[0]))
+
+
+def _layer(names: tuple[str, ...], poses: Array, tracks: Array, speeds: Array, times: Array) -> LayerTraits:
+    """Return one layer's traits. poses `[F, n, 3]`: as the character faces then; tracks: as it faced at first."""
+    if not names:
+        none = np.zeros((0, 3))
+        return LayerTraits((), none, none, none, none, none, none, 0.0, 1.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 1.0, 0)
+    fast = speeds.max(-1)
+    peak = _greatest(fast)
+    first, last = tracks[0].astype(float), tracks[-1].astype(float)
+    way = (times / times[-1] if times[-1] > 0 else times)[:, None, None]
+    # Against a smooth way from one end to the other, so that a transition does not count as going out and back.
+    away = np.linalg.norm(tracks - (first + (last - first) * (way * way * (3 - 2 * way))), axis=-1).max(-1)
+    far = _greatest(away)
+    return LayerTraits(
+        names,
+        poses[0].astype(float),
+        poses[-1].astype(float),
+        np.median(poses, axis=0).astype(float),
+        poses[far].astype(float),
+        poses.min(0).astype(float),
+        poses.max(0).astype(float),
+        float(np.linalg.norm(poses[-1] - poses[0], axis=-1).max()),
+        float((fast[0] + fast[-1]) / 2 / fast[peak]) if fast[peak] > 1e-4 else 1.0,
+        float(away[far]),
+        float(times[far]),
+        float(_mean(speeds.mean(-1), times)),
+        float(fast[peak]),
+        float(times[peak]),
+        float(times[_greatest(fast[: far + 1])]),
+        float(_mean((fast < RESTING).astype(float), times)),
+        _bouts(fast),
+    )
+
+
+def _greatest(x: Array) -> int:
+    """Return where the greatest value is, the first of those that are as good as equal: rounding must not choose."""
+    return int(np.argmax(x >= x.max() - 1e-4))
+
+
+def _mean(x: Array, times: Array) -> float:
+    return float(np.trapezoid(x, times) / times[-1]) if times[-1] > 0 else float(x.mean())
+
+
+def _bouts(speed: Array) -> int:
+    """Return how many peaks of at least a quarter of the greatest there are, with a slowing to below half between them."""
+    least, count, low, top = speed.max() / 4, 0, 0.0, 0.0
+    if least <= RESTING / 4:
+        return 0
+    rising = True
+    for v in speed:
+        if rising:
+            top = max(top, v)
+            if top >= least and v < top / 2:
+                count, rising, low = count + 1, False, v
+        else:
+            low = min(low, v)
+            if v >= least and v > 2 * low:
+                rising, top = True, v
+    return count + (1 if rising and top >= least else 0)
+
+
+def _of(figure: _Figure, points: Mapping[str, Array], world: Mapping[str, Array], times: Array) -> Traits:
+    facing = world["facing"]
+    layers: dict[Layer, LayerTraits] = {}
+    energy = dict.fromkeys(PARTS, 0.0)
+    speeds: dict[str, Array] = {}
+    for layer in LAYERS:
+        names = tuple(n for n in NAMES[layer] if n in points)
+        if layer == "body":
+            names += tuple(n for n in points if n.startswith("joint "))
+        tracks = np.stack([points[n] for n in names], axis=1) if names else np.zeros((len(times), 0, 3))
+        turned = tracks
+        if layer == "body" and names:  # that the whole body turns is a movement
+            turned = seen_from(facing[:1, None], seen_from(facing[:, None] * _BACK, tracks))
+        fast = _speeds(turned, times)
+        speeds |= dict(zip(names, fast.T, strict=True))
+        layers[layer] = _layer(names, tracks, turned, fast, times)
+    for side in ("left", "right"):
+        if f"{side}_fingers" in points:
+            speeds[f"{side}_fingers"] = _speeds(points[f"{side}_fingers"], times).max(-1)
+    members = {
+        "left_arm": ("left_hand", "left_lower_arm"),
+        "right_arm": ("right_hand", "right_lower_arm"),
+        "fingers": ("left_fingers", "right_fingers"),
+        "head": ("nose", "crown"),
+        "trunk": ("trunk", "trunk_ahead"),
+        "hips": ("hips",),
+        "legs": ("left_lower_leg", "left_foot", "right_lower_leg", "right_foot"),
+    }
+    for part, some in members.items():
+        known = [speeds[n] for n in some if n in speeds]
+        if known:
+            energy[part] = float(np.sqrt(_mean(np.mean(known, axis=0) ** 2, times)))
+    hands = []
+    for side in ("left", "right"):
+        own = speeds.get(f"{side}_fingers")
+        hands.append(energy[f"{side}_arm"] + (0.0 if own is None else float(np.sqrt(_mean(own**2, times)))))
+    left, right = hands
+    out, near = _reach(world)
+    touch = _touch(world)
+    ground = world["hips"][:, [0, 2]]
+    return Traits(
+        figure.height,
+        float(times[-1]),
+        len(times),
+        layers,
+        energy,
+        float(np.linalg.norm(ground[-1] - ground[0])),
+        (left - right) / (left + right) if left + right > 1e-4 else 0.0,
+        _mirrored(points),
+        out,
+        near,
+        touch,
+    )
+
+
+def _reach(world: Mapping[str, Array]) -> tuple[float, float]:
+    """Return how much farther away from the trunk and head the farther hand goes, and how much nearer the nearer comes."""
+    centres = [world[n] for n in ("carrier", "head") if n in world]
+    hands = [world[n] for n in ("left_hand", "right_hand") if n in world]
+    if not centres or not hands:
+        return 0.0, 0.0
+    out = near = 0.0
+    for hand in hands:
+        away = np.min([np.linalg.norm(hand - c, axis=-1) for c in centres], axis=0)
+        out = max(out, float(away.max() - away[0]))
+        near = max(near, float(away[0] - away.min()))
+    return out, near
+
+
+def _touch(world: Mapping[str, Array]) -> float:
+    """Return how much nearer a hand comes to the other forearm or the head than where it begins, if it comes within a touch of them."""
+    nearest = 0.0
+    for side, other in (("left", "right"), ("right", "left")):
+        if (hand := world.get(f"{side}_hand")) is None:
+            continue
+        gaps = []
+        if (a := world.get(f"{other}_lower_arm")) is not None and (b := world.get(f"{other}_hand")) is not None:
+            line = b - a
+            share = np.clip(np.sum((hand - a) * line, -1) / np.maximum(np.sum(line * line, -1), 1e-9), 0, 1)
+            gaps.append(np.linalg.norm(hand - a - share[:, None] * line, axis=-1))
+        if (head := world.get("head")) is not None:
+            gaps.append(np.linalg.norm(hand - head, axis=-1))
+        for gap in gaps:
+            if gap.min() < TOUCH:
+                nearest = max(nearest, float(gap[0] - gap.min()))
+    return nearest
+
+
+def _mirrored(points: Mapping[str, Array]) -> float:
+    if "left_hand" not in points or "right_hand" not in points or len(points["left_hand"]) < 2:
+        return 0.0
+    left = np.diff(points["left_hand"], axis=0).astype(np.float64)
+    right = np.diff(points["right_hand"], axis=0) * np.array([-1, 1, 1])
+    size = float(np.sum(left * left) + np.sum(right * right)) / 2
+    return max(0.0, float(np.sum(left * right)) / size) if size > 1e-12 else 0.0
