@@ -265,12 +265,12 @@ def guess(traits: Traits, stances: Stances) -> MotionGuess:
     if kind == "stance":
         starts = nearest(shapes, x.names, x.typical)
     return MotionGuess(
-        Belief(kind, min(SUREST, chances[kind]), reason),
+        Belief(kind, min(SUREST, chances[kind], (1 + layer.confidence) / 2), reason),
         layer,
         limb_of(traits, layer.value, kind),
         Belief(kind == "stance", min(SUREST, chances[kind]), f"its ends are {x.loop_error * cm:.1f} cm apart"),
-        _beside(starts, "begins" if kind != "stance" else "rests", layer.value, cm),
-        _beside(ends, "ends", layer.value, cm) if kind == "transition" else None,
+        _beside(starts, "begins" if kind != "stance" else "rests", layer, cm),
+        _beside(ends, "ends", layer, cm) if kind == "transition" else None,
         starts[1][1] if len(starts) > 1 else None,
         _stroke(x, cm) if kind in ("gesture", "fidget") and x.peak > 0 else None,
         chances,
@@ -294,17 +294,15 @@ def _sigmoid(z: float) -> float:
     return 1 / (1 + exp(-min(max(z, -30.0), 30.0)))
 
 
-def _beside(found: Sequence[tuple[float, Shape]], verb: str, layer: Layer, cm: float) -> Belief[Shape] | None:
+def _beside(found: Sequence[tuple[float, Shape]], verb: str, layer: Belief[Layer], cm: float) -> Belief[Shape] | None:
     if not found:
         return None
-    (near, shape), typical = found[0], TYPICAL[layer]
+    (near, shape), typical = found[0], TYPICAL[layer.value]
     second = found[1][0] if len(found) > 1 else None
     margin = 1.0 if second is None else (second - near) / max(second, 1e-9)
     confidence = SUREST * exp(-((near / typical) ** 2)) * (0.4 + 0.6 * min(1.0, 1.5 * margin))
     more = "" if second is None else f"; next nearest {_cm(second * cm)}"
-    return Belief(
-        shape, min(confidence, shape.confidence if shape.id == "" else SUREST), f'{verb} {_cm(near * cm)} from "{shape.name}"{more}'
-    )
+    return Belief(shape, min(confidence, shape.confidence, layer.confidence), f'{verb} {_cm(near * cm)} from "{shape.name}"{more}')
 
 
 def _cm(length: float) -> str:
