@@ -86,6 +86,8 @@ class _Reader:
         rest = words[used:]
         while rest and is_number(rest[0]) and not self._two(rest):
             rest = rest[1:]
+        if len(rest) > 2 and rest[0] in ("trans", "transition") and rest[1] in self._joins:
+            rest = rest[1:]
         return self._passing(words, stance, rest) or _Parse(words, stance, used, self._act(rest))
 
     def _two(self, rest: Words) -> bool:
@@ -268,7 +270,7 @@ class _Reader:
             return Belief("arms", 0.8, f"name says '{side.text}', a hand")
         if from_stance:  # what is done there may well be another layer's
             still = parse.joined or (kind and kind.value == "stance")
-            return _layer(from_stance, (0.95 if len(stood) > 1 else 0.85) if still else 0.6)
+            return _layer(from_stance, (0.95 if len(stood) > 1 else 0.85) if still else 0.45)
         about = parse.end.words if parse.end else parse.end_words
         from_words = self._told((*about, *parse.words), layers)
         return _layer(from_words, 0.8 if about else 0.7) if from_words else None
@@ -292,6 +294,9 @@ class _Reader:
         chosen = (explicit or said)[-1]
         other = {p.meaning for p in explicit} - {chosen.meaning}
         if other == {"left"} or other == {"right"}:
+            short = [p for p in explicit if len(p.text) < 4]  # "PointRight_L": the hand, not where it points
+            if len(short) == 1:
+                return Belief(cast("Limb", short[0].meaning), 0.75, f"name says '{short[0].text}'")
             return Belief("both", 0.5, f"name says {' and '.join(repr(p.text) for p in explicit)}")
         sure = 0.75 if chosen not in explicit else 0.85 if len(chosen.text) == 1 else 0.95
         return Belief(cast("Limb", chosen.meaning), sure, f"name says '{chosen.text}'")

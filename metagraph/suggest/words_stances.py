@@ -49,6 +49,7 @@ class Stances:
         self._kinds = patterns.meanings["kinds"]
         self._joins = patterns.meanings["joins"]
         self.found: dict[Words, Found] = {}
+        self._bares: dict[Words, Words] = {}
         distinct = sorted({t for t in batch if t.words}, key=lambda t: (t.words, t.splits))
         followers = _followers(distinct)
         for taken in distinct:
@@ -56,6 +57,7 @@ class Stances:
         for taken in distinct:
             self._clip_that_others_continue(taken.words, followers)
         self._heads(distinct)
+        self._passed_between(distinct)
         self._numbered(distinct, followers)
         self._united()
         self._by_prefix: dict[Words, Found] = {}
@@ -100,11 +102,16 @@ class Stances:
         if self._kinds.get(last) == "stance":
             rest = core[:-1]
             acts = self._acts(rest)
-            weak = last in _WEAK
-            if self._passes_over(rest) or (weak and (acts or not rest)):
+            weak = last in _WEAK and not any(self._kinds.get(w) == "stance" and w not in _WEAK for w in rest)
+            repeats = last in ("loop", "hold", "pose")  # said of gestures as well: "wave loop"
+            if self._passes_over(rest) or (acts and (weak or repeats)) or (repeats and not rest):
                 return
             trimmed = rest[: len(rest) - variant(rest)] or core
-            self._add(trimmed, 0.75 if acts else 0.85 if weak else 0.97, last, rest or core, trimmed, core, words)
+            while len(trimmed) > 1 and self._kinds.get(trimmed[-1]) == "stance":
+                trimmed = trimmed[:-1]  # "sitting idle loop"
+            self._add(
+                trimmed, 0.75 if acts else 0.7 if not rest and weak else 0.85 if weak else 0.97, last, rest or core, trimmed, core, words
+            )
         elif self._kinds.get(core[0]) == "stance" and not self._acts(core) and self.postural(core[1:]):
             self._add(core, 0.95, core[0], core, words)
         elif self.postural(core) and not self._acts(core):
@@ -176,6 +183,26 @@ class Stances:
         while len(run) > told and run[-1] not in _PLACES and run[-1] not in self._patterns.meanings["limbs"]:
             run = run[:-1]
         return run
+
+    def _passed_between(self, distinct: Sequence[Taken]) -> None:
+        """Stances that only transitions name: the other end of one that is known, or both where there is a way back."""
+        pairs: dict[tuple[Words, Words], str] = {}
+        for taken in distinct:
+            words = taken.words[: len(taken.words) - variant(taken.words)]
+            for at in range(1, len(words) - 1):
+                if self._joins.get(words[at]) == "to" and words[at] != "2" and not any(w in _PARTS for w in words[:at]):
+                    pairs[words[:at], words[at + 1 :]] = words[at]
+        known = {prefix for stance in self.found.values() for prefix in stance.prefixes}
+        for (start, end), joined in sorted(pairs.items()):
+            if (start in known or (end, start) in pairs) and not self._acts(end) and not self._other(end) and not self._sister(end):
+                self._add(end, 0.7, f"{joined} {' '.join(end)}", end)
+
+    def _sister(self, end: Words) -> bool:
+        """Whether an end is short for a stance that is known: "tilt left" for "head tilt left"."""
+        bare = self._bare(end)
+        return not bare or any(
+            self._bare(s.words)[-len(bare) :] == bare or set(self._bare(s.words)) < set(bare) for s in self.found.values()
+        )
 
     def _only_number(self, words: Words) -> bool:
         return variant(words) == len(words)
@@ -251,9 +278,13 @@ class Stances:
                 best = rank, stance
         return (best[1], best[0][0]) if best else None
 
-    def _bare(self, words: Sequence[str]) -> Words:
-        kept = [w for w in without_numbers(words) if self._kinds.get(w) != "stance" and w not in _BARE]
-        return tuple(stem(w) for w in kept)
+    def _bare(self, words: Words) -> Words:
+        """Return the words by which stances are compared: stems, without numbers and "idle"."""
+        known = self._bares.get(words)
+        if known is None:
+            kept = [w for w in without_numbers(words) if self._kinds.get(w) != "stance" and w not in _BARE]
+            known = self._bares[words] = tuple(stem(w) for w in kept)
+        return known
 
     def standing(self) -> Found | None:
         """Return the stance of standing with nothing more said: "stand", or plain "idle"."""

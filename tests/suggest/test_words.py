@@ -174,6 +174,21 @@ def test_sides(name: str, limb: str) -> None:
     assert told([name])["limb"] == limb
 
 
+def test_a_hand_is_told_from_where_it_points() -> None:
+    assert told(["PointRight_L"])["limb"] == "left"
+
+
+def test_stances_that_only_transitions_name_are_stances() -> None:
+    names = ["foo_to_bar", "bar_to_foo", "bar_nod"]
+    assert told(names, "bar_nod")["stance"] == "bar" and told(names, "foo_to_bar")["end_stance"] == "bar"
+
+
+def test_loops_are_stances_and_looping_gestures_are_gestures() -> None:
+    names = ["Idle_Loop", "Sitting_Idle_Loop", "Idle_Talking_Loop", "Wave_Loop", "Loop"]
+    assert list(kinds(names).values()) == ["stance", "stance", "gesture", "gesture", None]
+    assert told(names, "Sitting_Idle_Loop")["stance"] == "sitting"
+
+
 def test_a_side_in_a_stance_is_no_limb() -> None:
     names = ["body_weight_left__stance", "body_weight_left__sway_01", "body_weight_left__to__weight_right", "body_weight_right__stance"]
     assert not any("limb" in told(names, n) for n in names)
@@ -200,6 +215,7 @@ FLOORS: dict[str, dict[str, float]] = {
     "rocketbox": {"kind": 0.98, "stance": 0.98, "layer": 0.98, "limb": 1.0},
     "mixamo-names": {"kind": 0.95, "stance": 1.0, "end_stance": 1.0, "layer": 1.0, "limb": 1.0},
     "smartbody-names": {"kind": 0.98, "stance": 1.0, "layer": 0.95, "limb": 0.93},
+    "robot-names": {"kind": 0.87, "stance": 1.0, "layer": 0.6},  # no word was ever added for it
     "bandai-namco-1": {"kind": 1.0, "layer": 0.98},
     "sumerian-hosts": {"kind": 0.85, "stance": 0.85, "layer": 0.93},  # "in" and "one" say nothing
     "robot-expressive": {"kind": 0.71, "stance": 0.71, "layer": 1.0},  # "Sitting" sits down, "Standing" stands up
