@@ -1,0 +1,139 @@
+"""Left/right twins of actions: which clips to mirror, and where their actions go.
+
+A mirrored clip must be written to a file before a project can keep it, so this comes in two halves: `twin_clips` gives the
+motion to write, `place_twins` the edit once those files are in the project's library.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Collection, Mapping
+from dataclasses import dataclass, replace
+
+from metagraph.graph import anatomy
+from metagraph.graph.edits import EditError, free_name
+from metagraph.graph.model import Action, Limb, Project
+from metagraph.motion.clip import Clip
+from metagraph.motion.features import pose_distance
+from metagraph.motion.mirror import mirror, pairs_of, swap_sides
+
+SAME = 0.01  # metres: a motion nowhere further from its mirror image than this has no side
+_OTHER: Mapping[Limb, Limb] = {"left": "right", "right": "left", "both": "both"}
+
+
+@dataclass(frozen=True, eq=False)
+class TwinClip:
+    """A clip to be written: the mirrored motion, named, and the ids of the actions whose twins use it."""
+
+    name: str
+    motion: Clip
+    actions: tuple[str, ...]
+
+
+def twin_clips(project: Project, actions: Collection[str]) -> list[TwinClip]:
+    """Return the mirrored clips that twins of these actions need, one for each clip, with names no other clip has.
+
+    Raises EditError, in words, when an action has no side to mirror, or when the skeleton is not the same on both sides.
+    """
+    if not actions:
+        raise EditError("nothing to mirror")
+    groups: dict[str, list[Action]] = {}
+    for ident in dict.fromkeys(actions):
+        action = _action(project, ident)
+        groups.setdefault(action.clip, []).append(action)
+    skeleton = project.skeleton
+    pairs = pairs_of(skeleton, anatomy.roles(project)) if skeleton is not None else ()
+    taken = {entry.name for entry in project.clips.values()}
+    out = []
+    for clip, used in groups.items():
+        entry = project.clips.get(clip)
+        if entry is None or entry.motion is None:
+            raise EditError(f"'{used[0].name}' cannot be mirrored: its clip's file is missing")
+        try:
+            twin = mirror(entry.motion, pairs)
+        except ValueError as error:
+            raise EditError(str(error)) from None
+        distance = float(pose_distance(twin.skeleton, entry.motion.poses(), twin.poses()).max())
+        if distance < SAME and not _faces_differ(entry.motion, twin):
+            raise EditError(f"'{used[0].name}' has no side: it is within {100 * distance:.1f} cm of its mirror image")
+        name = free_name(twin_name(entry.name), taken)
+        taken.add(name)
+        out.append(TwinClip(name, twin.renamed(name), tuple(a.id for a in used)))
+    return out
+
+
+def place_twins(project: Project, pairs: Mapping[str, str]) -> Project:
+    """Place twins of actions (id -> id of the mirrored clip) beside them.
+
+    They keep kind, timing and likelihood; limb, tags, joints and name change sides. A stance or end stance that has a twin by
+    name on its layer ("weight left", "weight right") is exchanged for that; a loop keeps to its own stance only when it has none.
+    Raises EditError.
+    """
+    for ident, clip in pairs.items():
+        action = _action(project, ident)
+        entry, before = project.clips.get(clip), project.clips.get(action.clip)
+        if entry is None:
+            raise EditError(f"the mirrored clip of '{action.name}' is not in the project")
+        if clip == action.clip:
+            raise EditError(f"'{action.name}' cannot be its own twin")
+        if before is not None and (entry.frames, entry.fps) != (before.frames, before.fps):
+            raise EditError(f"'{entry.name}' is not as long as '{before.name}', whose twin it is to be")
+        graph = project.graphs[action.layer]
+        end = None if action.end_stance is None else _stance_twin(project, action.end_stance)
+        stance = _stance_twin(project, action.stance)
+        if action.kind == "transition" and end == stance:
+            raise EditError(f"the twin of '{action.name}' would end where it starts: the stances have no twins by name")
+        twin = replace(
+            action,
+            id=f"a{project.next_id}",
+            clip=clip,
+            name=twin_name(action.name),
+            stance=stance,
+            end_stance=end,
+            limb=_OTHER[action.limb],
+            tags=tuple(dict.fromkeys(swap_sides(tag) for tag in action.tags)),
+            joints=_joints_twin(project, action.joints),
+        )
+        project = project.with_graph(graph.with_actions({twin.id: twin}), next_id=project.next_id + 1)
+    return project
+
+
+def twin_name(name: str) -> str:
+    """Return the name with its sides exchanged, or "... mirrored" where it says none; the twin's twin has the first name again."""
+    swapped = swap_sides(name)
+    if swapped != name:
+        return swapped
+    return name.removesuffix(" mirrored") if name.endswith(" mirrored") else f"{name} mirrored"
+
+
+def _action(project: Project, ident: str) -> Action:
+    action = project.action(ident)
+    if action is None:
+        raise EditError("that action is no longer in the project")
+    return action
+
+
+def _stance_twin(project: Project, ident: str) -> str:
+    stance = project.stance(ident)
+    if stance is None:
+        return ident
+    wanted = swap_sides(stance.name)
+    stances = project.graphs[stance.layer].stances.values()
+    return next((s.id for s in stances if s.name == wanted), ident)
+
+
+def _joints_twin(project: Project, joints: tuple[str, ...]) -> tuple[str, ...]:
+    skeleton = project.skeleton
+    if skeleton is None or not joints:
+        return joints
+    twins = pairs_of(skeleton, anatomy.roles(project))
+    out = []
+    for name in joints:
+        twin = twins[skeleton.index(name)] if name in skeleton else -1
+        out.append(skeleton.names[twin] if twin >= 0 else name)
+    return tuple(out)
+
+
+def _faces_differ(clip: Clip, twin: Clip) -> bool:
+    if clip.weights is None or twin.weights is None or not clip.morphs:
+        return False
+    return bool(abs(clip.weights - twin.weights).max() > 0.01)
