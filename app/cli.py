@@ -10,6 +10,7 @@ from difflib import get_close_matches
 from pathlib import Path
 from typing import Any
 
+from app.headless_label import arguments as label_arguments
 from app.headless_live import arguments as live_arguments
 from app.headless_mimic import arguments as mimic_arguments
 from metagraph import __version__
@@ -58,6 +59,7 @@ def _parser() -> argparse.ArgumentParser:
     clips.add_argument("paths", type=Path, nargs="+", help="clip files and folders: BVH, GLB, glTF, VRM animation, FBX")
     checked = command("check", "list the problems of a project")
     checked.add_argument("--strict", action="store_true", help="warnings count as problems for the exit code, too")
+    label_arguments(command("label", "label the clips of a folder by their names and motion, and say why", project=False))
     planned = command("plan", "plan a performance and print its actions")
     _performance(planned, 20.0)
     rendered = command("render", "draw a performance, or one clip: a contact sheet (.png), a video (.mp4), or plain motion (.glb, .bvh)")
@@ -110,7 +112,7 @@ def _performance(parser: argparse.ArgumentParser, seconds: float) -> None:
     parser.add_argument("--seed", type=int, help="another performance of the same project (default: the project's seed)")
 
 
-COMMANDS = ("window", "import", "check", "plan", "render", "annotate", "export", "live", "mimic", "info", "demo")
+COMMANDS = ("window", "import", "label", "check", "plan", "render", "annotate", "export", "live", "mimic", "info", "demo")
 
 
 def main(arguments: Sequence[str] | None = None) -> int:

@@ -13,6 +13,7 @@ from typing import Any
 from app.headless_annotate import annotate as annotate
 from app.headless_common import opened, say, staged
 from app.headless_export import export as export
+from app.headless_label import label as label
 from app.headless_live import live as live
 from app.headless_mimic import mimic as mimic
 from app.headless_render import draw_to, figure_of, sound_of
