@@ -2,18 +2,20 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
-from typing import Final, cast
+from typing import Final, TypeVar, cast
 
 from metagraph.graph.words import Kind, Layer, Limb
 from metagraph.suggest.belief import Belief
 from metagraph.suggest.words_patterns import Patterns, PatternsError, forget, recalled, remembered
 from metagraph.suggest.words_stances import Found, Stances, Words, is_low, label
-from metagraph.suggest.words_tokens import Phrase, is_number, phrases, take_apart, variant, without_numbers, without_shared
+from metagraph.suggest.words_tokens import Phrase, is_number, phrases, quoted, take_apart, variant, without_numbers, without_shared
 
 __all__ = ["NameGuess", "Patterns", "PatternsError", "forget", "learn", "read_names"]
 
+T = TypeVar("T")
 _UP: Final = frozenset(("up", "stand", "rise", "get"))
 
 
@@ -174,12 +176,12 @@ class _Reader:
             return NameGuess(number=self._number(words))
         kind = self._kind(parse)
         return NameGuess(
-            kind=kind,
-            stance=self._stance(parse, kind),
-            end_stance=self._end_stance(parse),
-            layer=self._layer(parse, kind),
-            limb=self._limb(parse),
-            tags=self._tags(parse),
+            kind=_spelled(name, kind),
+            stance=_spelled(name, self._stance(parse, kind)),
+            end_stance=_spelled(name, self._end_stance(parse)),
+            layer=_spelled(name, self._layer(parse, kind)),
+            limb=_spelled(name, self._limb(parse)),
+            tags=_spelled(name, self._tags(parse)),
             number=self._number(words),
         )
 
@@ -206,7 +208,7 @@ class _Reader:
         if said:
             best = max(said, key=lambda p: (p.end - p.start, -p.start))
             if any(p.meaning != best.meaning and p.end - p.start == best.end - best.start for p in said):
-                both = " and ".join(f"'{p.text}'" for p in said)
+                both = " and ".join(dict.fromkeys(f"'{p.text}'" for p in said))
                 return Belief(cast("Kind", best.meaning), 0.55, f"name says {both}")
             return Belief(cast("Kind", best.meaning), 0.95 if parse.own else 0.85, f"name says '{best.text}'")
         if stance and parse.own and any(len(w) > 2 for w in parse.act):  # shorter ones are directions: "head_dl"
@@ -225,9 +227,8 @@ class _Reader:
         if learned is not None:
             return learned
         if parse.stance and parse.own:
-            return Belief(
-                parse.stance.text, min(0.97, parse.stance.confidence + 0.05), f"name begins with '{' '.join(parse.stance.words)}'"
-            )
+            begins = f'comes from "{parse.stance.text}"' if parse.joined else f"begins with '{' '.join(parse.words[: parse.own])}'"
+            return Belief(parse.stance.text, min(0.97, parse.stance.confidence + 0.05), f"name {begins}")
         if parse.stance:
             return Belief(self._called(parse.stance), 0.8, f"name says '{parse.joined}', which begins there")
         usual = self._stances.usual()
@@ -308,13 +309,20 @@ class _Reader:
         said = phrases(parse.act, self._patterns.meanings["tags"]) if not parse.joined else []
         if not said:
             return None
-        words = " and ".join(f"'{p.text}'" for p in said)
+        words = " and ".join(dict.fromkeys(f"'{p.text}'" for p in said))
         return Belief(tuple(dict.fromkeys(t for p in said for t in p.meaning.split())), 0.8, f"name says {words}")
 
     def _number(self, words: Words) -> Belief[int] | None:
         if not words or not is_number(words[-1]) or len(words[-1]) > 9:
             return None
         return Belief(int(words[-1]), 0.95, f"name ends in '{words[-1]}'")
+
+
+def _spelled(name: str, belief: Belief[T] | None) -> Belief[T] | None:
+    """Return the belief with what its reason quotes as the name writes it: 'ToCrossed'."""
+    if belief is None or "'" not in belief.reason:
+        return belief
+    return Belief(belief.value, belief.confidence, re.sub("'([^']+)'", lambda found: quoted(name, found[1].split()), belief.reason))
 
 
 def _layer(said: Phrase, confidence: float) -> Belief[Layer]:

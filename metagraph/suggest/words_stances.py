@@ -172,7 +172,9 @@ class Stances:
             if 0 < n < len(taken.words) and not self._only_number(taken.words[n:]):
                 runs[run] = runs.get(run, 0) + 1
         for run, count in runs.items():
-            if run and not any(run in s.prefixes for s in self.found.values()) and (count > 1 or run[0] == "idle"):
+            if not run or any(run in s.prefixes for s in self.found.values()):
+                continue
+            if count > 1 or run[0] == "idle" or any(self._bare(run) == self._bare(s.words) for s in self.found.values()):
                 bare = run[:-1] if len(run) > 1 and self._kinds.get(run[-1]) == "stance" else run
                 self._add(bare, 0.75, " ".join(run), run)
 

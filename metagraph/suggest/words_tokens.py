@@ -152,6 +152,14 @@ def phrases(words: Sequence[str], table: Meanings) -> list[Phrase]:
     return out
 
 
+def quoted(name: str, words: Sequence[str]) -> str:
+    """Return words in quotes as the name writes them, or plainly where they do not stand together in it."""
+    kept = [i for i, letter in enumerate(name) if letter.isalnum()]
+    squeezed, wanted = "".join(name[i] for i in kept).lower(), "".join(words)
+    at = squeezed.rfind(wanted) if wanted and len(squeezed) == len(kept) else -1
+    return f"'{name[kept[at] : kept[at + len(wanted) - 1] + 1]}'" if at >= 0 else f"'{' '.join(words)}'"
+
+
 def is_number(word: str) -> bool:
     return word.isdecimal()
 

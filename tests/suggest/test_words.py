@@ -86,7 +86,7 @@ def test_conflicting_words_lower_the_confidence_and_are_both_quoted() -> None:
     clear, torn = (read_names([n])[n].kind for n in ("Scratch_01", "Scratch_Point_01"))
     assert clear is not None and torn is not None
     assert torn.confidence < 0.6 < clear.confidence
-    assert "'scratch'" in torn.reason and "'point'" in torn.reason
+    assert "'Scratch'" in torn.reason and "'Point'" in torn.reason
 
 
 def test_left_and_right_together_are_both_hands_with_doubt() -> None:
@@ -203,7 +203,10 @@ def test_exporters_and_characters_names_are_left_out() -> None:
 
 def test_reasons_quote_the_words() -> None:
     guess = read_names(SEATED)["IdleSeatedBack01_ToIdleSeatedForward01"]
-    assert guess.kind is not None and guess.kind.reason == "name says 'to idle seated forward'"
+    assert guess.kind is not None and guess.kind.reason == "name says 'ToIdleSeatedForward'"
+    assert guess.stance is not None and guess.stance.reason == 'name comes from "idle seated back"'
+    spelled = read_names(["Seated Idle", "Sitting Clap"])["Sitting Clap"].stance
+    assert spelled is not None and spelled.value == "seated" and spelled.reason == "name begins with 'Sitting'"
 
 
 # --- accuracy --------------------------------------------------------------------------------------------------------
@@ -380,7 +383,7 @@ def test_one_correction_changes_its_words_and_nothing_else(bench: ModuleType) ->
     for name in changed:
         guess = after[name]
         assert (
-            guess.kind is not None and guess.kind.value == "gesture" and guess.kind.reason == "'tap fingers' was corrected to gesture once"
+            guess.kind is not None and guess.kind.value == "gesture" and guess.kind.reason == "'tap_fingers' was corrected to gesture once"
         )
         assert all(getattr(guess, f.name) == getattr(before[name], f.name) for f in fields(guess) if f.name != "kind")
     assert read_names(names, forget(patterns)) == before
@@ -400,7 +403,7 @@ def test_two_corrections_that_agree_teach_a_word() -> None:
 def test_corrections_that_contradict_each_other_teach_nothing() -> None:
     patterns = learn(learn(Patterns(), "Shrug_01", "kind", "fidget"), "Shrug_02", "kind", "gesture")
     guess = read_names(["Shrug_03"], patterns)["Shrug_03"].kind
-    assert guess is not None and guess.reason == "name says 'shrug'"
+    assert guess is not None and guess.reason == "name says 'Shrug'"
 
 
 def test_a_side_in_the_name_outweighs_what_another_clip_taught() -> None:
