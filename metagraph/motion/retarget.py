@@ -571,7 +571,12 @@ class _Work:
         out = sign * np.einsum("fi,fi->f", away, level) + from_half
         inside = np.clip(out, -from_half, from_half)
         extra = (to_half / from_half - scale) * (inside - from_half)
-        goal = self.places[:, self.target.roles[f"{side}_upper_arm"]] + scale * away + (sign * extra)[:, None] * level
+        away, inwards = scale * away, (sign * extra)[:, None] * level
+        # As far inwards as the arm is long enough for: a hand that cannot come to the middle stays in front.
+        room = self.target.length(*(f"{side}_{part}" for part in ARM)) ** 2 - np.einsum("fi,fi->f", away, away)
+        along, square = np.einsum("fi,fi->f", away, inwards), np.maximum(np.einsum("fi,fi->f", inwards, inwards), 1e-12)
+        most = np.clip((np.sqrt(np.maximum(0, along**2 + square * np.maximum(0, room))) - along) / square, 0, 1)
+        goal = self.places[:, self.target.roles[f"{side}_upper_arm"]] + away + most[:, None] * inwards
         self.reach([f"{side}_{part}" for part in ARM], goal, np.array([0, 0, -1.0]))
 
     def reach(self, names: Sequence[str], goal: Array, side: Array) -> None:
