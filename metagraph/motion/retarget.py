@@ -37,6 +37,7 @@ _PLAIN = (*TRUNK, "jaw", *(f"{side}_{part}" for side in SIDES for part in ("eye"
 MOVED = 1e-4  # metres: below this a joint keeps its rest translation
 BACKWARD = np.radians(100)  # a neck or spine turned further than this in every frame does not start from its rest pose
 LOWEST = 0.25  # of the leg: how far hips may be lowered so that legs of other proportions reach
+STRAIGHT = 0.9  # of the arm: from here on it stretches ever less for a place that only wider shoulders put so far
 FLOATING = 0.25  # of the leg: a rest pose this far off the ground is not standing on it
 
 
@@ -573,7 +574,10 @@ class _Work:
         extra = (to_half / from_half - scale) * (inside - from_half)
         away, inwards = scale * away, (sign * extra)[:, None] * level
         # As far inwards as the arm is long enough for: a hand that cannot come to the middle stays in front.
-        room = self.target.length(*(f"{side}_{part}" for part in ARM)) ** 2 - np.einsum("fi,fi->f", away, away)
+        length = self.target.length(*(f"{side}_{part}" for part in ARM))
+        free = np.maximum(np.linalg.norm(away, axis=-1) / length, STRAIGHT)
+        reach = _eased(np.linalg.norm(away + inwards, axis=-1) / length, free) * length
+        room = reach**2 - np.einsum("fi,fi->f", away, away)
         along, square = np.einsum("fi,fi->f", away, inwards), np.maximum(np.einsum("fi,fi->f", inwards, inwards), 1e-12)
         most = np.clip((np.sqrt(np.maximum(0, along**2 + square * np.maximum(0, room))) - along) / square, 0, 1)
         goal = self.places[:, self.target.roles[f"{side}_upper_arm"]] + away + most[:, None] * inwards
@@ -647,14 +651,21 @@ def _levels(parents: Array) -> list[Array]:
     return [np.flatnonzero(depth == d) for d in range(depth.max() + 1)]
 
 
+def _eased(reach: Array, free: Array) -> Array:
+    """Return `reach [F]`, of a limb's length, slowed down from `free` on so that it never quite gets to 1: no elbow snaps straight."""
+    left = np.maximum(1 - free, 1e-6)
+    return np.where(reach > free, free + left * (1 - np.exp(-np.maximum(0, reach - free) / left)), reach)
+
+
 def _within(goal: Array, least: float, most: float) -> Array:
-    """Return `[F, 3]` moved into reach: towards the axis of height first, so that the height stays."""
+    """Return `[F, 3]` moved into reach sideways, so that the height stays."""
     goal = goal.copy()
     goal[:, 1] = np.clip(goal[:, 1], -most, most)
     flat = np.linalg.norm(goal[:, [0, 2]], axis=-1)
     room = np.sqrt(np.maximum(0, most**2 - goal[:, 1] ** 2))
     goal[:, [0, 2]] *= np.minimum(1, room / np.maximum(flat, 1e-9))[:, None]
-    far = np.linalg.norm(goal, axis=-1)
-    goal[far < 1e-6] = [0, -1e-6, 0]
-    far = np.maximum(far, 1e-6)
-    return np.asarray(goal * np.maximum(1, least / far)[:, None])
+    flat = np.linalg.norm(goal[:, [0, 2]], axis=-1)
+    goal[flat < 1e-6, 2] = flat[flat < 1e-6] = 1e-6  # straight above or below: out to the front
+    out = np.sqrt(np.maximum(0, least**2 - goal[:, 1] ** 2))
+    goal[:, [0, 2]] *= np.maximum(1, out / flat)[:, None]
+    return goal
