@@ -57,6 +57,10 @@ def commands(window: Window) -> tuple[Command, ...]:
         Command("find", "&Edit", "&Find clip", window.library.search.setFocus, (Standard.Find,)),
         Command("new_stance", "&Graph", "&New stance…", c.new_stance, ("Ctrl+Shift+N",)),
     ]  # fmt: skip
+    out.append(
+        Command("propose", "&Graph", "&Label clips…", window.propose, ("Ctrl+P",), tip="Propose what each clip is, by name and motion",
+                enabled=lambda: any(clip not in d.project.uses for clip in d.project.clips))
+    )  # fmt: skip
     for number, kind in enumerate(KINDS, 1):
         text = f"Label as &{number} {kind}"
         out.append(

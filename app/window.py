@@ -352,6 +352,12 @@ class Window(QMainWindow):
         self.session.copied = self.session.actions[0]
         self.actions.refresh()
 
+    def propose(self) -> None:
+        """Propose labels for the clips that are not placed yet."""
+        from app.panels.proposals import ProposalsDialog
+
+        ProposalsDialog(self.document, self.session, self.jobs, self).open()
+
     def toggle_watching(self) -> None:
         """Begin or end reading changed clip files anew."""
         self.watcher.set_on(not self.watcher.on)

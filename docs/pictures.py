@@ -1,7 +1,8 @@
 """Take the pictures of the documentation from the real window: `python docs/pictures.py` (on a screen, or under `xvfb-run`).
 
-Writes docs/window.png, practice.png, empty.png, light.png, requests.png, models.png, export.png, web.png and performance.png, from our own
-sample clips only; with names behind it, only those. The web page needs Node, Chromium and what tests/package.json names.
+Writes docs/window.png, practice.png, empty.png, light.png, requests.png, models.png, label.png, export.png, web.png and
+performance.png, from our own sample clips only; with names behind it, only those. The web page needs Node, Chromium and what
+tests/package.json names.
 """
 
 from __future__ import annotations
@@ -171,6 +172,24 @@ def exporting() -> None:
     close(out)
 
 
+def labelling() -> None:
+    """Proposals for the practice project."""
+    from app.files import PRACTICE
+    from app.panels.proposals import ProposalsDialog
+
+    out = window()
+    out.files.open(PRACTICE, template=True)  # type: ignore[attr-defined]
+    wait(20000, lambda: bool(out.document.project.clips))  # type: ignore[attr-defined]
+    dialog = ProposalsDialog(out.document, out.session, out.jobs, out)  # type: ignore[attr-defined]
+    dialog.open()
+    wait(20000, lambda: dialog.list.topLevelItemCount() > 0)
+    dialog.list.setCurrentItem(dialog.list.topLevelItem(0))
+    wait(600)
+    shoot(dialog, "label.png")
+    dialog.reject()
+    close(out)
+
+
 def page() -> None:
     """The web page, in a browser, having been asked to wave."""
     from metagraph.engines.targets import registry, web
@@ -220,6 +239,7 @@ PICTURES: dict[str, Callable[[], None]] = {
     "practice": half_labelled,
     "requests": requests,
     "models": models,
+    "label": labelling,
     "export": exporting,
     "web": page,
     "performance": performance,

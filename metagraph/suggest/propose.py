@@ -325,14 +325,30 @@ def accept(project: Project, found: Proposals, above: float = 0.0, clips: Collec
     wanted = [p for p in wanted if p.clip not in left]
     keys = {key: key for key, place in found.places.items() if place.there and project.stance(key) is not None}
     loops = {plain(found.places[p.stance.value].name): p.clip for p in wanted if p.kind.value == "stance" and p.stance is not None}
-    placed: list[str] = []
+    before, placed = project, list[str]()
     for p in sorted(wanted, key=lambda p: (p.kind.value != "stance", -p.confidence)):
         try:
             project = _place(project, p, found.places, keys, loops)
             placed.append(p.clip)
         except EditError as error:
             left[p.clip] = str(error)
-    return Taken(project, tuple(placed), left)
+    return Taken(_begun(before, project), tuple(placed), left)
+
+
+def _begun(before: Project, project: Project) -> Project:
+    """Return the project with layers that had no stance beginning in their most used one, and a base pose, where none was chosen, of the
+    arms' or else the body's: offsets are smallest against where a character mostly is."""
+    for layer in LAYERS:
+        graph = project.graphs[layer]
+        if graph.stances and not before.graphs[layer].stances:
+            used = Counter(a.stance for a in graph.actions.values())
+            project = edits.set_start(project, max(graph.stances, key=lambda s: used[s]))
+    if before.base.clip is None:
+        starts = [(g, g.start) for layer in ("arms", "body", "head") if (g := project.graphs[layer]).start is not None]
+        loops = [loop for graph, start in starts for loop in graph.of(str(start), "stance")]
+        if loops:
+            project = edits.set_base(project, loops[0].clip)
+    return project
 
 
 def _place(project: Project, p: Proposal, places: Mapping[str, Place], keys: dict[str, str], loops: Mapping[str, str]) -> Project:

@@ -61,6 +61,16 @@ def test_with_names_and_motion_the_practice_project_labels_itself(practice: Proj
     assert sum(1 for _ in taken.project.actions()) == len(practice.clips)
 
 
+def test_layers_begin_in_their_most_used_stance_and_the_base_pose_is_the_arms(practice: Project) -> None:
+    bare = replace(practice, base=type(practice.base)())
+    after = accept(bare, propose(bare)).project
+    start = after.stance(after.graphs["arms"].start)
+    assert start is not None and start.name == "hands at sides"
+    assert after.base.clip is not None and after.clips[after.base.clip].name == "hands_at_sides__stance"
+    again = accept(practice, propose(practice)).project
+    assert again.base == practice.base
+
+
 def test_names_alone_do_and_so_does_motion_alone(practice: Project, truth: Any) -> None:
     assert right(propose(practice, sources=("name",)), truth, "kind") >= 0.98
     found = propose(practice, sources=("motion",))
