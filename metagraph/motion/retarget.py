@@ -1,4 +1,4 @@
-"""Bring a clip onto a different character: which joint is which, turns carried over, hands and feet kept on height.
+"""Bring a clip onto a different character: turns carried over, hands and feet kept on height.
 
 Turns are taken relative to a standing pose of either figure, mostly the rest pose. Where these differ (arms out, arms down) the
 bones' directions reconcile them; the roll about a bone is the one the shortest way between them leaves, and hands with
@@ -8,9 +8,8 @@ All is reckoned in the character's axes: +X to its left, +Y up, +Z ahead.
 
 from __future__ import annotations
 
-import re
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from itertools import pairwise
 from typing import Any
 
@@ -19,196 +18,17 @@ from numpy.typing import NDArray
 
 from metagraph.motion import rotation
 from metagraph.motion.clip import Clip
-from metagraph.motion.joint_names import kind_of, take_apart
+from metagraph.motion.joint_map import ARM, FINGERS, LEG, NEEDED, SIDES, TRUNK, JointMap, JointPair, RetargetError
 from metagraph.motion.roles import find_roles
 from metagraph.motion.skeleton import Pose, Skeleton
 
 Array = NDArray[Any]
 
-SIDES = ("left", "right")
-FINGERS = ("thumb", "index", "middle", "ring", "little")
-# The words for them, of which the first that fits counts: "RingPinky" is a little finger.
-_MARKS = {"thumb": ("thumb",), "index": ("index",), "middle": ("middle", "mid"), "little": ("little", "pinky"), "ring": ("ring",)}
-ARM, LEG = ("upper_arm", "lower_arm", "hand"), ("upper_leg", "lower_leg", "foot")
-TRUNK = ("hips", "spine", "chest", "upper_chest", "neck", "head")
-# Without these nothing sensible can be carried over.
-NEEDED = ("hips", "head", *(f"{side}_{part}" for side in SIDES for part in (*ARM, *LEG)))
-_PLAIN = (*TRUNK, "jaw", *(f"{side}_{part}" for side in SIDES for part in ("eye", "shoulder", *ARM, *LEG, "toes")))
 MOVED = 1e-4  # metres: below this a joint keeps its rest translation
 BACKWARD = np.radians(100)  # a neck or spine turned further than this in every frame does not start from its rest pose
 LOWEST = 0.25  # of the leg: how far hips may be lowered so that legs of other proportions reach
 STRAIGHT = 0.9  # of the arm: from here on it stretches ever less for a place that only wider shoulders put so far
 FLOATING = 0.25  # of the leg: a rest pose this far off the ground is not standing on it
-
-
-class RetargetError(ValueError):
-    """The clip cannot be brought onto that skeleton; the message says why."""
-
-
-def fingerprint(skeleton: Skeleton) -> str:
-    """Return what stays the same for a skeleton in every file of a character: a short text, to remember maps by."""
-    return skeleton.fingerprint
-
-
-# --- which joint is which --------------------------------------------------------------------------------------------
-
-
-@dataclass(frozen=True, slots=True)
-class JointPair:
-    """role: what both do, as in `roles.ROLES`, `left_index_1`, `left_lower_arm_twist_1`, `root`, or "" for a pair by its name.
-
-    sure: 0..1. why: in words.
-    """
-
-    source: str
-    target: str
-    role: str = ""
-    sure: float = 1.0
-    why: str = "chosen by hand"
-
-
-@dataclass(frozen=True)
-class JointMap:
-    """Joints of one skeleton and those of another that follow them. source, target: the skeletons' fingerprints."""
-
-    source: str
-    target: str
-    pairs: tuple[JointPair, ...]
-
-    def of(self, source: str) -> JointPair | None:
-        return next((p for p in self.pairs if p.source == source), None)
-
-    def with_pair(self, source: str, target: str, role: str | None = None) -> JointMap:
-        """Return the map with `target` following `source`. Without a role it is that of the pair this one takes the place of."""
-        before = [p for p in self.pairs if p.source == source or p.target == target]
-        if role is None:
-            known = [p.role for p in before if p.source == source] + [p.role for p in before]
-            role = next((r for r in known if r), "")
-        kept = tuple(p for p in self.pairs if p not in before and (p.role != role or not role))
-        return replace(self, pairs=(*kept, JointPair(source, target, role)))
-
-    def without(self, joint: str) -> JointMap:
-        """Return the map without the pairs of that joint of either skeleton."""
-        return replace(self, pairs=tuple(p for p in self.pairs if joint not in (p.source, p.target)))
-
-    @property
-    def reversed(self) -> JointMap:
-        pairs = tuple(replace(p, source=p.target, target=p.source) for p in self.pairs)
-        return JointMap(self.target, self.source, pairs)
-
-    @property
-    def missing(self) -> tuple[str, ...]:
-        """What must be mapped and is not, in words; a clip can be retargeted when this is empty."""
-        roles = {p.role for p in self.pairs}
-        return tuple(f"no {role.replace('_', ' ')} in both" for role in NEEDED if role not in roles)
-
-    def to_json(self) -> dict[str, Any]:
-        rows = [{"from": p.source, "to": p.target, "role": p.role, "sure": round(p.sure, 3), "why": p.why} for p in self.pairs]
-        return {"source": self.source, "target": self.target, "pairs": rows}
-
-    @staticmethod
-    def from_json(data: Mapping[str, Any]) -> JointMap:
-        """Raises RetargetError when the data is no joint map."""
-        try:
-            pairs = tuple(
-                JointPair(str(p["from"]), str(p["to"]), str(p.get("role", "")), float(p.get("sure", 1)), str(p.get("why", "")))
-                for p in data["pairs"]
-            )
-            return JointMap(str(data["source"]), str(data["target"]), pairs)
-        except (KeyError, TypeError, ValueError, AttributeError) as error:
-            raise RetargetError(f"that is no joint map ({error!r})") from None
-
-
-def proposed(
-    source: Skeleton, target: Skeleton, source_roles: Mapping[str, int] | None = None, target_roles: Mapping[str, int] | None = None
-) -> JointMap:
-    """Propose which joint of `target` follows which of `source`: by roles, fingers and twists, then by names."""
-    ours, theirs = _known(source, source_roles), _known(target, target_roles)
-    pairs: dict[str, JointPair] = {}
-    taken: set[str] = set()
-
-    def add(a: int, b: int, role: str, sure: float, why: str) -> None:
-        one, two = source.names[a], target.names[b]
-        if one not in pairs and two not in taken:
-            pairs[one] = JointPair(one, two, role, sure, why)
-            taken.add(two)
-
-    for role, joint in ours.items():
-        if role in theirs:
-            other = theirs[role]
-            same = take_apart(source.names[joint]).joined == take_apart(target.names[other]).joined
-            shaped = not role[-1].isdecimal() and _unnamed(source.names[joint], role) + _unnamed(target.names[other], role)
-            sure = 1.0 if same else 0.9 - 0.15 * shaped
-            add(joint, other, role, sure, "same role and name" if same else f"both are the {role.replace('_', ' ')}")
-    tops = [[roles[r] for r in ("spine", "chest", "upper_chest") if r in roles] for roles in (ours, theirs)]
-    if all(tops):
-        add(tops[0][-1], tops[1][-1], "upper_chest", 0.7, "both carry the arms")
-    if source.parents[ours.get("hips", 0)] >= 0 and theirs and target.parents[theirs.get("hips", 0)] >= 0:
-        add(0, 0, "root", 0.8, "both stand above the hips")
-    names: dict[tuple[Any, ...], list[int]] = {}
-    for i, name in enumerate(target.names):
-        words = take_apart(name)
-        names.setdefault((words.words, words.side, words.number), []).append(i)
-    for i, name in enumerate(source.names):
-        words = take_apart(name)
-        found = names.get((words.words, words.side, words.number), [])
-        exact = name in target
-        j = target.index(name) if exact else found[0] if len(found) == 1 and words.words else -1
-        if j >= 0:
-            add(i, j, "", 0.9 if exact else 0.6, "same name" if exact else "same words in the name")
-    return JointMap(fingerprint(source), fingerprint(target), tuple(pairs.values()))
-
-
-def _known(skeleton: Skeleton, roles: Mapping[str, int] | None) -> dict[str, int]:
-    """Return roles with those of fingers and twist joints, as far as they can be told apart."""
-    roles = find_roles(skeleton) if roles is None else roles
-    out = {role: roles[role] for role in _PLAIN if role in roles}
-    for side in SIDES:
-        out.update(_fingers(skeleton, out, side))
-    return {**out, **_twists(skeleton, out)}
-
-
-def _fingers(skeleton: Skeleton, roles: Mapping[str, int], side: str) -> dict[str, int]:
-    top = roles.get(f"{side}_lower_arm", roles.get(f"{side}_hand"))
-    if top is None:
-        return {}
-    lines: dict[str, list[int]] = {}
-    for j in skeleton.descendants(top):
-        words = take_apart(skeleton.names[j])
-        if {"end", "nub", "tip", "metacarpal", "carpal", "twist", "roll"} & set(words.words):
-            continue
-        numbered = re.search(r"[Ff]inger(\d)", skeleton.names[j])
-        for finger, marks in _MARKS.items():
-            named = any(m in words.words or any(w.endswith(m) for w in words.words) for m in marks)
-            if named or (numbered and int(numbered[1]) == FINGERS.index(finger)):
-                lines.setdefault(finger, []).append(j)
-                break
-    out = {}
-    for finger, line in lines.items():
-        for n, joint in enumerate(sorted(line, key=lambda j: len(skeleton.chain(j)))[:3], 1):
-            out[f"{side}_{finger}_{n}"] = joint
-    return out
-
-
-def _twists(skeleton: Skeleton, roles: Mapping[str, int]) -> dict[str, int]:
-    """Return the joints that turn with a bone, not bend it: helpers hung on it, numbered from its root."""
-    out: dict[str, int] = {}
-    taken = set(roles.values())
-    for role in [f"{side}_{part}" for side in SIDES for part in (*ARM[:2], *LEG[:2])]:
-        if role not in roles:
-            continue
-        found = [
-            c for c in skeleton.children[roles[role]] if c not in taken and {"twist", "roll"} & set(take_apart(skeleton.names[c]).words)
-        ]
-        out.update({f"{role}_twist_{n}": c for n, c in enumerate(found, 1)})
-    return out
-
-
-def _unnamed(name: str, role: str) -> int:
-    """Whether the name alone does not say the role."""
-    words = take_apart(name)
-    bare = role.removeprefix("left_").removeprefix("right_")
-    return int(kind_of(words) != bare and bare.replace("_", "") not in words.joined)
 
 
 # --- standing poses --------------------------------------------------------------------------------------------------

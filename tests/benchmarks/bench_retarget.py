@@ -20,8 +20,9 @@ sys.path.insert(0, str(ROOT))
 from metagraph.formats.clips import read_clips  # noqa: E402
 from metagraph.motion import rotation  # noqa: E402
 from metagraph.motion.clip import Clip  # noqa: E402
+from metagraph.motion.joint_map import proposed  # noqa: E402
 from metagraph.motion.mirror import mirror, pairs_of  # noqa: E402
-from metagraph.motion.retarget import proposed, retarget  # noqa: E402
+from metagraph.motion.retarget import retarget  # noqa: E402
 from metagraph.motion.skeleton import Skeleton  # noqa: E402
 from sample_clips.make.skeleton import mannequin_skeleton  # noqa: E402
 

@@ -19,7 +19,8 @@ from hypothesis import strategies as st
 from metagraph.formats.clips import read_clips
 from metagraph.motion import rotation
 from metagraph.motion.clip import Clip
-from metagraph.motion.retarget import JointMap, RetargetError, fingerprint, proposed, retarget, standing_pose, stands
+from metagraph.motion.joint_map import JointMap, RetargetError, fingerprint, proposed
+from metagraph.motion.retarget import retarget, standing_pose, stands
 from metagraph.motion.skeleton import Pose, Skeleton
 
 SIDES = ("left", "right")
