@@ -8,15 +8,10 @@ import time
 from argparse import Namespace
 from collections.abc import Mapping
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
-from app.headless_common import opened, say
-from metagraph.errors import FileError
-from metagraph.formats.atomic import write_atomically
-from metagraph.formats.imports import import_files
-from metagraph.formats.store import SUFFIX, save_project
-from metagraph.graph.check import check
-from metagraph.graph.model import Project
+if TYPE_CHECKING:  # reading a command line must not wait for arrays
+    from metagraph.graph.model import Project
 
 
 def arguments(parser: argparse.ArgumentParser) -> None:
@@ -34,7 +29,12 @@ def arguments(parser: argparse.ArgumentParser) -> None:
 
 def label(options: Namespace) -> int:
     """Label a folder or project; write the project and an HTML report beside it."""
+    from app.headless_common import say
     from app.label_report import needs_a_look, report
+    from metagraph.errors import FileError
+    from metagraph.formats.atomic import write_atomically
+    from metagraph.formats.store import SUFFIX, save_project
+    from metagraph.graph.check import check
     from metagraph.suggest.propose import SOURCES, accept, propose
 
     began = time.perf_counter()
@@ -70,6 +70,12 @@ def label(options: Namespace) -> int:
 
 def _project(source: Path, path: Path) -> tuple[Project, list[str]]:
     """Return the project to label, and what there is to say about what was read."""
+    from app.headless_common import opened
+    from metagraph.errors import FileError
+    from metagraph.formats.imports import import_files
+    from metagraph.formats.store import SUFFIX
+    from metagraph.graph.model import Project
+
     if source.is_file():
         return opened(source), []
     empty = Project(name=path.name.removesuffix(SUFFIX))
@@ -83,6 +89,7 @@ def _project(source: Path, path: Path) -> tuple[Project, list[str]]:
 def _pictures(project: Project, folder: Path, clips: list[str]) -> Mapping[str, Any]:
     """Return a picture of each clip's most telling pose; none where nothing can be drawn here."""
     from app.headless_render import figure_of
+    from metagraph.errors import FileError
     from preview.offscreen import Offscreen, OpenGLError
     from preview.thumbnail import clip_thumbnail
 
