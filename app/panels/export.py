@@ -243,9 +243,10 @@ class ExportDialog(QDialog):
         self.open_button.setEnabled(True)
         self.written = made.target
         self.open_button.setText("Open in browser" if made.target == "web" else "Open folder")
-        kb = [f"{p.name} ({p.stat().st_size / 1e6:.1f} MB)" for p in made.files[:3]]
+        main = [path.name for path in sorted(made.files, key=lambda path: -path.stat().st_size)[:3]]
         more = f" and {len(made.files) - 3} more files" if len(made.files) > 3 else ""
-        self.words.setText(f"Written: {', '.join(kb)}{more}, with {made.clips} clips.")
+        size = sum(path.stat().st_size for path in made.files) / 1e6
+        self.words.setText(f"Written: {', '.join(main)}{more}, {size:.1f} MB with {made.clips} clips.")
         self.trouble.setText("\n".join(made.warnings[:5]))
 
     def _failed(self, error: Exception) -> None:

@@ -16,8 +16,3 @@ class Belief(Generic[T]):
     value: T
     confidence: float
     reason: str
-
-
-def surest(beliefs: list[Belief[T]]) -> Belief[T] | None:
-    """Return the belief held most firmly, the first of equal ones; None of none."""
-    return max(beliefs, key=lambda b: b.confidence, default=None)

@@ -2,8 +2,8 @@
  * What a pose costs: Metagraph's JavaScript runtime beside three.js's AnimationMixer, in one process, by turns.
  *
  *     npm install --prefix tests --no-package-lock
- *     metagraph export sample_clips/sample.metagraph.yaml -o /tmp/sample
- *     node tests/benchmarks/bench_javascript.mjs [FOLDER of an export, /tmp/sample] [characters, 1000] [rounds, 60]
+ *     metagraph export sample_clips/sample.metagraph.yaml -o out/sample
+ *     node tests/benchmarks/bench_javascript.mjs [FOLDER of an export, out/sample] [characters, 1000] [rounds, 60]
  *
  * Both sides: as many characters, each with its own motion at its own time, three layers over the same joints and clips, a frame of
  * 1/60 s a round. Ours: each with a plan of its own that its models wrote, blends and changes of stance included. three.js: a mixer
@@ -21,7 +21,7 @@ const THREE = await import("three");
 const { GLTFLoader } = await import("three/examples/jsm/loaders/GLTFLoader.js");
 const { clone } = await import("three/examples/jsm/utils/SkeletonUtils.js");
 
-const [folder = "/tmp/sample", count = 1000, rounds = 60] = process.argv.slice(2);
+const [folder = "out/sample", count = 1000, rounds = 60] = process.argv.slice(2);
 const FRAME = 1 / 60;
 const LENGTH = 60; // seconds planned
 const name = readdirSync(folder).find((file) => file.endsWith(".json") && file !== "vectors.json");

@@ -6,7 +6,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from metagraph.suggest.belief import Belief, surest
+from metagraph.suggest.belief import Belief
 from metagraph.suggest.combine import LEAST, MOST, combine
 
 
@@ -16,7 +16,6 @@ def says(value: str, confidence: float, reason: str = "") -> Belief[str]:
 
 def test_nobody_says_nothing() -> None:
     assert combine([], 4) is None
-    assert surest([]) is None
 
 
 def test_one_source_is_believed_as_far_as_it_believes_itself() -> None:

@@ -58,7 +58,7 @@ export function fillPanel(panel, object, stage, state) {
     const places = row();
     places.style.marginTop = "6px";
     for (const { id, name } of known.values()) {
-      const go = button(name, { do: "stance", layer, stance: id }, "stance");
+      const go = button(name, { do: "stance", layer, stance: id, stay: true }, "stance"); // else the models leave it at once
       stances.set(go, [layer, id]);
       places.append(go);
     }
