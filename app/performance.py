@@ -6,7 +6,6 @@ and the old one plays until the new one is there.
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 import msgspec
@@ -15,16 +14,15 @@ from PySide6.QtCore import QObject, QTimer, Signal
 from app.document import Document
 from app.jobs import Jobs
 from app.session import Session
+from app.shown import Shown, alone, in_context
 from metagraph.graph import staging
 from metagraph.graph.asks import AnyAsk, AskError
 from metagraph.graph.asks import Performance as KeptPerformance
-from metagraph.graph.edits import EditError, place
-from metagraph.graph.model import LAYERS, Layer, Project
+from metagraph.graph.model import LAYERS, Project
 from metagraph.motion.skeleton import Pose, Skeleton
 from metagraph.playback.hear import Answer, answers, perform
-from metagraph.playback.plan import Plan, Request
+from metagraph.playback.plan import Plan
 from metagraph.playback.planner import make_plan
-from metagraph.playback.player import morphs_at, pose_at
 
 if TYPE_CHECKING:
     from app.live import LiveStage
@@ -33,17 +31,6 @@ if TYPE_CHECKING:
 LENGTH = 60.0  # seconds planned ahead, and how much more whenever the playhead comes near the end
 AHEAD = 15.0  # seconds before the end at which more is planned
 SOON = 0.15  # seconds from now at which "now" is: the plan needs a moment
-LEAD = 0.8  # seconds of stance before and after a clip shown in context
-
-
-@dataclass(frozen=True)
-class Shown:
-    """What plays: a plan on the project it was made for, or a clip alone. length: seconds."""
-
-    project: Project
-    plan: Plan
-    length: float
-    clip: str | None = None
 
 
 class Performance(QObject):
@@ -306,59 +293,11 @@ class Performance(QObject):
 
     def skeleton(self) -> Skeleton | None:
         """Return the skeleton of what plays: a clip looked at alone may have its own."""
-        if self.shown.clip is not None:
-            motion = self.shown.project.clips[self.shown.clip].motion
-            return motion.skeleton if motion is not None else None
-        return self.shown.project.skeleton
+        return self.shown.skeleton
 
     def pose(self, seconds: float | None = None) -> Pose | None:
         """Return the pose at the playhead (or at `seconds`), None when there is nothing to show."""
-        at = self.session.seconds if seconds is None else seconds
-        if self.shown.clip is not None:
-            motion = self.shown.project.clips[self.shown.clip].motion
-            return motion.pose_at(at) if motion is not None else None
-        if self.shown.project.skeleton is None:
-            return None
-        return pose_at(self.shown.plan, self.shown.project, at)
+        return self.shown.pose(self.session.seconds if seconds is None else seconds)
 
     def morphs(self) -> dict[str, float]:
-        if self.shown.clip is not None:
-            motion = self.shown.project.clips[self.shown.clip].motion
-            return motion.morphs_at(self.session.seconds) if motion is not None else {}
-        return morphs_at(self.shown.plan, self.shown.project, self.session.seconds)
-
-
-def alone(project: Project, clip: str) -> Shown:
-    """Return a clip playing by itself."""
-    return Shown(project, Plan(1, 0.0), max(1e-3, project.clips[clip].duration), clip)
-
-
-def in_context(project: Project, ident: str, layer: Layer, stances: dict[Layer, str]) -> Shown:
-    """Return stance, action, back to the stance, the other layers resting in theirs.
-
-    ident: an action, or a clip; a clip that was not placed yet is tried as a gesture of the current stance.
-    """
-    action = project.action(ident)
-    if action is None and ident in project.clips:
-        uses = project.uses.get(ident, ())
-        action = next((a for a in uses if a.stance == stances.get(layer)), uses[0] if uses else None)
-    scratch = project
-    if action is None:
-        try:
-            scratch = place(project, [ident], layer, "gesture", stances.get(layer))
-        except EditError:
-            return alone(project, ident)
-        action = scratch.action(f"a{project.next_id}")
-    if action is None:
-        return alone(project, ident)
-    begin = {**stances, action.layer: action.stance}
-    if action.kind == "stance":
-        start, end = scratch.span(action)
-        graph = scratch.graphs[action.layer]
-        only = {a.id: None for a in graph.of(action.stance, "stance") if a.id != action.id}
-        scratch = scratch.with_graph(graph.with_actions(only))
-        return Shown(scratch, make_plan(scratch, end - start, (), stances=begin, idle=False), max(1.0, end - start))
-    request = Request("shown", action.layer, action.kind, LEAD, action=action.id)
-    start, end = scratch.span(action)
-    length = LEAD + max(0.0, end - start) + LEAD
-    return Shown(scratch, make_plan(scratch, length, (request,), stances=begin, idle=False), length)
+        return self.shown.morphs(self.session.seconds)

@@ -11,7 +11,7 @@ from PySide6.QtGui import QColor, QPainter, QPen
 
 from app.asks import STAGE
 from app.panels.lanes import LEFT, RULER, TITLES, Mark, Scale, elided, lanes, rows
-from app.performance import Shown
+from app.shown import Shown
 from app.theme import KIND_MARKS, Theme
 from metagraph.graph.model import LAYERS, Layer
 

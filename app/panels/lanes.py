@@ -13,7 +13,7 @@ from PySide6.QtCore import QPointF, QRectF, Qt
 from PySide6.QtGui import QFont, QFontMetricsF
 
 from app.asks import STAGE, ask_words, kind_of, lane_of
-from app.performance import Shown
+from app.shown import Shown
 from metagraph.graph.asks import AnyAsk
 from metagraph.graph.model import LAYERS, Layer, Project
 from metagraph.playback.hear import Answer

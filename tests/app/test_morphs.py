@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 
 from app.headless_render import pictures
-from app.performance import alone
+from app.shown import alone
 from metagraph.formats.gltf import read_character
 from metagraph.formats.imports import import_files
 from metagraph.graph import edits

@@ -9,7 +9,8 @@ import pytest
 
 from app.document import Document
 from app.jobs import Jobs
-from app.performance import LEAD, Performance, alone, in_context
+from app.performance import Performance
+from app.shown import LEAD, alone, in_context
 from app.session import Session
 from metagraph.graph import asks as a
 from metagraph.graph import edits, staging

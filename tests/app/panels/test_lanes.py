@@ -12,7 +12,7 @@ from PySide6.QtGui import QFont
 
 from app.asks import STAGE
 from app.panels.lanes import LEFT, RULER, Scale, advance, cue_at, lane_at, lanes, mark_at, marks, rows, told
-from app.performance import Shown
+from app.shown import Shown
 from metagraph.graph import asks as a
 from metagraph.graph.model import LAYERS
 from metagraph.playback.hear import answer, perform

@@ -1,0 +1,82 @@
+"""What plays: a plan on the project it was made for, or a clip alone; whoever shows it asks for the pose at a time."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+from metagraph.graph.edits import EditError, place
+from metagraph.graph.model import Layer, Project
+from metagraph.motion.skeleton import Pose, Skeleton
+from metagraph.playback.plan import Plan, Request
+from metagraph.playback.planner import make_plan
+from metagraph.playback.player import morphs_at, pose_at
+
+LEAD = 0.8  # seconds of stance before and after a clip shown in context
+
+
+@dataclass(frozen=True)
+class Shown:
+    """project: the one the plan was made for. length: seconds. clip: the one that plays alone, then without a plan."""
+
+    project: Project
+    plan: Plan
+    length: float
+    clip: str | None = None
+
+    @property
+    def skeleton(self) -> Skeleton | None:
+        """A clip looked at alone may have its own."""
+        if self.clip is not None:
+            motion = self.project.clips[self.clip].motion
+            return motion.skeleton if motion is not None else None
+        return self.project.skeleton
+
+    def pose(self, seconds: float) -> Pose | None:
+        """Return the pose at a time, None when there is nothing to show."""
+        if self.clip is not None:
+            motion = self.project.clips[self.clip].motion
+            return motion.pose_at(seconds) if motion is not None else None
+        return pose_at(self.plan, self.project, seconds) if self.project.skeleton is not None else None
+
+    def morphs(self, seconds: float) -> dict[str, float]:
+        """Return face shapes and their weights, 0..1, at a time."""
+        if self.clip is not None:
+            motion = self.project.clips[self.clip].motion
+            return motion.morphs_at(seconds) if motion is not None else {}
+        return morphs_at(self.plan, self.project, seconds)
+
+
+def alone(project: Project, clip: str) -> Shown:
+    """Return a clip playing by itself."""
+    return Shown(project, Plan(1, 0.0), max(1e-3, project.clips[clip].duration), clip)
+
+
+def in_context(project: Project, ident: str, layer: Layer, stances: dict[Layer, str]) -> Shown:
+    """Return stance, action, back to the stance, the other layers resting in theirs.
+
+    ident: an action, or a clip; a clip that was not placed yet is tried as a gesture of the current stance.
+    """
+    action = project.action(ident)
+    if action is None and ident in project.clips:
+        uses = project.uses.get(ident, ())
+        action = next((a for a in uses if a.stance == stances.get(layer)), uses[0] if uses else None)
+    scratch = project
+    if action is None:
+        try:
+            scratch = place(project, [ident], layer, "gesture", stances.get(layer))
+        except EditError:
+            return alone(project, ident)
+        action = scratch.action(f"a{project.next_id}")
+    if action is None:
+        return alone(project, ident)
+    begin = {**stances, action.layer: action.stance}
+    if action.kind == "stance":
+        start, end = scratch.span(action)
+        graph = scratch.graphs[action.layer]
+        only = {a.id: None for a in graph.of(action.stance, "stance") if a.id != action.id}
+        scratch = scratch.with_graph(graph.with_actions(only))
+        return Shown(scratch, make_plan(scratch, end - start, (), stances=begin, idle=False), max(1.0, end - start))
+    request = Request("shown", action.layer, action.kind, LEAD, action=action.id)
+    start, end = scratch.span(action)
+    length = LEAD + max(0.0, end - start) + LEAD
+    return Shown(scratch, make_plan(scratch, length, (request,), stances=begin, idle=False), length)
