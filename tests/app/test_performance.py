@@ -10,8 +10,8 @@ import pytest
 from app.document import Document
 from app.jobs import Jobs
 from app.performance import Performance
-from app.shown import LEAD, alone, in_context
 from app.session import Session
+from app.shown import LEAD, alone, in_context
 from metagraph.graph import asks as a
 from metagraph.graph import edits, staging
 from metagraph.graph.model import LAYERS, Project
