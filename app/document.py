@@ -49,12 +49,13 @@ class _Change(QUndoCommand):
 class Document(QObject):
     """changed: (before, after) projects. loaded: comes first when `after` is another project, not an edited one.
 
-    state_changed: path, dirty mark or undo texts may differ. failed: words for the user.
+    state_changed: path, dirty mark or undo texts may differ. saved: it was written. failed: words for the user.
     """
 
     changed = Signal(object, object)
     loaded = Signal()
     state_changed = Signal()
+    saved = Signal()
     failed = Signal(str)
 
     def __init__(self, parent: QObject | None = None) -> None:
@@ -152,6 +153,7 @@ class Document(QObject):
         self.undo_stack.setClean()
         self._begin_journal(None)
         self.state_changed.emit()
+        self.saved.emit()
 
     # --- journal
 

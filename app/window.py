@@ -28,6 +28,7 @@ from app.files import Files
 from app.header import Header
 from app.job_line import JobLine
 from app.jobs import Jobs
+from app.learned import Learned
 from app.panels.library import LibraryPanel
 from app.panels.preview import PreviewPanel
 from app.performance import Performance
@@ -55,6 +56,7 @@ class Window(QMainWindow):
         self.document = Document(self)
         self.session = Session(self.document, self)
         self.jobs = Jobs(self)
+        self.learned = Learned(self)
         self.figures = Figures(self.document, self.jobs, self)
         self.performance = Performance(self.document, self.session, self.jobs, self)
         self.thumbnails = Thumbnails(self.document, self.session, self.figures, self)
@@ -180,6 +182,8 @@ class Window(QMainWindow):
         d.changed.connect(self._edited)
         d.state_changed.connect(self.refresh)
         d.failed.connect(self.tell)
+        d.saved.connect(lambda: self.learned.keep(d, self.jobs))
+        self.learned.failed.connect(self.tell)
         for signal in (
             s.layer_changed, s.selection_changed, s.show_changed, s.playing_changed, s.stance_changed, s.performance_changed,
         ):  # fmt: skip
@@ -481,6 +485,7 @@ class Window(QMainWindow):
             event.ignore()
             return
         self.docks.save()
+        self.learned.keep(self.document)
         self.performance.stop_live()
         self.sound.stop()
         self.document.close_journal()

@@ -212,6 +212,12 @@ def traits_of(
     return out
 
 
+def traits_known(project: Project) -> dict[str, Traits]:
+    """Return clip id -> traits of those clips that were looked at before, at once."""
+    found = {ident: _KNOWN.get(entry.motion) for ident, entry in project.clips.items() if entry.motion is not None}
+    return {ident: known[1] for ident, known in found.items() if known is not None}
+
+
 def _named(skeleton: Skeleton, roles: Mapping[str, int] | None) -> tuple[tuple[str, int], ...]:
     return tuple(sorted((find_roles(skeleton) if roles is None else roles).items()))
 

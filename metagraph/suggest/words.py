@@ -5,13 +5,15 @@ from __future__ import annotations
 import re
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
+from functools import lru_cache
 from typing import Final, TypeVar, cast
 
 from metagraph.graph.words import Kind, Layer, Limb
 from metagraph.suggest.belief import Belief
+from metagraph.suggest.words_defaults import Field
 from metagraph.suggest.words_patterns import Patterns, PatternsError, forget, recalled, remembered
 from metagraph.suggest.words_stances import Found, Stances, Words, is_low, label
-from metagraph.suggest.words_tokens import Phrase, is_number, phrases, quoted, take_apart, variant, without_numbers, without_shared
+from metagraph.suggest.words_tokens import Phrase, Taken, is_number, phrases, quoted, take_apart, variant, without_numbers, without_shared
 
 __all__ = ["NameGuess", "Patterns", "PatternsError", "forget", "learn", "read_names"]
 
@@ -68,15 +70,23 @@ def learn(patterns: Patterns, name: str, field: str, value: str | Sequence[str],
     return remembered(patterns, field, reader.key(reader.parse(name), field), said)
 
 
+@lru_cache(maxsize=4)  # a correction stands in the batch that was read just before
+def _batch(
+    names: tuple[str, ...], changes: tuple[tuple[Field, tuple[tuple[str, str | None], ...]], ...]
+) -> tuple[dict[str, Taken], Stances]:
+    """Return the distinct names taken apart, and the stances they have together."""
+    patterns = Patterns({field: dict(mine) for field, mine in changes})
+    taken = without_shared([take_apart(name, patterns) for name in names], patterns)
+    return dict(zip(names, taken, strict=True)), Stances(taken, patterns)
+
+
 class _Reader:
     def __init__(self, names: Sequence[str], patterns: Patterns) -> None:
-        distinct = sorted(set(names))
-        taken = without_shared([take_apart(name, patterns) for name in distinct], patterns)
-        self._taken = dict(zip(distinct, taken, strict=True))
+        changes = tuple((field, tuple(mine.items())) for field, mine in patterns.changes.items())
+        self._taken, self._stances = _batch(tuple(sorted(set(names))), changes)
         self._patterns = patterns
         self._kinds = patterns.meanings["kinds"]
         self._joins = patterns.meanings["joins"]
-        self._stances = Stances(taken, patterns)
 
     # -- taking apart
 

@@ -1,0 +1,98 @@
+"""What is learned between projects: what words in names mean, as the user changed and corrected it, and labelled clips of earlier projects.
+
+A value: every change gives a new one, so that a file can be read, changed and written whole. It is kept as plain data by whoever has a
+place for it; a program without one starts from `Memory()`.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field, replace
+from typing import Any, Final
+
+from metagraph.suggest.alike import Example, example_from
+from metagraph.suggest.words import learn
+from metagraph.suggest.words_patterns import Patterns, PatternsError, forget
+
+VERSION: Final = 1
+PROJECTS: Final = 50  # of which examples are kept, the latest
+EXAMPLES: Final = 5000  # kept of all projects together
+
+
+class MemoryFormatError(ValueError):
+    """What was kept cannot be read; the message names the place of the first thing wrong."""
+
+
+@dataclass(frozen=True)
+class Memory:
+    """patterns: what words mean. examples: labelled clips by project key, any text that stays a project's own, the latest last."""
+
+    patterns: Patterns = field(default_factory=Patterns)
+    examples: Mapping[str, tuple[Example, ...]] = field(default_factory=dict)
+
+    def corrected(self, name: str, field: str, value: str | Sequence[str], names: Sequence[str] = ()) -> Memory:
+        """Remember that a clip of this name was corrected. field: as `words_patterns.LEARNABLE`; value: a stance's or end stance's name,
+        tags as several, else the label. names: the batch it stands in. Raises PatternsError for a field or value that there is not."""
+        return replace(self, patterns=learn(self.patterns, name, field, value, names))
+
+    def with_project(self, key: str, examples: Sequence[Example]) -> Memory:
+        """Return memory with a project's labelled clips in place of what it had of it; none forget it. The oldest projects go when there
+        are more than PROJECTS, or EXAMPLES of all; of one that is larger than that an even choice is kept."""
+        kept = {k: v for k, v in self.examples.items() if k != key}
+        if examples:
+            step = max(1, -(-len(examples) // EXAMPLES))
+            kept[key] = tuple(examples[::step])
+        while len(kept) > PROJECTS or sum(map(len, kept.values())) > EXAMPLES:
+            kept.pop(next(iter(kept)))
+        return replace(self, examples=kept)
+
+    def others(self, key: str) -> list[Example]:
+        """Return the examples of all projects but this one, whose own labels speak for themselves."""
+        return [example for k, some in self.examples.items() if k != key for example in some]
+
+    def forgotten(self, words: bool = True, projects: bool = True, field: str | None = None, phrase: str | None = None) -> Memory:
+        """Return memory without what was learned. words: from corrections, all or of one field or phrase; the patterns the user wrote
+        stay. projects: the examples, which go whole."""
+        narrow = field is not None or phrase is not None
+        patterns = forget(self.patterns, field, phrase) if words else self.patterns
+        return Memory(patterns, {} if projects and not narrow else self.examples)
+
+    def to_json(self) -> dict[str, Any]:
+        """Return plain values for a file."""
+        return {
+            "learned": VERSION,
+            "names": self.patterns.to_json(),
+            "projects": {key: [e.to_data() for e in some] for key, some in self.examples.items()},
+        }
+
+    @staticmethod
+    def from_json(data: Any) -> Memory:
+        """Read what `to_json` gave; parts that are missing are empty. Raises MemoryFormatError naming the place of the first thing wrong."""
+        if not isinstance(data, Mapping):
+            raise MemoryFormatError(f"what was learned should be an object, not {type(data).__name__}")
+        version = data.get("learned")
+        if version != VERSION:
+            raise MemoryFormatError(f"'learned' is version {version!r}, this program reads {VERSION}; update it, or delete the file")
+        for key in data:
+            if key not in ("learned", "names", "projects"):
+                raise MemoryFormatError(f"'{key}' is not known; there are 'names' and 'projects'")
+        try:
+            patterns = Patterns.from_json(data["names"]) if "names" in data else Patterns()
+        except PatternsError as error:
+            raise MemoryFormatError(f"'names': {error}") from None
+        projects = data.get("projects", {})
+        if not isinstance(projects, Mapping):
+            raise MemoryFormatError(f"'projects' should be an object, not {type(projects).__name__}")
+        return Memory(patterns, {str(key): _examples(str(key), some) for key, some in projects.items()})
+
+
+def _examples(key: str, data: Any) -> tuple[Example, ...]:
+    if not isinstance(data, list):
+        raise MemoryFormatError(f"'projects', '{key}' should be a list, not {type(data).__name__}")
+    out = []
+    for n, each in enumerate(data):
+        try:
+            out.append(example_from(each))
+        except ValueError as error:
+            raise MemoryFormatError(f"'projects', '{key}', number {n + 1}: {error}") from None
+    return tuple(out)
