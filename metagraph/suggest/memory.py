@@ -67,7 +67,7 @@ class Memory:
 
     @staticmethod
     def from_json(data: Any) -> Memory:
-        """Read what `to_json` gave; parts that are missing are empty. Raises MemoryFormatError naming the place of the first thing wrong."""
+        """Read what `to_json` gave; missing parts are empty. Raises MemoryFormatError naming the first place that is wrong."""
         if not isinstance(data, Mapping):
             raise MemoryFormatError(f"what was learned should be an object, not {type(data).__name__}")
         version = data.get("learned")

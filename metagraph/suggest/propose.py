@@ -22,7 +22,8 @@ from metagraph.suggest import compatibility
 from metagraph.suggest.alike import Alike, Example
 from metagraph.suggest.belief import Belief
 from metagraph.suggest.combine import Agreed, combine
-from metagraph.suggest.stances import MotionGuess, Shape, discovered, guess, known
+from metagraph.suggest.motion_guess import MotionGuess, guess
+from metagraph.suggest.stances import Shape, discovered, known
 from metagraph.suggest.traits import Traits, traits_of
 from metagraph.suggest.words import NameGuess, Patterns, read_names
 from metagraph.suggest.words_tokens import take_apart

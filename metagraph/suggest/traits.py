@@ -1,15 +1,13 @@
 """What a clip's motion looks like, in measures that compare between characters: poses seen from their own ground, and how much moves when.
 
-Lengths are in character heights, so that size does not matter; directions are the character's own (x left, y up, z ahead), so that
-neither does where it stands or what its rest pose is. Each layer is seen from what carries it: the arms from the chest, the head from
-the chest as the hips face, the body from between the feet.
+Lengths are in character heights, so that size does not matter; directions are the character's own (see `points`), so that neither does
+where it stands or what its rest pose is.
 """
 
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass
-from functools import lru_cache
 from typing import Any
 from weakref import WeakKeyDictionary
 
@@ -19,10 +17,10 @@ from numpy.typing import NDArray
 from metagraph.graph import anatomy
 from metagraph.graph.model import Project
 from metagraph.graph.words import LAYERS, Layer
-from metagraph.motion import rotation
 from metagraph.motion.clip import Clip
 from metagraph.motion.roles import find_roles
-from metagraph.motion.skeleton import Pose, Skeleton
+from metagraph.motion.skeleton import Skeleton
+from metagraph.suggest.points import NAMES, Figure, facing_of, figure_of, points_of, seen_from  # noqa: F401
 
 Array = NDArray[Any]
 
@@ -31,14 +29,7 @@ BATCH = 6000  # frames posed at once
 SMOOTH = 0.06  # seconds, standard deviation of the filter on speeds
 RESTING = 0.05  # heights a second: slower is rest
 _BACK = np.array([-1.0, 1.0])  # turns a facing into what undoes it
-FINGERS = 5  # of a hand, looked at
 TOUCH = 0.12  # heights from a wrist to what its hand touches, at most
-AHEAD = 0.12  # heights from the middle of the head to its nose and its top, about
-NAMES: Mapping[Layer, tuple[str, ...]] = {
-    "arms": tuple(f"{side}_{part}" for side in ("left", "right") for part in ("hand", "tip", "lower_arm", "upper_arm")),
-    "head": ("head", "nose", "crown"),
-    "body": ("hips", "trunk", "trunk_ahead", "left_lower_leg", "left_foot", "right_lower_leg", "right_foot"),
-}
 PARTS = ("left_arm", "right_arm", "fingers", "head", "trunk", "hips", "legs")
 
 
@@ -92,79 +83,6 @@ class Traits:
     out: float
     near: float
     touch: float
-
-
-@dataclass(frozen=True, eq=False)
-class _Figure:
-    """What of a skeleton is posed. keep: joints, every parent among them; places: role -> its place among them. turned: role -> the
-    turn that takes its axes to the character's. tips: side -> the places of the fingertips, the farthest from the wrist first."""
-
-    small: Skeleton
-    keep: Array
-    places: Mapping[str, int]
-    turned: Mapping[str, Array]
-    tips: Mapping[str, tuple[int, ...]]
-    height: float
-
-
-_CARRIERS = ("upper_chest", "chest", "spine", "hips")
-_LIMBS = ("upper_arm", "lower_arm", "hand", "upper_leg", "lower_leg", "foot")
-
-
-@lru_cache(maxsize=64)
-def _figure(skeleton: Skeleton, named: tuple[tuple[str, int], ...]) -> _Figure:
-    roles = dict(named)
-    wanted = {r: j for r, j in roles.items() if r in (*_CARRIERS, "head") or r.endswith(_LIMBS)}
-    if "hips" not in wanted:
-        wanted["hips"] = 0
-    tips: dict[str, list[int]] = {}
-    turns, at = skeleton.globals(skeleton.rest)
-    for side in ("left", "right"):
-        if (hand := roles.get(f"{side}_hand")) is not None:
-            ends = [j for j in skeleton.descendants(hand) if not skeleton.children[j] and j != hand]
-            if ends:
-                tips[side] = sorted(ends, key=lambda j: (-round(float(np.linalg.norm(at[j] - at[hand])), 5), j))[:FINGERS]
-    if len(wanted) < 3:  # no figure that we know: its joints from the root on, a handful
-        wanted |= {f"joint {j}": int(j) for j in np.unique(np.linspace(0, len(skeleton) - 1, min(len(skeleton), 12)).astype(int))}
-    keep = np.array(sorted({j for end in (*wanted.values(), *(t for some in tips.values() for t in some)) for j in skeleton.chain(end)}))
-    place = {int(j): i for i, j in enumerate(keep)}
-    parents = np.array([place.get(int(skeleton.parents[j]), -1) for j in keep])
-    small = Skeleton(tuple(skeleton.names[j] for j in keep), parents, skeleton.rest_rotations[keep], skeleton.rest_translations[keep])
-    axes = _axes_at_rest({r: at[j] for r, j in wanted.items()})
-    turned = {r: rotation.multiply(rotation.conjugate(turns[j]), axes) for r, j in wanted.items()}
-    return _Figure(
-        small,
-        keep,
-        {r: place[j] for r, j in wanted.items()},
-        turned,
-        {s: tuple(place[j] for j in some) for s, some in tips.items()},
-        skeleton.height,
-    )
-
-
-def _axes_at_rest(at: Mapping[str, Array]) -> Array:
-    """Return the turn whose axes are the character's left, up and ahead in its rest pose."""
-    across = left_of(at)
-    top = at.get("head", at.get("upper_chest", at.get("chest")))
-    up = np.array([0.0, 1.0, 0.0]) if top is None else top - at["hips"]
-    if across is None or np.linalg.norm(across) < 1e-6 or np.linalg.norm(up) < 1e-6:
-        return np.array([0.0, 0.0, 0.0, 1.0])
-    if up[1] > 0.7 * np.linalg.norm(up):
-        up = np.array([0.0, 1.0, 0.0])
-    up = up / np.linalg.norm(up)
-    left = across - up * (across @ up)
-    if np.linalg.norm(left) < 1e-6:
-        return np.array([0.0, 0.0, 0.0, 1.0])
-    left = left / np.linalg.norm(left)
-    return rotation.from_matrix(np.stack([left, up, np.cross(left, up)], axis=-1))
-
-
-def left_of(at: Mapping[str, Array]) -> Array | None:
-    """Return from right to left, of hips and shoulders together; None without either."""
-    pairs = [
-        at[f"left_{part}"] - at[f"right_{part}"] for part in ("upper_leg", "upper_arm") if {f"left_{part}", f"right_{part}"} <= set(at)
-    ]
-    return np.sum(pairs, axis=0) if pairs else None
 
 
 # Clips are values that never change, so what was found of one holds for as long as it lives.
@@ -236,85 +154,14 @@ def _all(clips: Sequence[Clip], roles: Callable[[Clip], tuple[tuple[str, int], .
         if known is None or known[0] != named:
             groups.setdefault((clip.skeleton, named), []).append(clip)
     for (skeleton, named), some in groups.items():
-        figure = _figure(skeleton, named)
+        figure = figure_of(skeleton, named)
         frames = [_frames(clip) for clip in some]
-        points, world = _points(figure, some, frames)
+        points, world = points_of(figure, some, frames)
         ends = np.cumsum([0, *(len(f) for f in frames)])
         for clip, index, a, b in zip(some, frames, ends, ends[1:], strict=False):
             times = index / clip.fps
             _KNOWN[clip] = named, _of(figure, {k: v[a:b] for k, v in points.items()}, {k: v[a:b] for k, v in world.items()}, times)
     return [_KNOWN[clip][1] for clip in clips]
-
-
-def _points(figure: _Figure, clips: Sequence[Clip], frames: Sequence[Array]) -> tuple[dict[str, Array], dict[str, Array]]:
-    """Return name -> `[F, 3]` of all NAMES there are, each from its ground, and of what is in world space; in heights."""
-    small = figure.small
-    total = sum(map(len, frames))
-    translations = np.broadcast_to(small.rest_translations.astype(np.float32), (total, len(small), 3)).copy()
-    where = {int(j): i for i, j in enumerate(figure.keep)}
-    at = 0
-    for clip, index in zip(clips, frames, strict=True):
-        for k, joint in enumerate(clip.translated):
-            if joint in where:
-                translations[at : at + len(index), where[joint]] = clip.translations[index, k]
-        at += len(index)
-    rotations = np.concatenate([clip.rotations[np.ix_(index, figure.keep)] for clip, index in zip(clips, frames, strict=True)])
-    turns, places = small.globals(Pose(rotations, translations))
-    places = places / np.float32(figure.height)
-    p = {role: places[:, i] for role, i in figure.places.items()}
-    p |= {f"{side}_tip": places[:, some[0]] for side, some in figure.tips.items()}
-
-    def axis(role: str, direction: Sequence[float]) -> Array:
-        return rotation.rotate(turns[:, figure.places[role]], rotation.rotate(figure.turned[role], np.array(direction)).astype(np.float32))
-
-    carrier = next(role for role in _CARRIERS if role in figure.places)
-    facing = facing_of(p, turns[:, figure.places["hips"]], figure.turned["hips"])
-    back = rotation.conjugate(rotation.multiply(turns[:, figure.places[carrier]], figure.turned[carrier].astype(np.float32)))
-    out: dict[str, Array] = {}
-    for name in NAMES["arms"]:
-        if name in p:
-            out[name] = rotation.rotate(back, p[name] - p[carrier])
-    if "head" in p and carrier != "head":
-        ahead, up = axis("head", (0, 0, 1)), axis("head", (0, 1, 0))
-        middle = p["head"] - p[carrier]
-        for name, v in (("head", middle), ("nose", middle + AHEAD * ahead), ("crown", middle + AHEAD * up)):
-            out[name] = seen_from(facing, v)
-    if "left_foot" in p and "right_foot" in p:
-        ground = (p["left_foot"] + p["right_foot"]) / 2 * np.array([1, 0, 1], np.float32)
-    else:
-        ground = p["hips"] * np.array([1, 0, 1], np.float32)
-    for name in ("hips", *(f"{side}_{part}" for side in ("left", "right") for part in ("lower_leg", "foot"))):
-        if name in p:
-            out[name] = seen_from(facing, p[name] - ground)
-    out["trunk"] = seen_from(facing, p[carrier] - ground)
-    out["trunk_ahead"] = seen_from(facing, p[carrier] - ground + AHEAD * axis(carrier, (0, 0, 1)))
-    for role in p:
-        if role.startswith("joint "):
-            out[role] = seen_from(facing, p[role] - ground)
-    for side, some in figure.tips.items():
-        hand = rotation.conjugate(turns[:, figure.places[f"{side}_hand"]])
-        out[f"{side}_fingers"] = rotation.rotate(hand[:, None], places[:, some] - p[f"{side}_hand"][:, None])
-    world = {"facing": facing, "hips": p["hips"], **{name: p[name] for name in p if name.endswith(("_hand", "_lower_arm"))}}
-    for name in ("head", carrier):
-        if name in p:
-            world["head" if name == "head" else "carrier"] = p[name]
-    return out, world
-
-
-def facing_of(p: Mapping[str, Array], hips: Array, turned: Array) -> Array:
-    """Return `[F, 2]` sine and cosine of where the hips and shoulders face, about y from +z."""
-    across = left_of(p)
-    if across is None:
-        across = rotation.rotate(hips, rotation.rotate(turned, np.array([1.0, 0, 0])).astype(np.float32))
-    flat = np.stack([-across[:, 2], across[:, 0]], axis=-1)
-    length = np.linalg.norm(flat, axis=-1, keepdims=True)
-    return np.where(length > 1e-6, flat / np.maximum(length, 1e-6), np.array([0.0, 1.0])).astype(np.float32)
-
-
-def seen_from(facing: Array, v: Array) -> Array:
-    """Return vectors as seen by somebody who faces there. facing `[..., 2]`, see `facing_of`; v `[..., 3]`."""
-    s, c = facing[..., 0], facing[..., 1]
-    return np.stack([c * v[..., 0] - s * v[..., 2], v[..., 1], s * v[..., 0] + c * v[..., 2]], axis=-1)
 
 
 def _smoothed(x: Array, seconds: float) -> Array:
@@ -400,7 +247,7 @@ def _bouts(speed: Array) -> int:
     return count + (1 if rising and top >= least else 0)
 
 
-def _of(figure: _Figure, points: Mapping[str, Array], world: Mapping[str, Array], times: Array) -> Traits:
+def _of(figure: Figure, points: Mapping[str, Array], world: Mapping[str, Array], times: Array) -> Traits:
     facing = world["facing"]
     layers: dict[Layer, LayerTraits] = {}
     energy = dict.fromkeys(PARTS, 0.0)

@@ -13,7 +13,9 @@ from hypothesis import strategies as st
 from metagraph.graph.model import KINDS, LAYERS, LIMBS, Project
 from metagraph.motion.clip import Clip
 from metagraph.motion.skeleton import Skeleton
-from metagraph.suggest.stances import MotionGuess, Shape, discover, discovered, distance, guess, known, layer_of, nearest
+from metagraph.suggest.measures import layer_of
+from metagraph.suggest.motion_guess import MotionGuess, guess
+from metagraph.suggest.stances import Shape, discover, discovered, distance, known, nearest
 from metagraph.suggest.traits import Traits, traits, traits_of
 from tests.suggest.test_traits import backwards, chain, mirrored, of, one_armed, scaled
 

@@ -1,0 +1,60 @@
+"""Measures of a whole clip that discovering stances and guessing beside them share: how much it moves, which layer, how much it rests."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from math import log
+
+from metagraph.graph.words import Layer
+from metagraph.suggest.belief import Belief
+from metagraph.suggest.traits import Traits
+
+TYPICAL: Mapping[Layer, float] = {"arms": 0.12, "head": 0.04, "body": 0.03}  # heights that another stance is away, about
+HELD = 1.0  # seconds in which nothing moves, from which on that is a pose to stand in
+SUREST = 0.95  # how often a guess from motion is right at most: it alone cannot tell a small gesture from a large fidget
+
+
+def energy(traits: Traits) -> float:
+    return sum(traits.energy.values())
+
+
+def nothing(traits: Traits) -> bool:
+    return all(x.peak < 1e-3 for x in traits.layers.values()) and traits.energy["fingers"] < 1e-3
+
+
+def resting(traits: Traits) -> float:
+    """Return how much speaks for a stance, a logit: little movement, for long, steady; ends that meet."""
+    if traits.frames < 2 or traits.duration <= 0:
+        return 3.0
+    if nothing(traits):  # held, or a clip of the face
+        return 3.0 if traits.duration >= HELD else 0.0
+    x = max(traits.layers.values(), key=lambda y: y.peak)
+    fastest = max(x.peak, 3 * traits.energy["fingers"], 1e-3)
+    apart = max(y.loop_error / TYPICAL[layer] for layer, y in traits.layers.items())
+    return 3.0 * log(min(traits.duration / 3.5, 2.0)) - 1.5 * log(fastest / 0.05) + 3.0 * x.steady - 6.0 * max(0.0, apart - 0.3)
+
+
+def layer_of(traits: Traits) -> Belief[Layer]:
+    """Return which layer a clip moves: the body where hips or legs do, else the arms, else the head."""
+    e, layers = traits.energy, traits.layers
+    arms = e["left_arm"] + e["right_arm"] + e["fingers"]
+    lower, upper = e["hips"] + e["legs"], e["head"] + e["trunk"]
+    have = [layer for layer in ("body", "arms", "head") if layers[layer].names]
+    if have == ["body"]:
+        return Belief("body", SUREST, "the character has neither arms nor a head that are known")
+    if arms + lower + upper < 1e-5:
+        return Belief("body", 0.34, "nothing moves")
+    body, hands = lower / (0.15 * upper + 0.25 * arms + 1e-6), arms / (0.1 * upper + 1e-6)
+    share = f"hips and legs {lower * 100:.1f}, arms {arms * 100:.1f}, head and trunk {upper * 100:.1f} % of the height a second"
+    if body >= 1:
+        return Belief("body", _tempered(body), f"hips and legs move: {share}")
+    if hands >= 1 and "arms" in have:
+        return Belief("arms", min(_tempered(hands), _tempered(1 / max(body, 1e-3))), f"the arms move, hips and legs do not: {share}")
+    if "head" in have:
+        return Belief("head", min(_tempered(1 / max(hands, 1e-3)), _tempered(1 / max(body, 1e-3))), f"only the head moves: {share}")
+    return Belief("body", 0.5, share)
+
+
+def _tempered(ratio: float) -> float:
+    """Return how sure one is of a ratio above 1: half at 1, SUREST from 5 on."""
+    return 0.5 + (SUREST - 0.5) * min(1.0, log(max(ratio, 1.0)) / log(5.0))

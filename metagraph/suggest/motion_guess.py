@@ -1,0 +1,182 @@
+"""What a clip seems to be from its motion, beside known or discovered stances.
+
+A transition ends elsewhere than it begins, a stance rests for long, a gesture goes out, holds and comes back with the head and trunk
+along, a fidget is small, busy, or touches the character itself.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from math import exp, log
+
+from metagraph.graph.words import LAYERS, Kind, Layer, Limb
+from metagraph.suggest.belief import Belief
+from metagraph.suggest.measures import SUREST, TYPICAL, energy, layer_of, resting
+from metagraph.suggest.stances import Shape, Stances, distance, nearest
+from metagraph.suggest.traits import LayerTraits, Traits
+
+ALONE = 0.5  # of the arms' energy on one side more than on the other, from which it is one-armed
+
+
+@dataclass(frozen=True)
+class MotionGuess:
+    """What a clip seems to be; None where the motion says nothing. stance, end_stance: of a `Shape`; the end stance of transitions only.
+    runner_up: the next nearest stance. stroke: seconds. chances: of each kind, adding up to 1."""
+
+    kind: Belief[Kind]
+    layer: Belief[Layer]
+    limb: Belief[Limb]
+    loop: Belief[bool]
+    stance: Belief[Shape] | None = None
+    end_stance: Belief[Shape] | None = None
+    runner_up: Shape | None = None
+    stroke: Belief[float] | None = None
+    chances: Mapping[Kind, float] | None = None
+
+
+def guess(traits: Traits, stances: Stances) -> MotionGuess:
+    """Return what a clip seems to be from its motion alone, beside known or discovered stances (none will do)."""
+    layer = _layer_beside(traits, stances)
+    x = traits.layers[layer.value]
+    shapes = stances.get(layer.value, ())
+    starts, ends = nearest(shapes, x.names, x.first), nearest(shapes, x.names, x.last)
+    moved = _sigmoid(_moving(traits, layer.value, starts, ends))
+    calm = starts[0][1].calm if starts and starts[0][0] < 0.5 * TYPICAL[layer.value] else 0.0
+    rests = resting(traits) + (3.0 if energy(traits) <= 1.05 * calm else 0.0)
+    rest, gesture = _sigmoid(rests), _sigmoid(_telling(traits, layer.value))
+    chances: dict[Kind, float] = {
+        "transition": moved,
+        "stance": (1 - moved) * rest,
+        "gesture": (1 - moved) * (1 - rest) * gesture,
+        "fidget": (1 - moved) * (1 - rest) * (1 - gesture),
+    }
+    kind = max(chances, key=lambda k: chances[k])
+    cm = 100 * traits.height
+    reason = {
+        "transition": f"ends {x.loop_error * cm:.1f} cm from where it begins and goes only {x.extent * cm:.0f} cm beside that way",
+        "stance": f"moves at most {max(y.peak for y in traits.layers.values()) * cm:.0f} cm/s in {traits.duration:.1f} s",
+        "gesture": f"goes {x.extent * cm:.0f} cm away and comes back, in {_times(x.bouts)}, up to {x.peak * cm:.0f} cm/s",
+        "fidget": f"goes {x.extent * cm:.0f} cm away in {_times(x.bouts)}, up to {x.peak * cm:.0f} cm/s" + _touching(traits, cm),
+    }[kind]
+    if kind == "stance":
+        starts = nearest(shapes, x.names, x.typical)
+    return MotionGuess(
+        Belief(kind, min(SUREST, chances[kind], (1 + layer.confidence) / 2), reason),
+        layer,
+        limb_of(traits, layer.value, kind),
+        Belief(kind == "stance", min(SUREST, chances[kind]), f"its ends are {x.loop_error * cm:.1f} cm apart"),
+        _beside(starts, "begins" if kind != "stance" else "rests", layer, cm),
+        _beside(ends, "ends", layer, cm) if kind == "transition" else None,
+        starts[1][1] if len(starts) > 1 else None,
+        _stroke(x, cm) if kind in ("gesture", "fidget") and x.peak > 0 else None,
+        chances,
+    )
+
+
+def _times(bouts: int) -> str:
+    return "1 movement" if bouts == 1 else f"{bouts} movements"
+
+
+def _touching(traits: Traits, cm: float) -> str:
+    return f", and a hand comes {traits.touch * cm:.0f} cm nearer to touch the other arm or the head" if traits.touch > 0.03 else ""
+
+
+def _stroke(x: LayerTraits, cm: float) -> Belief[float]:
+    again = x.peak_at == x.stroke_at
+    return Belief(x.stroke_at, 0.8 if again else 0.6, f"fastest on the way out at {x.stroke_at:.2f} s of {x.peak * cm:.0f} cm/s")
+
+
+def _sigmoid(z: float) -> float:
+    return 1 / (1 + exp(-min(max(z, -30.0), 30.0)))
+
+
+def _beside(found: Sequence[tuple[float, Shape]], verb: str, layer: Belief[Layer], cm: float) -> Belief[Shape] | None:
+    if not found:
+        return None
+    (near, shape), typical = found[0], TYPICAL[layer.value]
+    second = found[1][0] if len(found) > 1 else None
+    margin = 1.0 if second is None else (second - near) / max(second, 1e-9)
+    confidence = SUREST * exp(-((near / typical) ** 2)) * (0.4 + 0.6 * min(1.0, 1.5 * margin))
+    more = "" if second is None else f"; next nearest {_cm(second * cm)}"
+    return Belief(shape, min(confidence, shape.confidence, layer.confidence), f'{verb} {_cm(near * cm)} from "{shape.name}"{more}')
+
+
+def _cm(length: float) -> str:
+    return f"{length:.1f} cm" if length < 10 else f"{length:.0f} cm"
+
+
+def _layer_beside(traits: Traits, stances: Stances) -> Belief[Layer]:
+    """Return which layer a clip moves; of one that rests, the only layer whose pose is not the usual one, if there is."""
+    found = layer_of(traits)
+    if resting(traits) < 0:
+        return found
+    unusual = []
+    for layer in LAYERS:
+        x, shapes = traits.layers[layer], stances.get(layer, ())
+        if shapes and len(x.typical):
+            away = distance(shapes[0], x.names, x.typical)
+            if 0.5 * TYPICAL[layer] < away < float("inf"):
+                unusual.append((layer, away))
+    if len(unusual) == 1 and unusual[0][0] != found.value:
+        layer, away = unusual[0]
+        return Belief(layer, 0.7, f"rests {100 * traits.height * away:.0f} cm from the usual pose of the {layer}")
+    return found
+
+
+def limb_of(traits: Traits, layer: Layer, kind: Kind) -> Belief[Limb]:
+    """Return the arm that a clip needs; of a head that goes to one side, the side."""
+    if kind in ("stance", "transition"):
+        return Belief("both", 0.9, f"a {kind} takes both arms")
+    if layer == "arms":
+        share = traits.symmetry
+        limb: Limb = "both" if abs(share) < ALONE else "left" if share > 0 else "right"
+        confidence = 0.5 + 0.45 * min(1.0, abs(abs(share) - ALONE) / 0.3)
+        return Belief(
+            limb, confidence, f"the left arm makes {50 * (1 + share):.0f} % of the arms' movement, the right {50 * (1 - share):.0f} %"
+        )
+    x = traits.layers["head"]
+    if layer == "head" and "nose" in x.names:
+        n = x.names.index("nose")
+        left, right = float(x.high[n, 0] - x.first[n, 0]), float(x.first[n, 0] - x.low[n, 0])
+        if max(left, right) > 0.02 and max(left, right) > 3 * min(left, right):
+            side: Limb = "left" if left > right else "right"
+            return Belief(side, 0.7, f"the nose goes {100 * traits.height * max(left, right):.0f} cm to the {side}")
+    return Belief("both", 0.9, f"the {layer} moves, not one arm")
+
+
+def _moving(traits: Traits, layer: Layer, starts: Sequence[tuple[float, Shape]], ends: Sequence[tuple[float, Shape]]) -> float:
+    """Return how much speaks for a transition, a logit."""
+    x = traits.layers[layer]
+    if x.loop_error < 1e-6:
+        return -10.0
+    z = 3.0 * log(x.loop_error / (0.4 * TYPICAL[layer])) + 12.0 * (min(x.loop_error / (x.loop_error + x.extent), 0.5) - 0.3)
+    if starts and ends:
+        (_, here), (near, there) = starts[0], ends[0]
+        back = next(d for d, shape in ends if shape is here)
+        if there is not here and near < 0.5 * back:
+            z += 2.0
+        elif there is here and back < 0.5 * x.loop_error + 0.1 * TYPICAL[layer]:
+            z -= 3.0
+    return z
+
+
+def _telling(traits: Traits, layer: Layer) -> float:
+    """Return how much speaks for a gesture rather than a fidget, a logit.
+
+    Weights: a logistic regression on the sample clips, rounded; lengths and speeds are in typical ones.
+    """
+    arms, head, body = (traits.layers[layer] for layer in ("arms", "head", "body"))
+    bouts = max((arms, head, body), key=lambda y: y.peak).bouts
+    nods, leans = _log(head.peak, 0.12), _log(body.peak, 0.1)
+    busy = 1.0 if bouts > 2 else 0.0
+    if layer == "arms":
+        away = 1.9 * 5 * min(traits.out, 0.2) - 1.3 * 5 * min(traits.near, 0.2) - 1.55 * 10 * min(traits.touch, 0.1)
+        return 3.5 + 1.1 * _log(arms.extent, 0.2) + 0.9 * leans + 1.15 * nods + away - 1.95 * busy
+    if layer == "head":
+        return 1.6 * nods + (2.7 if bouts == 1 else 0.0) + 2.7 * log(traits.duration + 0.1) - 0.3 * _log(head.extent, 0.03) - 2.0
+    return 1.2 + 0.9 * nods + leans - 1.4 * _log(traits.energy["legs"] + traits.energy["hips"], 0.02) - 2.9 * busy
+
+
+def _log(x: float, typical: float) -> float:
+    return log(x / typical + 0.02)
