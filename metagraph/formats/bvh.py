@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import re
 import sys
+from collections.abc import Collection
 from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass, field
 from pathlib import Path
@@ -14,11 +15,11 @@ from numpy.typing import NDArray
 
 from metagraph.errors import FileError
 from metagraph.formats.atomic import write_atomically
-from metagraph.formats.bvh_space import stand, unit, z_up
+from metagraph.formats.bvh_space import USUAL, stand, unit, z_up
 from metagraph.formats.gltf_skeleton import MOST_JOINTS
-from metagraph.formats.takes import without_bind_pose
+from metagraph.formats.takes import UNIT, UP, repaired, without_bind_pose
 from metagraph.motion import rotation
-from metagraph.motion.clip import Clip
+from metagraph.motion.clip import Clip, Repair
 from metagraph.motion.roles import find_roles
 from metagraph.motion.skeleton import Skeleton, unique_names
 
@@ -41,11 +42,12 @@ class _Joint:
 
 
 @np.errstate(all="ignore")  # what a broken file makes overflow is refused by the checks, without a warning
-def read_bvh(path: str | Path, scale: float | None = None) -> Clip:
+def read_bvh(path: str | Path, scale: float | None = None, as_is: Collection[str] = ()) -> Clip:
     """Return the motion of a BVH file in metres, Y up.
 
     scale: metres per unit of the file. BVH states no unit: without `scale` the one that makes the skeleton a human
     between 1.2 and 2.5 m is taken (centimetres when none does) and named in the notes. A file with Z up is turned.
+    as_is: repairs (`takes.REPAIRS`) not to make; the unit is then centimetres, as in most files.
     Positions replace a joint's OFFSET. The rest pose has all rotations zero and stands on the ground over the origin.
     Raises FileError with the line.
     """
@@ -65,7 +67,7 @@ def read_bvh(path: str | Path, scale: float | None = None) -> Clip:
     joints = _Header(path, data[: motion.start()].decode("utf-8", "replace")).joints()
     notes: list[str] = []
     values, fps = _motion(path, data, motion.end(), sum(len(j.channels) for j in joints), notes)
-    return _clip(path, joints, values, fps, scale, notes)
+    return _clip(path, joints, values, fps, scale, notes, as_is)
 
 
 class _Header:
@@ -315,7 +317,9 @@ def _rotations(values: Array, joints: list[_Joint], columns: list[list[int]]) ->
     return result
 
 
-def _clip(path: Path, joints: list[_Joint], values: Array, fps: float, scale: float | None, notes: list[str]) -> Clip:
+def _clip(
+    path: Path, joints: list[_Joint], values: Array, fps: float, scale: float | None, notes: list[str], as_is: Collection[str]
+) -> Clip:
     """Put channels, units and axes together."""
     names = unique_names([j.name for j in joints])
     if names != tuple(j.name for j in joints):
@@ -339,9 +343,14 @@ def _clip(path: Path, joints: list[_Joint], values: Array, fps: float, scale: fl
     skeleton = Skeleton(names, parents.copy(), rotation.identity((len(joints),)), offsets)
     roles = find_roles(skeleton)
 
+    repairs: list[Repair] = []
     if scale is None:
         scale, told = unit(skeleton, roles)
-        notes.append(told)
+        if scale == USUAL:
+            notes.append(told)
+        else:
+            repairs.append(Repair(UNIT, told, UNIT not in as_is))
+            scale = scale if repairs[-1].made else USUAL
     elif not (scale > 0 and np.isfinite(scale)):
         raise ValueError(f"a scale of {scale} metres per unit")
     offsets = offsets * scale
@@ -349,7 +358,8 @@ def _clip(path: Path, joints: list[_Joint], values: Array, fps: float, scale: fl
     up, rest_too = z_up(skeleton, roles, rotations, placed, offsets)
     rest_rotations = rotation.identity((len(joints),))
     if up:
-        notes.append("its Z axis points up: turned to Y up")
+        repairs.append(Repair(UP, "its Z axis points up: turned to Y up", UP not in as_is))
+    if up and UP not in as_is:
         turn = rotation.from_axis_angle([1, 0, 0], -np.pi / 2)
         roots = np.flatnonzero(parents < 0)
         rotations[:, roots] = rotation.multiply(turn, rotations[:, roots].astype(float))
@@ -364,7 +374,9 @@ def _clip(path: Path, joints: list[_Joint], values: Array, fps: float, scale: fl
     moving = [i for i, p in sorted(placed.items()) if i == 0 or np.abs(p - offsets[i]).max() > 1e-5]
     translations = np.stack([placed[i] for i in moving], 1)
     clip = Clip(path.stem, skeleton, fps, rotations, translations, tuple(moving), notes=tuple(notes))
-    return without_bind_pose(clip)
+    for repair in repairs:
+        clip = repaired(clip, repair)
+    return without_bind_pose(clip, as_is)
 
 
 def write_bvh(clip: Clip, path: str | Path) -> None:

@@ -13,6 +13,7 @@ from metagraph.motion.skeleton import Pose, Skeleton
 Array = NDArray[Any]
 
 _HUMAN = (1.2, 2.5)  # metres from sole to the base of the head's top; what a unit must make of the skeleton
+USUAL = 0.01  # metres per unit of most files
 _UNITS = (
     (1.0, "metres"),
     (0.01, "centimetres"),
@@ -64,7 +65,7 @@ def unit(skeleton: Skeleton, roles: dict[str, int]) -> tuple[float, str]:
     for scale, name in _UNITS if known else _UNITS[:4]:
         if _HUMAN[0] <= tall * scale <= _HUMAN[1]:
             return scale, f"units taken for {name}: the {'figure' if known else 'skeleton'} is then {tall * scale:.2f} m tall"
-    return 0.01, f"units taken for centimetres, though the skeleton is then {tall * 0.01:.3g} m tall; give the scale to change it"
+    return USUAL, f"units taken for centimetres, though the skeleton is then {tall * 0.01:.3g} m tall; give the scale to change it"
 
 
 def z_up(skeleton: Skeleton, roles: dict[str, int], rotations: Array, placed: dict[int, Array], offsets: Array) -> tuple[bool, bool]:

@@ -4,13 +4,14 @@ from __future__ import annotations
 
 import hashlib
 import os
-from collections.abc import Callable, Iterable
+from collections.abc import Callable, Collection, Iterable
 from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass, replace
 from pathlib import Path
 
 from metagraph.errors import FileError
-from metagraph.motion.clip import Clip, ClipError
+from metagraph.formats.takes import ONE_FRAME, repaired
+from metagraph.motion.clip import Clip, ClipError, Repair
 
 SUFFIXES = (".bvh", ".glb", ".gltf", ".vrm", ".vrma", ".fbx")
 
@@ -32,10 +33,11 @@ class ImportReport:
     cancelled: bool = False
 
 
-def read_clips(path: str | Path) -> list[Clip]:
+def read_clips(path: str | Path, as_is: Collection[str] = ()) -> list[Clip]:
     """Return all takes of a file. Takes of one frame are skipped where others are longer, with a note on those.
 
-    The content decides what the file is, and must agree with its ending. Raises FileError.
+    The content decides what the file is, and must agree with its ending. as_is: repairs (`takes.REPAIRS`) not to make; takes of
+    one frame that are then not skipped stand behind the others, whose numbers stay. Raises FileError.
     """
     path = Path(path)
     suffix = path.suffix.lower()
@@ -52,28 +54,33 @@ def read_clips(path: str | Path) -> list[Clip]:
         if wanted == "bvh":
             from metagraph.formats.bvh import read_bvh
 
-            clips = [read_bvh(path)]
+            clips = [read_bvh(path, as_is=as_is)]
         elif wanted == "gltf":
             from metagraph.formats.gltf import read_gltf_clips
 
-            clips = read_gltf_clips(path)
+            clips = read_gltf_clips(path, as_is)
         else:
             from metagraph.formats.fbx import read_fbx_clips
 
-            clips = read_fbx_clips(path)
+            clips = read_fbx_clips(path, as_is=as_is)
     except ClipError as error:
         raise FileError(path, str(error), "its motion", "Export it again.") from error
-    return _without_junk(clips)
+    return _without_junk(clips, as_is)
 
 
-def _without_junk(clips: list[Clip]) -> list[Clip]:
+def _without_junk(clips: list[Clip], as_is: Collection[str]) -> list[Clip]:
     """Drop takes of a single frame beside longer ones: tools leave them behind."""
-    junk = [clip.name for clip in clips if clip.frames == 1]
+    junk = [clip for clip in clips if clip.frames == 1]
     if not junk or len(junk) == len(clips):
         return clips
-    told = f"skipped {', '.join(repr(n) for n in junk)}: one frame only"
     kept = [clip for clip in clips if clip.frames > 1]
-    return [replace(kept[0], notes=(*kept[0].notes, told)), *kept[1:]]
+    made = ONE_FRAME not in as_is
+    skipped = tuple(Repair(ONE_FRAME, f"skipped {c.name!r}: one frame only", made, n) for n, c in enumerate(junk, len(kept)))
+    if not made:
+        return [*kept, *(repaired(clip, repair) for clip, repair in zip(junk, skipped, strict=True))]
+    told = f"skipped {', '.join(repr(clip.name) for clip in junk)}: one frame only"
+    kept[0] = replace(kept[0], notes=(*kept[0].notes, told))
+    return [replace(clip, repairs=(*clip.repairs, *skipped)) for clip in kept]
 
 
 def _content(path: Path) -> str:

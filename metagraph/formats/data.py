@@ -14,6 +14,7 @@ import msgspec
 import numpy as np
 
 from metagraph.formats.fields import LARGEST, Data, DataError, fill, floats, get, items, known, one_of
+from metagraph.formats.takes import REPAIRS
 from metagraph.graph.asks import words_of
 from metagraph.graph.model import (
     KINDS,
@@ -36,6 +37,7 @@ from metagraph.graph.model import (
     Stance,
     Timing,
 )
+from metagraph.motion.joint_map import JointMap
 from metagraph.motion.skeleton import Skeleton
 
 FORMAT = 1  # of the project file; older ones are upgraded when read
@@ -160,7 +162,7 @@ def markov_data(model: Markov) -> Data:
 # What the life layers, asks and performances are made of describes itself; written and read by type.
 STRUCTS: dict[str, Any] = {
     "life": Life, "face": Face, "points": dict[str, Point], "lines": dict[str, Line], "performances": dict[str, Performance],
-    "tiers": dict[str, str], "labels": dict[str, str],
+    "tiers": dict[str, str], "labels": dict[str, str], "joint_maps": dict[str, JointMap],
 }  # fmt: skip
 
 
@@ -208,6 +210,8 @@ def _clip_from(data: Data, where: str) -> ClipEntry:
     for key in ("name", "path"):
         if key not in values:
             raise DataError(f"{where}.{key}", "is missing")
+    for name in values.get("as_is", ()):
+        one_of(name, REPAIRS, f"{where}.as_is")
     return ClipEntry(digest=get(data, "sha256", str, where, ""), **values)
 
 
@@ -255,8 +259,11 @@ def _graph_from(layer: Layer, data: Any, stance_ids: set[str], action_ids: set[s
     return MetaGraph(layer, stances, actions, start, {p: float(w) for p, w in weights.items()})
 
 
-def from_data(data: Any) -> Project:
-    """Return the project, its clips without motion. Raises DataError naming the first field that is wrong."""
+def from_data(data: Any, notes: list[str] | None = None) -> Project:
+    """Return the project, its clips without motion. Raises DataError naming the first field that is wrong.
+
+    notes: where given, a joint map that is wrong is left out, and said there: nothing but its clips depends on it.
+    """
     if not isinstance(data, Mapping) or "metagraph" not in data:
         raise DataError("metagraph", "is missing: this is not a Metagraph project")
     data = dict(data)
@@ -285,10 +292,33 @@ def from_data(data: Any) -> Project:
         parts=dict(parts),
         markov={layer: markov_from(layer, models[layer], f"markov.{layer}") for layer in LAYERS if layer in models},
         settings=Settings(**fill(Settings, settings, "settings")),
-        **{key: struct_from(data[key], kind, key) for key, kind in STRUCTS.items() if data.get(key) is not None},
+        **{key: struct_from(data[key], kind, key) for key, kind in STRUCTS.items() if data.get(key) is not None and key != "joint_maps"},
+        joint_maps=_joint_maps_from(data, notes),
         character=get(data, "character", str, "", None),
         next_id=max(get(data, "next_id", int, "", 1), above(*clips, *stance_ids, *action_ids)),
     )
+
+
+def _joint_maps_from(data: Data, notes: list[str] | None) -> dict[str, JointMap]:
+    out: dict[str, JointMap] = {}
+    try:
+        maps = get(data, "joint_maps", dict, "", {})
+        for key in maps:
+            try:
+                out[key] = struct_from(maps[key], JointMap, f"joint_maps.{key}")
+            except DataError as error:
+                if notes is None:
+                    raise
+                notes.append(_left_out(error))
+    except DataError as error:
+        if notes is None:
+            raise
+        notes.append(_left_out(error))
+    return out
+
+
+def _left_out(error: DataError) -> str:
+    return f"{error.where} {error}; that joint map is left out. Import its clips again to map their joints anew."
 
 
 def above(*idents: str) -> int:

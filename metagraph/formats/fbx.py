@@ -6,6 +6,7 @@ import importlib.util
 import os
 import subprocess
 import sys
+from collections.abc import Collection
 from pathlib import Path
 
 import numpy as np
@@ -22,11 +23,11 @@ TIMEOUT = 120.0  # seconds for one file
 _AGAIN = "Export it again from the program that made it, as binary FBX 2014 or later, or as GLB."
 
 
-def read_fbx_clips(path: str | Path, timeout: float = TIMEOUT) -> list[Clip]:
+def read_fbx_clips(path: str | Path, timeout: float = TIMEOUT, as_is: Collection[str] = ()) -> list[Clip]:
     """Return every take of an FBX file, sampled at 30 fps, in metres, Y up, on one Skeleton.
 
     Needs the extra `metagraph[fbx]`. Meshes and blend shapes are not read. Raises FileError, also when the library is
-    missing, takes longer than `timeout` seconds or crashes on the file.
+    missing, takes longer than `timeout` seconds or crashes on the file. as_is: repairs (`takes.REPAIRS`) not to make.
     """
     path = Path(path)
     if not path.is_file():
@@ -40,8 +41,8 @@ def read_fbx_clips(path: str | Path, timeout: float = TIMEOUT) -> list[Clip]:
     if not gltf.json.animations:
         raise FileError(path, "it holds no animation", "its animations", "Export it with its animation baked.")
     with np.errstate(all="ignore"):
-        rig = build_rig(gltf)
-        clips = [clip for i in range(len(gltf.json.animations)) if (clip := read_clip(gltf, rig, i)) is not None]
+        rig = build_rig(gltf, as_is)
+        clips = [clip for i in range(len(gltf.json.animations)) if (clip := read_clip(gltf, rig, i, as_is)) is not None]
     if not clips:
         raise FileError(path, "none of its takes moves the skeleton", "its animations", "Export it with its animation baked.")
     return unique_takes(clips)

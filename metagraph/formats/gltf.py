@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Collection
 from pathlib import Path
 
 import numpy as np
@@ -23,18 +24,18 @@ __all__ = ["has_skinned_mesh", "read_character", "read_gltf_clips", "vrm_roles",
 
 
 @_QUIET
-def read_gltf_clips(path: str | Path) -> list[Clip]:
+def read_gltf_clips(path: str | Path, as_is: Collection[str] = ()) -> list[Clip]:
     """Return every animation of a file as a clip; all share one Skeleton.
 
     Keys are resampled to the constant frame rate they lie on (30 when any would do). The rest pose comes from the
     skin's inverse bind matrices where they are sound, else from the nodes. Raises FileError, also when there is no
-    animation of the skeleton.
+    animation of the skeleton. as_is: repairs (`takes.REPAIRS`) not to make.
     """
     gltf = open_gltf(path)
     if not gltf.json.animations:
         raise FileError(path, "it holds no animation", "its animations", "Export it with its animation, or open it as a character.")
-    rig = build_rig(gltf)
-    clips = [clip for i in range(len(gltf.json.animations)) if (clip := read_clip(gltf, rig, i)) is not None]
+    rig = build_rig(gltf, as_is)
+    clips = [clip for i in range(len(gltf.json.animations)) if (clip := read_clip(gltf, rig, i, as_is)) is not None]
     if not clips:
         raise FileError(path, "none of its animations moves the skeleton", "its animations", "Export it with its animation.")
     return unique_takes(clips)

@@ -31,7 +31,7 @@ class _Part:
 def character_of(gltf: Gltf, rig: Rig) -> Character:
     """Return the default scene's meshes on the rig's skeleton. Raises FileError when there are none."""
     doc = gltf.json
-    notes = list(rig.notes)
+    notes = [*rig.notes, *(repair.words for repair in rig.repairs)]
     parts: list[_Part] = []
     runs: list[tuple[int, Array, int]] = []  # (part, triangles, material): primitives may share their vertices
     for node in _scene_nodes(gltf, rig):

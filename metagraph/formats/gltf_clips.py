@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections import defaultdict
+from collections.abc import Collection
 from dataclasses import dataclass
 from typing import Any
 
@@ -11,7 +12,7 @@ from numpy.typing import NDArray
 
 from metagraph.formats.gltf_file import Animation, Gltf, extras
 from metagraph.formats.gltf_skeleton import Rig
-from metagraph.formats.takes import frame_rate, take_name, without_bind_pose
+from metagraph.formats.takes import frame_rate, repaired, take_name, take_repair, without_bind_pose
 from metagraph.motion import rotation
 from metagraph.motion.clip import Clip
 
@@ -29,8 +30,11 @@ class _Grid:
     fps: float
 
 
-def read_clip(gltf: Gltf, rig: Rig, number: int) -> Clip | None:
-    """Return animation `number` as a clip, or None when it moves nothing of the skeleton. Raises FileError."""
+def read_clip(gltf: Gltf, rig: Rig, number: int, as_is: Collection[str] = ()) -> Clip | None:
+    """Return animation `number` as a clip, or None when it moves nothing of the skeleton. Raises FileError.
+
+    as_is: repairs (`takes.REPAIRS`) not to make.
+    """
     animation = gltf.json.animations[number]
     where = f"animation {number} '{animation.name}'"
     groups, morph_channels, notes = _channels(gltf, rig, animation, where)
@@ -93,8 +97,10 @@ def read_clip(gltf: Gltf, rig: Rig, number: int) -> Clip | None:
     if np.abs(translations).max() > 1e7:
         gltf.fail("a translation is out of range", where)
     morphs, weights = _morphs(gltf, morph_channels, keys, grid, where)
+    stem = gltf.path.stem
+    name, renaming = take_repair(animation.name, take_name(animation.name, stem), stem, as_is)
     clip = Clip(
-        take_name(animation.name, gltf.path.stem),
+        name,
         rig.skeleton,
         fps,
         rotation.continuous(rotation.normalize(rotations)),
@@ -104,7 +110,9 @@ def read_clip(gltf: Gltf, rig: Rig, number: int) -> Clip | None:
         weights,
         (*rig.notes, *notes),
     )
-    return without_bind_pose(clip)
+    for repair in (*rig.repairs, renaming):
+        clip = repaired(clip, repair)
+    return without_bind_pose(clip, as_is)
 
 
 _Group = tuple[int, str, str]

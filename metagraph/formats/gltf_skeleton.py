@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import hashlib
-from collections.abc import Sequence
+from collections.abc import Collection, Sequence
 from dataclasses import dataclass
 from typing import Any
 
@@ -12,7 +12,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from metagraph.formats.gltf_file import Gltf, Node
+from metagraph.formats.takes import UNIT
 from metagraph.motion import rotation
+from metagraph.motion.clip import Repair
 from metagraph.motion.skeleton import Skeleton, unique_names
 
 Array = NDArray[Any]
@@ -46,6 +48,7 @@ class Rig:
     worlds: Array
     unit: float
     notes: tuple[str, ...]
+    repairs: tuple[Repair, ...] = ()
 
 
 def compose(translations: Array, rotations: Array, scales: Array) -> Array:
@@ -70,27 +73,30 @@ _CACHED = 16  # rigs remembered: the files of a folder mostly share one
 _rigs: dict[bytes, Rig] = {}
 
 
-def build_rig(gltf: Gltf) -> Rig:
-    """Return the one skeleton of the file; the same object for files whose nodes and skins are the same. Raises FileError."""
+def build_rig(gltf: Gltf, as_is: Collection[str] = ()) -> Rig:
+    """Return the one skeleton of the file; the same object for files whose nodes and skins are the same. Raises FileError.
+
+    as_is: repairs (`takes.REPAIRS`) not to make.
+    """
     nodes = gltf.json.nodes
     if not nodes:
         gltf.fail("it holds no nodes", "its nodes", "Export it with its skeleton.")
     parents, order = _tree(gltf, nodes)
     members = _members(gltf, nodes, parents, order)
-    key = hashlib.sha256(msgspec.json.encode((nodes, gltf.json.skins, sorted(members))))
+    key = hashlib.sha256(msgspec.json.encode((nodes, gltf.json.skins, sorted(members), UNIT in as_is)))
     for s, skin in enumerate(gltf.json.skins):
         if skin.inverse_bind_matrices is not None:
             key.update(np.asarray(gltf.array(skin.inverse_bind_matrices, f"skin {s}", "MAT4")).tobytes())
     found = _rigs.get(key.digest())
     if found is None:
-        found = _build(gltf, nodes, parents, order, members)
+        found = _build(gltf, nodes, parents, order, members, as_is)
         while len(_rigs) >= _CACHED:
             _rigs.pop(next(iter(_rigs)))
         _rigs[key.digest()] = found
     return found
 
 
-def _build(gltf: Gltf, nodes: list[Node], parents: list[int], order: list[int], members: set[int]) -> Rig:
+def _build(gltf: Gltf, nodes: list[Node], parents: list[int], order: list[int], members: set[int], as_is: Collection[str]) -> Rig:
     translations, rotations, scales = _transforms(gltf, nodes)
     joints = _in_order(gltf, members, parents, order)
     if len(joints) > MOST_JOINTS:
@@ -100,6 +106,7 @@ def _build(gltf: Gltf, nodes: list[Node], parents: list[int], order: list[int], 
     locals_ = compose(translations, rotations, scales)
     worlds = _globals(locals_, np.array(parents), order)
     notes: list[str] = []
+    repairs: list[Repair] = []
 
     still = (rotations[joints], translations[joints], scales[joints])
     roots = np.flatnonzero(above < 0)
@@ -142,12 +149,15 @@ def _build(gltf: Gltf, nodes: list[Node], parents: list[int], order: list[int], 
     unit = 0.01 if height > _TALL else 100.0 if 1e-3 < height < _TINY and len(joints) > 3 else 1.0
     if unit != 1.0:
         larger = "100 times smaller (centimetres)" if unit < 1 else "100 times larger"
-        notes.append(f"its skeleton is {height:.3g} m long: read {larger}")
+        repairs.append(Repair(UNIT, f"its skeleton is {height:.3g} m long: read {larger}", UNIT not in as_is))
+    if unit != 1.0 and UNIT in as_is:
+        unit = 1.0
+    elif unit != 1.0:
         lift, shift, rest_translations = lift * unit, shift * unit, rest_translations * unit
         rest_matrices[:, :3] *= unit
     skeleton = Skeleton(names, above, rest_rotations, rest_translations)
     return Rig(
-        skeleton, tuple(joints), places, tuple(parents), lift, shift, turn, *still, rest_matrices, worlds, unit, tuple(notes)
+        skeleton, tuple(joints), places, tuple(parents), lift, shift, turn, *still, rest_matrices, worlds, unit, tuple(notes), tuple(repairs)
     )  # fmt: skip
 
 

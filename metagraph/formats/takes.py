@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Sequence
+from collections.abc import Collection, Sequence
 from dataclasses import replace
 from typing import Any
 
@@ -11,9 +11,13 @@ import numpy as np
 from numpy.typing import NDArray
 
 from metagraph.motion import rotation
-from metagraph.motion.clip import Clip
+from metagraph.motion.clip import Clip, Repair
 
 Array = NDArray[Any]
+
+# What readers put right on their own and leave as it is when they are told to.
+BIND_POSE, UNIT, UP, NAME, ONE_FRAME = "bind_pose", "unit", "up_axis", "name", "one_frame"
+REPAIRS = (BIND_POSE, UNIT, UP, NAME, ONE_FRAME)
 
 # Names that tools give on their own; the file's name says more.
 _GENERIC = re.compile(r"(?i)(take|untitled|animation|anim|action|default|scene|clip|unreal take|mixamo\.com|bindpose|animstack)[ _.:]*\d*")
@@ -27,6 +31,24 @@ def take_name(raw: str, stem: str) -> str:
     if not parts or any(_GENERIC.fullmatch(part) for part in parts):
         return stem
     return " ".join(dict.fromkeys(parts))
+
+
+def take_repair(raw: str, name: str, stem: str, as_is: Collection[str]) -> tuple[str, Repair | None]:
+    """Return what a take called `raw` in its file is called, `name` being what `take_name` makes of it, and the repair that is."""
+    raw = raw.strip()
+    if not raw or raw == name:
+        return name, None
+    made = NAME not in as_is
+    words = f"named after its file instead of '{raw}'" if name == stem else "the rig's and layer's names were taken out of its name"
+    return name if made else raw, Repair(NAME, words, made)
+
+
+def repaired(clip: Clip, repair: Repair | None) -> Clip:
+    """Return the clip saying that a repair was made, or was not."""
+    if repair is None:
+        return clip
+    note = repair.words if repair.made else f"left as it is in the file, without this: {repair.words}"
+    return replace(clip, notes=(*clip.notes, note), repairs=(*clip.repairs, repair))
 
 
 def frame_rate(keys: Sequence[Array], wanted: float | None = None) -> float:
@@ -52,8 +74,8 @@ def frame_rate(keys: Sequence[Array], wanted: float | None = None) -> float:
     return rate if even else 60.0 if rate > 45 else 30.0
 
 
-def without_bind_pose(clip: Clip) -> Clip:
-    """Drop a first frame that is plainly the rest pose left there by a tool, and say so in the notes.
+def without_bind_pose(clip: Clip, as_is: Collection[str] = ()) -> Clip:
+    """Drop a first frame that is plainly the rest pose left there by a tool, and say so; only say so where `as_is` names it.
 
     Plainly: in that frame at least 60 % of the joints are in the rest pose within 0.5 degrees and all within 30, and
     the jump from it is over 15 degrees and over 8 times any other jump within the next second.
@@ -68,8 +90,9 @@ def without_bind_pose(clip: Clip) -> Clip:
     jumps = rotation.angle_between(window[1:], window[:-1]).max(-1)
     if jumps[0] < np.radians(15) or jumps[0] < 8 * float(jumps[1:].max()):
         return clip
-    shorter = clip.trimmed(1)
-    return replace(shorter, notes=(*clip.notes, "its first frame was the bind pose and was dropped"))
+    made = BIND_POSE not in as_is
+    repair = Repair(BIND_POSE, "its first frame was the bind pose and was dropped", made)
+    return repaired(clip.trimmed(1) if made else clip, repair)
 
 
 def unique_takes(clips: Sequence[Clip]) -> list[Clip]:

@@ -64,10 +64,10 @@ def add_clips(project: Project, loaded: Iterable[tuple[str, int, str, Clip]]) ->
         if skeleton is None:
             skeleton = clip.skeleton
         before = known.get((path, take))
-        ident = before.id if before else f"c{next_id}"
+        entry = before or ClipEntry(f"c{next_id}", clip.name, path, take)
         next_id += 0 if before else 1
-        name = before.name if before else clip.name
-        clips[ident] = ClipEntry(ident, name, path, take, digest, clip.frames, clip.fps, clip)
+        read = {"digest": digest, "frames": clip.frames, "fps": clip.fps, "brought_from": clip.brought_from, "motion": clip}
+        clips[entry.id] = replace(entry, **read)
     return replace(project, clips=clips, skeleton=skeleton, next_id=next_id)
 
 

@@ -15,6 +15,7 @@ from metagraph.graph.asks import Line, Performance, Point
 from metagraph.graph.life import Face, Life
 from metagraph.graph.words import KINDS, LAYERS, LIMBS, MODES, PARTS, Kind, Layer, Limb, Mode, Part
 from metagraph.motion.clip import Clip
+from metagraph.motion.joint_map import JointMap
 from metagraph.motion.skeleton import Skeleton
 
 __all__ = [
@@ -220,7 +221,9 @@ class Uses(Mapping[str, tuple[Action, ...]]):
 class ClipEntry:
     """A clip the project knows. path: relative to the project file, `/` between folders. take: which animation in the file.
 
-    digest: SHA-256 of the file, hex. frames, fps: as last read. motion: the loaded clip, None while the file is missing.
+    digest: SHA-256 of the file, hex. frames, fps: as last read. as_is: names of repairs that are not made when it is read
+    (`formats.takes.REPAIRS`). brought_from: fingerprint of the skeleton it is retargeted from, "" where the file has the project's
+    own. motion: the loaded clip, None while the file is missing.
     """
 
     id: str
@@ -231,6 +234,8 @@ class ClipEntry:
     frames: int = 0
     fps: float = 30.0
     motion: Clip | None = field(default=None, compare=False, repr=False)
+    as_is: tuple[str, ...] = ()
+    brought_from: str = ""
 
     @property
     def duration(self) -> float:
@@ -300,7 +305,8 @@ class Project:
 
     character: path of the GLB to draw, relative to the project file, or None for a stick figure. points: named places to look
     at, metres. lines: the dialogue an agent calls by id. performances: those kept, by id. tiers: annotation tier -> what it
-    was last read as. voices: line -> its analysed sound (`playback.life.voice.Voice`), as far as read; never saved.
+    was last read as. joint_maps: how clips of other skeletons are retargeted, by `joint_map.fingerprint` of theirs.
+    voices: line -> its analysed sound (`playback.life.voice.Voice`), as far as read; never saved.
     body: what of it breathes and looks (`playback.life.body.Body`) as an export says; None to find it. Never saved.
     """
 
@@ -321,6 +327,7 @@ class Project:
     performances: Mapping[str, Performance] = field(default_factory=dict)
     tiers: Mapping[str, str] = field(default_factory=dict)
     labels: Mapping[str, str] = field(default_factory=dict)
+    joint_maps: Mapping[str, JointMap] = field(default_factory=dict)
     voices: Mapping[str, Any] = field(default_factory=dict, compare=False, repr=False)
     body: Any = field(default=None, compare=False, repr=False)
     next_id: int = 1

@@ -18,6 +18,20 @@ class ClipError(ValueError):
     """A clip's numbers do not fit together."""
 
 
+@dataclass(frozen=True, slots=True)
+class Repair:
+    """Something of a file that was put right on reading it, and can be left as it is.
+
+    name: which repair. words: what was done. made: whether it was, or was left out because somebody said so. take: the number
+    of the take it left out, None where it changed the clip itself.
+    """
+
+    name: str
+    words: str
+    made: bool = True
+    take: int | None = None
+
+
 @dataclass(frozen=True, eq=False)
 class Clip:
     """Motion on a skeleton at a constant frame rate.
@@ -25,7 +39,8 @@ class Clip:
     rotations: `[F, J, 4]` float32, local, xyzw, neighbours on the same side. translations: `[F, T, 3]` float32,
     metres, local, for the joints listed in `translated` (ascending, always with joint 0 first); all other joints keep
     their rest translation. weights: `[F, K]` morph target weights for `morphs`. notes: what the reader changed or
-    dropped, in words, for the user.
+    dropped, in words, for the user. repairs: those of the changes that can be left out. brought_from: fingerprint
+    of the skeleton it was retargeted from, "" where it never was.
     """
 
     name: str
@@ -37,6 +52,8 @@ class Clip:
     morphs: tuple[str, ...] = ()
     weights: Array | None = None
     notes: tuple[str, ...] = ()
+    repairs: tuple[Repair, ...] = ()
+    brought_from: str = ""
 
     def __post_init__(self) -> None:
         r = np.ascontiguousarray(self.rotations, np.float32)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import hashlib
 import re
 from collections.abc import Mapping
 from dataclasses import dataclass, replace
@@ -31,8 +32,13 @@ class RetargetError(ValueError):
 
 
 def fingerprint(skeleton: Skeleton) -> str:
-    """Return what stays the same for a skeleton in every file of a character: a short text, to remember maps by."""
-    return skeleton.fingerprint
+    """Return what stays the same for a rig in every file and of every size: a short text, to remember maps by.
+
+    It is of the joints' names and parents, in any order: a map says nothing of lengths or rest poses.
+    """
+    above = (skeleton.names[p] if p >= 0 else "" for p in skeleton.parents)
+    rows = sorted(f"{name}\t{parent}" for name, parent in zip(skeleton.names, above, strict=True))
+    return hashlib.sha256("\n".join(rows).encode()).hexdigest()[:16]
 
 
 @dataclass(frozen=True, slots=True)

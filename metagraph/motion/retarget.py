@@ -18,7 +18,7 @@ from numpy.typing import NDArray
 
 from metagraph.motion import rotation
 from metagraph.motion.clip import Clip
-from metagraph.motion.joint_map import ARM, FINGERS, LEG, NEEDED, SIDES, TRUNK, JointMap, JointPair, RetargetError
+from metagraph.motion.joint_map import ARM, FINGERS, LEG, NEEDED, SIDES, TRUNK, JointMap, JointPair, RetargetError, fingerprint
 from metagraph.motion.roles import find_roles
 from metagraph.motion.skeleton import Pose, Skeleton
 
@@ -457,6 +457,7 @@ class _Work:
             translations=moves[:, kept],
             translated=tuple(joints[n] for n in kept),
             notes=(*self.clip.notes, note + (f", {idle} follow their parents" if idle else "")),
+            brought_from=fingerprint(self.clip.skeleton),
         )
 
 

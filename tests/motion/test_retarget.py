@@ -129,10 +129,19 @@ def test_a_map_is_edited_by_hand_and_says_what_it_lacks(toy: Any) -> None:
     assert moved.of("Neck") is None
 
 
-def test_a_map_is_remembered_by_what_stays_the_same_in_every_file_of_a_character(toy: Any) -> None:
+def test_a_map_is_remembered_by_what_stays_the_same_in_every_file_and_size_of_a_rig(toy: Any, sample: Any) -> None:
     same = Skeleton(*(getattr(toy.skeleton, f) for f in ("names", "parents", "rest_rotations", "rest_translations")))
-    assert fingerprint(same) == fingerprint(toy.skeleton)
-    assert fingerprint(rebuilt(toy.skeleton, scale=2)) != fingerprint(toy.skeleton)
+    assert fingerprint(same) == fingerprint(toy.skeleton) == fingerprint(rebuilt(toy.skeleton, scale=2, arms_down=1.0))
+    assert fingerprint(sample.skeleton) != fingerprint(toy.skeleton)
+    names = (*toy.skeleton.names[:-1], "Renamed")
+    renamed = Skeleton(names, toy.skeleton.parents, toy.skeleton.rest_rotations, toy.skeleton.rest_translations)
+    assert fingerprint(renamed) != fingerprint(toy.skeleton)
+
+
+def test_a_retargeted_clip_knows_what_it_was_brought_from(toy: Any, sample: Any) -> None:
+    out = retarget(toy.clip("c"), sample.skeleton, proposed(toy.skeleton, sample.skeleton))
+    assert out.brought_from == fingerprint(toy.skeleton)
+    assert toy.clip("c").brought_from == ""
 
 
 # --- what cannot be done ---------------------------------------------------------------------------------------------
