@@ -9,7 +9,7 @@ a Johnson S_B distribution is fitted to c_(i, i+3), at 30 frames a second, and 9
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import lru_cache
 from math import pi
 from typing import Any
@@ -25,7 +25,7 @@ from metagraph.motion.clip import Clip
 from metagraph.motion.roles import body_parts, find_roles
 from metagraph.motion.skeleton import Pose, Skeleton
 from metagraph.suggest.johnson import JohnsonSB, fit
-from metagraph.suggest.traits import facing_of, seen_from
+from metagraph.suggest.points import facing_of, seen_from
 
 Array = NDArray[Any]
 
@@ -251,10 +251,44 @@ def _costs(stats: Statistics, track: Array, stances: Sequence[tuple[Array, Array
 def fitting(clip: Clip, cost: Array) -> Fit:
     """Return where a clip can be entered and left, given its `costs` beside a stance."""
     times = _times(clip)
-    # c_ij compares with frame j - 1: a clip entered at j follows a stance that looks like its frame before.
-    entering = np.append(cost[:1], cost[:-1])
-    a, b = int(np.argmin(entering)), int(len(cost) - 1 - np.argmin(cost[::-1]))
-    return Fit(_spans(entering <= 1, times), _spans(cost <= 1, times), float(times[a]), float(times[b]), float(entering[a]), float(cost[b]))
+    into = entering(cost)
+    a, b = int(np.argmin(into)), int(len(cost) - 1 - np.argmin(cost[::-1]))
+    return Fit(_spans(into <= 1, times), _spans(cost <= 1, times), float(times[a]), float(times[b]), float(into[a]), float(cost[b]))
+
+
+def entering(cost: Array) -> Array:
+    """Return `[F]` what entering at each frame costs, given a clip's `costs`: c_ij compares with frame j - 1, so a clip entered at j
+    follows a stance that looks like its frame before."""
+    return np.append(cost[:1], cost[:-1])
+
+
+def masked(stats: Statistics, clip: Clip, moved: Array | None, roles: Mapping[str, int] | None = None) -> Statistics:
+    """Return the statistics for an action that moves only some joints, `[J]` how strongly (None: all): the others stay in the stance."""
+    if moved is None:
+        return stats
+    rig = _rig_of(clip, roles)
+    if len(rig.joints) != len(stats.weights):
+        return stats
+    return replace(stats, weights=stats.weights * (moved[rig.keep[rig.joints]] > 0))
+
+
+def seam(stats: Statistics, clip: Clip, start: float, end: float, overlap: float, roles: Mapping[str, int] | None = None) -> float:
+    """Return what the seam of a loop from `start` to `end` costs, beside the threshold: the most of what lies opposite in its overlap."""
+    track = _track(_rig_of(clip, roles), clip)
+    v, last = _velocity(track), len(track) - 1
+    if track.shape[1] != len(stats.weights):
+        return float("inf")
+    n = np.arange(round(overlap * RATE) + 1)
+    a, b = (np.clip(round(t * RATE) + n, 0, last) for t in (end - overlap, start))
+    far = np.linalg.norm(track[a] - track[b], axis=-1) + stats.velocity * np.linalg.norm(v[a] - v[b], axis=-1)
+    return float((far @ stats.weights).max()) / stats.threshold
+
+
+def shown(cost: Any, seconds: float) -> Any:
+    """Return what of a difference, beside the threshold, still shows when it is blended over some seconds: up to 1 is no jump.
+
+    The threshold is what passes in STEP - 1 frames; what is played is blended by 3x^2 - 2x^3, at its fastest 1.5 times its mean."""
+    return cost * min(1.0, 1.5 * (STEP - 1) / RATE / seconds) if seconds > 0 else cost
 
 
 def _spans(good: Array, times: Array) -> tuple[Span, ...]:
@@ -293,6 +327,10 @@ def times(
     finish = min((t for t in leave if t >= moving[-1]), default=max(leave, default=clip.duration))
     blend_in, blend_out = blend(_at(entered, begin)), blend(_at(left, finish))
     start, end = max(0.0, begin - blend_in), min(clip.duration, finish + blend_out)
+    if shown(_at(entered, start), blend_in) > 1 >= shown(_at(entered, begin), blend_in):
+        start = begin  # before, it is on its way from elsewhere
+    if shown(_at(left, end), blend_out) > 1 >= shown(_at(left, finish), blend_out):
+        end = finish
     room = max(0.0, end - start) / 2
     away = bool((left > 1).any())
     last = out.leave[-1][0] if out.leave else end
