@@ -22,6 +22,7 @@ Array = NDArray[Any]
 
 NEIGHBOURS = 5
 LEAST = 4  # labelled clips below which nothing is said
+TRIALS = 400  # examples that are guessed from the others, to know how often that is right
 WORDS_PART = 0.6  # how much words count beside motion, where there are both
 
 
@@ -73,6 +74,12 @@ class Alike:
         spread = [float(np.std(column[there])) if there.any() else 0.0 for column, there in zip(self.measures.T, known.T, strict=True)]
         self.middle, self.spread = np.array(middle), np.maximum(np.array(spread), 1e-9)
         self._scaled = np.where(known, (self.measures - self.middle) / self.spread, 0.0)
+        self._moving = known.any(1) if self.width else np.zeros(len(rows), bool)
+        words: dict[str, list[int]] = {}
+        for n, example in enumerate(self.examples):
+            for word in set(example.words):
+                words.setdefault(word, []).append(n)
+        self._with = words  # word -> the places of the examples that have it, ascending
 
     @cached_property
     def fields(self) -> tuple[str, ...]:
@@ -82,14 +89,21 @@ class Alike:
     def guess(self, words: Sequence[str], measures: Array) -> dict[str, Belief[str]]:
         """Return what a clip with these words and measures is taken for, by field; nothing of fields with too few examples."""
         out = {}
+        said, away = tuple(dict.fromkeys(words)), self._away(self._scale(measures))
         for field in self.fields:
             model = self._model(field)
             if model is None:
                 continue
-            scores = model.scores(tuple(words), self._scale(measures), None)
-            value, firm, near = model.best(scores, tuple(words))
+            value, firm, near = model.best(model.scores(said, away, None), said)
             out[field] = Belief(value, model.confidence(firm), f"like {near}" if near else "like what is labelled so")
         return out
+
+    def _away(self, scaled: Array | None) -> Array | None:
+        """Return `[n]` how far each example's motion is from this one, infinite where it is not known; None where this one is not."""
+        if scaled is None:
+            return None
+        difference = self._scaled - scaled
+        return np.asarray(np.where(self._moving, np.sqrt(np.einsum("ij,ij->i", difference, difference) / self.width), np.inf))
 
     def _scale(self, measures: Array) -> Array | None:
         if len(measures) != self.width or not self.width or not np.isfinite(measures).any():
@@ -117,15 +131,17 @@ class _Field:
         self.values = list(dict.fromkeys(self.labels))
         self.index = np.array([self.values.index(label) for label in self.labels])
         self.count = np.bincount(self.index, minlength=len(self.values)).astype(float)
-        self.words: dict[str, Array] = {}
-        for place, label in zip(self.places, self.index.tolist(), strict=True):
-            for word in set(alike.examples[place].words):
-                self.words.setdefault(word, np.zeros(len(self.values)))[label] += 1
-        self.scaled = alike._scaled[self.places]
-        self.moving = np.isfinite(alike.measures[self.places]).any(1) if alike.width else np.zeros(len(places), bool)
+        row = np.full(len(alike.examples), -1)
+        row[self.places] = np.arange(len(self.places))
+        self.rows: dict[str, Array] = {}  # word -> the rows of this field that have it
+        self.words: dict[str, Array] = {}  # word -> how many there are of each value
+        for word, places in alike._with.items():
+            mine = row[places]
+            self.rows[word] = mine[mine >= 0]
+            self.words[word] = np.bincount(self.index[self.rows[word]], minlength=len(self.values)).astype(float)
 
-    def scores(self, words: Sequence[str], scaled: Array | None, leave: int | None) -> Array:
-        """Return the probability of each value; leave: the place among the examples that does not count."""
+    def scores(self, words: Sequence[str], away: Array | None, leave: int | None) -> Array:
+        """Return the probability of each value. words: distinct. away: as `Alike._away`. leave: the row that does not count."""
         count = self.count.copy()
         own: set[str] = set()
         if leave is not None:
@@ -134,7 +150,7 @@ class _Field:
         prior = np.log((count + 1) / (count.sum() + len(count)))
         said = prior.copy()
         heard = False
-        for word in set(words):
+        for word in words:
             seen = self.words.get(word)
             if seen is None:
                 continue
@@ -145,21 +161,21 @@ class _Field:
                 heard = True
                 said += np.log((seen + 0.5) / (count + 1.0))
         by_words = _shares(said)
-        by_motion = self._near(scaled, leave)
+        by_motion = self._near(away, leave)
         if by_motion is None:
             return by_words
         return by_words**WORDS_PART * by_motion ** (1 - WORDS_PART) if heard else by_motion
 
-    def _near(self, scaled: Array | None, leave: int | None) -> Array | None:
-        usable = self.moving.copy()
-        if leave is not None:
-            usable[leave] = False
-        if scaled is None or not usable.any():
+    def _near(self, away: Array | None, leave: int | None) -> Array | None:
+        if away is None:
             return None
-        away = np.sqrt(((self.scaled - scaled) ** 2).mean(1))
-        away[~usable] = np.inf
-        nearest = np.argsort(away, kind="stable")[:NEIGHBOURS]
-        nearest = nearest[np.isfinite(away[nearest])]
+        away = away[self.places]
+        if leave is not None:
+            away[leave] = np.inf
+        few = np.argpartition(away, NEIGHBOURS)[:NEIGHBOURS] if len(away) > NEIGHBOURS else np.arange(len(away))
+        nearest = np.sort(few[np.isfinite(away[few])])
+        if not len(nearest):
+            return None
         votes = np.full(len(self.values), 0.05)
         np.add.at(votes, self.index[nearest], 1 / (0.1 + away[nearest]))
         return np.asarray(votes / votes.sum())
@@ -168,19 +184,23 @@ class _Field:
         """Return the likeliest value, how firmly it is held, and the example that speaks for it most, as words."""
         shares = scores / scores.sum()
         place = int(shares.argmax())
-        same = [n for n, label in zip(self.places, self.index.tolist(), strict=True) if label == place]
-        near = max(same, key=lambda n: len(set(words) & set(self.alike.examples[n].words)), default=None)
-        shared = set(words) & set(self.alike.examples[near].words) if near is not None else set()
-        named = " ".join(self.alike.examples[near].words) if near is not None and shared else ""
+        shared = np.zeros(len(self.places), int)
+        for word in words:
+            if (rows := self.rows.get(word)) is not None:
+                shared[rows] += 1
+        shared[self.index != place] = 0
+        near = int(shared.argmax())
+        named = " ".join(self.alike.examples[self.places[near]].words) if shared[near] else ""
         return self.values[place], float(shares[place]), f"'{named}'" if named else ""
 
     @cached_property
     def _trial(self) -> tuple[Array, Array]:
-        """Each example guessed from the others: how firmly `[n]`, and whether rightly `[n]`."""
+        """Examples, all or an even choice, each guessed from all the others: how firmly `[n]`, and whether rightly `[n]`."""
         firm, right = [], []
-        for n, place in enumerate(self.places):
-            measures = self.scaled[n] if self.moving[n] else None
-            shares = self.scores(self.alike.examples[place].words, measures, n)
+        for n in range(0, len(self.places), -(-len(self.places) // TRIALS)):
+            place = self.places[n]
+            away = self.alike._away(self.alike._scaled[place]) if self.alike._moving[place] else None
+            shares = self.scores(tuple(dict.fromkeys(self.alike.examples[place].words)), away, n)
             shares = shares / shares.sum()
             firm.append(float(shares.max()))
             right.append(float(int(shares.argmax()) == self.index[n]))
