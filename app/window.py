@@ -21,6 +21,7 @@ from app.actions import Actions
 from app.canvas.canvas import Canvas
 from app.canvas.drops import Drop, load_of
 from app.commands import commands
+from app.compatibility import Compatibility, merged
 from app.docks import Docks
 from app.document import Document
 from app.figures import Figures
@@ -63,7 +64,9 @@ class Window(QMainWindow):
         self.files = Files(self.document, self.jobs, self)
         self.watcher = Watcher(self.document, self.jobs, self)
         self.sound = Sound(self.document, self.session, self.performance, self.jobs, self)
+        self.compatibility = Compatibility(self.document, self.jobs, self)
         self.problems: tuple[Problem, ...] = ()
+        self._found: tuple[Problem, ...] = ()  # by `check`, without what the statistics flag
         settings = QSettings()
         self.watcher.set_on(str(settings.value("watch", "true")) == "true")
         if settings.value("theme") in ("dark", "light"):
@@ -147,9 +150,12 @@ class Window(QMainWindow):
         ):  # fmt: skip
             self.docks.fill(key, panel)
         self.docks.fill("models", self.models, scrolls=True)
+        self.problems_panel.mend_wanted.connect(self.compatibility.mend)
         self.problems_panel.show_problems(self.problems)
         self.properties.set_misfits(self.canvas.misfits)
+        self.properties.plot.set_compatibility(self.compatibility)
         self.ready = True
+        self.compatibility.start()
         if not self.docks.restored:
             self.docks.size()
 
@@ -196,6 +202,8 @@ class Window(QMainWindow):
         self.preview.view.failed.connect(self.tell)
         self.files.told.connect(self.tell)
         self.watcher.told.connect(self.tell)
+        self.compatibility.failed.connect(self.tell)
+        self.compatibility.changed.connect(self._show_problems)
         self.sound.told.connect(self.tell)
         self.files.report.connect(self._report)
         self.files.imported.connect(self._imported)
@@ -275,12 +283,17 @@ class Window(QMainWindow):
 
     def _checked(self, problems: list[Problem]) -> None:
         self._checking = False
-        self.problems = tuple(problems)
-        misfits = {p.action: f"{p.message}. {p.remedy}" for p in problems if p.action and p.severity != "hint"}
+        self._found = tuple(problems)
+        self._show_problems()
+
+    def _show_problems(self) -> None:
+        flags = self.compatibility.flags
+        self.problems = merged(self._found, flags)
+        misfits = {p.action: f"{p.message}. {p.remedy}" for p in self.problems if p.action and p.severity != "hint"}
         self.canvas.set_misfits(misfits)
         if self.ready:
             self.properties.set_misfits(misfits)
-            self.problems_panel.show_problems(self.problems)
+            self.problems_panel.show_problems(self.problems, flags)
         self.header.show_problems(self.problems)
 
     def _opened(self) -> None:
@@ -492,6 +505,7 @@ class Window(QMainWindow):
         self.preview._timer.stop()
         self.canvas._hero_timer.stop()
         self._check_timer.stop()
+        self.compatibility.stop()
         self.jobs.stop()
         self.thumbnails.stop()
         event.accept()

@@ -11,6 +11,7 @@ from PySide6.QtCore import Qt, Signal
 from PySide6.QtGui import QColor
 from PySide6.QtWidgets import QVBoxLayout, QWidget
 
+from app.compatibility import Compatibility
 from app.document import Document
 from app.session import Session
 from app.theme import Theme, theme
@@ -154,6 +155,9 @@ class TimingPlot(QWidget):
         session.moved.connect(self._playhead)
         session.theme_changed.connect(self._restyle)
         self._restyle()
+
+    def set_compatibility(self, compatibility: Compatibility) -> None:
+        self.compatibility = compatibility
 
     def _restyle(self) -> None:
         t = theme(self.session.theme)

@@ -366,9 +366,10 @@ def matrix(
     stances: Mapping[str, Sequence[tuple[Clip, float, float]]] | None = None,
     clips: Sequence[str] | None = None,
     cancelled: Callable[[], bool] | None = None,
+    progress: Callable[[int, int], None] | None = None,
 ) -> Matrix:
     """Return all clips against all stances of a layer. stances: id -> its loops, the project's own unless given; clips: ids, all unless
-    given. What is left when `cancelled` stays infinite."""
+    given. What is left when `cancelled` stays infinite. progress: called with how many of how many."""
     roles = anatomy.roles(project)
     own = {ident: e.motion for ident, e in project.clips.items() if e.motion is not None and e.motion.skeleton == project.skeleton}
     chosen = tuple(project.clips) if clips is None else tuple(clips)
@@ -382,6 +383,8 @@ def matrix(
     for row, ident in enumerate(chosen):
         if cancelled is not None and cancelled():
             break
+        if progress is not None:
+            progress(row, len(chosen))
         if (clip := own.get(ident)) is None:
             continue
         cost = _costs(stats, _track(_rig_of(clip, roles), clip), frames)

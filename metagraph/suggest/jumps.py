@@ -43,8 +43,8 @@ class Jump:
 @dataclass(frozen=True, eq=False)
 class Curves:
     """An action's clip beside its stances. times `[F]`: seconds, compatibility.RATE a second. enter, leave `[F]`: what entering and
-    leaving at each would cost, of what shows as a jump, blends taken off; for a loop both are what its seam would cost if it ended
-    there. proposed: a timing in which neither shows."""
+    leaving at each would cost, of what shows as a jump, without a blend (see `compatibility.shown`); for a loop both are what its seam
+    would cost if it ended there. proposed: a timing in which nothing shows."""
 
     times: Array
     enter: Array
@@ -60,7 +60,7 @@ class Measured:
 
     def __init__(self, project: Project, layer: Layer, before: Measured | None = None) -> None:
         graph = project.graphs[layer]
-        self.layer, self.roles = layer, anatomy.roles(project)
+        self.layer, self.roles, self.parts = layer, anatomy.roles(project), project.parts
         own = {i: e.motion for i, e in project.clips.items() if e.motion is not None and e.motion.skeleton == project.skeleton}
         used = [own[i] for i in sorted(graph.uses) if i in own]
         self.motions = tuple(used or own.values())
@@ -81,7 +81,7 @@ class Measured:
         """Whether the statistics are of the same motion as another's."""
         mine, theirs = self.motions, other.motions
         alike = len(mine) == len(theirs) and all(a is b for a, b in zip(mine, theirs, strict=True))
-        return alike and self.weights == other.weights and self.roles == other.roles
+        return alike and self.weights == other.weights and self.roles == other.roles and self.parts == other.parts
 
     def same_as(self, other: Measured) -> bool:
         """Whether everything that is measured would come out as another's."""
@@ -147,7 +147,9 @@ def _of(project: Project, measured: Measured, action: Action) -> list[Jump]:
             length = project.clips[action.clip].duration
             soonest = start + t.blend_in + t.blend_out if middle is None else max(middle, start + t.blend_in + t.blend_out)
             better = _nearest(left, end, soonest, length, t.blend_out)
-            change: dict[str, Any] = {"end": better} if better is not None else _blended("blend_out", _at(left, end), end - start - t.blend_in)
+            change: dict[str, Any] = (
+                {"end": better} if better is not None else _blended("blend_out", _at(left, end), end - start - t.blend_in)
+            )
             if better is not None and t.earliest_exit is not None and t.earliest_exit > better:
                 change["earliest_exit"] = None
             found.append(Jump(action.id, "ends", end, now, target, change, better, _fits(project, measured, action, end, target)))
@@ -208,19 +210,19 @@ def curves(project: Project, measured: Measured, action: Action) -> Curves | Non
     motion = entry.motion if entry is not None else None
     if motion is None or motion.frames < 2 or motion.skeleton != project.skeleton:
         return None
-    roles, t = measured.roles, action.timing
+    roles = measured.roles
     if action.kind == "stance":
         start = project.span(action)[0]
         first = c.stance_frames(measured.stats, [(motion, start, start + 1e-6)], roles)
-        cost = c.shown(c.costs(measured.stats, motion, first, roles), t.blend_in)
+        cost = c.costs(measured.stats, motion, first, roles)
         return Curves(_times(motion, cost), cost, cost, c.loop_times(measured.stats, motion, roles))
     into, left = measured.costs(project, action, action.stance), measured.costs(project, action, ends_in(action))
     if into is None or left is None:
         return None
     stats = c.masked(measured.stats, motion, anatomy.mask(project, action), roles)
-    stroke = phases(project, action).stroke if action.kind == "gesture" else t.stroke
+    stroke = phases(project, action).stroke if action.kind == "gesture" else action.timing.stroke
     proposed = c.times(stats, motion, into, left, stroke, roles)
-    return Curves(_times(motion, into), c.shown(c.entering(into), t.blend_in), c.shown(left, t.blend_out), proposed)
+    return Curves(_times(motion, into), c.entering(into), left, proposed)
 
 
 def _times(motion: Clip, cost: Array) -> Array:
