@@ -2,20 +2,61 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Sequence
-from dataclasses import dataclass
+from collections.abc import Callable, Iterable, Mapping, Sequence
+from dataclasses import dataclass, field, replace
 from pathlib import Path
+from typing import Literal
 
 from metagraph.errors import FileError
-from metagraph.formats.clips import digest, find_clip_files, import_clips
+from metagraph.formats.clips import digest, find_clip_files, import_clips, read_clips
 from metagraph.formats.gltf import has_skinned_mesh, morph_targets
 from metagraph.formats.store import relative
+from metagraph.graph.bring import Bringing
 from metagraph.graph.edits import add_clips, set_character
 from metagraph.graph.face import with_morphs
 from metagraph.graph.model import Project
 from metagraph.motion.adopt import SkeletonMismatchError, adopt, difference
-from metagraph.motion.clip import Clip
+from metagraph.motion.clip import Clip, ClipError
+from metagraph.motion.joint_map import JointMap, RetargetError, fingerprint
 from metagraph.motion.skeleton import Skeleton
+
+Loaded = tuple[str, int, str, Clip]  # path as the project keeps it, take, digest, clip
+Maps = Callable[[str, str], JointMap | None]  # fingerprints of a source and a target skeleton -> the map kept for them
+_ALONE = "Import it into a project of its own."
+
+
+@dataclass(frozen=True)
+class Strangers:
+    """Clips of one other skeleton, which can be retargeted.
+
+    clips: on their own skeleton. why: how it differs, in words. joint_map: what is proposed, or what the user made of the same two
+    skeletons before (`remembered`).
+    """
+
+    clips: tuple[Loaded, ...]
+    why: str
+    joint_map: JointMap
+    remembered: bool = False
+
+    @property
+    def skeleton(self) -> Skeleton:
+        return self.clips[0][3].skeleton
+
+    @property
+    def fingerprint(self) -> str:
+        return fingerprint(self.skeleton)
+
+    @property
+    def failures(self) -> tuple[str, ...]:
+        """Why they are left out, one text a file."""
+        files: dict[str, int] = {}
+        for path, *_ in self.clips:
+            files[path] = files.get(path, 0) + 1
+        remedy = _ALONE if self.joint_map.missing else f"Retarget it (import it with --retarget), or {_ALONE[0].lower()}{_ALONE[1:]}"
+        return tuple(
+            f"{Path(path).name}: {f'{count} clips are' if count > 1 else 'its clip is'} of another character: {self.why}. {remedy}"
+            for path, count in files.items()
+        )
 
 
 @dataclass(frozen=True)
@@ -23,19 +64,25 @@ class Imported:
     """loaded: what `add_clips` takes. failures: why files were left out, in words. notes: what readers changed.
 
     character: the first of the files that also holds a mesh, written as clip paths are, for a project that draws none yet.
-    morphs: its morph targets.
+    morphs: its morph targets. strangers: clips of other skeletons that wait to be retargeted. joint_maps: those by which clips
+    were retargeted, to be kept in the project. retargeted: how many of the loaded clips were.
     """
 
-    loaded: tuple[tuple[str, int, str, Clip], ...]
+    loaded: tuple[Loaded, ...]
     failures: tuple[str, ...] = ()
     notes: tuple[str, ...] = ()
     cancelled: bool = False
     character: str | None = None
     morphs: tuple[str, ...] = ()
+    strangers: tuple[Strangers, ...] = ()
+    joint_maps: Mapping[str, JointMap] = field(default_factory=dict)
+    retargeted: int = 0
 
     def into(self, project: Project) -> Project:
         """The edit: `project` with the clips added, and with the character that came with them if it had none."""
         project = add_clips(project, self.loaded)
+        if any(project.joint_maps.get(key) != value for key, value in self.joint_maps.items()):
+            project = replace(project, joint_maps={**project.joint_maps, **self.joint_maps})
         if project.character is not None or not self.character:
             return project
         return with_morphs(set_character(project, self.character), self.morphs)
@@ -56,42 +103,134 @@ def import_files(
     paths: Iterable[str | Path],
     progress: Callable[[int, int, Path], None] | None = None,
     cancelled: Callable[[], bool] | None = None,
+    retarget: Literal["no", "ask", "yes"] = "no",
+    remembered: Maps | None = None,
 ) -> Imported:
     """Read files and folders for a project; nothing is changed yet.
 
     folder: what paths are made relative to, None for absolute ones. The project's skeleton decides what fits; in an
-    empty project the skeleton on which most of the clips can play does. A clip of another character is left out, with its reason.
+    empty project the skeleton on which most of the clips can play does. A clip of another skeleton is retargeted when the project
+    has a joint map for that; else `retarget` says: it is left out with its reason, handed back among the `strangers`, or retargeted
+    by the remembered or proposed map. remembered: the user's maps from other projects.
     """
     report = import_clips(gather(paths), progress, cancelled)
     failures = [str(error) for error in report.failures]
     skeleton = project.skeleton or _skeleton_of_most([clip for _, _, clip in report.clips])
-    loaded: list[tuple[str, int, str, Clip]] = []
-    refused: dict[tuple[Path, str], int] = {}
+    loaded: list[Loaded] = []
+    foreign: dict[str, list[Loaded]] = {}
+    reasons: dict[str, str] = {}
     digests: dict[Path, str] = {}
-    for path, take, clip in report.clips:
+    for path, take, clip in _as_known(report.clips, project, folder):
         assert skeleton is not None
         try:
-            fitted = adopt(clip, skeleton)
             if path not in digests:
                 str(path).encode()  # a name in no known encoding could not be written down
                 digests[path] = digest(path)
-        except SkeletonMismatchError as error:
-            refused[(path, str(error))] = refused.get((path, str(error)), 0) + 1
-            continue
         except FileError as error:
             failures.append(str(error))
             continue
         except UnicodeEncodeError:
             failures.append(str(FileError(path, "has a name that is no text", "its name", "Rename it.")))
             continue
-        name = relative(path, folder) if folder is not None else path.as_posix()
-        loaded.append((name, take, digests[path], fitted))
-    for (path, why), count in refused.items():
-        clips = f"{count} clips are" if count > 1 else "its clip is"
-        failures.append(f"{path.name}: {clips} of another character: {why}. Import it into a project of its own.")
+        name = _name(path, folder)
+        try:
+            loaded.append((name, take, digests[path], adopt(clip, skeleton)))
+        except SkeletonMismatchError as error:
+            key = fingerprint(clip.skeleton)
+            foreign.setdefault(key, []).append((name, take, digests[path], clip))
+            reasons.setdefault(key, str(error))
     character = _character(loaded, folder) if project.character is None else None
     morphs = _morphs(character, folder)
-    return Imported(tuple(loaded), tuple(dict.fromkeys(failures)), _together(report.clips), report.cancelled, character, morphs)
+    result = Imported(tuple(loaded), tuple(failures), _together(report.clips), report.cancelled, character, morphs)
+    if foreign:
+        bringing = Bringing(add_clips(project, loaded))
+        for key, clips in foreign.items():
+            result = _with_strangers(result, bringing, Strangers(tuple(clips), reasons[key], *_map(bringing, clips, remembered)), retarget)
+    return replace(result, failures=tuple(dict.fromkeys(result.failures)))
+
+
+def _map(bringing: Bringing, clips: Sequence[Loaded], remembered: Maps | None) -> tuple[JointMap, bool]:
+    """Return the joint map that is offered for clips of one skeleton, and whether it was made before."""
+    source = clips[0][3].skeleton
+    assert bringing.project.skeleton is not None
+    found = remembered(fingerprint(source), fingerprint(bringing.project.skeleton)) if remembered is not None else None
+    return (found, True) if found is not None else (bringing.propose(source), False)
+
+
+def _with_strangers(result: Imported, bringing: Bringing, strangers: Strangers, retarget: str) -> Imported:
+    known = bringing.project.joint_maps.get(strangers.fingerprint)
+    if known is not None or (retarget == "yes" and not strangers.joint_map.missing):
+        brought = bring_over(bringing, strangers, known or strangers.joint_map)
+        count, first = len(strangers.clips), Path(strangers.clips[0][0]).name
+        how = "as before" if known is not None else f"from a skeleton of {len(strangers.skeleton)} joints"
+        told = f"{count} clips ({first} …) were" if count > 1 else f"{first}: its clip was"
+        return replace(
+            result,
+            loaded=(*result.loaded, *brought.loaded),
+            failures=(*result.failures, *brought.failures),
+            notes=(*result.notes, f"{told} retargeted {how}") if brought.loaded else result.notes,
+            joint_maps={**result.joint_maps, **brought.joint_maps},
+            retargeted=result.retargeted + brought.retargeted,
+        )
+    if retarget == "ask":
+        return replace(result, strangers=(*result.strangers, strangers))
+    failures = strangers.failures
+    if retarget == "yes":
+        failures = tuple(
+            f"{text[: text.index(_ALONE)]}It cannot be retargeted: {strangers.joint_map.missing[0]}. {_ALONE}" for text in failures
+        )
+    return replace(result, failures=(*result.failures, *failures))
+
+
+def bring_over(
+    bringing: Bringing,
+    strangers: Strangers,
+    joint_map: JointMap,
+    progress: Callable[[int, int], None] | None = None,
+    cancelled: Callable[[], bool] | None = None,
+) -> Imported:
+    """Retarget clips of another skeleton by a joint map; one that cannot be fails alone."""
+    loaded: list[Loaded] = []
+    failures: list[str] = []
+    stopped = False
+    for n, (path, take, content, clip) in enumerate(strangers.clips):
+        stopped = cancelled is not None and cancelled()
+        if stopped:
+            break
+        if progress is not None:
+            progress(n, len(strangers.clips))
+        try:
+            loaded.append((path, take, content, bringing.bring(clip, joint_map)))
+        except (RetargetError, ClipError) as error:
+            failures.append(f"{Path(path).name}: {error}. {_ALONE}")
+    maps = {strangers.fingerprint: joint_map} if loaded else {}
+    return Imported(tuple(loaded), tuple(failures), cancelled=stopped, joint_maps=maps, retargeted=len(loaded))
+
+
+def _name(path: Path, folder: Path | None) -> str:
+    return relative(path, folder) if folder is not None else path.as_posix()
+
+
+def _as_known(clips: Sequence[tuple[Path, int, Clip]], project: Project, folder: Path | None) -> list[tuple[Path, int, Clip]]:
+    """Return the clips, those of which the project left a repair out read that way again."""
+    kept: dict[str, dict[int, tuple[str, ...]]] = {}
+    for entry in project.clips.values():
+        if entry.as_is:
+            kept.setdefault(entry.path, {})[entry.take] = entry.as_is
+    if not kept:
+        return list(clips)
+    out = {(path, take): clip for path, take, clip in clips}
+    for path in dict.fromkeys(path for path, _, _ in clips):
+        takes: dict[tuple[str, ...], list[Clip]] = {}
+        for take, as_is in kept.get(_name(path, folder), {}).items():
+            try:
+                if as_is not in takes:
+                    takes[as_is] = read_clips(path, as_is)
+            except FileError:
+                break  # it is being written anew: what was read a moment ago stands
+            if take < len(takes[as_is]):
+                out[path, take] = takes[as_is][take]
+    return [(path, take, clip) for (path, take), clip in out.items()]
 
 
 def _together(clips: Iterable[tuple[Path, int, Clip]]) -> tuple[str, ...]:

@@ -281,7 +281,7 @@ def recover(journal: Path, saved: Path | None) -> tuple[Project, int] | None:
         raise FileError(journal, "belongs to another state of the project file", "line 1", _KEPT)
     base = records[0].get("base")
     if not isinstance(base, dict):
-        base = to_data(read_project(saved) if saved is not None and saved.is_file() else Project())
+        base = to_data(read_project(saved, []) if saved is not None and saved.is_file() else Project())
     # Usually all are good; else the longest beginning that is.
     good, bad = 0, len(records)
     count = len(records) - 1
@@ -303,7 +303,7 @@ def _replayed(base: Data, records: Sequence[Data]) -> Project | None:
         replay = _Replay(base)
         for record in records:
             replay.apply(record)
-        return from_data(replay.data())
+        return from_data(replay.data(), [])
     except (DataError, KeyError, TypeError, AttributeError):
         return None
 

@@ -21,9 +21,11 @@ from metagraph.formats.data import FORMAT, from_data, to_data
 from metagraph.formats.fields import Data, DataError
 from metagraph.formats.text import TextError, parse, to_text
 from metagraph.graph.asks import Line
+from metagraph.graph.bring import Bringing
 from metagraph.graph.model import ClipEntry, Project
 from metagraph.motion.adopt import SkeletonMismatchError, adopt
-from metagraph.motion.clip import Clip
+from metagraph.motion.clip import Clip, ClipError
+from metagraph.motion.joint_map import RetargetError
 
 SUFFIX = ".metagraph.yaml"
 SEARCHED = 20_000  # files looked at when a clip has moved
@@ -44,15 +46,18 @@ class Opened:
 # --- text ------------------------------------------------------------------------------------------------------------
 
 
-def from_text(text: str, path: Path) -> Project:
-    """Return the project written in a file's text, its clips without motion. Raises FileError with the line and the field."""
+def from_text(text: str, path: Path, notes: list[str] | None = None) -> Project:
+    """Return the project written in a file's text, its clips without motion. Raises FileError with the line and the field.
+
+    notes: see `data.from_data`.
+    """
     try:
         data, lines = parse(text)
     except TextError as error:
         line = f"line {error.line}" if error.line else "its text"
         raise FileError(path, f"not valid YAML ({error})", line, "Undo the last change made by hand, or restore a backup.") from None
     try:
-        return from_data(_upgraded(data, path))
+        return from_data(_upgraded(data, path), notes)
     except DataError as error:
         cause = f"{error.where} {error}".strip()
         raise FileError(path, cause, _line_of(lines, error.where), "Correct it, or restore a backup.") from None
@@ -141,8 +146,8 @@ def relative(path: Path, folder: Path) -> str:
         return path.as_posix()
 
 
-def read_project(path: str | Path) -> Project:
-    """Read a project file without loading its clips. Raises FileError."""
+def read_project(path: str | Path, notes: list[str] | None = None) -> Project:
+    """Read a project file without loading its clips. notes: see `data.from_data`. Raises FileError."""
     path = Path(path)
     try:
         text = path.read_bytes().decode("utf-8-sig")
@@ -150,13 +155,15 @@ def read_project(path: str | Path) -> Project:
         raise FileError(path, f"cannot be read ({error.strerror or error})", "on opening it", "Check that it is there.") from None
     except UnicodeDecodeError as error:
         raise FileError(path, "is not text", f"byte {error.start}", "Choose a Metagraph project file.") from None
-    return from_text(text, path)
+    return from_text(text, path, notes)
 
 
 def open_project(path: str | Path, progress: Callable[[int, int], None] | None = None) -> Opened:
     """Read a project file and load its clips; missing or broken clip files leave their clips without motion, with a note."""
     path = Path(path)
-    return load_motions(read_project(path), path.parent, progress)
+    notes: list[str] = []
+    opened = load_motions(read_project(path, notes), path.parent, progress)
+    return replace(opened, notes=(*notes, *opened.notes))
 
 
 def load_motions(project: Project, folder: Path | None, progress: Callable[[int, int], None] | None = None) -> Opened:
@@ -205,6 +212,7 @@ def _load(
         if entry.motion is None and (only is None or entry.path in only):
             by_path.setdefault(entry.path, []).append(entry)
     skeleton = project.skeleton
+    strangers: list[str] = []  # ids of clips that do not fit the skeleton
     for n, (name, entries) in enumerate(by_path.items()):
         if progress is not None:
             progress(n, len(by_path))
@@ -219,7 +227,7 @@ def _load(
             notes.append(f"'{name}' is missing")
             continue
         try:
-            takes = read_clips(place)
+            read = {as_is: read_clips(place, as_is) for as_is in dict.fromkeys(e.as_is for e in entries)}
             now = digest(place)
         except FileError as error:
             notes.append(str(error))
@@ -227,22 +235,41 @@ def _load(
         if any(e.digest and now != e.digest for e in entries):
             notes.append(f"'{path}' has changed since it was imported")
         for entry in entries:
+            takes = read[entry.as_is]
             if not 0 <= entry.take < len(takes):
                 notes.append(f"'{path}' no longer has take {entry.take + 1} ('{entry.name}')")
                 continue
             motion = takes[entry.take].renamed(entry.name)
             if skeleton is None:
                 skeleton = motion.skeleton
-            motion = _adopted(motion, skeleton)
+            try:
+                motion = adopt(motion, skeleton)
+            except SkeletonMismatchError:
+                strangers.append(entry.id)
             clips[entry.id] = replace(entry, path=path, digest=now, frames=motion.frames, fps=motion.fps, motion=motion)
-    return Opened(replace(project, clips=clips, skeleton=skeleton), tuple(dict.fromkeys(notes)))
+    project = replace(project, clips=clips, skeleton=skeleton)
+    return Opened(_brought(project, strangers, notes) if strangers else project, tuple(dict.fromkeys(notes)))
 
 
-def _adopted(clip: Clip, skeleton: Any) -> Clip:
-    try:
-        return adopt(clip, skeleton)
-    except SkeletonMismatchError:
-        return clip  # `check` says so
+def _brought(project: Project, strangers: Iterable[str], notes: list[str]) -> Project:
+    """Return the project with those clips retargeted for whose skeleton it has a joint map; `check` tells of the others."""
+    bringing = Bringing(project)
+    clips = dict(project.clips)
+    for ident in strangers:
+        entry = clips[ident]
+        motion: Clip = entry.motion  # type: ignore[assignment]
+        joint_map = bringing.known(motion)
+        if joint_map is None:
+            if entry.brought_from:
+                notes.append(f"'{entry.path}' was retargeted, but its joint map is not in the project: import it again")
+            continue
+        try:
+            motion = bringing.bring(motion, joint_map)
+        except (RetargetError, ClipError) as error:
+            notes.append(f"'{entry.path}' could not be retargeted: {error}. Import it again to map its joints anew.")
+            continue
+        clips[ident] = replace(entry, motion=motion, brought_from=motion.brought_from)
+    return replace(project, clips=clips)
 
 
 def _find(lost: Mapping[str, Iterable[ClipEntry]], folder: Path, by_name: bool = False) -> dict[str, Path]:

@@ -7,8 +7,8 @@ from functools import cached_property
 from metagraph.graph import anatomy
 from metagraph.graph.model import Project
 from metagraph.motion.clip import Clip
-from metagraph.motion.joint_map import JointMap, fingerprint, proposed
-from metagraph.motion.retarget import RetargetError, retarget, standing_pose, stands
+from metagraph.motion.joint_map import JointMap, RetargetError, fingerprint, proposed
+from metagraph.motion.retarget import retarget, standing_pose, stands
 from metagraph.motion.skeleton import Pose, Skeleton
 
 

@@ -66,8 +66,7 @@ def add_clips(project: Project, loaded: Iterable[tuple[str, int, str, Clip]]) ->
         before = known.get((path, take))
         entry = before or ClipEntry(f"c{next_id}", clip.name, path, take)
         next_id += 0 if before else 1
-        read = {"digest": digest, "frames": clip.frames, "fps": clip.fps, "brought_from": clip.brought_from, "motion": clip}
-        clips[entry.id] = replace(entry, **read)
+        clips[entry.id] = replace(entry, digest=digest, frames=clip.frames, fps=clip.fps, brought_from=clip.brought_from, motion=clip)
     return replace(project, clips=clips, skeleton=skeleton, next_id=next_id)
 
 
