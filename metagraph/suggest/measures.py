@@ -11,6 +11,8 @@ from metagraph.suggest.traits import Traits
 
 TYPICAL: Mapping[Layer, float] = {"arms": 0.12, "head": 0.04, "body": 0.03}  # heights that another stance is away, about
 HELD = 1.0  # seconds in which nothing moves, from which on that is a pose to stand in
+FLOWING = 0.2  # of its greatest speed that a clip has at its ends, from which on it is a loop that flows
+STRIDE = 0.05  # heights that each foot comes before the other in a walk, at least
 SUREST = 0.95  # how often a guess from motion is right at most: it alone cannot tell a small gesture from a large fidget
 
 
@@ -31,7 +33,17 @@ def resting(traits: Traits) -> float:
     x = max(traits.layers.values(), key=lambda y: y.peak)
     fastest = max(x.peak, 3 * traits.energy["fingers"], 1e-3)
     apart = max(y.loop_error / TYPICAL[layer] for layer, y in traits.layers.items())
-    return 3.0 * log(min(traits.duration / 3.5, 2.0)) - 1.5 * log(fastest / 0.05) + 3.0 * x.steady - 6.0 * max(0.0, apart - 0.3)
+    long = 3.0 * log(min(traits.duration / 3.5, 2.0))
+    # A short loop, whose end goes on as it begins, is played again and again: then it does not matter that it is short.
+    flows = min(1.0, x.steady / FLOWING) if apart < 0.1 else 0.0
+    small = 1.5 * max(0.0, 1 - x.extent / 0.08)
+    return long - 1.5 * log(fastest / 0.05) + 3.0 * x.steady - 6.0 * max(0.0, apart - 0.3) + flows * (max(0.0, -long) + small)
+
+
+def walks(traits: Traits) -> bool:
+    """Return whether a clip is a cycle of steps, on the spot or over the ground."""
+    body = traits.layers["body"]
+    return traits.stride > STRIDE and body.loop_error < 0.5 * TYPICAL["body"] and body.steady > FLOWING / 2 and traits.energy["legs"] > 0.2
 
 
 def layer_of(traits: Traits) -> Belief[Layer]:
@@ -42,6 +54,8 @@ def layer_of(traits: Traits) -> Belief[Layer]:
     have = [layer for layer in ("body", "arms", "head") if layers[layer].names]
     if have == ["body"]:
         return Belief("body", SUREST, "the character has neither arms nor a head that are known")
+    if traits.face > 1e-3 and "head" in have:
+        return Belief("head", SUREST, "only the face moves")
     if arms + lower + upper < 1e-5:
         return Belief("body", 0.34, "nothing moves")
     body, hands = lower / (0.15 * upper + 0.25 * arms + 1e-6), arms / (0.1 * upper + 1e-6)

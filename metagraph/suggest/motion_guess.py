@@ -12,10 +12,13 @@ from math import exp, log
 
 from metagraph.graph.words import LAYERS, Kind, Layer, Limb
 from metagraph.suggest.belief import Belief
-from metagraph.suggest.measures import SUREST, TYPICAL, energy, layer_of, resting
+from metagraph.suggest.measures import SUREST, TYPICAL, energy, layer_of, resting, walks
 from metagraph.suggest.stances import Shape, Stances, distance, nearest
 from metagraph.suggest.traits import LayerTraits, Traits
 
+STRAIGHT = 0.65  # of the way of a clip that ends in no other stance, the share from end to end from which on it is a transition
+ELSEWHERE = 0.1  # heights from the body's usual pose, from which on a resting clip is of the body: sitting, lying
+LIFE = 0.03  # of all movement of a resting clip that hips and legs make, from which on the whole body breathes
 ALONE = 0.5  # of the arms' energy on one side more than on the other, from which it is one-armed
 
 
@@ -43,8 +46,9 @@ def guess(traits: Traits, stances: Stances) -> MotionGuess:
     starts, ends = nearest(shapes, x.names, x.first), nearest(shapes, x.names, x.last)
     moved = _sigmoid(_moving(traits, layer.value, starts, ends))
     calm = starts[0][1].calm if starts and starts[0][0] < 0.5 * TYPICAL[layer.value] else 0.0
-    rests = resting(traits) + (3.0 if energy(traits) <= 1.05 * calm else 0.0)
-    rest, gesture = _sigmoid(rests), _sigmoid(_telling(traits, layer.value))
+    walking = walks(traits)
+    rests = 1.0 if walking else resting(traits) + (3.0 if energy(traits) <= 1.05 * calm else 0.0)
+    rest, gesture = _sigmoid(rests), _gesturing(traits, layer)
     chances: dict[Kind, float] = {
         "transition": moved,
         "stance": (1 - moved) * rest,
@@ -55,7 +59,9 @@ def guess(traits: Traits, stances: Stances) -> MotionGuess:
     cm = 100 * traits.height
     reason = {
         "transition": f"ends {x.loop_error * cm:.1f} cm from where it begins and goes only {x.extent * cm:.0f} cm beside that way",
-        "stance": f"moves at most {max(y.peak for y in traits.layers.values()) * cm:.0f} cm/s in {traits.duration:.1f} s",
+        "stance": f"moves at most {max(y.peak for y in traits.layers.values()) * cm:.0f} cm/s in {traits.duration:.1f} s"
+        if not walking
+        else f"goes on walking or running: its feet pass each other by {traits.stride * cm:.0f} cm, and its end flows into its beginning",
         "gesture": f"goes {x.extent * cm:.0f} cm away and comes back, in {_times(x.bouts)}, up to {x.peak * cm:.0f} cm/s",
         "fidget": f"goes {x.extent * cm:.0f} cm away in {_times(x.bouts)}, up to {x.peak * cm:.0f} cm/s" + _touching(traits, cm),
     }[kind]
@@ -109,17 +115,23 @@ def _cm(length: float) -> str:
 def _layer_beside(traits: Traits, stances: Stances) -> Belief[Layer]:
     """Return which layer a clip moves; of one that rests, the only layer whose pose is not the usual one, if there is."""
     found = layer_of(traits)
-    if resting(traits) < 0:
+    if walks(traits):
+        return Belief("body", SUREST, f"the feet pass each other by {100 * traits.height * traits.stride:.0f} cm")
+    if resting(traits) < 0 or traits.face > 1e-3:
         return found
-    unusual = []
+    unusual: dict[Layer, float] = {}
     for layer in LAYERS:
         x, shapes = traits.layers[layer], stances.get(layer, ())
         if shapes and len(x.typical):
             away = distance(shapes[0], x.names, x.typical)
             if 0.5 * TYPICAL[layer] < away < float("inf"):
-                unusual.append((layer, away))
-    if len(unusual) == 1 and unusual[0][0] != found.value:
-        layer, away = unusual[0]
+                unusual[layer] = away
+    lower, all_of = traits.energy["hips"] + traits.energy["legs"], energy(traits)
+    if found.value != "body" and (("body" in unusual and unusual["body"] > ELSEWHERE) or lower > LIFE * all_of):
+        where = f"rests {100 * traits.height * unusual['body']:.0f} cm from the usual pose of the body" if "body" in unusual else ""
+        return Belief("body", 0.75, where or f"rests, and hips and legs make {lower / all_of:.0%} of what moves")
+    if len(unusual) == 1 and found.value not in unusual:
+        ((layer, away),) = unusual.items()
         return Belief(layer, 0.7, f"rests {100 * traits.height * away:.0f} cm from the usual pose of the {layer}")
     return found
 
@@ -158,7 +170,17 @@ def _moving(traits: Traits, layer: Layer, starts: Sequence[tuple[float, Shape]],
             z += 2.0
         elif there is here and back < 0.5 * x.loop_error + 0.1 * TYPICAL[layer]:
             z -= 3.0
+        if there is here or near > 0.5 * TYPICAL[layer]:  # ends in no other stance: recorded ones seldom end quite as they begin
+            z = min(z, 3.0) + 20.0 * (x.loop_error / (x.loop_error + x.extent) - STRAIGHT)
     return z
+
+
+def _gesturing(traits: Traits, layer: Belief[Layer]) -> float:
+    """Return the chance that it is a gesture rather than a fidget, on whichever layer it is."""
+    others = [x for x in LAYERS if x != layer.value and traits.layers[x].names]
+    share = layer.confidence if others else 1.0
+    chances = [_sigmoid(_telling(traits, x)) for x in others]
+    return share * _sigmoid(_telling(traits, layer.value)) + (1 - share) * sum(chances) / max(len(chances), 1)
 
 
 def _telling(traits: Traits, layer: Layer) -> float:

@@ -26,6 +26,7 @@ FINGERTIP = 0.5  # how much a fingertip's place counts beside the hand's
 MOST = 400  # poses joined at once; more are thinned out first
 FEW = 3  # clips that begin and end in a pose, from which on the quietest of them is taken for its loop
 QUIET = 0.6  # of their median energy
+CALM = 0.3  # heights a second, of all parts together, that the only clip which stays in a pose moves at most to be its loop
 
 
 @dataclass(frozen=True, eq=False)
@@ -145,6 +146,8 @@ def discover(traits: Mapping[str, Traits], layer: Layer) -> tuple[Shape, ...]:
             first = min(closed, key=lambda i: (quiet[i], i))
             if quiet[first] < QUIET * float(np.median([*quiet.values()])):
                 best, calm = first, quiet[first]
+        elif not loops and len(closed) == 1 and len(members) > 1 and energy(mine[found[closed[0]][0]]) < CALM:
+            best, calm = closed[0], energy(mine[found[closed[0]][0]])  # others only come there or leave: what stays is its loop
         confidence = min(SUREST, 1 - 0.6 * 0.8 ** len(members) - (0 if loops else 0.15))
         poses_of = np.array([middle, *(poses[i] for i in loops)])
         clip, at = found[best][0], found[best][1]

@@ -7,7 +7,7 @@ where it stands or what its rest pose is.
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Any
 from weakref import WeakKeyDictionary
 
@@ -70,7 +70,9 @@ class Traits:
     its mean square, so that slow drifts count little beside movements. travel: how far the character goes
     over the ground. symmetry: -1 only the right arm moves, 0 both alike, 1 only the left. mirrored: 0..1, how far the arms move as
     mirror images. out, near: how much farther from, and nearer to, the trunk and head the hands come than where they begin.
-    touch: how near a moving hand comes to the other arm, the neck or the head, beyond how near it was."""
+    touch: how near a moving hand comes to the other arm, the neck or the head, beyond how near it was. stride: how far each foot comes
+    in front of the other, the lesser of both: what walks. face: of a clip in which nothing else moves, how much joints of the face do,
+    0..2; 0 of any other."""
 
     height: float
     duration: float
@@ -83,6 +85,8 @@ class Traits:
     out: float
     near: float
     touch: float
+    stride: float = 0.0
+    face: float = 0.0
 
 
 # Clips are values that never change, so what was found of one holds for as long as it lives.
@@ -160,7 +164,10 @@ def _all(clips: Sequence[Clip], roles: Callable[[Clip], tuple[tuple[str, int], .
         ends = np.cumsum([0, *(len(f) for f in frames)])
         for clip, index, a, b in zip(some, frames, ends, ends[1:], strict=False):
             times = index / clip.fps
-            _KNOWN[clip] = named, _of(figure, {k: v[a:b] for k, v in points.items()}, {k: v[a:b] for k, v in world.items()}, times)
+            found = _of(figure, {k: v[a:b] for k, v in points.items()}, {k: v[a:b] for k, v in world.items()}, times)
+            if max(found.energy.values()) < 1e-3:
+                found = replace(found, face=_face(clip, dict(named)))
+            _KNOWN[clip] = named, found
     return [_KNOWN[clip][1] for clip in clips]
 
 
@@ -299,7 +306,25 @@ def _of(figure: Figure, points: Mapping[str, Array], world: Mapping[str, Array],
         out,
         near,
         touch,
+        _stride(points),
     )
+
+
+def _face(clip: Clip, roles: Mapping[str, int]) -> float:
+    """Return how much the joints beneath the head turn, and move in heights of the character, at most."""
+    if "head" not in roles:
+        return 0.0
+    face = [j for j in clip.skeleton.descendants(roles["head"]) if j != roles["head"]]
+    turned = np.ptp(clip.rotations[:, face], axis=0) if face else np.zeros(0)
+    moved = np.ptp(clip.translations[:, [k for k, j in enumerate(clip.translated) if j in set(face)]], axis=0) / clip.skeleton.height
+    return float(max(turned.max(initial=0.0), moved.max(initial=0.0)))
+
+
+def _stride(points: Mapping[str, Array]) -> float:
+    if "left_foot" not in points or "right_foot" not in points:
+        return 0.0
+    ahead = points["left_foot"][:, 2] - points["right_foot"][:, 2]
+    return max(0.0, float(min(ahead.max(), -ahead.min())))
 
 
 def _reach(world: Mapping[str, Array]) -> tuple[float, float]:
