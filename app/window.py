@@ -370,10 +370,9 @@ class Window(QMainWindow):
         self.actions.refresh()
 
     def propose(self) -> None:
-        """Propose labels for the clips that are not placed yet."""
-        from app.panels.proposals import ProposalsDialog
+        from app.panels.review import ReviewDialog
 
-        ProposalsDialog(self.document, self.session, self.jobs, self).open()
+        ReviewDialog(self.document, self.session, self.jobs, self.figures, self.learned, self).show()
 
     def toggle_watching(self) -> None:
         """Begin or end reading changed clip files anew."""

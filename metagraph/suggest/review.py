@@ -1,0 +1,211 @@
+"""A person going through proposals: what they correct, what is still open, and how long the rest will take.
+
+Stances come first, since all else hangs on them; then the least certain. A correction is kept as it was meant - a stance by its name -
+so that it outlives proposals that are made anew.
+"""
+
+from __future__ import annotations
+
+from collections import Counter
+from collections.abc import Collection, Mapping
+from dataclasses import dataclass, field, replace
+from statistics import median
+from typing import Any, Literal, get_args
+
+from metagraph.graph import edits
+from metagraph.graph.edits import EditError
+from metagraph.graph.model import KINDS, LAYERS, LIMBS, Layer, Project
+from metagraph.suggest.belief import Belief
+from metagraph.suggest.propose import Place, Proposals, Taken, accept, plain
+
+Field = Literal["kind", "layer", "stance", "end_stance", "limb", "tags", "timing"]
+FIELDS: tuple[Field, ...] = get_args(Field)
+DECIDING: tuple[Field, ...] = ("kind", "layer", "stance", "end_stance", "limb")  # what has a few values to choose from
+WORDS: tuple[Field, ...] = ("kind", "layer", "limb", "tags")
+SAID = "you said so"
+USUAL = 6.0  # seconds a clip takes somebody, until some were decided
+PAUSE = 60.0  # seconds after which somebody was away, not deciding
+REMEMBERED = 25  # decisions the pace is taken from
+
+
+@dataclass(frozen=True)
+class Review:
+    """found: the proposals with what was said in them. said: clip -> field -> value; stances are told by name, tags as a tuple, timing as
+    `Timing` has it."""
+
+    found: Proposals
+    said: Mapping[str, Mapping[Field, Any]] = field(default_factory=dict)
+
+    def tell(self, clip: str, name: Field, value: Any) -> Review:
+        """Correct one field of a clip's proposal. A stance nobody spoke of before becomes a new one."""
+        old = self.said.get(clip, {})
+        if name == "timing":
+            value = {**old.get("timing", {}), **value}
+        if name == "layer" and value != self.found.proposals[clip].layer.value:
+            old = {k: v for k, v in old.items() if k not in ("stance", "end_stance")}  # they were of the other layer
+        said = {**old, name: value}
+        return Review(_corrected(self.found, clip, said), {**self.said, clip: said})
+
+    def anew(self, found: Proposals) -> Review:
+        """Return the review of other proposals for the same clips; what was said stays said. Clips that are not among them keep theirs."""
+        mine = {c: p for c, p in self.found.proposals.items() if c not in found.proposals}
+        found = Proposals({**mine, **found.proposals}, {**self.found.places, **found.places})
+        for clip, said in self.said.items():
+            if clip in found.proposals:
+                found = _corrected(found, clip, said)
+        return Review(found, self.said)
+
+    def settled(self, project: Project) -> Review:
+        """Return the review with the stances that have been made meanwhile as the project's."""
+        moved: dict[str, str] = {}
+        places = dict(self.found.places)
+        for layer in LAYERS:
+            named = {plain(s.name): s for s in project.graphs[layer].stances.values()}
+            for stance in named.values():
+                if stance.id not in places:
+                    places[stance.id] = Place(stance.id, layer, stance.name, True)
+            for key, place in self.found.places.items():
+                if place.layer == layer and project.stance(key) is None and (there := named.get(plain(place.name))) is not None:
+                    moved[key] = there.id
+                    places[there.id] = Place(there.id, layer, there.name, True, place.shape)
+                    places.pop(key, None)
+        proposals = {
+            c: replace(p, stance=_moved(p.stance, moved), end_stance=_moved(p.end_stance, moved))
+            for c, p in self.found.proposals.items()
+        }  # fmt: skip
+        return Review(Proposals(proposals, places), self.said)
+
+    def order(self) -> list[str]:
+        """Return the clips in the order they are best looked at: stances first, then the least certain."""
+        return [p.clip for p in sorted(self.found.proposals.values(), key=lambda p: (p.kind.value != "stance", p.confidence, p.clip))]
+
+    def choices(self, clip: str, name: Field) -> list[tuple[Any, str]]:
+        """Return what a deciding field may be: (value to tell, words). Stances the project has come first, then the most spoken of."""
+        p = self.found.proposals[clip]
+        if name == "kind":
+            return [(k, k) for k in KINDS]
+        if name == "layer":
+            return [(x, x) for x in LAYERS]
+        if name == "limb":
+            return [(x, x) for x in LIMBS] if p.layer.value == "arms" and p.kind.value != "stance" else []
+        if name not in ("stance", "end_stance") or (name == "end_stance" and p.kind.value != "transition"):
+            return []
+        spoken = Counter(x.stance.value for x in self.found.proposals.values() if x.stance is not None)
+        mine = [place for place in self.found.places.values() if place.layer == p.layer.value]
+        start = p.stance.value if p.stance is not None else None
+        mine = [place for place in mine if name == "stance" or place.key != start]
+        return [(place.name, place.name) for place in sorted(mine, key=lambda x: (not x.there, -spoken[x.key], x.name))]
+
+    def value(self, clip: str, name: Field) -> Any:
+        """Return what a deciding field is now, as `choices` names it; None where nothing is known."""
+        belief = getattr(self.found.proposals[clip], name)
+        if belief is None:
+            return None
+        return self.found.places[belief.value].name if name in ("stance", "end_stance") else belief.value
+
+    def doubtful(self, clip: str) -> Field:
+        """Return the deciding field that is least sure."""
+        p = self.found.proposals[clip]
+        beliefs: dict[Field, Belief[Any] | None] = {n: getattr(p, n) for n in DECIDING if self.choices(clip, n)}
+        return min(beliefs, key=lambda n: belief.confidence if (belief := beliefs[n]) is not None else -1.0)
+
+    def take(self, project: Project, clips: Collection[str], above: float = 0.0) -> Taken:
+        """Return the project with clips placed as proposed, and resting clips along with them that show a stance they need and that is
+        not there yet. A clip that is placed already is placed anew."""
+        known = [c for c in clips if c in self.found.proposals and c in project.clips]
+        again = [a.id for c in known for a in project.uses.get(c, ())]
+        try:
+            bare = edits.remove_actions(project, again) if again else project
+        except EditError as error:
+            return Taken(project, (), dict.fromkeys(known, str(error)))
+        wanted = [c for c in known if self.found.proposals[c].confidence >= above]
+        along = {r for c in wanted for r in self._resting(bare, c)}
+        taken = accept(bare, self.found, 0.0, {*wanted, *along})
+        if again and taken.left:
+            return Taken(project, (), taken.left)  # what was placed is not lost for what cannot be
+        return taken
+
+    def _resting(self, project: Project, clip: str) -> list[str]:
+        """Return the surest unplaced clips that rest in stances this clip needs and the project does not have."""
+        p = self.found.proposals[clip]
+        out = []
+        for belief in (p.stance, p.end_stance if p.kind.value == "transition" else None):
+            if belief is None or project.stance(belief.value) is not None or (belief is p.stance and p.kind.value == "stance"):
+                continue
+            rests = [
+                x for x in self.found.proposals.values()
+                if x.kind.value == "stance" and x.stance is not None and x.stance.value == belief.value and x.clip not in project.uses
+            ]  # fmt: skip
+            if rests:
+                out.append(max(rests, key=lambda x: x.confidence).clip)
+        return out
+
+
+def _moved(belief: Belief[str] | None, moved: Mapping[str, str]) -> Belief[str] | None:
+    return belief if belief is None or belief.value not in moved else replace(belief, value=moved[belief.value])
+
+
+def _corrected(found: Proposals, clip: str, said: Mapping[Field, Any]) -> Proposals:
+    """Return the proposals with what was said of one clip."""
+    p, places = found.proposals[clip], dict(found.places)
+    told: dict[str, Any] = {name: Belief(said[name], 1.0, SAID) for name in WORDS if name in said}
+    p = replace(p, **told)
+    layer: Layer = p.layer.value
+
+    def place(name: str) -> str:
+        for key, there in places.items():
+            if there.layer == layer and plain(there.name) == plain(name):
+                return key
+        key = f"new {layer} {plain(name)}"
+        places[key] = Place(key, layer, name)
+        return key
+
+    stance = p.stance
+    if "stance" in said:
+        stance = Belief(place(said["stance"]), 1.0, SAID)
+    elif stance is not None and places[stance.value].layer != layer:
+        # The other layer's stance of the same name, if there is one; else where most of its clips are.
+        name = plain(places[stance.value].name)
+        same = next((k for k, x in places.items() if x.layer == layer and plain(x.name) == name), None)
+        there = Counter(x.stance.value for x in found.proposals.values() if x.stance is not None and places[x.stance.value].layer == layer)
+        best = same or next((k for k, _ in there.most_common(1)), next((k for k, x in places.items() if x.layer == layer), None))
+        stance = Belief(best, 0.5, "where most clips of this layer are") if best is not None else None
+    end = p.end_stance if p.kind.value == "transition" else None
+    if "end_stance" in said and p.kind.value == "transition":
+        end = Belief(place(said["end_stance"]), 1.0, SAID)
+    if end is not None and (places[end.value].layer != layer or (stance is not None and end.value == stance.value)):
+        end = None
+    if layer != "arms":
+        p = replace(p, limb=Belief("both", 0.9, "only arms have sides"))
+    if "timing" in said:
+        p = replace(p, timing={**p.timing, **said["timing"]})
+    # What sources disagreed about is decided.
+    conflicts = () if {"kind", "stance", "end_stance", "layer"} & set(said) else p.conflicts
+    p = replace(p, stance=stance, end_stance=end, conflicts=conflicts)
+    return Proposals({**found.proposals, clip: p}, places)
+
+
+class Pace:
+    """How long decisions take somebody, and what is left of the work."""
+
+    def __init__(self) -> None:
+        self.seconds: list[float] = []
+
+    def decided(self, seconds: float) -> None:
+        """Count a decision; a longer pause was none."""
+        if seconds <= PAUSE:
+            self.seconds.append(seconds)
+
+    @property
+    def known(self) -> bool:
+        """Whether enough was decided to tell."""
+        return len(self.seconds) >= 3
+
+    @property
+    def each(self) -> float:
+        """Seconds a clip takes lately."""
+        return median(self.seconds[-REMEMBERED:]) if self.known else USUAL
+
+    def left(self, clips: int) -> float:
+        """Return seconds of work that are left with so many clips."""
+        return clips * self.each
