@@ -38,9 +38,10 @@ class MotionGuess:
     chances: Mapping[Kind, float] | None = None
 
 
-def guess(traits: Traits, stances: Stances) -> MotionGuess:
-    """Return what a clip seems to be from its motion alone, beside known or discovered stances (none will do)."""
-    layer = _layer_beside(traits, stances)
+def guess(traits: Traits, stances: Stances, on: Layer | None = None) -> MotionGuess:
+    """Return what a clip seems to be from its motion alone, beside known or discovered stances (none will do). on: the layer it is of,
+    where that is known from elsewhere."""
+    layer = _layer_beside(traits, stances) if on is None else Belief(on, SUREST, "")
     x = traits.layers[layer.value]
     shapes = stances.get(layer.value, ())
     starts, ends = nearest(shapes, x.names, x.first), nearest(shapes, x.names, x.last)

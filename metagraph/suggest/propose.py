@@ -6,7 +6,7 @@ which the clips it names begin; then every clip is asked where it belongs.
 
 from __future__ import annotations
 
-from collections import Counter
+from collections import Counter, defaultdict
 from collections.abc import Callable, Collection, Iterable, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from typing import Any, Literal
@@ -31,6 +31,7 @@ from metagraph.suggest.words_tokens import take_apart
 Source = Literal["name", "motion", "learned"]
 SOURCES: tuple[Source, ...] = ("name", "motion", "learned")
 _USUAL = Patterns()
+LOOP_VOTE = 1.5  # how much the name of a clip that rests in a stance counts to name it, beside one that begins or ends there
 NEVER = 0.3  # of how sure a source is at least, so that its vote counts
 
 
@@ -140,6 +141,11 @@ def propose(
             each.motion = guess(each.traits, shapes)
         if alike.examples:
             each.learned = alike.guess(_words(each.name), measures_of(each.traits))
+        layer = each.agreed("layer", len(LAYERS))
+        each.layer = layer.belief.value if layer is not None else "arms"
+        each.beside = each.motion
+        if each.traits is not None and each.motion is not None and each.motion.layer.value != each.layer:
+            each.beside = guess(each.traits, shapes, each.layer)
     places = _Places(project, heard, shapes)
     out = {each.clip: p for each in heard if (p := _proposal(each, places)) is not None}
     if "motion" in sources:
@@ -149,19 +155,30 @@ def propose(
 
 @dataclass
 class _Heard:
-    """What the sources say of a clip."""
+    """What the sources say of a clip. motion: what it seems to be; beside: the same when it is of the layer that all agree on."""
 
     clip: str
     name: str
     said: NameGuess
     traits: Traits | None
     motion: MotionGuess | None = None
+    beside: MotionGuess | None = None
+    layer: Layer = "arms"
     learned: dict[str, Belief[str]] = field(default_factory=dict)
 
     def votes(self, what: str) -> list[Belief[Any]]:
         """Return what is believed of a field, source by source."""
-        found = [getattr(self.said, what, None), getattr(self.motion, what, None), self.learned.get(what)]
+        motion = self.motion if what == "layer" else self.beside
+        found = [getattr(self.said, what, None), getattr(motion, what, None), self.learned.get(what)]
         return [b for b in found if b is not None and b.confidence >= NEVER]
+
+    @property
+    def begins(self) -> Belief[Shape] | None:
+        return self.beside.stance if self.beside is not None else None
+
+    @property
+    def ends(self) -> Belief[Shape] | None:
+        return self.beside.end_stance if self.beside is not None else None
 
     def agreed(self, what: str, count: int) -> Agreed[Any] | None:
         return combine(self.votes(what), count)
@@ -174,16 +191,15 @@ class _Places:
         self.by_key: dict[str, Place] = {}
         self.of_shape: dict[int, str] = {}
         self.of_word: dict[tuple[Layer, str], str] = {}
-        self.layers = {each.clip: _layer(each) for each in heard}
         for layer in LAYERS:
             for stance in project.graphs[layer].stances.values():
                 self.by_key[stance.id] = Place(stance.id, layer, stance.name, True)
                 self.of_word[(layer, plain(stance.name))] = stance.id
         for layer in LAYERS:
             for n, shape in enumerate(shapes.get(layer, ())):
-                self._add_shape(layer, n, shape, [each for each in heard if self.layers[each.clip] == layer])
+                self._add_shape(layer, n, shape, [each for each in heard if each.layer == layer])
         for each in heard:
-            layer = self.layers[each.clip]
+            layer = each.layer
             for said in (each.said.stance, each.said.end_stance):
                 if said is not None and (layer, plain(said.value)) not in self.of_word:
                     key = f"new {layer} {plain(said.value)}"
@@ -193,12 +209,13 @@ class _Places:
     def _add_shape(self, layer: Layer, number: int, shape: Shape, heard: Sequence[_Heard]) -> None:
         """Take a shape in; words that mostly name clips which begin in it are its names."""
         key = shape.id or f"new {layer} {number + 1}"
-        words: Counter[str] = Counter()
+        words: dict[str, float] = defaultdict(float)
         for each in heard:
-            said, motion = each.said.stance, each.motion
-            if said is not None and motion is not None and motion.stance is not None and motion.stance.value is shape:
-                words[said.value] += 3 if each.said.kind is not None and each.said.kind.value == "stance" else 1
-        free = [(word, count) for word, count in words.most_common() if (layer, plain(word)) not in self.of_word]
+            for said, seen in ((each.said.stance, each.begins), (each.said.end_stance, each.ends)):
+                if said is not None and seen is not None and seen.value is shape:
+                    rests = said is each.said.stance and each.said.kind is not None and each.said.kind.value == "stance"
+                    words[said.value] += LOOP_VOTE if rests else 1
+        free = [(word, count) for word, count in sorted(words.items(), key=lambda x: -x[1]) if (layer, plain(word)) not in self.of_word]
         if not shape.id:
             name = free[0][0] if free else f"{layer} stance {number + 1}"
             self.by_key[key] = Place(key, layer, name, False, shape)
@@ -215,7 +232,7 @@ class _Places:
         said: Belief[str] | None = getattr(each.said, what)
         if said is not None and (key := self.of_word.get((layer, plain(said.value)))) is not None:
             out.append(Belief(key, said.confidence, said.reason))
-        seen: Belief[Shape] | None = getattr(each.motion, what, None)
+        seen: Belief[Shape] | None = getattr(each.beside, what, None)
         if seen is not None and seen.value.layer == layer and (key := self.of_shape.get(id(seen.value))) is not None:
             out.append(Belief(key, seen.confidence, seen.reason.replace(f'"{seen.value.name}"', f'"{self.by_key[key].name}"')))
         return out
@@ -229,18 +246,13 @@ def plain(name: str) -> str:
     return " ".join(sorted(take_apart(name, _USUAL).words))
 
 
-def _layer(each: _Heard) -> Layer:
-    found = each.agreed("layer", len(LAYERS))
-    return found.belief.value if found is not None else "arms"
-
-
 def _proposal(each: _Heard, places: _Places) -> Proposal | None:
     kind, layer = each.agreed("kind", len(KINDS)), each.agreed("layer", len(LAYERS))
     if kind is None and layer is None:
         return None
     unsure: Agreed[Any] = Agreed(Belief("gesture", 0.3, "nothing says what it is"))
     kind = kind or unsure
-    layer = layer or Agreed(Belief(places.layers[each.clip], 0.34, "nothing says which layer it is for"))
+    layer = layer or Agreed(Belief(each.layer, 0.34, "nothing says which layer it is for"))
     where: Layer = layer.belief.value
     stance = combine(places.vote(each, "stance", where), places.count(where))
     end = None
