@@ -53,6 +53,10 @@ def commands(window: Window) -> tuple[Command, ...]:
                 enabled=lambda: bool(s.actions) and s.copied is not None and d.project.action(s.copied) is not None),
         Command("replace_clip", "&Edit", "Replace c&lip…", lambda: window.batch("replace"), tip="Another clip, the same settings",
                 enabled=lambda: bool(s.actions)),
+        Command("twins", "&Edit", "Make &mirrored twin", window.make_twins, tip="The same to the other side, as clips and actions of its own",
+                enabled=some),
+        Command("repairs", "&Edit", "Repa&irs…", window.show_repairs, tip="What reading the files put right, and what to leave as it is",
+                enabled=lambda: bool(d.project.clips)),
         Command("select_all", "&Edit", "Select &all", window.select_all, (Standard.SelectAll,), line=True),
         Command("find", "&Edit", "&Find clip", window.library.search.setFocus, (Standard.Find,)),
         Command("new_stance", "&Graph", "&New stance…", c.new_stance, ("Ctrl+Shift+N",)),
@@ -60,6 +64,10 @@ def commands(window: Window) -> tuple[Command, ...]:
     out.append(
         Command("propose", "&Graph", "&Label clips…", window.propose, ("Ctrl+P",), tip="Propose what each clip is, by name and motion",
                 enabled=lambda: any(clip not in d.project.uses for clip in d.project.clips))
+    )  # fmt: skip
+    out.append(
+        Command("use_times", "&Graph", "Use proposed &times", lambda: window.compatibility.use_proposed(s.actions),
+                tip="Begin and end where no jump shows", enabled=lambda: bool(s.actions) and window.compatibility.judged is not None)
     )  # fmt: skip
     for number, kind in enumerate(KINDS, 1):
         text = f"Label as &{number} {kind}"

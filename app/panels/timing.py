@@ -2,17 +2,18 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+from collections.abc import Iterable, Mapping
 from typing import Any
 
 import numpy as np
 import pyqtgraph as pg
 from PySide6.QtCore import Qt, Signal
 from PySide6.QtGui import QColor
-from PySide6.QtWidgets import QVBoxLayout, QWidget
+from PySide6.QtWidgets import QApplication, QHBoxLayout, QLabel, QPushButton, QVBoxLayout, QWidget
 
-from app.compatibility import Compatibility
+from app.compatibility import Compatibility, proposed_fields
 from app.document import Document
+from app.panels.jump_strip import JumpStrip, Seen
 from app.session import Session
 from app.theme import Theme, theme
 from metagraph.graph import anatomy, edits
@@ -24,6 +25,7 @@ HANDLES = ("start", "end", "in", "out", "exit", "stroke", "ready", "hold", "rela
 WORDS = {"start": "start", "end": "end", "in": "blend in", "out": "blend out", "exit": "earliest exit", "stroke": "stroke"}
 PHASES = ("ready", "hold", "relax")  # handles of a gesture's phases
 BANDS = ("prepare", "stroke", "hold", "retract")
+SNAP = 7  # pixels within which a handle comes to rest at a moment that does not jump
 
 
 def speed_of(project: Project, action: Action) -> tuple[np.ndarray, str]:
@@ -110,6 +112,25 @@ def retimed(project: Project, actions: Iterable[str], name: str, value: float) -
     return edits.update_each(project, changes)
 
 
+def verdict(costs: Mapping[str, float]) -> str:
+    """Say what beginning and ending cost: "Begins without a jump, ends 2.7 times what shows as one"."""
+    if max(costs.values()) <= 1:
+        return f"{' and '.join(costs)} without a jump"
+    told = []
+    for what, cost in costs.items():
+        of = "one" if told else "a jump"
+        told.append(f"{what} without {of}" if cost <= 1 else f"{what} {cost:.1f} times what shows as {of}")
+    return ", ".join(told)
+
+
+def times_words(seen: Seen) -> str:
+    """Say proposed times."""
+    p = seen.proposed
+    if seen.loops:
+        return f"All of it, its seam blended over {p.blend_in:.2f} s" if p.blend_in > 0 else "All of it, without a blend"
+    return f"{p.start:.2f} to {p.end:.2f} s, blended over {p.blend_in:.2f} and {p.blend_out:.2f} s"
+
+
 class TimingPlot(QWidget):
     """Emits changed(fields) while a handle is dragged and finished when it is let go."""
 
@@ -151,13 +172,62 @@ class TimingPlot(QWidget):
         self.plot.scene().sigMouseClicked.connect(self._clicked)
         layout = QVBoxLayout(self)
         layout.setContentsMargins(0, 0, 0, 0)
+        layout.setSpacing(2)
         layout.addWidget(self.plot)
+        self.strip = JumpStrip(self, self.plot)
+        layout.addWidget(self.strip)
+        self.verdict = QLabel(self, wordWrap=True)
+        self.use = QPushButton("Use proposed times", self)
+        self.use.setFocusPolicy(Qt.FocusPolicy.TabFocus)  # after a click the space bar still plays
+        self.use.clicked.connect(self.use_proposed)
+        row = QHBoxLayout()
+        row.addWidget(self.verdict, 1)
+        row.addWidget(self.use)
+        layout.addLayout(row)
         session.moved.connect(self._playhead)
         session.theme_changed.connect(self._restyle)
         self._restyle()
 
     def set_compatibility(self, compatibility: Compatibility) -> None:
+        """Show what it knows of the action's jumps."""
         self.compatibility = compatibility
+        compatibility.seen.connect(lambda ident: self._show_seen() if self.action is not None and ident == self.action.id else None)
+        compatibility.changed.connect(self._show_seen)
+        self._show_seen()
+
+    compatibility: Compatibility | None = None
+
+    def _show_seen(self) -> None:
+        """Show where the action can begin and end without a jump, as far as that is known by now."""
+        project, action, t = self.document.project, self.action, theme(self.session.theme)
+        curves = self.compatibility.curves(action) if self.compatibility is not None and action is not None else None
+        if action is None or project.action(action.id) is None:
+            return
+        seen = Seen(action, curves) if curves is not None else None
+        self.strip.show_seen(project, action, seen)
+        self.use.setEnabled(seen is not None and bool(self._proposed()))
+        if seen is None:
+            self.verdict.setText("")
+            return
+        start, end = project.span(action)
+        first, last = seen.cost("start", start), seen.cost("end", end)
+        costs = {"Repeats": last} if seen.loops else {"Begins": first, "ends": last}
+        self.verdict.setText(verdict(costs))
+        self.verdict.setStyleSheet(f"color: {t.dim if max(costs.values()) <= 1 else t.warning}")
+        self.use.setToolTip(f"{times_words(seen)}: it {seen.proposed.reason}")
+
+    def _proposed(self) -> dict[str, Any]:
+        """Return the Timing fields that the proposed times would change."""
+        project, action, seen = self.document.project, self.action, self.strip.seen
+        if action is None or seen is None or action.clip not in project.clips:
+            return {}
+        fields = proposed_fields(action, seen.proposed, project.clips[action.clip].duration)
+        return {name: value for name, value in fields.items() if getattr(action.timing, name) != value}
+
+    def use_proposed(self) -> None:
+        """Take the times over that do not jump, in one step."""
+        if self.compatibility is not None and self.action is not None:
+            self.compatibility.use_proposed([self.action.id])
 
     def _restyle(self) -> None:
         t = theme(self.session.theme)
@@ -186,8 +256,12 @@ class TimingPlot(QWidget):
             self.plot.setXRange(-0.02 * entry.duration, max(entry.duration, 0.1) * 1.02, padding=0)
             self.plot.setYRange(0, max(0.2, float(speeds.max()) * 1.15 if len(speeds) else 1.0), padding=0)
             self.plot.setToolTip(f"{words}, m/s. Drag the lines; a click moves the playhead.")
+            self.strip.show_seen(project, action, None)
+            self.verdict.setText("")
         self.curve.setPen(pg.mkPen(color, width=2))
+        self.strip.restyle(t, t.fill(action.kind))
         self._place(project, action, t, color)
+        self._show_seen()
 
     def _place(self, project: Project, action: Action, t: Theme, color: QColor) -> None:
         self._setting = True
@@ -242,6 +316,7 @@ class TimingPlot(QWidget):
     def _dragged(self, name: str, seconds: float) -> None:
         if self._setting or self.action is None:
             return
+        seconds = self._snapped(name, seconds)
         fields = moved(self.document.project, self.action, name, seconds)
         # The character follows the handle.
         self.session.show_clip(self.action.clip)
@@ -249,6 +324,15 @@ class TimingPlot(QWidget):
         self.session.seek(min(max(0.0, seconds), self.document.project.clips[self.action.clip].duration))
         self._moving = True
         self.changed.emit(fields)
+
+    def _snapped(self, name: str, seconds: float) -> float:
+        """Let the ends come to rest where nothing shows, unless Alt is held."""
+        seen = self.strip.seen
+        if seen is None or QApplication.keyboardModifiers() & Qt.KeyboardModifier.AltModifier:
+            return seconds
+        pixel = self.plot.plotItem.vb.viewPixelSize()[0]
+        near = min(seen.snaps(name), key=lambda t: abs(t - seconds), default=seconds)
+        return near if abs(near - seconds) <= SNAP * pixel else seconds
 
     _moving = False
 
