@@ -17,7 +17,7 @@ from numpy.typing import NDArray
 from metagraph.graph.model import Project
 from metagraph.graph.words import KINDS, LAYERS, Layer
 from metagraph.suggest.measures import HELD, SUREST, energy, layer_of, nothing, resting
-from metagraph.suggest.traits import Traits
+from metagraph.suggest.traits import LayerTraits, Traits
 
 Array = NDArray[Any]
 
@@ -118,6 +118,7 @@ def discover(traits: Mapping[str, Traits], layer: Layer) -> tuple[Shape, ...]:
     mine = {clip: t for clip, t in moving.items() if t.layers[layer].names and layer_of(t).value == layer}
     if not mine:
         return ()
+    others = {clip: t for clip, t in moving.items() if clip not in mine and t.face == 0}
     several = [t.layers[layer].names for t in mine.values()]
     names = max(set(several), key=lambda n: (several.count(n), n))
     found: list[tuple[str, float, Array, bool]] = []
@@ -148,11 +149,25 @@ def discover(traits: Mapping[str, Traits], layer: Layer) -> tuple[Shape, ...]:
                 best, calm = first, quiet[first]
         elif not loops and len(closed) == 1 and len(members) > 1 and energy(mine[found[closed[0]][0]]) < CALM:
             best, calm = closed[0], energy(mine[found[closed[0]][0]])  # others only come there or leave: what stays is its loop
-        confidence = min(SUREST, 1 - 0.6 * 0.8 ** len(members) - (0 if loops else 0.15))
         poses_of = np.array([middle, *(poses[i] for i in loops)])
         clip, at = found[best][0], found[best][1]
+        if not loops and not closed:  # others only come or leave; a clip of another layer may rest here: of the arms of one who sits
+            away = {c: max(_far(t.layers[layer], pose, middle, names) for pose in ("first", "last")) for c, t in others.items()}
+            quiet = {c: energy(t) for c, t in others.items() if away[c] <= SAME[layer][1] and energy(t) < CALM}
+            if quiet:
+                clip, at = min(quiet, key=lambda c: (quiet[c], c)), 0.0
+                calm = quiet[clip]
+                members.append(clip)
+        confidence = min(SUREST, 1 - 0.6 * 0.8 ** len(members) + (0.0 if loops else 0.1 if calm else -0.15))
         shapes.append(Shape("", clip, layer, names, poses_of, tuple(members), clip, at, confidence, calm))
     return tuple(sorted(shapes, key=lambda s: (-len(s.members), s.clip)))
+
+
+def _far(x: LayerTraits, pose: str, middle: Array, names: tuple[str, ...]) -> float:
+    """Return how far a clip's first or last pose is from a stance's, heights; infinite of another figure."""
+    if x.names != names:
+        return float("inf")
+    return float((np.linalg.norm(getattr(x, pose) - middle, axis=-1) * _weights(names)).max())
 
 
 def discovered(traits: Mapping[str, Traits]) -> dict[Layer, tuple[Shape, ...]]:
