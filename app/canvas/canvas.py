@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from typing import Protocol
 
 from PySide6.QtCore import QEvent, QPoint, QPointF, QSizeF, Qt, QTimer, Signal
@@ -27,6 +28,7 @@ from PySide6.QtWidgets import QApplication, QInputDialog, QMenu, QToolTip, QWidg
 from app.canvas.drops import Drop, Load, drop_at, load_of, mime, perform
 from app.canvas.layout import Hit, Layout, arrange, likelihood_at
 from app.canvas.painter import Look, paint
+from app.canvas.repoint import HeadDrag
 from app.document import Document
 from app.performance import Performance
 from app.session import Session
@@ -143,6 +145,7 @@ class Canvas(QWidget):
         self.misfits: dict[str, str] = {}
         self._drop: Drop | None = None
         self._drop_hit = NOTHING
+        self._arrow: tuple[QPointF, QPointF] | None = None  # of a transition, being dragged
         self._layout: Layout | None = None
         self._counted: tuple[object, str] | None = None  # the graphs, and the sentence about them
         self._beat = 0
@@ -211,6 +214,7 @@ class Canvas(QWidget):
                 other=self.session.other(),
                 drop=self._drop,
                 drop_hit=self._drop_hit,
+                arrow=self._arrow,
                 sentence=self._sentence(),
             ),
             self.font(),
@@ -239,6 +243,11 @@ class Canvas(QWidget):
             if self._beat % 3 == 0:
                 for node in self.layout_now().nodes.values():
                     self.update(node.rect.toAlignedRect())
+
+    def point(self, drop: Drop | None, hit: Hit, arrow: tuple[QPointF, QPointF] | None) -> None:
+        """Show an arrow that is being dragged, and what letting it go would do; or none any more."""
+        self._drop, self._drop_hit, self._arrow = drop, hit, arrow
+        self.update()
 
     def set_misfits(self, misfits: dict[str, str]) -> None:
         """Mark actions whose ends do not fit; action id -> words."""
@@ -271,8 +280,10 @@ class Canvas(QWidget):
             self._choose_other(event.globalPosition().toPoint())
         elif hit.area == "bar" and hit.ident:
             self.gesture = LikelihoodDrag(self, hit.ident)
-        elif hit.area == "row" and hit.ident:
+        elif hit.area in ("row", "head") and hit.ident:
             self._press_row(hit.ident, event)
+            if hit.area == "head":
+                self.gesture = HeadDrag(self, hit.ident, event.position())
         elif hit.area == "card" and hit.ident:
             self.session.select_actions(tuple(a.id for a in self.document.project.graphs[self.session.layer].of(hit.ident, "stance")))
         else:
@@ -306,7 +317,7 @@ class Canvas(QWidget):
             gesture.finish(event.position())
             hit = self.layout_now().hit(event.position())
             plain = not event.modifiers() & (Qt.KeyboardModifier.ControlModifier | Qt.KeyboardModifier.ShiftModifier)
-            if isinstance(gesture, RowDrag) and plain and hit.ident == gesture.action:
+            if isinstance(gesture, RowDrag | HeadDrag) and not gesture.dragging and plain and hit.ident == gesture.action:
                 self._hover_shown = False  # asked for: it goes on when the pointer leaves
                 self.session.select_actions((gesture.action,))
                 self.session.show_context(gesture.action)
@@ -317,13 +328,14 @@ class Canvas(QWidget):
             self.rename_stance(hit.ident)
 
     def _set_hover(self, hit: Hit) -> None:
-        left = self.hover.area == "row" and hit.area != "row"
+        rows = ("row", "head")
+        left = self.hover.area in rows and hit.area not in rows
         self.hover = hit
-        hand = hit.area in ("chip", "add", "other", "row", "bar", "card")
+        hand = hit.area in ("chip", "add", "other", "row", "bar", "card", "head")
         self.setCursor(
             Qt.CursorShape.SizeHorCursor if hit.area == "bar" else Qt.CursorShape.PointingHandCursor if hand else Qt.CursorShape.ArrowCursor
         )
-        if hit.area == "row":
+        if hit.area in rows:
             self._hover_timer.start()
         else:
             self._hover_timer.stop()
@@ -338,7 +350,7 @@ class Canvas(QWidget):
         if self._drop is not None:
             if self._drop_hit.area == "chip" and self._drop_hit.ident:
                 self.session.set_stance(self._drop_hit.ident)
-        elif self.hover.area == "row" and self.hover.ident and self.session.show != "clip":
+        elif self.hover.area in ("row", "head") and self.hover.ident and self.session.show != "clip":
             self._hover_shown = self.session.show == "plan" or self._hover_shown
             self.session.show_context(self.hover.ident)
 
@@ -369,6 +381,8 @@ class Canvas(QWidget):
         action = self.document.project.action(hit.ident) if hit.ident else None
         if hit.area == "bar" and action is not None:
             return f"Likelihood {action.likelihood:g}: drag to change"
+        if hit.area == "head" and action is not None and action.id not in self.misfits:
+            return f"{action.name}\nDrag the arrow onto another stance to end there"
         if action is not None:
             words = self.misfits.get(action.id)
             return f"{action.name}\n{words}" if words else f"{action.name}\nClick plays it in context, drag moves it"
@@ -514,7 +528,7 @@ class Canvas(QWidget):
     def contextMenuEvent(self, event: QContextMenuEvent) -> None:
         hit = self.layout_now().hit(QPointF(event.pos()))
         menu = QMenu(self)
-        if hit.area in ("row", "bar") and hit.ident:
+        if hit.area in ("row", "bar", "head") and hit.ident:
             if hit.ident not in self.session.actions:
                 self.session.select_actions((hit.ident,))
             menu.addAction("Play in context", lambda: self.session.show_context(str(hit.ident)))
@@ -522,6 +536,11 @@ class Canvas(QWidget):
             move = menu.addMenu("Move to stance")
             for stance in self.document.project.graphs[self.session.layer].stances.values():
                 move.addAction(stance.name, lambda s=stance.id: self._move_to(s))
+            if hit.kind == "transition":
+                ends = menu.addMenu("End in stance")
+                for stance in self.document.project.graphs[self.session.layer].stances.values():
+                    if stance.id != self.session.stance():
+                        ends.addAction(stance.name, lambda s=stance.id: self.end_in(self.session.actions, s))
             menu.addAction("Show clip in the library", self._show_clip)
             menu.addSeparator()
             menu.addActions(self.row_actions)
@@ -543,6 +562,13 @@ class Canvas(QWidget):
         chosen = self.session.actions
         try:
             self.document.edit("Move actions", lambda p: edits.to_stance(p, chosen, stance))
+        except edits.EditError as error:
+            self.refused.emit(str(error))
+
+    def end_in(self, actions: Sequence[str], stance: str) -> None:
+        """Let transitions end in another stance, in one step."""
+        try:
+            self.document.edit("Change end stance", lambda p: edits.set_ends(p, actions, stance))
         except edits.EditError as error:
             self.refused.emit(str(error))
 

@@ -14,10 +14,11 @@ GRID = 8
 CHIP_HEIGHT, CHIP_TOP = 34, 12
 HEADER, ROW, PAD = 38, 24, 8
 BAR = 44  # width of a likelihood bar
+ARROW = 26  # of a transition's arrow, which can be dragged
 FOOT = 40  # the sentence at the bottom
 CHIP_MIN, CHIP_MAX = 108, 230
 
-Area = Literal["chip", "add", "card", "loop", "node", "row", "bar", "other", "start", "nothing"]
+Area = Literal["chip", "add", "card", "loop", "node", "row", "bar", "head", "other", "start", "nothing"]
 
 
 @dataclass(frozen=True)
@@ -34,6 +35,7 @@ class Row:
     action: Action
     rect: QRectF
     bar: QRectF
+    head: QRectF = field(default_factory=QRectF)  # of a transition's arrow
 
 
 @dataclass(frozen=True)
@@ -85,6 +87,8 @@ class Layout:
             for row in node.rows:
                 if row.bar.adjusted(-4, -6, 4, 6).contains(at):
                     return Hit("bar", row.action.id, node.kind)
+                if row.head.contains(at) and not dragging:
+                    return Hit("head", row.action.id, node.kind)
                 if row.rect.contains(at):
                     return Hit("row", row.action.id, node.kind)
             return Hit("node", None, node.kind)
@@ -192,7 +196,8 @@ def _node(kind: Kind, rect: QRectF, actions: tuple[Action, ...], scroll: int, co
         line, at = divmod(place - first * columns, columns)
         area = QRectF(rect.left() + GRID + at * (column + GRID), body.top() + line * ROW, column, ROW)
         bar = QRectF(area.right() - BAR - 6, area.center().y() - 1.5, BAR, 3)
-        rows.append(Row(actions[place], area, bar))
+        head = QRectF(area.left(), area.top(), ARROW, ROW) if kind == "transition" else QRectF()
+        rows.append(Row(actions[place], area, bar, head))
     other = QRectF(rect.right() - 168, rect.top() + 7, 160 - 34, HEADER - 14) if kind == "transition" else QRectF()
     return Node(kind, rect, header, body, tuple(rows), len(actions), first, most, other)
 

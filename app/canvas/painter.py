@@ -10,6 +10,7 @@ from PySide6.QtGui import QColor, QFont, QFontMetricsF, QImage, QPainter, QPaint
 
 from app.canvas.drops import Drop
 from app.canvas.layout import GRID, Chip, Hit, Layout, Node, bar_part
+from app.canvas.repoint import draw_arrow
 from app.theme import KIND_MARKS, KIND_TITLES, Theme
 from app.words import short
 from metagraph.graph.model import Action, Kind, Project
@@ -39,6 +40,7 @@ class Look:
     other: str | None = None
     drop: Drop | None = None
     drop_hit: Hit = NOWHERE
+    arrow: tuple[QPointF, QPointF] | None = None  # being dragged, from where to where
     sentence: str = ""
 
 
@@ -55,6 +57,8 @@ def paint(painter: QPainter, layout: Layout, look: Look, font: QFont) -> None:
     painter.setFont(font)
     painter.setPen(QColor(look.theme.dim))
     painter.drawText(layout.foot, Qt.AlignmentFlag.AlignVCenter | Qt.AlignmentFlag.AlignLeft | Qt.TextFlag.TextWordWrap, look.sentence)
+    if look.arrow is not None:
+        draw_arrow(painter, *look.arrow, look.theme.kind("transition"), look.drop is not None and look.drop.possible)
 
 
 def _bold(font: QFont) -> QFont:
@@ -276,7 +280,7 @@ def _other(painter: QPainter, node: Node, look: Look, font: QFont) -> None:
 
 def _row(painter: QPainter, action: Action, rect: QRectF, bar: QRectF, kind: Kind, look: Look, font: QFont) -> None:
     t = look.theme
-    selected, hover = action.id in look.selected, look.hover.ident == action.id and look.hover.area in ("row", "bar")
+    selected, hover = action.id in look.selected, look.hover.ident == action.id and look.hover.area in ("row", "bar", "head")
     if selected or hover:
         fill = QColor(t.hover)
         fill.setAlpha(255 if selected else 130)
@@ -287,8 +291,15 @@ def _row(painter: QPainter, action: Action, rect: QRectF, bar: QRectF, kind: Kin
     text = short(action.name, stance.name) if stance is not None else action.name
     if kind == "transition":
         end = look.project.stance(action.end_stance)
-        text = f"→ {end.name}" if end is not None else f"→ ?  {action.name}"
+        text = end.name if end is not None else f"?  {action.name}"
     left = rect.left() + 8
+    if kind == "transition":
+        if hover and look.hover.area == "head":
+            _box(painter, QRectF(rect.left() + 3, rect.top() + 3, 22, rect.height() - 6), QColor(t.field), t.kind(kind))
+        painter.setFont(font)
+        painter.setPen(t.kind(kind))
+        painter.drawText(QRectF(left, rect.top(), 18, rect.height()), Qt.AlignmentFlag.AlignVCenter, "→")
+        left += 17
     if action.id in look.playing:
         painter.setPen(Qt.PenStyle.NoPen)
         painter.setBrush(t.kind(kind))

@@ -95,7 +95,7 @@ def test_what_is_drawn_is_what_is_hit(toy, size):
         assert (hit.area, hit.ident) == (("chip", chip.stance) if chip.stance else ("add", None))
     for kind, node in layout.nodes.items():
         for row in node.rows:
-            on_name, on_bar = QPointF(row.rect.left() + 12, row.rect.center().y()), row.bar.center()
+            on_name, on_bar = QPointF(row.rect.left() + 34, row.rect.center().y()), row.bar.center()
             assert (layout.hit(on_name).area, layout.hit(on_name).ident, layout.hit(on_name).kind) == ("row", row.action.id, kind)
             assert (layout.hit(on_bar).area, layout.hit(on_bar).ident) == ("bar", row.action.id)
             assert layout.row(row.action.id) is row
