@@ -53,7 +53,7 @@ def commands(window: Window) -> tuple[Command, ...]:
                 enabled=lambda: bool(s.actions) and s.copied is not None and d.project.action(s.copied) is not None),
         Command("replace_clip", "&Edit", "Replace c&lip…", lambda: window.batch("replace"), tip="Another clip, the same settings",
                 enabled=lambda: bool(s.actions)),
-        Command("twins", "&Edit", "Make &mirrored twin", window.make_twins, tip="The same to the other side, as clips and actions of its own",
+        Command("twins", "&Edit", "Make &mirrored twin", window.make_twins, tip="The same to the other side, as new clips and actions",
                 enabled=some),
         Command("repairs", "&Edit", "Repa&irs…", window.show_repairs, tip="What reading the files put right, and what to leave as it is",
                 enabled=lambda: bool(d.project.clips)),

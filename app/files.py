@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 import json
+from collections.abc import Sequence
+from dataclasses import replace
 from pathlib import Path
 
 from PySide6.QtCore import QObject, Signal
@@ -11,11 +13,15 @@ from PySide6.QtWidgets import QFileDialog, QMessageBox, QWidget
 from app.canvas.drops import ANNOTATIONS, Drop, Load
 from app.document import Document, state_folder, untitled_journal
 from app.jobs import Job, Jobs
+from app.kept_maps import kept_maps
 from app.opening import load_whole, open_whole
+from app.retargeting import Retargeting, clips_words
 from metagraph.errors import FileError
 from metagraph.formats.imports import Imported, import_files
 from metagraph.formats.journal import journal_path, recover
+from metagraph.formats.repairs import repairs_of
 from metagraph.formats.store import SUFFIX, Opened, absolute
+from metagraph.formats.takes import NAME
 from metagraph.graph.model import Project
 
 RECENT = 10
@@ -27,17 +33,21 @@ PRACTICE = Path(__file__).resolve().parents[1] / "sample_clips" / f"practice{SUF
 
 class Files(QObject):
     """told: words for the status bar. report: (title, lines) to read. imported: (Imported, Drop or None). opened: a project is shown.
-    annotation_dropped: the path of an annotation among files to import."""
+    annotation_dropped: the path of an annotation among files to import. repaired: (title, ids of clips, lines) to look through."""
 
     told = Signal(str)
     report = Signal(str, object)
     imported = Signal(object, object)
     opened = Signal()
     annotation_dropped = Signal(str)
+    repaired = Signal(str, object, object)
 
     def __init__(self, document: Document, jobs: Jobs, window: QWidget) -> None:
         super().__init__(window)
         self.document, self.jobs, self.window = document, jobs, window
+        self.retargeting = Retargeting(document, jobs, window)
+        self.retargeting.told.connect(self.told)
+        self.retargeting.failed.connect(self._failed)
         self._era = 0  # counts the projects that were shown
         document.loaded.connect(self._next_era)
 
@@ -195,24 +205,56 @@ class Files(QObject):
             else:
                 self.told.emit("The import was dropped, since another project was opened.")
 
+        maps = kept_maps()
+
         def work(job: Job) -> Imported:
-            return import_files(project, folder, paths, lambda n, total, path: job.tell(n, total, path.name), lambda: job.cancelled)
+            tell = lambda n, total, path: job.tell(n, total, path.name)  # noqa: E731
+            remembered = lambda source, target: maps.get((source, target))  # noqa: E731
+            return import_files(project, folder, paths, tell, lambda: job.cancelled, "ask", remembered)
 
         self.jobs.start("Importing clips", work, done, self._failed)
 
     def _imported(self, result: Imported, drop: Drop | None) -> None:
         count = len(result.loaded)
         if count:
-            self.document.edit(f"Import {count} clip{'s' if count != 1 else ''}", result.into)
+            self.document.edit(f"Import {clips_words(count)}", result.into)
         self.imported.emit(result, drop)
-        files = len(result.failures)
-        words = f"Imported {count} clip{'s' if count != 1 else ''}"
-        if files:
+        if not result.strangers:
+            self._tell_imported(result)
+            return
+        parts, groups = [replace(result, strangers=())], len(result.strangers)
+
+        def then(brought: Imported) -> None:
+            if brought.loaded:
+                self.document.edit(f"Retarget {clips_words(len(brought.loaded))}", brought.into)
+                self.imported.emit(brought, drop)
+            parts.append(brought)
+            if len(parts) > groups:
+                self._tell_imported(_together(parts))
+
+        self.retargeting.ask(result.strangers, then)
+
+    def _tell_imported(self, result: Imported) -> None:
+        """Say what came of an import: in the status bar, or to read where something was left out or repaired."""
+        count, files = len(result.loaded), len(result.failures)
+        words = f"Imported {clips_words(count)}"
+        if result.retargeted:
+            words += f", {result.retargeted} of them retargeted"
+        clips = self.load_for(result).clips
+        repairs = repairs_of(self.document.project, clips)
+        if any(found.repair.name != NAME for found in repairs):  # a name is plain to see, and no reason to interrupt
+            told = {found.repair.words for found in repairs}
+            notes = [note for note in result.notes if note.split(": ", 1)[-1] not in told]
+            self.repaired.emit(words, clips, [*result.failures, *notes])
+        elif files:
             self.report.emit(f"{words}; {files} file{'s' if files != 1 else ''} could not be read", [*result.failures, *result.notes])
-        elif not count:
+        elif not count and not result.left:
             self.report.emit("Nothing was imported", ["No clip was found there. Clips are BVH, GLB, glTF, VRM animation or FBX files."])
         else:
-            self.told.emit(words + (f" ({len(result.notes)} notes, see their tooltips)" if result.notes else ""))
+            before = [note for note in result.notes if note.endswith("retargeted as before")]
+            more = [note for note in result.notes if note not in before]
+            words = ". ".join([words, *before])
+            self.told.emit(words + (f" ({len(more)} notes, see their tooltips)" if more else ""))
 
     def load_for(self, result: Imported) -> Load:
         """Return the imported clips as something that can be dropped."""
@@ -266,9 +308,19 @@ class Files(QObject):
             self.told.emit("The list of recent projects could not be written.")
 
 
+def _together(parts: Sequence[Imported]) -> Imported:
+    """Return several imports as one."""
+    return replace(
+        parts[0],
+        loaded=tuple(x for part in parts for x in part.loaded),
+        failures=tuple(x for part in parts for x in part.failures),
+        notes=tuple(x for part in parts for x in part.notes),
+        retargeted=sum(part.retargeted for part in parts),
+        left=sum(part.left for part in parts),
+    )
+
+
 def _take_over(project: Project, found: Project) -> Project:
     """Return `project` with the clips that have motion in `found` and none here."""
-    from dataclasses import replace
-
     clips = {i: found.clips[i] if e.motion is None and i in found.clips else e for i, e in project.clips.items()}
     return replace(project, clips=clips)

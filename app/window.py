@@ -33,6 +33,7 @@ from app.learned import Learned
 from app.panels.library import LibraryPanel
 from app.panels.preview import PreviewPanel
 from app.performance import Performance
+from app.retargeting import clips_words
 from app.session import Session
 from app.sound import Sound
 from app.theme import KIND_MARKS, apply, theme
@@ -86,7 +87,8 @@ class Window(QMainWindow):
         self.docks.fill("library", self.library)
         self.docks.fill("preview", self.preview)
         self.actions = Actions(self, commands(self))
-        self.canvas.row_actions = [self.actions[name] for name in ("rename", "copy", "paste", "replace_clip")]
+        self.canvas.row_actions = [self.actions[name] for name in ("rename", "copy", "paste", "replace_clip", "twins")]
+        self.library.row_actions = [self.actions[name] for name in ("twins", "repairs")]
         self._menus()
         self.header = Header(self.document, self.session, self.actions, self)
         self.addToolBar(self.header)
@@ -206,6 +208,7 @@ class Window(QMainWindow):
         self.compatibility.changed.connect(self._show_problems)
         self.sound.told.connect(self.tell)
         self.files.report.connect(self._report)
+        self.files.repaired.connect(self.show_repairs)
         self.files.imported.connect(self._imported)
         self.files.annotation_dropped.connect(self.annotate)
         self.files.opened.connect(self._opened)
@@ -363,6 +366,20 @@ class Window(QMainWindow):
         elif what != "paste" and actions:
             kind = batch.RenameDialog if what == "rename" else batch.ReplaceDialog
             kind(self.document, actions, self).open()
+
+    def make_twins(self) -> None:
+        """Make left/right twins of the selected actions or clips."""
+        from app.twins import make_twins
+
+        make_twins(self)
+
+    def show_repairs(self, title: str = "", clips: tuple[str, ...] = (), lines: tuple[str, ...] = ()) -> None:
+        """Show what reading clips put right: those given, else the selected ones, else all."""
+        from app.panels.import_report import RepairsDialog
+
+        chosen = clips or self.session.clips or tuple(a.clip for a in self.session.selected_actions()) or tuple(self.document.project.clips)
+        words = title or f"Repairs of {clips_words(len(set(chosen)))}"
+        RepairsDialog(self.document, self.jobs, words, dict.fromkeys(chosen), lines, self).show()
 
     def copy_properties(self) -> None:
         """Remember the selected action, so that others can be given its properties."""

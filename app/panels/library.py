@@ -20,6 +20,7 @@ from PySide6.QtCore import (
     Signal,
 )
 from PySide6.QtGui import (
+    QAction,
     QColor,
     QContextMenuEvent,
     QDrag,
@@ -352,6 +353,7 @@ class LibraryPanel(QWidget):
     def __init__(self, document: Document, session: Session, thumbnails: Thumbnails, parent: QWidget | None = None) -> None:
         super().__init__(parent)
         self.document, self.session, self.thumbnails = document, session, thumbnails
+        self.row_actions: list[QAction] = []  # the window's commands that go into a clip's menu
         self.model = ClipModel(document)
         self.proxy = FilterModel(self.model)
         self.search = Search(self)
@@ -541,6 +543,8 @@ class LibraryPanel(QWidget):
         out.addAction("Use the rest pose as base pose", lambda: self.document.edit("Set base pose", lambda p: edits.set_base(p, None)))
         out.addSeparator()
         out.addAction("Rename…\tF2", lambda: self.rename(entry.id))
+        out.addActions(self.row_actions)
+        out.addSeparator()
         noun = f"{len(chosen)} clips" if len(chosen) > 1 else "clip"
         out.addAction(f"Remove {noun} from the project\tDel", lambda: self.remove(chosen))
         return out

@@ -65,7 +65,7 @@ class Imported:
 
     character: the first of the files that also holds a mesh, written as clip paths are, for a project that draws none yet.
     morphs: its morph targets. strangers: clips of other skeletons that wait to be retargeted. joint_maps: those by which clips
-    were retargeted, to be kept in the project. retargeted: how many of the loaded clips were.
+    were retargeted, to be kept in the project. retargeted: how many of the loaded clips were. left: how many the user left out.
     """
 
     loaded: tuple[Loaded, ...]
@@ -77,6 +77,7 @@ class Imported:
     strangers: tuple[Strangers, ...] = ()
     joint_maps: Mapping[str, JointMap] = field(default_factory=dict)
     retargeted: int = 0
+    left: int = 0
 
     def into(self, project: Project) -> Project:
         """The edit: `project` with the clips added, and with the character that came with them if it had none."""

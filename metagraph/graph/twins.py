@@ -40,24 +40,37 @@ def twin_clips(project: Project, actions: Collection[str]) -> list[TwinClip]:
     for ident in dict.fromkeys(actions):
         action = _action(project, ident)
         groups.setdefault(action.clip, []).append(action)
+    return _mirrored(project, {clip: (used[0].name, tuple(a.id for a in used)) for clip, used in groups.items()})
+
+
+def mirrored_clips(project: Project, clips: Collection[str]) -> list[TwinClip]:
+    """Return the mirror images of clips, for the library alone. Raises EditError as `twin_clips` does."""
+    if not clips:
+        raise EditError("nothing to mirror")
+    names = {i: project.clips[i].name for i in dict.fromkeys(clips) if i in project.clips}
+    return _mirrored(project, {i: (name, ()) for i, name in names.items()})
+
+
+def _mirrored(project: Project, wanted: Mapping[str, tuple[str, tuple[str, ...]]]) -> list[TwinClip]:
+    """wanted: clip -> what it is for, in words, and the actions its mirror image is for."""
     skeleton = project.skeleton
     pairs = pairs_of(skeleton, anatomy.roles(project)) if skeleton is not None else ()
     taken = {entry.name for entry in project.clips.values()}
     out = []
-    for clip, used in groups.items():
+    for clip, (called, actions) in wanted.items():
         entry = project.clips.get(clip)
         if entry is None or entry.motion is None:
-            raise EditError(f"'{used[0].name}' cannot be mirrored: its clip's file is missing")
+            raise EditError(f"'{called}' cannot be mirrored: its clip's file is missing")
         try:
             twin = mirror(entry.motion, pairs)
         except ValueError as error:
             raise EditError(str(error)) from None
         distance = float(pose_distance(twin.skeleton, entry.motion.poses(), twin.poses()).max())
         if distance < SAME and not _faces_differ(entry.motion, twin):
-            raise EditError(f"'{used[0].name}' has no side: it is within {100 * distance:.1f} cm of its mirror image")
+            raise EditError(f"'{called}' has no side: it is within {100 * distance:.1f} cm of its mirror image")
         name = free_name(twin_name(entry.name), taken)
         taken.add(name)
-        out.append(TwinClip(name, twin.renamed(name), tuple(a.id for a in used)))
+        out.append(TwinClip(name, twin.renamed(name), actions))
     return out
 
 

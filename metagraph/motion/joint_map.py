@@ -111,7 +111,7 @@ def proposed(
     source: Skeleton, target: Skeleton, source_roles: Mapping[str, int] | None = None, target_roles: Mapping[str, int] | None = None
 ) -> JointMap:
     """Propose which joint of `target` follows which of `source`: by roles, fingers and twists, then by names."""
-    ours, theirs = _known(source, source_roles), _known(target, target_roles)
+    ours, theirs = known_roles(source, source_roles), known_roles(target, target_roles)
     pairs: dict[str, JointPair] = {}
     taken: set[str] = set()
 
@@ -147,7 +147,7 @@ def proposed(
     return JointMap(fingerprint(source), fingerprint(target), tuple(pairs.values()))
 
 
-def _known(skeleton: Skeleton, roles: Mapping[str, int] | None) -> dict[str, int]:
+def known_roles(skeleton: Skeleton, roles: Mapping[str, int] | None) -> dict[str, int]:
     """Return roles with those of fingers and twist joints, as far as they can be told apart."""
     roles = find_roles(skeleton) if roles is None else roles
     out = {role: roles[role] for role in _PLAIN if role in roles}
