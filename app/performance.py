@@ -96,7 +96,7 @@ class Performance(QObject):
             return
         self._busy, self._again = True, False
         project, kept, length = self.document.project, self.kept, self.length
-        show, shown = self.session.show, self.session.shown
+        show, shown, anew = self.session.show, self.session.shown, self.session.anew
         stances = {layer: s for layer in LAYERS if (s := self.session.stance(layer)) is not None}
         layer = self.session.layer
 
@@ -104,7 +104,7 @@ class Performance(QObject):
             if show == "clip" and shown in project.clips:
                 return alone(project, shown or "")
             if show == "context" and shown is not None:
-                return in_context(project, shown, layer, stances)
+                return in_context(project, shown, layer, stances, anew)
             if kept is None:
                 return Shown(project, make_plan(project, length), length)
             return Shown(project, perform(project, kept.asks, length, kept.seed, dict(kept.stances), kept.idle), length)

@@ -38,6 +38,7 @@ class Session(QObject):
         self.actions: tuple[str, ...] = ()  # selected in the graph
         self.show: Show = "plan"
         self.shown: str | None = None  # the clip (or action) shown alone or in context
+        self.anew = False  # a clip is shown as if it were placed on the current stance
         self.playing = True
         self.speed = 1.0
         self.loop = True
@@ -144,12 +145,14 @@ class Session(QObject):
         """Play a clip alone."""
         self._show("clip", clip)
 
-    def show_context(self, ident: str) -> None:
-        """Play a clip or an action in context: stance, clip, back to the stance, the other layers on."""
-        self._show("context", ident)
+    def show_context(self, ident: str, anew: bool = False) -> None:
+        """Play a clip or an action in context: stance, clip, back to the stance, the other layers on. anew: a clip as if it were placed
+        on the current stance."""
+        self._show("context", ident, anew)
 
-    def _show(self, show: Show, shown: str | None) -> None:
-        if (show, shown) != (self.show, self.shown):
+    def _show(self, show: Show, shown: str | None, anew: bool = False) -> None:
+        if (show, shown, anew) != (self.show, self.shown, self.anew):
+            self.anew = anew
             if show == "plan":
                 self.seconds = self._plan_seconds
             elif self.show == "plan":

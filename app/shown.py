@@ -51,15 +51,16 @@ def alone(project: Project, clip: str) -> Shown:
     return Shown(project, Plan(1, 0.0), max(1e-3, project.clips[clip].duration), clip)
 
 
-def in_context(project: Project, ident: str, layer: Layer, stances: dict[Layer, str]) -> Shown:
+def in_context(project: Project, ident: str, layer: Layer, stances: dict[Layer, str], anew: bool = False) -> Shown:
     """Return stance, action, back to the stance, the other layers resting in theirs.
 
-    ident: an action, or a clip; a clip that was not placed yet is tried as a gesture of the current stance.
+    ident: an action, or a clip; a clip that was not placed yet is tried as a gesture of the current stance. anew: one that was, too,
+    unless it is placed on that very stance.
     """
     action = project.action(ident)
     if action is None and ident in project.clips:
         uses = project.uses.get(ident, ())
-        action = next((a for a in uses if a.stance == stances.get(layer)), uses[0] if uses else None)
+        action = next((a for a in uses if a.stance == stances.get(layer)), uses[0] if uses and not anew else None)
     scratch = project
     if action is None:
         try:
