@@ -37,16 +37,16 @@ class Reviewing(QObject):
     def start(self) -> None:
         """Propose what the clips are that are not placed yet, on a thread."""
         project = self.document.project
+        self.jobs.start("Proposing labels", lambda job: self._proposals(project, None, job), self._first, self._failed)
 
-        def done(found: Proposals) -> None:
-            self.review = Review(found).settled(self.document.project)
-            self.clips = tuple(c for c in self.review.order() if c in self.document.project.clips)
-            self.looked = True
-            self.found.emit()
+    def _first(self, found: Proposals) -> None:
+        self.review = Review(found).settled(self.document.project)
+        self.clips = tuple(c for c in self.review.order() if c in self.document.project.clips)
+        self.looked = True
+        self.found.emit()
 
-        self.jobs.start(
-            "Proposing labels", lambda job: self._proposals(project, None, job), done, lambda error: self.failed.emit(str(error))
-        )  # fmt: skip
+    def _failed(self, error: Exception) -> None:
+        self.failed.emit(str(error))
 
     def _proposals(self, project: Project, clips: list[str] | None, job: Job) -> Proposals:
         """Propose, with what was learned from other projects; on a job's thread."""
@@ -56,13 +56,12 @@ class Reviewing(QObject):
     def _propose_anew(self) -> None:
         """Look again at what is left, with what was just learned."""
         project, waiting = self.document.project, self.waiting()
-
-        def done(found: Proposals) -> None:
-            self.review = self.review.anew(found).settled(self.document.project)
-            self.changed.emit()
-
         if waiting:
-            self.jobs.start("labels anew", lambda job: self._proposals(project, waiting, job), done, quick=True)
+            self.jobs.start("labels anew", lambda job: self._proposals(project, waiting, job), self._again, self._failed, quick=True)
+
+    def _again(self, found: Proposals) -> None:
+        self.review = self.review.anew(found).settled(self.document.project)
+        self.changed.emit()
 
     # --- what is left
 

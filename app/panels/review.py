@@ -10,7 +10,7 @@ from html import escape
 from typing import Any
 
 from PySide6.QtCore import QEvent, QObject, Qt
-from PySide6.QtGui import QCloseEvent, QKeyEvent, QKeySequence
+from PySide6.QtGui import QKeyEvent, QKeySequence
 from PySide6.QtWidgets import (
     QDialog,
     QFrame,
@@ -58,8 +58,9 @@ class ReviewDialog(QDialog):
         self.row: Field = "kind"
         self.context = True  # the clip plays out of its stance and back, not alone
         self._trials = 0
-        self._was_playing = session.playing
-        session.set_playing(False)  # one character at a time
+        if session.playing:
+            session.set_playing(False)  # one character at a time
+            self.finished.connect(lambda _: session.set_playing(True))
         self.setAttribute(Qt.WidgetAttribute.WA_DeleteOnClose)
         self.setWindowTitle("Label clips")
         self.resize(1380, 850)
@@ -74,7 +75,7 @@ class ReviewDialog(QDialog):
         self.fields.picked.connect(self._pick)
         self.work.found.connect(self._begin)
         self.work.changed.connect(self._refresh)
-        self.work.failed.connect(lambda words: self.stage.tell(escape(words)))
+        self.work.failed.connect(self._failed)
         session.theme_changed.connect(self._restyle)
         self._keys = self._key_table()
         self._restyle()
@@ -325,7 +326,7 @@ class ReviewDialog(QDialog):
         if self.row not in {row.name for row in rows}:
             self.row = "kind"
         self.fields.show_rows(rows, self.row)
-        if not self.tags.hasFocus():
+        if self.focusWidget() is not self.tags:
             self.tags.setText(", ".join(p.tags.value) if p.tags is not None else "")
         self.timing.setText(review_words.timing(p, project.clips[clip].duration))
         self.stage.tell(review_words.headline(self.review, project, clip, theme(self.session.theme)))
@@ -339,14 +340,18 @@ class ReviewDialog(QDialog):
             self.stage.play(None, None)
             return
 
-        def work(_: object) -> tuple[Shown, Span | None]:
-            return trial(project, review, clip) if context else (alone(project, clip), None)
+        def work(_: object) -> tuple[int, Shown, Span | None]:
+            return (number, *trial(project, review, clip)) if context else (number, alone(project, clip), None)
 
-        def done(made: tuple[Shown, Span | None]) -> None:
-            if number == self._trials:
-                self.stage.play(*made)
+        self.jobs.start("trial", work, self._tried, self._failed, quick=True)
 
-        self.jobs.start("trial", work, done, lambda error: self.stage.tell(escape(str(error))), quick=True)
+    def _tried(self, made: tuple[int, Shown, Span | None]) -> None:
+        number, shown, span = made
+        if number == self._trials:
+            self.stage.play(shown, span)
+
+    def _failed(self, error: object) -> None:
+        self.stage.tell(escape(str(error)))
 
     # --- keys
 
@@ -388,10 +393,3 @@ class ReviewDialog(QDialog):
             run()
         else:
             super().keyPressEvent(event)  # Esc closes
-
-    def reject(self) -> None:
-        self.close()
-
-    def closeEvent(self, event: QCloseEvent) -> None:
-        self.session.set_playing(self._was_playing)
-        super().closeEvent(event)

@@ -121,8 +121,8 @@ class Review:
         wanted = [c for c in known if self.found.proposals[c].confidence >= above]
         along = {r for c in wanted for r in self._resting(bare, c)}
         taken = accept(bare, self.found, 0.0, {*wanted, *along})
-        if again and taken.left:
-            return Taken(project, (), taken.left)  # what was placed is not lost for what cannot be
+        if (again and taken.left) or not set(wanted) & set(taken.placed):
+            return Taken(project, (), taken.left)  # nothing comes along for nothing, and what was placed is not lost
         return taken
 
     def _resting(self, project: Project, clip: str) -> list[str]:
