@@ -13,77 +13,37 @@ from typing import Any, Literal
 
 import numpy as np
 
-from metagraph.graph import anatomy, edits
-from metagraph.graph.edits import EditError
-from metagraph.graph.model import KINDS, LAYERS, LIMBS, Kind, Layer, Limb, Project
-from metagraph.motion.clip import Clip
-from metagraph.playback.phases import phases
-from metagraph.suggest import compatibility
+from metagraph.graph.model import KINDS, LAYERS, LIMBS, Layer, Limb, Project
+from metagraph.suggest.accept import Taken, accept
 from metagraph.suggest.alike import Alike, Example
 from metagraph.suggest.belief import Belief
 from metagraph.suggest.combine import Agreed, combine
+from metagraph.suggest.details import masked, rest_of, stroked, timed, weighted
 from metagraph.suggest.motion_guess import MotionGuess, guess
+from metagraph.suggest.proposal import Place, Proposal, Proposals, Rest, plain, words_of
 from metagraph.suggest.stances import Shape, discovered, known
 from metagraph.suggest.traits import Traits, traits_of
 from metagraph.suggest.words import NameGuess, Patterns, read_names
-from metagraph.suggest.words_tokens import take_apart
+
+__all__ = [
+    "SOURCES",
+    "Place",
+    "Proposal",
+    "Proposals",
+    "Rest",
+    "Source",
+    "Taken",
+    "accept",
+    "examples_of",
+    "measures_of",
+    "plain",
+    "propose",
+]
 
 Source = Literal["name", "motion", "learned"]
 SOURCES: tuple[Source, ...] = ("name", "motion", "learned")
-_USUAL = Patterns()
 LOOP_VOTE = 1.5  # how much the name of a clip that rests in a stance counts to name it, beside one that begins or ends there
 NEVER = 0.3  # of how sure a source is at least, so that its vote counts
-
-
-@dataclass(frozen=True)
-class Place:
-    """A stance clips may belong to. key: the project's id, or one of its own for a stance that is not there yet. shape: what it looks
-    like, where that is known."""
-
-    key: str
-    layer: Layer
-    name: str
-    there: bool = False
-    shape: Shape | None = None
-
-
-@dataclass(frozen=True)
-class Proposal:
-    """What a clip is taken for. stance, end_stance: of a `Place`, by key. conflicts: where sources disagree firmly, in words. timing: as
-    `Timing` has it, where the motion says; good: whether neither its beginning nor its end would jump, None where nobody knows."""
-
-    clip: str
-    kind: Belief[Kind]
-    layer: Belief[Layer]
-    stance: Belief[str] | None
-    end_stance: Belief[str] | None
-    limb: Belief[Limb]
-    tags: Belief[tuple[str, ...]] | None = None
-    conflicts: tuple[str, ...] = ()
-    timing: Mapping[str, Any] = field(default_factory=dict)
-    timing_reason: str = ""
-    good: bool | None = None
-
-    @property
-    def confidence(self) -> float:
-        """How sure it is as a whole: as its least sure part that decides where it goes."""
-        parts = [self.kind.confidence, self.layer.confidence, self.stance.confidence if self.stance is not None else 0.0]
-        if self.kind.value == "transition":
-            parts.append(self.end_stance.confidence if self.end_stance is not None else 0.0)
-        return min(parts)
-
-
-@dataclass(frozen=True)
-class Proposals:
-    """Proposals by clip, and the stances they speak of, by key."""
-
-    proposals: Mapping[str, Proposal]
-    places: Mapping[str, Place]
-
-    @property
-    def doubtful(self) -> list[Proposal]:
-        """The proposals, the least certain first."""
-        return sorted(self.proposals.values(), key=lambda p: (p.confidence, p.clip))
 
 
 def examples_of(project: Project, traits: Mapping[str, Traits]) -> list[Example]:
@@ -94,7 +54,7 @@ def examples_of(project: Project, traits: Mapping[str, Traits]) -> list[Example]
         if entry is None:
             continue
         labels: dict[str, str] = {"kind": action.kind, "layer": action.layer, "limb": action.limb}
-        out.append(Example(_words(entry.name), measures_of(traits.get(action.clip)), labels))
+        out.append(Example(words_of(entry.name), measures_of(traits.get(action.clip)), labels))
     return out
 
 
@@ -107,10 +67,6 @@ def measures_of(traits: Traits | None) -> Any:
         x = traits.layers[layer]
         rows += [np.log1p(x.energy), np.log1p(x.peak), x.extent, x.loop_error, x.rest, float(x.bouts)]
     return np.array(rows, float)
-
-
-def _words(name: str) -> tuple[str, ...]:
-    return tuple(dict.fromkeys(take_apart(name, _USUAL).words))
 
 
 def propose(
@@ -140,7 +96,7 @@ def propose(
         if each.traits is not None and "motion" in sources:
             each.motion = guess(each.traits, shapes)
         if alike.examples:
-            each.learned = alike.guess(_words(each.name), measures_of(each.traits))
+            each.learned = alike.guess(words_of(each.name), measures_of(each.traits))
         layer = each.agreed("layer", len(LAYERS))
         each.layer = layer.belief.value if layer is not None else "arms"
         each.beside = each.motion
@@ -148,9 +104,12 @@ def propose(
             each.beside = guess(each.traits, shapes, each.layer)
     places = _Places(project, heard, shapes)
     out = {each.clip: p for each in heard if (p := _proposal(each, places)) is not None}
+    out = _somewhere(out, places.by_key)
     if "motion" in sources:
-        out = _timed(project, out, places)
-    return Proposals(out, places.by_key)
+        out = timed(project, out, cancelled)
+        motions = {each.clip: each for each in heard}
+        out = {c: stroked(project, masked(project, p, motions[c].traits), motions[c].beside) for c, p in out.items()}
+    return Proposals(weighted(project, out), _with_rests(project, places.by_key, out))
 
 
 @dataclass
@@ -241,9 +200,30 @@ class _Places:
         return max(2, sum(1 for p in self.by_key.values() if p.layer == layer))
 
 
-def plain(name: str) -> str:
-    """Return a stance's name without case, order of words or separators."""
-    return " ".join(sorted(take_apart(name, _USUAL).words))
+def _somewhere(proposals: Mapping[str, Proposal], places: dict[str, Place]) -> dict[str, Proposal]:
+    """Return proposals, those that nothing says the stance of in the stance most clips of their layer are in; one is made where there is
+    none."""
+    used = Counter(p.stance.value for p in proposals.values() if p.stance is not None)
+    out = {}
+    for clip, p in proposals.items():
+        if p.stance is None:
+            layer = p.layer.value
+            mine = [key for key, place in places.items() if place.layer == layer]
+            key = max(mine, key=lambda k: used[k]) if mine else f"new {layer} rest"
+            places.setdefault(key, Place(key, layer, "rest"))
+            p = replace(p, stance=Belief(key, 0.3, "nothing says a stance; " + ("most are in this one" if mine else "there is no other")))
+        out[clip] = p
+    return out
+
+
+def _with_rests(project: Project, places: Mapping[str, Place], proposals: Mapping[str, Proposal]) -> dict[str, Place]:
+    """Return the stances, those that no clip rests in with a moment of some clip that shows them."""
+    shown = {p.stance.value for p in proposals.values() if p.kind.value == "stance" and p.stance is not None}
+    names = {plain(places[key].name) for key in shown}
+    return {
+        key: place if place.there or key in shown or plain(place.name) in names else replace(place, rest=rest_of(project, place, proposals))
+        for key, place in places.items()
+    }
 
 
 def _proposal(each: _Heard, places: _Places) -> Proposal | None:
@@ -273,127 +253,3 @@ def _proposal(each: _Heard, places: _Places) -> Proposal | None:
         each.said.tags,
         tuple(x.conflict for x in found if x.conflict),
     )
-
-
-def _timed(project: Project, proposals: Mapping[str, Proposal], places: _Places) -> dict[str, Proposal]:
-    """Return proposals with timing from the statistics of the user's own clips, where stances have loops to measure against."""
-    roles = anatomy.roles(project)
-    out = dict(proposals)
-    for layer in LAYERS:
-        mine = [p for p in proposals.values() if p.layer.value == layer]
-        motions = [m for p in mine if (m := project.clips[p.clip].motion) is not None]
-        if not motions:
-            continue
-        stats = compatibility.statistics(motions, layer, roles)
-        loops: dict[str, list[tuple[Clip, float, float]]] = {k: list(v) for k, v in compatibility.loops_of(project, layer).items()}
-        for p in mine:
-            motion = project.clips[p.clip].motion
-            if p.kind.value == "stance" and p.stance is not None and motion is not None:
-                loops.setdefault(p.stance.value, []).append((motion, 0.0, motion.duration))
-        frames = {key: compatibility.stance_frames(stats, rows, roles) for key, rows in loops.items()}
-        for p in mine:
-            motion = project.clips[p.clip].motion
-            if motion is None or motion.frames < 2:
-                continue
-            if p.kind.value == "stance":
-                times = compatibility.loop_times(stats, motion, roles)
-            else:
-                start = frames.get(p.stance.value if p.stance is not None else "")
-                if start is None:
-                    continue
-                into = compatibility.costs(stats, motion, start, roles)
-                last = frames.get(p.end_stance.value) if p.end_stance is not None else None
-                times = compatibility.times(
-                    stats, motion, into, None if last is None else compatibility.costs(stats, motion, last, roles), None, roles
-                )
-            timing = {
-                "start": round(times.start, 3),
-                "end": None if times.end >= motion.duration - 1e-3 else round(times.end, 3),
-                "blend_in": round(times.blend_in, 3),
-                "blend_out": round(times.blend_out, 3),
-                "earliest_exit": None if times.earliest_exit is None else round(times.earliest_exit, 3),
-                "loop": p.kind.value == "stance",
-            }
-            out[p.clip] = replace(p, timing=timing, timing_reason=times.reason, good=times.good)
-    return out
-
-
-# --- taking them over
-
-
-@dataclass(frozen=True)
-class Taken:
-    """The project with proposals taken over. placed: clips by id. left: clip -> why it was not placed."""
-
-    project: Project
-    placed: tuple[str, ...]
-    left: Mapping[str, str]
-
-
-def accept(project: Project, found: Proposals, above: float = 0.0, clips: Collection[str] | None = None) -> Taken:
-    """Return the project with all proposals as sure as `above` placed, of some clips or all. Stances are made where a resting clip
-    shows them; what belongs to a stance that none shows is left, with the reason."""
-    wanted = [p for p in found.proposals.values() if (clips is None or p.clip in clips) and p.clip in project.clips]
-    left = {p.clip: f"only {p.confidence:.0%} sure" for p in wanted if p.confidence < above}
-    wanted = [p for p in wanted if p.clip not in left]
-    keys = {key: key for key, place in found.places.items() if place.there and project.stance(key) is not None}
-    loops = {plain(found.places[p.stance.value].name): p.clip for p in wanted if p.kind.value == "stance" and p.stance is not None}
-    before, placed = project, list[str]()
-    for p in sorted(wanted, key=lambda p: (p.kind.value != "stance", -p.confidence)):
-        try:
-            project = _place(project, p, found.places, keys, loops)
-            placed.append(p.clip)
-        except EditError as error:
-            left[p.clip] = str(error)
-    return Taken(_begun(before, project), tuple(placed), left)
-
-
-def _begun(before: Project, project: Project) -> Project:
-    """Return the project with layers that had no stance beginning in their most used one, and a base pose, where none was chosen, of the
-    arms' or else the body's: offsets are smallest against where a character mostly is."""
-    for layer in LAYERS:
-        graph = project.graphs[layer]
-        if graph.stances and not before.graphs[layer].stances:
-            used = Counter(a.stance for a in graph.actions.values())
-            project = edits.set_start(project, max(graph.stances, key=lambda s: used[s]))
-    if before.base.clip is None:
-        starts = [(g, g.start) for layer in ("arms", "body", "head") if (g := project.graphs[layer]).start is not None]
-        loops = [loop for graph, start in starts for loop in graph.of(str(start), "stance")]
-        if loops:
-            project = edits.set_base(project, loops[0].clip)
-    return project
-
-
-def _place(project: Project, p: Proposal, places: Mapping[str, Place], keys: dict[str, str], loops: Mapping[str, str]) -> Project:
-    """Place one clip. keys: place -> stance id, of those there are by now. loops: a stance's name -> a clip that rests in it, on whatever
-    layer: clips of the whole body rest on all. Raises EditError."""
-    if p.stance is None:
-        raise EditError("nothing says which stance it belongs to")
-    layer: Layer = p.layer.value
-    kind: Kind = p.kind.value
-    if kind == "transition" and p.end_stance is None:
-        raise EditError("nothing says where it ends")
-    for belief in (p.stance, p.end_stance if kind == "transition" else None):
-        if belief is None or belief.value in keys or (belief is p.stance and kind == "stance"):
-            continue
-        place = places[belief.value]
-        loop = loops.get(plain(place.name))
-        if loop is None:
-            raise EditError(f"no resting clip shows {'its stance' if belief is p.stance else 'the stance it ends in'}, '{place.name}'")
-        project = edits.add_stance(project, layer, place.name, [loop])
-        keys[place.key] = list(project.graphs[layer].stances)[-1]
-    if p.stance.value not in keys:
-        project = edits.add_stance(project, layer, places[p.stance.value].name, [p.clip])
-        keys[p.stance.value] = list(project.graphs[layer].stances)[-1]
-    else:
-        end = keys[p.end_stance.value] if kind == "transition" and p.end_stance is not None else None
-        project = edits.place(project, [p.clip], layer, kind, keys[p.stance.value], end)
-    action = list(project.graphs[layer].actions.values())[-1]
-    changes: dict[str, Any] = {"limb": p.limb.value, "tags": p.tags.value if p.tags is not None else action.tags}
-    if p.timing:
-        changes["timing"] = dict(p.timing)
-    project = edits.update_actions(project, [action.id], **changes)
-    if kind == "gesture" and (after := project.action(action.id)) is not None:
-        stroke = phases(project, after).stroke
-        project = edits.update_actions(project, [action.id], timing={"stroke": round(stroke, 3)})
-    return project

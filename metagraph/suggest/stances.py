@@ -153,10 +153,10 @@ def discover(traits: Mapping[str, Traits], layer: Layer) -> tuple[Shape, ...]:
         clip, at = found[best][0], found[best][1]
         if not loops and not closed:  # others only come or leave; a clip of another layer may rest here: of the arms of one who sits
             away = {c: max(_far(t.layers[layer], pose, middle, names) for pose in ("first", "last")) for c, t in others.items()}
-            quiet = {c: energy(t) for c, t in others.items() if away[c] <= SAME[layer][1] and energy(t) < CALM}
-            if quiet:
-                clip, at = min(quiet, key=lambda c: (quiet[c], c)), 0.0
-                calm = quiet[clip]
+            staying = {c: energy(t) for c, t in others.items() if away[c] <= SAME[layer][1] and energy(t) < CALM}
+            if staying:
+                clip, at = min(staying, key=lambda c: (staying[c], c)), 0.0
+                calm = staying[clip]
                 members.append(clip)
         confidence = min(SUREST, 1 - 0.6 * 0.8 ** len(members) + (0.0 if loops else 0.1 if calm else -0.15))
         shapes.append(Shape("", clip, layer, names, poses_of, tuple(members), clip, at, confidence, calm))

@@ -1,0 +1,90 @@
+"""What is proposed for clips: values that name, motion and labels together give, that a person corrects, and that are taken over."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+from typing import Any
+
+from metagraph.graph.model import Kind, Layer, Limb
+from metagraph.suggest.belief import Belief
+from metagraph.suggest.stances import Shape
+from metagraph.suggest.words import Patterns
+from metagraph.suggest.words_tokens import take_apart
+
+_USUAL = Patterns()
+
+
+@dataclass(frozen=True)
+class Rest:
+    """A moment of a clip that is still enough to stand in. start, end: seconds of the clip. reason: in words."""
+
+    clip: str
+    start: float
+    end: float
+    reason: str
+
+
+@dataclass(frozen=True)
+class Place:
+    """A stance clips may belong to. key: the project's id, or one of its own for a stance that is not there yet. shape: what it looks
+    like, where that is known. rest: where it can be seen, when no clip rests in it."""
+
+    key: str
+    layer: Layer
+    name: str
+    there: bool = False
+    shape: Shape | None = None
+    rest: Rest | None = None
+
+
+@dataclass(frozen=True)
+class Proposal:
+    """What a clip is taken for. stance, end_stance: of a `Place`, by key. conflicts: where sources disagree firmly, in words. timing: as
+    `Timing` has it, where the motion says; good: whether neither its beginning nor its end would jump, None where nobody knows.
+    details: what else an action has, by its name in the model, where something is known: each of `timing`, `mask` (names of the only
+    joints it moves, none for all), `stroke` (seconds, of gestures) and `likelihood`."""
+
+    clip: str
+    kind: Belief[Kind]
+    layer: Belief[Layer]
+    stance: Belief[str] | None
+    end_stance: Belief[str] | None
+    limb: Belief[Limb]
+    tags: Belief[tuple[str, ...]] | None = None
+    conflicts: tuple[str, ...] = ()
+    timing: Mapping[str, Any] = field(default_factory=dict)
+    timing_reason: str = ""
+    good: bool | None = None
+    details: Mapping[str, Belief[Any]] = field(default_factory=dict)
+
+    @property
+    def confidence(self) -> float:
+        """How sure it is as a whole: as its least sure part that decides where it goes."""
+        parts = [self.kind.confidence, self.layer.confidence, self.stance.confidence if self.stance is not None else 0.0]
+        if self.kind.value == "transition":
+            parts.append(self.end_stance.confidence if self.end_stance is not None else 0.0)
+        return min(parts)
+
+
+@dataclass(frozen=True)
+class Proposals:
+    """Proposals by clip, and the stances they speak of, by key."""
+
+    proposals: Mapping[str, Proposal]
+    places: Mapping[str, Place]
+
+    @property
+    def doubtful(self) -> list[Proposal]:
+        """The proposals, the least certain first."""
+        return sorted(self.proposals.values(), key=lambda p: (p.confidence, p.clip))
+
+
+def words_of(name: str) -> tuple[str, ...]:
+    """Return the distinct words of a name, in their order, small letters."""
+    return tuple(dict.fromkeys(take_apart(name, _USUAL).words))
+
+
+def plain(name: str) -> str:
+    """Return a stance's name without case, order of words or separators."""
+    return " ".join(sorted(take_apart(name, _USUAL).words))
