@@ -240,6 +240,8 @@ class Files(QObject):
         words = f"Imported {clips_words(count)}"
         if result.retargeted:
             words += f", {result.retargeted} of them retargeted"
+        if result.left:
+            words += f", left out {result.left} of another skeleton"
         clips = self.load_for(result).clips
         repairs = repairs_of(self.document.project, clips)
         if any(found.repair.name != NAME for found in repairs):  # a name is plain to see, and no reason to interrupt
@@ -254,7 +256,7 @@ class Files(QObject):
             before = [note for note in result.notes if note.endswith("retargeted as before")]
             more = [note for note in result.notes if note not in before]
             words = ". ".join([words, *before])
-            self.told.emit(words + (f" ({len(more)} notes, see their tooltips)" if more else ""))
+            self.told.emit(words + (f" ({len(more)} note{'s' if len(more) != 1 else ''}, see the tooltips)" if more else ""))
 
     def load_for(self, result: Imported) -> Load:
         """Return the imported clips as something that can be dropped."""

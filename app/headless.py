@@ -60,7 +60,7 @@ def import_clips(options: Namespace) -> int:
         if show:
             print(f"\r{done}/{total} {file.name[:50]:<50}", end="", file=sys.stderr)
 
-    result = import_files(project, path.resolve().parent, options.paths, progress)
+    result = import_files(project, path.resolve().parent, options.paths, progress, retarget="yes" if options.retarget else "no")
     if show:
         print(file=sys.stderr)
     for failure in result.failures:
@@ -71,8 +71,12 @@ def import_clips(options: Namespace) -> int:
     if result.loaded:
         project = result.into(project)
         save_project(project, path, path)
-    data = {"project": str(path), "imported": len(result.loaded), "failures": list(result.failures), "notes": list(result.notes)}
-    say(options, f"{path}: {len(result.loaded)} clips imported, {len(result.failures)} files left out", data)
+    data = {
+        "project": str(path), "imported": len(result.loaded), "retargeted": result.retargeted, "failures": list(result.failures),
+        "notes": list(result.notes),
+    }  # fmt: skip
+    brought = f" ({result.retargeted} retargeted)" if result.retargeted else ""
+    say(options, f"{path}: {len(result.loaded)} clips imported{brought}, {len(result.failures)} files left out", data)
     if not result.loaded and result.failures:
         return 1
     return 3 if result.failures else 0

@@ -60,7 +60,6 @@ class Retargeting(QObject):
         dialog.open()
 
     def _leave(self, group: Strangers, then: Then) -> None:
-        self.told.emit(f"Left out {clips_words(len(group.clips))} of another skeleton.")
         self._end(lambda: then(Imported((), left=len(group.clips))))
 
     def _bring(self, group: Strangers, joint_map: JointMap, then: Then) -> None:

@@ -90,6 +90,7 @@ class RepairsDialog(QDialog):
                 item.setCheckState(0, TICKED if found[n].repair.made else OPEN)
             top.setExpanded(len(mine) <= 12)
         self.tree.blockSignals(False)
+        self.tree.setVisible(bool(found))
         self.words.setText(
             "Reading the files put this right. Untick what should be left as it is in the file; it can be ticked again at any time."
             if found

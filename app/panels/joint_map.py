@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from pathlib import Path
 
-from PySide6.QtCore import QStringListModel, Qt
+from PySide6.QtCore import QSize, QStringListModel, Qt
 from PySide6.QtGui import QColor
 from PySide6.QtWidgets import (
     QCheckBox,
@@ -43,11 +43,12 @@ class JointMapDialog(QDialog):
         self.strangers, self.bringing, self.jobs = strangers, bringing, jobs
         self.source, self.target = strangers.skeleton, bringing.project.skeleton
         self.map: JointMap = strangers.joint_map
+        self._before: tuple[str, JointMap] = ("", self.map)  # the joint that was changed last, and the map before that
         self._asked = 0  # previews, so that a late one of an older map is not shown
         self._roles = {self.target.names[j]: role for role, j in known_roles(self.target, bringing.roles).items()}
         self.setAttribute(Qt.WidgetAttribute.WA_DeleteOnClose)
         self.setWindowTitle("Another skeleton")
-        self.resize(1080, 700)
+        self.resize(1200, 720)
         layout = QVBoxLayout(self)
         layout.setContentsMargins(16, 14, 16, 14)
         layout.setSpacing(8)
@@ -62,7 +63,7 @@ class JointMapDialog(QDialog):
         split.addWidget(self._table())
         split.addWidget(self._picture())
         split.setStretchFactor(0, 1)
-        split.setSizes([680, 400])
+        split.setSizes([800, 380])
         layout.addWidget(split, 1)
         self.missing = QLabel(self, wordWrap=True)
         layout.addWidget(self.missing)
@@ -109,7 +110,8 @@ class JointMapDialog(QDialog):
         self.tree.setAccessibleName("Joint map")
         header = self.tree.header()
         header.setStretchLastSection(True)
-        for column, width in enumerate((180, 190, 130, 52)):
+        self.tree.setHorizontalScrollBarPolicy(Qt.ScrollBarPolicy.ScrollBarAlwaysOff)
+        for column, width in enumerate((170, 180, 140, 56)):
             self.tree.setColumnWidth(column, width)
         header.setSectionResizeMode(3, QHeaderView.ResizeMode.Fixed)
         self.tree.currentItemChanged.connect(self._mark)
@@ -119,6 +121,7 @@ class JointMapDialog(QDialog):
             item = QTreeWidgetItem(self.tree, [name])
             item.setToolTip(0, name)
             item.setData(0, JOINT, name)
+            item.setSizeHint(0, QSize(0, 36))
             combo = QComboBox(self.tree, toolTip="The joint of your character that follows it")
             combo.setModel(names)
             combo.setAccessibleName(f"{name} moves")
@@ -154,12 +157,18 @@ class JointMapDialog(QDialog):
     # --- the map
 
     def _choose(self, joint: str, number: int) -> None:
-        """Let a joint of the character follow another, or none."""
+        """Let a joint of the character follow another, or none.
+
+        What one joint is given on the way there by keyboard is taken back, so that it takes nothing from the others.
+        """
+        if self._before[0] != joint:
+            self._before = (joint, self.map)
+        before = self._before[1]
         if number <= 0:
-            self.map = self.map.without(joint)
+            self.map = before.without(joint)
         else:
             target = self.target.names[number - 1]
-            self.map = self.map.with_pair(joint, target, self._roles.get(target))
+            self.map = before.with_pair(joint, target, self._roles.get(target))
         self._show()
         self._mark()
         self._play()
@@ -172,7 +181,7 @@ class JointMapDialog(QDialog):
             combo.setCurrentIndex(0 if pair is None else self.target.index(pair.target) + 1 if pair.target in self.target else 0)
             item.setText(2, pair.role.replace("_", " ") if pair is not None else "")
             item.setText(3, f"{pair.sure:.0%}" if pair is not None else "")
-            item.setText(4, pair.why if pair is not None else "nothing follows it")
+            item.setText(4, pair.why if pair is not None else "moves nothing")
             item.setToolTip(4, item.text(4))
             unsure = pair is not None and pair.sure < 0.7
             for column in range(5):

@@ -55,12 +55,16 @@ class StickFigures(QWidget):
             if n in self._seen:
                 self._figure(painter, box, self._seen[n], self.marked[n])
 
+    def _scale(self, box: QRectF) -> float:
+        """Pixels per height of a figure: both are drawn equally tall, whatever their size and what they do."""
+        return min(min(box.width() / wide, box.height() / tall) for wide, tall in (seen.size for seen in self._seen.values()))
+
     def _figure(self, painter: QPainter, box: QRectF, seen: _Seen, marked: str) -> None:
-        clip, low, size = seen.clip, seen.low, np.maximum(seen.high - seen.low, 1e-6)
+        clip, low = seen.clip, seen.low
         seconds = time.monotonic() % max(clip.frames / clip.fps, 0.1)
         now = seen.places[min(clip.frames - 1, int(seconds * clip.fps))]
-        scale = min(box.height() / size[1], box.width() / size[0])
-        middle = low[0] + size[0] / 2
+        scale = self._scale(box) / seen.height
+        middle = (low[0] + seen.high[0]) / 2
         points = [QPointF(box.center().x() + scale * (x - middle), box.bottom() - scale * (y - low[1])) for x, y in now]
         text = self.palette().text().color()
         painter.setPen(QPen(QColor(self.palette().mid().color()), 1))
@@ -93,3 +97,5 @@ class _Seen:
         across = across - across[:, drawn].mean(1, keepdims=True)
         self.places = np.stack([across, places[..., 1]], -1)
         self.low, self.high = self.places[:, drawn].min((0, 1)), self.places[:, drawn].max((0, 1))
+        self.height = max(float(np.ptp(rest[drawn, 1])), float(self.high[1] - self.low[1]) / 2, 1e-6)
+        self.size = tuple(np.maximum((self.high - self.low) / self.height, 1e-6).tolist())

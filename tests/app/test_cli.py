@@ -15,6 +15,8 @@ from metagraph.engines.reading import read_export
 from metagraph.formats.gltf import write_glb
 from metagraph.formats.store import SUFFIX, open_project, read_project, save_project
 from metagraph.graph import edits
+from metagraph.graph.model import Project
+from tests.conftest import Toy
 from tests.projects import clip
 
 ROOT = Path(__file__).resolve().parents[2]
@@ -152,6 +154,24 @@ def test_import_with_a_bad_file_is_exit_code_3_and_the_rest_comes_in(clips: Path
     assert "3 clips imported, 1 files left out" in out
     assert "left out: bad.bvh, " in err
     assert len(read_project(path).clips) == 3
+
+
+def test_import_retargets_clips_of_another_skeleton_when_told_to(
+    tmp_path: Path, toy: Toy, sample: Project, capsys: pytest.CaptureFixture[str]
+) -> None:
+    path, clips = tmp_path / f"p{SUFFIX}", tmp_path
+    write_glb(clips / "own.glb", [toy.clip("own", 0.5)])
+    motion = next(iter(sample.clips.values())).motion
+    assert motion is not None
+    write_glb(clips / "other.glb", [motion.trimmed(0, 20).renamed("other")])
+    assert main(["import", str(path), str(clips / "own.glb")]) == 0
+    assert main(["import", str(path), str(clips / "other.glb")]) == 1
+    assert "import it with --retarget" in capsys.readouterr().err
+    assert main(["import", str(path), str(clips / "other.glb"), "--retarget"]) == 0
+    out, err = capsys.readouterr()
+    assert "1 clips imported (1 retargeted), 0 files left out" in out
+    assert "note: other.glb: its clip was retargeted from a skeleton of 61 joints" in err
+    assert len(read_project(path).joint_maps) == 1
 
 
 def test_import_of_nothing_good_makes_no_project(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
