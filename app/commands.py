@@ -106,6 +106,8 @@ def commands(window: Window) -> tuple[Command, ...]:
         Command("bones", "&View", "Show the &skeleton", window.preview.toggle_bones, ("B",), checked=lambda: window.preview.bones),
         Command("machine", "&View", "The &machine beside the graph", window.show_machine, ("M",), line=True,
                 checked=lambda: window._machine_wanted),
+        Command("compatibility", "&View", "&Compatibility…", window.show_compatibility, ("Ctrl+K",),
+                tip="Which clip enters and leaves which stance without a jump", enabled=lambda: bool(d.project.clips)),
         Command("big", "&View", "Only the &character", window.only_character, ("F11",)),
         Command("arrange", "&View", "&Put the panels back", window.docks.arrange),
         Command("theme", "&View", "&Light theme", window.toggle_theme, checked=lambda: s.theme == "light", line=True, icon="theme"),

@@ -96,7 +96,7 @@ class Performance(QObject):
             return
         self._busy, self._again = True, False
         project, kept, length = self.document.project, self.kept, self.length
-        show, shown, anew = self.session.show, self.session.shown, self.session.anew
+        show, shown, anew = self.session.show, self.session.shown, self.session.tried is not None
         stances = {layer: s for layer in LAYERS if (s := self.session.stance(layer)) is not None}
         layer = self.session.layer
 

@@ -38,7 +38,7 @@ class Session(QObject):
         self.actions: tuple[str, ...] = ()  # selected in the graph
         self.show: Show = "plan"
         self.shown: str | None = None  # the clip (or action) shown alone or in context
-        self.anew = False  # a clip is shown as if it were placed on the current stance
+        self.tried: str | None = None  # the stance a clip is shown on as if it were placed there
         self.playing = True
         self.speed = 1.0
         self.loop = True
@@ -145,14 +145,16 @@ class Session(QObject):
         """Play a clip alone."""
         self._show("clip", clip)
 
-    def show_context(self, ident: str, anew: bool = False) -> None:
-        """Play a clip or an action in context: stance, clip, back to the stance, the other layers on. anew: a clip as if it were placed
-        on the current stance."""
-        self._show("context", ident, anew)
+    def show_context(self, ident: str, tried: str | None = None) -> None:
+        """Play a clip or an action in context: stance, clip, back to the stance, the other layers on. tried: the stance, current from
+        then on, that a clip is shown on as if it were placed there."""
+        if tried is not None:
+            self.set_stance(tried)
+        self._show("context", ident, tried)
 
-    def _show(self, show: Show, shown: str | None, anew: bool = False) -> None:
-        if (show, shown, anew) != (self.show, self.shown, self.anew):
-            self.anew = anew
+    def _show(self, show: Show, shown: str | None, tried: str | None = None) -> None:
+        if (show, shown, tried) != (self.show, self.shown, self.tried):
+            self.tried = tried
             if show == "plan":
                 self.seconds = self._plan_seconds
             elif self.show == "plan":

@@ -391,6 +391,15 @@ class Window(QMainWindow):
 
         ReviewDialog(self.document, self.session, self.jobs, self.figures, self.learned, self).show()
 
+    def show_compatibility(self) -> None:
+        """Show which clip can enter and leave which stance."""
+        from app.panels.matrix import MatrixDialog
+
+        dialog = self.findChild(MatrixDialog) or MatrixDialog(self.document, self.session, self.compatibility, self.jobs, self)
+        dialog.show()
+        dialog.raise_()
+        dialog.activateWindow()
+
     def toggle_watching(self) -> None:
         """Begin or end reading changed clip files anew."""
         self.watcher.set_on(not self.watcher.on)

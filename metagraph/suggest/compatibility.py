@@ -38,6 +38,7 @@ ACTIVE = 0.1  # of the way from the least to the greatest speed: alpha_W of equa
 SEAMLESS = 0.3  # of the threshold: a seam that needs no overlap
 BLEND = (0.15, 0.5)  # seconds, shortest and longest
 SLOWEST = 0.5  # seconds, the most that w_v can be: of motion whose speed never changes it would be endless
+ALIKE = 0.05  # of the threshold: moments that are as good as one another
 STILL = 1e-3  # metres summed over joints: a threshold below says only that nothing moved
 Span = tuple[float, float]
 
@@ -252,7 +253,8 @@ def fitting(clip: Clip, cost: Array) -> Fit:
     """Return where a clip can be entered and left, given its `costs` beside a stance."""
     times = _times(clip)
     into = entering(cost)
-    a, b = int(np.argmin(into)), int(len(cost) - 1 - np.argmin(cost[::-1]))
+    a = int(np.argmax(into <= into.min() + ALIKE))  # of moments that are as good, the first to enter at and the last to leave at
+    b = int(len(cost) - 1 - np.argmax(cost[::-1] <= cost.min() + ALIKE))
     return Fit(_spans(into <= 1, times), _spans(cost <= 1, times), float(times[a]), float(times[b]), float(into[a]), float(cost[b]))
 
 

@@ -1,0 +1,548 @@
+"""Which clip can enter and leave which stance without a visible jump: clips against the stances of a layer, at a glance."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+from math import inf, isfinite
+from typing import TYPE_CHECKING, Any
+
+from PySide6.QtCore import QAbstractTableModel, QModelIndex, QPersistentModelIndex, QRectF, QSize, QSortFilterProxyModel, Qt
+from PySide6.QtGui import QColor, QFontMetrics, QPainter, QPainterPath, QPen
+from PySide6.QtWidgets import (
+    QAbstractItemView,
+    QComboBox,
+    QDialog,
+    QHBoxLayout,
+    QHeaderView,
+    QLabel,
+    QLineEdit,
+    QPushButton,
+    QStyle,
+    QStyledItemDelegate,
+    QStyleOptionViewItem,
+    QTableView,
+    QVBoxLayout,
+    QWidget,
+)
+
+from app.compatibility import Compatibility, proposed_fields
+from app.document import Document
+from app.jobs import Job, Jobs
+from app.session import Session
+from app.theme import KIND_MARKS, KIND_TITLES, Theme, strengthen, theme
+from app.words import many
+from metagraph.graph import edits
+from metagraph.graph.model import KINDS, Action, Kind, Project
+
+if TYPE_CHECKING:
+    from metagraph.suggest.compatibility import Matrix
+
+Index = QModelIndex | QPersistentModelIndex
+CELL = Qt.ItemDataRole.UserRole
+SORT = Qt.ItemDataRole.UserRole + 1
+CLIP, USES, FIRST = 0, 1, 2  # columns; from FIRST on, stances
+BLENDED = 2.0  # times what shows as a jump: what the blend of a dropped clip, 0.2 s, hides
+MARK = 15.0  # pixels
+ROW = 26
+
+
+@dataclass(frozen=True)
+class Cell:
+    """A clip beside a stance: costs of what shows as a jump, and the best moments, seconds. here: kinds it is placed there as."""
+
+    enter: float
+    leave: float
+    enter_at: float
+    leave_at: float
+    here: tuple[Kind, ...] = ()
+
+    @property
+    def worst(self) -> float:
+        return max(self.enter, self.leave)
+
+
+def grade(cost: float) -> int:
+    """Return 0 for what does not show, 1 for what a blend hides, 2 for a jump, 3 for nothing known."""
+    return 0 if cost <= 1 else 1 if cost <= BLENDED else 2 if isfinite(cost) else 3
+
+
+def words_of(cost: float, seconds: float, what: str) -> str:
+    """Say a half: "leaves at 1.24 s: 0.6 of what shows as a jump"."""
+    if not isfinite(cost):
+        return f"{what}: nothing to compare"
+    of = "of" if cost <= 1 else "times"
+    more = {0: "", 1: "; a usual blend hides it"}.get(grade(cost), "; a usual blend does not hide it")
+    return f"{what} at {seconds:.2f} s: {cost:.1f} {of} what shows as a jump{more}"
+
+
+def told(cell: Cell, clip: str, stance: str) -> str:
+    """Say a cell in two lines under its names."""
+    lines = [f"{clip}  ·  {stance}", words_of(cell.enter, cell.enter_at, "enters"), words_of(cell.leave, cell.leave_at, "leaves")]
+    if cell.here:
+        lines.append(f"placed here as {' and '.join(cell.here)}")
+    return "\n".join(lines)
+
+
+@dataclass
+class Rows:
+    """What the table shows. kinds: (clip, stance) -> kinds placed there. place: row of a clip in the matrix."""
+
+    project: Project
+    matrix: Matrix
+    kinds: dict[tuple[str, str], tuple[Kind, ...]] = field(default_factory=dict)
+    uses: dict[str, tuple[Kind, ...]] = field(default_factory=dict)
+
+    @classmethod
+    def of(cls, project: Project, matrix: Matrix) -> Rows:
+        out = cls(project, matrix)
+        at: dict[tuple[str, str], dict[Kind, None]] = {}
+        uses: dict[str, dict[Kind, None]] = {}
+        for action in project.graphs[matrix.layer].actions.values():
+            at.setdefault((action.clip, action.stance), {})[action.kind] = None
+            uses.setdefault(action.clip, {})[action.kind] = None
+        out.kinds = {k: tuple(v) for k, v in at.items()}
+        out.uses = {k: tuple(v) for k, v in uses.items()}
+        return out
+
+
+class MatrixModel(QAbstractTableModel):
+    """Clips down, stances across."""
+
+    def __init__(self, parent: QWidget) -> None:
+        super().__init__(parent)
+        self.rows: Rows | None = None
+
+    def show_rows(self, rows: Rows | None) -> None:
+        """Show other rows; where clips and stances stay, selection and scrolling do."""
+        old, self.rows = self.rows, rows
+        if old is not None and rows is not None and (old.matrix.clips, old.matrix.stances) == (rows.matrix.clips, rows.matrix.stances):
+            self.dataChanged.emit(self.index(0, 0), self.index(self.rowCount() - 1, self.columnCount() - 1))
+            self.headerDataChanged.emit(Qt.Orientation.Horizontal, 0, self.columnCount() - 1)
+            return
+        self.beginResetModel()
+        self.endResetModel()
+
+    def rowCount(self, parent: Index = QModelIndex()) -> int:  # noqa: B008 - Qt's signature
+        return len(self.rows.matrix.clips) if self.rows is not None and not parent.isValid() else 0
+
+    def columnCount(self, parent: Index = QModelIndex()) -> int:  # noqa: B008 - Qt's signature
+        return FIRST + len(self.rows.matrix.stances) if self.rows is not None and not parent.isValid() else 0
+
+    def clip(self, row: int) -> str:
+        return self.rows.matrix.clips[row] if self.rows is not None else ""
+
+    def stance(self, column: int) -> str | None:
+        return self.rows.matrix.stances[column - FIRST] if self.rows is not None and column >= FIRST else None
+
+    def cell(self, row: int, column: int) -> Cell | None:
+        """Return what a cell holds, None for the first columns."""
+        if self.rows is None or column < FIRST:
+            return None
+        m, c = self.rows.matrix, column - FIRST
+        here = self.rows.kinds.get((m.clips[row], m.stances[c]), ())
+        return Cell(float(m.enter_cost[row, c]), float(m.leave_cost[row, c]), float(m.enter_at[row, c]), float(m.leave_at[row, c]), here)
+
+    def data(self, index: Index, role: int = Qt.ItemDataRole.DisplayRole) -> Any:
+        if self.rows is None or not index.isValid():
+            return None
+        row, column = index.row(), index.column()
+        clip = self.clip(row)
+        entry = self.rows.project.clips.get(clip)
+        if entry is None:
+            return None  # it was removed meanwhile
+        if column == CLIP:
+            if role in (Qt.ItemDataRole.DisplayRole, Qt.ItemDataRole.ToolTipRole):
+                return entry.name
+            return entry.name.lower() if role == SORT else None
+        if column == USES:
+            kinds = self.rows.uses.get(clip, ())
+            if role == CELL:
+                return kinds
+            if role in (Qt.ItemDataRole.ToolTipRole, Qt.ItemDataRole.AccessibleTextRole):
+                return ", ".join(kinds) or "not placed on this layer"
+            return KINDS.index(kinds[0]) if role == SORT and kinds else len(KINDS) if role == SORT else None
+        cell = self.cell(row, column)
+        if cell is None:
+            return None
+        if role == CELL:
+            return cell
+        if role == SORT:
+            return cell.worst if isfinite(cell.worst) else 1e9
+        if role in (Qt.ItemDataRole.ToolTipRole, Qt.ItemDataRole.AccessibleTextRole):
+            return told(cell, entry.name, self._name(column))
+        return None
+
+    def _name(self, column: int) -> str:
+        found = self.rows.project.stance(self.stance(column)) if self.rows is not None else None
+        return found.name if found is not None else "?"
+
+    def headerData(self, section: int, orientation: Qt.Orientation, role: int = Qt.ItemDataRole.DisplayRole) -> Any:
+        if orientation != Qt.Orientation.Horizontal:
+            return None
+        if role == Qt.ItemDataRole.DisplayRole:
+            return {CLIP: "Clip", USES: "Is"}.get(section) or self._name(section)
+        if role == Qt.ItemDataRole.TextAlignmentRole and section < FIRST:
+            return Qt.AlignmentFlag.AlignLeft | Qt.AlignmentFlag.AlignVCenter
+        if role == Qt.ItemDataRole.ToolTipRole:
+            if section >= FIRST:
+                return f"Click to sort by how well clips fit '{self._name(section)}'"
+            return "Click to sort" if section == CLIP else "What it is placed as on this layer"
+        return None
+
+
+class Narrowed(QSortFilterProxyModel):
+    """Searched by name, narrowed to clips that are placed on the layer or are not, sorted; what is placed first."""
+
+    def __init__(self, model: MatrixModel, parent: QWidget) -> None:
+        super().__init__(parent)
+        self.words: tuple[str, ...] = ()
+        self.which = "all"
+        self.setSourceModel(model)
+        self.setSortRole(SORT)
+
+    def narrow(self, text: str, which: str) -> None:
+        self.words, self.which = tuple(text.lower().split()), which
+        self.invalidate()
+
+    def filterAcceptsRow(self, row: int, parent: Index) -> bool:
+        rows = self.sourceModel().rows  # type: ignore[attr-defined]
+        if rows is None:
+            return False
+        clip = rows.matrix.clips[row]
+        if self.which != "all" and (clip in rows.uses) != (self.which == "placed"):
+            return False
+        entry = rows.project.clips.get(clip)
+        return entry is not None and all(w in entry.name.lower() for w in self.words)
+
+
+def half(rect: QRectF, side: str) -> QPainterPath:
+    """Return half a disc: "in" is the left one, its arrow's way into the clip, "out" the right one."""
+    path = QPainterPath(rect.center())
+    path.arcTo(rect, 90, 180 if side == "in" else -180)
+    path.closeSubpath()
+    return path
+
+
+def draw_half(painter: QPainter, t: Theme, rect: QRectF, side: str, cost: float) -> None:
+    """Draw one half of a mark: filled, outlined, a cross, or a dot; shape says it as well as colour."""
+    moved = rect.translated(-1.5 if side == "in" else 1.5, 0)
+    level = grade(cost)
+    if level == 0:
+        painter.setPen(Qt.PenStyle.NoPen)
+        painter.setBrush(t.kind("stance"))
+        painter.drawPath(half(moved, side))
+    elif level == 1:
+        painter.setPen(QPen(QColor(t.warning), 1.4))
+        painter.setBrush(Qt.BrushStyle.NoBrush)
+        painter.drawPath(half(moved.adjusted(0.7, 0.7, -0.7, -0.7), side))
+    else:
+        x = rect.center().x() + (-0.32 if side == "in" else 0.32) * rect.width()
+        y, r = rect.center().y(), 3.2 if level == 2 else 0.8
+        painter.setPen(QPen(QColor(t.dim), 1.5))
+        painter.drawLine(round(x - r), round(y - r), round(x + r), round(y + r))
+        painter.drawLine(round(x - r), round(y + r), round(x + r), round(y - r))
+
+
+class Marks(QStyledItemDelegate):
+    """Draws cells and kinds."""
+
+    def __init__(self, session: Session, parent: QWidget) -> None:
+        super().__init__(parent)
+        self.session = session
+
+    def sizeHint(self, option: QStyleOptionViewItem, index: Index) -> QSize:
+        return QSize(84, ROW)
+
+    def paint(self, painter: QPainter, option: QStyleOptionViewItem, index: Index) -> None:
+        t, rect = theme(self.session.theme), QRectF(option.rect)  # type: ignore[attr-defined]
+        painter.save()
+        if option.state & QStyle.StateFlag.State_Selected:  # type: ignore[attr-defined]
+            painter.fillRect(rect, QColor(t.hover))
+        painter.setRenderHint(QPainter.RenderHint.Antialiasing)
+        value = index.data(CELL)
+        if isinstance(value, Cell):
+            if value.here:
+                painter.setPen(QPen(t.kind(value.here[0]), 1.3))
+                painter.setBrush(Qt.BrushStyle.NoBrush)
+                painter.drawRoundedRect(QRectF(rect.center().x() - 17, rect.center().y() - 11, 34, 22), 5, 5)
+            disc = QRectF(rect.center().x() - MARK / 2, rect.center().y() - MARK / 2, MARK, MARK)
+            draw_half(painter, t, disc, "in", value.enter)
+            draw_half(painter, t, disc, "out", value.leave)
+            if option.state & QStyle.StateFlag.State_HasFocus:  # type: ignore[attr-defined]
+                painter.setPen(QPen(QColor(t.text), 1.4))
+                painter.setBrush(Qt.BrushStyle.NoBrush)
+                painter.drawRoundedRect(rect.adjusted(2, 2, -2, -2), 4, 4)
+        elif value:
+            x = rect.left() + 8
+            for kind in value:
+                painter.setPen(t.kind(kind))
+                painter.drawText(QRectF(x, rect.top(), 18, rect.height()), Qt.AlignmentFlag.AlignVCenter, KIND_MARKS[kind])
+                x += 17
+        painter.restore()
+
+
+class Legend(QWidget):
+    """What the marks mean."""
+
+    PARTS = ((0.5, "no jump"), (2.0, "a blend hides it"), (9.0, "jumps"))
+
+    def __init__(self, session: Session, parent: QWidget) -> None:
+        super().__init__(parent)
+        self.session = session
+        self.setFixedHeight(24)
+        self.setAccessibleName("Left half: entered from the stance. Right half: left to it.")
+        session.theme_changed.connect(self.update)
+
+    def paintEvent(self, event: object) -> None:
+        t = theme(self.session.theme)
+        painter = QPainter(self)
+        painter.setRenderHint(QPainter.RenderHint.Antialiasing)
+        x, y = 2.0, self.height() / 2
+        metrics = QFontMetrics(self.font())
+
+        def say(words: str, gap: float) -> None:
+            nonlocal x
+            painter.setPen(QColor(t.dim))
+            wide = metrics.horizontalAdvance(words)
+            painter.drawText(QRectF(x, 0, wide + 4, self.height()), Qt.AlignmentFlag.AlignVCenter, words)
+            x += wide + gap
+
+        for side, words in (("in", "enters from the stance"), ("out", "leaves to it")):
+            draw_half(painter, t, QRectF(x, y - MARK / 2, MARK, MARK), side, 0.0)
+            x += MARK + 5
+            say(words, 16)
+        x += 10
+        for cost, words in self.PARTS:
+            disc = QRectF(x, y - MARK / 2, MARK, MARK)
+            draw_half(painter, t, disc, "in", cost)
+            draw_half(painter, t, disc, "out", cost)
+            x += MARK + 6
+            say(words, 16)
+        painter.end()
+
+
+class MatrixDialog(QDialog):
+    """Stays open beside the window; a click plays a clip in the context of a stance, a double click places it there."""
+
+    def __init__(
+        self, document: Document, session: Session, compatibility: Compatibility, jobs: Jobs, parent: QWidget | None = None
+    ) -> None:
+        super().__init__(parent)
+        self.document, self.session, self.compatibility, self.jobs = document, session, compatibility, jobs
+        self.setAttribute(Qt.WidgetAttribute.WA_DeleteOnClose)
+        self.setWindowTitle("Compatibility")
+        self.resize(1000, 680)
+        self.title = QLabel(self)
+        self.title.setProperty("heading", True)
+        self.search = QLineEdit(self, placeholderText="Search clips", clearButtonEnabled=True)
+        self.search.setAccessibleName("Search clips")
+        self.search.textChanged.connect(self._narrow)
+        self.which = QComboBox(self)
+        for text, key in (("All clips", "all"), ("Placed on this layer", "placed"), ("Not placed on it", "free")):
+            self.which.addItem(text, key)
+        self.which.activated.connect(self._narrow)
+        self.model = MatrixModel(self)
+        self.proxy = Narrowed(self.model, self)
+        self.table = QTableView(self)
+        self.table.setModel(self.proxy)
+        self.table.setAccessibleName("Clips against stances")
+        self.table.setSortingEnabled(True)
+        self.table.setItemDelegate(Marks(session, self))
+        self.table.setItemDelegateForColumn(CLIP, QStyledItemDelegate(self.table))
+        self.table.setSelectionMode(QAbstractItemView.SelectionMode.SingleSelection)
+        self.table.setShowGrid(False)
+        self.table.setAlternatingRowColors(False)
+        self.table.setMouseTracking(True)
+        self.table.setVerticalScrollMode(QAbstractItemView.ScrollMode.ScrollPerPixel)
+        rows = self.table.verticalHeader()
+        rows.hide()
+        rows.setSectionResizeMode(QHeaderView.ResizeMode.Fixed)
+        rows.setDefaultSectionSize(ROW)
+        self.table.horizontalHeader().setMinimumSectionSize(44)
+        self.table.horizontalHeader().setTextElideMode(Qt.TextElideMode.ElideRight)
+        self.table.horizontalHeader().setHighlightSections(False)
+        self.table.clicked.connect(self._play)
+        self.table.doubleClicked.connect(lambda _: self.place())
+        self.table.activated.connect(self._play)
+        self.table.selectionModel().currentChanged.connect(lambda *_: self._show_current())
+        self.words = QLabel(self, wordWrap=True)
+        self.words.setMinimumHeight(56)
+        self.words.setAlignment(Qt.AlignmentFlag.AlignTop)
+        self.kind = QComboBox(self)
+        self.kind.setAccessibleName("Place as")
+        for kind in KINDS:
+            self.kind.addItem(f"{KIND_MARKS[kind]} {KIND_TITLES[kind]}", kind)
+        self.kind.setCurrentIndex(KINDS.index("gesture"))
+        self.kind.currentIndexChanged.connect(lambda _: self._show_current())
+        self.go = QPushButton(self)
+        self.go.clicked.connect(self.place)
+        strengthen(self.go)
+        close = QPushButton("Close", self)
+        close.clicked.connect(self.close)
+        self.go.setAutoDefault(False)
+        close.setAutoDefault(False)
+        self._lay_out(close)
+        for signal in (session.layer_changed, compatibility.changed):
+            signal.connect(self.refresh)
+        compatibility.compared.connect(lambda layer: self.refresh() if layer == self.session.layer else None)
+        document.changed.connect(self._follow)
+        session.theme_changed.connect(self.table.viewport().update)
+        self.refresh()
+        self._show_current()
+
+    def _lay_out(self, close: QPushButton) -> None:
+        box = QVBoxLayout(self)
+        box.setContentsMargins(14, 12, 14, 12)
+        box.setSpacing(8)
+        top = QHBoxLayout()
+        top.addWidget(self.title, 1)
+        top.addWidget(self.search, 1)
+        top.addWidget(self.which)
+        box.addLayout(top)
+        box.addWidget(Legend(self.session, self))
+        box.addWidget(self.table, 1)
+        box.addWidget(self.words)
+        row = QHBoxLayout()
+        row.addWidget(QLabel("Place as", self))
+        row.addWidget(self.kind)
+        row.addWidget(self.go)
+        row.addStretch(1)
+        row.addWidget(close)
+        box.addLayout(row)
+
+    # --- showing
+
+    def _follow(self, before: Project, after: Project) -> None:
+        if before.graphs is not after.graphs or before.clips is not after.clips:
+            self.refresh()
+
+    def refresh(self) -> None:
+        """Show the current layer as it was last compared; what is stale is compared anew meanwhile."""
+        layer, project = self.session.layer, self.document.project
+        matrix = self.compatibility.matrix(layer)
+        stances = tuple(project.graphs[layer].stances)
+        if matrix is None or matrix.layer != layer or matrix.stances != stances:
+            self.model.show_rows(None)
+            waits = "Comparing clips with stances…" if stances and project.clips else "Make a stance first: drop a resting clip."
+            self.title.setText(f"{layer.capitalize()} layer")
+            self.words.setText(waits)
+            return
+        fresh = self.model.rows is None or self.model.rows.matrix.stances != stances
+        self.model.show_rows(Rows.of(project, matrix))
+        self.title.setText(f"{layer.capitalize()} layer, {many(len(matrix.clips), 'clip')}")
+        if fresh:
+            self._arrange()
+        self.proxy.invalidate()
+        self._show_current()
+
+    def _arrange(self) -> None:
+        header, metrics = self.table.horizontalHeader(), QFontMetrics(self.table.font())
+        header.resizeSection(CLIP, 264)
+        header.resizeSection(USES, 64)
+        for column in range(FIRST, self.model.columnCount()):
+            name = str(self.model.headerData(column, Qt.Orientation.Horizontal))
+            header.resizeSection(column, min(150, max(72, metrics.horizontalAdvance(name) + 34)))
+        self.table.sortByColumn(USES, Qt.SortOrder.AscendingOrder)
+
+    def _narrow(self, *_: object) -> None:
+        self.proxy.narrow(self.search.text(), str(self.which.currentData()))
+
+    def current(self) -> tuple[str, str | None, Cell | None] | None:
+        """Return the clip and the stance of the current cell, and what it holds."""
+        index = self.proxy.mapToSource(self.table.currentIndex())
+        if not index.isValid():
+            return None
+        return self.model.clip(index.row()), self.model.stance(index.column()), self.model.cell(index.row(), index.column())
+
+    def _show_current(self) -> None:
+        found, project = self.current(), self.document.project
+        stance = project.stance(found[1]) if found is not None else None
+        entry = project.clips.get(found[0]) if found is not None else None
+        self.go.setEnabled(stance is not None and entry is not None)
+        self.go.setText("Place here" if stance is None else f"Place on '{stance.name}'")
+        if self.model.rows is None:
+            return
+        if found is None or found[2] is None or stance is None or entry is None:
+            self.words.setText("Click a mark to see the clip go from that stance and back to it; double-click to place it there.")
+            return
+        words = told(found[2], entry.name, stance.name)
+        if self.kind.currentData() == "transition":
+            end = project.stance(self._end(found[0], stance.id))
+            words += f"\nas a transition it would end in '{end.name}'" if end is not None else "\na transition needs a second stance"
+        self.words.setText(words)
+
+    # --- acting
+
+    def _play(self, *_: object) -> None:
+        found = self.current()
+        if found is None:
+            return
+        clip, stance, _cell = found
+        here = [a for a in self.document.project.uses.get(clip, ()) if stance is None or a.stance == stance]
+        here = [a for a in here if a.layer == self.session.layer]
+        if stance is None:
+            self.session.select_clips((clip,))
+            self.session.show_clip(clip)
+        elif here:
+            self.session.jump(action=here[0].id)
+            self.session.show_context(here[0].id)
+        else:
+            self.session.select_clips((clip,))
+            self.session.show_context(clip, tried=stance)
+
+    def _end(self, clip: str, stance: str) -> str | None:
+        """Return the stance, other than where it starts, that a clip leaves to without a jump the latest, else with the least."""
+        rows = self.model.rows
+        if rows is None or clip not in rows.matrix.clips:
+            return None
+        m, row = rows.matrix, rows.matrix.clips.index(clip)
+        others = [
+            (cost > 1, -float(at) if cost <= 1 else float(cost), s)
+            for cost, at, s in zip(m.leave_cost[row], m.leave_at[row], m.stances, strict=True)
+            if s != stance
+        ]
+        return min(others, default=(True, inf, None))[2]
+
+    def place(self) -> None:
+        """Place the current clip on the current stance, with the times proposed for it, in one step."""
+        found = self.current()
+        if found is None or found[1] is None:
+            return
+        clip, stance, kind, layer = found[0], found[1], self.kind.currentData(), self.session.layer
+        project, judged = self.document.project, self.compatibility.judged
+        end = self._end(clip, stance) if kind == "transition" else None
+        why = edits.refusal(project, [clip], layer, kind, stance, end)
+        if why is not None:
+            self.words.setText(f"{why[:1].upper()}{why[1:]}.")
+            return
+        measured = judged.measured[layer] if judged is not None else None
+
+        def work(_: Job) -> Mapping[str, Any]:
+            from metagraph.suggest.jumps import curves
+
+            after = edits.place(project, [clip], layer, kind, stance, end)
+            action = _newest(project, after)
+            seen = curves(after, measured, action) if measured is not None else None
+            return proposed_fields(action, seen.proposed, after.clips[clip].duration) if seen is not None else {}
+
+        def done(timing: Mapping[str, Any]) -> None:
+            def placed(p: Project) -> Project:
+                after = edits.place(p, [clip], layer, kind, stance, end)
+                return edits.update_actions(after, [_newest(p, after).id], timing=timing)
+
+            before = self.document.project
+            try:
+                self.document.edit("Place 1 clip", placed)
+            except edits.EditError as error:
+                self.words.setText(str(error))
+                return
+            action = _newest(before, self.document.project)
+            self.session.jump(action=action.id)
+            self.session.show_context(action.id)
+
+        self.jobs.start("place", work, done, lambda error: self.words.setText(str(error)), quick=True)
+
+
+def _newest(before: Project, after: Project) -> Action:
+    return next(a for a in after.actions() if before.action(a.id) is None)
