@@ -13,12 +13,13 @@ from typing import Any, Literal
 
 import numpy as np
 
-from metagraph.graph.model import KINDS, LAYERS, LIMBS, Layer, Limb, Project
+from metagraph.graph.model import KINDS, LAYERS, LIMBS, Action, Layer, Limb, Project
 from metagraph.suggest.accept import Taken, accept
 from metagraph.suggest.alike import Alike, Example
 from metagraph.suggest.belief import Belief
 from metagraph.suggest.combine import Agreed, combine
 from metagraph.suggest.details import masked, rest_of, stroked, timed, weighted
+from metagraph.suggest.measures import walks
 from metagraph.suggest.motion_guess import MotionGuess, guess
 from metagraph.suggest.proposal import Place, Proposal, Proposals, Rest, plain, words_of
 from metagraph.suggest.stances import Shape, discovered, known
@@ -43,6 +44,7 @@ __all__ = [
 Source = Literal["name", "motion", "learned"]
 SOURCES: tuple[Source, ...] = ("name", "motion", "learned")
 LOOP_VOTE = 1.5  # how much the name of a clip that rests in a stance counts to name it, beside one that begins or ends there
+LENT = 0.5  # of a clip that a stance plays, below which it only borrows a moment of it
 NEVER = 0.3  # of how sure a source is at least, so that its vote counts
 
 
@@ -69,6 +71,16 @@ def measures_of(traits: Traits | None) -> Any:
     return np.array(rows, float)
 
 
+def waiting(project: Project) -> list[str]:
+    """Return the clips that are not placed yet; one that only lends a stance a still moment is not."""
+    return [clip for clip in project.clips if all(_lends(project, action) for action in project.uses.get(clip, ()))]
+
+
+def _lends(project: Project, action: Action) -> bool:
+    motion, end = project.clips[action.clip].motion, action.timing.end
+    return action.kind == "stance" and motion is not None and end is not None and end - action.timing.start < LENT * motion.duration
+
+
 def propose(
     project: Project,
     clips: Sequence[str] | None = None,
@@ -82,7 +94,7 @@ def propose(
 
     Never raises for what clips are; one of which nothing is known is left out.
     """
-    chosen = [c for c in (project.clips if clips is None else clips) if c in project.clips and (clips is not None or c not in project.uses)]
+    chosen = waiting(project) if clips is None else [c for c in clips if c in project.clips]
     traits = traits_of(project, cancelled, progress) if {"motion", "learned"} & set(sources) else {}
     names = read_names([project.clips[c].name for c in chosen], patterns) if "name" in sources else {}
     shapes: Mapping[Layer, Sequence[Shape]] = {}
@@ -91,7 +103,10 @@ def propose(
         there, found = known(project, traits), discovered(mine)
         shapes = {layer: there.get(layer) or found.get(layer, ()) for layer in LAYERS}
     alike = Alike([*examples_of(project, traits), *examples]) if "learned" in sources else Alike([])
-    heard = [_Heard(c, project.clips[c].name, names.get(project.clips[c].name, NameGuess()), traits.get(c)) for c in chosen]
+    heard = [
+        _Heard(c, project.clips[c].name, names.get(project.clips[c].name, NameGuess()), traits.get(c), named="name" in sources)
+        for c in chosen
+    ]
     for each in heard:
         if each.traits is not None and "motion" in sources:
             each.motion = guess(each.traits, shapes)
@@ -114,7 +129,8 @@ def propose(
 
 @dataclass
 class _Heard:
-    """What the sources say of a clip. motion: what it seems to be; beside: the same when it is of the layer that all agree on."""
+    """What the sources say of a clip. motion: what it seems to be; beside: the same when it is of the layer that all agree on.
+    named: whether names may speak."""
 
     clip: str
     name: str
@@ -124,6 +140,7 @@ class _Heard:
     beside: MotionGuess | None = None
     layer: Layer = "arms"
     learned: dict[str, Belief[str]] = field(default_factory=dict)
+    named: bool = True
 
     def votes(self, what: str) -> list[Belief[Any]]:
         """Return what is believed of a field, source by source."""
@@ -138,6 +155,19 @@ class _Heard:
     @property
     def ends(self) -> Belief[Shape] | None:
         return self.beside.end_stance if self.beside is not None else None
+
+    @property
+    def walks(self) -> bool:
+        """Whether it is a cycle of steps, as far as the motion is asked."""
+        return self.motion is not None and self.traits is not None and walks(self.traits)
+
+    @property
+    def step(self) -> str:
+        """What the stance of a cycle of steps is called: as the clip, without what tells variants apart."""
+        words = list(words_of(self.name)) if self.named else []
+        while len(words) > 1 and (words[-1].isdigit() or len(words[-1]) == 1):
+            words.pop()
+        return " ".join(words) or f"steps {self.clip}"
 
     def agreed(self, what: str, count: int) -> Agreed[Any] | None:
         return combine(self.votes(what), count)
@@ -164,6 +194,10 @@ class _Places:
                     key = f"new {layer} {plain(said.value)}"
                     self.by_key.setdefault(key, Place(key, layer, said.value))
                     self.of_word[(layer, plain(said.value))] = key
+        for each in heard:
+            if each.walks:
+                key = f"new body {each.step}"
+                self.by_key.setdefault(key, Place(key, "body", each.step))
 
     def _add_shape(self, layer: Layer, number: int, shape: Shape, heard: Sequence[_Heard]) -> None:
         """Take a shape in; words that mostly name clips which begin in it are its names."""
@@ -187,6 +221,8 @@ class _Places:
 
     def vote(self, each: _Heard, what: str, layer: Layer) -> list[Belief[str]]:
         """Return beliefs about a stance as keys."""
+        if each.walks and what == "stance" and layer == "body":
+            return [Belief(f"new body {each.step}", 0.7, "a cycle of steps is a stance of its own, which goes on until it is left")]
         out: list[Belief[str]] = []
         said: Belief[str] | None = getattr(each.said, what)
         if said is not None and (key := self.of_word.get((layer, plain(said.value)))) is not None:

@@ -16,7 +16,7 @@ from numpy.typing import NDArray
 
 from metagraph.graph.model import Project
 from metagraph.graph.words import KINDS, LAYERS, Layer
-from metagraph.suggest.measures import HELD, SUREST, energy, layer_of, nothing, resting
+from metagraph.suggest.measures import HELD, SUREST, energy, layer_of, nothing, resting, walks
 from metagraph.suggest.traits import LayerTraits, Traits
 
 Array = NDArray[Any]
@@ -114,7 +114,7 @@ def _weights(names: Sequence[str]) -> Array:
 
 def discover(traits: Mapping[str, Traits], layer: Layer) -> tuple[Shape, ...]:
     """Return the stances that clips of a layer rest, begin and end in, the one with the most members first."""
-    moving = {clip: t for clip, t in sorted(traits.items()) if not (0 < t.duration < HELD and nothing(t))}
+    moving = {clip: t for clip, t in sorted(traits.items()) if not (0 < t.duration < HELD and nothing(t)) and not walks(t)}
     mine = {clip: t for clip, t in moving.items() if t.layers[layer].names and layer_of(t).value == layer}
     if not mine:
         return ()

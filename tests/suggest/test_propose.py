@@ -2,12 +2,14 @@
 
 from __future__ import annotations
 
+import json
 from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
 import pytest
 
+from metagraph.formats.imports import import_files
 from metagraph.formats.store import open_project
 from metagraph.graph import edits
 from metagraph.graph.check import check
@@ -118,9 +120,104 @@ def test_clips_of_which_nothing_is_known_are_left_not_raised() -> None:
     assert set(taken.placed) | set(taken.left) == set(found.proposals) <= set(project.clips)
 
 
-def test_a_gesture_without_a_loop_in_its_stance_is_left_with_the_reason(practice: Project, truth: Any) -> None:
+def test_a_gesture_without_a_loop_in_its_stance_is_placed_and_the_stance_held_in_a_still_moment(practice: Project, truth: Any) -> None:
     gestures = [i for i, (a, _) in truth.items() if a.kind == "gesture" and a.layer == "arms"][:6]
     found = propose(practice, gestures, sources=("name",))
     taken = accept(practice, found)
+    assert set(taken.placed) == set(gestures) and not taken.left
+    assert [p for p in check(taken.project) if p.severity == "error"] == []
+    for stance, rest in taken.held.items():
+        (loop,) = taken.project.graphs["arms"].of(stance, "stance")
+        assert loop.clip == rest.clip and loop.timing.loop and (loop.timing.start, loop.timing.end) == (rest.start, rest.end)
+        assert rest.reason.startswith("no clip rests there; '") and "is still for its first" in rest.reason
+
+
+def test_a_clip_that_only_lends_a_stance_a_moment_still_waits_to_be_placed(practice: Project, truth: Any) -> None:
+    gestures = [i for i, (a, _) in truth.items() if a.kind == "gesture" and a.layer == "arms"][:6]
+    taken = accept(practice, propose(practice, gestures, sources=("name",)))
+    lending = {rest.clip for rest in taken.held.values()}
+    twice = [a.id for a in taken.project.actions() if a.clip in lending and a.kind == "gesture"]
+    assert lending <= set(propose(edits.remove_actions(taken.project, twice), sources=("name",)).proposals)
+
+
+def test_without_motion_nothing_shows_a_stance_and_the_reason_is_told(practice: Project, truth: Any) -> None:
+    gestures = [i for i, (a, _) in truth.items() if a.kind == "gesture" and a.layer == "arms"][:6]
+    bare = replace(practice, clips={i: replace(c, motion=None) for i, c in practice.clips.items()})
+    taken = accept(bare, propose(bare, gestures, sources=("name",)))
     assert not taken.placed and all("no resting clip shows its stance" in why for why in taken.left.values())
-    assert taken.project.graphs == practice.graphs and set(LAYERS) == set(taken.project.graphs)
+    assert taken.project.graphs == bare.graphs and set(LAYERS) == set(taken.project.graphs)
+
+
+def test_transitions_that_are_accepted_unseen_end_in_the_right_stance(practice: Project, truth: Any) -> None:
+    taken = accept(practice, propose(practice))
+    count = 0
+    for action in taken.project.actions():
+        told, sample = truth[action.clip]
+        if told.kind == "transition":
+            count += 1
+            assert action.kind == "transition"
+            ends = [taken.project.stance(action.end_stance).name, sample.stance(told.end_stance).name]  # type: ignore[union-attr, arg-type]
+            assert ends[0] == ends[1]
+    assert count == 34
+
+
+@pytest.mark.parametrize(("name", "count"), [("kaykit-rogue", 6), ("robot-expressive", 2)])
+def test_so_they_do_on_sets_made_by_others(name: str, count: int) -> None:
+    folder = ROOT.parent / "shared" / "data" / name
+    if not folder.is_dir():
+        pytest.skip(f"{folder} is not there")
+    told = json.loads((ROOT / "tests" / "suggest" / "truth" / f"{name}.json").read_text("utf-8"))["clips"]
+    project = import_files(Project(), None, [folder]).into(Project())
+    taken = accept(project, propose(project))
+    stances: dict[str, set[str]] = {}
+    for action in taken.project.actions():
+        row = told.get(project.clips[action.clip].name)
+        if row and row["kind"] == action.kind == "transition":
+            count -= 1
+            stances.setdefault(str(action.end_stance), set()).add(row["end_stance"])
+        if row and row["kind"] == action.kind == "stance":
+            stances.setdefault(action.stance, set()).add(row["stance"])
+    assert count == 0 and all(len(names) == 1 for names in stances.values())
+
+
+def test_every_part_of_a_proposal_has_a_confidence_and_a_reason(practice: Project, truth: Any) -> None:
+    found = propose(practice)
+    usual = {"start", "end", "blend_in", "blend_out", "earliest_exit", "loop", "mask", "likelihood"}
+    for p in found.proposals.values():
+        assert set(p.details) == usual | ({"stroke"} if p.kind.value == "gesture" else set())
+        assert all(0 < b.confidence < 1 and b.reason for b in p.details.values())
+        assert p.timing.get("stroke") == (p.details["stroke"].value if "stroke" in p.details else None)
+
+
+def test_numbered_variants_share_the_weight_of_one(practice: Project, truth: Any) -> None:
+    found = propose(practice)
+    mine = [p for p in found.proposals.values() if practice.clips[p.clip].name.startswith("head_straight__nod_single")]
+    assert len(mine) > 1 and all(p.details["likelihood"].value == round(1 / len(mine), 3) for p in mine)
+    assert "share the weight of one" in mine[0].details["likelihood"].reason
+    taken = accept(practice, found, clips=[p.clip for p in found.proposals.values()])
+    (action,) = (a for a in taken.project.actions() if a.clip == mine[0].clip)
+    assert action.likelihood == mine[0].details["likelihood"].value
+    assert sum(a.likelihood for a in taken.project.actions() if a.clip in {p.clip for p in mine}) == pytest.approx(1, abs=0.01)
+    later = propose(edits.remove_actions(taken.project, [action.id]))
+    assert later.proposals[action.clip].details["likelihood"].value == action.likelihood
+
+
+def test_a_clip_that_nothing_says_the_stance_of_goes_where_most_are(practice: Project, truth: Any) -> None:
+    found = propose(practice, ["c1"], sources=("name",))
+    clips = {**practice.clips, "c1": replace(practice.clips["c1"], name="waving")}
+    lost = propose(replace(practice, clips=clips), ["c1"], sources=("name",)).proposals["c1"]
+    assert lost.stance is not None and lost.stance.confidence == 0.3 and "nothing says a stance" in lost.stance.reason
+    assert found.proposals["c1"].stance.confidence > 0.5  # type: ignore[union-attr]
+
+
+def test_walks_are_stances_of_their_own() -> None:
+    folder = ROOT.parent / "shared" / "data" / "kaykit-rogue"
+    if not folder.is_dir():
+        pytest.skip(f"{folder} is not there")
+    project = import_files(Project(), None, [folder]).into(Project())
+    found = propose(project)
+    by_name = {project.clips[p.clip].name: p for p in found.proposals.values()}
+    walks = [by_name[f"Walking_{x}"] for x in "ABC"]
+    assert {(p.kind.value, p.layer.value, found.places[p.stance.value].name) for p in walks if p.stance} == {("stance", "body", "walking")}
+    assert all("goes on walking" in p.kind.reason for p in walks)
+    assert by_name["Interact"].kind.value == "gesture"
