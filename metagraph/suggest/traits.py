@@ -20,7 +20,7 @@ from metagraph.graph.words import LAYERS, Layer
 from metagraph.motion.clip import Clip
 from metagraph.motion.roles import find_roles
 from metagraph.motion.skeleton import Skeleton
-from metagraph.suggest.points import NAMES, Figure, facing_of, figure_of, points_of, seen_from  # noqa: F401
+from metagraph.suggest.points import NAMES, Figure, figure_of, points_of, seen_from
 
 Array = NDArray[Any]
 
