@@ -8,7 +8,9 @@ from app.document import Document
 from app.jobs import Job, Jobs
 from app.learned import Learned
 from metagraph.graph.model import Project
-from metagraph.suggest.propose import Proposals, Taken, propose
+from metagraph.suggest.accept import Taken
+from metagraph.suggest.proposal import Proposal, Proposals
+from metagraph.suggest.propose import propose
 from metagraph.suggest.review import Field, Pace, Review
 
 REST = 400  # milliseconds of quiet after a correction before the rest is proposed anew
@@ -95,6 +97,11 @@ class Reviewing(QObject):
     def tell(self, clip: str, name: Field, value: object) -> None:
         """Correct a field of a clip's proposal; the project changes when it is placed."""
         self.review = self.review.tell(clip, name, value)
+        self.changed.emit()
+
+    def times_found(self, p: Proposal) -> None:
+        """Take over the times that were looked for after a correction."""
+        self.review = self.review.with_times(p)
         self.changed.emit()
 
     def place(self, clips: list[str], words: str, step: str | None) -> Taken:

@@ -173,17 +173,24 @@ def exporting() -> None:
 
 
 def labelling() -> None:
-    """Proposals for the practice project."""
+    """A clip of the practice project under review."""
     from app.files import PRACTICE
-    from app.panels.proposals import ProposalsDialog
+    from app.panels.review import ReviewDialog
 
     out = window()
     out.files.open(PRACTICE, template=True)  # type: ignore[attr-defined]
     wait(20000, lambda: bool(out.document.project.clips))  # type: ignore[attr-defined]
-    dialog = ProposalsDialog(out.document, out.session, out.jobs, out)  # type: ignore[attr-defined]
-    dialog.open()
-    wait(20000, lambda: dialog.list.topLevelItemCount() > 0)
-    dialog.list.setCurrentItem(dialog.list.topLevelItem(0))
+    out.propose()  # type: ignore[attr-defined]
+    dialog = out.findChildren(ReviewDialog)[-1]
+    wait(20000, lambda: dialog.current is not None)
+    dialog.accept_sure()
+    dialog.undo()
+    clip = next(c for c, e in out.document.project.clips.items() if e.name == "hands_at_sides__to__on_hips")  # type: ignore[attr-defined]
+    for _ in range(6):
+        dialog.accept_current()
+    dialog.go_to(clip)
+    wait(20000, lambda: dialog.stage.shown is not None and clip in dialog.stage.shown.project.uses)
+    dialog.stage.step(1.6)
     wait(600)
     shoot(dialog, "label.png")
     dialog.reject()

@@ -38,11 +38,15 @@ from app.session import Session
 from app.shown import Shown, alone
 from app.theme import strengthen, theme
 from app.trial import Span, trial
+from metagraph.suggest.proposal import Proposal
 from metagraph.suggest.review import DECIDING, Field, Review
 
 TITLES: dict[str, str] = {"kind": "Is a", "layer": "Layer", "stance": "Stance", "end_stance": "Ends in", "limb": "Arm"}
 FRAME = 1 / 30  # seconds a step goes
 LEAST = 2 / 30  # seconds a clip keeps at least
+
+
+_Tried = tuple[int, Proposal | None, Shown, Span | None]  # the trial's number, the times found, what plays
 
 
 class ReviewDialog(QDialog):
@@ -340,15 +344,19 @@ class ReviewDialog(QDialog):
             self.stage.play(None, None)
             return
 
-        def work(_: object) -> tuple[int, Shown, Span | None]:
-            return (number, *trial(project, review, clip)) if context else (number, alone(project, clip), None)
+        def work(_: object) -> _Tried:
+            times = review.timed(project, clip) if clip in review.said else None
+            ready = review.with_times(times) if times is not None else review
+            return (number, times, *trial(project, ready, clip)) if context else (number, times, alone(project, clip), None)
 
         self.jobs.start("trial", work, self._tried, self._failed, quick=True)
 
-    def _tried(self, made: tuple[int, Shown, Span | None]) -> None:
-        number, shown, span = made
+    def _tried(self, made: _Tried) -> None:
+        number, times, shown, span = made
         if number == self._trials:
             self.stage.play(shown, span)
+            if times is not None:
+                self.work.times_found(times)
 
     def _failed(self, error: object) -> None:
         self.stage.tell(escape(str(error)))

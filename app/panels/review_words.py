@@ -6,7 +6,7 @@ from html import escape
 
 from app.theme import KIND_MARKS, KIND_TITLES, Theme
 from metagraph.graph.model import Project
-from metagraph.suggest.propose import Proposal
+from metagraph.suggest.proposal import Proposal
 from metagraph.suggest.review import Review
 
 KEYS = (
@@ -56,7 +56,11 @@ def timing(p: Proposal, duration: float) -> str:
         parts.append("loops")
     words = [", ".join(parts)]
     if p.timing_reason and p.good is not False:
-        words.append(p.timing_reason)
+        words[0] += f": {p.timing_reason}"
+    for name, belief in ((name, p.details.get(name)) for name in ("stroke", "mask", "likelihood")):
+        if belief is not None and (name != "mask" or belief.value):
+            value = f"{belief.value:g}" if name == "likelihood" else f"{belief.value:.2f} s" if name == "stroke" else "some joints"
+            words.append(f"{name.capitalize()} {value}: {belief.reason}")
     return "<br>".join(map(escape, words))
 
 

@@ -15,8 +15,10 @@ from typing import Any, Literal, get_args
 from metagraph.graph import edits
 from metagraph.graph.edits import EditError
 from metagraph.graph.model import KINDS, LAYERS, LIMBS, Layer, Project
+from metagraph.suggest.accept import Taken, accept
 from metagraph.suggest.belief import Belief
-from metagraph.suggest.propose import Place, Proposals, Taken, accept, plain
+from metagraph.suggest.details import timed
+from metagraph.suggest.proposal import Place, Proposal, Proposals, plain
 
 Field = Literal["kind", "layer", "stance", "end_stance", "limb", "tags", "timing"]
 FIELDS: tuple[Field, ...] = get_args(Field)
@@ -56,22 +58,28 @@ class Review:
         return Review(found, self.said)
 
     def settled(self, project: Project) -> Review:
-        """Return the review with the stances that have been made meanwhile as the project's."""
+        """Return the review with the stances that have been made meanwhile as the project's, those that are gone as ones to be made.
+
+        To be called after every change of the project: an id that is gone may come again for another stance.
+        """
         moved: dict[str, str] = {}
-        places = dict(self.found.places)
-        for layer in LAYERS:
-            named = {plain(s.name): s for s in project.graphs[layer].stances.values()}
-            for stance in named.values():
-                if stance.id not in places:
-                    places[stance.id] = Place(stance.id, layer, stance.name, True)
-            for key, place in self.found.places.items():
-                if place.layer == layer and project.stance(key) is None and (there := named.get(plain(place.name))) is not None:
-                    moved[key] = there.id
-                    places[there.id] = Place(there.id, layer, there.name, True, place.shape)
-                    places.pop(key, None)
+        places: dict[str, Place] = {}
+        named = {(s.layer, plain(s.name)): s for layer in LAYERS for s in project.graphs[layer].stances.values()}
+        for key, place in self.found.places.items():
+            stance = project.stance(key) or named.get((place.layer, plain(place.name)))
+            if stance is not None:
+                new = replace(place, key=stance.id, layer=stance.layer, name=stance.name, there=True)
+            elif place.there:
+                new = replace(place, key=f"new {place.layer} {plain(place.name)}", there=False)
+            else:
+                new = place
+            moved[key] = new.key
+            places.setdefault(new.key, new)
+        for stance in named.values():
+            places.setdefault(stance.id, Place(stance.id, stance.layer, stance.name, True))
         proposals = {
-            c: replace(p, stance=_moved(p.stance, moved), end_stance=_moved(p.end_stance, moved))
-            for c, p in self.found.proposals.items()
+            clip: replace(p, stance=_moved(p.stance, moved), end_stance=_moved(p.end_stance, moved))
+            for clip, p in self.found.proposals.items()
         }  # fmt: skip
         return Review(Proposals(proposals, places), self.said)
 
@@ -125,6 +133,20 @@ class Review:
             return Taken(project, (), taken.left)  # nothing comes along for nothing, and what was placed is not lost
         return taken
 
+    def timed(self, project: Project, clip: str) -> Proposal:
+        """Return a clip's proposal with the times the statistics give it as what it is taken for now, and those that were said."""
+        p = timed(project, self.found.proposals)[clip]
+        told = self.said.get(clip, {}).get("timing")
+        return replace(p, timing={**p.timing, **told}) if told else p
+
+    def with_times(self, p: Proposal) -> Review:
+        """Return the review with what `timed` found, unless the clip is taken for something else by now."""
+        mine = self.found.proposals.get(p.clip)
+        if mine is None or _decides(mine) != _decides(p):
+            return self
+        mine = replace(mine, timing={**p.timing, **mine.timing}, timing_reason=p.timing_reason, good=p.good, details=p.details)
+        return Review(replace(self.found, proposals={**self.found.proposals, p.clip: mine}), self.said)
+
     def _resting(self, project: Project, clip: str) -> list[str]:
         """Return the surest unplaced clips that rest in stances this clip needs and the project does not have."""
         p = self.found.proposals[clip]
@@ -142,7 +164,7 @@ class Review:
 
 
 def _moved(belief: Belief[str] | None, moved: Mapping[str, str]) -> Belief[str] | None:
-    return belief if belief is None or belief.value not in moved else replace(belief, value=moved[belief.value])
+    return belief if belief is None else replace(belief, value=moved.get(belief.value, belief.value))
 
 
 def _corrected(found: Proposals, clip: str, said: Mapping[Field, Any]) -> Proposals:
@@ -177,12 +199,20 @@ def _corrected(found: Proposals, clip: str, said: Mapping[Field, Any]) -> Propos
         end = None
     if layer != "arms":
         p = replace(p, limb=Belief("both", 0.9, "only arms have sides"))
+    was = found.proposals[clip]
+    if (p.kind.value, p.layer.value, stance and stance.value, end and end.value) != _decides(was):
+        # Its times were of what it is not; `Review.timed` finds those it has as what it is.
+        p = replace(p, timing={}, timing_reason="", good=None, details={k: v for k, v in p.details.items() if k == "likelihood"})
     if "timing" in said:
         p = replace(p, timing={**p.timing, **said["timing"]})
     # What sources disagreed about is decided.
     conflicts = () if {"kind", "stance", "end_stance", "layer"} & set(said) else p.conflicts
     p = replace(p, stance=stance, end_stance=end, conflicts=conflicts)
     return Proposals({**found.proposals, clip: p}, places)
+
+
+def _decides(p: Proposal) -> tuple[Any, ...]:
+    return p.kind.value, p.layer.value, p.stance and p.stance.value, p.end_stance and p.end_stance.value
 
 
 class Pace:

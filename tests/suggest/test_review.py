@@ -10,7 +10,8 @@ from metagraph.formats.store import open_project
 from metagraph.graph import edits
 from metagraph.graph.model import Project
 from metagraph.suggest.belief import Belief
-from metagraph.suggest.propose import Place, Proposal, Proposals, propose
+from metagraph.suggest.proposal import Place, Proposal, Proposals
+from metagraph.suggest.propose import propose
 from metagraph.suggest.review import PAUSE, SAID, USUAL, Pace, Review
 
 ROOT = Path(__file__).resolve().parents[2]
@@ -101,6 +102,23 @@ def test_stances_made_meanwhile_are_the_projects(practice: Project, found: Propo
     assert [s.name for s in again.project.graphs["arms"].stances.values()] == ["arms crossed"]
 
 
+def test_ids_that_come_again_after_undo_are_not_taken_for_what_they_were(practice: Project, found: Proposals) -> None:
+    arms, body = clip(practice, "arms_crossed__stance"), clip(practice, "body_weight_both__stance")
+    review = Review(found)
+    review = review.settled(review.take(practice, [arms]).project).settled(practice)
+    project = review.take(practice, [body]).project
+    review = review.settled(project)
+    assert review.value(arms, "stance") == "arms crossed" and review.value(body, "stance") == "weight both"
+
+
+def test_a_renamed_stance_is_the_same_stance(practice: Project, found: Proposals) -> None:
+    rest, beat = clip(practice, "arms_crossed__stance"), clip(practice, "arms_crossed__beat_small_rt_01")
+    project = Review(found).take(practice, [rest]).project
+    review = Review(found).settled(project)
+    project = edits.rename_stance(project, next(iter(project.graphs["arms"].stances)), "folded")
+    assert review.settled(project).value(beat, "stance") == "folded"
+
+
 def test_what_was_said_outlives_proposals_made_anew(practice: Project, found: Proposals) -> None:
     wave = clip(practice, "hands_at_sides__point_you_rt_01")
     review = Review(found).tell(wave, "stance", "on hips").tell(wave, "tags", ("hello",))
@@ -125,6 +143,17 @@ def test_times_that_are_said_are_added_to_those_proposed(practice: Project, foun
     review = Review(found).tell(wave, "timing", {"start": 0.2}).tell(wave, "timing", {"end": 1.0})
     action = review.take(practice, [wave]).project.uses[wave][0]
     assert (action.timing.start, action.timing.end) == (0.2, 1.0)
+
+
+def test_what_is_something_else_has_other_times(practice: Project, found: Proposals) -> None:
+    wave = clip(practice, "hands_at_sides__point_you_rt_01")
+    review = Review(found).tell(wave, "timing", {"start": 0.3}).tell(wave, "kind", "stance")
+    assert review.found.proposals[wave].timing == {"start": 0.3}  # the gesture's own are gone
+    timed = review.timed(practice, wave)
+    assert timed.timing["loop"] and timed.timing["start"] == 0.3
+    assert review.with_times(timed).found.proposals[wave].timing == timed.timing
+    again = review.tell(wave, "kind", "fidget")
+    assert again.with_times(timed) is again  # it is something else by now
 
 
 def test_what_is_not_known_is_looked_at_first() -> None:
