@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 from PySide6.QtCore import QElapsedTimer, QRectF, QSize, Qt, QTimer, Signal
-from PySide6.QtGui import QColor, QHideEvent, QMouseEvent, QPainter, QPaintEvent, QPen, QResizeEvent
+from PySide6.QtGui import QColor, QHideEvent, QMouseEvent, QPainter, QPaintEvent, QPen, QResizeEvent, QTextDocument
 from PySide6.QtWidgets import QLabel, QSizePolicy, QVBoxLayout, QWidget
 
 from app.figures import Figures
@@ -17,6 +17,7 @@ from preview.camera import whole_figure
 from preview.scene import THEMES, Actor, Scene
 
 FRAME = 16  # milliseconds between frames
+ABOVE = 0.16  # of the figure's height that is left free above it
 
 
 class Strip(QWidget):
@@ -126,10 +127,10 @@ class ReviewStage(QWidget):
         self._place_words()
 
     def _place_words(self) -> None:
-        most = max(160, min(420, self.view.width() - 24))
-        self.words.setWordWrap(False)
-        wide = min(most, self.words.sizeHint().width())
-        self.words.setWordWrap(True)
+        ideal = QTextDocument()
+        ideal.setDefaultFont(self.words.font())
+        ideal.setHtml(self.words.text())
+        wide = round(min(ideal.idealWidth() + 28, max(160, min(460, self.view.width() - 24))))
         self.words.setFixedWidth(wide)
         self.words.setFixedHeight(self.words.heightForWidth(wide))
 
@@ -194,7 +195,9 @@ class ReviewStage(QWidget):
 
     def _frame(self, figure: object, positions: np.ndarray) -> None:
         aspect = self.view.width() / max(1, self.view.height())
-        self.view.camera = whole_figure(figure.bounds(positions), aspect)  # type: ignore[attr-defined]
+        low, high = figure.bounds(positions)  # type: ignore[attr-defined]
+        room = np.array([0.0, ABOVE * (high[1] - low[1]), 0.0])  # what is written over the picture hides no face
+        self.view.camera = whole_figure((low, high + room), aspect)
 
     def _frame_again(self) -> None:
         self.view.moved_by_hand = False
