@@ -57,7 +57,7 @@ def _parser() -> argparse.ArgumentParser:
     window.add_argument("--sample", action="store_true", help="open the sample project")
     clips = command("import", "add clips to a project, made if it is not there")
     clips.add_argument("paths", type=Path, nargs="+", help="clip files and folders: BVH, GLB, glTF, VRM animation, FBX")
-    clips.add_argument("--retarget", action="store_true", help="bring clips of other skeletons onto the project's, by the joint map proposed")
+    clips.add_argument("--retarget", action="store_true", help="bring clips of other skeletons onto the project's")
     checked = command("check", "list the problems of a project")
     checked.add_argument("--strict", action="store_true", help="warnings count as problems for the exit code, too")
     label_arguments(command("label", "label the clips of a folder by their names and motion, and say why", project=False))

@@ -69,6 +69,7 @@ def commands(window: Window) -> tuple[Command, ...]:
         Command("use_times", "&Graph", "Use proposed &times", lambda: window.compatibility.use_proposed(s.actions),
                 tip="Begin and end where no jump shows", enabled=lambda: bool(s.actions) and window.compatibility.judged is not None)
     )  # fmt: skip
+    out.append(Command("patterns", "&Graph", "Name &patterns…", window.show_patterns, tip="What words in clip names mean"))
     for number, kind in enumerate(KINDS, 1):
         text = f"Label as &{number} {kind}"
         out.append(
@@ -87,6 +88,8 @@ def commands(window: Window) -> tuple[Command, ...]:
     out += [
         Command("skeleton", "&Graph", "S&keleton…", window.show_skeleton, line=True, tip="Roles and body parts of the joints",
                 enabled=lambda: d.project.skeleton is not None),
+        Command("joint_maps", "&Graph", "&Joint maps…", lambda: f.retargeting.change_maps(s.clips),
+                tip="How clips of other skeletons were brought onto this one", enabled=lambda: bool(d.project.joint_maps)),
         Command("play", "&Play", "Play or &pause", lambda: s.set_playing(not s.playing), ("Space",)),
         Command("to_start", "&Play", "Back to the &start", lambda: s.seek(0.0), ("Home",)),
         Command("back", "&Play", "A frame back", lambda: window.step(-1), (",",)),

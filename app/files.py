@@ -241,7 +241,8 @@ class Files(QObject):
         if result.retargeted:
             words += f", {result.retargeted} of them retargeted"
         if result.left:
-            words += f", left out {result.left} of another skeleton"
+            out = f"left out {clips_words(result.left)} of another skeleton"
+            words = f"{words}, {out}" if count else out.capitalize()
         clips = self.load_for(result).clips
         repairs = repairs_of(self.document.project, clips)
         if any(found.repair.name != NAME for found in repairs):  # a name is plain to see, and no reason to interrupt

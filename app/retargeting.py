@@ -11,7 +11,7 @@ from PySide6.QtWidgets import QWidget
 from app.document import Document
 from app.jobs import Job, Jobs
 from app.kept_maps import keep_map
-from metagraph.formats.imports import Imported, Strangers, bring_over
+from metagraph.formats.imports import Imported, Strangers, bring_over, strangers_of
 from metagraph.graph.bring import Bringing
 from metagraph.motion.joint_map import JointMap
 
@@ -43,6 +43,23 @@ class Retargeting(QObject):
         self._waiting += [(group, then) for group in groups]
         if not self._asking:
             self._next()
+
+    def change_maps(self, clips: Iterable[str]) -> None:
+        """Let the joint maps be corrected by which clips of the project were retargeted, those of `clips` or all."""
+        project, folder, chosen = self.document.project, self.document.folder, tuple(clips)
+
+        def then(result: Imported) -> None:
+            if result.loaded:
+                self.document.edit("Change joint map", result.into)
+                self.told.emit(f"Retargeted {clips_words(len(result.loaded))} again.")
+
+        def done(groups: tuple[Strangers, ...]) -> None:
+            if not groups:
+                self.told.emit("No clip of this project was retargeted.")
+            elif self.document.project is project:
+                self.ask(groups, then)
+
+        self.jobs.start("Reading retargeted clips", lambda _: strangers_of(project, folder, chosen), done, self.failed.emit)
 
     def _next(self) -> None:
         if not self._waiting:

@@ -78,7 +78,7 @@ class RepairsDialog(QDialog):
             mine = [n for n, r in enumerate(found) if r.repair.name == name]
             if not mine:
                 continue
-            top = QTreeWidgetItem(self.tree, [f"{title} ({len(mine)})", found[mine[0]].repair.words if len(mine) == 1 else ""])
+            top = QTreeWidgetItem(self.tree, [f"{title} ({len(mine)})"])
             top.setFlags(top.flags() | Qt.ItemFlag.ItemIsAutoTristate | Qt.ItemFlag.ItemIsUserCheckable)
             font = top.font(0)
             font.setBold(True)

@@ -90,13 +90,19 @@ class JointMapDialog(QDialog):
         files = ", ".join(paths[:2]) + (f" and {len(paths) - 2} more" if len(paths) > 2 else "")
         self.headline.setText(f"{count} clips have another skeleton" if count > 1 else "A clip has another skeleton")
         words = f"From {files}: {len(self.source)} joints, {self.source.height:.2f} m tall; {self.strangers.why}."
-        if self.strangers.remembered:
+        if not self.strangers.why:  # they are in the project
+            words = f"From {files}: {len(self.source)} joints, {self.source.height:.2f} m tall. This is how they were brought over."
+            self.headline.setText(f"{count} clips were retargeted" if count > 1 else "A clip was retargeted")
+        elif self.strangers.remembered:
             words += " The joints are mapped as you did it before."
         else:
             words += " The joints below were paired by what they do and by their names; look at those that are not sure."
         self.details.setText(words)
         self.go.setText(f"Retarget {count} clips" if count > 1 else "Retarget the clip")
-        if count == 1:
+        if not self.strangers.why:
+            self.go.setText("Retarget again")
+            self.leave.setText("Keep as it is")
+        elif count == 1:
             self.leave.setText("Leave it out")
 
     def _table(self) -> QWidget:

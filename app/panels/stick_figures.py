@@ -97,5 +97,5 @@ class _Seen:
         across = across - across[:, drawn].mean(1, keepdims=True)
         self.places = np.stack([across, places[..., 1]], -1)
         self.low, self.high = self.places[:, drawn].min((0, 1)), self.places[:, drawn].max((0, 1))
-        self.height = max(float(np.ptp(rest[drawn, 1])), float(self.high[1] - self.low[1]) / 2, 1e-6)
+        self.height = max(float(self.high[1] - self.low[1]), 1e-6)
         self.size = tuple(np.maximum((self.high - self.low) / self.height, 1e-6).tolist())

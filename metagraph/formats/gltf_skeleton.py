@@ -157,7 +157,8 @@ def _build(gltf: Gltf, nodes: list[Node], parents: list[int], order: list[int], 
         rest_matrices[:, :3] *= unit
     skeleton = Skeleton(names, above, rest_rotations, rest_translations)
     return Rig(
-        skeleton, tuple(joints), places, tuple(parents), lift, shift, turn, *still, rest_matrices, worlds, unit, tuple(notes), tuple(repairs)
+        skeleton, tuple(joints), places, tuple(parents), lift, shift, turn, *still, rest_matrices, worlds, unit, tuple(notes),
+        tuple(repairs),
     )  # fmt: skip
 
 

@@ -208,6 +208,25 @@ def bring_over(
     return Imported(tuple(loaded), tuple(failures), cancelled=stopped, joint_maps=maps, retargeted=len(loaded))
 
 
+def strangers_of(project: Project, folder: Path | None, clips: Iterable[str] = ()) -> tuple[Strangers, ...]:
+    """Return the project's retargeted clips as they are in their files, by skeleton, with the joint maps they were brought by.
+
+    clips: only the skeletons of these; of all without. What cannot be read, or has the project's skeleton by now, is left out.
+    """
+    chosen = {project.clips[i].brought_from for i in clips if i in project.clips}
+    groups: dict[str, list[Loaded]] = {}
+    for entry in project.clips.values():
+        if entry.brought_from in project.joint_maps and (not chosen - {""} or entry.brought_from in chosen):
+            try:
+                takes = read_clips((folder or Path()) / entry.path, entry.as_is)
+            except FileError:
+                continue  # that it is missing or broken is told elsewhere
+            if entry.take < len(takes) and fingerprint(takes[entry.take].skeleton) == entry.brought_from:
+                found = takes[entry.take].renamed(entry.name)
+                groups.setdefault(entry.brought_from, []).append((entry.path, entry.take, entry.digest, found))
+    return tuple(Strangers(tuple(g), "", project.joint_maps[key], True) for key, g in groups.items())
+
+
 def _name(path: Path, folder: Path | None) -> str:
     return relative(path, folder) if folder is not None else path.as_posix()
 

@@ -92,7 +92,7 @@ def test_they_may_be_left_out_and_the_others_of_the_same_drop_come_in(own, folde
     dialog = bring(drive, folder, "nod", "other0")
     assert dialog.headline.text() == "A clip has another skeleton" and dialog.leave.text() == "Leave it out"
     press(dialog.leave)
-    drive.wait(lambda: any("left out 1 of another skeleton" in words for words in drive.said))
+    drive.wait(lambda: any("left out 1 clip of another skeleton" in words for words in drive.said))
     assert [e.name for e in drive.document.project.clips.values()] == ["rest", "wave", "nod"]
     assert not kept_maps()
 
@@ -160,6 +160,31 @@ def test_saved_and_opened_again_they_are_retargeted_and_followed_when_exported_a
     drive.wait(lambda: drive.document.project.clips[entry.id].frames == 31)
     fresh = drive.document.project.clips[entry.id]
     assert fresh.brought_from == entry.brought_from and fresh.motion.skeleton == drive.document.project.skeleton
+
+
+def test_a_map_is_corrected_later_and_its_clips_are_retargeted_again_in_one_step(own, folder):
+    from app.panels.joint_map import JointMapDialog
+
+    drive = own
+    drive.actions.refresh()
+    assert not drive.actions["joint_maps"].isEnabled()
+    press(bring(drive, folder, "other0", "other1").go)
+    drive.wait(lambda: len(drive.document.project.clips) == 4)
+    before = drive.document.project
+    drive.actions.refresh()
+    drive.actions["joint_maps"].trigger()
+    shown = lambda: [d for d in drive.window.findChildren(JointMapDialog) if d.isVisible()]  # noqa: E731
+    drive.wait(lambda: bool(shown()))
+    (dialog,) = shown()
+    assert dialog.headline.text() == "2 clips were retargeted" and dialog.leave.text() == "Keep as it is"
+    choose(drive, dialog, "Neck", None)
+    press(dialog.go)
+    drive.wait(lambda: drive.document.project is not before)
+    after = drive.document.project
+    assert list(after.clips) == list(before.clips) and next(iter(after.joint_maps.values())).of("Neck") is None
+    assert all(after.clips[i].motion is not before.clips[i].motion for i in list(after.clips)[2:])
+    drive.actions["undo"].trigger()
+    assert drive.document.project is before
 
 
 def test_marking_a_row_marks_both_figures(own, folder):

@@ -10,8 +10,10 @@ import numpy as np
 import pytest
 
 from metagraph.formats.bvh import write_bvh
+from metagraph.formats.data import from_data, to_data
 from metagraph.formats.gltf import write_glb
-from metagraph.formats.imports import bring_over, import_files
+from metagraph.formats.imports import bring_over, import_files, strangers_of
+from metagraph.formats.journal import apply, changes
 from metagraph.formats.store import open_project, relocate, save_project
 from metagraph.graph.bring import Bringing
 from metagraph.graph.check import check
@@ -180,6 +182,27 @@ def test_a_broken_map_is_told_with_its_place_and_the_project_still_opens(folder:
         assert len(opened.project.clips) == 4
         assert any(words in note and "that joint map is left out" in note for note in opened.notes), opened.notes
         assert any("its joint map is not in the project: import it again" in note for note in opened.notes)
+
+
+def test_the_journal_keeps_maps_and_what_was_retargeted(folder: Path) -> None:
+    project = start(folder)
+    after = import_files(project, folder, others(folder), retarget="yes").into(project)
+    change = changes(project, after)
+    assert set(change["joint_maps"]) == set(after.joint_maps)
+    assert from_data(apply(to_data(project), change)) == after
+
+
+def test_retargeted_clips_are_read_again_on_their_own_skeleton_to_correct_their_map(folder: Path, sample: Any) -> None:
+    project = start(folder)
+    assert strangers_of(project, folder) == ()
+    project = import_files(project, folder, others(folder), retarget="yes").into(project)
+    (group,) = strangers_of(project, folder)
+    assert group.skeleton == sample.skeleton and len(group.clips) == 2
+    assert group.joint_map == project.joint_maps[group.fingerprint]
+    assert len(strangers_of(project, folder, ["c3"])) == 1
+    (folder / "other0.glb").unlink()
+    (less,) = strangers_of(project, folder)
+    assert len(less.clips) == 1
 
 
 def test_a_map_that_names_unknown_joints_is_told_and_the_project_still_opens(folder: Path) -> None:
