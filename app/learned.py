@@ -59,8 +59,12 @@ class Learned(QObject):
         """What words in names mean; without what was learned from corrections while learning is off."""
         from metagraph.suggest.words_patterns import forget
 
-        known = self._memory(WORDS).patterns
-        return known if self.on else forget(known)
+        return self.every_pattern if self.on else forget(self.every_pattern)
+
+    @property
+    def every_pattern(self) -> Patterns:
+        """All that is known of words, whether it is used or not."""
+        return self._memory(WORDS).patterns
 
     def examples_for(self, document: Document) -> list[Example]:
         """Return labelled clips of the user's other projects; may read a file of some MB, so ask on a job."""

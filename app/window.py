@@ -400,6 +400,12 @@ class Window(QMainWindow):
         dialog.raise_()
         dialog.activateWindow()
 
+    def show_patterns(self) -> None:
+        """Show what words in clip names mean, and what was learned."""
+        from app.panels.patterns import PatternsDialog
+
+        PatternsDialog(self.document, self.session, self.learned, self).open()
+
     def toggle_watching(self) -> None:
         """Begin or end reading changed clip files anew."""
         self.watcher.set_on(not self.watcher.on)

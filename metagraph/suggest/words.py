@@ -11,11 +11,11 @@ from typing import Final, TypeVar, cast
 from metagraph.graph.words import Kind, Layer, Limb
 from metagraph.suggest.belief import Belief
 from metagraph.suggest.words_defaults import Field
-from metagraph.suggest.words_patterns import Patterns, PatternsError, forget, recalled, remembered
+from metagraph.suggest.words_patterns import Patterns, PatternsError, forget, merged, recalled, remembered
 from metagraph.suggest.words_stances import Found, Stances, Words, is_low, label
 from metagraph.suggest.words_tokens import Phrase, Taken, is_number, phrases, quoted, take_apart, variant, without_numbers, without_shared
 
-__all__ = ["NameGuess", "Patterns", "PatternsError", "forget", "learn", "read_names"]
+__all__ = ["NameGuess", "Patterns", "PatternsError", "forget", "learn", "merged", "read_names"]
 
 T = TypeVar("T")
 _UP: Final = frozenset(("up", "stand", "rise", "get"))

@@ -188,3 +188,15 @@ def forget(patterns: Patterns, name: str | None = None, phrase: str | None = Non
         elif phrase is not None:
             kept[known] = {word: counts for word, counts in words.items() if word != phrase}
     return replace(patterns, learned={known: words for known, words in kept.items() if words})
+
+
+def merged(mine: Patterns, theirs: Patterns) -> Patterns:
+    """Return patterns with another's on top: its meanings win, its corrections count as often as they counted there, or here if more."""
+    changes = {name: {**mine.changes.get(name, {}), **theirs.changes.get(name, {})} for name in FIELDS}
+    learned: dict[str, dict[str, dict[str, int]]] = {f: {w: dict(c) for w, c in words.items()} for f, words in mine.learned.items()}
+    for known, words in theirs.learned.items():
+        for word, counts in words.items():
+            there = learned.setdefault(known, {}).setdefault(word, {})
+            for value, count in counts.items():
+                there[value] = max(count, there.get(value, 0))
+    return Patterns({name: found for name, found in changes.items() if found}, learned)

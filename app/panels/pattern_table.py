@@ -1,0 +1,192 @@
+"""The rows of the name patterns: what the user wrote, what was learned, what is built in; searched, sorted and edited in place."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from typing import Any
+
+from PySide6.QtCore import QAbstractTableModel, QModelIndex, QPersistentModelIndex, QSortFilterProxyModel, Qt
+from PySide6.QtGui import QFont
+from PySide6.QtWidgets import QComboBox, QStyledItemDelegate, QStyleOptionViewItem, QWidget
+
+from metagraph.graph.words import KINDS, LAYERS, LIMBS
+from metagraph.suggest.words_defaults import DEFAULTS
+from metagraph.suggest.words_patterns import FIELDS, Patterns, PatternsError, forget, remembered
+
+Index = QModelIndex | QPersistentModelIndex
+COLUMNS = ("Words", "About", "Means", "From")
+ABOUT = {
+    "kinds": "kind", "layers": "layer", "limbs": "arm", "tags": "tags", "postures": "stance name", "joins": "transition", "junk": "no word",
+    "kind": "kind", "layer": "layer", "limb": "arm", "stance": "begins in", "end_stance": "ends in",
+}  # fmt: skip
+MEANINGS: dict[str, tuple[str, ...]] = {
+    "kinds": (*KINDS, "other"), "layers": LAYERS, "limbs": LIMBS, "tags": (), "postures": ("stance",), "joins": ("to", "from"),
+    "junk": ("junk",), "kind": KINDS, "layer": LAYERS, "limb": LIMBS, "stance": (), "end_stance": (),
+}  # fmt: skip
+SHOWN = {"other": "none of the four", "junk": "nothing", None: "nothing any more"}
+NOBODY, MINE, LEARNED = "built in", "you", "corrections"
+
+
+@dataclass(frozen=True)
+class Row:
+    """field: as `Patterns.changes` or, of what was learned, `Patterns.learned` name it. meaning: None of a built-in one taken away."""
+
+    source: str
+    field: str
+    phrase: str
+    meaning: str | None
+    count: int = 0
+
+    def texts(self) -> tuple[str, str, str, str]:
+        """Return what the columns say."""
+        times = "" if not self.count else ", once" if self.count == 1 else f", {self.count} times"
+        return self.phrase, ABOUT[self.field], SHOWN.get(self.meaning, self.meaning or ""), self.source + times
+
+
+def rows_of(patterns: Patterns) -> list[Row]:
+    """Return all rows: own ones, learned ones, and what is built in and was not changed."""
+    out = [Row(MINE, name, phrase, meaning) for name, mine in patterns.changes.items() for phrase, meaning in mine.items()]
+    for name, words in patterns.learned.items():
+        out += [Row(LEARNED, name, word, value, count) for word, counts in words.items() for value, count in counts.items()]
+    for field in FIELDS:
+        changed = patterns.changes.get(field, {})
+        out += [Row(NOBODY, field, phrase, meaning) for phrase, meaning in DEFAULTS[field].items() if phrase not in changed]
+    return out
+
+
+def without(patterns: Patterns, row: Row) -> Patterns:
+    """Return patterns without a row: an own one is forgotten, so that the built-in meaning holds again; a learned one too; a built-in one
+    is taken away, which is a change of the user's."""
+    if row.source == LEARNED:
+        counts = {v: c for v, c in patterns.learned[row.field][row.phrase].items() if v != row.meaning}
+        bare = forget(patterns, row.field, row.phrase)
+        for value, count in counts.items():
+            words = {**bare.learned.get(row.field, {})}
+            words[row.phrase] = {**words.get(row.phrase, {}), value: count}
+            bare = Patterns(bare.changes, {**bare.learned, row.field: words})
+        return bare
+    if row.source == MINE:
+        return patterns.with_pattern(row.field, row.phrase, DEFAULTS[row.field].get(row.phrase))  # type: ignore[arg-type, index]
+    return patterns.with_pattern(row.field, row.phrase, None)  # type: ignore[arg-type]
+
+
+def changed(patterns: Patterns, row: Row, phrase: str, meaning: str) -> Patterns:
+    """Return patterns in which a row says something else. Raises PatternsError."""
+    if row.source == LEARNED:
+        return remembered(without(patterns, row), row.field, phrase.lower().split(), meaning.strip())
+    if phrase != row.phrase and row.source == MINE:
+        patterns = without(patterns, row)
+    return patterns.with_pattern(row.field, phrase, meaning.strip())  # type: ignore[arg-type]
+
+
+class PatternTable(QAbstractTableModel):
+    """Rows of patterns. change: called with a pure function when a cell was edited; refused: with words when it cannot be."""
+
+    def __init__(self, change: Callable[[Callable[[Patterns], Patterns]], None], refused: Callable[[str], None], parent: QWidget) -> None:
+        super().__init__(parent)
+        self.rows: list[Row] = []
+        self.patterns = Patterns()
+        self._change, self._refused = change, refused
+
+    def fill(self, patterns: Patterns) -> None:
+        self.beginResetModel()
+        self.patterns, self.rows = patterns, rows_of(patterns)
+        self.endResetModel()
+
+    def rowCount(self, parent: Index = QModelIndex()) -> int:  # noqa: B008
+        return 0 if parent.isValid() else len(self.rows)
+
+    def columnCount(self, parent: Index = QModelIndex()) -> int:  # noqa: B008
+        return 0 if parent.isValid() else len(COLUMNS)
+
+    def headerData(self, section: int, orientation: Qt.Orientation, role: int = Qt.ItemDataRole.DisplayRole) -> Any:
+        return COLUMNS[section] if orientation == Qt.Orientation.Horizontal and role == Qt.ItemDataRole.DisplayRole else None
+
+    def data(self, index: Index, role: int = Qt.ItemDataRole.DisplayRole) -> Any:
+        row = self.rows[index.row()]
+        if role == Qt.ItemDataRole.DisplayRole:
+            return row.texts()[index.column()]
+        if role == Qt.ItemDataRole.EditRole:
+            return (row.phrase, "", row.meaning or "", "")[index.column()]
+        if role == Qt.ItemDataRole.FontRole:
+            font = QFont()
+            font.setBold(row.source != NOBODY and index.column() == 0)
+            font.setStrikeOut(row.meaning is None and index.column() == 0)
+            return font
+        if role == Qt.ItemDataRole.UserRole:
+            return row
+        return None
+
+    def flags(self, index: Index) -> Qt.ItemFlag:
+        row, column = self.rows[index.row()], index.column()
+        edits = column == 2 or (column == 0 and row.source != NOBODY and row.meaning is not None)
+        return super().flags(index) | (Qt.ItemFlag.ItemIsEditable if edits else Qt.ItemFlag.NoItemFlags)
+
+    def setData(self, index: Index, value: Any, role: int = Qt.ItemDataRole.EditRole) -> bool:
+        row, text = self.rows[index.row()], " ".join(str(value).lower().split()) if index.column() == 0 else " ".join(str(value).split())
+        if not text or text == ((row.phrase, "", row.meaning)[index.column()]):
+            return False
+        phrase, meaning = (text, row.meaning or "") if index.column() == 0 else (row.phrase, text)
+        try:
+            changed(self.patterns, row, phrase, meaning)
+        except PatternsError as error:
+            self._refused(str(error))
+            return False
+        self._change(lambda p: changed(p, row, phrase, meaning))
+        return True
+
+
+class Chosen(QSortFilterProxyModel):
+    """The rows that match what is searched for; without the built-in ones unless they are wanted."""
+
+    def __init__(self, parent: QWidget) -> None:
+        super().__init__(parent)
+        self.words, self.all = "", False
+        self.setSortCaseSensitivity(Qt.CaseSensitivity.CaseInsensitive)
+
+    def look(self, words: str, every: bool) -> None:
+        self.words, self.all = words.strip().lower(), every
+        self.invalidate()
+
+    def filterAcceptsRow(self, source_row: int, source_parent: Index) -> bool:
+        model = self.sourceModel()
+        assert isinstance(model, PatternTable)
+        row = model.rows[source_row]
+        if row.source == NOBODY and not self.all:
+            return False
+        return all(any(word in text.lower() for text in row.texts()) for word in self.words.split())
+
+
+class MeaningEditor(QStyledItemDelegate):
+    """Edits a meaning by a list where only some words will do."""
+
+    def createEditor(self, parent: QWidget, option: QStyleOptionViewItem, index: Index) -> QWidget:
+        row: Row = index.data(Qt.ItemDataRole.UserRole)
+        few = MEANINGS[row.field]
+        if index.column() != 2 or not few:
+            return super().createEditor(parent, option, index)
+        box = QComboBox(parent)
+        fill_meanings(box, row.field)
+        return box
+
+    def setEditorData(self, editor: QWidget, index: Index) -> None:
+        if isinstance(editor, QComboBox):
+            editor.setCurrentIndex(max(0, editor.findData(index.data(Qt.ItemDataRole.EditRole))))
+        else:
+            super().setEditorData(editor, index)
+
+    def setModelData(self, editor: QWidget, model: Any, index: Index) -> None:
+        if isinstance(editor, QComboBox):
+            model.setData(index, editor.currentData())
+        else:
+            super().setModelData(editor, model, index)
+
+
+def fill_meanings(box: QComboBox, field: str) -> None:
+    """Offer what words about a field may mean; free text where anything may."""
+    box.clear()
+    few = MEANINGS[field]
+    box.setEditable(not few)
+    for meaning in few:
+        box.addItem(SHOWN.get(meaning, meaning), meaning)

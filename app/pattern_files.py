@@ -1,0 +1,36 @@
+"""Name patterns as a file, for a team or for a run without a window."""
+
+from __future__ import annotations
+
+import json
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from metagraph.errors import FileError
+from metagraph.formats.atomic import write_atomically
+
+if TYPE_CHECKING:
+    from metagraph.suggest.words_patterns import Patterns
+
+REMEDY = "Export name patterns from the window, or write them as docs/labels.md says."
+
+
+def read_patterns(path: Path) -> Patterns:
+    """Return the patterns a file holds. Raises FileError naming the place."""
+    from metagraph.suggest.words_patterns import Patterns, PatternsError
+
+    try:
+        return Patterns.from_json(json.loads(path.read_text(encoding="utf-8")))
+    except json.JSONDecodeError as error:
+        raise FileError(path, f"it is not JSON: {error.msg}", f"line {error.lineno}", REMEDY) from None
+    except (UnicodeDecodeError, RecursionError):
+        raise FileError(path, "it is not JSON", "on reading name patterns", REMEDY) from None
+    except PatternsError as error:
+        raise FileError(path, str(error), "on reading name patterns", REMEDY) from None
+    except OSError as error:
+        raise FileError(path, f"cannot be read ({error.strerror or error})", "on reading name patterns", REMEDY) from None
+
+
+def write_patterns(path: Path, patterns: Patterns) -> None:
+    """Write patterns whole. Raises FileError."""
+    write_atomically(path, (json.dumps(patterns.to_json(), ensure_ascii=False, indent=2) + "\n").encode())
