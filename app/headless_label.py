@@ -12,6 +12,8 @@ from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:  # reading a command line must not wait for arrays
     from metagraph.graph.model import Project
+    from metagraph.suggest.alike import Example
+    from metagraph.suggest.words_patterns import Patterns
 
 
 def arguments(parser: argparse.ArgumentParser) -> None:
@@ -24,6 +26,8 @@ def arguments(parser: argparse.ArgumentParser) -> None:
     parser.add_argument(
         "--from", dest="sources", action="append", choices=("name", "motion", "learned"), help="believe only this; may be repeated"
     )
+    parser.add_argument("--learned", action="store_true", help="use what you taught the window: corrections, name patterns, saved projects")
+    parser.add_argument("--patterns", type=Path, metavar="FILE", help="name patterns exported from the window (Graph menu)")
     parser.add_argument("--no-pictures", action="store_true", help="leave the pictures out of the report")
 
 
@@ -44,8 +48,9 @@ def label(options: Namespace) -> int:
     path: Path = options.out or (source if source.is_file() else source.resolve().parent / f"{source.resolve().name}{SUFFIX}")
     if path.suffix not in (".yaml", ".yml"):
         path = path.with_name(path.name + SUFFIX)
+    patterns, examples = _taught(options, path)
     project, notes = _project(source, path)
-    found = propose(project, sources=tuple(options.sources or SOURCES))
+    found = propose(project, patterns=patterns, examples=examples, sources=tuple(options.sources or SOURCES))
     taken = accept(project, found, options.above)
     save_project(taken.project, path, source if source.is_file() else path)
     place = path.with_name(path.name.removesuffix(SUFFIX) + ".labels.html")
@@ -56,16 +61,41 @@ def label(options: Namespace) -> int:
     seconds = time.perf_counter() - began
     for note in notes:
         print(f"note: {note}", file=sys.stderr)
+    for stance, rest in taken.held.items():
+        if (made := taken.project.stance(stance)) is not None:
+            print(f"held: {made.name}: {rest.reason}", file=sys.stderr)
     for clip, why in taken.left.items():
         print(f"left: {project.clips[clip].name}: {why}", file=sys.stderr)
     words = f"{path}: {len(taken.placed)} of {len(found.proposals)} clips labelled in {seconds:.1f} s, {len(look)} need a look\n{place}"
     names = {clip: project.clips[clip].name for clip in found.proposals}
     data = {
         "project": str(path), "report": str(place), "labelled": len(taken.placed), "left": {names[c]: why for c, why in taken.left.items()},
+        "held": {s.name: r.reason for i, r in taken.held.items() if (s := taken.project.stance(i)) is not None},
         "look": [names[p.clip] for p in look], "errors": errors, "seconds": round(seconds, 2),
     }  # fmt: skip
     say(options, words, data)
     return 3 if taken.left or errors else 0
+
+
+def _taught(options: Namespace, path: Path) -> tuple[Patterns | None, list[Example]]:
+    """Return the name patterns to read with and the examples to learn from; neither unless asked for, so that a run is the same
+    everywhere."""
+    from app.pattern_files import read_patterns
+    from metagraph.suggest.words import merged
+
+    given = read_patterns(options.patterns) if options.patterns is not None else None
+    if not options.learned:
+        return given, []
+    from PySide6.QtCore import QCoreApplication
+
+    from app.learned import Learned
+
+    QCoreApplication.setApplicationName("Metagraph")  # as the window is called: that is where it keeps what it learned
+    QCoreApplication.setOrganizationName("Metagraph")
+    learned = Learned()
+    learned.failed.connect(lambda words: print(f"note: {words}", file=sys.stderr))
+    patterns = learned.patterns
+    return merged(patterns, given) if given is not None else patterns, learned.examples_beside(path)
 
 
 def _project(source: Path, path: Path) -> tuple[Project, list[str]]:

@@ -9,6 +9,7 @@ from io import BytesIO
 from typing import Any
 
 from metagraph.graph.model import LAYERS, Project
+from metagraph.suggest.belief import Belief
 from metagraph.suggest.propose import Proposal, Proposals, Taken
 
 KIND_MARKS = {"stance": "●", "gesture": "▲", "fidget": "◆", "transition": "➜"}  # as in the window; its module needs Qt
@@ -39,9 +40,12 @@ def report(project: Project, found: Proposals, taken: Taken, pictures: Mapping[s
     """Return the page. pictures: clip -> `[H, W, 4]` uint8, of those that could be drawn."""
     doubtful = [p for p in found.doubtful if needs_a_look(p, taken)]
     told = [f"<li>{escape(note)}</li>" for note in notes]
+    stances = {i: s.name for i in taken.held if (s := taken.project.stance(i)) is not None}
+    held = [f"<li>{escape(stances[i])}: {escape(rest.reason)}</li>" for i, rest in taken.held.items() if i in stances]
     parts = [
         f"<h1>{escape(project.name)}: {len(taken.placed)} of {len(found.proposals)} clips labelled</h1>",
         f"<p class='dim'>{len(doubtful)} of them need a person's look. Each says what it was taken for, how sure that is, and why.</p>",
+        f"<h2>Stances that no clip rests in</h2><ul>{''.join(held)}</ul>" if held else "",
         f"<h2>While importing</h2><ul>{''.join(told)}</ul>" if told else "",
         f"<h2>Needs a look ({len(doubtful)})</h2>" if doubtful else "<h2>Nothing needs a look</h2>",
         _cards(project, found, doubtful, taken, pictures),
@@ -75,13 +79,34 @@ def _card(project: Project, found: Proposals, p: Proposal, taken: Taken, picture
     if p.end_stance is not None:
         where += f" ➜ {found.places[p.end_stance.value].name}"
     limb = f", {p.limb.value} arm" if p.limb.value != "both" else ""
-    rows = [("kind", p.kind), ("layer", p.layer), ("stance", p.stance), ("end", p.end_stance)]
-    reasons = [f"<li>{name} {b.confidence:.0%}: {escape(b.reason)}</li>" for name, b in rows if b is not None]
+    rows: list[tuple[str, Belief[Any] | None]] = [("kind", p.kind), ("layer", p.layer), ("stance", p.stance), ("end", p.end_stance)]
+    if limb:
+        rows.append(("arm", p.limb))
+    if p.tags is not None:
+        rows.append((f"tags {', '.join(p.tags.value)}", p.tags))
+    reasons = [f"<li>{escape(name)} {b.confidence:.0%}: {escape(b.reason)}</li>" for name, b in rows if b is not None]
+    details = [f"<li>{escape(_said(name, b.value))} {b.confidence:.0%}: {escape(b.reason)}</li>" for name, b in p.details.items()]
+    if details:
+        reasons.append(f"<li><details><summary class='dim'>timing, joints, likelihood</summary><ul>{''.join(details)}</ul></details></li>")
     warnings = [*p.conflicts, *([p.timing_reason] if p.good is False else []), *([taken.left[p.clip]] if p.clip in taken.left else [])]
     reasons = [f"<li class='warn'>{escape(words)}</li>" for words in warnings] + reasons
     picture = f"<img alt='' src='{_data(pictures[p.clip])}'>" if p.clip in pictures else "<div class='none'></div>"
     title = f"<b>{escape(project.clips[p.clip].name)}</b><br><span class='{kind}'>{KIND_MARKS[kind]} {kind}</span>"
     return f"<div class='card'>{picture}<div>{title} <span class='dim'>{escape(where)}{limb}</span><ul>{''.join(reasons)}</ul></div></div>"
+
+
+def _said(name: str, value: Any) -> str:
+    """Return a detail and its value in words: 'blend in 0.20 s'."""
+    words = name.replace("_", " ")
+    if name == "mask":
+        return f"joints: {', '.join(value[:4])}{' …' if len(value) > 4 else ''}" if value else "joints: all"
+    if name == "loop":
+        return "loops" if value else "plays once"
+    if name == "likelihood":
+        return f"likelihood {value:g}"
+    if value is None:
+        return f"{words}: the clip's" if name == "end" else f"{words}: none"
+    return f"{words} {value:.2f} s"
 
 
 def _data(picture: Any) -> str:

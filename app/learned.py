@@ -68,7 +68,11 @@ class Learned(QObject):
 
     def examples_for(self, document: Document) -> list[Example]:
         """Return labelled clips of the user's other projects; may read a file of some MB, so ask on a job."""
-        return self._memory(CLIPS).others(key_of(document)) if self.on else []
+        return self.examples_beside(document.path)
+
+    def examples_beside(self, path: Path | None) -> list[Example]:
+        """Return labelled clips of all projects but the one that is saved there."""
+        return self._memory(CLIPS).others(_key(path)) if self.on else []
 
     @property
     def clips(self) -> int:
@@ -164,7 +168,11 @@ class Learned(QObject):
 
 def key_of(document: Document) -> str:
     """Return what a project is remembered by: its file, "" for one without."""
-    return str(Path(document.path).resolve()) if document.path is not None else ""
+    return _key(document.path)
+
+
+def _key(path: Path | None) -> str:
+    return str(path.resolve()) if path is not None else ""
 
 
 def _set_aside(path: Path) -> str:

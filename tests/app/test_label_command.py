@@ -76,3 +76,44 @@ def test_names_are_escaped_in_the_report(tmp_path: Path, capsys: pytest.CaptureF
     main(["label", str(place), "--no-pictures", "--json"])
     page = Path(json.loads(capsys.readouterr().out)["report"]).read_text()
     assert "a & b" not in page
+
+
+def kinds(path: Path) -> dict[str, str]:
+    project = open_project(path).project
+    return {project.clips[a.clip].name: a.kind for a in project.actions()}
+
+
+def test_patterns_of_a_file_are_read_with_and_a_broken_one_is_told(
+    folder: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    out, team = tmp_path / "team.metagraph.yaml", tmp_path / "team.json"
+    team.write_text('{"patterns": 1, "kinds": {"shrug": "fidget"}}')
+    main(["label", str(folder), "-o", str(out), "--from", "name", "--patterns", str(team), "--no-pictures"])
+    assert {kind for name, kind in kinds(out).items() if "shrug" in name} == {"fidget"}
+    team.write_text('{"patterns": 1,\n "kinds": }')
+    capsys.readouterr()
+    assert main(["label", str(folder), "-o", str(out), "--patterns", str(team)]) != 0
+    assert "team.json, line 2: it is not JSON" in capsys.readouterr().err
+
+
+def test_what_was_taught_is_used_only_when_asked_for(
+    folder: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str], qapp: object
+) -> None:
+    from app.learned import Learned
+
+    Learned().edit(lambda p: p.with_pattern("kinds", "shrug", "fidget"))
+    out = tmp_path / "taught.metagraph.yaml"
+    for options, kind in (([], "gesture"), (["--learned"], "fidget")):
+        main(["label", str(folder), "-o", str(out), "--from", "name", "--no-pictures", *options])
+        assert {k for name, k in kinds(out).items() if "shrug" in name} == {kind}
+
+
+def test_a_stance_that_no_clip_rests_in_is_held_and_told(folder: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    for path in folder.glob("on_hips__stance*"):
+        path.unlink()
+    out = tmp_path / "held.metagraph.yaml"
+    main(["label", str(folder), "-o", str(out), "--no-pictures", "--json"])
+    shown = capsys.readouterr()
+    assert "still for its" in json.loads(shown.out)["held"]["on hips"] and "held: on hips: no clip rests there" in shown.err
+    page = out.with_name("held.labels.html").read_text()
+    assert "Stances that no clip rests in" in page and "likelihood 1 80%" in page and "timing, joints, likelihood" in page
