@@ -51,8 +51,12 @@ class Watcher(QObject):
             return
         self._busy = True
         folder, project = self.document.folder or Path(), self.document.project
-        paths = list({folder / clip.path for clip in project.clips.values()})
-        self.jobs.start("Looking for changed files", lambda job: _states(paths), self._compare, self._failed, quick=True)
+        names = {clip.path for clip in project.clips.values()}  # a thousand paths would take their time here
+
+        def work(_: Job) -> dict[Path, State]:
+            return _states([folder / name for name in names])
+
+        self.jobs.start("Looking for changed files", work, self._compare, self._failed, quick=True)
 
     def _failed(self, error: Exception) -> None:
         self._busy = False

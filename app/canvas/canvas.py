@@ -149,6 +149,7 @@ class Canvas(QWidget):
         self._layout: Layout | None = None
         self._counted: tuple[object, str] | None = None  # the graphs, and the sentence about them
         self._beat = 0
+        self._played: frozenset[str] = frozenset()  # as last drawn
         self.setMouseTracking(True)
         self.setAcceptDrops(True)
         self.setFocusPolicy(Qt.FocusPolicy.StrongFocus)
@@ -218,6 +219,7 @@ class Canvas(QWidget):
                 sentence=self._sentence(),
             ),
             self.font(),
+            event.region(),
         )
         painter.end()
 
@@ -240,7 +242,9 @@ class Canvas(QWidget):
         self._beat += 1
         if self.isVisible() and self.session.stance() is not None:
             self.update(self.layout_now().card.toAlignedRect())
-            if self._beat % 3 == 0:
+            now = self._playing()
+            if now != self._played:
+                self._played = now
                 for node in self.layout_now().nodes.values():
                     self.update(node.rect.toAlignedRect())
 

@@ -6,7 +6,7 @@ from collections.abc import Collection
 from dataclasses import dataclass, field
 
 from PySide6.QtCore import QPointF, QRectF, Qt
-from PySide6.QtGui import QColor, QFont, QFontMetricsF, QImage, QPainter, QPainterPath, QPen
+from PySide6.QtGui import QColor, QFont, QFontMetricsF, QImage, QPainter, QPainterPath, QPen, QRegion
 
 from app.canvas.drops import Drop
 from app.canvas.layout import GRID, Chip, Hit, Layout, Node, bar_part
@@ -44,16 +44,24 @@ class Look:
     sentence: str = ""
 
 
-def paint(painter: QPainter, layout: Layout, look: Look, font: QFont) -> None:
+def paint(painter: QPainter, layout: Layout, look: Look, font: QFont, stale: QRegion | None = None) -> None:
+    """Draw a canvas. stale: the part that is to be drawn anew, None for all; while the stance moves that is little."""
+
+    def wanted(rect: QRectF) -> bool:
+        return stale is None or stale.intersects(rect.toAlignedRect().adjusted(-2, -2, 2, 2))
+
     painter.setRenderHints(QPainter.RenderHint.Antialiasing | QPainter.RenderHint.SmoothPixmapTransform)
     painter.fillRect(QRectF(QPointF(0, 0), layout.size), QColor(look.theme.ground))
     painter.setFont(font)
     _curves(painter, layout, look)
     for chip in layout.chips:
-        _chip(painter, chip, layout, look, font)
-    _card(painter, layout, look, font)
+        if wanted(chip.rect):
+            _chip(painter, chip, layout, look, font)
+    if wanted(layout.card):
+        _card(painter, layout, look, font)
     for node in layout.nodes.values():
-        _node(painter, node, layout, look, font)
+        if wanted(node.rect):
+            _node(painter, node, layout, look, font)
     painter.setFont(font)
     painter.setPen(QColor(look.theme.dim))
     painter.drawText(layout.foot, Qt.AlignmentFlag.AlignVCenter | Qt.AlignmentFlag.AlignLeft | Qt.TextFlag.TextWordWrap, look.sentence)

@@ -2,12 +2,13 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping
+from contextlib import contextmanager
 from dataclasses import dataclass, field
 from math import inf, isfinite
 from typing import TYPE_CHECKING, Any
 
-from PySide6.QtCore import QAbstractTableModel, QModelIndex, QPersistentModelIndex, QRectF, QSize, QSortFilterProxyModel, Qt
+from PySide6.QtCore import QAbstractTableModel, QModelIndex, QPersistentModelIndex, QRectF, QSize, Qt
 from PySide6.QtGui import QColor, QFontMetrics, QPainter, QPainterPath, QPen
 from PySide6.QtWidgets import (
     QAbstractItemView,
@@ -40,7 +41,6 @@ if TYPE_CHECKING:
 
 Index = QModelIndex | QPersistentModelIndex
 CELL = Qt.ItemDataRole.UserRole
-SORT = Qt.ItemDataRole.UserRole + 1
 CLIP, USES, FIRST = 0, 1, 2  # columns; from FIRST on, stances
 BLENDED = 2.0  # times what shows as a jump: what the blend of a dropped clip, 0.2 s, hides
 MARK = 15.0  # pixels
@@ -56,10 +56,6 @@ class Cell:
     enter_at: float
     leave_at: float
     here: tuple[Kind, ...] = ()
-
-    @property
-    def worst(self) -> float:
-        return max(self.enter, self.leave)
 
 
 def grade(cost: float) -> int:
@@ -107,30 +103,71 @@ class Rows:
 
 
 class MatrixModel(QAbstractTableModel):
-    """Clips down, stances across."""
+    """Clips down, stances across; searched, narrowed to what is placed on the layer or is not, and sorted, here: a thousand rows at once.
+
+    order: the places in the matrix of the rows that are shown.
+    """
 
     def __init__(self, parent: QWidget) -> None:
         super().__init__(parent)
         self.rows: Rows | None = None
+        self.order: list[int] = []
+        self.words: tuple[str, ...] = ()
+        self.which = "all"
+        self.by, self.falling = USES, False
 
     def show_rows(self, rows: Rows | None) -> None:
-        """Show other rows; where clips and stances stay, selection and scrolling do."""
-        old, self.rows = self.rows, rows
-        if old is not None and rows is not None and (old.matrix.clips, old.matrix.stances) == (rows.matrix.clips, rows.matrix.stances):
-            self.dataChanged.emit(self.index(0, 0), self.index(self.rowCount() - 1, self.columnCount() - 1))
-            self.headerDataChanged.emit(Qt.Orientation.Horizontal, 0, self.columnCount() - 1)
-            return
+        """Show other rows, sorted and narrowed as those before."""
         self.beginResetModel()
+        self.rows = rows
+        self._arrange()
         self.endResetModel()
 
+    def narrow(self, text: str, which: str) -> None:
+        """Show only clips with all words of a text in their names. which: "all", "placed" on the layer, or "free"."""
+        self.words, self.which = tuple(text.lower().split()), which
+        self.show_rows(self.rows)
+
+    def sort(self, column: int, order: Qt.SortOrder = Qt.SortOrder.AscendingOrder) -> None:
+        self.by, self.falling = column, order == Qt.SortOrder.DescendingOrder
+        self.show_rows(self.rows)
+
+    def _arrange(self) -> None:
+        self.order = []
+        if self.rows is None:
+            return
+        m, clips, uses = self.rows.matrix, self.rows.project.clips, self.rows.uses
+        names = [clips[c].name.lower() if c in clips else "" for c in m.clips]
+        shown = [
+            n
+            for n, c in enumerate(m.clips)
+            if c in clips and (self.which == "all" or (c in uses) == (self.which == "placed")) and all(w in names[n] for w in self.words)
+        ]
+        if FIRST <= self.by < FIRST + len(m.stances):
+            worst = [max(a, b) for a, b in zip(m.enter_cost[:, self.by - FIRST], m.leave_cost[:, self.by - FIRST], strict=True)]
+            shown.sort(key=lambda n: (worst[n], names[n]), reverse=self.falling)
+        elif self.by == CLIP:
+            shown.sort(key=lambda n: names[n], reverse=self.falling)
+        else:
+            place = {c: KINDS.index(kinds[0]) for c, kinds in uses.items()}
+            shown.sort(key=lambda n: (place.get(m.clips[n], len(KINDS)), names[n]), reverse=self.falling)
+        self.order = shown
+
     def rowCount(self, parent: Index = QModelIndex()) -> int:  # noqa: B008 - Qt's signature
-        return len(self.rows.matrix.clips) if self.rows is not None and not parent.isValid() else 0
+        return len(self.order) if not parent.isValid() else 0
 
     def columnCount(self, parent: Index = QModelIndex()) -> int:  # noqa: B008 - Qt's signature
         return FIRST + len(self.rows.matrix.stances) if self.rows is not None and not parent.isValid() else 0
 
+    def row_of(self, clip: str) -> int | None:
+        """Return the row that shows a clip."""
+        if self.rows is None or clip not in self.rows.matrix.clips:
+            return None
+        place = self.rows.matrix.clips.index(clip)
+        return self.order.index(place) if place in self.order else None
+
     def clip(self, row: int) -> str:
-        return self.rows.matrix.clips[row] if self.rows is not None else ""
+        return self.rows.matrix.clips[self.order[row]] if self.rows is not None else ""
 
     def stance(self, column: int) -> str | None:
         return self.rows.matrix.stances[column - FIRST] if self.rows is not None and column >= FIRST else None
@@ -139,7 +176,7 @@ class MatrixModel(QAbstractTableModel):
         """Return what a cell holds, None for the first columns."""
         if self.rows is None or column < FIRST:
             return None
-        m, c = self.rows.matrix, column - FIRST
+        m, c, row = self.rows.matrix, column - FIRST, self.order[row]
         here = self.rows.kinds.get((m.clips[row], m.stances[c]), ())
         return Cell(float(m.enter_cost[row, c]), float(m.leave_cost[row, c]), float(m.enter_at[row, c]), float(m.leave_at[row, c]), here)
 
@@ -152,23 +189,19 @@ class MatrixModel(QAbstractTableModel):
         if entry is None:
             return None  # it was removed meanwhile
         if column == CLIP:
-            if role in (Qt.ItemDataRole.DisplayRole, Qt.ItemDataRole.ToolTipRole):
-                return entry.name
-            return entry.name.lower() if role == SORT else None
+            return entry.name if role in (Qt.ItemDataRole.DisplayRole, Qt.ItemDataRole.ToolTipRole) else None
         if column == USES:
             kinds = self.rows.uses.get(clip, ())
             if role == CELL:
                 return kinds
             if role in (Qt.ItemDataRole.ToolTipRole, Qt.ItemDataRole.AccessibleTextRole):
                 return ", ".join(kinds) or "not placed on this layer"
-            return KINDS.index(kinds[0]) if role == SORT and kinds else len(KINDS) if role == SORT else None
+            return None
         cell = self.cell(row, column)
         if cell is None:
             return None
         if role == CELL:
             return cell
-        if role == SORT:
-            return cell.worst if isfinite(cell.worst) else 1e9
         if role in (Qt.ItemDataRole.ToolTipRole, Qt.ItemDataRole.AccessibleTextRole):
             return told(cell, entry.name, self._name(column))
         return None
@@ -189,31 +222,6 @@ class MatrixModel(QAbstractTableModel):
                 return f"Click to sort by how well clips fit '{self._name(section)}'"
             return "Click to sort" if section == CLIP else "What it is placed as on this layer"
         return None
-
-
-class Narrowed(QSortFilterProxyModel):
-    """Searched by name, narrowed to clips that are placed on the layer or are not, sorted; what is placed first."""
-
-    def __init__(self, model: MatrixModel, parent: QWidget) -> None:
-        super().__init__(parent)
-        self.words: tuple[str, ...] = ()
-        self.which = "all"
-        self.setSourceModel(model)
-        self.setSortRole(SORT)
-
-    def narrow(self, text: str, which: str) -> None:
-        self.words, self.which = tuple(text.lower().split()), which
-        self.invalidate()
-
-    def filterAcceptsRow(self, row: int, parent: Index) -> bool:
-        rows = self.sourceModel().rows  # type: ignore[attr-defined]
-        if rows is None:
-            return False
-        clip = rows.matrix.clips[row]
-        if self.which != "all" and (clip in rows.uses) != (self.which == "placed"):
-            return False
-        entry = rows.project.clips.get(clip)
-        return entry is not None and all(w in entry.name.lower() for w in self.words)
 
 
 def half(rect: QRectF, side: str) -> QPainterPath:
@@ -343,11 +351,14 @@ class MatrixDialog(QDialog):
             self.which.addItem(text, key)
         self.which.activated.connect(self._narrow)
         self.model = MatrixModel(self)
-        self.proxy = Narrowed(self.model, self)
         self.table = QTableView(self)
-        self.table.setModel(self.proxy)
+        self.table.setModel(self.model)
         self.table.setAccessibleName("Clips against stances")
-        self.table.setSortingEnabled(True)
+        header = self.table.horizontalHeader()
+        header.setSectionsClickable(True)
+        header.setSortIndicatorShown(True)
+        header.setSortIndicator(USES, Qt.SortOrder.AscendingOrder)
+        header.sortIndicatorChanged.connect(self._sort)
         self.table.setItemDelegate(Marks(session, self))
         self.table.setItemDelegateForColumn(CLIP, QStyledItemDelegate(self.table))
         self.table.setSelectionMode(QAbstractItemView.SelectionMode.SingleSelection)
@@ -429,12 +440,24 @@ class MatrixDialog(QDialog):
             self.words.setText(waits)
             return
         fresh = self.model.rows is None or self.model.rows.matrix.stances != stances
-        self.model.show_rows(Rows.of(project, matrix))
+        with self._same_cell():
+            self.model.show_rows(Rows.of(project, matrix))
         self.title.setText(f"{layer.capitalize()} layer, {many(len(matrix.clips), 'clip')}")
         if fresh:
             self._arrange()
-        self.proxy.invalidate()
         self._show_current()
+
+    @contextmanager
+    def _same_cell(self) -> Iterator[None]:
+        """Keep the current cell and where the table is scrolled to, whatever is sorted or narrowed."""
+        found, across = self.current(), self.table.currentIndex().column()
+        bar = self.table.verticalScrollBar()
+        before = bar.value()
+        yield
+        row = self.model.row_of(found[0]) if found is not None else None
+        if row is not None and across < self.model.columnCount():
+            self.table.setCurrentIndex(self.model.index(row, across))
+        bar.setValue(before)
 
     def _arrange(self) -> None:
         header, metrics = self.table.horizontalHeader(), QFontMetrics(self.table.font())
@@ -443,14 +466,18 @@ class MatrixDialog(QDialog):
         for column in range(FIRST, self.model.columnCount()):
             name = str(self.model.headerData(column, Qt.Orientation.Horizontal))
             header.resizeSection(column, min(150, max(72, metrics.horizontalAdvance(name) + 34)))
-        self.table.sortByColumn(USES, Qt.SortOrder.AscendingOrder)
+
+    def _sort(self, column: int, order: Qt.SortOrder) -> None:
+        with self._same_cell():
+            self.model.sort(column, order)
 
     def _narrow(self, *_: object) -> None:
-        self.proxy.narrow(self.search.text(), str(self.which.currentData()))
+        with self._same_cell():
+            self.model.narrow(self.search.text(), str(self.which.currentData()))
 
     def current(self) -> tuple[str, str | None, Cell | None] | None:
         """Return the clip and the stance of the current cell, and what it holds."""
-        index = self.proxy.mapToSource(self.table.currentIndex())
+        index = self.table.currentIndex()
         if not index.isValid():
             return None
         return self.model.clip(index.row()), self.model.stance(index.column()), self.model.cell(index.row(), index.column())
