@@ -33,7 +33,8 @@ PRACTICE = Path(__file__).resolve().parents[1] / "sample_clips" / f"practice{SUF
 
 class Files(QObject):
     """told: words for the status bar. report: (title, lines) to read. imported: (Imported, Drop or None). opened: a project is shown.
-    annotation_dropped: the path of an annotation among files to import. repaired: (title, ids of clips, lines) to look through."""
+    annotation_dropped: the path of an annotation among files to import. repaired: (title, ids of clips, lines) to look
+    through; the lines say what else is to be read. noticed: the same, with nothing that has to be read."""
 
     told = Signal(str)
     report = Signal(str, object)
@@ -41,6 +42,7 @@ class Files(QObject):
     opened = Signal()
     annotation_dropped = Signal(str)
     repaired = Signal(str, object, object)
+    noticed = Signal(str, object, object)
 
     def __init__(self, document: Document, jobs: Jobs, window: QWidget) -> None:
         super().__init__(window)
@@ -248,7 +250,8 @@ class Files(QObject):
         if any(found.repair.name != NAME for found in repairs):  # a name is plain to see, and no reason to interrupt
             told = {found.repair.words for found in repairs}
             notes = [note for note in result.notes if note.split(": ", 1)[-1] not in told]
-            self.repaired.emit(words, clips, [*result.failures, *notes])
+            (self.repaired if files else self.noticed).emit(words, clips, [*result.failures, *notes])
+            self.told.emit(words)
         elif files:
             self.report.emit(f"{words}; {files} file{'s' if files != 1 else ''} could not be read", [*result.failures, *result.notes])
         elif not count and not result.left:

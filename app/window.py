@@ -30,6 +30,7 @@ from app.header import Header
 from app.job_line import JobLine
 from app.jobs import Jobs
 from app.learned import Learned
+from app.notice import Notice
 from app.panels.library import LibraryPanel
 from app.panels.preview import PreviewPanel
 from app.performance import Performance
@@ -98,6 +99,8 @@ class Window(QMainWindow):
         self.job_line = JobLine(self.jobs, self)
         self.statusBar().addPermanentWidget(self.job_line)
         self.job_line.told.connect(self.tell)
+        self.notice = Notice(self)
+        self.statusBar().addPermanentWidget(self.notice)
         self._wire()
         self.resize(1680, 1020)
         self.docks.arrange()
@@ -209,6 +212,8 @@ class Window(QMainWindow):
         self.sound.told.connect(self.tell)
         self.files.report.connect(self._report)
         self.files.repaired.connect(self.show_repairs)
+        self.files.noticed.connect(self._repaired)
+        d.loaded.connect(self.notice.clear)
         self.files.imported.connect(self._imported)
         self.files.annotation_dropped.connect(self.annotate)
         self.files.opened.connect(self._opened)
@@ -320,6 +325,10 @@ class Window(QMainWindow):
             self.canvas.do(drop, load)
         elif load.clips:
             self.session.select_clips(load.clips if len(load.clips) < 2 else ())
+
+    def _repaired(self, title: str, clips: tuple[str, ...], lines: list[str]) -> None:
+        self.notice.tell("Some clips were repaired: look…", "What reading them put right, and what to leave as it is in the files",
+                         lambda: self.show_repairs(title, clips, tuple(lines)))  # fmt: skip
 
     def _report(self, title: str, lines: list[str]) -> None:
         box = QMessageBox(QMessageBox.Icon.Information, "Metagraph", title, QMessageBox.StandardButton.Ok, self)

@@ -35,8 +35,13 @@ def shown(drive):
 @pytest.fixture
 def dialog(drive, folder):
     drive.files.import_paths([str(folder)])
-    drive.wait(lambda: bool(shown(drive)))
+    notice = drive.window.notice
+    drive.wait(notice.isVisible)
+    assert not shown(drive), "nothing may stand in the way of who goes on working"
+    assert notice.text() == "Some clips were repaired: look…"
+    QTest.mouseClick(notice, Qt.MouseButton.LeftButton)
     (found,) = shown(drive)
+    assert not notice.isVisible()
     return found
 
 
@@ -117,13 +122,22 @@ def test_a_file_that_could_not_be_read_is_told_in_the_same_dialog(drive, folder)
     assert "bad.bvh" in dialog.lines.toPlainText()
 
 
+def test_the_notice_goes_with_the_project_it_was_about(drive, folder):
+    from metagraph.graph.model import Project
+
+    drive.files.import_paths([str(folder)])
+    drive.wait(drive.window.notice.isVisible)
+    drive.document.load(Project(), None)
+    assert not drive.window.notice.isVisible()
+
+
 def test_clips_without_repairs_say_so(drive, toy, tmp_path):
     from metagraph.formats.gltf_writer import write_glb
 
     write_glb(tmp_path / "n.glb", [toy.clip("n", 0.5)])
     drive.files.import_paths([str(tmp_path)])
     drive.wait(lambda: len(drive.document.project.clips) == 1)
-    assert not shown(drive)
+    assert not shown(drive) and not drive.window.notice.isVisible()
     drive.actions["repairs"].trigger()
     (dialog,) = shown(drive)
     assert "Nothing had to be put right" in dialog.words.text()
