@@ -30,6 +30,12 @@ KINDS: Final = _table(
             celebrate, victory, fist pump, facepalm, face palm, blow kiss, give, giving, receive, take item, hand over, gesture,
             gesticulate, gestic, talk, talking, me, you, self, many, few, big, small, none, generic, wide, chop, push away, plead,
             pleading, beg, argue, arguing, insult, taunt, encourage, thank, thankful, thanks, welcome, introduce, warn, warning, scold,
+            raise, raising, raise hand, hand raise, hand raising, raise arm, excited, head turn, turn head, head tilt, tilt head, indicate,
+            indicating, direct, directing, assert, insist, deny, denial, hesitate, negative, affirmative, affirm, confirm, contrast,
+            compare, comparing, measure, weigh, reach, reaching, apologise, apologize, sorry, comfort, congratulate, hug, embrace, knock,
+            finger wag, wag, wagging, relief, relieved, disgust, disgusted, scared, afraid, fear, fearful, confused, annoyed, frustrated,
+            embarrassed, ashamed, shy, proud, enthusiastic, desperate, hysterical, enumerate, deictic, metaphoric, iconic, container,
+            sweep, shoo, hush, ok, request, demand, suggest, doubt, accept, accuse, plea, toss, clench, snap, blame, mock, curtsy,
             whisper, yell, shout, high five, handshake, shake hands, kiss, reject, dont know, unsure, maybe, whatever, cut throat, count
             fingers, listing, list, describe, describing, pray, praying, interact, use item, throw, invite""",
         "fidget": """
@@ -55,6 +61,7 @@ LAYERS: Final = _table(
         "head": """
             head, face, facial, eyes, eye, eyebrow, brow, brows, neck, nod, nodding, shake, shake head, head shake, blink, gaze, glance,
             glancing, look, looking, look down, tilt, yes, no, mouth, jaw, lip, lips, viseme, chin, cheek, smile, frown, double take,
+            head turn, turn head, head tilt, tilt head, look up, look left, look right, look away, look around, nose, ear, hair,
             question, yawn, agree, agreeing, disagree, disagreeing, acknowledge, listen, listening, sniff, sneeze, roll head, head roll""",
         "arms": """
             arm, arms, hand, hands, finger, fingers, thumb, thumbs, palm, palms, fist, fists, elbow, elbows, wrist, on hips, hips,
@@ -63,6 +70,9 @@ LAYERS: Final = _table(
             gestic, scratch, check watch, watch, sleeve, rub, twiddle, knuckles, precision, explain, explaining, present, presenting,
             thumbs up, thumbs down, hand over, bye, bye bye, byebye, goodbye, greet, greeting, hello, call, guide, heart, so so, cheer,
             fist pump, beg, pray, praying, generic, me, you, self, many, few, give, giving, receive, high five, handshake, shake hands,
+            raise hand, hand raise, hand raising, raise arm, indicate, indicating, measure, weigh, reach, reaching, hug, embrace, knock,
+            finger wag, wag, wagging, enumerate, deictic, metaphoric, iconic, container, sweep, shoo, hush, ok, plea, plead, pleading,
+            toss, clench, snap, accuse, listing, take, clench fist, push, pull, grab, hold, show, tap, crack knuckles, fist,
             adjust sleeve, touch, interact, use item, throw, cut throat, chop, come here, invite, dust, shake arms, stretch arms, arms
             stretch, blow kiss, stroke chin, tap cheek, tap fingers, hand to chin""",
         "body": """
