@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from pathlib import Path
 
-from PySide6.QtCore import QSize, QStringListModel, Qt
+from PySide6.QtCore import QSize, QStringListModel, Qt, QTimer
 from PySide6.QtGui import QColor
 from PySide6.QtWidgets import (
     QCheckBox,
@@ -31,6 +31,7 @@ from metagraph.motion.joint_map import JointMap, known_roles
 
 JOINT = Qt.ItemDataRole.UserRole
 NONE = "– none –"
+AT_ONCE = 12  # rows that get their boxes in one go
 SHOWN = 150  # frames of a clip that are played
 
 
@@ -121,24 +122,47 @@ class JointMapDialog(QDialog):
             self.tree.setColumnWidth(column, width)
         header.setSectionResizeMode(3, QHeaderView.ResizeMode.Fixed)
         self.tree.currentItemChanged.connect(self._mark)
-        names = QStringListModel([NONE, *self.target.names], self)
-        self.rows: dict[str, tuple[QTreeWidgetItem, QComboBox]] = {}
+        self.names = QStringListModel([NONE, *self.target.names], self)
+        self.rows: dict[str, QTreeWidgetItem] = {}
+        self.combos: dict[str, QComboBox] = {}
         for name in self.source.names:
             item = QTreeWidgetItem(self.tree, [name])
             item.setToolTip(0, name)
             item.setData(0, JOINT, name)
             item.setSizeHint(0, QSize(0, 36))
-            combo = QComboBox(self.tree, toolTip="The joint of your character that follows it")
-            combo.setModel(names)
-            combo.setAccessibleName(f"{name} moves")
-            combo.setFocusPolicy(Qt.FocusPolicy.StrongFocus)
-            combo.wheelEvent = lambda event: event.ignore()  # type: ignore[method-assign]
-            combo.activated.connect(lambda n, j=name: self._choose(j, n))
-            self.tree.setItemWidget(item, 1, combo)
-            self.rows[name] = (item, combo)
+            self.rows[name] = item
+        self._filling = QTimer(self, interval=0)  # a hundred at once would hold the window up
+        self._filling.timeout.connect(self._more_combos)
+        self._filling.start()
         box.addWidget(self.doubtful)
         box.addWidget(self.tree, 1)
         return page
+
+    def _more_combos(self) -> None:
+        left = [name for name in self.rows if name not in self.combos]
+        for name in left[:AT_ONCE]:
+            self.combo(name)
+        if len(left) <= AT_ONCE:
+            self._filling.stop()
+
+    def combo(self, joint: str) -> QComboBox:
+        """Return the box in which is chosen what the joint moves."""
+        if joint not in self.combos:
+            combo = QComboBox(self.tree, toolTip="The joint of your character that follows it")
+            combo.setModel(self.names)
+            combo.setAccessibleName(f"{joint} moves")
+            combo.setFocusPolicy(Qt.FocusPolicy.StrongFocus)
+            combo.wheelEvent = lambda event: event.ignore()  # type: ignore[method-assign]
+            combo.setCurrentIndex(self._number(joint))
+            combo.activated.connect(lambda n: self._choose(joint, n))
+            self.tree.setItemWidget(self.rows[joint], 1, combo)
+            self.combos[joint] = combo
+        return self.combos[joint]
+
+    def _number(self, joint: str) -> int:
+        """Return the row of the box for what follows the joint now."""
+        pair = self.map.of(joint)
+        return self.target.index(pair.target) + 1 if pair is not None and pair.target in self.target else 0
 
     def _picture(self) -> QWidget:
         page = QWidget(self)
@@ -182,9 +206,10 @@ class JointMapDialog(QDialog):
     def _show(self) -> None:
         """Show the map in the table, and what is missing in words."""
         look = DARK if self.palette().window().color().lightness() < 128 else LIGHT
-        for name, (item, combo) in self.rows.items():
+        for name, item in self.rows.items():
             pair = self.map.of(name)
-            combo.setCurrentIndex(0 if pair is None else self.target.index(pair.target) + 1 if pair.target in self.target else 0)
+            if name in self.combos:
+                self.combos[name].setCurrentIndex(self._number(name))
             item.setText(2, pair.role.replace("_", " ") if pair is not None else "")
             item.setText(3, f"{pair.sure:.0%}" if pair is not None else "")
             item.setText(4, pair.why if pair is not None else "moves nothing")
@@ -210,7 +235,7 @@ class JointMapDialog(QDialog):
         self._narrow()
 
     def _narrow(self, *_: object) -> None:
-        for name, (item, _combo) in self.rows.items():
+        for name, item in self.rows.items():
             pair = self.map.of(name)
             item.setHidden(self.doubtful.isChecked() and pair is not None and pair.sure >= 0.9)
 

@@ -53,7 +53,7 @@ def press(button):
 
 def choose(drive, dialog, joint, target):
     """Choose by the keyboard, as a person at the combo does."""
-    combo = dialog.rows[joint][1]
+    combo = dialog.combo(joint)
     combo.setFocus()
     QTest.keyClick(combo, Qt.Key.Key_Home)
     for _ in range(0 if target is None else dialog.target.index(target) + 1):
@@ -67,8 +67,8 @@ def test_clips_of_another_skeleton_are_asked_about_once_and_retargeted_in_one_st
     assert dialog.headline.text() == "2 clips have another skeleton"
     assert "other0.glb, other1.glb: 61 joints" in dialog.details.text()
     assert dialog.go.text() == "Retarget 2 clips" and dialog.go.isEnabled()
-    assert dialog.rows["LeftHand"][1].currentText() == "LeftHand"
-    assert dialog.rows["LeftHand"][0].text(2) == "left hand"
+    assert dialog.combo("LeftHand").currentText() == "LeftHand"
+    assert dialog.rows["LeftHand"].text(2) == "left hand"
     press(dialog.go)
     drive.wait(lambda: len(drive.document.project.clips) == 4)
     project = drive.document.project
@@ -104,10 +104,10 @@ def test_a_joint_is_corrected_by_hand_and_what_is_missing_is_said(own, folder):
     assert not dialog.go.isEnabled() and "Still missing: left hand" in dialog.missing.text()
     assert dialog.figures.right is None
     dialog.doubtful.click()
-    assert not dialog.rows["LeftHand"][0].isHidden() and dialog.rows["RightHand"][0].isHidden()
+    assert not dialog.rows["LeftHand"].isHidden() and dialog.rows["RightHand"].isHidden()
     choose(drive, dialog, "LeftHand", "LeftHand")
     assert dialog.go.isEnabled() and "Still missing" not in dialog.missing.text()
-    assert dialog.rows["LeftHand"][0].text(4) == "chosen by hand"
+    assert dialog.rows["LeftHand"].text(4) == "chosen by hand"
     drive.wait(lambda: dialog.figures.right is not None)
     press(dialog.go)
     drive.wait(lambda: len(drive.document.project.clips) == 3)
@@ -190,7 +190,7 @@ def test_a_map_is_corrected_later_and_its_clips_are_retargeted_again_in_one_step
 def test_marking_a_row_marks_both_figures(own, folder):
     drive = own
     dialog = bring(drive, folder, "other0")
-    item = dialog.rows["RightHand"][0]
+    item = dialog.rows["RightHand"]
     rect = dialog.tree.visualItemRect(item)
     dialog.tree.scrollToItem(item)
     drive.pause(30)
