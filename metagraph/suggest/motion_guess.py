@@ -18,7 +18,7 @@ from metagraph.suggest.traits import LayerTraits, Traits
 
 STRAIGHT = 0.65  # of the way of a clip that ends in no other stance, the share from end to end from which on it is a transition
 ELSEWHERE = 0.1  # heights from the body's usual pose, from which on a resting clip is of the body: sitting, lying
-LIFE = 0.03  # of all movement of a resting clip that hips and legs make, from which on the whole body breathes
+LIFE = 0.11  # of all movement of a resting clip that hips and legs make, from which on the whole body breathes
 ALONE = 0.5  # of the arms' energy on one side more than on the other, from which it is one-armed
 
 
