@@ -93,9 +93,13 @@ def told(project: Project, judged: Judged) -> dict[Problem, Fix | None]:
 
 
 def _few(layer: Layer, measured: Measured) -> Problem:
+    from metagraph.suggest.compatibility import RATE
     from metagraph.suggest.jumps import FEWEST_CLIPS
 
-    words = f"jumps of the {layer} layer are not looked for: {many(measured.labelled, 'clip')} cannot tell what is usual motion"
+    much = many(measured.labelled, "clip")
+    if measured.labelled >= FEWEST_CLIPS:
+        much += f" of together {measured.stats.count / RATE:.0f} s"
+    words = f"jumps of the {layer} layer are not looked for: {much} cannot tell what is usual motion"
     return Problem("hint", "few-clips", words, f"Place at least {FEWEST_CLIPS} clips, ten seconds in all, on this layer.", layer)
 
 

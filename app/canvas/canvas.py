@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import time
 from collections.abc import Sequence
 from typing import Protocol
 
@@ -42,6 +43,7 @@ from metagraph.graph.model import KINDS, LAYERS, Action, Kind, Project
 NOTHING = Hit("nothing")
 HOVER = 350  # milliseconds over a row before it plays, over a chip during a drag before it becomes current
 HERO_RATE = 12  # pictures a second of the stance in the middle
+SLOW = 0.015  # seconds of drawing for each of which a picture of it is left out
 
 
 class MouseGesture(Protocol):
@@ -149,6 +151,7 @@ class Canvas(QWidget):
         self._layout: Layout | None = None
         self._counted: tuple[object, str] | None = None  # the graphs, and the sentence about them
         self._beat = 0
+        self._rest = 0  # beats to leave out
         self._played: frozenset[str] = frozenset()  # as last drawn
         self.setMouseTracking(True)
         self.setAcceptDrops(True)
@@ -188,6 +191,7 @@ class Canvas(QWidget):
         self._stale()
 
     def paintEvent(self, event: QPaintEvent) -> None:
+        begun = time.perf_counter()
         look = theme(self.session.theme)
         project, stance = self.document.project, self.session.stance()
         graph = project.graphs[self.session.layer]
@@ -222,6 +226,7 @@ class Canvas(QWidget):
             event.region(),
         )
         painter.end()
+        self._rest = min(HERO_RATE, int((time.perf_counter() - begun) / SLOW))
 
     def _sentence(self) -> str:
         """What a drop outside the nodes would do, else how large the machine is."""
@@ -239,6 +244,9 @@ class Canvas(QWidget):
         return frozenset({cue.action.id}) if cue is not None else frozenset()
 
     def _next_beat(self) -> None:
+        if self._rest > 0:  # jobs keep the processor busy: the stance moves more slowly, the window does not
+            self._rest -= 1
+            return
         self._beat += 1
         if self.isVisible() and self.session.stance() is not None:
             self.update(self.layout_now().card.toAlignedRect())

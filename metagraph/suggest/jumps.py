@@ -21,6 +21,7 @@ Edge = Literal["begins", "ends", "loops"]
 
 FEWEST_CLIPS = 5  # on a layer: of fewer, what is usual cannot be told
 FEWEST_COSTS = 300  # between frames: ten seconds of motion
+NEAR = 0.5  # seconds: a better moment farther away would change the action; a longer blend is preferred to it
 ROOM = 0.8  # of the threshold: what a better moment may cost, so that it stays better
 
 
@@ -137,7 +138,7 @@ def _of(project: Project, measured: Measured, action: Action) -> list[Jump]:
         latest = end - t.blend_in - t.blend_out if middle is None else min(middle, end - t.blend_in - t.blend_out)
         if now > 1:
             better = _nearest(cost, start, 0.0, latest, t.blend_in)
-            mend = {"start": better} if better is not None else _blended("blend_in", _at(cost, start), end - start - t.blend_out)
+            better, mend = _mend("start", start, better, _blended("blend_in", _at(cost, start), end - start - t.blend_out))
             fits = _fits(project, measured, action, start, action.stance, c.entering)
             found.append(Jump(action.id, "begins", start, now, action.stance, mend, better, fits))
     target = ends_in(action)
@@ -147,12 +148,10 @@ def _of(project: Project, measured: Measured, action: Action) -> list[Jump]:
             length = project.clips[action.clip].duration
             soonest = start + t.blend_in + t.blend_out if middle is None else max(middle, start + t.blend_in + t.blend_out)
             better = _nearest(left, end, soonest, length, t.blend_out)
-            change: dict[str, Any] = (
-                {"end": better} if better is not None else _blended("blend_out", _at(left, end), end - start - t.blend_in)
-            )
+            better, mend = _mend("end", end, better, _blended("blend_out", _at(left, end), end - start - t.blend_in))
             if better is not None and t.earliest_exit is not None and t.earliest_exit > better:
-                change["earliest_exit"] = None
-            found.append(Jump(action.id, "ends", end, now, target, change, better, _fits(project, measured, action, end, target)))
+                mend["earliest_exit"] = None
+            found.append(Jump(action.id, "ends", end, now, target, mend, better, _fits(project, measured, action, end, target)))
     return found
 
 
@@ -183,6 +182,13 @@ def _nearest(cost: Array, now: float, first: float, last: float, blend: float) -
         if len(good):
             return round(float(times[good[int(np.argmin(np.abs(times[good] - now)))]]), 3)
     return None
+
+
+def _mend(field: str, now: float, better: float | None, blended: dict[str, Any]) -> tuple[float | None, dict[str, Any]]:
+    """Return a better moment, if it is what mends, and the Timing fields that do."""
+    if better is not None and blended and abs(better - now) > NEAR:
+        better = None
+    return (better, {field: better}) if better is not None else (None, blended)
 
 
 def _blended(name: str, cost: float, room: float) -> dict[str, Any]:

@@ -74,7 +74,7 @@ def test_a_late_start_jumps_and_a_start_before_the_stroke_mends_it(toy: Any, wid
 
 
 def test_an_early_exit_behind_the_new_end_goes(toy: Any) -> None:
-    project = edits.add_clips(toy.project(), [("away.glb", 0, "", toy.clip("away", 2.4, 0.0, 1.5, 0.0))])
+    project = edits.add_clips(toy.project(), [("away.glb", 0, "", toy.clip("away", 2.4, 0.0, 2.6, 0.0))])
     project = edits.place(project, [toy.id(project, "away")], "arms", "gesture", toy.id(project, "rest"))
     project = cut(toy, project, "away", stroke=0.1, earliest_exit=2.0, blend_out=0.1)
     (jump,) = found(project)
@@ -155,3 +155,10 @@ def test_curves_of_a_loop_are_its_seam_and_of_a_missing_file_nothing(toy: Any, w
 def test_a_blend_takes_off_what_the_player_blends() -> None:
     assert c.shown(2.0, 0.0) == 2.0 and c.shown(2.0, 0.05) == 2.0
     assert c.shown(2.0, 0.2) == pytest.approx(1.0) and np.allclose(c.shown(np.array([1.0, 3.0]), 0.1), [1.0, 3.0])
+
+
+def test_a_moment_far_away_is_not_proposed_where_a_longer_blend_would_do(toy: Any) -> None:
+    project = edits.add_clips(toy.project(), [("away.glb", 0, "", toy.clip("away", 2.4, 0.0, 1.5, 0.0))])
+    project = edits.place(project, [toy.id(project, "away")], "arms", "gesture", toy.id(project, "rest"))
+    (jump,) = found(cut(toy, project, "away", stroke=0.1, blend_out=0.1))
+    assert jump.better is None and set(jump.change) == {"blend_out"}
