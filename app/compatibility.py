@@ -93,8 +93,8 @@ def told(project: Project, judged: Judged) -> dict[Problem, Fix | None]:
 
 
 def _few(layer: Layer, measured: Measured) -> Problem:
-    from metagraph.suggest.compatibility import RATE
     from metagraph.suggest.jumps import FEWEST_CLIPS
+    from metagraph.suggest.tracks import RATE
 
     much = many(measured.labelled, "clip")
     if measured.labelled >= FEWEST_CLIPS:
@@ -271,7 +271,7 @@ class Compatibility(QObject):
             return project
 
         if todo:
-            text = todo[0].words if len(todo) == 1 else f"Mend {len(todo)} timings"
+            text = todo[0].words if len(todo) == 1 else f"Mend {len(todo)} problems"
             self.document.edit(text, all_of)
 
     # --- matrices

@@ -157,7 +157,7 @@ class ProblemsPanel(QWidget):
         self.stack.setCurrentIndex(1 if self.problems else 0)
         count = len(self.fixable())
         self.foot.setVisible(count > 1)
-        self.all.setText(f"Mend {many(count, 'timing')}")
+        self.all.setText(f"Mend {many(count, 'problem')}")
 
     def fixable(self) -> list[Fix]:
         """Return everything that can be mended with a press."""

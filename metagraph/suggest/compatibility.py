@@ -10,10 +10,8 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass, replace
-from functools import lru_cache
 from math import pi
 from typing import Any
-from weakref import WeakKeyDictionary
 
 import numpy as np
 from numpy.typing import NDArray
@@ -22,14 +20,11 @@ from metagraph.graph import anatomy
 from metagraph.graph.model import REACH, Project
 from metagraph.graph.words import Layer
 from metagraph.motion.clip import Clip
-from metagraph.motion.roles import body_parts, find_roles
-from metagraph.motion.skeleton import Pose, Skeleton
 from metagraph.suggest.johnson import JohnsonSB, fit
-from metagraph.suggest.points import facing_of, seen_from
+from metagraph.suggest.tracks import RATE, rig_of, times_of, track_of, velocity_of
 
 Array = NDArray[Any]
 
-RATE = 30.0  # frames a second
 STEP = 3  # k of c_(i, i+k)
 LEVEL = 0.95
 MOST_FRAMES = 24  # of a stance's loops, compared with
@@ -45,8 +40,8 @@ Span = tuple[float, float]
 
 @dataclass(frozen=True, eq=False)
 class Statistics:
-    """What is usual between frames of a layer. weights `[J]`: of `_Rig.joints`. velocity: w_v, seconds. threshold: metres, summed over
-    joints. count: how many costs it rests on. share: how many of those are below the threshold, LEVEL where the distribution fits."""
+    """What is usual between frames of a layer. weights `[J]`: of `tracks.Rig.joints`. velocity: w_v, seconds. threshold: metres, summed
+    over joints. count: how many costs it rests on. share: how many of those are below the threshold, LEVEL where the distribution fits."""
 
     layer: Layer
     weights: Array
@@ -107,64 +102,6 @@ class Matrix:
         return np.asarray(self.leave_cost <= 1)
 
 
-@dataclass(frozen=True, eq=False)
-class _Rig:
-    small: Skeleton
-    keep: Array
-    joints: Array  # of keep: those that count
-    parts: tuple[str, ...]  # of joints
-    places: Mapping[str, int]  # of keep: legs and arms, to tell where it faces
-    root: int  # of keep
-
-
-@lru_cache(maxsize=32)
-def _rig(skeleton: Skeleton, named: tuple[tuple[str, int], ...]) -> _Rig:
-    roles = dict(named)
-    parts = body_parts(skeleton, roles)
-    hands = [roles[r] for r in ("left_hand", "right_hand") if r in roles]
-    fingers = {j for hand in hands for j in skeleton.descendants(hand)} - set(hands)
-    used = [j for j in range(len(skeleton)) if j not in fingers and parts[j] != "face"] or [0]
-    keep = np.array(sorted({k for j in used for k in skeleton.chain(j)}))
-    place = {int(j): i for i, j in enumerate(keep)}
-    parents = np.array([place.get(int(skeleton.parents[j]), -1) for j in keep])
-    small = Skeleton(tuple(skeleton.names[j] for j in keep), parents, skeleton.rest_rotations[keep], skeleton.rest_translations[keep])
-    limbs = {r: place[j] for r, j in roles.items() if r.endswith(("upper_leg", "upper_arm")) and j in place}
-    root = place.get(roles.get("hips", 0), 0)
-    return _Rig(small, keep, np.array([place[j] for j in used]), tuple(parts[j] for j in used), limbs, root)
-
-
-_TRACKS: WeakKeyDictionary[Clip, tuple[_Rig, Array]] = WeakKeyDictionary()
-
-
-def _track(rig: _Rig, clip: Clip) -> Array:
-    """Return where the counted joints are, `[F, J, 3]` float32, metres, from the root as the character faces, RATE frames a second."""
-    known = _TRACKS.get(clip)
-    if known is not None and known[0] is rig:
-        return known[1]
-    times = _times(clip)
-    poses = clip.pose_at(times) if abs(clip.fps - RATE) > 1e-6 else clip.poses()
-    turns, at = rig.small.globals(Pose(poses.rotations[:, rig.keep], poses.translations[:, rig.keep]))
-    facing = facing_of({role: at[:, j] for role, j in rig.places.items()}, turns[:, rig.root], np.array([0.0, 0, 0, 1]))
-    track = seen_from(facing[:, None], at[:, rig.joints] - at[:, rig.root, None]).astype(np.float32)
-    _TRACKS[clip] = rig, track
-    return track
-
-
-def _times(clip: Clip) -> Array:
-    if abs(clip.fps - RATE) <= 1e-6:
-        return np.arange(clip.frames) / clip.fps
-    return np.linspace(0, clip.duration, max(1, round(clip.duration * RATE)) + 1)
-
-
-def _velocity(track: Array) -> Array:
-    return np.gradient(track, 1 / RATE, axis=0) if len(track) > 1 else np.zeros_like(track)
-
-
-def _rig_of(clip: Clip, roles: Mapping[str, int] | None) -> _Rig:
-    named = find_roles(clip.skeleton) if roles is None else roles
-    return _rig(clip.skeleton, tuple(sorted(named.items())))
-
-
 def statistics(
     clips: Iterable[Clip], layer: Layer, roles: Mapping[str, int] | None = None, weights: Mapping[str, float] | None = None
 ) -> Statistics:
@@ -177,17 +114,17 @@ def statistics(
     rig = None
     for clip in some:
         if rig is None:
-            rig = _rig_of(clip, roles)
+            rig = rig_of(clip, roles)
             w = np.array([min(reach.get(part, 0.0), 1.0) for part in rig.parts], np.float32)
             if not w.any():
                 w[:] = 1
             first = clip.skeleton
         if clip.skeleton is not first and clip.skeleton != first:
             continue
-        track = _track(rig, clip)
+        track = track_of(rig, clip)
         if len(track) < STEP:
             continue
-        v = _velocity(track)
+        v = velocity_of(track)
         places.append(np.linalg.norm(track[STEP - 1 :] - track[: 1 - STEP], axis=-1) @ w)
         speeds.append(np.linalg.norm(v[STEP - 1 :] - v[: 1 - STEP], axis=-1) @ w)
     p = np.concatenate(places).astype(float) if places else np.zeros(0)
@@ -208,14 +145,14 @@ def stance_frames(
     most = max(2, MOST_FRAMES // max(1, len(loops)))
     places, speeds = [], []
     for clip, start, end in loops:
-        track = _track(_rig_of(clip, roles), clip)
-        times = _times(clip)
+        track = track_of(rig_of(clip, roles), clip)
+        times = times_of(clip)
         inside = np.flatnonzero((times >= start - 0.5 / RATE) & (times <= end + 0.5 / RATE))
         if not len(inside):
             continue
         chosen = inside[np.unique(np.linspace(0, len(inside) - 1, min(most, len(inside))).astype(int))]
         places.append(track[chosen])
-        speeds.append(_velocity(track)[chosen] if end > start else np.zeros_like(track[chosen]))
+        speeds.append(velocity_of(track)[chosen] if end > start else np.zeros_like(track[chosen]))
     joints = len(stats.weights)
     if not places:
         return np.zeros((0, joints, 3), np.float32), np.zeros((0, joints, 3), np.float32)
@@ -225,7 +162,7 @@ def stance_frames(
 def costs(stats: Statistics, clip: Clip, stance: tuple[Array, Array], roles: Mapping[str, int] | None = None) -> Array:
     """Return `[F]` what it costs to change between each frame of a clip, RATE a second, and the stance's nearest frame, beside the
     threshold: up to 1 is no jump. Infinite where the stance has no frames, or another skeleton."""
-    return _costs(stats, _track(_rig_of(clip, roles), clip), [stance])[:, 0]
+    return _costs(stats, track_of(rig_of(clip, roles), clip), [stance])[:, 0]
 
 
 def _costs(stats: Statistics, track: Array, stances: Sequence[tuple[Array, Array]]) -> Array:
@@ -236,7 +173,7 @@ def _costs(stats: Statistics, track: Array, stances: Sequence[tuple[Array, Array
         return out
     places, speeds = (np.concatenate([stances[k][i] for k in there]) for i in (0, 1))
     first = np.cumsum([0, *(len(stances[k][0]) for k in there[:-1])])
-    moving = _velocity(track)
+    moving = velocity_of(track)
     step = max(1, CHUNK // len(places))
     for a in range(0, len(track), step):
         rows = slice(a, a + step)
@@ -251,7 +188,7 @@ def _costs(stats: Statistics, track: Array, stances: Sequence[tuple[Array, Array
 
 def fitting(clip: Clip, cost: Array) -> Fit:
     """Return where a clip can be entered and left, given its `costs` beside a stance."""
-    times = _times(clip)
+    times = times_of(clip)
     into = entering(cost)
     a = int(np.argmax(into <= into.min() + ALIKE))  # of moments that are as good, the first to enter at and the last to leave at
     b = int(len(cost) - 1 - np.argmax(cost[::-1] <= cost.min() + ALIKE))
@@ -268,7 +205,7 @@ def masked(stats: Statistics, clip: Clip, moved: Array | None, roles: Mapping[st
     """Return the statistics for an action that moves only some joints, `[J]` how strongly (None: all): the others stay in the stance."""
     if moved is None:
         return stats
-    rig = _rig_of(clip, roles)
+    rig = rig_of(clip, roles)
     if len(rig.joints) != len(stats.weights):
         return stats
     return replace(stats, weights=stats.weights * (moved[rig.keep[rig.joints]] > 0))
@@ -276,8 +213,8 @@ def masked(stats: Statistics, clip: Clip, moved: Array | None, roles: Mapping[st
 
 def seam(stats: Statistics, clip: Clip, start: float, end: float, overlap: float, roles: Mapping[str, int] | None = None) -> float:
     """Return what the seam of a loop from `start` to `end` costs, beside the threshold: the most of what lies opposite in its overlap."""
-    track = _track(_rig_of(clip, roles), clip)
-    v, last = _velocity(track), len(track) - 1
+    track = track_of(rig_of(clip, roles), clip)
+    v, last = velocity_of(track), len(track) - 1
     if track.shape[1] != len(stats.weights):
         return float("inf")
     n = np.arange(round(overlap * RATE) + 1)
@@ -319,8 +256,8 @@ def times(
     room for the blends; once it looks like the stance it ends in, after its stroke and for good, it may be left.
     """
     left = entered if left is None else left
-    into, out, at = fitting(clip, entered), fitting(clip, left), _times(clip)
-    speed = np.linalg.norm(_velocity(_track(_rig_of(clip, roles), clip)), axis=-1) @ stats.weights
+    into, out, at = fitting(clip, entered), fitting(clip, left), times_of(clip)
+    speed = np.linalg.norm(velocity_of(track_of(rig_of(clip, roles), clip)), axis=-1) @ stats.weights
     moving = at[speed >= speed.min() + ACTIVE * (speed.max() - speed.min())]
     middle = float(at[int(np.argmax(speed))]) if stroke is None else stroke
     enter = [t for a, b in into.enter for t in at[(at >= a) & (at <= b)].tolist() if t <= middle]
@@ -348,8 +285,8 @@ def times(
 
 def loop_times(stats: Statistics, clip: Clip, roles: Mapping[str, int] | None = None) -> Times:
     """Return a timing for a clip that loops: all of it, with an overlap as long as its seam needs."""
-    track = _track(_rig_of(clip, roles), clip)
-    v = _velocity(track)
+    track = track_of(rig_of(clip, roles), clip)
+    v = velocity_of(track)
     seam = float(np.linalg.norm(track[-1] - track[0], axis=-1) @ stats.weights)
     seam = (seam + stats.velocity * float(np.linalg.norm(v[-1] - v[0], axis=-1) @ stats.weights)) / stats.threshold
     overlap = 0.0 if seam <= SEAMLESS else min(blend(seam), clip.duration / 3)
@@ -389,7 +326,7 @@ def matrix(
             progress(row, len(chosen))
         if (clip := own.get(ident)) is None:
             continue
-        cost = _costs(stats, _track(_rig_of(clip, roles), clip), frames)
+        cost = _costs(stats, track_of(rig_of(clip, roles), clip), frames)
         for column in range(len(frames)):
             f = fitting(clip, cost[:, column])
             out.enter_cost[row, column], out.leave_cost[row, column] = f.enter_cost, f.leave_cost

@@ -15,6 +15,7 @@ from metagraph.graph.model import REACH, Action, Layer, Project
 from metagraph.motion.clip import Clip
 from metagraph.playback.phases import phases
 from metagraph.suggest import compatibility as c
+from metagraph.suggest.tracks import RATE
 
 Array = NDArray[Any]
 Edge = Literal["begins", "ends", "loops"]
@@ -43,7 +44,7 @@ class Jump:
 
 @dataclass(frozen=True, eq=False)
 class Curves:
-    """An action's clip beside its stances. times `[F]`: seconds, compatibility.RATE a second. enter, leave `[F]`: what entering and
+    """An action's clip beside its stances. times `[F]`: seconds, tracks.RATE a second. enter, leave `[F]`: what entering and
     leaving at each would cost, of what shows as a jump, without a blend (see `compatibility.shown`); for a loop both are what its seam
     would cost if it ended there. proposed: a timing in which nothing shows."""
 
@@ -170,12 +171,12 @@ def _loop(project: Project, measured: Measured, action: Action) -> list[Jump]:
 
 
 def _at(cost: Array, seconds: float) -> float:
-    return float(cost[min(max(round(seconds * c.RATE), 0), len(cost) - 1)])
+    return float(cost[min(max(round(seconds * RATE), 0), len(cost) - 1)])
 
 
 def _nearest(cost: Array, now: float, first: float, last: float, blend: float) -> float | None:
     """Return the moment from first to last, nearest to now, at which no jump shows; None where there is none."""
-    times = np.arange(len(cost)) / c.RATE
+    times = np.arange(len(cost)) / RATE
     inside = (times >= first - 1e-6) & (times <= last + 1e-6)
     for most in (ROOM, 1.0):
         good = np.flatnonzero(inside & (c.shown(cost, blend) <= most))
@@ -193,7 +194,7 @@ def _mend(field: str, now: float, better: float | None, blended: dict[str, Any])
 
 def _blended(name: str, cost: float, room: float) -> dict[str, Any]:
     """Return the blend that hides a difference, nothing where it would take too long."""
-    needed = 1.5 * (c.STEP - 1) / c.RATE * cost / ROOM
+    needed = 1.5 * (c.STEP - 1) / RATE * cost / ROOM
     return {name: round(needed + 0.005, 2)} if needed + 0.005 <= min(room, c.BLEND[1]) else {}
 
 

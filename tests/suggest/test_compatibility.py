@@ -17,7 +17,6 @@ from metagraph.motion.skeleton import Skeleton
 from metagraph.suggest.compatibility import (
     BLEND,
     LEVEL,
-    RATE,
     STEP,
     Statistics,
     blend,
@@ -30,6 +29,7 @@ from metagraph.suggest.compatibility import (
     statistics,
     times,
 )  # fmt: skip
+from metagraph.suggest.tracks import RATE
 from tests.suggest.test_traits import chain, moved
 
 

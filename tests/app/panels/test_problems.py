@@ -116,7 +116,7 @@ def test_all_timings_are_mended_in_one_step(toys, toy, wide):
     drive.wait(lambda: len(panel.fixable()) == 2)
     drive.window.show_dock("problems")
     drive.pause(100)
-    assert panel.all.text() == "Mend 2 timings"
+    assert panel.all.text() == "Mend 2 problems"
     drive.click((panel.all, panel.all.rect().center()))
     assert drive.document.undo_stack.count() == 1
     drive.wait(lambda: not panel.fixable())

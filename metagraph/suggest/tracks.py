@@ -1,0 +1,84 @@
+"""Where the counted joints of clips are, as transitions are compared: from the root, as the character faces, at one rate."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from functools import lru_cache
+from typing import Any
+from weakref import WeakKeyDictionary
+
+import numpy as np
+from numpy.typing import NDArray
+
+from metagraph.motion.clip import Clip
+from metagraph.motion.roles import body_parts, find_roles
+from metagraph.motion.skeleton import Pose, Skeleton
+from metagraph.suggest.points import facing_of, seen_from
+
+Array = NDArray[Any]
+
+RATE = 30.0  # frames a second
+
+
+@dataclass(frozen=True, eq=False)
+class Rig:
+    """What counts of a skeleton. small: the joints `keep` of it."""
+
+    small: Skeleton
+    keep: Array
+    joints: Array  # of keep: those that count
+    parts: tuple[str, ...]  # of joints
+    places: Mapping[str, int]  # of keep: legs and arms, to tell where it faces
+    root: int  # of keep
+
+
+@lru_cache(maxsize=32)
+def _rig(skeleton: Skeleton, named: tuple[tuple[str, int], ...]) -> Rig:
+    roles = dict(named)
+    parts = body_parts(skeleton, roles)
+    hands = [roles[r] for r in ("left_hand", "right_hand") if r in roles]
+    fingers = {j for hand in hands for j in skeleton.descendants(hand)} - set(hands)
+    used = [j for j in range(len(skeleton)) if j not in fingers and parts[j] != "face"] or [0]
+    keep = np.array(sorted({k for j in used for k in skeleton.chain(j)}))
+    place = {int(j): i for i, j in enumerate(keep)}
+    parents = np.array([place.get(int(skeleton.parents[j]), -1) for j in keep])
+    small = Skeleton(tuple(skeleton.names[j] for j in keep), parents, skeleton.rest_rotations[keep], skeleton.rest_translations[keep])
+    limbs = {r: place[j] for r, j in roles.items() if r.endswith(("upper_leg", "upper_arm")) and j in place}
+    root = place.get(roles.get("hips", 0), 0)
+    return Rig(small, keep, np.array([place[j] for j in used]), tuple(parts[j] for j in used), limbs, root)
+
+
+_TRACKS: WeakKeyDictionary[Clip, tuple[Rig, Array]] = WeakKeyDictionary()
+
+
+def track_of(rig: Rig, clip: Clip) -> Array:
+    """Return where the counted joints are, `[F, J, 3]` float32, metres, from the root as the character faces, RATE frames a second."""
+    known = _TRACKS.get(clip)
+    if known is not None and known[0] is rig:
+        return known[1]
+    times = times_of(clip)
+    poses = clip.pose_at(times) if abs(clip.fps - RATE) > 1e-6 else clip.poses()
+    turns, at = rig.small.globals(Pose(poses.rotations[:, rig.keep], poses.translations[:, rig.keep]))
+    facing = facing_of({role: at[:, j] for role, j in rig.places.items()}, turns[:, rig.root], np.array([0.0, 0, 0, 1]))
+    track = seen_from(facing[:, None], at[:, rig.joints] - at[:, rig.root, None]).astype(np.float32)
+    _TRACKS[clip] = rig, track
+    return track
+
+
+def times_of(clip: Clip) -> Array:
+    """Return the seconds `[F]` of a clip's track."""
+    if abs(clip.fps - RATE) <= 1e-6:
+        return np.arange(clip.frames) / clip.fps
+    return np.linspace(0, clip.duration, max(1, round(clip.duration * RATE)) + 1)
+
+
+def velocity_of(track: Array) -> Array:
+    """Return the velocities `[F, J, 3]` of a track, metres a second."""
+    return np.gradient(track, 1 / RATE, axis=0) if len(track) > 1 else np.zeros_like(track)
+
+
+def rig_of(clip: Clip, roles: Mapping[str, int] | None) -> Rig:
+    """Return what counts of a clip's skeleton. roles: as found unless given."""
+    named = find_roles(clip.skeleton) if roles is None else roles
+    return _rig(clip.skeleton, tuple(sorted(named.items())))
