@@ -69,7 +69,7 @@ def _clips(project: Project) -> Iterator[Problem]:
                 "error" if project.uses.get(entry.id) else "warning",
                 "other-skeleton",
                 f"clip '{entry.name}' has another skeleton ({len(entry.motion.skeleton)} joints, the project has {len(project.skeleton)})",
-                "Remove it, or import it into a project of its own.",
+                "Import its file again to retarget it, or remove it.",
                 clip=entry.id,
             )
 

@@ -99,4 +99,4 @@ def test_a_clip_is_replaced_and_settings_stay(toys):
 
 def test_the_menu_of_an_action_offers_them(toys):
     drive = toys
-    assert [a.objectName() for a in drive.window.canvas.row_actions] == ["rename", "copy", "paste", "replace_clip"]
+    assert [a.objectName() for a in drive.window.canvas.row_actions] == ["rename", "copy", "paste", "replace_clip", "twins"]
