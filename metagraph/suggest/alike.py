@@ -2,7 +2,7 @@
 
 Words vote as in naive Bayes (each word's counts by label, one added to each), measures by their nearest neighbours. How sure a guess is
 comes from the labelled clips themselves: each is guessed from all the others, and of those that were guessed as firmly as this one, the
-share that was right is the confidence.
+share that was right is the confidence; less for a motion unlike any of them.
 """
 
 from __future__ import annotations
@@ -23,6 +23,7 @@ Array = NDArray[Any]
 NEIGHBOURS = 5
 LEAST = 4  # labelled clips below which nothing is said
 TRIALS = 400  # examples that are guessed from the others, to know how often that is right
+CLOSE = 0.1  # standard deviations below which a motion is like another whatever is usual
 WORDS_PART = 0.6  # how much words count beside motion, where there are both
 
 
@@ -95,7 +96,8 @@ class Alike:
             if model is None:
                 continue
             value, firm, near = model.best(model.scores(said, away, None), said)
-            out[field] = Belief(value, model.confidence(firm), f"like {near}" if near else "like what is labelled so")
+            sure = model.confidence(firm) * model.familiar(away)
+            out[field] = Belief(value, sure, f"like {near}" if near else "like what is labelled so")
         return out
 
     def _away(self, scaled: Array | None) -> Array | None:
@@ -192,6 +194,27 @@ class _Field:
         near = int(shared.argmax())
         named = " ".join(self.alike.examples[self.places[near]].words) if shared[near] else ""
         return self.values[place], float(shares[place]), f"'{named}'" if named else ""
+
+    def familiar(self, away: Array | None) -> float:
+        """Return how far the examples can speak for a motion, 0..1: less, the farther the nearest is beyond what is usual among them. A
+        hundred labelled stances say nothing of the first gesture."""
+        if away is None:
+            return 1.0
+        nearest = float(away[self.places].min())
+        return min(1.0, self._usual / nearest) ** 2 if np.isfinite(nearest) and nearest > 0 else 1.0
+
+    @cached_property
+    def _usual(self) -> float:
+        """How far an example's nearest other is; of ten, nine are not farther."""
+        moving = [n for n in self.places if self.alike._moving[n]]
+        nearest = []
+        for n in moving[:: max(1, -(-len(moving) // TRIALS))]:
+            away = self.alike._away(self.alike._scaled[n])
+            assert away is not None
+            away[n] = np.inf
+            nearest.append(float(away[self.places].min()))
+        known = [x for x in nearest if np.isfinite(x)]
+        return max(CLOSE, float(np.quantile(known, 0.9))) if known else CLOSE
 
     @cached_property
     def _trial(self) -> tuple[Array, Array]:

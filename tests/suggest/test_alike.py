@@ -41,6 +41,13 @@ def test_motion_tells_alone() -> None:
     assert alike.guess((), np.array([0.1, np.nan, 0.0]))["kind"].value == "stance"
 
 
+def test_a_motion_unlike_all_that_is_labelled_is_not_judged_by_it() -> None:
+    chance = np.random.default_rng(3)
+    alike = Alike([labelled(f"rest {n}", "stance", *chance.normal(0, 0.1, 3)) for n in range(12)])
+    assert alike.guess(("look", "down"), np.array([0.0, 0.1, 0.0]))["kind"].confidence > 0.8
+    assert alike.guess(("look", "down"), np.array([3.0, 4.0, 2.0]))["kind"].confidence < 0.1
+
+
 def test_labels_that_nothing_tells_are_not_believed() -> None:
     chance = np.random.default_rng(2)
     noise = [labelled(f"clip {n}", str(chance.choice(["gesture", "fidget"])), *chance.normal(0, 1, 4)) for n in range(60)]
