@@ -4,13 +4,11 @@ from __future__ import annotations
 
 import time
 from collections.abc import Sequence
-from typing import Protocol
 
 from PySide6.QtCore import QEvent, QPoint, QPointF, QSizeF, Qt, QTimer, Signal
 from PySide6.QtGui import (
     QAction,
     QContextMenuEvent,
-    QDrag,
     QDragEnterEvent,
     QDragLeaveEvent,
     QDragMoveEvent,
@@ -21,13 +19,13 @@ from PySide6.QtGui import (
     QMouseEvent,
     QPainter,
     QPaintEvent,
-    QPixmap,
     QWheelEvent,
 )
-from PySide6.QtWidgets import QApplication, QInputDialog, QMenu, QToolTip, QWidget
+from PySide6.QtWidgets import QInputDialog, QMenu, QToolTip, QWidget
 
-from app.canvas.drops import Drop, Load, drop_at, load_of, mime, perform
-from app.canvas.layout import Hit, Layout, arrange, likelihood_at
+from app.canvas.drops import Drop, Load, drop_at, load_of, perform
+from app.canvas.gestures import LikelihoodDrag, MouseGesture, RowDrag
+from app.canvas.layout import Hit, Layout, arrange
 from app.canvas.painter import Look, paint
 from app.canvas.repoint import HeadDrag
 from app.document import Document
@@ -44,88 +42,6 @@ NOTHING = Hit("nothing")
 HOVER = 350  # milliseconds over a row before it plays, over a chip during a drag before it becomes current
 HERO_RATE = 12  # pictures a second of the stance in the middle
 SLOW = 0.015  # seconds of drawing for each of which a picture of it is left out
-
-
-class MouseGesture(Protocol):
-    """One drag of the mouse, from press to release. Only `finish` changes the project for good."""
-
-    def update(self, at: QPointF) -> None: ...
-    def finish(self, at: QPointF) -> None: ...
-    def cancel(self) -> None: ...
-
-
-class LikelihoodDrag:
-    """Drags a likelihood bar; all selected actions follow when the bar is of one of them. One undo step."""
-
-    def __init__(self, canvas: Canvas, action: str) -> None:
-        self.canvas, self.action = canvas, action
-        chosen = canvas.session.actions
-        self.actions = chosen if action in chosen else (action,)
-        self.row = canvas.layout_now().row(action)
-
-    def update(self, at: QPointF) -> None:
-        if self.row is not None:
-            value = likelihood_at(self.row, at.x())
-            self.canvas.document.edit(
-                "Change likelihood", lambda p: edits.update_actions(p, self.actions, likelihood=value), merge="likelihood"
-            )
-
-    def finish(self, at: QPointF) -> None:
-        self.update(at)
-        self.canvas.document.finish_merging()
-
-    def cancel(self) -> None:
-        self.canvas.document.cancel_merging("likelihood")
-
-
-class RowDrag:
-    """Drags actions onto another node or stance, as a real drag so that everything that takes drops can take them."""
-
-    def __init__(self, canvas: Canvas, action: str, at: QPointF) -> None:
-        self.canvas, self.action, self.origin = canvas, action, at
-        self.dragging = False
-
-    def update(self, at: QPointF) -> None:
-        if self.dragging or (at - self.origin).manhattanLength() < QApplication.startDragDistance():
-            return
-        self.dragging = True
-        chosen = self.canvas.session.actions
-        actions = chosen if self.action in chosen else (self.action,)
-        drag = QDrag(self.canvas)
-        drag.setMimeData(mime(actions=actions))
-        drag.setPixmap(drag_picture(f"{len(actions)} actions" if len(actions) > 1 else self._name(), self.canvas))
-        self.canvas.gesture = None
-        drag.exec(Qt.DropAction.MoveAction)
-
-    def _name(self) -> str:
-        found = self.canvas.document.project.action(self.action)
-        return found.name if found is not None else ""
-
-    def finish(self, at: QPointF) -> None:
-        pass
-
-    def cancel(self) -> None:
-        pass
-
-
-def drag_picture(text: str, widget: QWidget) -> QPixmap:
-    """Return a small label to carry under the pointer."""
-    metrics = QFontMetricsF(widget.font())
-    ratio = widget.devicePixelRatioF()
-    out = QPixmap(round((metrics.horizontalAdvance(text) + 24) * ratio), round(28 * ratio))
-    out.setDevicePixelRatio(ratio)
-    out.fill(Qt.GlobalColor.transparent)
-    painter = QPainter(out)
-    painter.setRenderHint(QPainter.RenderHint.Antialiasing)
-    painter.setBrush(widget.palette().toolTipBase())
-    painter.setPen(widget.palette().mid().color())
-    rect = out.deviceIndependentSize()
-    painter.drawRoundedRect(0.5, 0.5, rect.width() - 1, rect.height() - 1, 6, 6)
-    painter.setPen(widget.palette().text().color())
-    painter.setFont(widget.font())
-    painter.drawText(0, 0, round(rect.width()), round(rect.height()), Qt.AlignmentFlag.AlignCenter, text)
-    painter.end()
-    return out
 
 
 class Canvas(QWidget):

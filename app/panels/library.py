@@ -53,8 +53,8 @@ from PySide6.QtWidgets import (
 )
 
 from app import icons
-from app.canvas.canvas import drag_picture
 from app.canvas.drops import load_of, mime
+from app.canvas.gestures import drag_picture
 from app.document import Document
 from app.session import Session
 from app.theme import KIND_MARKS, theme

@@ -6,25 +6,13 @@ from math import inf
 
 import numpy as np
 import pytest
-from PySide6.QtCore import QPoint, Qt
+from PySide6.QtCore import QPoint, QRectF, Qt
 from PySide6.QtGui import QColor, QImage, QPainter
 from PySide6.QtTest import QTest
 
 from app.compatibility import extended
-from app.panels.matrix import (
-    CELL,
-    CLIP,
-    FIRST,
-    USES,
-    Cell,
-    MatrixDialog,
-    MatrixModel,
-    Rows,
-    draw_half,
-    grade,
-    told,
-    words_of,
-)
+from app.panels.matrix import MatrixDialog
+from app.panels.matrix_table import CELL, CLIP, FIRST, USES, Cell, MatrixModel, Rows, draw_half, grade, told, words_of
 from app.theme import DARK, LIGHT
 from metagraph.graph import edits
 from metagraph.graph.model import Project
@@ -52,8 +40,6 @@ def test_marks_tell_by_shape_not_by_colour_alone(look):
             image = QImage(32, 32, QImage.Format.Format_RGB32)
             image.fill(QColor(look.field))
             painter = QPainter(image)
-            from PySide6.QtCore import QRectF
-
             draw_half(painter, look, QRectF(8, 8, 16, 16), side, cost)
             painter.end()
             grey = image.convertToFormat(QImage.Format.Format_Grayscale8)
