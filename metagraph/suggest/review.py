@@ -1,6 +1,6 @@
 """A person going through proposals: what they correct, what is still open, and how long the rest will take.
 
-Stances come first, since all else hangs on them; then the least certain. A correction is kept as it was meant - a stance by its name -
+Stances come first, the most used before the others, since all else hangs on them; then the least certain. A correction is kept as it was meant - a stance by its name -
 so that it outlives proposals that are made anew.
 """
 
@@ -84,8 +84,15 @@ class Review:
         return Review(Proposals(proposals, places), self.said)
 
     def order(self) -> list[str]:
-        """Return the clips in the order they are best looked at: stances first, then the least certain."""
-        return [p.clip for p in sorted(self.found.proposals.values(), key=lambda p: (p.kind.value != "stance", p.confidence, p.clip))]
+        """Return the clips in the order they are best looked at: stances first, the most used before the others, since a layer begins in
+        its first and the first gives the base pose; then the least certain."""
+        used = Counter(p.stance.value for p in self.found.proposals.values() if p.stance is not None)
+
+        def rank(p: Proposal) -> tuple[Any, ...]:
+            rests = p.kind.value == "stance"
+            return not rests, -used[p.stance.value] if rests and p.stance is not None else 0, p.confidence, p.clip
+
+        return [p.clip for p in sorted(self.found.proposals.values(), key=rank)]
 
     def choices(self, clip: str, name: Field) -> list[tuple[Any, str]]:
         """Return what a deciding field may be: (value to tell, words). Stances the project has come first, then the most spoken of."""

@@ -40,13 +40,13 @@ def test_nothing_to_review_has_no_order() -> None:
     assert review.order() == [] and review.take(Project(), ["gone"]).placed == ()
 
 
-def test_stances_come_first_then_the_least_certain(found: Proposals) -> None:
+def test_stances_come_first_the_most_used_before_the_others_then_the_least_certain(practice: Project, found: Proposals) -> None:
     order = [found.proposals[c] for c in Review(found).order()]
     kinds = [p.kind.value == "stance" for p in order]
     assert kinds == sorted(kinds, reverse=True)
-    for part in (True, False):
-        confidences = [p.confidence for p in order if (p.kind.value == "stance") == part]
-        assert confidences == sorted(confidences)
+    assert practice.clips[order[0].clip].name == "hands_at_sides__stance"
+    confidences = [p.confidence for p in order if p.kind.value != "stance"]
+    assert confidences == sorted(confidences)
 
 
 def test_what_is_said_is_certain_and_ends_the_dispute(practice: Project, found: Proposals) -> None:
