@@ -23,11 +23,14 @@ sys.path.insert(0, str(ROOT))
 from metagraph.errors import FileError  # noqa: E402
 from metagraph.formats.clips import find_clip_files, read_clips  # noqa: E402
 from metagraph.formats.store import open_project  # noqa: E402
+from metagraph.graph import edits  # noqa: E402
 from metagraph.graph.model import LAYERS, Project  # noqa: E402
 from metagraph.motion import rotation  # noqa: E402
 from metagraph.motion.clip import Clip  # noqa: E402
+from metagraph.suggest.alike import Alike, Example  # noqa: E402
 from metagraph.suggest.compatibility import matrix  # noqa: E402
 from metagraph.suggest.motion_guess import guess  # noqa: E402
+from metagraph.suggest.propose import accept, examples_of, propose  # noqa: E402
 from metagraph.suggest.stances import discovered, distance, known  # noqa: E402
 from metagraph.suggest.traits import Traits, traits_of  # noqa: E402
 
@@ -169,6 +172,20 @@ def main() -> None:
     end = time.perf_counter()
     print(f"\n{len(many)} clips, {sum(c.frames for c in many)} frames of {len(many[0].skeleton)} joints: traits {middle - start:.2f} s, "
           f"stances {later - middle:.2f} s, guesses {end - later:.2f} s, all {end - start:.2f} s")  # fmt: skip
+    waiting = edits.add_clips(Project(), [(f"{n}.glb", 0, "", noisy(clip, n + 1000)) for n, clip in enumerate(many)])
+    start, busy = time.perf_counter(), time.process_time()
+    proposals = propose(waiting)
+    middle = time.perf_counter()
+    taken = accept(waiting, proposals)
+    print(f"proposing labels for {len(waiting.clips)} clips: {middle - start:.2f} s, placing {len(taken.placed)}: "
+          f"{time.perf_counter() - middle:.2f} s; {time.process_time() - busy:.2f} s of a processor")  # fmt: skip
+    some = examples_of(project, traits)
+    examples = [Example((*e.words, f"w{n % 40}"), e.measures, e.labels) for n in range(33) for e in some][:5000]
+    start = time.perf_counter()
+    alike = Alike(examples)
+    for e in examples[:1000]:
+        alike.guess(e.words, e.measures)
+    print(f"asking {len(examples)} labelled clips about 1000: {time.perf_counter() - start:.2f} s")
     start = time.perf_counter()
     for layer in LAYERS:
         matrix(project, layer)
