@@ -10,7 +10,7 @@ from app.learned import Learned
 from metagraph.graph.model import Project
 from metagraph.suggest.accept import Taken
 from metagraph.suggest.proposal import Proposal, Proposals
-from metagraph.suggest.propose import propose
+from metagraph.suggest.propose import propose, waiting
 from metagraph.suggest.review import Field, Pace, Review
 
 REST = 400  # milliseconds of quiet after a correction before the rest is proposed anew
@@ -68,9 +68,9 @@ class Reviewing(QObject):
     # --- what is left
 
     def waiting(self) -> list[str]:
-        """Return the clips that are not placed yet, in order."""
-        project = self.document.project
-        return [c for c in self.clips if c in project.clips and c not in project.uses]
+        """Return the clips that are not placed yet, in order. One that only lends a stance a still moment is not."""
+        there = set(waiting(self.document.project))
+        return [c for c in self.clips if c in there]
 
     def sure_ones(self, least: float) -> list[str]:
         """Return the clips that wait, are at least so sure, and are not disputed."""

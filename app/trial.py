@@ -24,8 +24,8 @@ class Span:
 def trial(project: Project, review: Review, clip: str) -> tuple[Shown, Span | None]:
     """Return the clip as it would play if it were accepted: its stance, the clip, the stance it ends in; alone where it has no place."""
     taken = review.take(project, [clip])
-    action = next((a for a in taken.project.uses.get(clip, ())), None)
-    if action is None:
+    action = next(reversed(taken.project.uses.get(clip, ())), None)  # before it may stand one that only lends a stance a moment
+    if action is None or clip not in taken.placed:
         return alone(project, clip), None
     placed = taken.project
     stances = {layer: start for layer in LAYERS if (start := placed.graphs[layer].start) is not None}

@@ -23,6 +23,7 @@ from app.panels.review_words import about
 from app.session import Session
 from app.theme import KIND_MARKS, theme
 from metagraph.graph.model import Project
+from metagraph.suggest.propose import waiting
 from metagraph.suggest.review import Pace, Review
 
 CLIP = Qt.ItemDataRole.UserRole
@@ -105,13 +106,13 @@ class ReviewQueue(QWidget):
 
     def refresh(self, review: Review, project: Project) -> None:
         """Show what each clip is taken for now, and whether it is placed."""
-        look = theme(self.session.theme)
+        look, open_ = theme(self.session.theme), set(waiting(project))
         for clip, item in self._items.items():
             entry, p = project.clips.get(clip), review.found.proposals[clip]
             item.setHidden(entry is None)
             if entry is None:
                 continue
-            placed, kind = clip in project.uses, p.kind.value
+            placed, kind = clip not in open_, p.kind.value
             item.setText(0, f"{KIND_MARKS[kind]}  {entry.name}")
             item.setToolTip(0, entry.name)
             item.setText(1, "✓" if placed else f"{p.confidence:.0%}")

@@ -19,6 +19,7 @@ from metagraph.suggest.accept import Taken, accept
 from metagraph.suggest.belief import Belief
 from metagraph.suggest.details import timed
 from metagraph.suggest.proposal import Place, Proposal, Proposals, plain
+from metagraph.suggest.propose import waiting
 
 Field = Literal["kind", "layer", "stance", "end_stance", "limb", "tags", "timing"]
 FIELDS: tuple[Field, ...] = get_args(Field)
@@ -128,7 +129,8 @@ class Review:
         """Return the project with clips placed as proposed, and resting clips along with them that show a stance they need and that is
         not there yet. A clip that is placed already is placed anew."""
         known = [c for c in clips if c in self.found.proposals and c in project.clips]
-        again = [a.id for c in known for a in project.uses.get(c, ())]
+        open_ = set(waiting(project))
+        again = [a.id for c in known if c not in open_ for a in project.uses.get(c, ())]
         try:
             bare = edits.remove_actions(project, again) if again else project
         except EditError as error:
@@ -157,13 +159,13 @@ class Review:
     def _resting(self, project: Project, clip: str) -> list[str]:
         """Return the surest unplaced clips that rest in stances this clip needs and the project does not have."""
         p = self.found.proposals[clip]
-        out = []
+        out, open_ = [], set(waiting(project))
         for belief in (p.stance, p.end_stance if p.kind.value == "transition" else None):
             if belief is None or project.stance(belief.value) is not None or (belief is p.stance and p.kind.value == "stance"):
                 continue
             rests = [
                 x for x in self.found.proposals.values()
-                if x.kind.value == "stance" and x.stance is not None and x.stance.value == belief.value and x.clip not in project.uses
+                if x.kind.value == "stance" and x.stance is not None and x.stance.value == belief.value and x.clip in open_
             ]  # fmt: skip
             if rests:
                 out.append(max(rests, key=lambda x: x.confidence).clip)
