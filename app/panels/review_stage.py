@@ -131,8 +131,8 @@ class ReviewStage(QWidget):
         ideal.setDefaultFont(self.words.font())
         ideal.setHtml(self.words.text())
         wide = round(min(ideal.idealWidth() + 28, max(160, min(460, self.view.width() - 24))))
-        self.words.setFixedWidth(wide)
-        self.words.setFixedHeight(self.words.heightForWidth(wide))
+        ideal.setTextWidth(wide - 24)
+        self.words.setFixedSize(wide, round(ideal.size().height()) + 10)
 
     def resizeEvent(self, event: QResizeEvent) -> None:
         super().resizeEvent(event)

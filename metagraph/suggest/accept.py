@@ -32,7 +32,8 @@ def accept(project: Project, found: Proposals, above: float = 0.0, clips: Collec
     left = {p.clip: f"only {p.confidence:.0%} sure" for p in wanted if p.confidence < above}
     wanted = [p for p in wanted if p.clip not in left]
     keys = {key: key for key, place in found.places.items() if place.there and project.stance(key) is not None}
-    loops = {plain(found.places[p.stance.value].name): p.clip for p in wanted if p.kind.value == "stance" and p.stance is not None}
+    loops = {plain(s.name): g.of(i, "stance")[0].clip for g in project.graphs.values() for i, s in g.stances.items() if g.of(i, "stance")}
+    loops |= {plain(found.places[p.stance.value].name): p.clip for p in wanted if p.kind.value == "stance" and p.stance is not None}
     before, placed, held = project, list[str](), dict[str, Rest]()
     for p in sorted(wanted, key=lambda p: (p.kind.value != "stance", -p.confidence)):
         try:

@@ -91,6 +91,14 @@ def test_a_gesture_brings_the_clip_that_rests_in_its_stance(practice: Project, f
     assert set(taken.placed) == {beat, clip(practice, "arms_crossed__stance")}
 
 
+def test_a_stance_of_another_layer_shows_one_of_the_same_name(practice: Project, found: Proposals) -> None:
+    rest, beat = clip(practice, "arms_crossed__stance"), clip(practice, "arms_crossed__beat_small_rt_01")
+    review = Review(found).tell(rest, "layer", "body").tell(rest, "stance", "arms crossed")
+    project = review.take(practice, [rest]).project
+    taken = review.settled(project).take(project, [beat])
+    assert beat in taken.placed and taken.project.graphs["arms"].stances
+
+
 def test_stances_made_meanwhile_are_the_projects(practice: Project, found: Proposals) -> None:
     rest, beat = clip(practice, "arms_crossed__stance"), clip(practice, "arms_crossed__beat_small_rt_01")
     review = Review(found)
