@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 import pickle
 import queue
 import sys
@@ -31,6 +32,9 @@ class Order:
     character: Path | None
 
 
+_Waiting = queue.PriorityQueue[tuple[bool, float, Order | None]]
+
+
 def draw(offscreen: Any, figure: Any, order: Order) -> list[np.ndarray]:
     """Return a clip's pictures `[H, W, 4]`: one telling pose, or its whole loop."""
     from preview.scene import THEMES
@@ -51,10 +55,10 @@ def draw(offscreen: Any, figure: Any, order: Order) -> list[np.ndarray]:
 
 
 def serve(orders: BinaryIO, results: BinaryIO) -> None:
-    """Answer pickled orders with pickled (number, pictures), the latest first, until the other side is gone."""
+    """Answer pickled orders with pickled (number, pictures) until the other side is gone: stills before loops, the latest first."""
     from preview.offscreen import Offscreen, OpenGLError
 
-    waiting: queue.LifoQueue[Order | None] = queue.LifoQueue()
+    waiting: _Waiting = queue.PriorityQueue()
     threading.Thread(target=_read, args=(orders, waiting), daemon=True).start()
     try:
         offscreen = Offscreen(SIZE * SCALE, SIZE * SCALE)
@@ -62,7 +66,7 @@ def serve(orders: BinaryIO, results: BinaryIO) -> None:
         return
     figures: dict[tuple[str, Path | None], Any] = {}
     with offscreen:
-        while (order := waiting.get()) is not None:
+        while (order := waiting.get()[2]) is not None:
             key = (order.clip.skeleton.fingerprint, order.character)
             if key not in figures:
                 figures[key] = _figure(order.clip.skeleton, order.character)
@@ -70,12 +74,13 @@ def serve(orders: BinaryIO, results: BinaryIO) -> None:
             results.flush()
 
 
-def _read(orders: BinaryIO, waiting: queue.LifoQueue[Order | None]) -> None:
+def _read(orders: BinaryIO, waiting: _Waiting) -> None:
     try:
         while True:
-            waiting.put(pickle.load(orders))
+            order = pickle.load(orders)
+            waiting.put((order.what == "moving", -order.number, order))
     except (EOFError, OSError, pickle.UnpicklingError):
-        waiting.put(None)
+        waiting.put((False, -math.inf, None))
 
 
 def _figure(skeleton: Skeleton, character: Path | None) -> Any:
