@@ -9,7 +9,8 @@ from typing import Any
 import numpy as np
 from hypothesis import strategies as st
 
-from metagraph.graph import edits
+from metagraph.graph import edits, manual_edits
+from metagraph.graph.manual import ANY, WHENS
 from metagraph.graph.model import KINDS, LAYERS, LIMBS, PARTS, Markov, Project
 from metagraph.motion.clip import Clip
 from metagraph.motion.skeleton import Skeleton
@@ -176,8 +177,34 @@ def _rest(draw: Any, project: Project) -> Project:
     )(project)
 
 
+def _manual(draw: Any, project: Project) -> Project:
+    layer = draw(st.sampled_from(LAYERS))
+    found = manual_edits.machine(project, layer)
+    states, links = [*found.states], [*found.links]
+    if not states or (project.clips and draw(st.integers(0, 3)) == 0):
+        chosen = draw(st.lists(st.sampled_from([*project.clips]), min_size=1, max_size=3)) if project.clips else []
+        return manual_edits.add_states(project, chosen, layer, draw(times), -draw(times)) if chosen else project
+    some = draw(st.lists(st.sampled_from(states), min_size=1, max_size=3))
+    step = draw(st.integers(0, 7))
+    if step < 3 or not links:
+        return manual_edits.add_link(project, layer, draw(st.sampled_from([*states, ANY])), draw(st.sampled_from(states)))
+    if step == 3:
+        fields = {"loop": draw(st.booleans()), "start": draw(times), "end": draw(st.none() | times), "limb": draw(st.sampled_from(LIMBS))}
+        return manual_edits.update_states(project, some, name=draw(names), joints=draw(st.sampled_from([(), ("Head",)])), **fields)
+    if step == 4:
+        condition = {"when": draw(st.sampled_from(WHENS)), "trigger": draw(names), "weight": draw(st.sampled_from([0.5, 3.0]))}
+        fields = {"exit_time": draw(st.none() | times), "blend": draw(times)}
+        return manual_edits.update_links(project, [draw(st.sampled_from(links))], condition=condition, **fields)
+    if step == 5:
+        return manual_edits.paste(project, layer, manual_edits.copied(project, some), draw(times), draw(times))[0]
+    if step == 6:
+        return manual_edits.remove(project, some[:1], [draw(st.sampled_from(links))])
+    return manual_edits.set_start(manual_edits.move_nodes(project, layer, {some[0]: (draw(times), 0.5), ANY: (-3.0, 4.0)}), some[-1])
+
+
 EDITS: tuple[Callable[[Any, Project], Project], ...] = (
     _import, _stance, _stance, _place, _place, _place, _update, _update, _remove, _remove_stance, _remove_clips, _move, _rest,
+    _manual, _manual,
 )  # fmt: skip
 
 

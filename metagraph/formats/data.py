@@ -7,13 +7,14 @@ from __future__ import annotations
 
 import math
 from collections.abc import Mapping
-from dataclasses import MISSING, fields
+from dataclasses import fields
 from typing import Any
 
 import msgspec
 import numpy as np
 
-from metagraph.formats.fields import LARGEST, Data, DataError, fill, floats, get, items, known, one_of
+from metagraph.formats.fields import Data, DataError, fill, floats, get, items, known, number, one_of, plain, sparse
+from metagraph.formats.manual_data import manual_data, manual_from
 from metagraph.formats.takes import REPAIRS
 from metagraph.graph.asks import words_of
 from metagraph.graph.model import (
@@ -43,48 +44,13 @@ from metagraph.motion.skeleton import Skeleton
 FORMAT = 1  # of the project file; older ones are upgraded when read
 
 
-def _number(value: float) -> float | int:
-    """Return a number rounded to six decimals, or to six digits where nothing else would be left. Raises ValueError."""
-    if not abs(value) <= LARGEST:
-        raise ValueError(f"{value!r} is not a number that can be saved")
-    rounded = round(float(value), 6) or float(f"{value:.6g}")
-    return int(rounded) if rounded == int(rounded) else rounded
-
-
-def _plain(value: Any) -> Any:
-    if isinstance(value, bool) or value is None or isinstance(value, str):
-        return value
-    if isinstance(value, int) and abs(value) <= LARGEST:
-        return value
-    if isinstance(value, int | float):
-        return _number(value)
-    if isinstance(value, tuple | list):
-        return [_plain(v) for v in value]
-    raise TypeError(f"{type(value).__name__} has no place in a project file")
-
-
-def _sparse(value: Any, skip: tuple[str, ...] = ()) -> Data:
-    """Return a dataclass's fields that differ from their defaults."""
-    out: Data = {}
-    for f in fields(value):
-        if f.name in skip:
-            continue
-        v = getattr(value, f.name)
-        if f.default is MISSING or v != f.default:
-            try:
-                out[f.name] = _plain(v)
-            except ValueError as error:
-                raise DataError(f"{type(value).__name__.lower()} {getattr(value, 'name', '')!r}, {f.name}", str(error)) from None
-    return out
-
-
 def action_data(action: Action) -> Data:
     """Return an action; its timing's fields stand beside its own. The layer is said by where it is."""
-    return {**_sparse(action, ("timing", "layer")), **_sparse(action.timing)}
+    return {**sparse(action, ("timing", "layer")), **sparse(action.timing)}
 
 
 def clip_data(entry: ClipEntry) -> Data:
-    out = _sparse(entry, ("motion", "digest"))
+    out = sparse(entry, ("motion", "digest"))
     if entry.digest:
         out["sha256"] = entry.digest
     return out
@@ -116,7 +82,7 @@ def stance_data(stance: Stance) -> Data:
 
 
 def weights_data(graph: MetaGraph) -> Data:
-    return {p: _number(graph.weights[p]) for p in PARTS if p in graph.weights}
+    return {p: number(graph.weights[p]) for p in PARTS if p in graph.weights}
 
 
 def to_data(project: Project) -> Data:
@@ -138,14 +104,15 @@ def to_data(project: Project) -> Data:
         "name": project.name,
         "character": project.character,
         "next_id": project.next_id,
-        "base": _sparse(project.base),
-        "settings": _sparse(project.settings),
+        "base": sparse(project.base),
+        "settings": sparse(project.settings),
         "roles": dict(sorted(project.roles.items())),
         "parts": dict(sorted(project.parts.items())),
         "clips": [clip_data(entry) for entry in project.clips.values()],
         "layers": layers,
         "markov": {layer: markov_data(project.markov[layer]) for layer in LAYERS if layer in project.markov},
         **{key: data for key in STRUCTS if (data := struct_data(getattr(project, key)))},
+        **({"manual": {x: manual_data(project.manual[x]) for x in LAYERS if x in project.manual}} if project.manual else {}),
         "skeleton": skeleton_data(project.skeleton) if project.skeleton is not None else [],
     }
 
@@ -153,7 +120,7 @@ def to_data(project: Project) -> Data:
 def markov_data(model: Markov) -> Data:
     """Return a model; a state's tags stand behind it: "both gesture positive"."""
     return {
-        **_sparse(model, ("layer", "states", "matrix", "tags")),
+        **sparse(model, ("layer", "states", "matrix", "tags")),
         "states": [f"{limb} {kind} {model.tag(n)}".rstrip() for n, (limb, kind) in enumerate(model.states)],
         "matrix": [[_whole(p) for p in row] for row in model.matrix],
     }
@@ -174,7 +141,7 @@ def struct_data(value: Any) -> Any:
 def _rounded(value: Any) -> Any:
     if isinstance(value, dict):
         return {k: _rounded(v) for k, v in value.items()}
-    return [_rounded(v) for v in value] if isinstance(value, list | tuple) else _plain(value)
+    return [_rounded(v) for v in value] if isinstance(value, list | tuple) else plain(value)
 
 
 def struct_from(data: Any, kind: Any, where: str) -> Any:
@@ -274,6 +241,10 @@ def from_data(data: Any, notes: list[str] | None = None) -> Project:
     stance_ids: set[str] = set()
     action_ids: set[str] = set()
     graphs = {layer: _graph_from(layer, get(layers, layer, dict, "layers", {}), stance_ids, action_ids) for layer in LAYERS}
+    machines = get(data, "manual", dict, "", {})
+    known(machines, LAYERS, "manual")
+    manual_ids: set[str] = set()
+    manual = {x: manual_from(x, get(machines, x, dict, "manual"), manual_ids) for x in LAYERS if x in machines}
     parts, roles = get(data, "parts", dict, "", {}), get(data, "roles", dict, "", {})
     for joint, part in parts.items():
         one_of(part, PARTS, f"parts.{joint}")
@@ -294,8 +265,9 @@ def from_data(data: Any, notes: list[str] | None = None) -> Project:
         settings=Settings(**fill(Settings, settings, "settings")),
         **{key: struct_from(data[key], kind, key) for key, kind in STRUCTS.items() if data.get(key) is not None and key != "joint_maps"},
         joint_maps=_joint_maps_from(data, notes),
+        manual=manual,
         character=get(data, "character", str, "", None),
-        next_id=max(get(data, "next_id", int, "", 1), above(*clips, *stance_ids, *action_ids)),
+        next_id=max(get(data, "next_id", int, "", 1), above(*clips, *stance_ids, *action_ids, *manual_ids)),
     )
 
 

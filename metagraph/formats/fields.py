@@ -1,4 +1,4 @@
-"""Reading plain data field by field: types, ranges and known names, and an error that names the place."""
+"""Plain data field by field: written without defaults, read with types, ranges and known names, and an error that names the place."""
 
 from __future__ import annotations
 
@@ -18,6 +18,47 @@ class DataError(ValueError):
         self.where = where
         super().__init__(message)
 
+
+# --- writing ---------------------------------------------------------------------------------------------------------
+
+
+def number(value: float) -> float | int:
+    """Return a number rounded to six decimals, or to six digits where nothing else would be left. Raises ValueError."""
+    if not abs(value) <= LARGEST:
+        raise ValueError(f"{value!r} is not a number that can be saved")
+    rounded = round(float(value), 6) or float(f"{value:.6g}")
+    return int(rounded) if rounded == int(rounded) else rounded
+
+
+def plain(value: Any) -> Any:
+    """Return a value as it can be written. Raises ValueError and TypeError."""
+    if isinstance(value, bool) or value is None or isinstance(value, str):
+        return value
+    if isinstance(value, int) and abs(value) <= LARGEST:
+        return value
+    if isinstance(value, int | float):
+        return number(value)
+    if isinstance(value, tuple | list):
+        return [plain(v) for v in value]
+    raise TypeError(f"{type(value).__name__} has no place in a project file")
+
+
+def sparse(value: Any, skip: tuple[str, ...] = ()) -> Data:
+    """Return a dataclass's fields that differ from their defaults. Raises DataError."""
+    out: Data = {}
+    for f in fields(value):
+        if f.name in skip:
+            continue
+        v = getattr(value, f.name)
+        if f.default is MISSING or v != f.default:
+            try:
+                out[f.name] = plain(v)
+            except ValueError as error:
+                raise DataError(f"{type(value).__name__.lower()} {getattr(value, 'name', '')!r}, {f.name}", str(error)) from None
+    return out
+
+
+# --- reading ---------------------------------------------------------------------------------------------------------
 
 _WORDS = {str: "text", int: "a whole number", float: "a number", bool: "true or false", list: "a list", dict: "fields"}
 

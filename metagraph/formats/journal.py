@@ -26,10 +26,12 @@ from metagraph.formats.data import (
     weights_data,
 )
 from metagraph.formats.fields import Data, DataError
+from metagraph.formats.manual_data import link_data, manual_data, state_data
 from metagraph.formats.store import read_project
-from metagraph.graph.model import LAYERS, MetaGraph, Project
+from metagraph.graph.manual import Manual
+from metagraph.graph.model import LAYERS, Layer, MetaGraph, Project
 
-_KEYED = ("clips", "stances", "actions")
+_KEYED = ("clips", "stances", "actions", "states", "links")
 _KEPT = "It is kept; rename it to look into it."
 
 
@@ -66,6 +68,24 @@ def changes(before: Project, after: Project) -> Data:
             layers[layer] = part
     if layers:
         out["layers"] = layers
+    if before.manual is not after.manual and before.manual != after.manual:
+        out["manual"] = _manual(before.manual, after.manual)
+    return out
+
+
+def _manual(before: Mapping[Layer, Manual], after: Mapping[Layer, Manual]) -> Data:
+    """Note what changed in manual machines; None for a layer that has none any more."""
+    out: Data = dict.fromkeys(layer for layer in before if layer not in after)
+    for layer, new in after.items():
+        old = before.get(layer)
+        if old is None:
+            out[layer] = manual_data(new)
+        elif old is not new:
+            part: Data = {name: getattr(new, name) for name in ("start", "any_x", "any_y") if getattr(old, name) != getattr(new, name)}
+            _keyed(part, "states", old.states, new.states, state_data)
+            _keyed(part, "links", old.links, new.links, link_data)
+            if part:
+                out[layer] = part
     return out
 
 
@@ -105,16 +125,25 @@ class _Replay:
     """Project data that changes are worked into; lists are held by id, so that a change costs what it is large."""
 
     def __init__(self, data: Data) -> None:
-        self.top = _opened(data)
+        self.top = _opened({key: value for key, value in data.items() if key != "manual"})
         self.layers = {layer: _opened(data["layers"][layer]) for layer in LAYERS}
+        self.manual = {layer: _opened(machine) for layer, machine in data.get("manual", {}).items()}
 
     def apply(self, change: Data) -> None:
         for layer, part in change.get("layers", {}).items():
             _work_in(self.layers[layer], part)
-        _work_in(self.top, {key: value for key, value in change.items() if key != "layers"})
+        for layer, part in change.get("manual", {}).items():
+            if part is None:
+                self.manual.pop(layer, None)
+            elif layer in self.manual:
+                _work_in(self.manual[layer], part)
+            else:
+                self.manual[layer] = _opened(part)
+        _work_in(self.top, {key: value for key, value in change.items() if key not in ("layers", "manual")})
 
     def data(self) -> Data:
-        return {**_closed(self.top), "layers": {layer: _closed(part) for layer, part in self.layers.items()}}
+        out = {**_closed(self.top), "layers": {layer: _closed(part) for layer, part in self.layers.items()}}
+        return {**out, "manual": {layer: _closed(part) for layer, part in self.manual.items()}} if self.manual else out
 
 
 def _opened(data: Data) -> Data:

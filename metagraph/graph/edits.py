@@ -10,6 +10,7 @@ from collections.abc import Collection, Iterable, Mapping, Sequence
 from dataclasses import replace
 from typing import Any
 
+from metagraph.graph.manual import without_clips
 from metagraph.graph.model import (
     PARTS,
     Action,
@@ -83,12 +84,13 @@ def rename_clip(project: Project, clip: str, name: str) -> Project:
 
 
 def remove_clips(project: Project, clips: Collection[str]) -> Project:
-    """Remove clips and the actions that use them; a base pose taken from one falls back to the rest pose."""
+    """Remove clips and the actions and states that use them; a base pose taken from one falls back to the rest pose."""
     gone = [a.id for clip in clips for a in project.uses.get(clip, ())]
     project = remove_actions(project, gone)
     left = {i: e for i, e in project.clips.items() if i not in clips}
     base = BasePose() if project.base.clip in clips else project.base
-    return replace(project, clips=left, base=base, skeleton=project.skeleton if left else None)
+    manual = without_clips(project.manual, clips)
+    return replace(project, clips=left, base=base, skeleton=project.skeleton if left else None, manual=manual)
 
 
 # --- stances ---------------------------------------------------------------------------------------------------------

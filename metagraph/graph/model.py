@@ -13,6 +13,7 @@ from typing import Any
 
 from metagraph.graph.asks import Line, Performance, Point
 from metagraph.graph.life import Face, Life
+from metagraph.graph.manual import Link, Manual, State
 from metagraph.graph.words import KINDS, LAYERS, LIMBS, MODES, PARTS, Kind, Layer, Limb, Mode, Part
 from metagraph.motion.clip import Clip
 from metagraph.motion.joint_map import JointMap
@@ -306,6 +307,7 @@ class Project:
     character: path of the GLB to draw, relative to the project file, or None for a stick figure. points: named places to look
     at, metres. lines: the dialogue an agent calls by id. performances: those kept, by id. tiers: annotation tier -> what it
     was last read as. joint_maps: how clips of other skeletons are retargeted, by `joint_map.fingerprint` of theirs.
+    manual: state machines drawn by hand, of the layers that have one.
     voices: line -> its analysed sound (`playback.life.voice.Voice`), as far as read; never saved.
     body: what of it breathes and looks (`playback.life.body.Body`) as an export says; None to find it. Never saved.
     """
@@ -328,6 +330,7 @@ class Project:
     tiers: Mapping[str, str] = field(default_factory=dict)
     labels: Mapping[str, str] = field(default_factory=dict)
     joint_maps: Mapping[str, JointMap] = field(default_factory=dict)
+    manual: Mapping[Layer, Manual] = field(default_factory=dict)
     voices: Mapping[str, Any] = field(default_factory=dict, compare=False, repr=False)
     body: Any = field(default=None, compare=False, repr=False)
     next_id: int = 1
@@ -364,6 +367,18 @@ class Project:
     def uses(self) -> Mapping[str, tuple[Action, ...]]:
         """Clip id -> the actions that use it."""
         return Uses(self.graphs[layer] for layer in LAYERS)
+
+    def state(self, ident: str | None) -> State | None:
+        """Return the state of a manual machine of that id, whatever its layer."""
+        return next((m.states[ident] for m in self.manual.values() if ident in m.states), None) if ident is not None else None
+
+    def link(self, ident: str | None) -> Link | None:
+        """Return the link of a manual machine of that id, whatever its layer."""
+        return next((m.links[ident] for m in self.manual.values() if ident in m.links), None) if ident is not None else None
+
+    def with_manual(self, manual: Manual, **more: Any) -> Project:
+        """Return the project with one layer's manual machine replaced."""
+        return replace(self, manual={**self.manual, manual.layer: manual}, **more)
 
     def with_graph(self, graph: MetaGraph, **more: Any) -> Project:
         """Return the project with one layer's graph replaced."""

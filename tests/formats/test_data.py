@@ -14,7 +14,8 @@ from hypothesis import strategies as st
 
 from metagraph.formats.data import above, from_data, skeleton_data, skeleton_from, to_data
 from metagraph.formats.fields import DataError
-from metagraph.graph import edits
+from metagraph.graph import edits, manual_edits
+from metagraph.graph.manual import ANY
 from metagraph.graph.model import LAYERS, Project
 from tests.projects import SKELETON, clip, projects
 
@@ -28,6 +29,8 @@ def small() -> Project:
     project = edits.place(project, ["c4"], "arms", "transition", "s5", "s7")
     project = edits.set_weight(project, "arms", "head", 0.5)
     project = edits.set_part(edits.set_role(project, "hips", "Hips"), ["Head"], "spine")
+    project = manual_edits.add_states(project, ["c1", "c2"], "arms", 10, 20)
+    project = manual_edits.add_link(manual_edits.add_link(project, "arms", "m11", "m12"), "arms", ANY, "m11")
     return edits.set_base(project, "c1", 3)
 
 
@@ -148,6 +151,21 @@ WRONG: list[tuple[tuple[Any, ...], Any, str]] = [
     (("character",), 3, "character should be text"),
     (("next_id",), "many", "next_id should be a whole number"),
     (("colour",), "red", "colour is not a field"),
+    (("manual",), [], "manual should be fields"),
+    (("manual", "legs"), {}, "manual.legs is not a field"),
+    (("manual", "arms"), None, "manual.arms should be fields"),
+    (("manual", "arms", "start"), "m99", "manual.arms.start 'm99' is not a state of the arms layer"),
+    (("manual", "arms", "any_x"), "left", "manual.arms.any_x should be a number"),
+    (("manual", "arms", "states", 1, "id"), "m11", "'m11' is used twice"),
+    (("manual", "arms", "states", 0, "limb"), "tail", r"states\[0\].limb should be one of left"),
+    (("manual", "arms", "states", 0, "weight"), 1, r"states\[0\].weight is not a field"),
+    (("manual", "arms", "states", 0, "x"), float("nan"), r"states\[0\].x should be a finite number"),
+    (("manual", "arms", "links", 0, "when"), "soon", r"links\[0\].when should be one of finished, request"),
+    (("manual", "arms", "links", 0, "target"), "any", r"links\[0\].target 'any' is not a state"),
+    (("manual", "arms", "links", 0, "source"), "m99", r"links\[0\].source 'm99' is not a state"),
+    (("manual", "arms", "links", 1, "blend"), "long", r"links\[1\].blend should be a number"),
+    (("manual", "head"), {"states": [{"id": "m11", "clip": "c1", "name": "x"}]}, "'m11' is used twice"),
+    (("manual", "head"), {"states": [{"id": "m90", "clip": "c1"}]}, r"manual.head.states\[0\].name is missing"),
 ]
 
 
