@@ -10,13 +10,14 @@ from app.document import Document
 from metagraph.graph.model import LAYERS, Action, Layer, Project
 
 Show = Literal["plan", "clip", "context"]
+Mode = Literal["meta", "manual"]
 
 
 class Session(QObject):
     """layer_changed: another layer's tab. stance_changed: another current stance, or another other stance for transitions.
     selection_changed: other clips or actions are selected. show_changed: the preview shows something else (see `show`).
     playing_changed, moved: transport. theme_changed: dark or light. performance_changed: another kept performance is on stage, or
-    other asks of it are selected.
+    other asks of it are selected. mode_changed: the meta-graph or the manual state machine is edited and played.
     """
 
     layer_changed = Signal()
@@ -27,6 +28,7 @@ class Session(QObject):
     moved = Signal(float)
     theme_changed = Signal()
     performance_changed = Signal()
+    mode_changed = Signal()
 
     def __init__(self, document: Document, parent: QObject | None = None) -> None:
         super().__init__(parent)
@@ -36,6 +38,9 @@ class Session(QObject):
         self.others: dict[Layer, str] = {}  # the other stance, where a dropped transition ends
         self.clips: tuple[str, ...] = ()  # selected in the library
         self.actions: tuple[str, ...] = ()  # selected in the graph
+        self.states: tuple[str, ...] = ()  # selected in the manual state machine
+        self.links: tuple[str, ...] = ()
+        self.mode: Mode = "meta"
         self.show: Show = "plan"
         self.shown: str | None = None  # the clip (or action) shown alone or in context
         self.tried: str | None = None  # the stance a clip is shown on as if it were placed there
@@ -48,6 +53,16 @@ class Session(QObject):
         self.copied: str | None = None  # the action whose properties can be pasted
         self.theme: Literal["dark", "light"] = "dark"
         document.changed.connect(self._follow)
+
+    def set_mode(self, mode: Mode) -> None:
+        """Edit and play the meta-graph, or the manual state machine."""
+        if mode != self.mode:
+            self.mode = mode
+            self.clips = self.actions = self.states = self.links = ()
+            self.mode_changed.emit()
+            self.selection_changed.emit()
+            self.show_plan()
+            self.seek(0.0)
 
     # --- layer and stance
 
@@ -93,14 +108,21 @@ class Session(QObject):
 
     def select_clips(self, clips: tuple[str, ...]) -> None:
         """Select in the library; nothing is selected in the graph then."""
-        if (clips, ()) != (self.clips, self.actions):
-            self.clips, self.actions = clips, ()
-            self.selection_changed.emit()
+        self._select(clips=clips)
 
     def select_actions(self, actions: tuple[str, ...]) -> None:
         """Select in the graph; the library follows with the actions' clips by looking at `actions`."""
-        if (actions, ()) != (self.actions, self.clips):
-            self.clips, self.actions = (), actions
+        self._select(actions=actions)
+
+    def select_states(self, states: tuple[str, ...] = (), links: tuple[str, ...] = ()) -> None:
+        """Select in the manual state machine."""
+        self._select(states=states, links=links)
+
+    def _select(
+        self, clips: tuple[str, ...] = (), actions: tuple[str, ...] = (), states: tuple[str, ...] = (), links: tuple[str, ...] = ()
+    ) -> None:
+        if (clips, actions, states, links) != (self.clips, self.actions, self.states, self.links):
+            self.clips, self.actions, self.states, self.links = clips, actions, states, links
             self.selection_changed.emit()
 
     def selected_actions(self) -> tuple[Action, ...]:
@@ -112,6 +134,11 @@ class Session(QObject):
         """Go to a place of the project: what the problems panel and the timeline call."""
         project = self.document.project
         found = project.action(action) if action else None
+        drawn = project.state(action) if action else None
+        if drawn is not None:  # what the manual state machine plays is named by its states
+            self.set_layer(drawn.layer)
+            self.select_states((drawn.id,))
+            return
         if found is not None:
             stance, layer = found.stance, found.layer
         if layer is not None:
@@ -189,15 +216,19 @@ class Session(QObject):
     def _follow(self, before: Project, after: Project) -> None:
         actions = tuple(i for i in self.actions if after.action(i) is not None)
         clips = tuple(i for i in self.clips if i in after.clips)
-        if (actions, clips) != (self.actions, self.clips):
-            self.actions, self.clips = actions, clips
-            self.selection_changed.emit()
+        states = tuple(i for i in self.states if after.state(i) is not None)
+        links = tuple(i for i in self.links if after.link(i) is not None)
+        self._select(clips, actions, states, links)
         if self.performance is not None and self.performance not in after.performances:
             self.set_performance(None)
         elif self.performance is not None and before.performances is not after.performances:
             there = {ask.id for ask in after.performances[self.performance].asks}
             self.select_asks(tuple(i for i in self.asks if i in there))
-        if self.shown is not None and self.shown not in after.clips and after.action(self.shown) is None:
+        if self.shown is not None and self.shown not in after.clips and not self._there(after, self.shown):
             self.show_plan()
         if any(before.graphs[layer].stances is not after.graphs[layer].stances for layer in LAYERS):
             self.stance_changed.emit()
+
+    @staticmethod
+    def _there(project: Project, ident: str) -> bool:
+        return any(find(ident) is not None for find in (project.action, project.state, project.link))
