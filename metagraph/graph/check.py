@@ -38,6 +38,8 @@ class Problem:
     stance: str | None = None
     action: str | None = None
     clip: str | None = None
+    state: str | None = None
+    link: str | None = None
 
 
 def check(project: Project) -> list[Problem]:
@@ -45,7 +47,11 @@ def check(project: Project) -> list[Problem]:
     found = [*_clips(project), *_base(project), *_character(project)]
     for layer in LAYERS:
         found += _graph(project, project.graphs[layer])
-    if project.clips and not any(project.graphs[layer].stances for layer in LAYERS):
+    if project.manual:
+        from metagraph.graph.manual_check import check_manual
+
+        found += check_manual(project)
+    elif project.clips and not any(project.graphs[layer].stances for layer in LAYERS):
         found.append(
             Problem("hint", "no-stance", "nothing plays yet", "Drop a resting clip on the middle of a layer to make its first stance.")
         )
@@ -56,7 +62,7 @@ def check(project: Project) -> list[Problem]:
 def _clips(project: Project) -> Iterator[Problem]:
     for entry in project.clips.values():
         if entry.motion is None:
-            used = project.uses.get(entry.id, ())
+            used = entry.id in project.uses or any(s.clip == entry.id for m in project.manual.values() for s in m.states.values())
             yield Problem(
                 "error" if used else "warning",
                 "file-missing",

@@ -128,7 +128,7 @@ def _together(
     motion = playable(project, cue.action) if cue is not None else None
     if cue is None or motion is None:
         return _stance(plan, project, ground, reach, times, current, fading)
-    shown = _sample(ground, reach, motion, cue.clip_seconds(times))
+    shown = sample(ground, reach, motion, cue.clip_seconds(times))
     mask = anatomy.mask(project, cue.action)
     still = np.flatnonzero(mask[reach.joints] == 0) if mask is not None else ()
     if phase == _FULL and len(still) == 0:
@@ -136,7 +136,7 @@ def _together(
     stance = _stance(plan, project, ground, reach, times, current, fading)
     if phase != _FULL:
         edge = cue.entry if phase == _ENTERING else cue.last
-        shown = _lead(shown, stance, _sample(ground, reach, motion, np.array([edge])), 1 - cue_weight(cue, times))
+        shown = _lead(shown, stance, sample(ground, reach, motion, np.array([edge])), 1 - cue_weight(cue, times))
     for part, rest in zip(shown, stance, strict=True):
         part[:, still] = rest[:, still]
     return shown
@@ -165,7 +165,7 @@ def _unit(q: Array) -> Array:
     return q
 
 
-def _mix(a: Sample, b: Sample, weight: Array) -> Sample:
+def mix(a: Sample, b: Sample, weight: Array) -> Sample:
     """Crossfade two samples, `weight [N]` of the second."""
     w = weight.astype(np.float32)[:, None]
     return rotation.nlerp(a[0], b[0], np.broadcast_to(w, b[0].shape[:-1])), a[1] + (b[1] - a[1]) * w[..., None]
@@ -178,7 +178,7 @@ def _stance(plan: LayerPlan, project: Project, ground: Ground, reach: Reach, tim
     if not fading:
         return found
     before = _rest(plan.rests[current - 1], project, ground, reach, times)
-    return _mix(before, found, ease((times - rest.fade_start) / rest.fade))
+    return mix(before, found, ease((times - rest.fade_start) / rest.fade))
 
 
 def _rest(rest: Rest, project: Project, ground: Ground, reach: Reach, times: Array) -> Sample:
@@ -187,11 +187,11 @@ def _rest(rest: Rest, project: Project, ground: Ground, reach: Reach, times: Arr
         count, joints = len(times), len(reach.joints)
         return rotation.identity((count, joints), np.float32), np.zeros((count, joints, 3), np.float32)
     seconds, other, old = loop_seconds(project, rest.action, times - rest.start)
-    found = _sample(ground, reach, motion, seconds)
-    return _mix(found, _sample(ground, reach, motion, other), old) if old.any() else found
+    found = sample(ground, reach, motion, seconds)
+    return mix(found, sample(ground, reach, motion, other), old) if old.any() else found
 
 
-def _sample(ground: Ground, reach: Reach, clip: Clip, seconds: Array) -> Sample:
+def sample(ground: Ground, reach: Reach, clip: Clip, seconds: Array) -> Sample:
     """Return a clip's offsets at clip seconds `[N]`; the arrays are the caller's."""
     offsets = ground.offsets(clip, reach)
     low, high, part = clip.locate(seconds)

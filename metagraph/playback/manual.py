@@ -1,0 +1,339 @@
+"""Playing manual state machines as engines do: which state when, and the pose at a time.
+
+A link is taken when its source has finished, drawn by weight with the project's keyed randomness, or when its trigger is
+fired; a fired trigger leads over the shortest way of links. While one blend runs no other begins.
+"""
+
+from __future__ import annotations
+
+from collections import Counter
+from collections.abc import Iterable, Mapping
+from dataclasses import dataclass, field, replace
+from functools import cached_property
+from math import ceil, inf
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from metagraph.graph import anatomy
+from metagraph.graph.manual import Link, Manual, State
+from metagraph.graph.model import LAYERS, Action, Kind, Layer, Project, Timing
+from metagraph.motion import rotation
+from metagraph.motion.skeleton import Pose
+from metagraph.playback.choice import pick
+from metagraph.playback.composer import Ground, Reach, rig
+from metagraph.playback.life.body import body_of
+from metagraph.playback.life.evaluate import enliven, face_weights
+from metagraph.playback.life.schedule import Schedule, schedule
+from metagraph.playback.life.track import Track
+from metagraph.playback.plan import Cue, LayerPlan, Plan, Report
+from metagraph.playback.player import Sample, ease, mix, playable, sample
+
+Array = NDArray[Any]
+LEAST = 1 / 30  # seconds a state plays at least: links in a circle without length take their time
+AROUND = 1.0  # seconds of the states shown before and after a link
+
+
+@dataclass(frozen=True, slots=True)
+class Fire:
+    """A trigger fired on a layer at `at` seconds."""
+
+    layer: Layer
+    trigger: str
+    at: float
+
+
+@dataclass(frozen=True, slots=True)
+class Played:
+    """One state's turn: from `start` seconds on it takes over within `blend` seconds. action: what plays. entry: clip seconds at `start`.
+
+    link: id of the link that led here, None at the beginning.
+    """
+
+    action: Action
+    start: float
+    blend: float
+    entry: float
+    link: str | None = None
+
+
+@dataclass(frozen=True)
+class ManualLayer:
+    """One layer's turns, ascending; each fades in before the next begins."""
+
+    layer: Layer
+    played: tuple[Played, ...] = ()
+
+    @cached_property
+    def starts(self) -> Array:
+        """When each turn begins, `[P]`."""
+        return np.array([p.start for p in self.played])
+
+    def at(self, seconds: float) -> Played | None:
+        """Return whose turn it is."""
+        place = max(0, int(self.starts.searchsorted(seconds, "right")) - 1) if self.played else 0
+        return self.played[place] if self.played else None
+
+
+@dataclass(frozen=True)
+class ManualPlan:
+    """What the machines play from 0 to `end` seconds. reports: triggers that led nowhere. life: of the life layers."""
+
+    seed: int
+    end: float
+    layers: Mapping[Layer, ManualLayer] = field(default_factory=dict)
+    reports: tuple[Report, ...] = ()
+    life: Schedule = field(default_factory=Schedule)
+
+    @cached_property
+    def plan(self) -> Plan:
+        """The same as cues, for what shows plans; `player` cannot pose them."""
+        layers = {x: LayerPlan(x, cues=_cues(self.layers[x].played, self.end) if x in self.layers else ()) for x in LAYERS}
+        return Plan(self.seed, self.end, layers, self.reports, life=self.life)
+
+
+def _cues(played: tuple[Played, ...], end: float) -> tuple[Cue, ...]:
+    ends = [*(p.start for p in played[1:]), end]
+    return tuple(Cue(p.action, p.start, e, p.entry, p.blend, 0.0, "", "", p.link or "") for p, e in zip(played, ends, strict=True))
+
+
+def action_of(state: State) -> Action:
+    """Return a state as the action it plays, under its own id."""
+    timing = Timing(state.start, state.end, 0.0, 0.0, state.loop)
+    kind: Kind = "stance" if state.loop else "gesture"
+    return Action(state.id, state.clip, kind, state.layer, "", state.name, timing=timing, limb=state.limb, joints=state.joints)
+
+
+# --- which state when ------------------------------------------------------------------------------------------------
+
+
+def make_manual_plan(project: Project, end: float, fires: Iterable[Fire] = (), seed: int | None = None) -> ManualPlan:
+    """Plan every layer's machine from 0 to `end` seconds. seed: 32-bit, the project's when None.
+
+    A longer plan begins as a shorter one, and firing something leaves what came before as it was. A layer without a machine or
+    without a start stays still.
+    """
+    seed = project.settings.seed if seed is None else seed
+    asked = sorted(fires, key=lambda f: f.at)
+    layers: dict[Layer, ManualLayer] = {}
+    reports: list[Report] = []
+    for layer, manual in project.manual.items():
+        if manual.start in manual.states:
+            played, told = _perform(project, manual, seed, end, [f for f in asked if f.layer == layer])
+            layers[layer] = ManualLayer(layer, played)
+            reports += told
+    life = schedule(project.life, Track(), project.voices, seed, end, Schedule(), 0.0)
+    return ManualPlan(seed, end, layers, tuple(reports), life)
+
+
+def _perform(project: Project, manual: Manual, seed: int, end: float, fires: list[Fire]) -> tuple[tuple[Played, ...], list[Report]]:
+    state = manual.states[manual.start or ""]
+    out = [_turn(project, state, 0.0, None)]
+    reports: list[Report] = []
+    way: list[Link] = []
+    since = 0.0
+    waiting = list(fires)
+    visits: Counter[str] = Counter()
+    while True:
+        here = out[-1]
+        visits[state.id] += 1
+        ready = here.start + max(here.blend, LEAST)
+        drawn = _drawn(manual, state, seed, visits[state.id])
+        moment = _moment(project, here, drawn, ready) if drawn is not None else inf
+        while not way and waiting and waiting[0].at <= min(moment, end):
+            fire = waiting.pop(0)
+            found = route(manual, state.id, fire.trigger)
+            if found is None:
+                why = f"no way leads from '{state.name}' to what waits for '{fire.trigger}'"
+                reports.append(Report(fire.trigger, "no-way", why, manual.layer, fire.at))
+            else:
+                way, since = list(found), fire.at
+        link = drawn
+        if way:
+            link = way.pop(0)
+            moment = _moment(project, here, link, max(ready, since))
+        if link is None or moment >= end:
+            return tuple(out), reports
+        state = manual.states[link.target]
+        out.append(_turn(project, state, moment, link))
+
+
+def _turn(project: Project, state: State, start: float, link: Link | None) -> Played:
+    action = action_of(state)
+    blend = max(0.0, link.blend) if link is not None else 0.0
+    return Played(action, start, blend, project.span(action)[0], link.id if link is not None else None)
+
+
+def _drawn(manual: Manual, state: State, seed: int, visit: int) -> Link | None:
+    """Draw the finished link by which a state will be left at its `visit`-th turn, None where there is none."""
+    finished = {x.id: x for x in manual.leaving(state.id) if x.condition.when == "finished" and x.target in manual.states}
+    weights = {i: x.condition.weight for i, x in finished.items() if x.condition.weight > 0}
+    return finished[pick(seed, f"{state.id} {visit}", "link", weights)] if weights else None
+
+
+def leave_at(project: Project, state: State, link: Link) -> float | None:
+    """Return the clip seconds at which a link is taken, None for one that is taken as soon as it is asked for."""
+    if link.exit_time is None and link.condition.when == "request":
+        return None
+    start, end = project.span(action_of(state))
+    if link.exit_time is None:
+        return max(start, end - link.blend)
+    return min(max(start, link.exit_time), end)
+
+
+def _moment(project: Project, here: Played, link: Link, ready: float) -> float:
+    """Return when a link is taken, `ready` at the earliest; in a loop the next time round."""
+    start, end = project.span(here.action)
+    state = State(here.action.id, here.action.clip, "", here.action.layer, start=here.action.timing.start, end=here.action.timing.end)
+    leave = leave_at(project, state, link)
+    if leave is None:
+        return ready
+    moment = here.start + leave - here.entry
+    if here.action.timing.loop and end > start and moment < ready:
+        moment += ceil((ready - moment) / (end - start) - 1e-9) * (end - start)
+    return max(moment, ready)
+
+
+def route(manual: Manual, state: str, trigger: str) -> tuple[Link, ...] | None:
+    """Return the fewest links from a state whose last waits for a trigger, None where there is no way. Of equals the first drawn."""
+    before: dict[str, tuple[str, Link] | None] = {state: None}
+    queue = [state]
+    for here in queue:
+        for link in manual.leaving(here):
+            if link.target not in manual.states:
+                continue
+            if link.condition.when == "request" and link.condition.trigger == trigger:
+                way = [link]
+                step = before[here]
+                while step is not None:
+                    way.append(step[1])
+                    step = before[step[0]]
+                return tuple(reversed(way))
+            if link.target not in before:
+                before[link.target] = (here, link)
+                queue.append(link.target)
+    return None
+
+
+# --- parts of a machine, looked at alone -----------------------------------------------------------------------------
+
+
+def state_alone(project: Project, ident: str) -> ManualPlan:
+    """Return a plan of one state as it plays in its layer, nothing else moving; it ends with the part that plays. Raises KeyError."""
+    state = project.state(ident)
+    if state is None:
+        raise KeyError(ident)
+    turn = _turn(project, state, 0.0, None)
+    start, end = project.span(turn.action)
+    return ManualPlan(1, max(LEAST, end - start), {state.layer: ManualLayer(state.layer, (turn,))})
+
+
+def link_alone(project: Project, ident: str) -> ManualPlan:
+    """Return a plan of one link: its source's last second, the blend, its target's first. Raises KeyError.
+
+    Of a link from any state the start is the source, or where that is the target another state.
+    """
+    link = project.link(ident)
+    target = project.state(link.target) if link is not None else None
+    if link is None or target is None:
+        raise KeyError(ident)
+    manual = project.manual[target.layer]
+    others = (manual.start, *manual.states)
+    source = project.state(link.source) or manual.states[next((s for s in others if s and s != target.id), target.id)]
+    first = _turn(project, source, 0.0, None)
+    start, end = project.span(first.action)
+    leave = leave_at(project, source, link)
+    leave = min(start + AROUND, end) if leave is None else leave
+    lead = min(AROUND, leave - start)
+    first = replace(first, entry=leave - lead)
+    second = _turn(project, target, lead, link)
+    low, high = project.span(second.action)
+    length = lead + max(LEAST, min(second.blend + AROUND, max(second.blend, high - low)))
+    return ManualPlan(1, length, {target.layer: ManualLayer(target.layer, (first, second))})
+
+
+# --- the pose at a time ----------------------------------------------------------------------------------------------
+
+
+def manual_pose_at(plan: ManualPlan, project: Project, seconds: Any, alive: bool = True) -> Pose:
+    """Return the composed pose at `seconds`, a number or an array `[...]`: rotations `[..., J, 4]`, translations `[..., J, 3]`.
+
+    Layers add up as the meta-graph's do. alive: with the life layers, as far as the project has them on. Raises ValueError when
+    the project has no skeleton.
+    """
+    at = np.asarray(seconds, np.float64)
+    times = at.reshape(-1)
+    frame = rig(project)
+    layers = {}
+    for layer, of in plan.layers.items():
+        if of.played and len(times):
+            layers[layer] = _layer(of, project, frame.ground, frame.reach[layer], times)
+    pose = frame.compose(layers, len(times))
+    if alive and project.life.on and plan.life.end > 0 and len(times):
+        pose = enliven(pose, project, plan.life, Track(), times)
+    shape = (*at.shape, len(frame.ground.skeleton))
+    return Pose(pose.rotations.reshape(*shape, 4), pose.translations.reshape(*shape, 3))
+
+
+def _layer(plan: ManualLayer, project: Project, ground: Ground, reach: Reach, times: Array) -> Sample:
+    """Return a layer's offsets at `times [N]`: rotations `[N, n, 4]`, translations `[N, n, 3]`."""
+    current = np.maximum(plan.starts.searchsorted(times, "right") - 1, 0)
+    rotations = np.empty((len(times), len(reach.joints), 4), np.float32)
+    translations = np.empty((len(times), len(reach.joints), 3), np.float32)
+    for number in np.unique(current):
+        here = np.flatnonzero(current == number)
+        turn = plan.played[number]
+        shown = _offsets(turn, project, ground, reach, times[here])
+        fading = times[here] < turn.start + turn.blend
+        if number > 0 and fading.any():
+            before = _offsets(plan.played[number - 1], project, ground, reach, times[here])
+            shown = mix(before, shown, np.where(fading, ease((times[here] - turn.start) / max(turn.blend, 1e-9)), 1.0))
+        rotations[here], translations[here] = shown
+    return rotations, translations
+
+
+def clip_seconds(project: Project, turn: Played, times: Any) -> Any:
+    """Return the clip seconds a turn shows at `times [...]`: round and round in a loop, else up to the end, where it holds."""
+    start, end = project.span(turn.action)
+    elapsed = turn.entry + np.maximum(times - turn.start, 0.0)
+    if turn.action.timing.loop and end > start:
+        return start + np.mod(elapsed - start, end - start)
+    return np.minimum(elapsed, end)
+
+
+def _offsets(turn: Played, project: Project, ground: Ground, reach: Reach, times: Array) -> Sample:
+    """Return what a state adds to the base pose; joints it does not move, and all where its clip is missing, add nothing."""
+    motion = playable(project, turn.action)
+    if motion is None:
+        return rotation.identity((len(times), len(reach.joints)), np.float32), np.zeros((len(times), len(reach.joints), 3), np.float32)
+    shown = sample(ground, reach, motion, clip_seconds(project, turn, times))
+    mask = anatomy.mask(project, turn.action)
+    if mask is not None:
+        still = np.flatnonzero(mask[reach.joints] == 0)
+        shown[0][:, still] = (0, 0, 0, 1)
+        shown[1][:, still] = 0
+    return shown
+
+
+def manual_morphs_at(plan: ManualPlan, project: Project, seconds: float, alive: bool = True) -> dict[str, float]:
+    """Return morph target weights, 0..1, at one time: the layers' sums, and with `alive` the life layers' on top."""
+    out: dict[str, float] = {}
+    for of in plan.layers.values():
+        turn = of.at(seconds)
+        if turn is None:
+            continue
+        share = float(ease(np.array((seconds - turn.start) / turn.blend))) if turn.blend > 0 and turn is not of.played[0] else 1.0
+        shares = [(turn, share)]
+        if share < 1:
+            shares.append((of.played[of.played.index(turn) - 1], 1 - share))
+        for one, weight in shares:
+            motion = playable(project, one.action)
+            for name, value in motion.morphs_at(float(clip_seconds(project, one, seconds))).items() if motion is not None else ():
+                out[name] = out.get(name, 0.0) + weight * value
+    if alive and project.life.on and plan.life.end > 0:
+        by_morphs = project.skeleton is not None and bool(body_of(project).face.morphs)
+        composed = manual_pose_at(plan, project, seconds, alive=False) if by_morphs else None  # what the eyes hold against
+        for name, value in face_weights(project, plan.life, Track(), seconds, composed).items():
+            out[name] = out.get(name, 0.0) + value
+    return {name: min(1.0, max(0.0, value)) for name, value in out.items()}
