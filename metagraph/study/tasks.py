@@ -71,7 +71,7 @@ def task_runs(participant: str, events: Sequence[Event]) -> list[TaskRun]:
     """Return the tasks that were begun, in their order."""
     out: list[TaskRun] = []
     tally: _Tally | None = None
-    for event, seconds, why in _steps(events):
+    for event, seconds, why in steps(events):
         if tally is not None:
             tally.add(event, seconds, why)
         if event["type"] == "phase":
@@ -96,7 +96,7 @@ def answers(participant: str, events: Sequence[Event]) -> list[Answer]:
     return list(out.values())
 
 
-def _steps(events: Sequence[Event]) -> Iterator[tuple[Event, float, Literal["active", "paused", "away"]]]:
+def steps(events: Sequence[Event]) -> Iterator[tuple[Event, float, Literal["active", "paused", "away"]]]:
     """Yield each event with the seconds since the one before and what they were; between two runs there are none."""
     before: Event | None = None
     paused = False

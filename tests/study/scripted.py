@@ -1,0 +1,65 @@
+"""Goes through a sitting without a window, as fast as it can, again and again: what is killed to see whether anything is lost.
+
+`python scripted.py STUDY PARTICIPANT`. Reads from standard input how many milliseconds to live: a child is made that works on the
+sitting, killed after that time, and "killed" is printed; "ended" when the sitting was over before.
+"""
+
+from __future__ import annotations
+
+import os
+import signal
+import sys
+import time
+from pathlib import Path
+
+from metagraph.formats.journal import Journal, journal_path
+from metagraph.formats.store import save_project
+from metagraph.graph import edits
+from metagraph.study.plan import read_study
+from metagraph.study.sitting import Sitting
+from metagraph.study.work import make, reopen, write
+
+EDITS = 40  # in each task, each of them another stance
+
+
+def go_through(study_path: Path, participant: str) -> None:
+    study = read_study(study_path)
+    sitting = Sitting(study, participant)
+    while (phase := sitting.phase) is not None:
+        if not phase.works:
+            sitting.begin()
+            for item in phase.questionnaire.items if phase.questionnaire else ():
+                sitting.answer(item.id, 3 if item.scale else "nothing")
+            sitting.end()
+            continue
+        if not sitting.now.begun:
+            write(make(study, phase.clips, "work"), sitting.file)
+            sitting.begin()
+        project = reopen(sitting.file)[0].project
+        journal = Journal(journal_path(sitting.file), sitting.file)
+        while len(project.graphs["arms"].stances) < EDITS:
+            before, project = project, edits.add_stance(project, "arms", f"stance {len(project.graphs['arms'].stances)}")
+            journal.edit(before, project)
+            sitting.writer.add("edit", what="stance", words="New stance", clips=[])
+        save_project(project, sitting.file)
+        journal.remove()
+        sitting.keep()
+    sitting.close()
+
+
+def main() -> None:
+    for line in sys.stdin:
+        child = os.fork()
+        if child == 0:
+            go_through(Path(sys.argv[1]), sys.argv[2])
+            os._exit(0)
+        end = time.monotonic() + float(line) / 1000
+        while (left := end - time.monotonic()) > 0 and not os.waitid(os.P_PID, child, os.WEXITED | os.WNOHANG | os.WNOWAIT):
+            time.sleep(min(left, 0.02))
+        os.kill(child, signal.SIGKILL)  # it waits to be told of, so that the number is still its own
+        status = os.waitpid(child, 0)[1]
+        print("killed" if os.WIFSIGNALED(status) else f"ended {os.WEXITSTATUS(status)}", flush=True)
+
+
+if __name__ == "__main__":
+    main()
