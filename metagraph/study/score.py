@@ -284,9 +284,10 @@ def _listed(what: Literal["missing", "extra"], layer: Layer, pairs: Iterable[Pai
     for source, target in sorted(pairs):
         by.setdefault(source, []).append(target)
     verb = "does not lead to" if what == "missing" else "should not lead to"
-    return [Mistake(what, layer, source, len(targets), f"{source} {verb} {_named(targets)}.") for source, targets in by.items()]
+    return [Mistake(what, layer, source, len(targets), f"{source} {verb} {named(targets)}.") for source, targets in by.items()]
 
 
-def _named(names: list[str]) -> str:
+def named(names: list[str]) -> str:
+    """Return names in a sentence, of many only the first and how many more."""
     shown = names if len(names) <= NAMED else [*names[: NAMED - 1], f"{len(names) - NAMED + 1} more"]
     return shown[0] if len(shown) == 1 else f"{', '.join(shown[:-1])} and {shown[-1]}"
