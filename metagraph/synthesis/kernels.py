@@ -28,6 +28,11 @@ def _compiled(function: Callable[..., Any], fast: bool = True) -> Any:
         return numba.njit(**options)(function)
 
 
+def _compiled_exactly(function: Callable[..., Any]) -> Any:
+    """Compile where infinite means out of reach: fast arithmetic takes it that nothing is."""
+    return _compiled(function, fast=False)
+
+
 @_compiled
 def _add(x: Array, y: Array, z: Array, a: Any, b: Any, c: Any, total: Array) -> None:
     """Add how far points `[64]` are from one point to the totals `[64]`. Over whole rows of memory, else it is not made of vectors."""
@@ -146,3 +151,55 @@ def components(starts: Array, targets: Array, follows: Array) -> tuple[Array, in
                 if low[state] < low[above]:
                     low[above] = low[state]
     return component, made
+
+
+@_compiled_exactly
+def relax(
+    cost: Array, new: Array, back: Array, starts: Array, targets: Array, costs: Array, follows: Array, fits: Array, peaks: Array
+) -> None:
+    """Go one frame on from all states: cost, new `[2, F]` what the cheapest way to a state costs, without and with its stress met;
+    back `[2, F]`: where it comes from, 2 state + met. fits, peaks `[F]`: which states may come, and which of them meet the stress."""
+    for met in range(2):
+        for state in range(cost.shape[1]):
+            so_far = cost[met, state]
+            if not so_far < np.inf:
+                continue
+            if follows[state] and fits[state + 1]:
+                into = 1 if peaks[state + 1] else met
+                if so_far < new[into, state + 1]:
+                    new[into, state + 1] = so_far
+                    back[into, state + 1] = 2 * state + met
+            for place in range(starts[state], starts[state + 1]):
+                target = targets[place]
+                if fits[target]:
+                    into = 1 if peaks[target] else met
+                    total = so_far + costs[place]
+                    if total < new[into, target]:
+                        new[into, target] = total
+                        back[into, target] = 2 * state + met
+
+
+@_compiled_exactly
+def wander(
+    now: Array, cost: Array, starts: Array, targets: Array, costs: Array, follows: Array, fits: Array, chance: Array
+) -> tuple[Array, Array, Array]:
+    """Go one frame on from some states `[n]`: to those that follow, and by transitions that chance `[n, B]`, 0..1, picks. Returns states,
+    which of `now` they come from, and what they cost."""
+    branches = chance.shape[1]
+    room = len(now) * (branches + 1)
+    found, parent, total = np.empty(room, np.int32), np.empty(room, np.int32), np.empty(room, np.float32)
+    count = 0
+    for n in range(len(now)):
+        state = now[n]
+        if follows[state] and fits[state + 1]:
+            found[count], parent[count], total[count] = state + 1, n, cost[n]
+            count += 1
+        first, after = starts[state], starts[state + 1]
+        few = after - first <= branches
+        for m in range(min(branches, after - first)):
+            place = first + m if few else first + int(chance[n, m] * (after - first))
+            target = targets[min(place, after - 1)]
+            if fits[target]:
+                found[count], parent[count], total[count] = target, n, cost[n] + costs[min(place, after - 1)]
+                count += 1
+    return found[:count], parent[:count], total[:count]

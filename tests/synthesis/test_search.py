@@ -1,0 +1,141 @@
+"""Paths that go with speech: the exact search finds the cheapest of all, whenever there is one; the greedy never finds a cheaper."""
+
+from __future__ import annotations
+
+from functools import cache
+
+import numpy as np
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+from metagraph.synthesis.constraints import ALL, SOUNDS, Heard, Segment, Wanted, changes, heard, wanted
+from metagraph.synthesis.graph import MotionGraph, Threshold
+from metagraph.synthesis.search import Path, best, greedy
+from metagraph.synthesis.states import States, SynthesisError
+
+IDLE, CLAUSE, RESPONSE = (1 << SOUNDS.index(k) for k in ("idle", "clause", "response"))
+
+
+def graph_of(frames: int, takes: list[int], links: dict[tuple[int, int], float]) -> MotionGraph:
+    states = States(
+        np.zeros((frames, 1, 3), np.float32), np.zeros((frames, 1, 3), np.float32), np.ones(1, np.float32), np.array(takes), 1.0
+    )
+    sources = sorted(links)
+    starts = np.concatenate([[0], np.cumsum(np.bincount([s for s, _ in sources], minlength=frames))])
+    targets = np.array([t for _, t in sources], np.int32)
+    costs = np.array([links[e] for e in sources], np.float32)
+    limit = Threshold(3, 0.95, np.zeros(0), None, 1.0, 1.0)
+    return MotionGraph(states, limit, np.arange(frames), starts, targets, costs, np.ones(frames, bool))
+
+
+def cheapest(graph: MotionGraph, sound: Heard, want: Wanted) -> float | None:
+    """What the cheapest path costs, by trying all."""
+    last = graph.states.last
+
+    @cache
+    def onward(t: int, state: int, met: bool) -> float:
+        if not graph.kept[state] or not sound.kinds[state] & want.allowed[t]:
+            return np.inf
+        met = (met or bool(sound.peaks[state])) if want.window[t] >= 0 else False
+        ends = want.window[t] >= 0 and (t + 1 == len(want) or want.window[t + 1] != want.window[t])
+        if ends and not met:
+            return np.inf
+        if t + 1 == len(want):
+            return 0.0
+        met = met and not ends
+        ways = [] if last[state] else [onward(t + 1, state + 1, met)]
+        for place in range(graph.starts[state], graph.starts[state + 1]):
+            ways.append(float(graph.costs[place]) + onward(t + 1, int(graph.targets[place]), met))
+        return min(ways, default=np.inf)
+
+    found = min(onward(0, s, False) for s in range(len(graph.states)))
+    return None if found == np.inf else found
+
+
+def check(graph: MotionGraph, sound: Heard, want: Wanted, path: Path) -> None:
+    """A path is one, has what is wanted, and costs what it says."""
+    total = 0.0
+    assert len(path.states) == len(want)
+    for t, state in enumerate(path.states):
+        assert sound.kinds[state] & want.allowed[t]
+        if t and state != path.states[t - 1] + 1:
+            before = int(path.states[t - 1])
+            places = range(graph.starts[before], graph.starts[before + 1])
+            total += next(float(graph.costs[p]) for p in places if graph.targets[p] == state)
+            assert t in path.jumps
+    for number in set(want.window[want.window >= 0].tolist()):
+        assert sound.peaks[path.states[want.window == number]].any()
+    assert path.cost == pytest.approx(total, abs=1e-4)
+
+
+@given(st.data())
+@settings(max_examples=60, deadline=None)
+def test_the_best_path_is_the_cheapest_of_all_and_is_found_whenever_there_is_one(data: st.DataObject) -> None:
+    frames = data.draw(st.integers(4, 14))
+    split = data.draw(st.integers(1, frames - 1))
+    pairs = st.tuples(st.integers(0, frames - 1), st.integers(0, frames - 1)).filter(lambda e: e[1] != e[0] + 1)
+    links = data.draw(st.dictionaries(pairs, st.floats(0.125, 2, width=32), max_size=20))
+    graph = graph_of(frames, [0, split, frames], links)
+    sound = Heard(
+        np.array(data.draw(st.lists(st.sampled_from([IDLE, CLAUSE, RESPONSE]), min_size=frames, max_size=frames)), np.uint8),
+        np.array(data.draw(st.lists(st.booleans(), min_size=frames, max_size=frames))),
+    )
+    length = data.draw(st.integers(1, 10))
+    allowed = data.draw(st.lists(st.sampled_from([IDLE, IDLE | CLAUSE, CLAUSE, ALL]), min_size=length, max_size=length))
+    window = np.full(length, -1, np.int32)
+    if data.draw(st.booleans()):
+        a = data.draw(st.integers(0, length - 1))
+        window[a : a + data.draw(st.integers(1, 4))] = 0
+    want = Wanted(np.array(allowed, np.uint8), window)
+    wanted_cost = cheapest(graph, sound, want)
+    if wanted_cost is None:
+        with pytest.raises(SynthesisError, match="no motion goes with this speech"):
+            best(graph, sound, want)
+        return
+    path = best(graph, sound, want)
+    check(graph, sound, want, path)
+    assert path.cost == pytest.approx(wanted_cost, abs=1e-4)
+    try:
+        other = greedy(graph, sound, want, seed=data.draw(st.integers(0, 9)))
+    except SynthesisError:
+        return
+    check(graph, sound, want, other)
+    assert other.cost >= path.cost - 1e-4
+
+
+def test_starts_ends_and_stresses_may_be_a_tenth_of_a_second_off() -> None:
+    want = wanted([Segment("clause", 1.0, 2.0, 1.5)], 3.0)
+    assert len(want) == 90
+    either = np.flatnonzero(want.allowed == (IDLE | CLAUSE))
+    assert either.tolist() == [*range(27, 33), *range(57, 63)]
+    assert np.flatnonzero(want.window >= 0).tolist() == list(range(42, 49))
+    exact = wanted([Segment("clause", 1.0, 2.0, 1.5)], 3.0, tolerance=0)
+    assert (exact.allowed == CLAUSE).sum() == 30 and (exact.window >= 0).sum() == 1
+
+
+def test_a_kind_that_is_left_out_lets_anything_go() -> None:
+    segments = [Segment("clause", 0.5, 1.0, 0.7), Segment("response", 1.5, 2.0)]
+    want = wanted(segments, 2.5, use=("idle", "clause"))
+    assert (want.allowed[45:60] == ALL).all() and (want.window >= 0).any()
+    assert not (wanted(segments, 2.5, use=("idle", "response")).window >= 0).any()
+    assert (wanted(segments, 2.5, use=()).allowed == ALL).all()
+
+
+def test_what_was_heard_is_told_take_by_take() -> None:
+    states = graph_of(60, [0, 30, 60], {}).states
+    sound = heard(states, [[Segment("clause", 0.2, 0.5, 0.3)], [Segment("response", 0.9, 5.0)]])
+    assert np.flatnonzero(sound.kinds == CLAUSE).tolist() == list(range(6, 15)) and np.flatnonzero(sound.peaks).tolist() == [9]
+    assert np.flatnonzero(sound.kinds == RESPONSE).tolist() == list(range(57, 60))
+    assert changes(states, [[Segment("clause", 0.2, 0.5, 0.3)], []]) == [6, 9, 15]
+    with pytest.raises(SynthesisError, match="2 takes have states, but 1"):
+        heard(states, [[]])
+    with pytest.raises(SynthesisError, match="end after it starts"):
+        heard(states, [[Segment("clause", 1.0, 1.0)], []])
+
+
+def test_a_search_that_would_not_fit_in_memory_is_refused() -> None:
+    graph = graph_of(40, [0, 40], {})
+    want = Wanted(np.full(20_000_000, ALL, np.uint8), np.full(20_000_000, -1, np.int32))
+    with pytest.raises(SynthesisError, match="greedy"):
+        best(graph, Heard(np.full(40, ALL, np.uint8), np.zeros(40, bool)), want)
