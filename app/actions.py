@@ -28,10 +28,11 @@ class Command:
 
 
 class Actions:
-    """The window's QActions by command id. `refresh` enables and checks them as things are now."""
+    """The window's QActions by command id. `refresh` enables and checks them as things are now. allowed: which may be used at all."""
 
     def __init__(self, parent: QWidget, commands: tuple[Command, ...]) -> None:
         self.commands = commands
+        self.allowed: Callable[[str], bool] | None = None
         self.by_id: dict[str, QAction] = {}
         for command in commands:
             action = QAction(command.text, parent)
@@ -65,7 +66,7 @@ class Actions:
     def refresh(self) -> None:
         for command in self.commands:
             action = self.by_id[command.id]
-            if command.enabled is not None:
-                action.setEnabled(command.enabled())
+            allowed = self.allowed is None or self.allowed(command.id)
+            action.setEnabled(allowed and (command.enabled is None or command.enabled()))
             if command.checked is not None:
                 action.setChecked(command.checked())

@@ -114,6 +114,7 @@ def commands(window: Window) -> tuple[Command, ...]:
         Command("big", "&View", "Only the &character", window.only_character, ("F11",)),
         Command("arrange", "&View", "&Put the panels back", window.docks.arrange),
         Command("theme", "&View", "&Light theme", window.toggle_theme, checked=lambda: s.theme == "light", line=True, icon="theme"),
+        Command("study", "&Study", "&Run a study…", window.run_study, tip="Lead a participant through a timing study"),
         Command("keys", "&Help", "&Keyboard shortcuts", window.show_keys, ("F1",)),
         Command("about", "&Help", "&About Metagraph", window.about),
     ]  # fmt: skip

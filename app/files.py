@@ -50,20 +50,30 @@ class Files(QObject):
         self.retargeting = Retargeting(document, jobs, window)
         self.retargeting.told.connect(self.told)
         self.retargeting.failed.connect(self._failed)
+        self.closed = ""  # why no other project or clip may be brought in now, in words
         self._era = 0  # counts the projects that were shown
         document.loaded.connect(self._next_era)
 
     def _next_era(self) -> None:
         self._era += 1
 
+    def _refuse(self) -> bool:
+        if self.closed:
+            self.told.emit(self.closed)
+        return bool(self.closed)
+
     # --- new and open
 
     def new(self) -> None:
+        if self._refuse():
+            return
         if self.may_leave():
             self.document.load(Project(), None)
             self.opened.emit()
 
     def ask_open(self) -> None:
+        if self._refuse():
+            return
         name, _ = QFileDialog.getOpenFileName(self.window, "Open project", str(self.document.folder or Path.home()), FILTER)
         if name:
             self.open(Path(name))
@@ -73,6 +83,8 @@ class Files(QObject):
 
         template: a copy without a file is opened; saving asks for a place of one's own.
         """
+        if self._refuse():
+            return
         if not self.may_leave():
             return
         recovered = None if template else self._offer(journal_path(path), path)
@@ -182,17 +194,23 @@ class Files(QObject):
     # --- import
 
     def ask_import_folder(self) -> None:
+        if self._refuse():
+            return
         name = QFileDialog.getExistingDirectory(self.window, "Import a folder of clips", str(self.document.folder or Path.home()))
         if name:
             self.import_paths([name])
 
     def ask_import_files(self) -> None:
+        if self._refuse():
+            return
         names, _ = QFileDialog.getOpenFileNames(self.window, "Import clips", str(self.document.folder or Path.home()), CLIPS)
         if names:
             self.import_paths(names)
 
     def import_paths(self, paths: list[str], drop: Drop | None = None) -> None:
         """Import files and folders on a thread; one undo step when it is done. drop: where to place them then."""
+        if self._refuse():
+            return
         annotations = [path for path in paths if path.lower().endswith(ANNOTATIONS)]
         paths = [path for path in paths if path not in annotations]
         for path in annotations[:1]:  # one dialog is enough

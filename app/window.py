@@ -493,6 +493,12 @@ class Window(QMainWindow):
 
         RenderDialog(self.performance, self.session, self.jobs, self).open()
 
+    def run_study(self) -> None:
+        """Lead a participant through a timing study; which and who is asked."""
+        from app.study.chooser import run_study
+
+        run_study(self)
+
     def show_keys(self) -> None:
         rows = []
         for command in self.actions.commands:

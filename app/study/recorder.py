@@ -95,7 +95,8 @@ class Recorder(QObject):
 
     def _moved(self, index: int) -> None:
         """Tell an edit, an undo or a redo from how the stack of steps has moved."""
-        stack, last, count = self._stack, self._index, stack.count()
+        stack = self._stack
+        last, count = self._index, stack.count()
         if index > last and self._undone is not None and stack.command(last) is self._undone:
             self._back_or_again("redo", stack.text(index - 1))
         elif index < last:
