@@ -57,13 +57,21 @@ def track_of(rig: Rig, clip: Clip) -> Array:
     known = _TRACKS.get(clip)
     if known is not None and known[0] is rig:
         return known[1]
-    times = times_of(clip)
-    poses = clip.pose_at(times) if abs(clip.fps - RATE) > 1e-6 else clip.poses()
-    turns, at = rig.small.globals(Pose(poses.rotations[:, rig.keep], poses.translations[:, rig.keep]))
-    facing = facing_of({role: at[:, j] for role, j in rig.places.items()}, turns[:, rig.root], np.array([0.0, 0, 0, 1]))
+    facing, at = stands(rig, poses_of(clip))
     track = seen_from(facing[:, None], at[:, rig.joints] - at[:, rig.root, None]).astype(np.float32)
     _TRACKS[clip] = rig, track
     return track
+
+
+def poses_of(clip: Clip) -> Pose:
+    """Return a clip's poses, RATE frames a second."""
+    return clip.pose_at(times_of(clip)) if abs(clip.fps - RATE) > 1e-6 else clip.poses()
+
+
+def stands(rig: Rig, poses: Pose) -> tuple[Array, Array]:
+    """Return where a character faces `[F, 2]`, as `points.facing_of`, and where the joints `Rig.keep` are `[F, K, 3]`, in the world."""
+    turns, at = rig.small.globals(Pose(poses.rotations[:, rig.keep], poses.translations[:, rig.keep]))
+    return facing_of({role: at[:, j] for role, j in rig.places.items()}, turns[:, rig.root], np.array([0.0, 0, 0, 1])), at
 
 
 def times_of(clip: Clip) -> Array:
