@@ -2,10 +2,12 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from typing import TYPE_CHECKING
 
 from app.actions import Command, Standard
 from app.files import PRACTICE, SAMPLE
+from app.manual.place import META_ONLY
 from metagraph.graph import edits
 from metagraph.graph.model import KINDS, LAYERS
 
@@ -19,7 +21,8 @@ def commands(window: Window) -> tuple[Command, ...]:
     """Return every command, in the order of the menus."""
     s, d, f, c = window.session, window.document, window.files, window.canvas
     some = lambda: bool(s.clips or s.actions)  # noqa: E731
-    gone = lambda: bool(s.clips or s.actions or s.asks)  # noqa: E731
+    drawn = lambda: bool(s.states or s.links)  # noqa: E731
+    gone = lambda: bool(s.clips or s.actions or s.asks or drawn())  # noqa: E731
     out = [
         Command("new", "&File", "&New project", f.new, (Standard.New,)),
         Command("open", "&File", "&Open…", f.ask_open, (Standard.Open,)),
@@ -38,7 +41,7 @@ def commands(window: Window) -> tuple[Command, ...]:
                 lambda: d.edit("Draw a stick figure", lambda p: edits.set_character(p, None)),
                 enabled=lambda: d.project.character is not None),
         Command("export", "&File", "&Export…", window.export, ("Ctrl+E",), line=True, icon="export", tip="JSON and GLB for engines",
-                enabled=lambda: any(True for _ in d.project.actions())),
+                enabled=lambda: any(True for _ in d.project.actions()) or any(m.states for m in d.project.manual.values())),
         Command("render", "&File", "&Write performance…", window.render, ("Ctrl+R",), tip="Video with sound, contact sheet, or motion",
                 enabled=lambda: d.project.skeleton is not None),
         Command("quit", "&File", "&Quit", window.close, (Standard.Quit, "Ctrl+Q"), line=True),
@@ -47,10 +50,11 @@ def commands(window: Window) -> tuple[Command, ...]:
         Command("delete", "&Edit", "&Remove", window.remove, (Standard.Delete,), enabled=gone, line=True),
         Command("rename", "&Edit", "Re&name…", window.rename, ("F2",)),
         Command("copy", "&Edit", "&Copy properties", window.copy_properties, (Standard.Copy,), line=True,
-                enabled=lambda: len(s.actions) == 1),
+                enabled=lambda: len(s.actions) == 1 or drawn()),
         Command("paste", "&Edit", "&Paste properties…", lambda: window.batch("paste"), (Standard.Paste,),
                 tip="Give the selected actions what another one has",
-                enabled=lambda: bool(s.actions) and s.copied is not None and d.project.action(s.copied) is not None),
+                enabled=lambda: s.mode == "manual"
+                or (bool(s.actions) and s.copied is not None and d.project.action(s.copied) is not None)),
         Command("replace_clip", "&Edit", "Replace c&lip…", lambda: window.batch("replace"), tip="Another clip, the same settings",
                 enabled=lambda: bool(s.actions)),
         Command("twins", "&Edit", "Make &mirrored twin", window.make_twins, tip="The same to the other side, as new clips and actions",
@@ -59,6 +63,8 @@ def commands(window: Window) -> tuple[Command, ...]:
                 enabled=lambda: bool(d.project.clips)),
         Command("select_all", "&Edit", "Select &all", window.select_all, (Standard.SelectAll,), line=True),
         Command("find", "&Edit", "&Find clip", window.library.search.setFocus, (Standard.Find,)),
+        Command("manual", "&Graph", "&Manual state machine", lambda: s.set_mode("meta" if s.mode == "manual" else "manual"),
+                checked=lambda: s.mode == "manual", tip="Draw states and links one by one, as in the engines' editors"),
         Command("new_stance", "&Graph", "&New stance…", c.new_stance, ("Ctrl+Shift+N",)),
     ]  # fmt: skip
     out.append(
@@ -118,4 +124,10 @@ def commands(window: Window) -> tuple[Command, ...]:
         Command("keys", "&Help", "&Keyboard shortcuts", window.show_keys, ("F1",)),
         Command("about", "&Help", "&About Metagraph", window.about),
     ]  # fmt: skip
-    return tuple(out)
+    return tuple(_of_meta(window, x) if x.id in META_ONLY else x for x in out)
+
+
+def _of_meta(window: Window, command: Command) -> Command:
+    """Return a command that can be used only while the meta-graph is edited."""
+    before = command.enabled
+    return replace(command, enabled=lambda: window.session.mode == "meta" and (before is None or before()))

@@ -81,8 +81,9 @@ def _state(path: Path) -> tuple[int, int] | None:
 
 def _once(options: Namespace) -> None:
     from metagraph.engines.targets import registry
+    from metagraph.graph.manual_meta import exportable
 
-    project = opened(options.project)
+    project, differences = exportable(opened(options.project))
     character = options.project.resolve().parent / project.character if project.character and not options.no_mesh else None
     made = registry.write(project, options.target, options.out, character, options.expanded, base=options.project.resolve().parent)
     files = list(made.files)
@@ -99,6 +100,8 @@ def _once(options: Namespace) -> None:
     untried = registry.target(options.target).untried
     if untried:
         print(f"experimental: {untried}", file=sys.stderr)
+    for words in differences:
+        print(f"differs: {words}", file=sys.stderr)
     for loss in made.losses:
         print(f"loses: {loss}", file=sys.stderr)
     data: dict[str, Any] = {
@@ -107,6 +110,7 @@ def _once(options: Namespace) -> None:
         "files": [str(path) for path in files],
         "clips": made.clips,
         "losses": list(made.losses),
+        **({"differences": differences} if differences else {}),
         "warnings": list(made.warnings),
     }
     shown = (

@@ -14,13 +14,14 @@ from PySide6.QtCore import QObject, QTimer, Signal
 from app.document import Document
 from app.jobs import Jobs
 from app.session import Session
-from app.shown import Shown, alone, in_context
+from app.shown import Shown, alone, by_hand, in_context
 from metagraph.graph import staging
 from metagraph.graph.asks import AnyAsk, AskError
 from metagraph.graph.asks import Performance as KeptPerformance
 from metagraph.graph.model import LAYERS, Project
 from metagraph.motion.skeleton import Pose, Skeleton
 from metagraph.playback.hear import Answer, answers, perform
+from metagraph.playback.manual import Fire
 from metagraph.playback.plan import Plan
 from metagraph.playback.planner import make_plan
 
@@ -51,6 +52,8 @@ class Performance(QObject):
         document.changed.connect(self._edited)
         session.show_changed.connect(self.replan)
         session.performance_changed.connect(self._staged)
+        session.mode_changed.connect(self._switched)
+        self._fires: tuple[Fire, ...] = ()  # triggers of the manual state machine, fired since it began
         self._on_stage: str | None = None
         self.live: LiveStage | None = None
         self.following = True  # while live: the playhead is now, not somewhere in the past
@@ -68,6 +71,7 @@ class Performance(QObject):
         self.stop_live()
         self.last_live = None
         self.length = LENGTH
+        self._fires = ()
         self.session.set_performance(None)
 
     def _staged(self) -> None:
@@ -75,6 +79,21 @@ class Performance(QObject):
             self._on_stage = self.session.performance
             self.length = self.kept.length if self.kept is not None else LENGTH
             self.replan()
+
+    def _switched(self) -> None:
+        self.stop_live()
+        self._fires = ()
+        self.length = LENGTH
+        self.replan()
+
+    def fire(self, trigger: str) -> None:
+        """Fire a trigger of the layer's manual state machine, now."""
+        self.session.show_plan()
+        at = round(self.session.seconds + SOON, 3)
+        # What was fired later, before the playhead was set back, never was.
+        self._fires = (*(f for f in self._fires if f.at < at), Fire(self.session.layer, trigger, at))
+        self.session.set_playing(True)
+        self.replan()
 
     def _edited(self, before: Project, after: Project) -> None:
         if self.kept is not None:
@@ -96,6 +115,7 @@ class Performance(QObject):
             return
         self._busy, self._again = True, False
         project, kept, length = self.document.project, self.kept, self.length
+        manual, fires = self.session.mode == "manual", self._fires
         show, shown, anew = self.session.show, self.session.shown, self.session.tried is not None
         stances = {layer: s for layer in LAYERS if (s := self.session.stance(layer)) is not None}
         layer = self.session.layer
@@ -103,6 +123,9 @@ class Performance(QObject):
         def work(_: object) -> Shown:
             if show == "clip" and shown in project.clips:
                 return alone(project, shown or "")
+            if manual:
+                known = project.state(shown) is not None or project.link(shown) is not None
+                return by_hand(project, length, fires, shown if show == "context" and known else None)
             if show == "context" and shown is not None:
                 return in_context(project, shown, layer, stances, anew)
             if kept is None:
@@ -131,7 +154,8 @@ class Performance(QObject):
     @property
     def kept(self) -> KeptPerformance | None:
         """The kept performance on stage, as it is now; None while the models improvise."""
-        return self.document.project.performances.get(self.session.performance or "")
+        stage = self.session.performance if self.session.mode == "meta" else None
+        return self.document.project.performances.get(stage or "")
 
     @property
     def asks(self) -> tuple[AnyAsk, ...]:

@@ -139,6 +139,11 @@ class Session(QObject):
             self.set_layer(drawn.layer)
             self.select_states((drawn.id,))
             return
+        link = project.link(action) if action else None
+        if link is not None and layer is not None:
+            self.set_layer(layer)
+            self.select_states((), (link.id,))
+            return
         if found is not None:
             stance, layer = found.stance, found.layer
         if layer is not None:

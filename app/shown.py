@@ -2,11 +2,13 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterable
 from dataclasses import dataclass
 
 from metagraph.graph.edits import EditError, place
 from metagraph.graph.model import Layer, Project
 from metagraph.motion.skeleton import Pose, Skeleton
+from metagraph.playback.manual import Fire, ManualPlan, link_alone, make_manual_plan, manual_morphs_at, manual_pose_at, state_alone
 from metagraph.playback.plan import Plan, Request
 from metagraph.playback.planner import make_plan
 from metagraph.playback.player import morphs_at, pose_at
@@ -16,12 +18,15 @@ LEAD = 0.8  # seconds of stance before and after a clip shown in context
 
 @dataclass(frozen=True)
 class Shown:
-    """project: the one the plan was made for. length: seconds. clip: the one that plays alone, then without a plan."""
+    """project: the one the plan was made for. length: seconds. clip: the one that plays alone, then without a plan. manual: what the manual
+    state machines play, where they do; `plan` then only shows it.
+    """
 
     project: Project
     plan: Plan
     length: float
     clip: str | None = None
+    manual: ManualPlan | None = None
 
     @property
     def skeleton(self) -> Skeleton | None:
@@ -36,19 +41,34 @@ class Shown:
         if self.clip is not None:
             motion = self.project.clips[self.clip].motion
             return motion.pose_at(seconds) if motion is not None else None
-        return pose_at(self.plan, self.project, seconds) if self.project.skeleton is not None else None
+        if self.project.skeleton is None:
+            return None
+        if self.manual is not None:
+            return manual_pose_at(self.manual, self.project, seconds)
+        return pose_at(self.plan, self.project, seconds)
 
     def morphs(self, seconds: float) -> dict[str, float]:
         """Return face shapes and their weights, 0..1, at a time."""
         if self.clip is not None:
             motion = self.project.clips[self.clip].motion
             return motion.morphs_at(seconds) if motion is not None else {}
+        if self.manual is not None:
+            return manual_morphs_at(self.manual, self.project, seconds)
         return morphs_at(self.plan, self.project, seconds)
 
 
 def alone(project: Project, clip: str) -> Shown:
     """Return a clip playing by itself."""
     return Shown(project, Plan(1, 0.0), max(1e-3, project.clips[clip].duration), clip)
+
+
+def by_hand(project: Project, length: float, fires: Iterable[Fire] = (), only: str | None = None) -> Shown:
+    """Return the manual state machines playing. only: a state or link to look at alone."""
+    if only is not None:
+        plan = link_alone(project, only) if project.state(only) is None else state_alone(project, only)
+        return Shown(project, plan.plan, plan.end, manual=plan)
+    plan = make_manual_plan(project, length, fires)
+    return Shown(project, plan.plan, length, manual=plan)
 
 
 def in_context(project: Project, ident: str, layer: Layer, stances: dict[Layer, str], anew: bool = False) -> Shown:

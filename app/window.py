@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from pathlib import Path
 
-from PySide6.QtCore import QEvent, QSettings, Qt, QTimer
+from PySide6.QtCore import QEvent, QPointF, QSettings, Qt, QTimer
 from PySide6.QtGui import QCloseEvent, QDragEnterEvent, QDropEvent, QKeySequence
 from PySide6.QtWidgets import (
     QAbstractButton,
@@ -30,6 +30,7 @@ from app.header import Header
 from app.job_line import JobLine
 from app.jobs import Jobs
 from app.learned import Learned
+from app.manual.place import Place
 from app.notice import Notice
 from app.panels.library import LibraryPanel
 from app.panels.preview import PreviewPanel
@@ -87,6 +88,7 @@ class Window(QMainWindow):
         self.docks = Docks(self, self.centre)
         self.docks.fill("library", self.library)
         self.docks.fill("preview", self.preview)
+        self.manual = Place(self)
         self.actions = Actions(self, commands(self))
         self.canvas.row_actions = [self.actions[name] for name in ("rename", "copy", "paste", "replace_clip", "twins")]
         self.library.row_actions = [self.actions[name] for name in ("twins", "repairs")]
@@ -200,6 +202,7 @@ class Window(QMainWindow):
         ):  # fmt: skip
             signal.connect(self.refresh)
         s.theme_changed.connect(self.restyle)
+        s.mode_changed.connect(self._show_problems)
         self.library.import_wanted.connect(self.files.ask_import_folder)
         self.library.files_dropped.connect(lambda paths: self.files.import_paths(list(paths)))
         self.canvas.files_dropped.connect(lambda paths, drop: self.files.import_paths(list(paths), drop))
@@ -296,12 +299,17 @@ class Window(QMainWindow):
 
     def _show_problems(self) -> None:
         flags = self.compatibility.flags
-        self.problems = merged(self._found, flags)
+        # Problems of what is not edited now are not shown.
+        found = tuple(p for p in self._found if self.session.mode == "manual" or not (p.state or p.link))
+        found = tuple(p for p in found if self.session.mode == "meta" or not (p.stance or p.action))
+        self.problems = merged(found, flags if self.session.mode == "meta" else {})
         misfits = {p.action: f"{p.message}. {p.remedy}" for p in self.problems if p.action and p.severity != "hint"}
         self.canvas.set_misfits(misfits)
         if self.ready:
             self.properties.set_misfits(misfits)
             self.problems_panel.show_problems(self.problems, flags)
+        if self.manual.editor is not None:
+            self.manual.editor.show_problems(self.problems)
         self.header.show_problems(self.problems)
 
     def _opened(self) -> None:
@@ -319,9 +327,11 @@ class Window(QMainWindow):
         self.preview.frame_all()
         self.refresh()
 
-    def _imported(self, result: Imported, drop: Drop | None) -> None:
+    def _imported(self, result: Imported, drop: Drop | QPointF | None) -> None:
         load = self.files.load_for(result)
-        if drop is not None and load.clips:
+        if isinstance(drop, QPointF):
+            self.manual.imported(load, drop)
+        elif drop is not None and load.clips:
             self.canvas.do(drop, load)
         elif load.clips:
             self.session.select_clips(load.clips if len(load.clips) < 2 else ())
@@ -346,6 +356,8 @@ class Window(QMainWindow):
             self.session.set_stance(stances[place])
 
     def remove(self) -> None:
+        if self.manual.takes("remove"):
+            return
         if self.session.asks:
             self.performance.withdraw(*self.session.asks)
         elif self.session.actions:
@@ -354,6 +366,8 @@ class Window(QMainWindow):
             self.library.remove(self.session.clips)
 
     def rename(self) -> None:
+        if self.manual.takes("rename"):
+            return
         if len(self.session.clips) == 1:
             self.library.rename(self.session.clips[0])
         elif len(self.session.actions) > 1:
@@ -367,6 +381,8 @@ class Window(QMainWindow):
 
     def batch(self, what: str) -> None:
         """Edit the selected actions together: "rename", "paste" or "replace"."""
+        if what == "paste" and self.manual.takes("paste"):
+            return
         from app.panels import batch
 
         actions, copied = self.session.actions, self.session.copied
@@ -392,7 +408,8 @@ class Window(QMainWindow):
 
     def copy_properties(self) -> None:
         """Remember the selected action, so that others can be given its properties."""
-        self.session.copied = self.session.actions[0]
+        if not self.manual.takes("copy"):
+            self.session.copied = self.session.actions[0]
         self.actions.refresh()
 
     def propose(self) -> None:
@@ -424,7 +441,7 @@ class Window(QMainWindow):
     def select_all(self) -> None:
         if self.library.isAncestorOf(QApplication.focusWidget() or self):
             self.library.list.selectAll()
-        else:
+        elif not self.manual.takes("select_all"):
             self.session.select_actions(tuple(a.id for a in self.canvas._listed()))
 
     def toggle_live(self) -> None:
@@ -486,7 +503,7 @@ class Window(QMainWindow):
     def export(self) -> None:
         from app.panels.export import ExportDialog
 
-        ExportDialog(self.document, self.jobs, self).open()
+        ExportDialog(self.document, self.jobs, self, self.session.mode == "manual").open()
 
     def render(self) -> None:
         from app.panels.render import RenderDialog

@@ -37,6 +37,7 @@ from metagraph.engines.targets.target import Report, Target
 from metagraph.engines.vectors import write_vectors
 from metagraph.graph.check import check
 from metagraph.graph.expand import size
+from metagraph.graph.manual_meta import exportable
 
 NAME = Qt.ItemDataRole.UserRole
 
@@ -61,9 +62,12 @@ def served(folder: str) -> str:
 
 
 class ExportDialog(QDialog):
-    def __init__(self, document: Document, jobs: Jobs, parent: QWidget | None = None) -> None:
+    """manual: export what the manual state machines amount to, instead of the meta-graph."""
+
+    def __init__(self, document: Document, jobs: Jobs, parent: QWidget | None = None, manual: bool = False) -> None:
         super().__init__(parent)
         self.document, self.jobs = document, jobs
+        self.project, self.differences = exportable(document.project, manual)
         self.setAttribute(Qt.WidgetAttribute.WA_DeleteOnClose)  # a running export goes on; the status bar shows it
         self.setWindowTitle("Export for engines")
         self.resize(860, 560)
@@ -98,7 +102,7 @@ class ExportDialog(QDialog):
         layout.addWidget(self._buttons())
         self.targets.currentItemChanged.connect(self._describe)
         self._select(chosen.target)
-        errors = [p for p in check(document.project) if p.severity == "error"]
+        errors = [p for p in check(self.project) if p.severity == "error"]
         if errors:
             self.go.setEnabled(False)
             self.trouble.setText(f"First: {errors[0].message}. {errors[0].remedy}")
@@ -187,7 +191,7 @@ class ExportDialog(QDialog):
         return registry.target(name or registry.DEFAULT)
 
     def _describe(self) -> None:
-        target, project = self.target, self.document.project
+        target, project = self.target, self.project
         whole = size(project)
         played = (target.name == registry.DEFAULT) or target.group == registry.target(registry.DEFAULT).group
         self.title.setText(target.title)
@@ -198,7 +202,9 @@ class ExportDialog(QDialog):
         rows = [f"<li>{escape(words)}</li>" for words in registry.losses(project, target.name)]
         note = f"<p><b>Experimental</b>: {escape(target.untried)}.</p>" if target.untried else ""
         lost = f"<p><b>What it loses</b></p><ul style='margin-left:-20px'>{''.join(rows)}</ul>" if rows else "<p>Nothing is lost.</p>"
-        self.losses.setText(note + lost)
+        told = "".join(f"<li>{escape(words)}</li>" for words in self.differences)
+        differs = f"<p><b>How it differs from what was drawn</b></p><ul style='margin-left:-20px'>{told}</ul>" if told else ""
+        self.losses.setText(note + differs + lost)
 
     def _browse(self) -> None:
         name = QFileDialog.getExistingDirectory(self, "Export into", self.folder.text())
@@ -213,7 +219,7 @@ class ExportDialog(QDialog):
     # --- writing
 
     def _export(self) -> None:
-        project, folder, name = self.document.project, Path(self.folder.text()), self.target.name
+        project, folder, name = self.project, Path(self.folder.text()), self.target.name
         base = self.document.folder
         expanded, vectors = self.expanded.isChecked(), self.vectors.isChecked() and not self.vectors.isHidden()
         character = (base or Path()) / project.character if project.character and self.mesh.isChecked() else None

@@ -133,7 +133,7 @@ class ProblemsPanel(QWidget):
         """Show problems. fixes: what mends some of them."""
         look = theme(self.session.theme)
         fixes = fixes or {}
-        state = tuple(problems), tuple(fixes.items()), look.name, self.session.document.project.graphs
+        state = tuple(problems), tuple(fixes.items()), look.name, self.session.document.project.graphs, self.session.mode
         if state == self._shown:
             return
         self.problems, self.fixes, self._shown = tuple(problems), fixes, state
@@ -142,7 +142,9 @@ class ProblemsPanel(QWidget):
         project = self.session.document.project
         for problem in self.problems[:MOST]:
             stance = project.stance(problem.stance)
-            place = ", ".join(x for x in (problem.layer or "", stance.name if stance else "") if x) or "project"
+            drawn = project.state(problem.state)
+            inside = stance.name if stance else drawn.name if drawn else ""
+            place = ", ".join(x for x in (problem.layer or "", inside) if x) or "project"
             fix = fixes.get(problem)
             item = QTreeWidgetItem([problem.message, place, problem.remedy, fix.words if fix is not None else ""])
             item.setIcon(0, icons.icon("warning", colors[problem.severity]))
@@ -195,4 +197,4 @@ class ProblemsPanel(QWidget):
     def _go(self, item: QTreeWidgetItem, column: int = 0) -> None:
         problem = item.data(0, ROLE)
         if isinstance(problem, Problem) and column != FIX:
-            self.session.jump(problem.layer, problem.stance, problem.action, problem.clip)
+            self.session.jump(problem.layer, problem.stance, problem.action or problem.state or problem.link, problem.clip)

@@ -94,8 +94,15 @@ class TimelinePanel(QWidget):
         self._live()
         session.performance_changed.connect(self._restage)
         session.performance_changed.connect(self._words)
+        session.mode_changed.connect(self._switched)
         document.changed.connect(lambda before, after: self._restage())
         self._restage()
+        self._words()
+
+    def _switched(self) -> None:
+        """Requests and kept performances are the meta-graph's."""
+        for part in (self.stage, self.more, self.ask, self.live):
+            part.setEnabled(self.session.mode == "meta")
         self._words()
 
     def _restage(self) -> None:
@@ -259,6 +266,11 @@ class TimelinePanel(QWidget):
             self.title.say(self.performance.live.words())
         elif shown.clip is not None:
             self.title.say("A clip alone. Click it again to play it in context, Esc for the performance.")
+        elif self.session.mode == "manual":
+            count = sum(len(shown.plan.layers[layer].cues) for layer in LAYERS)
+            lost_words = "".join(f" {r.message[:1].upper()}{r.message[1:]}." for r in shown.plan.reports[-1:])
+            words = f"{many(count, 'state')} in {shown.length:g} s." if count else "Nothing plays yet: drop clips and draw links."
+            self.title.say("Alone. Esc for the whole machine." if self.session.show == "context" else words + lost_words)
         elif self.session.show == "context":
             self.title.say("In context: stance, action, back to the stance. Esc for the performance.")
         else:

@@ -194,3 +194,13 @@ def _likelihood(manual: Manual, state: State, kind: Kind) -> float:
 def only_manual(project: Project) -> bool:
     """Whether all that a project plays was drawn by hand."""
     return any(m.states for m in project.manual.values()) and not any(True for _ in project.actions())
+
+
+def exportable(project: Project, manual: bool | None = None) -> tuple[Project, list[str]]:
+    """Return what is exported of a project, and in words how far it differs from what was drawn.
+
+    manual: its manual machines, as what they amount to, rather than its meta-graph; None for where there is nothing else.
+    """
+    if only_manual(project) if manual is None else manual:
+        return as_meta(project)[0], differences(project)
+    return replace(project, manual={}) if project.manual else project, []
