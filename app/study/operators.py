@@ -36,7 +36,7 @@ class Operators:
         self._counts: Counter[str] = Counter()
         self._drag_s = 0.0
         self._since = now
-        self._keys: dict[int, int] = {}  # held down -> when they were pressed, by the event's own clock
+        self._keys: dict[int, tuple[int, bool]] = {}  # held down -> the event's own time, whether it was told as a press
         self._buttons: set[int] = set()
         self._anchor: Point | None = None  # where the last pointing ended
         self._at: Point = (-1e9, -1e9)  # nowhere yet
@@ -46,14 +46,17 @@ class Operators:
         self._last = now  # of a drag
         self._hand = ""
 
-    def key(self, key: int, down: bool, stamp: int) -> bool:
-        """Tell of a key; return whether it was new."""
+    def key(self, key: int, down: bool, stamp: int, asked: bool = False) -> bool:
+        """Tell of a key; return whether it was new. stamp: the event's own time. asked: it is only asked whether the key is a shortcut;
+        if it is none it is told as a press next."""
         if not down:
             self._keys.pop(key, None)
             return False
-        if self._keys.get(key) == stamp:
+        before = self._keys.get(key)
+        known = before is not None and (before[0] == stamp or not (before[1] or asked))
+        self._keys[key] = stamp, not asked or (known and before is not None and before[1])
+        if known:
             return False
-        self._keys[key] = stamp
         self._home("keyboard")
         self._counts["K"] += 1
         return True
@@ -172,8 +175,9 @@ class Hands(QObject):
             if event.spontaneous():
                 self._mouse(kind, event)  # type: ignore[arg-type]
         elif kind in _KEYS:
-            if event.spontaneous() and not event.isAutoRepeat():  # type: ignore[attr-defined]
-                self._key(_KEYS[kind], event)  # type: ignore[arg-type]
+            asked = kind == _TYPE.ShortcutOverride  # which Qt sends itself; of a shortcut there is no press
+            if (asked or event.spontaneous()) and not event.isAutoRepeat():  # type: ignore[attr-defined]
+                self._key(_KEYS[kind], event, asked)  # type: ignore[arg-type]
         elif kind == _TYPE.DragMove:
             self._drag(event)  # type: ignore[arg-type]
         elif kind == _TYPE.Drop:
@@ -186,8 +190,8 @@ class Hands(QObject):
             self._dialog(watched, kind == _TYPE.Show)
         return False
 
-    def _key(self, down: bool, event: QKeyEvent) -> None:
-        if self.operators.key(event.key(), down, event.timestamp()):
+    def _key(self, down: bool, event: QKeyEvent, asked: bool) -> None:
+        if self.operators.key(event.key(), down, event.timestamp(), asked):
             self._input(monotonic())
 
     def _mouse(self, kind: QEvent.Type, event: QMouseEvent) -> None:

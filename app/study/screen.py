@@ -52,7 +52,8 @@ class Page(QWidget):
         """Put the buttons below what was added."""
         self.column.addSpacing(8)
         self.column.addLayout(self.buttons)
-        self.column.addStretch(1)
+        self.column.insertStretch(0, 1)  # a short page stands somewhat above the middle
+        self.column.addStretch(2)
         return self
 
 
@@ -147,7 +148,7 @@ class Screen(QWidget):
     def __init__(self, window: QWidget, session: Session) -> None:
         super().__init__(window)
         self.session = session
-        self.setAutoFillBackground(True)
+        self.setAttribute(Qt.WidgetAttribute.WA_StyledBackground)  # else nothing hides what is below
         self.place = QLabel(self)
         self.place.setProperty("dim", True)
         self.area = QScrollArea(self, widgetResizable=True)
@@ -155,7 +156,7 @@ class Screen(QWidget):
         self.area.setHorizontalScrollBarPolicy(Qt.ScrollBarPolicy.ScrollBarAlwaysOff)
         self.area.setFocusPolicy(Qt.FocusPolicy.NoFocus)
         outer = QVBoxLayout(self)
-        outer.setContentsMargins(28, 20, 28, 20)
+        outer.setContentsMargins(28, 20, 28, 12)
         outer.addWidget(self.place)
         row = QHBoxLayout()
         row.addStretch(1)

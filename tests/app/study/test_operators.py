@@ -39,6 +39,19 @@ def test_a_key_whose_release_went_to_another_program_counts_again():
     assert count(o) == {"K": 2}
 
 
+def test_a_key_that_is_asked_about_and_then_pressed_counts_once():
+    o = Operators()
+    for _ in range(2):
+        o.key(1, True, 7, asked=True)
+        o.key(1, True, 7, asked=True)
+        o.key(1, True, 0)
+        o.key(1, True, 0)
+        o.key(1, False, 8)
+    o.key(2, True, 9, asked=True)  # a shortcut: no press follows
+    o.key(2, False, 10)
+    assert count(o) == {"K": 3}
+
+
 def test_a_click_where_the_pointer_is_is_two_buttons():
     o = Operators()
     o.move((5, 5), False, 0.0)
