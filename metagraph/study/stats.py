@@ -161,7 +161,8 @@ def rank_biserial(a: Sequence[float], b: Sequence[float]) -> float | None:
 
 def effect_size(a: Sequence[float], b: Sequence[float], level: float = LEVEL) -> Estimate | None:
     """Return Cohen's d_z of pairs, the mean difference beside the differences' deviation, with Hedges' correction for small samples
-    (Hedges 1981, its exact form) and the interval from the noncentral t distribution; None where the differences do not vary."""
+    (Hedges 1981, its exact form), and the interval of what it estimates, from the noncentral t distribution; None where the
+    differences do not vary."""
     d = np.array(_paired(a, b))
     n = len(d)
     spread = float(d.std(ddof=1)) if n > 1 else 0.0
@@ -170,7 +171,7 @@ def effect_size(a: Sequence[float], b: Sequence[float], level: float = LEVEL) ->
     dz, less = float(d.mean()) / spread, correction(n - 1)
     t = dz * sqrt(n)
     low, high = (_shift(t, n - 1, (1 + sign * level) / 2) / sqrt(n) for sign in (1, -1))
-    return Estimate(less * dz, less * low, less * high, n)
+    return Estimate(less * dz, low, high, n)
 
 
 def correction(df: float) -> float:
@@ -311,12 +312,22 @@ def _half(found: Estimate) -> Estimate:
 
 
 def _shift(t: float, df: float, share: float) -> float:
-    """Return the noncentrality at which a share of the noncentral t distribution is up to t."""
-    low, high = t - 10 - abs(t), t + 10 + abs(t)
-    for _ in range(80):
-        middle = (low + high) / 2
-        low, high = (middle, high) if t_noncentral(t, df, middle) > share else (low, middle)
-    return (low + high) / 2
+    """Return the noncentrality at which a share of the noncentral t distribution is up to t; by false position (Illinois)."""
+    width = 5 * sqrt(1 + t * t / (2 * df))
+    low, high = t - width, t + width
+    f_low, f_high = t_noncentral(t, df, low) - share, t_noncentral(t, df, high) - share
+    side = 0
+    for _ in range(200):
+        middle = (f_low * high - f_high * low) / (f_low - f_high)
+        f = t_noncentral(t, df, middle) - share
+        if abs(f) < 1e-13 or high - low < 1e-12 * max(1.0, abs(t)):
+            break
+        if f > 0:
+            low, f_low, f_high = middle, f, f_high / 2 if side > 0 else f_high
+        else:
+            high, f_high, f_low = middle, f, f_low / 2 if side < 0 else f_low
+        side = 1 if f > 0 else -1
+    return middle
 
 
 def _array(values: Sequence[float]) -> np.ndarray:

@@ -10,7 +10,7 @@ import numpy as np
 
 TINY = 1e-300
 STEPS = 20_000  # of the continued fraction; a few dozen are usual
-NODES, WEIGHTS = np.polynomial.legendre.leggauss(48)
+NODES, WEIGHTS = np.polynomial.legendre.leggauss(20)
 
 
 def incomplete_beta(a: float, b: float, x: float) -> float:

@@ -192,7 +192,7 @@ def test_signed_ranks_as_scipy_and_pingouin_have_them() -> None:
 
 def test_sizes_of_effects_and_studies_as_scipy_and_statsmodels_have_them() -> None:
     found = s.effect_size(s.logs(A), s.logs(B))
-    assert triple(found) == (close(7.022459538745655), close(3.3894044692284346), close(10.667443299549697))
+    assert triple(found) == (close(7.022459538745655), close(3.816024964508703), close(12.01014228550578))
     for n, effect, wanted in (
         (5, 0.8, 0.2809920635173735), (12, 0.5, 0.3528241493273385), (34, 0.5, 0.8077775012792737), (2, 3.0, 0.26077071422910936),
         (100, 0.2, 0.508264806621038),
