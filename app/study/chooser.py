@@ -22,9 +22,8 @@ from PySide6.QtWidgets import (
 from app.study.guide import Guide
 from app.theme import strengthen
 from metagraph.errors import FileError
-from metagraph.study.log import read
 from metagraph.study.plan import Study, read_study
-from metagraph.study.sitting import phases, where
+from metagraph.study.sitting import standing
 
 if TYPE_CHECKING:
     from app.window import Window
@@ -63,18 +62,6 @@ def begin(window: Window, study: Study, participant: str, experimenter: bool = F
         return None
     guide.show()
     return guide
-
-
-def standing(study: Study, participant: str) -> str:
-    """Return how far a participant is, in words."""
-    if not study.log(participant).is_file():
-        return "not begun"
-    try:
-        log = read(study.log(participant))
-        now = where(phases(study, participant), log.events)
-    except (FileError, ValueError) as error:
-        return str(error)
-    return "done" if now.phase is None else f"goes on at: {now.phase.title}"
 
 
 class Chooser(QDialog):

@@ -220,7 +220,6 @@ class Guide(QObject):
         plan, mode = self.study.plan, w.session.mode
         w.actions.allowed = lambda ident: offered(ident, mode, "labels" in plan.allow)
         w.refresh()
-        w.header.machine_button.setEnabled(mode == "meta")
         self._working, self._from = True, monotonic()
         self._second.start()
         self._tick()
@@ -229,7 +228,6 @@ class Guide(QObject):
     def _stop(self) -> None:
         self._elapsed, self._working = self.elapsed, False
         self._second.stop()
-        self.window.header.machine_button.setEnabled(True)
 
     @property
     def elapsed(self) -> float:

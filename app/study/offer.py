@@ -2,18 +2,18 @@
 
 from __future__ import annotations
 
+from app.manual.place import META_ONLY
+
 # Other clips, other projects, other files: everybody works on the same. Twins make clips. What changes how the window works stays.
 FILES = frozenset({
     "new", "open", "sample", "practice", "save", "save_as", "import", "import_files", "annotate", "watch", "find_missing", "character",
-    "no_character", "export", "render", "twins", "repairs", "skeleton", "joint_maps", "live", "mimic", "study", "count_operators",
-    "manual", "mode", "as_meta", "reshape",
+    "no_character", "export", "render", "twins", "repairs", "skeleton", "joint_maps", "live", "mimic", "study", "manual",
 })  # fmt: skip
 PROPOSALS = frozenset({"propose", "use_times", "patterns", "compatibility"})  # made by the program, for neither condition or both
-META = frozenset({"new_stance", "machine", *(f"label_{kind}" for kind in ("stance", "gesture", "fidget", "transition"))})
 
 
 def offered(command: str, mode: str, labels: bool) -> bool:
     """Return whether a command is offered. mode: what is edited; labels: proposals are allowed."""
     if command in FILES or (command in PROPOSALS and not labels):
         return False
-    return mode == "meta" or not (command in META or command in PROPOSALS or command.startswith("stance_"))
+    return mode == "meta" or command not in META_ONLY

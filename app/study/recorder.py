@@ -47,12 +47,13 @@ class Recorder(QObject):
             (d.loaded, self._loaded), (d.saved, self._saved), (d.failed, self._document_failed), (self._stack.indexChanged, self._moved),
             (s.layer_changed, lambda: self._view("layer", layer=s.layer)), (s.stance_changed, lambda: self._view("stance")),
             (s.selection_changed, lambda: self._view("select")), (s.theme_changed, lambda: self._view("theme", theme=s.theme)),
-            (s.mode_changed, lambda: self._view("panel", mode=s.mode)), (s.show_changed, lambda: self.tell("playback", what=s.show)),
+            (s.mode_changed, self._other_editor), (s.show_changed, lambda: self.tell("playback", what=s.show)),
             (s.playing_changed, lambda: self.tell("playback", what="play" if s.playing else "pause")), (s.moved, self._seek),
             (window.canvas.refused, self._refused), (window.files.imported, self._imported),
         ]  # fmt: skip
         for signal, slot in self._links:
             signal.connect(slot)
+        self._watch_manual()
         self.hands = Hands(self._input, self._dialog, self._scrolled, self)
         self._position()
         self._second.start()
@@ -139,6 +140,21 @@ class Recorder(QObject):
         self._position()
 
     # --- what is looked at
+
+    def _watch_manual(self) -> None:
+        """Follow the editor of state machines, which is made when it is first shown."""
+        editor = self.window.manual.editor
+        if editor is not None and not self._manual:
+            self._manual = True
+            for signal, slot in ((editor.canvas.refused, self._refused), (editor.canvas.viewed, self._scrolled)):
+                signal.connect(slot)
+                self._links.append((signal, slot))
+
+    _manual = False
+
+    def _other_editor(self) -> None:
+        self._watch_manual()
+        self._view("panel", mode=self.window.session.mode)
 
     def _view(self, what: str, **more: Any) -> None:
         self.tell("view", what=what, **more)

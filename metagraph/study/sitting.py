@@ -9,7 +9,7 @@ from pathlib import Path
 from typing import Any, Literal
 
 from metagraph.errors import FileError
-from metagraph.study.log import Event, Log, Writer
+from metagraph.study.log import Event, Log, Writer, read
 from metagraph.study.plan import CONDITION_TITLES, Study
 from metagraph.study.questions import Questionnaire
 from metagraph.study.tasks import steps
@@ -141,6 +141,18 @@ def where(course: Sequence[Phase], events: Sequence[Event]) -> Where:
     if done == len(course):
         return Where(None)
     return Where(course[done], begun is not None, elapsed, answers, artefact) if begun is not None else Where(course[done])
+
+
+def standing(study: Study, participant: str) -> str:
+    """Return how far a participant is, in words."""
+    if not study.log(participant).is_file():
+        return "not begun"
+    try:
+        log = read(study.log(participant))
+        now = where(phases(study, participant), log.events)
+    except (FileError, ValueError) as error:
+        return str(error)
+    return "done" if now.phase is None else f"goes on at: {now.phase.title}"
 
 
 class Sitting:
