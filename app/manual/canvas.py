@@ -41,6 +41,7 @@ from metagraph.graph.model import Layer, Project
 from metagraph.playback.manual import clip_seconds
 
 SETTLED = 140  # milliseconds of rest after which lines are smooth again
+MANY = 800  # links beyond which an edit is shown roughly first
 BEAT = 90  # milliseconds between looks at what plays
 MAP = QSizeF(168, 104)  # of the map in the corner, pixels
 
@@ -66,7 +67,6 @@ class ManualCanvas(QWidget):
         self.troubles: dict[str, str] = {}
         self.at = QPointF(200, 200)  # where the mouse was last
         self._views: dict[Layer, View] = {}
-        self._layer: Layer = session.layer
         self._scene: Scene | None = None
         self._dragged: Mapping[str, tuple[float, float]] = {}
         self._band: QRectF | None = None
@@ -159,24 +159,33 @@ class ManualCanvas(QWidget):
     def _edited(self, before: Project, after: Project) -> None:
         if before.manual is not after.manual or before.clips is not after.clips:
             self._scene = None
+            if len(self.scene().manual.links) > MANY:
+                self._fast = True
+                self._settle.start()
             self._stale()
 
     def _relayer(self) -> None:
         self._scene = None
         self.cancel()
         known = self._views.get(self.session.layer)
-        self._layer = self.session.layer
         if known is not None:
             self.view = known
             self._stale()
         else:
-            self.view = fitted(self.scene().bounds, QSizeF(self.size()))
+            self.view = self._first_view()
             self._stale()
         self.viewed.emit()
 
+    def _first_view(self) -> View:
+        """Return the view of a layer not looked at yet: all of it, or where the first clips go."""
+        scene = self.scene()
+        if not scene.manual.states:
+            return View(1.0, scene.manual.any_x - 50, scene.manual.any_y - 120)
+        return fitted(scene.bounds, QSizeF(self.size()))
+
     def resizeEvent(self, event: QResizeEvent) -> None:
         if self.session.layer not in self._views:
-            self.view = fitted(self.scene().bounds, QSizeF(self.size()))
+            self.view = self._first_view()
         self._still = None
 
     # --- painting
@@ -392,6 +401,7 @@ class ManualCanvas(QWidget):
         self._views.setdefault(layer, self.view)
         if self.do(words, lambda p: manual_edits.add_states(p, clips, layer, x, y)):
             self.session.select_states(tuple(i for i in self.scene().manual.states if i not in before))
+            self.session.show_plan()
 
     # --- drops
 

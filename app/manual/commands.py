@@ -126,14 +126,14 @@ def for_key(canvas: ManualCanvas, event: QKeyEvent) -> Run | None:
     s = canvas.session
     if event.key() == Qt.Key.Key_Escape:
         return canvas.cancel if canvas.gesture is not None else None
+    if event.key() == Qt.Key.Key_D and event.modifiers() == Qt.KeyboardModifier.ControlModifier:  # on X11 also a key to delete
+        return lambda: duplicate(canvas)
     for standard, run in (
         (Standard.Delete, remove), (Standard.Copy, copy), (Standard.Paste, paste), (Standard.SelectAll, select_all),
     ):  # fmt: skip
         if event.matches(standard):
             return lambda: run(canvas)
     plain = not event.modifiers() & ~Qt.KeyboardModifier.KeypadModifier
-    if event.key() == Qt.Key.Key_D and event.modifiers() == Qt.KeyboardModifier.ControlModifier:
-        return lambda: duplicate(canvas)
     if event.key() == Qt.Key.Key_F and plain:
         return canvas.fit
     if event.key() == Qt.Key.Key_Backspace and plain:

@@ -46,7 +46,14 @@ def paint_still(painter: QPainter, look: Look, rect: QRectF, without: Collection
     shown = look.view.rect(rect.size()).adjusted(-40, -40, 40, 40)
     for ident, box in look.scene.nodes.items():
         if ident not in without and box.intersects(shown):
-            paint_node(painter, look, ident)
+            paint_node(painter, look, ident, rough=fast and look.view.scale < SMALL)
+
+
+@lru_cache(maxsize=256)
+def mixed(a: str, b: str, part: float) -> QColor:
+    """Return a colour on the way from one to another."""
+    x, y = QColor(a), QColor(b)
+    return QColor(*(round(m + (n - m) * part) for m, n in ((x.red(), y.red()), (x.green(), y.green()), (x.blue(), y.blue()))))
 
 
 def _grid(painter: QPainter, look: Look, rect: QRectF) -> None:
@@ -55,9 +62,7 @@ def _grid(painter: QPainter, look: Look, rect: QRectF) -> None:
         step *= 4
     if step < 9:
         return
-    color = QColor(look.theme.line)
-    color.setAlpha(70)
-    painter.setPen(QPen(color, 1))
+    painter.setPen(QPen(mixed(look.theme.ground, look.theme.line, 0.28), 0))
     painter.setRenderHint(QPainter.RenderHint.Antialiasing, False)
     origin = look.view.to(QPointF(0, 0))
     lines = [QLineF(x, rect.top(), x, rect.bottom()) for x in np.arange(origin.x() % step, rect.width(), step)]
@@ -73,12 +78,12 @@ def _arrows(painter: QPainter, look: Look, rect: QRectF, gone: Collection[str], 
     keep &= (high[:, 0] >= 0) & (low[:, 0] <= rect.width()) & (high[:, 1] >= 0) & (low[:, 1] <= rect.height())
     count = int(keep.sum())
     smooth = not fast or count < 300
-    color = QColor(look.theme.dim)
-    color.setAlpha(max(46, min(235, 30000 // max(1, count))))
+    # Not see-through: lines that are mixed with what is under them take twenty times as long.
+    color = mixed(look.theme.ground, look.theme.dim, max(0.3, min(0.92, 130 / max(1, count))))
     painter.setRenderHint(QPainter.RenderHint.Antialiasing, smooth)
     for waits in (False, True):
         some = lines[keep & (scene.requests == waits)]
-        pen = QPen(color, 1.3 if smooth else 1)
+        pen = QPen(color, 0 if not smooth else 1.3 if count < 600 else 1)
         if waits and smooth and count < 600:
             pen.setDashPattern([5, 3])
         painter.setPen(pen)
@@ -88,7 +93,7 @@ def _arrows(painter: QPainter, look: Look, rect: QRectF, gone: Collection[str], 
         if ident not in gone:
             _loop(painter, view, circle, color, 1.3)
     if view.scale >= HEADS and not (fast and count > 300):
-        color.setAlpha(max(90, color.alpha()))
+        color = mixed(look.theme.ground, look.theme.dim, max(0.5, min(0.92, 130 / max(1, count))))
         _heads(painter, lines[keep], color, min(1.0, max(0.55, view.scale)) * 9)
     if count <= LABELS and view.scale >= SMALL:
         for link, row in zip(scene.straight, lines, strict=True):
@@ -172,13 +177,15 @@ def _label(painter: QPainter, look: Look, link: Link, color: QColor | None = Non
 # --- nodes -----------------------------------------------------------------------------------------------------------
 
 
-def paint_node(painter: QPainter, look: Look, ident: str, selected: bool = False, hover: bool = False, target: bool = False) -> None:
-    """Paint a node. target: a link would end here if it were let go now."""
+def paint_node(
+    painter: QPainter, look: Look, ident: str, selected: bool = False, hover: bool = False, target: bool = False, rough: bool = False
+) -> None:
+    """Paint a node. target: a link would end here if it were let go now. rough: only its box, while all moves."""
     t, view = look.theme, look.view
     box = look.scene.nodes[ident]
     rect = QRectF(view.to(box.topLeft()), view.to(box.bottomRight()))
-    painter.setRenderHint(QPainter.RenderHint.Antialiasing, True)
-    radius = 9 * view.scale
+    painter.setRenderHint(QPainter.RenderHint.Antialiasing, not rough)
+    radius = 9 * view.scale if not rough else 0.0
     painter.setBrush(QColor(t.hover if hover or target else t.card))
     border = QColor(t.kinds["stance"]) if target else QColor(t.text if selected else t.dim if hover else t.line)
     painter.setPen(QPen(border, 2.2 if selected or target else 1.2))
@@ -187,19 +194,26 @@ def paint_node(painter: QPainter, look: Look, ident: str, selected: bool = False
         if view.scale >= TINY:
             painter.setFont(_font(look.font.toString(), max(9.5, 13 * view.scale), True))
             painter.setPen(QColor(t.dim))
-            painter.drawText(rect, Qt.AlignmentFlag.AlignCenter, "Any state")
+            painter.drawText(rect, Qt.AlignmentFlag.AlignCenter, "Any state" if view.scale > 0.5 else "Any")
         return
     state = look.scene.manual.states[ident]
-    painter.drawRoundedRect(rect, radius, radius)
+    if rough:
+        painter.drawRect(rect)
+    else:
+        painter.drawRoundedRect(rect, radius, radius)
     if ident == look.scene.manual.start:
         _start(painter, look, rect)
     if view.scale < TINY:
         return
     if view.scale < SMALL:
-        _name(painter, look, state, rect.adjusted(4, 0, -4, 0), 10.0, Qt.AlignmentFlag.AlignCenter, two=rect.height() > 26)
+        _small(painter, look, state, rect.adjusted(3, 0, -3, 0))
     else:
         _whole(painter, look, state, rect)
-    if ident in look.troubles:
+    if ident in look.troubles and view.scale < SMALL:
+        painter.setPen(Qt.PenStyle.NoPen)
+        painter.setBrush(QColor(t.warning))
+        painter.drawEllipse(rect.topRight() + QPointF(-2, 2), 3.2, 3.2)
+    elif ident in look.troubles:
         c = QPointF(rect.right() - 11, rect.top() + 11)
         painter.setPen(QPen(QColor(t.warning), 1.4))
         painter.setBrush(Qt.BrushStyle.NoBrush)
@@ -256,15 +270,25 @@ def facts(project: Project, state: State) -> str:
     return "  ".join(words)
 
 
-def _name(painter: QPainter, look: Look, state: State, rect: QRectF, size: float, flags: Qt.AlignmentFlag, two: bool = False) -> None:
-    font = _font(look.font.toString(), size, size > 10.5)
+def _name(painter: QPainter, look: Look, state: State, rect: QRectF, size: float, flags: Qt.AlignmentFlag) -> None:
+    font = _font(look.font.toString(), size, True)
     painter.setFont(font)
     painter.setPen(QColor(look.theme.text))
-    text = state.name.replace("_", " ") if two else state.name
-    if two:
-        painter.drawText(rect, int(flags | Qt.TextFlag.TextWordWrap), _elided(text, font.toString(), int(rect.width() * 1.7)))
+    painter.drawText(rect, flags, _elided(state.name, font.toString(), int(rect.width())))
+
+
+def _small(painter: QPainter, look: Look, state: State, rect: QRectF) -> None:
+    """Write a name where there is no room for more: in two lines, or in one what it ends with, which tells it from its like."""
+    font = _font(look.font.toString(), 10.0, False)
+    painter.setFont(font)
+    painter.setPen(QColor(look.theme.text))
+    key = font.toString()
+    if rect.height() > 26:
+        flags = Qt.AlignmentFlag.AlignCenter | Qt.TextFlag.TextWordWrap
+        painter.drawText(rect, int(flags), _elided(state.name.replace("_", " "), key, int(rect.width() * 1.7)))
     else:
-        painter.drawText(rect, flags, _elided(text, font.toString(), int(rect.width())))
+        words = state.name.rsplit("__", 1)[-1].replace("_", " ")
+        painter.drawText(rect, Qt.AlignmentFlag.AlignCenter, _elided(words, key, int(rect.width()), Qt.TextElideMode.ElideRight))
 
 
 def paint_playing(painter: QPainter, look: Look, ident: str, part: float) -> None:
@@ -330,7 +354,7 @@ def _font(base: str, pixels: float, bold: bool) -> QFont:
 
 
 @lru_cache(maxsize=8192)
-def _elided(text: str, font: str, width: int) -> str:
+def _elided(text: str, font: str, width: int, mode: Qt.TextElideMode = Qt.TextElideMode.ElideMiddle) -> str:
     made = QFont()
     made.fromString(font)
-    return QFontMetricsF(made).elidedText(text, Qt.TextElideMode.ElideMiddle, max(8, width))
+    return QFontMetricsF(made).elidedText(text, mode, max(8, width))

@@ -160,11 +160,12 @@ class Scene:
         return Hit("link", self.straight[nearest].id) if away[nearest] <= near else NOTHING
 
     def inside(self, band: QRectF) -> tuple[tuple[str, ...], tuple[str, ...]]:
-        """Return the states and links a rubber band takes: nodes it touches, or where there are none the arrows it holds whole."""
+        """Return the states and links a rubber band takes: nodes it touches, or where there are none the arrows it holds."""
         states = tuple(i for i, rect in self.nodes.items() if i != ANY and rect.intersects(band))
         if states or not len(self.lines):
             return states, ()
-        x, y = self.lines[:, ::2], self.lines[:, 1::2]
+        inner = self.lines + (self.lines[:, [2, 3, 0, 1]] - self.lines) * 0.1  # their tips touch the nodes
+        x, y = inner[:, ::2], inner[:, 1::2]
         held = ((x >= band.left()) & (x <= band.right()) & (y >= band.top()) & (y <= band.bottom())).all(1)
         return (), tuple(self.straight[n].id for n in np.flatnonzero(held))
 
@@ -197,7 +198,7 @@ def arrow_lines(nodes: Mapping[str, QRectF], links: Iterable[Link]) -> Array:
     many = np.array([among[x.source, x.target] for x in links])
     along = b[:, :2] - a[:, :2]
     length = np.maximum(np.hypot(along[:, 0], along[:, 1]), 1e-6)
-    unit = along / length[:, None]
+    unit = np.where(length[:, None] > 1e-3, along / length[:, None], (1.0, 0.0))
     aside = np.where(both, nth + 0.5, nth - many / 2) * APART  # arrows keep to the right, as cars do
     normal = np.stack([-unit[:, 1], unit[:, 0]], 1) * aside[:, None]
     start = a[:, :2] + normal + unit * _way_out(a[:, 2:], normal, unit)[:, None]
