@@ -18,6 +18,7 @@ from app.headless_live import live as live
 from app.headless_mimic import mimic as mimic
 from app.headless_render import draw_to, figure_of, sound_of
 from app.headless_render import render as render
+from app.headless_study import study as study
 from metagraph.errors import FileError
 from metagraph.formats.clips import SUFFIXES, read_clips
 from metagraph.formats.imports import import_files

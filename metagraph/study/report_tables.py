@@ -1,0 +1,115 @@
+"""A study's data as CSV tables: a row a participant, a task, a clip, a mistake, an answer. Times in seconds."""
+
+from __future__ import annotations
+
+import csv
+from collections.abc import Iterable, Mapping, Sequence
+from io import StringIO
+from typing import Any
+
+from metagraph.study.analysis import Results
+from metagraph.study.analysis_read import Data
+from metagraph.study.score import WORDS, Score
+from metagraph.study.tasks import OPERATORS, SPENT
+
+MISSING = "n/a"  # as BIDS writes it
+
+
+def tables(results: Results) -> dict[str, str]:
+    """Return file name -> content."""
+    data = results.data
+    return {
+        "participants.csv": table(*participants(results)),
+        "tasks.csv": table(*tasks(data)),
+        "clips.csv": table(*clips(data)),
+        "mistakes.csv": table(*mistakes(data)),
+        "questionnaires.csv": table(*questionnaires(data)),
+    }
+
+
+def table(columns: Sequence[str], rows: Iterable[Sequence[Any]], separator: str = ",") -> str:
+    """Return rows as text; None is written as MISSING, numbers to six digits at most."""
+    out = StringIO()
+    writer = csv.writer(out, delimiter=separator, lineterminator="\n")
+    writer.writerow(columns)
+    writer.writerows([cell(v) for v in row] for row in rows)
+    return out.getvalue()
+
+
+def cell(value: Any) -> str:
+    if value is None:
+        return MISSING
+    if isinstance(value, bool):
+        return "yes" if value else "no"
+    if isinstance(value, float):
+        return f"{value:.6f}".rstrip("0").rstrip(".")
+    return str(value)
+
+
+Table = tuple[tuple[str, ...], list[tuple[Any, ...]]]
+
+
+def participants(results: Results) -> Table:
+    data = results.data
+    time = {p.participant: p for p in results.time.people} if results.time is not None else {}
+    out: list[tuple[Any, ...]] = []
+    for who in data.participants:
+        mine = [r for r in data.rows if r.run.participant == who]
+        person = time.get(who)
+        order = "-".join(dict.fromkeys(r.run.condition for r in mine)) or None
+        ratings = [next((r.value for r in data.ratings if (r.participant, r.measure, r.condition) == (who, m, c)), None)
+                   for m in ("SUS", "NASA-TLX, raw") for c in data.conditions]  # fmt: skip
+        out.append(
+            (who, order, len(mine), sum(1 for r in mine if r.done), person and person.below, person and person.above,
+             person and person.ratio, *ratings)
+        )  # fmt: skip
+    rated = tuple(f"{m}_{c}" for m in ("sus", "tlx") for c in data.conditions)
+    return ("participant", "order", "tasks_begun", "tasks_done", "meta_seconds", "manual_seconds", "ratio", *rated), out
+
+
+SCORES = ("precision", "recall", "f1", "right", "missing", "extra", "wrong", "essential", "essential_right", "states", "placed", "jumps")
+
+
+def tasks(data: Data) -> Table:
+    columns = (
+        "participant", "condition", "task", "sitting", "index", "begun", "finished", "timed_out", "seconds", "wall", "paused", "away",
+        "clips", "predicted_seconds", "edits", "undos", "errors", *OPERATORS, "drag_seconds", *(f"{s}_seconds" for s in SPENT), *SCORES,
+    )  # fmt: skip
+    rows: list[tuple[Any, ...]] = []
+    for r in data.rows:
+        t = r.run
+        rows.append((
+            t.participant, t.condition, t.task, r.sitting, t.index, t.begun, t.finished, t.timed_out, t.seconds, t.wall, t.paused, t.away,
+            r.clips, r.predicted, t.edits, t.undos, t.errors, *(t.operators[o] for o in OPERATORS), t.drag_s, *(t.spent[s] for s in SPENT),
+            *_scores(r.score),
+        ))  # fmt: skip
+    return columns, rows
+
+
+def _scores(score: Score | None) -> tuple[Any, ...]:
+    return tuple(None if score is None else getattr(score, name) for name in SCORES)
+
+
+def clips(data: Data) -> Table:
+    rows: list[tuple[Any, ...]] = [
+        (r.run.participant, r.run.condition, r.run.task, n, clip, seconds)
+        for r in data.rows
+        for n, (clip, seconds) in enumerate(r.run.per_clip.items(), 1)
+    ]
+    return ("participant", "condition", "task", "number", "clip", "seconds"), rows
+
+
+def mistakes(data: Data) -> Table:
+    rows: list[tuple[Any, ...]] = [
+        (r.run.participant, r.run.condition, r.run.task, WORDS[m.what], m.layer, m.clip, m.count, m.words)
+        for r in data.rows
+        for m in (r.score.mistakes if r.score is not None else ())
+    ]
+    return ("participant", "condition", "task", "mistake", "layer", "clip", "count", "words"), rows
+
+
+def questionnaires(data: Data) -> Table:
+    rows: list[tuple[Any, ...]] = [(a.participant, a.condition, a.task, a.questionnaire, a.item, a.value) for a in data.answers]
+    totals: Mapping[str, str] = {"SUS": "sus", "NASA-TLX, raw": "tlx", "NASA-TLX, weighted": "tlx_weighted"}
+    rows += [(r.participant, r.condition, None, totals[r.measure], "score", r.value) for r in data.ratings if r.measure in totals]
+    return ("participant", "condition", "task", "questionnaire", "item", "value"), rows
