@@ -1,0 +1,291 @@
+"""A scripted participant: does a labelling task in the real window with real events, in either condition, and counts its hands' work.
+
+It knows what is right and makes no mistake; how it goes about it is what an expert would do: one clip after another, dragged from the
+library, stance by stance, found by typing the stance's name once. Scrolling the library has no operator in the model and is not counted.
+Thoughts (M) are placed by rule: one before each clip, one before each link or other setting, one before each command.
+"""
+
+from __future__ import annotations
+
+import time
+from collections import Counter
+from dataclasses import dataclass, replace
+from typing import Any
+
+from PySide6.QtCore import QPoint, QPointF, Qt, QTimer
+from PySide6.QtTest import QTest
+from PySide6.QtWidgets import QApplication, QScrollArea
+
+from app.study.operators import Hands
+from metagraph.graph import edits
+from metagraph.graph.expand import ends_in
+from metagraph.graph.model import LAYERS, LIMBS, Layer, Project
+from metagraph.study.klm import predicted
+from metagraph.study.machine import normal
+from metagraph.study.score import Score, score
+
+LEFT = Qt.MouseButton.LeftButton
+CONDITIONS = ("meta", "manual", "manual, every connection")
+
+
+@dataclass(frozen=True)
+class Task:
+    """project: clips, nothing placed. reference: what is wanted of them."""
+
+    project: Project
+    reference: Project
+
+
+@dataclass(frozen=True)
+class Result:
+    """operators: how many of each class. predicted: seconds an expert takes. seconds: by the clock. ours: processor seconds of the program.
+    score: beside the reference."""
+
+    condition: str
+    clips: int
+    operators: Counter[str]
+    predicted: float
+    seconds: float
+    ours: float
+    score: Score
+
+
+def task(sample: Project, clips: int) -> Task:
+    """Return the task to place the first clips of the sample: stance by stance, so that few make a whole graph, too. Timing stays as it
+    is when clips are dropped."""
+    chosen, layers = [], [sample.graphs[x] for x in ("arms", "head", "body")]
+    for graph in layers:
+        known: list[str] = []
+        for stance in graph.stances:
+            known.append(stance)
+            chosen += graph.of(stance, "stance")
+            ways = [a for s in known for a in graph.of(s, "transition") if stance in (a.stance, a.end_stance) and a.end_stance in known]
+            chosen += ways
+            chosen += [a for kind in ("gesture", "fidget") for a in graph.of(stance, kind)]
+    chosen = chosen[:clips]
+    bare = Project(name="task", skeleton=sample.skeleton, clips={a.clip: sample.clips[a.clip] for a in chosen})
+    reference, stances = bare, {}
+    for action in chosen:
+        if action.stance not in stances and action.kind == "stance":
+            name = sample.stance(action.stance).name
+            reference = edits.add_stance(reference, action.layer, name, [action.clip])
+            stances[action.stance] = list(reference.graphs[action.layer].stances)[-1]
+        else:
+            end = stances[action.end_stance] if action.kind == "transition" else None
+            reference = edits.place(reference, [action.clip], action.layer, action.kind, stances[action.stance], end)
+    return Task(bare, reference)
+
+
+class Participant:
+    """drive: the window and a hand, as tests have it. The window shows the task's project in the condition's editor."""
+
+    def __init__(self, drive: Any, given: Task) -> None:
+        self.drive, self.given = drive, given
+        self.thoughts = 0
+        self.hands = Hands(lambda now: None, lambda dialog, shown: None, lambda: None, drive.window)
+        self.typed = ""
+
+    # --- what people do
+
+    def think(self) -> None:
+        self.thoughts += 1
+
+    def click(self, widget: Any, at: QPoint) -> None:
+        QTest.mouseMove(widget, at)
+        QTest.mouseClick(widget, LEFT, pos=at)
+
+    def find(self, words: str) -> None:
+        """Type what the library is searched for, unless that is what it shows."""
+        if words == self.typed:
+            return
+        self.typed = words
+        self.think()
+        field = self.drive.library.search
+        self.click(field, QPoint(field.width() // 2, field.height() // 2))
+        QTest.keyClick(field, Qt.Key.Key_A, Qt.KeyboardModifier.ControlModifier)
+        QTest.keyClicks(field, words)
+        self.drive.pause(120)
+
+    def drop(self, clip: str, target: tuple[Any, QPoint]) -> None:
+        """Drag a clip from the library, with the real pointer."""
+        before = self.drive.document.project
+        self.think()
+        self.drive.drag(self.drive.card(clip), target, lambda: self.drive.document.project is not before)
+
+    def layer(self, layer: Layer) -> None:
+        if self.drive.session.layer != layer:
+            self.think()
+            number = LAYERS.index(layer)
+            QTest.keyClick(self.drive.window, Qt.Key(Qt.Key.Key_1 + number), Qt.KeyboardModifier.AltModifier)
+            self.drive.wait(lambda: self.drive.session.layer == layer)
+
+    # --- the task
+
+    def do(self, condition: str) -> Result:
+        started, ours = time.monotonic(), time.process_time()
+        if condition == "meta":
+            self._meta()
+        else:
+            self._manual(condition == CONDITIONS[2])
+        project = self.drive.document.project
+        counts = Counter(self.hands.operators.take(time.monotonic()).operators)
+        self.hands.stop()
+        drags = counts.pop("D", 0)  # pressing and letting go are counted already
+        counts["P"] += drags  # a drag points at where it ends
+        counts["M"] = self.thoughts
+        found = score(normal(project), normal(self.given.reference))
+        return Result(
+            condition, len(project.clips), counts, predicted(counts), time.monotonic() - started, time.process_time() - ours, found
+        )  # fmt: skip
+
+    def _wanted(self) -> list[Any]:
+        return list(self.given.reference.actions())
+
+    def _prefix(self, clip: str) -> str:
+        name = self.given.project.clips[clip].name
+        return name.split("__")[0] + "__" if "__" in name else name
+
+    def _meta(self) -> None:
+        d, reference = self.drive, self.given.reference
+        made: dict[str, str] = {}  # the reference's stance -> the one here
+
+        def stance(wanted: str) -> None:
+            if d.session.stance() != made[wanted]:
+                self.think()
+                self.click(*d.chip(made[wanted]))
+                d.wait(lambda: d.session.stance() == made[wanted])
+
+        def end(wanted: str) -> None:
+            if d.session.other() != made[wanted]:
+                self.think()
+                names = [s for s in d.document.project.graphs[d.session.layer].stances if s != d.session.stance()]
+                QTimer.singleShot(60, lambda: self._choose(names.index(made[wanted])))
+                self.click(d.canvas, d.canvas.layout_now().nodes["transition"].other.center().toPoint())
+                d.wait(lambda: d.session.other() == made[wanted])
+
+        actions = self._wanted()
+        for layer in LAYERS:
+            mine = [a for a in actions if a.layer == layer]
+            if mine:
+                self.layer(layer)
+            for action in (a for a in mine if a.kind == "stance"):
+                name = reference.clips[action.clip].name
+                self.find(name)
+                self.drop(name, d.middle())
+                made[action.stance] = list(d.document.project.graphs[layer].stances)[-1]
+            for action in sorted((a for a in mine if a.kind != "stance"), key=lambda a: (list(made).index(a.stance), a.end_stance or "")):
+                self.find(self._prefix(action.clip))
+                stance(action.stance)
+                if action.kind == "transition":
+                    end(action.end_stance)
+                self.drop(reference.clips[action.clip].name, d.node(action.kind))
+
+    def _choose(self, row: int) -> None:
+        """Take an entry of the menu that is open, or about to be, by keys."""
+        menu = QApplication.activePopupWidget()
+        if menu is None:
+            QTimer.singleShot(20, lambda: self._choose(row))
+            return
+        for _ in range(row + 1):
+            QTest.keyClick(menu, Qt.Key.Key_Down)
+        QTest.keyClick(menu, Qt.Key.Key_Return)
+
+    def _manual(self, whole: bool) -> None:
+        d, reference = self.drive, self.given.reference
+        canvas = d.window.manual.editor.canvas
+        for layer in LAYERS:
+            mine = [a for a in self._wanted() if a.layer == layer]
+            if not mine:
+                continue
+            self.layer(layer)
+            across = max(2, round(len(mine) ** 0.5 * 1.1))
+            self._room(canvas, across, -(-len(mine) // across))
+            state: dict[str, str] = {}
+            for number, action in enumerate(mine):
+                self.find(reference.clips[action.clip].name if action.kind == "stance" else self._prefix(action.clip))
+                at = canvas.view.to(self._spot(number, across)).toPoint()
+                self.drop(reference.clips[action.clip].name, (canvas, at))
+                state[action.id] = list(canvas.scene().manual.states)[-1]
+                self._set_up(action)
+            for source, target in self._links(mine, whole):
+                self._link(canvas, state[source], state[target])
+                if reference.action(target).kind in ("gesture", "transition"):
+                    self._on_request(reference.action(source).kind != "stance")
+
+    @staticmethod
+    def _spot(number: int, across: int) -> QPointF:
+        """Where the n-th node's middle goes, in the editor's own units."""
+        return QPointF(120 + 230 * (number % across), 70 + 120 * (number // across))
+
+    def _room(self, canvas: Any, across: int, down: int) -> None:
+        """Zoom out, by the wheel, until all that comes has room."""
+        from app.manual.scene import View
+
+        scale = min(1.0, canvas.width() / (230 * across + 40), canvas.height() / (120 * down + 60))
+        canvas.look_at(View(scale, 0.0, 0.0))
+        canvas.settle()
+        self.think()
+
+    def _links(self, mine: list[Any], whole: bool) -> list[tuple[str, str]]:
+        """The links to draw: to and from stances, or all that the meta-graph implies."""
+        out = []
+        for source in mine:
+            for target in mine:
+                if source.id != target.id and ends_in(source) == target.stance and (whole or "stance" in (source.kind, target.kind)):
+                    out.append((source.id, target.id))
+        return out
+
+    def _link(self, canvas: Any, source: str, target: str) -> None:
+        """Draw an arrow from the border of a node to another node."""
+        self.think()
+        nodes, view = canvas.scene().nodes, canvas.view
+        a, b = nodes[source], nodes[target]
+        start = view.to(QPointF(a.right() - 1, a.center().y())).toPoint()
+        end = view.to(b.center()).toPoint()
+        before = len(canvas.scene().manual.links)
+        QTest.mouseMove(canvas, start)
+        QTest.mousePress(canvas, LEFT, pos=start)
+        for part in (0.3, 0.7, 1.0):
+            QTest.mouseMove(canvas, start + (end - start) * part)
+        QTest.mouseRelease(canvas, LEFT, pos=end)
+        assert len(canvas.scene().manual.links) == before + 1, f"no link from {source} to {target}"
+
+    def _press(self, widget: Any) -> None:
+        """Click a control of the inspector, which may have to be scrolled to."""
+        area = self.drive.window.manual.editor.inspector
+        self.drive.wait(widget.isVisible)
+        for parent in area.findChildren(QScrollArea):
+            if parent.isAncestorOf(widget):
+                parent.ensureWidgetVisible(widget)
+        at = QPoint(min(14, widget.width() // 2), widget.height() // 2)
+        self.click(widget, at)
+
+    def _set_up(self, action: Any) -> None:
+        """What a state needs that its clip does not say: that it loops, and which arm it moves."""
+        inspector = self.drive.window.manual.editor.inspector
+        if action.kind == "stance":
+            self.think()
+            self._press(inspector.loop)
+        if action.limb != "both":
+            self.think()
+            self._press(inspector.limb.button(LIMBS.index(action.limb)))
+
+    def _on_request(self, at_the_end: bool) -> None:
+        """Let the link that was just drawn wait for its trigger, which is named after where it leads, and for the end of what plays."""
+        inspector = self.drive.window.manual.editor.inspector
+        self.think()
+        self._press(inspector.when)
+        self.drive.wait(lambda: inspector.when.view().isVisible())
+        QTest.keyClick(inspector.when.view(), Qt.Key.Key_Down)
+        QTest.keyClick(inspector.when.view(), Qt.Key.Key_Return)
+        if at_the_end:
+            self._press(inspector.leaves)
+
+
+def bare(drive: Any, given: Task, condition: str) -> None:
+    """Show a task's project in a condition's editor, as a study does."""
+    drive.document.load(replace(given.project, name="task"), None)
+    drive.files.opened.emit()
+    drive.session.set_mode("meta" if condition == "meta" else "manual")
+    drive.wait(lambda: drive.performance.skeleton() is not None)
+    drive.pause(300)
