@@ -40,7 +40,6 @@ def run(options: Namespace) -> int:
 def check_arguments(parser: ArgumentParser) -> None:
     """Add the options of `check`."""
     parser.add_argument("study", type=Path, help="a study file, or the folder it is in")
-    parser.add_argument("--json", action="store_true", help="print what a program can read")
 
 
 def check(options: Namespace) -> int:
