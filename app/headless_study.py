@@ -7,6 +7,10 @@ from argparse import ArgumentParser, Namespace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
+from app.study.command import check as check_study
+from app.study.command import check_arguments, run_arguments
+from app.study.command import run as run_study
+
 if TYPE_CHECKING:  # reading a command line must not wait for arrays
     from metagraph.study.analysis import Results
     from metagraph.study.stats import Estimate
@@ -26,6 +30,8 @@ def arguments(parser: ArgumentParser) -> None:
         out.add_argument("folder", type=Path, help="the study's folder, or its study.yaml")
         out.add_argument("--no-jumps", action="store_true", help="do not judge visible jumps, which needs the references' clips")
 
+    run_arguments(action("run", "lead a participant through a sitting, in the window", run_study))
+    check_arguments(action("check", "print who does what in which order, and what would hamper the study", check_study))
     reported = action("report", "write what a study found: a page (report/report.html) and tables as CSV", report)
     folder(reported)
     reported.add_argument("--out", type=Path, help="where to write it (default: report, in the study's folder)")

@@ -14,6 +14,7 @@ import pytest
 
 from app.cli import main
 from metagraph.formats.store import from_text
+from metagraph.study.plan import from_text as study_from_text
 
 ROOT = Path(__file__).resolve().parents[1]
 PAGES = [ROOT / "README.md", ROOT / "CONTRIBUTING.md", ROOT / "CHANGELOG.md", *sorted((ROOT / "docs").glob("*.md"))]
@@ -38,7 +39,7 @@ def of(*languages: str) -> list[object]:
 @pytest.fixture
 def samples(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
     """A copy of the sample projects to work in."""
-    for name in ("sample.metagraph.yaml", "practice.metagraph.yaml", "mannequin.glb", "clips", "lines", "annotation", "keypoints"):
+    for name in ("sample.metagraph.yaml", "practice.metagraph.yaml", "mannequin.glb", "clips", "lines", "annotation", "keypoints", "study"):
         source = ROOT / "sample_clips" / name
         shutil.copytree(source, tmp_path / name) if source.is_dir() else shutil.copy(source, tmp_path / name)
     monkeypatch.chdir(tmp_path)
@@ -73,8 +74,12 @@ def test_commands_in_the_pages_run(page: Path, n: int, samples: Path, capsys: py
 
 
 @pytest.mark.parametrize(("page", "n"), of("yaml"))
-def test_project_files_in_the_pages_can_be_read(page: Path, n: int) -> None:
-    project = from_text(blocks(page)[n][1], Path("page.metagraph.yaml"))
+def test_project_and_study_files_in_the_pages_can_be_read(page: Path, n: int) -> None:
+    text = blocks(page)[n][1]
+    if text.startswith("study:"):
+        assert study_from_text(text).tasks
+        return
+    project = from_text(text, Path("page.metagraph.yaml"))
     assert project.clips and project.skeleton is not None
     assert any(a.kind == "gesture" for a in project.actions())
 
@@ -121,6 +126,16 @@ def test_every_field_of_the_schema_is_described() -> None:
     fields = {name for part in schema["$defs"].values() for name in part["properties"]}
     assert not {f for f in fields if not re.search(rf"`{f}[\[`]", export)}
     assert not {part for part in schema["$defs"] if part not in export}
+
+
+def test_every_field_of_a_study_file_and_every_event_of_its_log_is_described() -> None:
+    from metagraph.study.log import TYPES
+    from metagraph.study.plan import schema_text
+
+    text = (ROOT / "docs" / "studies.md").read_text(encoding="utf-8")
+    schema = json.loads(schema_text())
+    fields = {name for part in schema["$defs"].values() for name in part["properties"]}
+    assert not {f for f in fields | set(TYPES) if f"`{f}`" not in text}
 
 
 def test_every_field_of_a_project_file_is_described() -> None:
