@@ -39,6 +39,7 @@ class Learned(QObject):
     def __init__(self, parent: QObject | None = None) -> None:
         super().__init__(parent)
         self._read: dict[str, tuple[tuple[int, int], Memory]] = {}  # file -> its state when it was read, what it held
+        self.paused = False  # nothing is learned from the participants of a study, nor used for them
         self._due = 0  # saved projects that a job is not done with
 
     # --- whether
@@ -46,7 +47,7 @@ class Learned(QObject):
     @property
     def on(self) -> bool:
         """Whether corrections and labelled clips are remembered and used. Patterns the user wrote are used either way."""
-        return str(QSettings().value("learn", "true")) == "true"
+        return not self.paused and str(QSettings().value("learn", "true")) == "true"
 
     def set_on(self, on: bool) -> None:
         QSettings().setValue("learn", "true" if on else "false")

@@ -7,7 +7,7 @@ from time import monotonic
 from typing import TYPE_CHECKING, Any, Literal
 
 from PySide6.QtCore import QEvent, QLockFile, QObject, QTimer, Signal
-from PySide6.QtWidgets import QApplication
+from PySide6.QtWidgets import QApplication, QDialog
 
 from app.jobs import Job
 from app.study.bar import StudyBar
@@ -72,6 +72,11 @@ class Guide(QObject):
         w.files.closed = CLOSED
         w.actions.allowed = lambda ident: False
         w.recent_menu.menuAction().setEnabled(False)
+        w.learned.paused = True
+        if "labels" not in self.study.plan.allow:  # jumps found, and times proposed, for one condition alone would not be fair
+            w.compatibility.stop()
+            w.compatibility.judged, w.compatibility.flags = None, {}
+            w.compatibility.changed.emit()
         w.docks.arrange()
         for key in HIDDEN:
             w.docks[key].hide()
@@ -91,6 +96,9 @@ class Guide(QObject):
         w.files.closed = ""
         w.actions.allowed = None
         w.recent_menu.menuAction().setEnabled(True)
+        w.learned.paused = False
+        w.compatibility.start()
+        self._reach(True)
         for key in HIDDEN:
             w.docks[key].show()
         w.removeToolBarBreak(w.header)
@@ -153,8 +161,21 @@ class Guide(QObject):
         self.window.actions.allowed = lambda ident: ident in ("quit", "theme")
         self.window.actions.refresh()
         self.window.session.set_playing(False)
+        self._reach(False)
         step = f"   {phase.index + 1} of {len(self.sitting.course)}" if phase is not None else ""
         self.screen.show_page(page, f"{self.study.plan.title}   {self.participant}{step}")
+
+    def _reach(self, on: bool) -> None:
+        """Let what lies below the screen be reached by the keyboard, or not; nothing lies above it."""
+        w = self.window
+        for widget in (w.menuBar(), w.header, self.bar, w.centre, *w.docks.values()):
+            widget.setEnabled(on)
+        if not on:
+            for dock in w.docks.values():
+                dock.setFloating(False)
+            for dialog in w.findChildren(QDialog):
+                if dialog.isVisible():
+                    dialog.reject()
 
     def go_on(self) -> None:
         """End what is shown, and show what comes next."""
@@ -217,6 +238,7 @@ class Guide(QObject):
         w, phase = self.window, self.sitting.phase
         assert phase is not None
         self.screen.hide()
+        self._reach(True)
         plan, mode = self.study.plan, w.session.mode
         w.actions.allowed = lambda ident: offered(ident, mode, "labels" in plan.allow)
         w.refresh()

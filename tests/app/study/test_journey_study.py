@@ -57,6 +57,7 @@ def test_a_whole_sitting(drive, takes_part, tiny, tmp_path):
     p.go()
     p.working()
     assert d.session.mode == "meta"
+    assert not d.learned.on and not d.compatibility.on, "no help that the other condition does not have"
     assert len(d.document.project.clips) == 3 and not d.names()
     assert all(c.motion is not None for c in d.document.project.clips.values())
     for ident in ("open", "save", "save_as", "import", "propose", "use_times", "export", "study"):
@@ -69,8 +70,11 @@ def test_a_whole_sitting(drive, takes_part, tiny, tmp_path):
     d.session.set_layer("head")
     d.drag(d.card("head_straight__stance"), d.middle(), lambda: d.names("stance") == ["head_straight__stance"])
     d.drag(d.card("head_straight__nod_single_01"), d.node("gesture"), lambda: len(d.names("gesture")) == 1)
+    d.show_machine(True)
+    d.docks["properties"].setFloating(True)
     QTest.mouseClick(p.guide.bar.pause, LEFT)
     p.titled("Paused")
+    assert not d.docks["properties"].isFloating() and not d.library.search.isEnabled(), "nothing of the work is seen or reached"
     p.go()
     p.working()
     QTest.mouseClick(p.guide.bar.note, LEFT)
@@ -122,6 +126,7 @@ def test_a_whole_sitting(drive, takes_part, tiny, tmp_path):
     p.go()
     d.wait(lambda: not p.guide.bar.isVisible())
     assert d.actions["open"].isEnabled() and not d.files.closed and d.session.mode == "meta"
+    assert d.learned.on and d.compatibility.on and d.library.search.isEnabled()
 
     # The log, event by event.
     log = read(tiny.parent / "data" / "P01" / "log.jsonl")
