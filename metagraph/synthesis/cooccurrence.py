@@ -1,0 +1,176 @@
+"""How often people move when something is said: hands with clauses, the head with responses and hesitations (Yang et al., section 5).
+
+Around every segment of speech a window is searched for a movement of the hand or the head. Whether anything moves there at all is told by
+a threshold of the whole take (equation 1), where the movement begins and ends by one of the window (equation 2).
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from itertools import pairwise
+from math import sqrt
+from statistics import NormalDist
+from typing import Any, Literal
+
+import numpy as np
+from numpy.typing import NDArray
+
+from metagraph.motion import rotation
+from metagraph.motion.clip import Clip
+from metagraph.motion.roles import find_roles
+from metagraph.synthesis.constraints import Segment, Sound
+
+Array = NDArray[Any]
+Part = Literal["left_hand", "right_hand", "head"]
+
+ACTIVE = 0.1  # alpha_S and alpha_W
+WIDE = 2.0  # a window is so many times its segment
+AHEAD = 0.12  # metres in front of the head's joint, which itself hardly moves in a nod
+CHANCES = 200  # turns of the speech beside the motion, to tell what chance gives
+HYPOTHESES: tuple[tuple[str, Sound, tuple[Part, ...]], ...] = (
+    ("clause with the left hand", "clause", ("left_hand",)),
+    ("clause with the right hand", "clause", ("right_hand",)),
+    ("clause with either hand", "clause", ("left_hand", "right_hand")),
+    ("response with a nod", "response", ("head",)),
+    ("partner's hesitation with a nod", "hesitation", ("head",)),
+)
+
+
+@dataclass(frozen=True)
+class Row:
+    """matched of total segments went with a movement. rate: their share, 0..1; low, high: its 95 % interval (Wilson). chance: the mean rate
+    when the same speech is laid elsewhere over the same motion."""
+
+    hypothesis: str
+    matched: int
+    total: int
+    rate: float
+    low: float
+    high: float
+    chance: float
+
+
+def speeds(clip: Clip, roles: Mapping[str, int] | None = None) -> dict[Part, Array]:
+    """Return speeds `[F]`, metres a second, of those parts the skeleton has: hands as seen from the shoulder, the head up and down as
+    seen from the neck; so a walk or a turn of the trunk is no gesture, and a step no nod."""
+    named = find_roles(clip.skeleton) if roles is None else roles
+    turns, at = clip.skeleton.globals(clip.poses())
+    out: dict[Part, Array] = {}
+
+    def seen(point: Array, joint: int) -> Array:
+        """The point as seen from what the joint hangs on, with its origin in the joint."""
+        above = max(int(clip.skeleton.parents[joint]), 0)
+        return rotation.rotate(rotation.conjugate(turns[:, above]), point - at[:, joint])
+
+    parts: tuple[tuple[Part, str], ...] = (("left_hand", "left_upper_arm"), ("right_hand", "right_upper_arm"))
+    for part, shoulder in parts:
+        if part in named and shoulder in named:
+            out[part] = _speed(seen(at[:, named[part]], named[shoulder]), clip.fps)
+    if "head" in named:
+        head = named["head"]
+        neck = named.get("neck", head)
+        ahead = rotation.rotate(rotation.conjugate(turns[0, head]), np.array([0.0, 0.0, AHEAD]))
+        nose = at[:, head] + rotation.rotate(turns[:, head], np.broadcast_to(ahead, at[:, head].shape))
+        out["head"] = _speed(seen(nose, neck)[:, 1:2], clip.fps)
+    return out
+
+
+def _speed(track: Array, fps: float) -> Array:
+    if len(track) < 2:
+        return np.zeros(len(track))
+    return np.asarray(np.linalg.norm(np.gradient(track.astype(np.float64), 1 / fps, axis=0), axis=-1))
+
+
+def activation(speed: Array, share: float = ACTIVE) -> float:
+    """Return the speed under which nothing moves: min + share (max - min) (equations 1 and 2)."""
+    low, high = float(speed.min()), float(speed.max())
+    return low + share * (high - low)
+
+
+def windows(segments: Sequence[Segment], length: float) -> list[tuple[float, float]]:
+    """Return where to look for the movement of each segment, seconds: about its middle, WIDE times as long, trimmed at the middle of the
+    gaps to its neighbours of the same kind, and at the take's ends."""
+    out = []
+    ordered = sorted(range(len(segments)), key=lambda n: segments[n].start)
+    before = {n: m for m, n in pairwise(ordered)}
+    after = dict(pairwise(ordered))
+    for n, s in enumerate(segments):
+        middle, half = (s.start + s.end) / 2, WIDE * (s.end - s.start) / 2
+        low, high = max(0.0, middle - half), min(length, middle + half)
+        if n in before:
+            low = max(low, min(s.start, (segments[before[n]].end + s.start) / 2))
+        if n in after:
+            high = min(high, max(s.end, (s.end + segments[after[n]].start) / 2))
+        out.append((low, high))
+    return out
+
+
+def movement(speed: Array, fps: float, window: tuple[float, float], idle: float) -> tuple[float, float] | None:
+    """Return when a movement begins and ends within a window, seconds; None where nothing is faster than `idle` there (equation 1).
+
+    It begins with the first frame faster than the window's own threshold, and ends with the last (equation 2).
+    """
+    first, after = max(0, round(window[0] * fps)), min(len(speed), round(window[1] * fps) + 1)
+    part = speed[first:after]
+    if not len(part) or float(part.max()) < idle:
+        return None
+    fast = np.flatnonzero(part > activation(part))
+    if not len(fast):
+        return None
+    return (first + int(fast[0])) / fps, (first + int(fast[-1])) / fps
+
+
+def table(takes: Sequence[Clip], speech: Sequence[Sequence[Segment]], chances: int = CHANCES, seed: int = 1) -> list[Row]:
+    """Return how often each kind of segment went with which movement, over all takes, as the paper's table 1.
+
+    speech: the segments of each take. chances: how often speech is laid elsewhere, turned round within its take, to tell what chance gives.
+    Raises ValueError when there are not as many takes as speeches.
+    """
+    if len(takes) != len(speech):
+        raise ValueError(f"{len(takes)} takes, but speech for {len(speech)}")
+    found = [(clip, speeds(clip), list(segments)) for clip, segments in zip(takes, speech, strict=True)]
+    shifts = np.random.default_rng(seed).random((chances, max(1, len(takes))))
+    rows = []
+    for words, kind, parts in HYPOTHESES:
+        matched, total = _matches(found, kind, parts, None)
+        by_chance = [_matches(found, kind, parts, s) for s in shifts] if total else []
+        chance = float(np.mean([m / max(1, n) for m, n in by_chance])) if by_chance else 0.0
+        low, high = wilson(matched, total)
+        rows.append(Row(words, matched, total, matched / total if total else 0.0, low, high, chance))
+    return rows
+
+
+def _matches(
+    found: Sequence[tuple[Clip, Mapping[Part, Array], Sequence[Segment]]], kind: Sound, parts: Sequence[Part], shift: Array | None
+) -> tuple[int, int]:
+    """Count the segments of a kind that have a movement near, and all. shift: how far each take's speech is turned round, 0..1."""
+    matched = total = 0
+    for number, (clip, speed, segments) in enumerate(found):
+        mine = [s for s in segments if s.kind == kind]
+        if not any(part in speed for part in parts):
+            continue
+        if shift is not None:
+            by = float(shift[number]) * clip.duration
+            mine = [_turned(s, by, clip.duration) for s in mine]
+        idle = {part: activation(speed[part]) for part in parts if part in speed}
+        for window in windows(mine, clip.duration):
+            total += 1
+            matched += any(movement(speed[part], clip.fps, window, least) is not None for part, least in idle.items())
+    return matched, total
+
+
+def _turned(s: Segment, by: float, length: float) -> Segment:
+    start = (s.start + by) % max(length, 1e-9)
+    return Segment(s.kind, start, start + s.end - s.start)
+
+
+def wilson(matched: int, total: int, level: float = 0.95) -> tuple[float, float]:
+    """Return the interval of a share (Wilson, 1927); 0..1 where there is nothing to tell."""
+    if not total:
+        return 0.0, 1.0
+    z = NormalDist().inv_cdf((1 + level) / 2)
+    share, part = matched / total, z * z / total
+    middle = (share + part / 2) / (1 + part)
+    half = z / (1 + part) * sqrt(share * (1 - share) / total + part / (4 * total))
+    return max(0.0, middle - half), min(1.0, middle + half)
