@@ -31,6 +31,7 @@ class Recorder(QObject):
         super().__init__(window)
         self.window, self.log = window, log
         self._failed = False
+        self._warned = self._grave()
         d, s = window.document, window.session
         self._stack = d.undo_stack
         self._undone: object = None  # what a redo would do again
@@ -205,6 +206,12 @@ class Recorder(QObject):
     def _tick(self) -> None:
         if self._edit is None:
             self._tell_operators()
+        for words in self._grave() - self._warned:
+            self.tell("error", what="warning", words=words)
+        self._warned = self._grave()
+
+    def _grave(self) -> frozenset[str]:
+        return frozenset(p.message for p in self.window.problems if p.severity != "hint")
 
     def _tell_operators(self) -> None:
         found = self.hands.operators.take(monotonic())

@@ -26,10 +26,10 @@ class TaskRun:
 
     index: the phase's place in the sitting. seconds: active, without pauses and absences; wall: from begin to end by the clock; paused,
     away: seconds. operators: K keys, P pointings, B buttons pressed or released, D drags, H hands changing over; drag_s: seconds of the
-    drags. per_clip: active seconds by clip name, in the order in which the clips were first dealt with. spent: active seconds by what
-    they went into; seconds before a change of timing are timing, of the others those with the button held are dragging. finished: ended
-    by the participant; timed_out: ended by the time limit. artefact: the project that came of it, relative to the log's folder; digest:
-    its SHA-256 as it was then.
+    drags. errors: what was refused or failed, not what the program warned of. per_clip: active seconds by clip name, in the order in
+    which the clips were first dealt with. spent: active seconds by what they went into; seconds before a change of timing are timing, of
+    the others those with the button held are dragging. finished: ended by the participant; timed_out: ended by the time limit. artefact:
+    the project that came of it, relative to the log's folder; digest: its SHA-256 as it was then.
     """
 
     participant: str
@@ -145,6 +145,8 @@ class _Tally:
         elif kind == "phase":
             self.ended = str(event.get("why", "done")) if event.get("state") == "end" else ""
             self._spend("other")
+        elif kind == "error" and event.get("what") == "warning":
+            self.counts["warning"] += 1  # found by the program; the time before it went into something else
         elif kind in _TELLING:
             self.counts[kind] += 1
             self._spend("timing" if kind == "edit" and event.get("what") == "timing" else _TELLING[kind])

@@ -269,6 +269,7 @@ def test_operators_edits_undos_and_errors_are_counted_within_the_task(story):
     story(1, "redo", words="x")
     story(1, "ops", P=1)
     story(1, "error", what="refused", words="x")
+    story(1, "error", what="warning", words="x")
     story(0, "phase", state="end", **TASK)
     story(1, "edit", what="place", clips=["wave"])
     (run,) = story.log().tasks()

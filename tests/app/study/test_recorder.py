@@ -160,6 +160,19 @@ def test_looks_playing_refusals_and_dialogs_are_told(recorded):
     ]
 
 
+def test_a_problem_that_comes_up_is_told_once(recorded):
+    d = recorded
+    d.document.edit(
+        "Trim", lambda p: edits.update_actions(p, [d.id("rest wave rt")], timing=replace(d.action("rest wave rt").timing, end=0.0))
+    )
+    d.wait(lambda: any(p.severity != "hint" for p in d.window.problems))
+    d.wait(lambda: bool(d.log.of("error")))
+    d.pause(1200)
+    words = [e["words"] for e in d.log.of("error")]
+    assert words and len(set(words)) == len(words)
+    assert {e["what"] for e in d.log.of("error")} == {"warning"}
+
+
 def test_nothing_is_told_after_the_end(recorded):
     d = recorded
     d.recorder.stop()
