@@ -7,7 +7,7 @@ from math import ceil, sqrt
 
 from metagraph.graph.manual import ANY, Manual
 
-ACROSS, DOWN = 270.0, 92.0  # units from one node to the next
+ACROSS, DOWN = 280.0, 92.0  # units from one node to the next
 SWEEPS = 6
 
 

@@ -6,7 +6,6 @@ from collections.abc import Callable, Mapping
 
 from PySide6.QtCore import QEvent, QPointF, QRectF, QSizeF, Qt, QTimer, Signal
 from PySide6.QtGui import (
-    QColor,
     QContextMenuEvent,
     QDragEnterEvent,
     QDragMoveEvent,
@@ -17,7 +16,6 @@ from PySide6.QtGui import (
     QMouseEvent,
     QPainter,
     QPaintEvent,
-    QPen,
     QPixmap,
     QResizeEvent,
     QWheelEvent,
@@ -28,6 +26,7 @@ from app.canvas.drops import load_of
 from app.document import Document
 from app.manual import commands, painter
 from app.manual.gestures import Band, Drag, DrawLink, Move, Pan
+from app.manual.overlay import Marks, paint_over, plays
 from app.manual.pictures import Pictures
 from app.manual.scene import NODE, NOTHING, Scene, View, fitted
 from app.performance import Performance
@@ -38,7 +37,6 @@ from metagraph.graph import manual_edits
 from metagraph.graph.edits import EditError
 from metagraph.graph.manual import ANY
 from metagraph.graph.model import Layer, Project
-from metagraph.playback.manual import clip_seconds
 
 SETTLED = 140  # milliseconds of rest after which lines are smooth again
 MANY = 800  # links beyond which an edit is shown roughly first
@@ -70,7 +68,7 @@ class ManualCanvas(QWidget):
         self._scene: Scene | None = None
         self._dragged: Mapping[str, tuple[float, float]] = {}
         self._band: QRectF | None = None
-        self._link: tuple[str, QPointF, str] = ("", QPointF(), "")
+        self._link: tuple[str, QPointF, str] = ("", QPointF(), "")  # source, where it ends now, target
         self._still: tuple[object, QPixmap] | None = None
         self._fast = False
         self._dropping = ""
@@ -167,25 +165,13 @@ class ManualCanvas(QWidget):
     def _relayer(self) -> None:
         self._scene = None
         self.cancel()
-        known = self._views.get(self.session.layer)
-        if known is not None:
-            self.view = known
-            self._stale()
-        else:
-            self.view = self._first_view()
-            self._stale()
+        self.view = self._views.get(self.session.layer) or self.scene().first_view(QSizeF(self.size()))
+        self._stale()
         self.viewed.emit()
-
-    def _first_view(self) -> View:
-        """Return the view of a layer not looked at yet: all of it, or where the first clips go."""
-        scene = self.scene()
-        if not scene.manual.states:
-            return View(1.0, scene.manual.any_x - 50, scene.manual.any_y - 120)
-        return fitted(scene.bounds, QSizeF(self.size()))
 
     def resizeEvent(self, event: QResizeEvent) -> None:
         if self.session.layer not in self._views:
-            self.view = self._first_view()
+            self.view = self.scene().first_view(QSizeF(self.size()))
         self._still = None
 
     # --- painting
@@ -214,59 +200,18 @@ class ManualCanvas(QWidget):
         if self._dragged:
             scene = Scene(scene.manual, self._dragged)
             look = self._look(scene)
-        self._paint_over(p, look)
+        marks = Marks(
+            self._dragged, self.hover, *self._link, self._band, self._turn, self.at, self.gesture is not None, self._dropping, self._map(),
+        )  # fmt: skip
+        paint_over(p, look, marks, QRectF(self.rect()))
         p.end()
-
-    def _paint_over(self, p: QPainter, look: painter.Look) -> None:
-        """Paint what changes under the mouse: what is selected, dragged, drawn, or plays."""
-        t, scene = look.theme, look.scene
-        dim, strong = QColor(t.dim), QColor(t.text)
-        for ident in scene.touching(self._dragged) if self._dragged else ():
-            painter.paint_link(p, look, scene.manual.links[ident], dim, 1.3)
-        if self.hover.area == "link" and self.hover.ident in scene.manual.links:
-            painter.paint_link(p, look, scene.manual.links[self.hover.ident], strong, 1.8)
-        for ident in self.session.links:
-            if ident in scene.manual.links:
-                painter.paint_link(p, look, scene.manual.links[ident], strong, 2.4)
-        source, at, target = self._link
-        over = {self.hover.ident} if self.hover.area in ("node", "edge") else set()
-        for ident in dict.fromkeys((*self._dragged, *self.session.states, *over, source, target)):
-            if ident in scene.nodes:
-                painter.paint_node(p, look, ident, ident in self.session.states, ident in over, ident == target)
-        if self._turn[0] in scene.nodes:
-            painter.paint_playing(p, look, *self._turn)
-        if self.hover.area == "edge" and not source and self.gesture is None:
-            painter.paint_port(p, look, self.hover.ident, self.at)
-        if source:
-            begin = look.view.to(scene.nodes[source].center())
-            painter.paint_arrow(p, begin, at, QColor(t.kinds["stance"]), 2.2, 1.0)
-        if self._band is not None:
-            fill = QColor(t.text)
-            fill.setAlpha(26)
-            p.setPen(QPen(dim, 1))
-            p.setBrush(fill)
-            p.drawRect(QRectF(look.view.to(self._band.topLeft()), look.view.to(self._band.bottomRight())))
-        if scene.manual.states and not look.view.rect(QSizeF(self.size())).contains(scene.bounds):
-            painter.paint_map(p, look, self._map(), QRectF(self.rect()))
-        if self._dropping or not scene.manual.states:
-            p.setPen(QColor(t.text if self._dropping else t.dim))
-            p.setFont(self.font())
-            words = self._dropping or "Drop clips here to make states. Drag from a state's border to draw a link."
-            p.drawText(QRectF(self.rect()).adjusted(20, 20, -20, -20), Qt.AlignmentFlag.AlignHCenter | Qt.AlignmentFlag.AlignBottom, words)
 
     def _map(self) -> QRectF:
         return QRectF(self.width() - MAP.width() - 16, self.height() - MAP.height() - 16, MAP.width(), MAP.height())
 
     def _follow_play(self) -> None:
         """Show which state plays and how far it is."""
-        plan, project = self.performance.shown.manual, self.performance.shown.project
-        of = plan.layers.get(self.session.layer) if plan is not None and self.isVisible() else None
-        turn = of.at(self.session.seconds) if of is not None else None
-        now = ("", 0.0)
-        if turn is not None:
-            start, end = project.span(turn.action)
-            at = float(clip_seconds(project, turn, self.session.seconds))
-            now = (turn.action.id, round((at - start) / max(1e-6, end - start), 2))
+        now = plays(self.performance.shown, self.session.layer, self.session.seconds) if self.isVisible() else ("", 0.0)
         if now != self._turn:
             for ident in {now[0], self._turn[0]} & set(self.scene().nodes):
                 box = self.scene().nodes[ident]
@@ -413,12 +358,8 @@ class ManualCanvas(QWidget):
             event.ignore()
 
     def dragMoveEvent(self, event: QDragMoveEvent) -> None:
-        load = load_of(event.mimeData())
-        why = manual_edits.refusal(self.document.project, load.clips) if load.clips else None
-        many = f"{load.count} states" if load.count > 1 else "a state"
-        words = why if why is not None else f"drop to make {many} here"
-        self._dropping = words[:1].upper() + words[1:]
-        event.acceptProposedAction() if why is None else event.ignore()
+        possible, self._dropping = commands.drop_words(self.document.project, load_of(event.mimeData()))
+        event.acceptProposedAction() if possible else event.ignore()
         self.update()
 
     def dragLeaveEvent(self, event: QEvent) -> None:

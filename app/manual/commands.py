@@ -9,6 +9,7 @@ from PySide6.QtCore import Qt
 from PySide6.QtGui import QKeyEvent, QKeySequence
 from PySide6.QtWidgets import QMenu
 
+from app.canvas.drops import Load
 from app.manual.arranging import arranged
 from app.manual.painter import facts, words_of
 from app.manual.scene import Hit
@@ -188,6 +189,13 @@ def menu(canvas: ManualCanvas, hit: Hit) -> QMenu:
 def _show_all(canvas: ManualCanvas) -> None:
     canvas.session.select_states()
     canvas.fit()
+
+
+def drop_words(project: Project, load: Load) -> tuple[bool, str]:
+    """Return whether a drop makes states, and what it does or why not."""
+    why = manual_edits.refusal(project, load.clips) if load.clips else None
+    words = why or f"drop to make {f'{load.count} states' if load.count > 1 else 'a state'} here"
+    return why is None, words[:1].upper() + words[1:]
 
 
 def tip(canvas: ManualCanvas, hit: Hit) -> str:

@@ -79,7 +79,7 @@ def _arrows(painter: QPainter, look: Look, rect: QRectF, gone: Collection[str], 
     count = int(keep.sum())
     smooth = not fast or count < 300
     # Not see-through: lines that are mixed with what is under them take twenty times as long.
-    color = mixed(look.theme.ground, look.theme.dim, max(0.3, min(0.92, 130 / max(1, count))))
+    color = mixed(look.theme.ground, look.theme.dim, max(0.36, min(0.92, 130 / max(1, count))))
     painter.setRenderHint(QPainter.RenderHint.Antialiasing, smooth)
     for waits in (False, True):
         some = lines[keep & (scene.requests == waits)]
@@ -128,15 +128,15 @@ def _loop(painter: QPainter, view: View, circle: QRectF, color: QColor, width: f
         _heads(painter, np.array([[tip.x() + 9, tip.y() - 14, tip.x(), tip.y()]]), color, 8 * min(1.0, view.scale))
 
 
-def paint_link(painter: QPainter, look: Look, link: Link, color: QColor, width: float) -> None:
-    """Paint one arrow on top of all, with what it waits for."""
+def paint_link(painter: QPainter, look: Look, link: Link, color: QColor, width: float, told: bool = True) -> None:
+    """Paint one arrow on top of all. told: with what it waits for."""
     painter.setRenderHint(QPainter.RenderHint.Antialiasing, True)
     if link.id in look.scene.loops:
         _loop(painter, look.view, look.scene.loops[link.id], color, width)
     elif link.id in look.scene.places:
         x1, y1, x2, y2 = look.scene.lines[look.scene.places[link.id]]
         paint_arrow(painter, look.view.to(QPointF(x1, y1)), look.view.to(QPointF(x2, y2)), color, width, look.view.scale)
-    if look.view.scale >= 0.35:
+    if told and look.view.scale >= 0.35:
         _label(painter, look, link, color)
 
 
@@ -244,15 +244,35 @@ def _whole(painter: QPainter, look: Look, state: State, rect: QRectF) -> None:
         painter.setClipPath(clip)
         painter.drawPixmap(place, picture, QRectF(picture.rect()))
         painter.restore()
-    text = QRectF(place.right() + 9 * scale, rect.top() + 8 * scale, rect.right() - place.right() - 17 * scale, 22 * scale)
-    trouble = 14 if state.id in look.troubles else 0
-    _name(painter, look, state, text.adjusted(0, 0, -trouble, 0), 13 * scale, Qt.AlignmentFlag.AlignLeft | Qt.AlignmentFlag.AlignVCenter)
-    font = _font(look.font.toString(), 11 * scale, False)
-    painter.setFont(font)
+    left = place.right() + 9 * scale
+    room = rect.right() - left - (20 if state.id in look.troubles else 8) * scale
+    bold, plain = _font(look.font.toString(), 12 * scale, True), _font(look.font.toString(), 11 * scale, False)
+    lines = name_lines(state.name, bold.toString(), int(room))
+    step = 15 * scale
+    y = rect.center().y() - (len(lines) + 1) * step / 2
+    flags = Qt.AlignmentFlag.AlignLeft | Qt.AlignmentFlag.AlignVCenter
+    painter.setFont(bold)
+    painter.setPen(QColor(t.text))
+    for line in lines:
+        painter.drawText(QRectF(left, y, room + 4, step), flags, line)
+        y += step
+    painter.setFont(plain)
     painter.setPen(QColor(t.dim))
-    below = text.translated(0, 21 * scale)
-    words = _elided(facts(look.project, state), font.toString(), int(below.width()))
-    painter.drawText(below, Qt.AlignmentFlag.AlignLeft | Qt.AlignmentFlag.AlignVCenter, words)
+    words = _elided(facts(look.project, state), plain.toString(), int(room))
+    painter.drawText(QRectF(left, y, room + 4, step), flags, words)
+
+
+@lru_cache(maxsize=8192)
+def name_lines(name: str, font: str, width: int) -> tuple[str, ...]:
+    """Return a name in the one or two lines it needs, broken where its words meet, and shortened where that is not enough."""
+    made = QFont()
+    made.fromString(font)
+    metrics = QFontMetricsF(made)
+    if metrics.horizontalAdvance(name) <= width:
+        return (name,)
+    places = [n + 1 for n, c in enumerate(name[:-1]) if c in "_ -." and name[n + 1] not in "_ -."] or [len(name) // 2]
+    best = min(places, key=lambda n: max(metrics.horizontalAdvance(name[:n]), metrics.horizontalAdvance(name[n:])))
+    return _elided(name[:best].rstrip(), font, width), _elided(name[best:], font, width)
 
 
 def facts(project: Project, state: State) -> str:
@@ -268,13 +288,6 @@ def facts(project: Project, state: State) -> str:
     if state.joints:
         words.append(f"{len(state.joints)} joints")
     return "  ".join(words)
-
-
-def _name(painter: QPainter, look: Look, state: State, rect: QRectF, size: float, flags: Qt.AlignmentFlag) -> None:
-    font = _font(look.font.toString(), size, True)
-    painter.setFont(font)
-    painter.setPen(QColor(look.theme.text))
-    painter.drawText(rect, flags, _elided(state.name, font.toString(), int(rect.width())))
 
 
 def _small(painter: QPainter, look: Look, state: State, rect: QRectF) -> None:

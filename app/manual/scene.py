@@ -17,7 +17,7 @@ from PySide6.QtCore import QPointF, QRectF, QSizeF
 from metagraph.graph.manual import ANY, Link, Manual
 
 Array = NDArray[Any]
-NODE = QSizeF(184, 60)
+NODE = QSizeF(196, 64)
 ANY_NODE = QSizeF(112, 34)
 APART = 11.0  # units between arrows that join the same two nodes
 LOOP = 13.0  # radius of an arrow that leads back to its own node
@@ -95,6 +95,12 @@ class Scene:
             if ident != ANY or not self.manual.states or ANY in self.manual.out:
                 out = out.united(rect)
         return out
+
+    def first_view(self, size: QSizeF) -> View:
+        """Return what is seen of a machine not looked at yet: all of it, or where the first clips go."""
+        if not self.manual.states:
+            return View(1.0, self.manual.any_x - 50, self.manual.any_y - 120)
+        return fitted(self.bounds, size)
 
     @cached_property
     def straight(self) -> tuple[Link, ...]:

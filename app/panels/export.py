@@ -201,7 +201,8 @@ class ExportDialog(QDialog):
             box.setVisible(played)
         rows = [f"<li>{escape(words)}</li>" for words in registry.losses(project, target.name)]
         note = f"<p><b>Experimental</b>: {escape(target.untried)}.</p>" if target.untried else ""
-        lost = f"<p><b>What it loses</b></p><ul style='margin-left:-20px'>{''.join(rows)}</ul>" if rows else "<p>Nothing is lost.</p>"
+        nothing = "<p>Nothing else is lost.</p>" if self.differences else "<p>Nothing is lost.</p>"
+        lost = f"<p><b>What it loses</b></p><ul style='margin-left:-20px'>{''.join(rows)}</ul>" if rows else nothing
         told = "".join(f"<li>{escape(words)}</li>" for words in self.differences)
         differs = f"<p><b>How it differs from what was drawn</b></p><ul style='margin-left:-20px'>{told}</ul>" if told else ""
         self.losses.setText(note + differs + lost)

@@ -78,7 +78,7 @@ class Filter:
     kind: str | None = None
 
     def takes(self, project: Project, entry: ClipEntry) -> bool:
-        if self.labelled is not None and (entry.id in project.uses) != self.labelled:
+        if self.labelled is not None and (entry.id in project.uses or entry.id in project.drawn) != self.labelled:
             return False
         if (self.layer or self.kind) and not any(
             (not self.layer or a.layer == self.layer) and (not self.kind or a.kind == self.kind) for a in project.uses.get(entry.id, ())
@@ -110,7 +110,8 @@ class ClipModel(QAbstractListModel):
             return entry
         if role == Qt.ItemDataRole.ToolTipRole:
             notes = "".join(f"\n{note}" for note in (entry.motion.notes if entry.motion is not None else ("The file is missing.",)))
-            uses = ", ".join(f"{a.kind} ({a.layer})" for a in self.document.project.uses.get(entry.id, ())) or "not placed yet"
+            uses = ", ".join(f"{a.kind} ({a.layer})" for a in self.document.project.uses.get(entry.id, ()))
+            uses = uses or ("drawn as a state" if entry.id in self.document.project.drawn else "not placed yet")
             return f"{entry.name}\n{entry.duration:.2f} s, {entry.frames} frames at {entry.fps:g} fps\n{entry.path}\n{uses}{notes}"
         if role == Qt.ItemDataRole.AccessibleTextRole:
             return f"{entry.name}, {entry.duration:.1f} seconds"
@@ -465,7 +466,7 @@ class LibraryPanel(QWidget):
     def _count(self) -> None:
         project = self.document.project
         total = len(project.clips)
-        loose = sum(1 for c in project.clips if c not in project.uses)
+        loose = sum(1 for c in project.clips if c not in project.uses and c not in project.drawn)
         self.chips["unlabelled"].setText(f"Unlabelled {loose}" if total else "Unlabelled")
         self.search.setPlaceholderText(f"Search {total} clip{'s' if total != 1 else ''}" if total else "Search")
         nothing = not total

@@ -107,7 +107,7 @@ class ProblemsPanel(QWidget):
         self.tree.itemClicked.connect(self._go)
         self.tree.setContextMenuPolicy(Qt.ContextMenuPolicy.CustomContextMenu)
         self.tree.customContextMenuRequested.connect(self._menu)
-        self.none = QLabel("No problems. Every stance rests, leads somewhere and comes back.", self)
+        self.none = QLabel(self)
         self.none.setProperty("dim", True)
         self.none.setAlignment(Qt.AlignmentFlag.AlignCenter)
         self.all = QPushButton(self)
@@ -156,6 +156,8 @@ class ProblemsPanel(QWidget):
             self.tree.addTopLevelItem(item)
         for column, width in enumerate((560, 170, 380)):
             self.tree.setColumnWidth(column, width)
+        each = "state can be reached and left" if self.session.mode == "manual" else "stance rests, leads somewhere and comes back"
+        self.none.setText(f"No problems. Every {each}.")
         self.stack.setCurrentIndex(1 if self.problems else 0)
         count = len(self.fixable())
         self.foot.setVisible(count > 1)

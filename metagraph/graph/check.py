@@ -62,7 +62,7 @@ def check(project: Project) -> list[Problem]:
 def _clips(project: Project) -> Iterator[Problem]:
     for entry in project.clips.values():
         if entry.motion is None:
-            used = entry.id in project.uses or any(s.clip == entry.id for m in project.manual.values() for s in m.states.values())
+            used = entry.id in project.uses or entry.id in project.drawn
             yield Problem(
                 "error" if used else "warning",
                 "file-missing",

@@ -13,7 +13,7 @@ from metagraph.graph.edits import EditError, free_name
 from metagraph.graph.manual import ANY, Condition, Link, Manual, State, without
 from metagraph.graph.model import BasePose, Layer, Project
 
-WIDE, HIGH = 216.0, 88.0  # how far apart states that are dropped together stand, in units of the editor
+WIDE, HIGH = 240.0, 96.0  # how far apart states that are dropped together stand, in units of the editor
 
 
 def machine(project: Project, layer: Layer) -> Manual:

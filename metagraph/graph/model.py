@@ -380,6 +380,11 @@ class Project:
         """Return the project with one layer's manual machine replaced."""
         return replace(self, manual={**self.manual, manual.layer: manual}, **more)
 
+    @cached_property
+    def drawn(self) -> frozenset[str]:
+        """The clips that states of manual machines use."""
+        return frozenset(s.clip for m in self.manual.values() for s in m.states.values())
+
     def with_graph(self, graph: MetaGraph, **more: Any) -> Project:
         """Return the project with one layer's graph replaced."""
         return replace(self, graphs={**self.graphs, graph.layer: graph}, **more)
