@@ -121,6 +121,8 @@ def commands(window: Window) -> tuple[Command, ...]:
         Command("arrange", "&View", "&Put the panels back", window.docks.arrange),
         Command("theme", "&View", "&Light theme", window.toggle_theme, checked=lambda: s.theme == "light", line=True, icon="theme"),
         Command("study", "&Study", "&Run a study…", window.run_study, tip="Lead a participant through a timing study"),
+        Command("count_operators", "&Study", "&Count operators", window.count_operators, checked=lambda: window.counting is not None,
+                tip="Count keys, pointings, buttons and drags as they happen"),
         Command("keys", "&Help", "&Keyboard shortcuts", window.show_keys, ("F1",)),
         Command("about", "&Help", "&About Metagraph", window.about),
     ]  # fmt: skip

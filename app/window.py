@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 from PySide6.QtCore import QEvent, QPointF, QSettings, Qt, QTimer
 from PySide6.QtGui import QCloseEvent, QDragEnterEvent, QDropEvent, QKeySequence
@@ -45,6 +46,9 @@ from metagraph.formats.imports import Imported
 from metagraph.graph import edits
 from metagraph.graph.check import Problem, check
 from metagraph.graph.model import KINDS, Layer, Project
+
+if TYPE_CHECKING:
+    from app.study.counting import Counting
 
 LATE = 4000  # milliseconds after which the late panels are made whatever else is going on
 CHECK_AFTER = 250  # milliseconds of quiet after an edit before problems are looked for
@@ -515,6 +519,19 @@ class Window(QMainWindow):
         from app.study.chooser import run_study
 
         run_study(self)
+
+    counting: Counting | None = None
+
+    def count_operators(self) -> None:
+        """Begin or end counting keys, pointings, buttons and drags."""
+        if self.counting is None:
+            from app.study.counting import Counting
+
+            self.counting = Counting(self)
+        else:
+            self.counting.stop()
+            self.counting = None
+        self.actions.refresh()
 
     def show_keys(self) -> None:
         rows = []

@@ -69,6 +69,8 @@ class Guide(QObject):
     def _enter(self) -> None:
         w = self.window
         w.session.set_playing(False)
+        if w.counting is not None:
+            w.count_operators()
         w.files.closed = CLOSED
         w.actions.allowed = lambda ident: False
         w.recent_menu.menuAction().setEnabled(False)

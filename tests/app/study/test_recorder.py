@@ -211,3 +211,15 @@ def test_what_changed_names_its_kind_clips_and_layer(toy):
     linked = manual_edits.add_link(first, "arms", one, other)
     assert described(first, linked) == {"what": "link", "clips": ["rest loop", "rest wave rt"], "layer": "arms"}
     assert described(linked, first)["what"] == "delete"
+
+
+def test_operators_are_counted_outside_a_study_while_that_is_wanted(toys):
+    d = toys
+    d.actions["count_operators"].trigger()
+    assert d.actions["count_operators"].isChecked()
+    QTest.keyClick(d.canvas, Qt.Key.Key_Comma)
+    QTest.mouseClick(d.canvas, LEFT, pos=QPoint(5, 5))
+    d.window.counting.show()
+    assert d.window.counting.label.text().startswith("K 1   P 0   B 2   D 0   H 1   0.")
+    d.actions["count_operators"].trigger()
+    assert d.window.counting is None and not d.actions["count_operators"].isChecked()
