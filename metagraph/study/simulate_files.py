@@ -31,7 +31,7 @@ from metagraph.study.sitting import Phase, phases
 Array = NDArray[Any]
 
 LAYER: Layer = "arms"
-STEP = 40.0  # seconds between events at most: longer gaps would count as absence
+STEP = 30.0  # seconds between events, about: gaps of more than a minute would count as absence
 OBSERVED = 1.4  # times what the keystroke-level model predicts
 FIRST_DAY = datetime(2026, 1, 5, 9, tzinfo=UTC)
 
@@ -180,7 +180,7 @@ class _Sitting:
     def _clip(self, clip: str, seconds: float, condition: str) -> None:
         """Tell of the work on one clip, which ends with an edit of it."""
         parts = max(3, int(np.ceil(seconds / STEP)))
-        shares = self.rng.dirichlet(np.full(parts, 30.0)) * seconds
+        shares = self.rng.dirichlet(np.full(parts, 60.0)) * seconds
         for n, share in enumerate(shares.tolist()):
             last = n == parts - 1
             self.add("ops", share, **self._operators(share, last))

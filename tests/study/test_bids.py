@@ -1,0 +1,96 @@
+"""Data for other tools: BIDS names, columns that are described, and times that add up."""
+
+from __future__ import annotations
+
+import csv
+import json
+import re
+import shutil
+from pathlib import Path
+
+import pytest
+
+from metagraph.errors import FileError
+from metagraph.study.analysis import analyse
+from metagraph.study.analysis_read import collect
+from metagraph.study.bids import write_bids
+from metagraph.study.log import read
+from metagraph.study.plan import FILE, Study, read_study
+from metagraph.study.simulate import Truth
+from metagraph.study.simulate_files import write_study
+
+
+@pytest.fixture(scope="module")
+def study(tmp_path_factory: pytest.TempPathFactory) -> Study:
+    return write_study(tmp_path_factory.mktemp("made") / "study", Truth(participants=2))
+
+
+@pytest.fixture(scope="module")
+def out(study: Study) -> Path:
+    place = study.folder.parent / "bids"
+    write_bids(study, analyse(collect(study.folder, jumps=False)), place)
+    return place
+
+
+def rows(path: Path) -> list[dict[str, str]]:
+    return list(csv.DictReader(path.read_text().splitlines(), delimiter="\t"))
+
+
+def test_files_are_named_as_bids_names_them(out: Path) -> None:
+    names = {p.relative_to(out).as_posix() for p in out.rglob("*") if p.is_file()}
+    assert {"dataset_description.json", "README", "participants.tsv", "participants.json", "derivatives/clips.csv"} <= names
+    events = [n for n in names if n.startswith("sub-")]
+    assert len(events) == 2 * 2 * 2 * 2
+    assert all(re.fullmatch(r"(sub-P0\d)/beh/\1_task-(small|large)_acq-(meta|manual)_events\.(tsv|json)", n) for n in events)
+    assert json.loads((out / "dataset_description.json").read_text())["BIDSVersion"] == "1.9.0"
+    assert "simulated" in (out / "README").read_text()
+
+
+def test_every_column_is_described(out: Path) -> None:
+    for path in [*out.rglob("*_events.tsv"), out / "participants.tsv"]:
+        told = json.loads(path.with_suffix(".json").read_text())
+        found = rows(path)
+        assert found and set(found[0]) <= set(told), path.name
+    levels = json.loads(next(out.rglob("*_events.json")).read_text())["trial_type"]["Levels"]
+    assert {r["trial_type"] for path in out.rglob("*_events.tsv") for r in rows(path)} <= set(levels)
+
+
+def test_onsets_ascend_and_operators_add_up(study: Study, out: Path) -> None:
+    for run in read(study.log("P01")).tasks():
+        found = rows(out / f"sub-P01/beh/sub-P01_task-{run.task}_acq-{run.condition}_events.tsv")
+        onsets = [float(r["onset"]) for r in found]
+        assert onsets == sorted(onsets) and onsets[0] >= 0
+        assert max(o + float(r["duration"]) for o, r in zip(onsets, found, strict=True)) == pytest.approx(run.seconds, abs=0.01)
+        assert sum(int(r["keys"]) for r in found if r["keys"] != "n/a") == run.operators["K"]
+
+
+def test_time_goes_on_over_a_restart(study: Study, tmp_path: Path) -> None:
+    shutil.copytree(study.folder, tmp_path / "study")
+    log = tmp_path / "study" / "data" / "P01" / "log.jsonl"
+    events = [json.loads(line) for line in log.read_text().splitlines()]
+    first = next(n for n, e in enumerate(events) if e["type"] == "ops") + 1
+    start = events[first]["mono"]
+    for e in events[first:]:
+        e["run"], e["mono"] = "second", round(e["mono"] - start, 6)
+    log.write_text("".join(json.dumps(e) + "\n" for e in events))
+    again = read_study(tmp_path / "study")
+    write_bids(again, analyse(collect(again.folder, jumps=False)), tmp_path / "out")
+    path = next((tmp_path / "out" / "sub-P01" / "beh").glob("*_events.tsv"))
+    assert all(float(a["onset"]) <= float(b["onset"]) for a, b in zip(rows(path), rows(path)[1:], strict=False))
+
+
+def test_people_who_have_not_begun_are_left_out(study: Study, tmp_path: Path) -> None:
+    shutil.copytree(study.folder, tmp_path / "study")
+    shutil.rmtree(tmp_path / "study" / "data" / "P02")
+    again = read_study(tmp_path / "study")
+    write_bids(again, analyse(collect(again.folder, jumps=False)), tmp_path / "out")
+    assert [r["participant_id"] for r in rows(tmp_path / "out" / "participants.tsv")] == ["sub-P01"]
+
+
+def test_names_that_bids_cannot_tell_apart_are_refused(study: Study, tmp_path: Path) -> None:
+    shutil.copytree(study.folder, tmp_path / "study")
+    path = tmp_path / "study" / FILE
+    path.write_text(path.read_text().replace("participants: 2", "participants: [A-1, A_1]"))
+    again = read_study(path)
+    with pytest.raises(FileError, match="the same in letters and digits"):
+        write_bids(again, analyse(collect(path, jumps=False)), tmp_path / "out")
