@@ -5,7 +5,7 @@ from __future__ import annotations
 import os
 from collections.abc import Callable
 from concurrent.futures import ThreadPoolExecutor
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
@@ -49,19 +49,8 @@ class MotionGraph:
 
     @property
     def size(self) -> tuple[int, int]:
-        """How many states are kept, and how many transitions there are among them, those to following frames not counted."""
-        return int(self.kept.sum()), int(self._among().sum())
-
-    def _among(self) -> Array:
-        sources = np.repeat(np.arange(len(self.starts) - 1), np.diff(self.starts))
-        return self.kept[sources] & self.kept[self.targets]
-
-    def cut(self) -> MotionGraph:
-        """Return the graph without transitions from or to states that are not kept."""
-        among = self._among()
-        sources = np.repeat(np.arange(len(self.starts) - 1), np.diff(self.starts))[among]
-        starts = np.concatenate([[0], np.cumsum(np.bincount(sources, minlength=len(self.starts) - 1))])
-        return replace(self, starts=starts, targets=self.targets[among], costs=self.costs[among])
+        """How many states are kept, and how many transitions there are, those to following frames not counted."""
+        return int(self.kept.sum()), len(self.targets)
 
 
 def threshold(states: States, k: int = STEP, level: float = LEVEL) -> Threshold:
@@ -97,7 +86,7 @@ def build(
     most: how many of the cheapest are kept of each state, all when None; bounds the memory of large sets. connected: keep only the largest
     strongly connected component. Raises SynthesisError when it was cancelled, or when nothing is connected.
     """
-    from metagraph.synthesis.kernels import components
+    from metagraph.synthesis.kernels import components, cut
 
     limit = threshold(states) if limit is None else limit
     keys = key_states(states) if keys is None else np.asarray(keys)
@@ -115,8 +104,9 @@ def build(
                 "raise k or the level, or add takes that come back to the same poses"
             )
         kept = component == int(sizes.argmax())
-    graph = MotionGraph(states, limit, keys, starts, targets, costs, kept)
-    return graph.cut() if connected else graph
+        if not kept.all():
+            starts, targets, costs = cut(starts, targets, costs, kept)
+    return MotionGraph(states, limit, keys, starts, targets, costs, kept)
 
 
 def _transitions(
@@ -133,7 +123,7 @@ def _transitions(
     To go from i to j costs as much as i differs from j - 1. So j is a key state with a frame before it in its take; j = i + 1 is no
     transition, it is what follows anyway.
     """
-    from metagraph.synthesis.kernels import LANES, near
+    from metagraph.synthesis.kernels import LANES, near, pack
 
     first = np.zeros(len(states), bool)
     first[states.starts[:-1]] = True
@@ -153,16 +143,12 @@ def _transitions(
         places, costs = np.empty((len(chunk), len(into)), np.int32), np.empty((len(chunk), len(into)), np.float32)
         counts = np.empty(len(chunk), np.int64)
         near(terms[chunk], blocks, len(into), np.float32(limit), places, costs, counts)
-        there = np.arange(len(into)) < counts[:, None]
-        targets, costs = into[places[there]].astype(np.int32), costs[there]
-        source = np.repeat(chunk, counts)
-        follows = targets == source + 1
-        keep = ~follows
+        found = counts.copy()
+        targets, costs = pack(places, costs, found, into, chunk, counts)
         if most is not None:
-            keep &= _cheapest(np.where(follows, np.inf, costs), source, counts, most)
-        if not keep.all():
-            counts = np.bincount(np.repeat(np.arange(len(chunk)), counts)[keep], minlength=len(chunk))
+            keep = _cheapest(costs, np.repeat(chunk, counts), counts, most)
             targets, costs = targets[keep], costs[keep]
+            counts = np.minimum(counts, most)
         return counts, targets, costs
 
     rows, targets, costs = [], [], []

@@ -84,6 +84,49 @@ def near(rows: Array, blocks: Array, count: int, limit: Any, places: Array, cost
 
 
 @_compiled
+def pack(places: Array, costs: Array, found: Array, into: Array, rows: Array, counts: Array) -> tuple[Array, Array]:
+    """Return the targets and costs of rows as `near` found them, one row after another, without the state that follows a row's own.
+
+    into `[count]`: which states the numbers stand for. rows `[R]`: the rows' own states. counts `[R]` becomes how many each row has.
+    """
+    targets, packed = np.empty(found.sum(), np.int32), np.empty(found.sum(), np.float32)
+    at = 0
+    for r in range(len(rows)):
+        first = at
+        for n in range(found[r]):
+            target = into[places[r, n]]
+            if target != rows[r] + 1:
+                targets[at] = target
+                packed[at] = costs[r, n]
+                at += 1
+        counts[r] = at - first
+    return targets[:at].copy(), packed[:at].copy()
+
+
+@_compiled
+def cut(starts: Array, targets: Array, costs: Array, kept: Array) -> tuple[Array, Array, Array]:
+    """Return transitions, as `MotionGraph` has them, from and to states that are kept `[F]`."""
+    states = len(starts) - 1
+    begins = np.zeros(states + 1, np.int64)
+    for state in range(states):
+        count = 0
+        if kept[state]:
+            for place in range(starts[state], starts[state + 1]):
+                count += kept[targets[place]]
+        begins[state + 1] = begins[state] + count
+    ends, price = np.empty(begins[-1], np.int32), np.empty(begins[-1], np.float32)
+    for state in range(states):
+        if kept[state]:
+            at = begins[state]
+            for place in range(starts[state], starts[state + 1]):
+                if kept[targets[place]]:
+                    ends[at] = targets[place]
+                    price[at] = costs[place]
+                    at += 1
+    return begins, ends, price
+
+
+@_compiled
 def components(starts: Array, targets: Array, follows: Array) -> tuple[Array, int]:
     """Return which strongly connected component each state is of, and how many there are (Tarjan, without recursion).
 
