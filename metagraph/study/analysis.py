@@ -7,12 +7,12 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field
-from math import exp, log
+from math import exp, inf, log
 
 import numpy as np
 
 from metagraph.study import stats
-from metagraph.study.analysis_read import Data, Row
+from metagraph.study.analysis_read import TOTALS, Data, Row
 from metagraph.study.score import WORDS, Score, What
 from metagraph.study.stats import Estimate, Order, Test
 from metagraph.study.tasks import SPENT, Spent
@@ -111,13 +111,11 @@ def analyse(data: Data) -> Results:
             tasks[task] = found.ratio, found.test
     corrected = stats.holm([test.p for _, test in tasks.values()])
     conditions = [c for c in data.conditions if any(r.run.condition == c for r in done)]
-    mistakes = tuple(m for name, get in MISTAKES.items() if (m := _measure(name, _scored(done, get))) is not None)
-    names = list(dict.fromkeys(r.measure for r in data.ratings))
-    ratings = tuple(
-        m
-        for name in names
-        if (m := _measure(name, [(r.participant, r.condition or "", r.value) for r in data.ratings if r.measure == name])) is not None
+    mistakes = tuple(
+        m for name, get in MISTAKES.items() if (m := _measure(name, _scored(done, get), 0.0, 100.0 if name.endswith("%") else inf))
     )
+    names = list(dict.fromkeys(r.measure for r in data.ratings))
+    ratings = tuple(m for name in names if (m := _measure(name, _rated(data, name), *((0.0, 100.0) if name in TOTALS else ()))) is not None)
     asked = [("time", time.test)] if time is not None and time.test.p is not None else []
     asked += [(m.name, m.test) for m in (*mistakes[:1], *ratings) if m.test is not None and m.test.p is not None]
     return Results(
@@ -272,18 +270,28 @@ def _scored(rows: Sequence[Row], get: Callable[[Score], float | None]) -> list[t
     return [(who, condition, value) for who, condition, value in found if value is not None]
 
 
-def _measure(name: str, values: Sequence[tuple[str, str, float]]) -> Measure | None:
-    """Return a measure of (participant, condition, value), several of one participant taken together by their mean."""
+def _rated(data: Data, name: str) -> list[tuple[str, str, float]]:
+    return [(r.participant, r.condition or "", r.value) for r in data.ratings if r.measure == name]
+
+
+def _measure(name: str, values: Sequence[tuple[str, str, float]], least: float = -inf, most: float = inf) -> Measure | None:
+    """Return a measure of (participant, condition, value), several of one participant taken together by their mean. least, most: what a
+    value can be; intervals do not go beyond."""
     by: dict[str, dict[str, list[float]]] = {}
     for who, condition, value in values:
         by.setdefault(condition, {}).setdefault(who, []).append(value)
     if not by:
         return None
     each = {c: {who: float(np.mean(v)) for who, v in people.items()} for c, people in by.items()}
-    means = {c: stats.mean(list(people.values())) for c, people in each.items()}
+    means = {c: _within(stats.mean(list(people.values())), least, most) for c, people in each.items()}
     both = sorted(each.get(ABOVE, {}).keys() & each.get(BELOW, {}).keys())
     if not both:
         return Measure(name, means, None, None)
     a, b = ([each[c][who] for who in both] for c in (ABOVE, BELOW))
     difference = stats.mean([x - y for x, y in zip(a, b, strict=True)])
     return Measure(name, means, difference, stats.wilcoxon(a, b), stats.effect_size(a, b))
+
+
+def _within(found: Estimate, least: float, most: float) -> Estimate:
+    low, high = found.low, found.high
+    return Estimate(found.value, None if low is None else max(low, least), None if high is None else min(high, most), found.n)

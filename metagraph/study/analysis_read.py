@@ -24,6 +24,7 @@ Progress = Callable[[int, int], None]
 SCORED: Mapping[str, tuple[str, Callable[[Mapping[str, Any]], float]]] = {
     "sus": ("SUS", sus_score), "tlx": ("NASA-TLX, raw", tlx_raw), "tlx_weighted": ("NASA-TLX, weighted", tlx_weighted),
 }  # fmt: skip
+TOTALS = frozenset(name for name, _ in SCORED.values())  # all from 0 to 100
 
 
 @dataclass(frozen=True)

@@ -9,6 +9,7 @@ from pathlib import Path
 from metagraph.formats.atomic import write_atomically
 from metagraph.study import plots
 from metagraph.study.analysis import ABOVE, BELOW, TITLES, Comparison, Measure, Results
+from metagraph.study.analysis_read import TOTALS
 from metagraph.study.plots import seconds
 from metagraph.study.report_style import METHODS, STYLE
 from metagraph.study.report_tables import tables
@@ -106,7 +107,7 @@ def _time(results: Results) -> str:
     if time.biserial is not None:
         body.append(["matched-pairs rank biserial", f"{time.biserial:.2f}", ""])
     for task, (ratio, test, p) in results.by_task.items() if len(results.by_task) > 1 else ():
-        words = f"{tested(test)}; with the other tasks {chance(p)} (Holm)" if p is not None else tested(test)
+        words = f"{tested(test)}; Holm: {chance(p)}" if p is not None else tested(test)
         body.append([f"ratio, {escape(results.data.tasks[task])}", _interval(ratio, lambda v: f"{v:.2f}"), words])
     out = "<h2>Time</h2>"
     if time.people:
@@ -131,7 +132,10 @@ def _order(time: Comparison) -> str:
     if order.carried.holds(1.0):
         carried += "no sign that anything carried over from one to the other, though such a check finds only large effects."
     else:
-        carried += "something carried over, or the two groups were unlike; look at the first sittings alone as well."
+        carried += (
+            "something carried over, or the two groups were unlike. By first sittings alone, which nothing can have carried over to, the "
+            f"ratio is {order.first.value:.2f} ({_range(order.first)})."
+        )
     return f"<h3>Order</h3><p>{second}</p><p>{carried}</p>"
 
 
@@ -187,7 +191,7 @@ def _measures(title: str, words: str, measures: Sequence[Measure]) -> str:
 
 
 def _ratings(results: Results) -> str:
-    known = [(m.name, m.means) for m in results.ratings if m.name.startswith(("SUS", "NASA")) and set(m.means) <= set(TITLES)]
+    known = [(m.name, m.means) for m in results.ratings if m.name in TOTALS and set(m.means) <= set(TITLES)]
     plot = _figure(plots.means(known), "Means with 95 % intervals. SUS: more is better; NASA-TLX: less is better.") if known else ""
     table = _measures("Ratings", "The difference is by hand less meta-graph.", results.ratings)
     return table.replace("</h2>", f"</h2>{plot}", 1) if table else ""

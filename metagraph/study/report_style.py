@@ -24,10 +24,11 @@ p { margin: 8px 0; } ul { margin: 8px 0; padding-left: 20px; } .dim, figcaption 
 figure { margin: 16px 0; background: var(--card); border: 1px solid var(--line); border-radius: 8px; padding: 14px 14px 10px; }
 figcaption { font-size: 13px; margin-top: 6px; text-align: center; }
 svg { display: block; width: 100%; max-width: 680px; height: auto; margin: 0 auto; font: 12px system-ui, sans-serif; }
-table { border-collapse: collapse; width: 100%; margin: 12px 0; font-variant-numeric: tabular-nums; }
+table { border-collapse: collapse; font-size: 13px; width: 100%; margin: 12px 0; font-variant-numeric: tabular-nums; }
 th { text-align: left; color: var(--dim); font-weight: 500; }
 th, td { padding: 5px 10px 5px 0; border-bottom: 1px solid var(--line); vertical-align: top; }
-td .dim { white-space: nowrap; } dt { font-weight: 600; margin-top: 8px; } dd { margin: 0 0 4px; color: var(--dim); }
+td .dim { white-space: nowrap; } td:first-child { min-width: 190px; } td:last-child { white-space: nowrap; }
+dt { font-weight: 600; margin-top: 8px; } dd { margin: 0 0 4px; color: var(--dim); }
 text { fill: var(--text); } text.dim { fill: var(--dim); } text.inside { fill: var(--inside); font-weight: 600; }
 line.grid { stroke: var(--line); } line.one { stroke: var(--dim); stroke-dasharray: 4 3; }
 .person line { stroke: var(--dim); stroke-opacity: .55; } .person circle { fill: var(--dim); }

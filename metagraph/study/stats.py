@@ -239,12 +239,14 @@ class Order:
 
     adjusted: the ratio with both orders weighing the same. second: the seconds of a second sitting beside a first, as a ratio.
     carried: the seconds of all sittings of those who began with the one beside those who began with the other; unlike 1, something
-    carried over, or the groups were unlike. tests: of second and carried being 1.
+    carried over, or the groups were unlike. first: the ratio by first sittings alone, of other people each. tests: of second and carried
+    being 1.
     """
 
     adjusted: Estimate
     second: Estimate
     carried: Estimate
+    first: Estimate
     second_test: Test
     carried_test: Test
 
@@ -262,7 +264,8 @@ def order_effects(
     gap, gap_test = welch(d_other, d_one, level)
     both, _ = welch(d_one, [-d for d in d_other], level)
     sums, sums_test = welch([(a + b) / 2 for a, b in one], [(a + b) / 2 for a, b in other], level)
-    return Order(_half(both).exp(), _half(gap).exp(), sums.exp(), gap_test, sums_test)
+    first, _ = welch([a for a, _ in one], [b for _, b in other], level)
+    return Order(_half(both).exp(), _half(gap).exp(), sums.exp(), first.exp(), gap_test, sums_test)
 
 
 # --- words -----------------------------------------------------------------------------------------------------------

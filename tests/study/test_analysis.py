@@ -138,6 +138,9 @@ def test_mistakes_and_ratings_are_means_of_people() -> None:
     sus = found.ratings[0]
     assert (sus.means["meta"].value, sus.difference.value if sus.difference else None) == (70.0, -10.0)
     assert [name for name, _, _ in found.together] == ["time", "F1 of connections, %", "SUS"]
+    lucky = [replace(r, score=Score(right=10, missing=int(r.run.participant == "P1"))) for r in four().rows]
+    bounded = next(m for m in analyse(replace(four(), rows=tuple(lucky))).mistakes if m.name.startswith("recall")).means["meta"]
+    assert bounded.high == 100.0 and bounded.low is not None and bounded.low < bounded.value < 100.0, "no share is above all"
     assert not any(m.name == "visible jumps" for m in found.mistakes), "they were not judged"
 
 

@@ -130,6 +130,7 @@ def test_order_is_told_from_the_condition() -> None:
     found = s.order_effects(began_above, began_below)
     assert found is not None
     assert (found.adjusted.value, found.second.value, found.carried.value) == (close(8.0), close(0.5), close(3.0))
+    assert found.first.value == close(24.0), "of other people each, so their pace is in it"
     assert s.order_effects(began_above, began_below[:1]) is None
 
 
