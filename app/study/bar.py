@@ -6,7 +6,7 @@ from PySide6.QtCore import Qt
 from PySide6.QtWidgets import QHBoxLayout, QLabel, QPushButton, QSizePolicy, QToolBar, QToolButton, QVBoxLayout, QWidget
 
 from app.session import Session
-from app.study.screen import clock
+from app.study.screen import clock, rich
 from app.theme import strengthen, theme
 
 WARNINGS = (120.0, 30.0)  # seconds before the end at which it is said
@@ -44,7 +44,7 @@ class StudyBar(QToolBar):
         for widget in (self.told, self.time, self.note, self.pause, self.done):
             row.addWidget(widget)
         self.text = QLabel(inner)
-        self.text.setTextFormat(Qt.TextFormat.MarkdownText)
+        self.text.setTextFormat(Qt.TextFormat.RichText)
         self.text.setWordWrap(True)
         self.text.setProperty("dim", True)
         self.text.setMaximumWidth(1100)
@@ -57,7 +57,7 @@ class StudyBar(QToolBar):
     def begin(self, title: str, text: str) -> None:
         """Show a task."""
         self.title.setText(title)
-        self.text.setText(text)
+        self.text.setText(rich(text, 13))
         self.more.setVisible(bool(text))
         self.more.setChecked(bool(text))
         self._unfold(bool(text))

@@ -5,7 +5,8 @@ from __future__ import annotations
 from collections.abc import Callable
 
 from PySide6.QtCore import QEvent, QObject, Qt, QTimer
-from PySide6.QtWidgets import QCheckBox, QFrame, QHBoxLayout, QLabel, QPushButton, QScrollArea, QVBoxLayout, QWidget
+from PySide6.QtGui import QFont, QTextBlockFormat, QTextCursor, QTextDocument
+from PySide6.QtWidgets import QApplication, QCheckBox, QFrame, QHBoxLayout, QLabel, QPushButton, QScrollArea, QVBoxLayout, QWidget
 
 from app.session import Session
 from app.study.answers import Question
@@ -24,8 +25,8 @@ class Page(QWidget):
         self.title = QLabel(title, self)
         self.title.setProperty("page", True)
         self.title.setWordWrap(True)
-        self.text = QLabel(text, self)
-        self.text.setTextFormat(Qt.TextFormat.MarkdownText)
+        self.text = QLabel(rich(text, 15), self)
+        self.text.setTextFormat(Qt.TextFormat.RichText)
         self.text.setWordWrap(True)
         self.text.setVisible(bool(text))
         self.column = QVBoxLayout(self)
@@ -205,6 +206,25 @@ class Screen(QWidget):
         if event.type() == QEvent.Type.Resize:
             self.setGeometry(self.parentWidget().rect())
         return False
+
+
+def rich(markdown: str, size: int) -> str:
+    """Return Markdown as a label shows it, with air between paragraphs. size: of the letters, pixels."""
+    document = QTextDocument()
+    font = QFont(QApplication.font())
+    font.setPixelSize(size)
+    document.setDefaultFont(font)
+    document.setMarkdown(markdown)
+    cursor = QTextCursor(document)
+    block = document.begin()
+    while block.isValid():
+        cursor.setPosition(block.position())
+        shape = block.blockFormat()
+        shape.setBottomMargin(size * 0.3 if block.textList() is not None and block.next().textList() is not None else size * 0.7)
+        shape.setLineHeight(125, QTextBlockFormat.LineHeightTypes.ProportionalHeight.value)
+        cursor.setBlockFormat(shape)
+        block = block.next()
+    return document.toHtml()
 
 
 def clock(seconds: float) -> str:
