@@ -321,7 +321,8 @@ class Window(QMainWindow):
         self.session.others.clear()
         self.session.select_clips(())
         project = self.document.project
-        if not project.graphs[self.session.layer].actions:
+        self.manual.opened(project)
+        if not project.graphs[self.session.layer].actions and self.session.mode == "meta":
             layer: Layer | None = next((x for x in ("arms", "body", "head") if project.graphs[x].actions), None)  # type: ignore[index]
             if layer is not None:
                 self.session.set_layer(layer)

@@ -84,7 +84,7 @@ class ManualCanvas(QWidget):
         self.setMinimumSize(420, 320)
         self.setAccessibleName("State machine")
         document.changed.connect(self._edited)
-        document.loaded.connect(self._views.clear)
+        document.loaded.connect(self._reload)
         session.layer_changed.connect(self._relayer)
         for signal in (session.selection_changed, session.theme_changed):
             signal.connect(self.update)
@@ -154,8 +154,17 @@ class ManualCanvas(QWidget):
         self._fast = True  # many come at once; they are drawn together
         self.update()
 
+    def _reload(self) -> None:
+        self._views.clear()
+        self._anew = True
+
+    _anew = False  # another project comes, to be seen whole
+
     def _edited(self, before: Project, after: Project) -> None:
-        if before.manual is not after.manual or before.clips is not after.clips:
+        if self._anew:
+            self._anew = False
+            self._relayer()
+        elif before.manual is not after.manual or before.clips is not after.clips:
             self._scene = None
             if len(self.scene().manual.links) > MANY:
                 self._fast = True

@@ -8,6 +8,8 @@ from PySide6.QtCore import QPointF
 from PySide6.QtWidgets import QStackedWidget
 
 from app.canvas.drops import Load
+from metagraph.graph.manual import Manual
+from metagraph.graph.model import LAYERS, Project
 
 if TYPE_CHECKING:
     from app.manual.editor import ManualEditor
@@ -75,6 +77,16 @@ class Place:
         self.editor = ManualEditor(canvas, w)
         w.centre.insertWidget(1, self.editor)
         self.editor.show_problems(w.problems)
+
+    def opened(self, project: Project) -> None:
+        """Show what a project that was opened is made of; one with nothing in it leaves the mode as it is."""
+        drawn = [layer for layer in LAYERS if project.manual.get(layer, Manual(layer)).states]
+        if any(True for _ in project.actions()):
+            self.session.set_mode("meta")
+        elif drawn:
+            self.session.set_mode("manual")
+            if self.session.layer not in drawn:
+                self.session.set_layer(drawn[0])
 
     def imported(self, load: Load, at: QPointF) -> None:
         """Place clips of files that were dropped on the editor."""

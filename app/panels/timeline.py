@@ -97,7 +97,7 @@ class TimelinePanel(QWidget):
         session.mode_changed.connect(self._switched)
         document.changed.connect(lambda before, after: self._restage())
         self._restage()
-        self._words()
+        self._switched()
 
     def _switched(self) -> None:
         """Requests and kept performances are the meta-graph's."""

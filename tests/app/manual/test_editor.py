@@ -12,8 +12,8 @@ from PySide6.QtWidgets import QApplication
 
 from metagraph.engines.export import schema_text
 from metagraph.engines.reading import read_export
-from metagraph.formats.store import open_project
-from metagraph.graph import manual_edits
+from metagraph.formats.store import open_project, save_project
+from metagraph.graph import edits, manual_edits
 from metagraph.graph.manual import ANY
 
 pytestmark = [pytest.mark.window, pytest.mark.gl]
@@ -364,3 +364,33 @@ def test_trimming_stays_inside_the_clip(drawn: Hand) -> None:
     drawn.inspector.last.setValue(0.9)
     drawn.inspector.first.setValue(2.0)
     assert drawn.state("rest wave rt").start < drawn.state("rest wave rt").end == 0.9
+
+
+def test_a_project_that_was_only_drawn_opens_in_the_editor_and_a_meta_graph_without_it(drawn: Hand, tmp_path, toy) -> None:
+    drive = drawn.drive
+    drive.document.edit("Clear", lambda p: edits.remove_actions(p, [a.id for a in p.actions()]))
+    only = drive.document.project
+    drive.actions["manual"].trigger()
+    assert drive.session.mode == "meta"
+    drive.document.load(only, None)
+    drive.files.opened.emit()
+    assert drive.session.mode == "manual"
+    assert drawn.canvas.view.rect(drawn.canvas.size().toSizeF()).contains(drawn.canvas.scene().bounds)
+    drive.document.load(toy.project(), None)
+    drive.files.opened.emit()
+    assert drive.session.mode == "meta"
+
+
+def test_what_was_only_drawn_is_exported_by_the_command_too(drawn: Hand, tmp_path, capsys) -> None:
+    from app.cli import main
+    from metagraph.formats.gltf_writer import write_glb
+
+    project = drawn.drive.document.project
+    project = edits.remove_actions(project, [a.id for a in project.actions()])
+    for entry in project.clips.values():
+        write_glb(tmp_path / entry.path, [entry.motion])
+    save_project(project, tmp_path / "only.metagraph.yaml")
+    assert main(["export", str(tmp_path / "only.metagraph.yaml"), "-o", str(tmp_path / "out")]) == 0
+    assert "differs: " in capsys.readouterr().err
+    written = read_export(next((tmp_path / "out").glob("*.json")))
+    assert {a.name for a in written.actions()} == {"rest loop", "rest wave rt"}
