@@ -84,6 +84,7 @@ def t_noncentral(t: float, df: float, shift: float) -> float:
     """
     width = 12 / sqrt(2 * df)
     edges = {max(0.0, 1 - width), 1.0, 1 + width, *(1 + width * k / 4 for k in range(-3, 4) if 1 + width * k / 4 > 0)}
+    edges |= {s for s in (1e-4, 1e-3, 1e-2, 0.1) if s > 1 - width}  # near 0 a broken power of S is no polynomial
     if t != 0:
         edges |= {s for k in (-8, -4, -1, 0, 1, 4, 8) if max(0.0, 1 - width) < (s := (shift + k) / t) < 1 + width}
     cuts = np.array(sorted(edges))
