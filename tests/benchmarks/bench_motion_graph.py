@@ -115,17 +115,15 @@ def searched(graph: MotionGraph) -> None:
     for branches in (20, 50):
         try:
             seconds, other = timed(lambda n=branches: greedy(graph, sound, want, branches=n))
-            print(
-                f"greedy, 200 kept, {branches} branches: {1000 * seconds:.0f} ms, cost {other.cost / max(path.cost, 1e-9):.2f} times the least"
-            )
+            more = other.cost / max(path.cost, 1e-9)
+            print(f"greedy, 200 kept, {branches} branches: {1000 * seconds:.0f} ms, cost {more:.2f} times the least")
         except ValueError as error:
             print(f"greedy, 200 kept, {branches} branches: {error}")
 
 
 def main() -> None:
-    print(
-        "| data | frames | key states | pairs accepted | transitions | states kept | ours, with SCC | NumPy, without | ratio | edges that differ |"
-    )
+    heads = ("data", "frames", "key states", "pairs accepted", "transitions", "states kept", "ours, with SCC", "NumPy, without", "ratio")
+    print(f"| {' | '.join((*heads, 'edges that differ'))} |")
     print("|---|---|---|---|---|---|---|---|---|---|")
     build(synthetic(3000))  # compiles
     sizes = [int(a) for a in sys.argv[1:]]
@@ -136,9 +134,8 @@ def main() -> None:
             given = Threshold(3, 0.95, np.zeros(0), None, limit_for(states, keys, 0.002), 0.0)
             seconds, graph = timed(lambda s=states, g=given, k=keys: build(s, g, k, most=200), 1)
             peak = resource.getrusage(resource.RUSAGE_SELF).ru_maxrss / 2**20
-            print(
-                f"| synthetic | {size:,} | {len(keys):,} | | {len(graph.targets):,} | {graph.size[0]:,} | {seconds:.1f} s | | | {peak:.2f} GB |"
-            )
+            kept, edges = graph.size
+            print(f"| synthetic | {size:,} | {len(keys):,} | | {edges:,} | {kept:,} | {seconds:.1f} s | | | {peak:.2f} GB |", flush=True)
         return
     states = synthetic(50_568)
     keys = key_states(states)
