@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import fields
 from typing import Any
 
-from metagraph.formats.fields import Data, DataError, fill, items, known, one_of, sparse
+from metagraph.formats.fields import Data, DataError, fill, items, known, number, one_of, sparse
 from metagraph.graph.manual import ANY, WHENS, Condition, Link, Manual, State
 from metagraph.graph.words import LIMBS, Layer
 
@@ -25,7 +25,9 @@ def link_data(link: Link) -> Data:
 def manual_data(manual: Manual) -> Data:
     """Return a layer's manual state machine."""
     return {
-        **sparse(manual, ("layer", "states", "links")),
+        "start": manual.start,
+        "any_x": number(manual.any_x),
+        "any_y": number(manual.any_y),
         "states": [state_data(s) for s in manual.states.values()],
         "links": [link_data(x) for x in manual.links.values()],
     }
