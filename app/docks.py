@@ -41,7 +41,8 @@ class Docks(dict[str, QDockWidget]):
         old.deleteLater()
 
     def arrange(self) -> None:
-        """Put every dock where it belongs."""
+        """Put every dock where it belongs; the window stays as large as it is, though they stand side by side for a moment."""
+        size = self.window.size()
         for key, (_, area) in PLACES.items():
             self[key].setFloating(False)
             self.window.addDockWidget(area, self[key])
@@ -54,6 +55,10 @@ class Docks(dict[str, QDockWidget]):
         self.window.setCorner(Qt.Corner.BottomRightCorner, _RIGHT)
         self.size()
         self.centre.show()
+        layout = self.window.layout()
+        if layout is not None and not self.window.isMaximized() and not self.window.isFullScreen():
+            layout.activate()
+            self.window.resize(size)
 
     def size(self) -> None:
         """Give each dock its usual share of the window."""

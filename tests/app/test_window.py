@@ -439,8 +439,10 @@ def test_machine_theme_and_the_character_alone_come_and_go(toys):
     drive.wait(drive.centre.isVisible)
     assert {k: d.isVisible() for k, d in drive.docks.items()} == shown
     drive.docks["timeline"].close()
+    size = drive.window.size()
     drive.actions["arrange"].trigger()
-    assert drive.docks["timeline"].isVisible()
+    drive.pause(50)
+    assert drive.docks["timeline"].isVisible() and drive.window.size() == size
 
 
 def test_menus_say_how_things_are(toys):
