@@ -145,7 +145,7 @@ def _rows(study: Study, log: Log, references: _References, missing: list[str]) -
             clips = len(study.clips(task.clips))
         except FileError:
             clips = len(run.per_clip)
-        row = Row(run, order.index(run.condition) + 1, clips, prediction(run))
+        row = Row(run, order.index(run.condition) + 1, clips, prediction(run, study.plan.times))
         if run.timed_out:
             missing.append(f"{who}: was ended by the time limit; the time it would have taken is not known.")
         elif not row.done:

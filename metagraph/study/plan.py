@@ -8,7 +8,7 @@ from __future__ import annotations
 import hashlib
 import re
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Annotated, Any, Literal
 
@@ -18,6 +18,7 @@ from msgspec import Meta, Struct
 from metagraph.errors import FileError
 from metagraph.formats.clips import find_clip_files
 from metagraph.formats.text import TextError, parse
+from metagraph.study.klm import Times
 from metagraph.study.log import NAME
 from metagraph.study.order import latin
 from metagraph.study.questions import BUILT_IN, Item, Name, Questionnaire, Scale, When
@@ -67,6 +68,7 @@ class Plan(Struct, frozen=True, forbid_unknown_fields=True):
     """study: the version of the format. participants: how many, or their pseudonyms. order: `latin` counterbalances conditions and
     tasks, `fixed` keeps to the file. breaks: minutes after each condition but the last. when: what questionnaires are about that do not
     say it themselves. tolerance: seconds by which a timing may differ from the reference. allow: `labels` lets proposals be asked for.
+    operators: seconds each operator of the keystroke-level model takes these participants, where it is not as `klm.Times` has it.
     """
 
     study: int
@@ -83,8 +85,14 @@ class Plan(Struct, frozen=True, forbid_unknown_fields=True):
     when: When = "after_condition"
     seed: Annotated[int, Meta(ge=0, le=0xFFFFFFFF)] = 0
     tolerance: Annotated[float, Meta(ge=0, le=60)] = 0.1
+    operators: dict[Literal["K", "P", "B", "H", "M"], Annotated[float, Meta(ge=0, le=60)]] = {}
     allow: tuple[Literal["labels"], ...] = ()
     thanks: str = ""
+
+    @property
+    def times(self) -> Times:
+        """Return what the operators take."""
+        return replace(Times(), **self.operators)
 
     @property
     def ids(self) -> tuple[str, ...]:

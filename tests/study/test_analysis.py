@@ -50,6 +50,18 @@ def test_one_person_has_a_ratio_without_an_interval() -> None:
     assert "no interval, 1 person" in page(found)
 
 
+def test_a_study_may_say_how_long_operators_take_its_people(tmp_path: Path) -> None:
+    folder = tmp_path / "study"
+    write_study(folder, Truth(participants=2))
+    usual = collect(folder, jumps=False).rows
+    file = folder / FILE
+    file.write_text(file.read_text(encoding="utf-8") + "operators: {M: 0, P: 2.2}\n", encoding="utf-8")
+    for a, b in zip(usual, collect(folder, jumps=False).rows, strict=True):
+        ops = a.run.operators
+        thoughts, points = a.run.edits + a.run.undos, ops["P"] + ops["D"]
+        assert b.predicted == pytest.approx(a.predicted - 1.35 * thoughts + 1.1 * points)
+
+
 def test_what_was_not_finished_or_took_no_time_is_left_out() -> None:
     rows = (row("P1", "meta", "a", 10.0, 0), row("P1", "manual", "a", 79.0, 1, finished=False), row("P1", "manual", "a", 0.0, 2))
     assert analyse(replace(NOBODY, rows=rows)).time is None
