@@ -57,6 +57,7 @@ matter. F1 is the harmonic mean of precision and recall of connections. A jump i
 distribution of the reference clips' own changes between frames (Yang et al., section 6), its blend taken off. In a machine drawn by hand,
 kind and stance follow from the links; where links to or from rest were forgotten, only that is counted.</dd>
 <dt>Prediction</dt><dd>The keystroke-level model (Card, Moran and Newell 1980): K 0.28 s, P 1.10 s, B 0.10 s, H 0.40 s, M 1.35 s,
-where the study file (<code>operators</code>) says nothing else; a drag is a pointing with a button pressed and released; a thought for every edit and every step back.</dd>
+where the study file (<code>operators</code>) says nothing else;
+a drag is a pointing with a button pressed and released; a thought for every edit and every step back.</dd>
 <dt>Several tests</dt><dd>Holm's correction, over the tasks, and over time, F1 and the ratings.</dd>
 </dl>"""
