@@ -162,3 +162,19 @@ def test_it_can_be_cancelled_and_tells_how_far_it_is() -> None:
     assert seen[-1][0] == seen[-1][1]
     with pytest.raises(SynthesisError, match="cancelled"):
         build(states, of_limit(0.8), cancelled=lambda: True)
+
+
+def test_components_are_those_an_independent_library_finds() -> None:
+    pytest.importorskip("scipy")
+    from scipy.sparse import csr_matrix
+    from scipy.sparse.csgraph import connected_components
+
+    states = made(900, 4, 6)
+    keys = key_states(states, 0.3)
+    whole = build(states, of_limit(0.5), keys, connected=False)
+    sources = np.repeat(np.arange(900), np.diff(whole.starts))
+    follows = np.flatnonzero(~states.last)
+    rows, columns = np.concatenate([sources, follows]), np.concatenate([whole.targets, follows + 1])
+    _, labels = connected_components(csr_matrix((np.ones(len(rows)), (rows, columns)), shape=(900, 900)), True, "strong")
+    largest = np.bincount(labels).argmax()
+    assert (build(states, of_limit(0.5), keys).kept == (labels == largest)).all()
