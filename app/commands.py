@@ -19,7 +19,7 @@ LAYER_KEYS = {"body": "Alt+1", "arms": "Alt+2", "head": "Alt+3"}
 
 def commands(window: Window) -> tuple[Command, ...]:
     """Return every command, in the order of the menus."""
-    s, d, f, c = window.session, window.document, window.files, window.canvas
+    s, d, f, c, o = window.session, window.document, window.files, window.canvas, window.dialogs
     some = lambda: bool(s.clips or s.actions)  # noqa: E731
     drawn = lambda: bool(s.states or s.links)  # noqa: E731
     gone = lambda: bool(s.clips or s.actions or s.asks or drawn())  # noqa: E731
@@ -32,17 +32,17 @@ def commands(window: Window) -> tuple[Command, ...]:
         Command("save_as", "&File", "Save &as…", f.save_as, (Standard.SaveAs,)),
         Command("import", "&File", "&Import folder…", f.ask_import_folder, ("Ctrl+I",), line=True, icon="folder"),
         Command("import_files", "&File", "Import &files…", f.ask_import_files, ("Ctrl+Shift+I",)),
-        Command("annotate", "&File", "Import &annotation…", window.annotate, tip="Learn from an ELAN file what follows what"),
+        Command("annotate", "&File", "Import &annotation…", o.annotate, tip="Learn from an ELAN file what follows what"),
         Command("watch", "&File", "Follow changed &files", window.toggle_watching, checked=lambda: window.watcher.on,
                 tip="Clips that are exported again are read again, in place"),
         Command("find_missing", "&File", "Find missing files…", f.find_missing),
-        Command("character", "&File", "Choose &character…", window.choose_character, line=True, tip="The GLB that is drawn"),
+        Command("character", "&File", "Choose &character…", o.choose_character, line=True, tip="The GLB that is drawn"),
         Command("no_character", "&File", "Draw a stick figure",
                 lambda: d.edit("Draw a stick figure", lambda p: edits.set_character(p, None)),
                 enabled=lambda: d.project.character is not None),
-        Command("export", "&File", "&Export…", window.export, ("Ctrl+E",), line=True, icon="export", tip="JSON and GLB for engines",
+        Command("export", "&File", "&Export…", o.export, ("Ctrl+E",), line=True, icon="export", tip="JSON and GLB for engines",
                 enabled=lambda: any(True for _ in d.project.actions()) or any(m.states for m in d.project.manual.values())),
-        Command("render", "&File", "&Write performance…", window.render, ("Ctrl+R",), tip="Video with sound, contact sheet, or motion",
+        Command("render", "&File", "&Write performance…", o.render, ("Ctrl+R",), tip="Video with sound, contact sheet, or motion",
                 enabled=lambda: d.project.skeleton is not None),
         Command("quit", "&File", "&Quit", window.close, (Standard.Quit, "Ctrl+Q"), line=True),
         Command("undo", "&Edit", "&Undo", d.undo, (Standard.Undo,), icon="undo", enabled=d.undo_stack.canUndo),
@@ -51,15 +51,15 @@ def commands(window: Window) -> tuple[Command, ...]:
         Command("rename", "&Edit", "Re&name…", window.rename, ("F2",)),
         Command("copy", "&Edit", "&Copy properties", window.copy_properties, (Standard.Copy,), line=True,
                 enabled=lambda: len(s.actions) == 1 or drawn()),
-        Command("paste", "&Edit", "&Paste properties…", lambda: window.batch("paste"), (Standard.Paste,),
+        Command("paste", "&Edit", "&Paste properties…", lambda: o.batch("paste"), (Standard.Paste,),
                 tip="Give the selected actions what another one has",
                 enabled=lambda: s.mode == "manual"
                 or (bool(s.actions) and s.copied is not None and d.project.action(s.copied) is not None)),
-        Command("replace_clip", "&Edit", "Replace c&lip…", lambda: window.batch("replace"), tip="Another clip, the same settings",
+        Command("replace_clip", "&Edit", "Replace c&lip…", lambda: o.batch("replace"), tip="Another clip, the same settings",
                 enabled=lambda: bool(s.actions)),
-        Command("twins", "&Edit", "Make &mirrored twin", window.make_twins, tip="The same to the other side, as new clips and actions",
+        Command("twins", "&Edit", "Make &mirrored twin", o.make_twins, tip="The same to the other side, as new clips and actions",
                 enabled=some),
-        Command("repairs", "&Edit", "Repa&irs…", window.show_repairs, tip="What reading the files put right, and what to leave as it is",
+        Command("repairs", "&Edit", "Repa&irs…", o.repairs, tip="What reading the files put right, and what to leave as it is",
                 enabled=lambda: bool(d.project.clips)),
         Command("select_all", "&Edit", "Select &all", window.select_all, (Standard.SelectAll,), line=True),
         Command("find", "&Edit", "&Find clip", window.library.search.setFocus, (Standard.Find,)),
@@ -68,14 +68,14 @@ def commands(window: Window) -> tuple[Command, ...]:
         Command("new_stance", "&Graph", "&New stance…", c.new_stance, ("Ctrl+Shift+N",)),
     ]  # fmt: skip
     out.append(
-        Command("propose", "&Graph", "&Label clips…", window.propose, ("Ctrl+P",), tip="Propose what each clip is, by name and motion",
+        Command("propose", "&Graph", "&Label clips…", o.label, ("Ctrl+P",), tip="Propose what each clip is, by name and motion",
                 enabled=lambda: any(clip not in d.project.uses for clip in d.project.clips))
     )  # fmt: skip
     out.append(
         Command("use_times", "&Graph", "Use proposed &times", lambda: window.compatibility.use_proposed(s.actions),
                 tip="Begin and end where no jump shows", enabled=lambda: bool(s.actions) and window.compatibility.judged is not None)
     )  # fmt: skip
-    out.append(Command("patterns", "&Graph", "Name &patterns…", window.show_patterns, tip="What words in clip names mean"))
+    out.append(Command("patterns", "&Graph", "Name &patterns…", o.patterns, tip="What words in clip names mean"))
     for number, kind in enumerate(KINDS, 1):
         text = f"Label as &{number} {kind}"
         out.append(
@@ -92,7 +92,7 @@ def commands(window: Window) -> tuple[Command, ...]:
                     line=number == 1, enabled=lambda n=number: len(d.project.graphs[s.layer].stances) >= n)
         )  # fmt: skip
     out += [
-        Command("skeleton", "&Graph", "S&keleton…", window.show_skeleton, line=True, tip="Roles and body parts of the joints",
+        Command("skeleton", "&Graph", "S&keleton…", o.skeleton, line=True, tip="Roles and body parts of the joints",
                 enabled=lambda: d.project.skeleton is not None),
         Command("joint_maps", "&Graph", "&Joint maps…", lambda: f.retargeting.change_maps(s.clips),
                 tip="How clips of other skeletons were brought onto this one", enabled=lambda: bool(d.project.joint_maps)),
@@ -102,7 +102,7 @@ def commands(window: Window) -> tuple[Command, ...]:
         Command("forward", "&Play", "A frame forward", lambda: window.step(1), (".",)),
         Command("live", "&Play", "Li&ve", window.toggle_live, ("Ctrl+L",), tip="Let programs on this machine drive the character",
                 enabled=lambda: d.project.skeleton is not None, checked=lambda: window.performance.live is not None, line=True),
-        Command("mimic", "&Play", "Mimic &keypoints…", window.mimic, tip="Let the character do as a person before a camera did",
+        Command("mimic", "&Play", "Mimic &keypoints…", o.mimic, tip="Let the character do as a person before a camera did",
                 enabled=lambda: d.project.skeleton is not None and window.performance.live is None),
         Command("mute", "&Play", "&Mute", lambda: window.sound.set_muted(not window.sound.muted), ("Ctrl+M",),
                 checked=lambda: window.sound.muted),
@@ -115,16 +115,16 @@ def commands(window: Window) -> tuple[Command, ...]:
         Command("bones", "&View", "Show the &skeleton", window.preview.toggle_bones, ("B",), checked=lambda: window.preview.bones),
         Command("machine", "&View", "The &machine beside the graph", window.show_machine, ("M",), line=True,
                 checked=lambda: window._machine_wanted),
-        Command("compatibility", "&View", "&Compatibility…", window.show_compatibility, ("Ctrl+K",),
+        Command("compatibility", "&View", "&Compatibility…", o.compatibility, ("Ctrl+K",),
                 tip="Which clip enters and leaves which stance without a jump", enabled=lambda: bool(d.project.clips)),
         Command("big", "&View", "Only the &character", window.only_character, ("F11",)),
         Command("arrange", "&View", "&Put the panels back", window.docks.arrange),
         Command("theme", "&View", "&Light theme", window.toggle_theme, checked=lambda: s.theme == "light", line=True, icon="theme"),
-        Command("study", "&Study", "&Run a study…", window.run_study, tip="Lead a participant through a timing study"),
+        Command("study", "&Study", "&Run a study…", o.run_study, tip="Lead a participant through a timing study"),
         Command("count_operators", "&Study", "&Count operators", window.count_operators, checked=lambda: window.counting is not None,
                 tip="Count keys, pointings, buttons and drags as they happen"),
-        Command("keys", "&Help", "&Keyboard shortcuts", window.show_keys, ("F1",)),
-        Command("about", "&Help", "&About Metagraph", window.about),
+        Command("keys", "&Help", "&Keyboard shortcuts", o.keys, ("F1",)),
+        Command("about", "&Help", "&About Metagraph", o.about),
     ]  # fmt: skip
     return tuple(_of_meta(window, x) if x.id in META_ONLY else x for x in out)
 

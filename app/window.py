@@ -2,16 +2,14 @@
 
 from __future__ import annotations
 
-from pathlib import Path
 from typing import TYPE_CHECKING
 
 from PySide6.QtCore import QEvent, QPointF, QSettings, Qt, QTimer
-from PySide6.QtGui import QCloseEvent, QDragEnterEvent, QDropEvent, QKeySequence
+from PySide6.QtGui import QCloseEvent, QDragEnterEvent, QDropEvent
 from PySide6.QtWidgets import (
     QAbstractButton,
     QApplication,
     QComboBox,
-    QFileDialog,
     QMainWindow,
     QMessageBox,
     QSplitter,
@@ -23,6 +21,7 @@ from app.canvas.canvas import Canvas
 from app.canvas.drops import Drop, load_of
 from app.commands import commands
 from app.compatibility import Compatibility, merged
+from app.dialogs import Dialogs
 from app.docks import Docks
 from app.document import Document
 from app.figures import Figures
@@ -36,16 +35,14 @@ from app.notice import Notice
 from app.panels.library import LibraryPanel
 from app.panels.preview import PreviewPanel
 from app.performance import Performance
-from app.retargeting import clips_words
 from app.session import Session
 from app.sound import Sound
-from app.theme import KIND_MARKS, apply, theme
+from app.theme import apply, theme
 from app.thumbnails import Thumbnails
 from app.watching import Watcher
 from metagraph.formats.imports import Imported
-from metagraph.graph import edits
 from metagraph.graph.check import Problem, check
-from metagraph.graph.model import KINDS, Layer, Project
+from metagraph.graph.model import Layer, Project
 
 if TYPE_CHECKING:
     from app.study.counting import Counting
@@ -93,6 +90,7 @@ class Window(QMainWindow):
         self.docks.fill("library", self.library)
         self.docks.fill("preview", self.preview)
         self.manual = Place(self)
+        self.dialogs = Dialogs(self)
         self.actions = Actions(self, commands(self))
         self.canvas.row_actions = [self.actions[name] for name in ("rename", "copy", "paste", "replace_clip", "twins")]
         self.library.row_actions = [self.actions[name] for name in ("twins", "repairs")]
@@ -101,7 +99,7 @@ class Window(QMainWindow):
         self.addToolBar(self.header)
         self.header.problem_button.clicked.connect(lambda: self.show_dock("problems"))
         self.header.machine_button.clicked.connect(self.show_machine)
-        self.header.export_button.clicked.connect(self.export)
+        self.header.export_button.clicked.connect(self.dialogs.export)
         self.job_line = JobLine(self.jobs, self)
         self.statusBar().addPermanentWidget(self.job_line)
         self.job_line.told.connect(self.tell)
@@ -149,7 +147,7 @@ class Window(QMainWindow):
         self.timeline = TimelinePanel(self.document, self.session, self.performance, self)
         self.problems_panel = ProblemsPanel(self.session, self)
         self.models = ModelsPanel(self.document, self.session, self.jobs, self)
-        self.models.learn_wanted.connect(self.annotate)
+        self.models.learn_wanted.connect(self.dialogs.annotate)
         self.lines = LinesPanel(self.document, self.session, self.performance, self.jobs, self)
         self.lines.told.connect(self.tell)
         self.machine = MachinePanel(self.document, self.session, self)
@@ -218,11 +216,11 @@ class Window(QMainWindow):
         self.compatibility.changed.connect(self._show_problems)
         self.sound.told.connect(self.tell)
         self.files.report.connect(self._report)
-        self.files.repaired.connect(self.show_repairs)
+        self.files.repaired.connect(self.dialogs.repairs)
         self.files.noticed.connect(self._repaired)
         d.loaded.connect(self.notice.clear)
         self.files.imported.connect(self._imported)
-        self.files.annotation_dropped.connect(self.annotate)
+        self.files.annotation_dropped.connect(self.dialogs.annotate)
         self.files.opened.connect(self._opened)
         self._check_timer = QTimer(self, singleShot=True, interval=CHECK_AFTER)
         self._check_timer.timeout.connect(self._check)
@@ -343,7 +341,7 @@ class Window(QMainWindow):
 
     def _repaired(self, title: str, clips: tuple[str, ...], lines: list[str]) -> None:
         self.notice.tell("Some clips were repaired: look…", "What reading them put right, and what to leave as it is in the files",
-                         lambda: self.show_repairs(title, clips, tuple(lines)))  # fmt: skip
+                         lambda: self.dialogs.repairs(title, clips, tuple(lines)))  # fmt: skip
 
     def _report(self, title: str, lines: list[str]) -> None:
         box = QMessageBox(QMessageBox.Icon.Information, "Metagraph", title, QMessageBox.StandardButton.Ok, self)
@@ -376,7 +374,7 @@ class Window(QMainWindow):
         if len(self.session.clips) == 1:
             self.library.rename(self.session.clips[0])
         elif len(self.session.actions) > 1:
-            self.batch("rename")
+            self.dialogs.batch("rename")
         elif len(self.session.actions) == 1 and self.ready:
             self.show_dock("properties")
             self.properties.name.setFocus()
@@ -384,58 +382,11 @@ class Window(QMainWindow):
         else:
             self.canvas.rename_stance()
 
-    def batch(self, what: str) -> None:
-        """Edit the selected actions together: "rename", "paste" or "replace"."""
-        if what == "paste" and self.manual.takes("paste"):
-            return
-        from app.panels import batch
-
-        actions, copied = self.session.actions, self.session.copied
-        if what == "paste" and copied is not None:
-            batch.PasteDialog(self.document, copied, actions, self).open()
-        elif what != "paste" and actions:
-            kind = batch.RenameDialog if what == "rename" else batch.ReplaceDialog
-            kind(self.document, actions, self).open()
-
-    def make_twins(self) -> None:
-        """Make left/right twins of the selected actions or clips."""
-        from app.twins import make_twins
-
-        make_twins(self)
-
-    def show_repairs(self, title: str = "", clips: tuple[str, ...] = (), lines: tuple[str, ...] = ()) -> None:
-        """Show what reading clips put right: those given, else the selected ones, else all."""
-        from app.panels.import_report import RepairsDialog
-
-        chosen = clips or self.session.clips or tuple(a.clip for a in self.session.selected_actions()) or tuple(self.document.project.clips)
-        words = title or f"Repairs of {clips_words(len(set(chosen)))}"
-        RepairsDialog(self.document, self.jobs, words, dict.fromkeys(chosen), lines, self).show()
-
     def copy_properties(self) -> None:
         """Remember the selected action, so that others can be given its properties."""
         if not self.manual.takes("copy"):
             self.session.copied = self.session.actions[0]
         self.actions.refresh()
-
-    def propose(self) -> None:
-        from app.panels.review import ReviewDialog
-
-        ReviewDialog(self.document, self.session, self.jobs, self.figures, self.learned, self).show()
-
-    def show_compatibility(self) -> None:
-        """Show which clip can enter and leave which stance."""
-        from app.panels.matrix import MatrixDialog
-
-        dialog = self.findChild(MatrixDialog) or MatrixDialog(self.document, self.session, self.compatibility, self.jobs, self)
-        dialog.show()
-        dialog.raise_()
-        dialog.activateWindow()
-
-    def show_patterns(self) -> None:
-        """Show what words in clip names mean, and what was learned."""
-        from app.panels.patterns import PatternsDialog
-
-        PatternsDialog(self.document, self.session, self.learned, self).open()
 
     def toggle_watching(self) -> None:
         """Begin or end reading changed clip files anew."""
@@ -469,58 +420,6 @@ class Window(QMainWindow):
         if ident is not None:
             self.session.show_context(ident)
 
-    def choose_character(self) -> None:
-        start = str(self.document.folder or Path.home())
-        name, _ = QFileDialog.getOpenFileName(self, "Choose the character to draw", start, "Characters (*.glb *.gltf *.vrm)")
-        if name:
-            from metagraph.formats.store import relative
-
-            folder = self.document.folder
-            path = relative(Path(name), folder) if folder is not None else Path(name).as_posix()
-            from metagraph.errors import FileError
-            from metagraph.formats.gltf import morph_targets
-            from metagraph.graph.face import with_morphs
-
-            try:
-                morphs = morph_targets(name)
-            except FileError as error:
-                self.tell(str(error))
-                return
-            self.document.edit("Choose character", lambda p: with_morphs(edits.set_character(p, path), morphs))
-
-    def show_skeleton(self) -> None:
-        from app.panels.skeleton import SkeletonDialog
-
-        SkeletonDialog(self.document, self.session, self).open()
-
-    def annotate(self, path: str = "") -> None:
-        """Import an annotation; without a path it is asked for."""
-        from app.panels.annotate import open_annotation
-
-        open_annotation(self, path)
-
-    def mimic(self, path: str = "") -> None:
-        """Mimic keypoints; without a path they are asked for."""
-        from app.panels.mimic import open_keypoints
-
-        open_keypoints(self, path)
-
-    def export(self) -> None:
-        from app.panels.export import ExportDialog
-
-        ExportDialog(self.document, self.jobs, self, self.session.mode == "manual").open()
-
-    def render(self) -> None:
-        from app.panels.render import RenderDialog
-
-        RenderDialog(self.performance, self.session, self.jobs, self).open()
-
-    def run_study(self) -> None:
-        """Lead a participant through a timing study; which and who is asked."""
-        from app.study.chooser import run_study
-
-        run_study(self)
-
     counting: Counting | None = None
 
     def count_operators(self) -> None:
@@ -533,25 +432,6 @@ class Window(QMainWindow):
             self.counting.stop()
             self.counting = None
         self.actions.refresh()
-
-    def show_keys(self) -> None:
-        rows = []
-        for command in self.actions.commands:
-            keys = ", ".join(k.toString(QKeySequence.SequenceFormat.NativeText) for k in self.actions[command.id].shortcuts())
-            if keys and not command.id.startswith("stance_"):
-                rows.append(f"<tr><td style='padding-right:24px'>{command.text.replace('&', '')}</td><td><b>{keys}</b></td></tr>")
-        rows.append("<tr><td>Stance 1 to 9</td><td><b>Ctrl+1 … Ctrl+9</b></td></tr>")
-        box = QMessageBox(
-            QMessageBox.Icon.NoIcon, "Keyboard shortcuts", f"<table>{''.join(rows)}</table>", QMessageBox.StandardButton.Ok, self
-        )
-        box.open()
-
-    def about(self) -> None:
-        from metagraph import __version__
-
-        kinds = " &nbsp; ".join(f"{KIND_MARKS[k]} {k}" for k in KINDS)
-        text = f"<h3>Metagraph {__version__}</h3><p>Drop clips; the state machine draws itself.</p><p>{kinds}</p>"
-        QMessageBox.about(self, "About Metagraph", text)
 
     # --- the window itself
 

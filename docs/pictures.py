@@ -180,7 +180,7 @@ def labelling() -> None:
     out = window()
     out.files.open(PRACTICE, template=True)  # type: ignore[attr-defined]
     wait(20000, lambda: bool(out.document.project.clips))  # type: ignore[attr-defined]
-    out.propose()  # type: ignore[attr-defined]
+    out.dialogs.label()  # type: ignore[attr-defined]
     dialog = out.findChildren(ReviewDialog)[-1]
     wait(20000, lambda: dialog.current is not None)
     dialog.accept_sure()

@@ -139,7 +139,7 @@ def test_a_file_that_is_no_annotation_is_told_and_nothing_opens(drive, tmp_path,
     broken, told = tmp_path / "talk.eaf", []
     broken.write_text("<svg/>")
     monkeypatch.setattr(QMessageBox, "warning", lambda *a, **k: told.append(a[2]))
-    drive.window.annotate(str(broken))
+    drive.window.dialogs.annotate(str(broken))
     drive.wait(lambda: bool(told))
     assert "talk.eaf, line 1: its outermost element is 'svg'" in told[0]
     assert drive.window.findChild(AnnotateDialog) is None

@@ -7,7 +7,18 @@ from dataclasses import replace
 import pytest
 from PySide6.QtCore import Qt
 from PySide6.QtTest import QTest
-from PySide6.QtWidgets import QAbstractButton, QApplication, QComboBox, QFileDialog, QInputDialog, QLineEdit, QMessageBox, QSlider, QSpinBox
+from PySide6.QtWidgets import (
+    QAbstractButton,
+    QApplication,
+    QComboBox,
+    QDialog,
+    QFileDialog,
+    QInputDialog,
+    QLineEdit,
+    QMessageBox,
+    QSlider,
+    QSpinBox,
+)
 
 from metagraph.formats.bvh import write_bvh
 from metagraph.formats.store import save_project
@@ -628,3 +639,14 @@ def test_a_missing_clip_can_be_looked_at_without_harm(toys):
     drive.session.jump(clip=action.clip)
     assert "missing" in drive.properties.clip_words.text()
     drive.pause(60)
+
+
+@pytest.mark.parametrize("command", ["keys", "patterns", "skeleton", "compatibility", "render", "export", "repairs"])
+def test_a_dialog_opens_over_the_window_and_closes(toys, command):
+    drive = toys
+    before = set(drive.window.findChildren(QDialog))
+    drive.actions[command].trigger()
+    drive.wait(lambda: any(d.isVisible() for d in drive.window.findChildren(QDialog) if d not in before))
+    for dialog in drive.window.findChildren(QDialog):
+        dialog.close()
+    drive.pause(30)

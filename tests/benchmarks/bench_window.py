@@ -286,7 +286,7 @@ def proposing() -> None:
     window.document.edit("Place", lambda _: placing[0])
     judged = window.compatibility
     phase("looking for jumps", 0.5, lambda: judged.judged is not None and judged.judged.measured["arms"].labelled > 0)
-    window.show_compatibility()
+    window.dialogs.compatibility()
     dialog = next(w for w in QApplication.topLevelWidgets() if type(w).__name__ == "MatrixDialog")
     phase("comparing clips", 0.0, lambda: dialog.model.rows is not None and dialog.model.rowCount() == CLIPS)
     bar = dialog.table.verticalScrollBar()
