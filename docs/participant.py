@@ -33,6 +33,7 @@ NAMES = {
 }
 COLORS = {"meta": "#2a9d8f", "manual": "#e09f3e", "manual, every connection": "#c1554b"}
 OPERATORS = "KPBHM"
+TICKS = {1: "1 min", 3: "3 min", 10: "10 min", 30: "30 min", 60: "1 h", 180: "3 h", 600: "10 h"}
 
 
 ABOVE = """# What each way of authoring costs an expert's hands
@@ -129,22 +130,21 @@ def plot(rows: Sequence[Mapping[str, Any]]) -> str:
     sizes = sorted({r["clips"] for r in rows})
     minutes = [r["predicted"] / 60 for r in rows]
     x1, x2 = math.log(min(sizes) * 0.9), math.log(max(sizes) * 1.1)
-    y1, y2 = math.floor(math.log10(min(minutes))), math.ceil(math.log10(max(minutes)))
+    y1, y2 = math.log10(0.7 * min(minutes)), math.log10(1.6 * max(minutes))
 
     def x(clips: float) -> float:
         return left + (wide - left - right) * (math.log(clips) - x1) / max(1e-9, x2 - x1)
 
     def y(value: float) -> float:
-        return high - bottom - (high - top - bottom) * (math.log10(value) - y1) / max(1, y2 - y1)
+        return high - bottom - (high - top - bottom) * (math.log10(value) - y1) / (y2 - y1)
 
     gray = "#858d99"
     parts = []
-    for power in range(y1, y2 + 1):
-        at = y(10.0**power)
-        words = f"{10**power} min" if power < 2 else f"{10**power / 60:.1f} h"
-        words = f"{10.0**power:g} min" if power < 0 else words
-        parts.append(f'<line x1="{left}" x2="{wide - right}" y1="{at:.1f}" y2="{at:.1f}" stroke="{gray}" stroke-opacity=".3"/>')
-        parts.append(f'<text x="{left - 8}" y="{at + 4:.1f}" text-anchor="end" fill="{gray}">{words}</text>')
+    for value, words in TICKS.items():
+        if y1 <= math.log10(value) <= y2:
+            at = y(value)
+            parts.append(f'<line x1="{left}" x2="{wide - right}" y1="{at:.1f}" y2="{at:.1f}" stroke="{gray}" stroke-opacity=".3"/>')
+            parts.append(f'<text x="{left - 8}" y="{at + 4:.1f}" text-anchor="end" fill="{gray}">{words}</text>')
     for size in sizes:
         parts.append(f'<text x="{x(size):.1f}" y="{high - bottom + 20}" text-anchor="middle" fill="{gray}">{size}</text>')
     parts.append(f'<text x="{(left + wide - right) / 2}" y="{high - 6}" text-anchor="middle" fill="{gray}">clips</text>')
@@ -157,9 +157,9 @@ def plot(rows: Sequence[Mapping[str, Any]]) -> str:
         parts.append(f'<polyline points="{way}" fill="none" stroke="{color}" stroke-width="2.5"/>')
         parts += [f'<circle cx="{a:.1f}" cy="{b:.1f}" r="4" fill="{color}"/>' for a, b in points]
         last = mine[-1]
-        name = NAMES[condition].split(", ")
-        for n, words in enumerate([name[0], *name[1:], time_words(last["predicted"])]):
-            parts.append(f'<text x="{points[-1][0] + 14:.1f}" y="{points[-1][1] + 4 + 15 * n:.1f}" fill="{color}">{words}</text>')
+        *first, words = NAMES[condition].split(", ")
+        for n, line in enumerate([*first, f"{words}, {time_words(last['predicted'])}"]):
+            parts.append(f'<text x="{points[-1][0] + 14:.1f}" y="{points[-1][1] + 4 + 15 * n:.1f}" fill="{color}">{line}</text>')
     return (
         f'<svg xmlns="http://www.w3.org/2000/svg" viewBox="0 0 {wide} {high}" font-family="sans-serif" font-size="12" role="img" '
         f'aria-label="Predicted time of both conditions over the number of clips">{"".join(parts)}</svg>\n'
