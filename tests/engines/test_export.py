@@ -214,7 +214,8 @@ def document_of(project: Project, expanded: bool = False) -> bytes:
     return msgspec.json.encode(to_document(project, "x.glb", unique_names([e.name for e in used]), expanded))
 
 
-@settings(max_examples=60, deadline=None, suppress_health_check=[HealthCheck.function_scoped_fixture])
+# Many random projects have no clips yet, and are passed over.
+@settings(max_examples=60, deadline=None, suppress_health_check=[HealthCheck.function_scoped_fixture, HealthCheck.filter_too_much])
 @given(projects(14), st.booleans())
 def test_any_graph_validates_and_comes_back(tmp_path: Path, project: Project, expanded: bool) -> None:
     assume(project.skeleton is not None)
