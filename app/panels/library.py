@@ -195,10 +195,12 @@ class CardDelegate(QStyledItemDelegate):
             painter.setPen(QColor(t.warning))
             painter.drawText(box, Qt.AlignmentFlag.AlignCenter | Qt.TextFlag.TextWordWrap, "file\nmissing")
         kinds = list(dict.fromkeys(a.kind for a in project.uses.get(entry.id, ())))
-        for place, kind in enumerate(kinds):
-            height = (rect.height() - 12) / len(kinds)
+        drawn = entry.id in project.drawn and not kinds  # a state of a machine is of no kind
+        marks = [QColor(t.dim)] if drawn else [t.fill(kind) for kind in kinds]
+        for place, mark in enumerate(marks):
+            height = (rect.height() - 12) / len(marks)
             painter.setPen(Qt.PenStyle.NoPen)
-            painter.setBrush(t.fill(kind))
+            painter.setBrush(mark)
             painter.drawRoundedRect(rect.left() + 3, round(rect.top() + 6 + place * height), 4, round(height - 1), 2, 2)
         font = QFont(option.font)  # type: ignore[attr-defined]
         font.setPixelSize(12)
@@ -518,7 +520,7 @@ class LibraryPanel(QWidget):
         self._following = False
 
     def _follow(self, before: Project, after: Project) -> None:
-        if before.clips is not after.clips or before.graphs is not after.graphs:
+        if before.clips is not after.clips or before.graphs is not after.graphs or before.manual is not after.manual:
             rule = self.proxy.filter
             if rule.labelled is not None or rule.layer or rule.kind:
                 self._following = True  # clips leaving the view are not deselected by hand

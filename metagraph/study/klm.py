@@ -8,12 +8,8 @@ what is fully anticipated by the operator before it (rule 1), once for a unit su
 
 from __future__ import annotations
 
-from collections import Counter
 from collections.abc import Mapping
 from dataclasses import dataclass, fields
-from typing import Literal
-
-Operator = Literal["K", "P", "B", "H", "M", "R"]
 
 
 @dataclass(frozen=True)
@@ -39,8 +35,3 @@ def predicted(operators: Mapping[str, float], times: Times = USUAL) -> float:
     if odd:
         raise ValueError(f"'{odd[0]}' is no operator; there are {', '.join(known)}")
     return sum(known[name] * count for name, count in operators.items())
-
-
-def tally(sequence: str) -> Counter[str]:
-    """Return how many of each operator a sequence has, as the field writes it: 'M K K H P B B'."""
-    return Counter(sequence.split())

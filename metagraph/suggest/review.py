@@ -10,7 +10,7 @@ from collections import Counter
 from collections.abc import Collection, Mapping
 from dataclasses import dataclass, field, replace
 from statistics import median
-from typing import Any, Literal, get_args
+from typing import Any, Literal
 
 from metagraph.graph import edits
 from metagraph.graph.edits import EditError
@@ -22,7 +22,6 @@ from metagraph.suggest.proposal import Place, Proposal, Proposals, plain
 from metagraph.suggest.propose import waiting
 
 Field = Literal["kind", "layer", "stance", "end_stance", "limb", "tags", "timing"]
-FIELDS: tuple[Field, ...] = get_args(Field)
 DECIDING: tuple[Field, ...] = ("kind", "layer", "stance", "end_stance", "limb")  # what has a few values to choose from
 WORDS: tuple[Field, ...] = ("kind", "layer", "limb", "tags")
 SAID = "you said so"

@@ -12,7 +12,7 @@ from PySide6.QtTest import QTest
 from PySide6.QtWidgets import QInputDialog
 
 from metagraph.formats.store import open_project
-from metagraph.study.klm import predicted, tally
+from metagraph.study.klm import predicted
 from metagraph.suggest.review import DECIDING
 
 pytestmark = [pytest.mark.window, pytest.mark.gl]
@@ -85,7 +85,7 @@ def test_the_practice_project_is_labelled_with_the_keyboard_alone(practice, trut
     """Stances and whatever is not sure are looked at one by one and corrected where they are wrong; the sure ones are accepted at once."""
     drive, hands = practice, Counter()
     drive.key(K.Key_P, Qt.KeyboardModifier.ControlModifier)
-    hands.update(tally("M K K"))
+    hands.update(["M", "K", "K"])
     from app.panels.review import ReviewDialog
 
     drive.wait(lambda: bool(drive.window.findChildren(ReviewDialog)))
@@ -98,7 +98,7 @@ def test_the_practice_project_is_labelled_with_the_keyboard_alone(practice, trut
         p = dialog.review.found.proposals[clip]
         if p.kind.value != "stance" and p.confidence >= dialog.queue.least and not p.conflicts:
             press(dialog, K.Key_A)
-            hands.update(tally("M K"))
+            hands.update(["M", "K"])
             continue
         playing(drive, dialog)
         looked += 1
@@ -111,10 +111,10 @@ def test_the_practice_project_is_labelled_with_the_keyboard_alone(practice, trut
                 steps = (rows.index(name) - rows.index(dialog.row)) % len(rows)
                 press(dialog, *[K.Key_Down] * steps, Qt.Key(K.Key_1 + choices.index(wanted)))
                 assert dialog.review.value(clip, name) == wanted
-                hands.update(tally("M K" + " K" * steps))
+                hands.update(("M K" + " K" * steps).split())
                 corrected += 1
         press(dialog, K.Key_Return)
-        hands.update(tally("M K"))
+        hands.update(["M", "K"])
         drive.pause(1)
     assert not dialog.work.waiting()
     press(dialog, K.Key_Return)  # done

@@ -2,9 +2,11 @@
 
 from __future__ import annotations
 
+from collections import Counter
+
 import pytest
 
-from metagraph.study.klm import Times, predicted, tally
+from metagraph.study.klm import Times, predicted
 
 
 def test_nothing_takes_no_time() -> None:
@@ -12,11 +14,11 @@ def test_nothing_takes_no_time() -> None:
 
 
 def test_a_command_by_keys_is_one_thought_and_two_keys() -> None:
-    assert predicted(tally("M K K")) == pytest.approx(1.35 + 2 * 0.28)
+    assert predicted(Counter(["M", "K", "K"])) == pytest.approx(1.35 + 2 * 0.28)
 
 
 def test_a_drag_is_a_reach_two_pointings_and_a_button_down_and_up() -> None:
-    assert predicted(tally("M H P B P B")) == pytest.approx(1.35 + 0.4 + 2 * 1.1 + 2 * 0.1)
+    assert predicted(Counter(["M", "H", "P", "B", "P", "B"])) == pytest.approx(1.35 + 0.4 + 2 * 1.1 + 2 * 0.1)
 
 
 def test_waiting_counts_in_seconds() -> None:

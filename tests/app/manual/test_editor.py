@@ -394,3 +394,17 @@ def test_what_was_only_drawn_is_exported_by_the_command_too(drawn: Hand, tmp_pat
     assert "differs: " in capsys.readouterr().err
     written = read_export(next((tmp_path / "out").glob("*.json")))
     assert {a.name for a in written.actions()} == {"rest loop", "rest wave rt"}
+
+
+def test_a_clip_that_was_drawn_leaves_those_that_are_to_do(hand: Hand) -> None:
+    drive = hand.drive
+    action = next(a for a in drive.document.project.actions() if a.kind == "gesture")
+    drive.document.edit("Remove", lambda p: edits.remove_actions(p, [a.id for a in p.uses[action.clip]]))
+    drive.library.chips["unlabelled"].click()
+    before, rows = drive.library.chips["unlabelled"].text(), drive.library.proxy.rowCount()
+    hand.canvas.place((action.clip,), QPointF(200, 200))
+    drive.wait(lambda: drive.library.proxy.rowCount() == rows - 1)
+    assert drive.library.chips["unlabelled"].text() == f"Unlabelled {rows - 1}" != before
+    drive.actions["undo"].trigger()
+    drive.wait(lambda: drive.library.proxy.rowCount() == rows)
+    assert drive.library.chips["unlabelled"].text() == before
