@@ -17,6 +17,7 @@ from metagraph.formats.fields import Data, DataError, fill, floats, get, items, 
 from metagraph.formats.manual_data import manual_data, manual_from
 from metagraph.formats.takes import REPAIRS
 from metagraph.graph.asks import words_of
+from metagraph.graph.conversation import Conversation
 from metagraph.graph.model import (
     KINDS,
     LAYERS,
@@ -129,7 +130,7 @@ def markov_data(model: Markov) -> Data:
 # What the life layers, asks and performances are made of describes itself; written and read by type.
 STRUCTS: dict[str, Any] = {
     "life": Life, "face": Face, "points": dict[str, Point], "lines": dict[str, Line], "performances": dict[str, Performance],
-    "tiers": dict[str, str], "labels": dict[str, str], "joint_maps": dict[str, JointMap],
+    "conversations": dict[str, Conversation], "tiers": dict[str, str], "labels": dict[str, str], "joint_maps": dict[str, JointMap],
 }  # fmt: skip
 
 

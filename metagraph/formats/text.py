@@ -68,7 +68,7 @@ def to_text(data: Data) -> str:
         elif isinstance(value, dict) and value and indent == "":
             lines.append(f"{_scalar(key)}:")
             for inner, content in value.items():
-                if isinstance(content, dict) and key in ("layers", "markov", "performances", "joint_maps", "manual"):
+                if isinstance(content, dict) and key in ("layers", "markov", "performances", "conversations", "joint_maps", "manual"):
                     lines.append(f"  {_scalar(inner)}:")
                     for name, part in content.items():
                         section(name, part, "    ")

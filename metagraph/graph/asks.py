@@ -151,10 +151,12 @@ AnyAsk = Union[Gesture, Fidget, Play, Go, Change, Nod, Shake, Look, Blink, Say, 
 
 class Line(Struct, frozen=True, kw_only=True, omit_defaults=True, forbid_unknown_fields=True):
     """A line of dialogue, which an agent calls by its id. audio, phones: paths relative to the project file of a sound file and
-    of a Praat TextGrid with phones or words. duration: seconds, where there is no audio. asks: times from the line's start."""
+    of a Praat TextGrid with phones or words. channel: which of the sound's channels is the line's, from 0; null for all mixed.
+    duration: seconds, where there is no audio. asks: times from the line's start."""
 
     text: Annotated[str, Meta(max_length=20000)] = ""
     audio: str | None = None
+    channel: Annotated[int, Meta(ge=0, le=63)] | None = None
     phones: str | None = None
     duration: Seconds | None = None
     asks: tuple[AnyAsk, ...] = ()

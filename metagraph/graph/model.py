@@ -12,6 +12,7 @@ from types import MappingProxyType
 from typing import Any
 
 from metagraph.graph.asks import Line, Performance, Point
+from metagraph.graph.conversation import Conversation
 from metagraph.graph.life import Face, Life
 from metagraph.graph.manual import Link, Manual, State
 from metagraph.graph.words import KINDS, LAYERS, LIMBS, MODES, PARTS, Kind, Layer, Limb, Mode, Part
@@ -305,9 +306,9 @@ class Project:
     """Everything that is saved. roles: corrections, role -> joint name. parts: corrections, joint name -> body part.
 
     character: path of the GLB to draw, relative to the project file, or None for a stick figure. points: named places to look
-    at, metres. lines: the dialogue an agent calls by id. performances: those kept, by id. tiers: annotation tier -> what it
-    was last read as. joint_maps: how clips of other skeletons are retargeted, by `joint_map.fingerprint` of theirs.
-    manual: state machines drawn by hand, of the layers that have one.
+    at, metres. lines: the dialogue an agent calls by id. performances, conversations: those kept, by id. tiers: annotation
+    tier -> what it was last read as. joint_maps: how clips of other skeletons are retargeted, by `joint_map.fingerprint` of
+    theirs. manual: state machines drawn by hand, of the layers that have one.
     voices: line -> its analysed sound (`playback.life.voice.Voice`), as far as read; never saved.
     body: what of it breathes and looks (`playback.life.body.Body`) as an export says; None to find it. Never saved.
     """
@@ -327,6 +328,7 @@ class Project:
     points: Mapping[str, Point] = field(default_factory=dict)
     lines: Mapping[str, Line] = field(default_factory=dict)
     performances: Mapping[str, Performance] = field(default_factory=dict)
+    conversations: Mapping[str, Conversation] = field(default_factory=dict)
     tiers: Mapping[str, str] = field(default_factory=dict)
     labels: Mapping[str, str] = field(default_factory=dict)
     joint_maps: Mapping[str, JointMap] = field(default_factory=dict)

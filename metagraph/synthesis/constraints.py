@@ -4,31 +4,19 @@ from __future__ import annotations
 
 from collections.abc import Collection, Sequence
 from dataclasses import dataclass
-from typing import Any, Literal, get_args
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
+from metagraph.graph.conversation import SOUNDS, Segment, Sound
 from metagraph.suggest.tracks import RATE
 from metagraph.synthesis.states import States, SynthesisError
 
 Array = NDArray[Any]
 
-Sound = Literal["idle", "clause", "response", "hesitation"]
-SOUNDS: tuple[Sound, ...] = get_args(Sound)
 TOLERANCE = 0.1  # seconds, in the paper
 ALL = (1 << len(SOUNDS)) - 1
-
-
-@dataclass(frozen=True, slots=True)
-class Segment:
-    """A stretch of one character's conversation. kind: a phonemic clause or a response of its own, a hesitation of the partner, or idle.
-    start, end: seconds. peak: of a clause, where its stress is, seconds; None where there is none."""
-
-    kind: Sound
-    start: float
-    end: float
-    peak: float | None = None
 
 
 @dataclass(frozen=True, eq=False)

@@ -16,10 +16,10 @@ from typing import Any, Literal
 import numpy as np
 from numpy.typing import NDArray
 
+from metagraph.graph.conversation import Segment, Sound
 from metagraph.motion import rotation
 from metagraph.motion.clip import Clip
 from metagraph.motion.roles import find_roles
-from metagraph.synthesis.constraints import Segment, Sound
 
 Array = NDArray[Any]
 Part = Literal["left_hand", "right_hand", "head"]

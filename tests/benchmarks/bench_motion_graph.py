@@ -20,7 +20,8 @@ import numpy as np
 ROOT = Path(__file__).resolve().parents[2]
 sys.path.insert(0, str(ROOT))
 
-from metagraph.synthesis.constraints import SOUNDS, Heard, Segment, wanted  # noqa: E402
+from metagraph.graph.conversation import SOUNDS, Segment  # noqa: E402
+from metagraph.synthesis.constraints import Heard, wanted  # noqa: E402
 from metagraph.synthesis.graph import MotionGraph, Threshold, build, threshold  # noqa: E402
 from metagraph.synthesis.search import best, greedy  # noqa: E402
 from metagraph.synthesis.states import States, key_states, states_of, with_velocity  # noqa: E402

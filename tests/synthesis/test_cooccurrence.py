@@ -10,10 +10,10 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from metagraph.formats.clips import read_clips
+from metagraph.graph.conversation import Segment
 from metagraph.motion import rotation
 from metagraph.motion.clip import Clip
 from metagraph.motion.roles import find_roles
-from metagraph.synthesis.constraints import Segment
 from metagraph.synthesis.cooccurrence import activation, movement, speeds, table, wilson, windows
 
 CLIPS = Path(__file__).resolve().parents[2] / "sample_clips" / "clips"

@@ -9,7 +9,8 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from metagraph.synthesis.constraints import ALL, SOUNDS, Heard, Segment, Wanted, changes, heard, wanted
+from metagraph.graph.conversation import SOUNDS, Segment
+from metagraph.synthesis.constraints import ALL, Heard, Wanted, changes, heard, wanted
 from metagraph.synthesis.graph import MotionGraph, Threshold
 from metagraph.synthesis.search import Path, best, greedy
 from metagraph.synthesis.states import States, SynthesisError

@@ -1,0 +1,120 @@
+"""A conversation of two: what each says and when, in segments that the body answers to (Yang et al. 2020, section 4.2).
+
+A side keeps what its own speech is made of: phonemic clauses, listener responses and its own hesitation pauses, one after another.
+What a character moves with is another thing, `heard_by`: its own clauses and responses, and the hesitations of its partner.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from typing import Annotated, Literal, get_args
+
+import msgspec
+from msgspec import Meta, Struct
+
+from metagraph.graph.asks import Seconds
+
+Sound = Literal["idle", "clause", "response", "hesitation"]
+SOUNDS: tuple[Sound, ...] = get_args(Sound)
+Spoken = Literal["clause", "response", "hesitation"]
+SPOKEN: tuple[Spoken, ...] = get_args(Spoken)
+SHORTEST = 0.04  # seconds a segment lasts at least
+_Name = Annotated[str, Meta(max_length=200)]
+_Share = Annotated[float, Meta(ge=0, le=1)]
+
+
+class Word(Struct, frozen=True, kw_only=True, omit_defaults=True, forbid_unknown_fields=True):
+    """A word as it was transcribed. start, end: seconds."""
+
+    text: Annotated[str, Meta(max_length=1000)]
+    start: Seconds
+    end: Seconds
+
+
+class Segment(Struct, frozen=True, omit_defaults=True, forbid_unknown_fields=True):
+    """A stretch of a conversation. kind: a phonemic clause, a listener response, a hesitation pause, or idle, which is never kept: it is
+    what lies between. start, end: seconds. peak: of a clause, where its stress is, seconds; None where there is none. text: its words."""
+
+    kind: Sound
+    start: float
+    end: float
+    peak: float | None = None
+    text: str = ""
+
+
+class Rates(Struct, frozen=True, kw_only=True, omit_defaults=True, forbid_unknown_fields=True):
+    """How often a movement goes with what is said, 0..1: a gesture of the hands with a clause, a nod with a response, a nod with the
+    partner's hesitation. The defaults are what the female actor of Yang et al. did (table 1)."""
+
+    clause: _Share = 0.75
+    response: _Share = 0.58
+    hesitation: _Share = 0.30
+
+
+class Side(Struct, frozen=True, kw_only=True, omit_defaults=True, forbid_unknown_fields=True):
+    """One of the two. audio: path of its sound, relative to the project file; channel: which of that file's channels is its own, from 0;
+    None for all of them mixed. project: path of another project whose graph moves this side, None for this one. words: as transcribed,
+    by start. segments: of its own speech, by start, never overlapping, none idle."""
+
+    name: _Name = ""
+    audio: str | None = None
+    channel: Annotated[int, Meta(ge=0, le=63)] | None = None
+    project: str | None = None
+    words: tuple[Word, ...] = ()
+    segments: tuple[Segment, ...] = ()
+    rates: Rates = Rates()
+
+    def __post_init__(self) -> None:
+        end = 0.0
+        for s in self.segments:
+            if s.kind == "idle" or not end <= s.start < s.end <= 1e6 or not s.start <= (s.start if s.peak is None else s.peak) <= s.end:
+                raise ValueError(
+                    f"segment '{s.kind}' at {s.start:g} s: segments follow each other, end after they start, and have their peak inside"
+                )
+            end = s.end
+
+
+# What short sounds mean; compared without case and punctuation. "%hesitation" is what IBM's transcripts write.
+RESPONSES = (
+    "yes", "yeah", "yep", "yup", "mhm", "mm-hmm", "mm", "uh-huh", "um-hmm", "um hum", "ah", "ah ha", "aha", "oh", "okay", "ok", "right",
+    "sure", "wow", "really", "exactly", "absolutely", "totally", "i see", "i know", "of course", "got it", "cool", "great", "nice", "true",
+)  # fmt: skip
+HESITATIONS = (
+    "%hesitation", "uh", "uhh", "um", "umm", "er", "erm", "ehm", "eh", "hm", "hmm", "huh", "well", "you know", "i mean", "like",
+    "let me see",
+)  # fmt: skip
+
+
+class Conversation(Struct, frozen=True, kw_only=True, omit_defaults=True, forbid_unknown_fields=True):
+    """Two who talk with each other. length: seconds. responses, hesitations: words and short phrases that make a segment one. distance:
+    metres between the two, who face each other. seed: of which clauses get a gesture."""
+
+    name: _Name
+    length: Annotated[float, Meta(gt=0, le=36000)]
+    sides: Annotated[tuple[Side, ...], Meta(min_length=2, max_length=2)]
+    responses: tuple[_Name, ...] = RESPONSES
+    hesitations: tuple[_Name, ...] = HESITATIONS
+    distance: Annotated[float, Meta(ge=0.2, le=20)] = 1.3
+    seed: Annotated[int, Meta(ge=0, le=0xFFFFFFFF)] = 1
+
+
+def heard_by(conversation: Conversation, side: int) -> tuple[Segment, ...]:
+    """Return what a side moves with, by start and never overlapping: its own clauses and responses, and what is left of the partner's
+    hesitations where it does not speak itself. Its own hesitations are idle. kind "hesitation" here is the partner's."""
+    own = [s for s in conversation.sides[side].segments if s.kind != "hesitation"]
+    out = list(own)
+    for s in conversation.sides[1 - side].segments:
+        if s.kind == "hesitation":
+            out += [msgspec.structs.replace(s, start=a, end=b) for a, b in _free(s.start, s.end, own)]
+    return tuple(sorted(out, key=lambda s: s.start))
+
+
+def _free(start: float, end: float, taken: list[Segment]) -> Iterator[tuple[float, float]]:
+    """Yield what of a stretch is in none of the segments, by start, as far as it is long enough."""
+    for s in taken:
+        if s.end > start and s.start < end:
+            if s.start - start >= SHORTEST:
+                yield start, s.start
+            start = max(start, s.end)
+    if end - start >= SHORTEST:
+        yield start, end
