@@ -18,6 +18,7 @@ class Session(QObject):
     selection_changed: other clips or actions are selected. show_changed: the preview shows something else (see `show`).
     playing_changed, moved: transport. theme_changed: dark or light. performance_changed: another kept performance is on stage, or
     other asks of it are selected. mode_changed: the meta-graph or the manual state machine is edited and played.
+    conversation_changed: another conversation is on stage.
     """
 
     layer_changed = Signal()
@@ -29,6 +30,7 @@ class Session(QObject):
     theme_changed = Signal()
     performance_changed = Signal()
     mode_changed = Signal()
+    conversation_changed = Signal()
 
     def __init__(self, document: Document, parent: QObject | None = None) -> None:
         super().__init__(parent)
@@ -50,6 +52,7 @@ class Session(QObject):
         self.seconds = 0.0
         self.performance: str | None = None  # the kept performance on stage, None while the models improvise
         self.asks: tuple[str, ...] = ()  # selected in the timeline
+        self.conversation: str | None = None  # the conversation on stage, None for none; never while a kept performance is
         self.copied: str | None = None  # the action whose properties can be pasted
         self.theme: Literal["dark", "light"] = "dark"
         document.changed.connect(self._follow)
@@ -158,7 +161,9 @@ class Session(QObject):
     # --- performances
 
     def set_performance(self, ident: str | None) -> None:
-        """Put a kept performance on stage, or none."""
+        """Put a kept performance on stage, or none; a conversation leaves it for one."""
+        if ident is not None:
+            self.set_conversation(None)
         if ident != self.performance:
             self.performance, self.asks = ident, ()
             self.performance_changed.emit()
@@ -167,6 +172,14 @@ class Session(QObject):
         if asks != self.asks:
             self.asks = asks
             self.performance_changed.emit()
+
+    def set_conversation(self, ident: str | None) -> None:
+        """Put a conversation on stage, or none; a kept performance leaves it for one."""
+        if ident is not None:
+            self.set_performance(None)
+        if ident != self.conversation:
+            self.conversation = ident
+            self.conversation_changed.emit()
 
     # --- preview
 
@@ -229,6 +242,8 @@ class Session(QObject):
         elif self.performance is not None and before.performances is not after.performances:
             there = {ask.id for ask in after.performances[self.performance].asks}
             self.select_asks(tuple(i for i in self.asks if i in there))
+        if self.conversation is not None and self.conversation not in after.conversations:
+            self.set_conversation(None)
         if self.shown is not None and self.shown not in after.clips and not self._there(after, self.shown):
             self.show_plan()
         if any(before.graphs[layer].stances is not after.graphs[layer].stances for layer in LAYERS):
