@@ -2,30 +2,51 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import replace
 from pathlib import Path
+from typing import Any
 
 import numpy as np
+from numpy.typing import NDArray
 
 from metagraph.errors import FileError
 from metagraph.graph.asks import Line
+from metagraph.graph.conversation import Word
 from metagraph.graph.model import Project
-from metagraph.playback.life.mouth import mouth_track
+from metagraph.playback.life.mouth import Piece, mouth_track
 from metagraph.playback.life.voice import Voice, silent
 from metagraph.speech.phones import pieces_of
 from metagraph.speech.sound import hear, read_sound, shapes_heard, syllables
-from metagraph.speech.textgrid import read_textgrid
+from metagraph.speech.textgrid import Interval, TextGrid, Tier, read_textgrid
+
+Array = NDArray[Any]
 
 _VOWELS = ("aa", "E", "I", "O", "U", "RR")
 
 
-def read_voice(audio: str | Path, phones: str | Path | None = None) -> Voice:
-    """Read a line's sound and, where there are any, its phones or words from a Praat TextGrid. Raises FileError."""
-    heard = hear(*read_sound(audio))
+def read_voice(audio: str | Path, phones: str | Path | None = None, channel: int | None = None) -> Voice:
+    """Read a line's sound and, where there are any, its phones or words from a Praat TextGrid. channel: which of the sound's is the
+    line's, from 0; None for all mixed. Raises FileError."""
+    return _voice(*read_sound(audio, channel), pieces_of(read_textgrid(phones)) if phones is not None else None)
+
+
+def read_spoken(audio: str | Path, channel: int | None = None, words: Sequence[Word] = ()) -> Voice:
+    """Read a voice from its sound and, where there are any, the words that were transcribed. Raises FileError."""
+    samples, rate = read_sound(audio, channel)
+    if not words:
+        return _voice(samples, rate, None)
+    tier = Tier("words", tuple(Interval(w.start, w.end, w.text) for w in words))
+    return _voice(samples, rate, pieces_of(TextGrid(0.0, len(samples) / rate, (tier,))))
+
+
+def _voice(samples: Array, rate: int, told: list[Piece] | None) -> Voice:
+    """Return the voice of a sound. told: what the mouth goes through, None to hear it."""
+    heard = hear(samples, rate)
     peaks, strengths = syllables(heard)
-    pieces = pieces_of(read_textgrid(phones)) if phones is not None else shapes_heard(heard)
+    pieces = shapes_heard(heard) if told is None else told
     pieces = [replace(p, end=min(p.end, heard.duration)) for p in pieces if p.start < heard.duration]
-    if phones is not None:  # how open a vowel is, its loudness tells
+    if told is not None:  # how open a vowel is, its loudness tells
         loud = [float(np.interp(0.5 * (p.start + p.end), heard.times, heard.loud)) for p in pieces]
         pieces = [
             replace(p, strength=p.strength * (0.6 + 0.4 * x)) if p.viseme in _VOWELS else p for p, x in zip(pieces, loud, strict=True)
@@ -52,7 +73,7 @@ def voice_from_phones(phones: str | Path) -> Voice:
 def read_line(line: Line, folder: Path) -> Voice | None:
     """Return the voice of a line with sound or phones, paths relative to `folder`; None for one without. Raises FileError."""
     if line.audio:
-        return read_voice(folder / line.audio, folder / line.phones if line.phones else None)
+        return read_voice(folder / line.audio, folder / line.phones if line.phones else None, line.channel)
     return voice_from_phones(folder / line.phones) if line.phones else None
 
 
@@ -65,7 +86,7 @@ def load_voices(project: Project, folder: str | Path) -> tuple[Project, tuple[st
     voices: dict[str, Voice] = {}
     notes: list[str] = []
     for ident, line in project.lines.items():
-        tries = [line] if not (line.audio and line.phones) else [line, Line(audio=line.audio)]
+        tries = [line] if not (line.audio and line.phones) else [line, Line(audio=line.audio, channel=line.channel)]
         for attempt in tries:
             try:
                 voice = read_line(attempt, folder)

@@ -49,27 +49,104 @@ class Heard:
     bright: Array
 
 
-def read_sound(path: str | Path) -> tuple[Array, int]:
-    """Read a sound file: samples `[N]` float64, channels mixed, and samples a second. Raises FileError."""
+@dataclass(frozen=True, eq=False)
+class Recording:
+    """A sound file, channels apart: samples `[C, N]`, about -1..1, `rate` a second. clipped: share of each channel's samples that were
+    cut off at full scale, 0..1 `[C]`."""
+
+    samples: Array
+    rate: int
+    clipped: tuple[float, ...]
+
+    @property
+    def duration(self) -> float:
+        """Seconds."""
+        return float(self.samples.shape[1] / self.rate)
+
+
+def read_sound(path: str | Path, channel: int | None = None) -> tuple[Array, int]:
+    """Read a sound file: samples `[N]` float64 of one channel, from 0, or of all mixed, and samples a second. Raises FileError."""
+    samples, rate = read_channels(path)
+    if channel is None:
+        return np.asarray(samples.mean(0)), rate
+    if channel >= len(samples):
+        count = f"{len(samples)} channels" if len(samples) > 1 else "one channel"
+        raise FileError(path, f"has {count}; there is no channel {channel + 1}", remedy="Choose the sound anew.")
+    return samples[channel], rate
+
+
+def read_channels(path: str | Path, longest: float = LONGEST) -> tuple[Array, int]:
+    """Read a sound file: samples `[C, N]` float64, channels apart, and samples a second. longest: seconds it may last. What it is, its
+    content says, whatever it is called. Raises FileError."""
+    read = read_recording(path, longest)
+    return read.samples, read.rate
+
+
+def read_recording(path: str | Path, longest: float = LONGEST, most: int | None = None) -> Recording:
+    """Read a sound file, channels apart, block by block. most: samples a second at most, at least 8000; where the file has more, what is
+    too high is taken out, every second, third ... is kept, as float32, so that hours fit into memory. Raises FileError."""
     import soundfile
 
     path = Path(path)
     if not path.is_file():
-        raise FileError(path, "there is no such sound file", remedy="Check the line's sound, or choose the file anew.")
+        raise FileError(path, "there is no such sound file", remedy="Check where it is, or choose the file anew.")
     try:
         with soundfile.SoundFile(str(path)) as file:
-            if file.frames / max(file.samplerate, 1) > LONGEST:
-                raise FileError(
-                    path, f"lasts {file.frames / file.samplerate:.0f} s; a line has {LONGEST:.0f} s at most", remedy="Cut it into lines."
-                )
-            samples, rate = file.read(dtype="float64", always_2d=True), int(file.samplerate)
+            rate = int(file.samplerate)
+            if file.frames / max(rate, 1) > longest:
+                raise FileError(path, f"lasts {file.frames / rate:.0f} s, at most {longest:.0f} s are read", remedy="Cut it into pieces.")
+            if not file.frames or rate < 4000:
+                why = "holds no sound" if not file.frames else f"has {rate} samples a second, too few for speech"
+                raise FileError(path, why, remedy=f"Save it as {_SUFFIXES}, with 16000 samples a second or more.")
+            every = 1 if most is None else max(1, -(-rate // most))
+            return _read_blocks(file, rate, every)
     except (soundfile.LibsndfileError, RuntimeError, TypeError, MemoryError, OSError) as error:
         cause = str(getattr(error, "error_string", error)).strip().rstrip(".") or type(error).__name__
         raise FileError(path, f"cannot be read as sound: {cause}", remedy=f"Save it as {_SUFFIXES}.") from error
-    if not len(samples) or rate < 4000:
-        why = "holds no sound" if not len(samples) else f"has {rate} samples a second, too few for speech"
-        raise FileError(path, why, remedy=f"Save it as {_SUFFIXES}, with 16000 samples a second or more.")
-    return np.nan_to_num(samples, nan=0.0, posinf=0.0, neginf=0.0).mean(1), rate
+
+
+def _read_blocks(file: Any, rate: int, every: int) -> Recording:
+    taps = np.hanning(8 * every + 3)[1:-1] * np.sinc(np.arange(-4 * every, 4 * every + 1) / every)
+    taps /= taps.sum()
+    parts: list[Array] = []
+    clipped, count = np.zeros(file.channels), 0
+    before = np.zeros((4 * every, file.channels))  # the filter reaches back, and forward
+    for block in file.blocks(blocksize=every * rate * 20, dtype="float64", always_2d=True):
+        block = np.nan_to_num(block, nan=0.0, posinf=0.0, neginf=0.0)
+        clipped += _cut_off(block)
+        count += len(block)
+        if every == 1:
+            parts.append(block.T)
+            continue
+        before = np.concatenate([before, block])
+        full = (len(before) - len(taps) + 1) // every * every
+        if full > 0:
+            parts.append(_thinned(before[: full + len(taps) - 1], taps, every))
+            before = before[full:]
+    if every > 1:
+        rest = np.concatenate([before, np.zeros((4 * every, file.channels))])
+        if len(rest) >= len(taps):
+            parts.append(_thinned(rest, taps, every))
+    if not count:
+        raise RuntimeError("it holds no sound")
+    return Recording(np.concatenate(parts, 1), round(rate / every), tuple((clipped / count).tolist()))
+
+
+def _thinned(samples: Array, taps: Array, every: int) -> Array:
+    """Return every so many of the filtered samples `[C, M]`; samples: `[N, C]`."""
+    windows = np.lib.stride_tricks.sliding_window_view(samples, len(taps), axis=0)[::every]
+    return np.asarray((windows @ taps).T, np.float32)
+
+
+def _cut_off(samples: Array) -> Array:
+    """Return how many of the samples `[N, C]` of each channel stay at full scale for three or more in a row."""
+    full = np.abs(samples) > 0.9999
+    row = full[:-2] & full[1:-1] & full[2:]
+    out = np.zeros_like(full)
+    out[:-2] |= row
+    out[1:-1] |= row
+    out[2:] |= row
+    return np.asarray(out.sum(0))
 
 
 def hear(samples: Array, rate: int) -> Heard:
@@ -80,23 +157,21 @@ def hear(samples: Array, rate: int) -> Heard:
     times = np.arange(count) * HOP
     padded = np.pad(samples - samples.mean(), (size // 2, size))
     starts = np.round(np.arange(count) * hop).astype(int)
-    power = np.empty((count, size // 2 + 1))
-    window = np.hanning(size)
-    for n in range(0, count, 1000):  # a few seconds at a time
-        frames = padded[starts[n : n + 1000, None] + np.arange(size)] * window
-        power[n : n + 1000] = np.abs(np.fft.rfft(frames, axis=1)) ** 2
-    power /= window.sum() ** 2 / 4
     hertz = np.fft.rfftfreq(size, 1 / rate)
-
-    def band(low: float, high: float) -> Array:
-        return np.asarray(power[:, (hertz >= low) & (hertz < high)].sum(1))
-
-    def middle(low: float, high: float) -> Array:
-        some = (hertz >= low) & (hertz < high)
-        amplitude = np.sqrt(power[:, some])
-        return np.asarray((amplitude @ hertz[some]) / np.maximum(amplitude.sum(1), 1e-12))
-
-    speech, high = band(*SPEECH), band(3500.0, 8000.0)
+    window = np.hanning(size)
+    scale = window.sum() ** 2 / 4
+    bands = [(hertz >= low) & (hertz < high) for low, high in (SPEECH, (3500, 8000), (1500, 3000), (650, 1300), (120, 3500))]
+    middles = [(hertz >= low) & (hertz < high) for low, high in ((220, 1050), (2500, 8000))]
+    energies, centres = np.empty((len(bands), count)), np.empty((len(middles), count))
+    for n in range(0, count, 1000):  # a few seconds at a time, so that hours fit into memory
+        frames = padded[starts[n : n + 1000, None] + np.arange(size)] * window
+        power = np.abs(np.fft.rfft(frames, axis=1)) ** 2 / scale
+        for row, some in enumerate(bands):
+            energies[row, n : n + 1000] = power[:, some].sum(1)
+        for row, some in enumerate(middles):
+            amplitude = np.sqrt(power[:, some])
+            centres[row, n : n + 1000] = (amplitude @ hertz[some]) / np.maximum(amplitude.sum(1), 1e-12)
+    speech, high, forward, back, low = energies
     level = _smooth(10 * np.log10(speech + 1e-12), SMOOTH / HOP)
     floor, top = float(np.percentile(level, 8)), float(np.percentile(level, 97))
     if top < _HUSH or top - floor < _LEAST_RANGE:
@@ -107,8 +182,7 @@ def hear(samples: Array, rate: int) -> Heard:
     high_level = 10 * np.log10(high + 1e-12)
     bursts = (high_level > np.percentile(high_level, 20) + _BURST) & (high_level > _HUSH)  # a hiss that never stops is noise
     # The first formant rises as the mouth opens, the second as the tongue comes forward.
-    first = _smooth(middle(220.0, 1050.0), 2.0)
-    forward, back = band(1500.0, 3000.0), band(650.0, 1300.0)
+    first = _smooth(centres[0], 2.0)
     front = _smooth(10 * np.log10((forward + 1e-12) / (back + 1e-12)), 2.0)
     spoken = loud > 0.25
     return Heard(
@@ -118,8 +192,8 @@ def hear(samples: Array, rate: int) -> Heard:
         loud,
         _relative(first, spoken, 430.0, 600.0),
         _relative(front, spoken, -12.0, 4.0),
-        np.where(bursts, high / np.maximum(high + band(120.0, 3500.0), 1e-12), 0.0),
-        middle(2500.0, 8000.0),
+        np.where(bursts, high / np.maximum(high + low, 1e-12), 0.0),
+        centres[1],
     )
 
 

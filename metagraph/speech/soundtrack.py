@@ -27,7 +27,7 @@ def line_sounds(project: Project, folder: Path, rate: int = RATE) -> tuple[dict[
     for ident, line in project.lines.items():
         if line.audio:
             try:
-                samples, own = read_sound(folder / line.audio)
+                samples, own = read_sound(folder / line.audio, line.channel)
             except FileError as error:
                 notes.append(f"line '{ident}': {error}")
                 continue

@@ -1,0 +1,144 @@
+"""From a conversation's segments to what its characters are asked to do: gestures with clauses, nods with responses and hesitations.
+
+Which segments get one is drawn with the rates that were observed (Yang et al., table 1), each by a key of its own: changing one segment
+leaves the others' draws as they were. A gesture's stroke is asked for at its clause's F0 peak.
+"""
+
+from __future__ import annotations
+
+from collections import Counter
+from collections.abc import Iterator
+
+from metagraph.graph.asks import AnyAsk, Behave, Fidget, Gesture, Look, Nod, Performance, Place, Point, Say
+from metagraph.graph.conversation import Conversation, Segment, heard_by
+from metagraph.graph.model import Layer, Mode, Project
+from metagraph.playback.choice import uniform
+from metagraph.playback.hear import perform
+from metagraph.playback.phases import phases
+from metagraph.playback.plan import Plan
+
+PARTNER = "partner"  # the named point where the other's head is
+TOLERANCE = 0.1  # seconds a stroke may be off its peak (section 7.2)
+ROUNDS = 12  # in which what would come too late is taken back
+CLAUSE, ANSWER, FILL = 3, 2, 1  # priorities: an own clause before an answer before what fills the time
+TURN = 0.6  # seconds of one's own silence after which one listens
+QUIET = 2.0  # seconds of both's silence after which one idles
+REST = 3.5  # seconds nobody asks anything of a character after which it may fidget
+FIDGETS = 0.5  # how often it does
+
+
+def asks_of(
+    conversation: Conversation, side: int, project: Project, line: str | None = None, head: Point = (0.0, 1.6, 1.3)
+) -> list[AnyAsk]:
+    """Return what a side is asked to do. project: whose graph moves it. line: the project's line with its voice. head: where the
+    partner's head is, metres, in this side's space."""
+    out: list[AnyAsk] = [Place(id=PARTNER, at=0.0, name=PARTNER, point=head), Look(id="look", at=0.0, to=PARTNER)]
+    if line is not None:
+        out.append(Say(id="voice", at=0.0, line=line, gestures=False))
+    out += [Behave(id=f"mode {n}", at=at, mode=mode) for n, (at, mode) in enumerate(_modes(conversation, side))]
+    rates = conversation.sides[side].rates
+    kinds = {layer: {kind for _, kind in project.graphs[layer].index} for layer in project.graphs}
+    nods = "gesture" in kinds["head"]
+    heard = heard_by(conversation, side)
+    busy = [(s.start, s.end) for s in conversation.sides[side].segments]
+    for key, s in _keyed(heard):
+        drawn = uniform(conversation.seed, str(side), key)
+        if s.kind == "clause" and "gesture" in kinds["arms"] and drawn < rates.clause:
+            stroke = (s.start + s.end) / 2 if s.peak is None else s.peak
+            out.append(Gesture(id=key, at=s.start, stroke=stroke, priority=CLAUSE))
+        elif s.kind in ("response", "hesitation") and nods and drawn < (rates.response if s.kind == "response" else rates.hesitation):
+            out.append(Nod(id=key, at=s.start, priority=ANSWER))
+            busy.append((s.start, s.end + 1.0))
+    for n, (start, end) in enumerate(_gaps(sorted(busy), conversation.length)):
+        layer: Layer = "arms" if "fidget" in kinds["arms"] else "body"
+        if "fidget" in kinds[layer] and uniform(conversation.seed, str(side), f"fidget {n}") < FIDGETS:
+            at = start + (0.2 + 0.5 * uniform(conversation.seed, str(side), f"when {n}")) * (end - start - 2.0)
+            out.append(Fidget(id=f"fidget {n}", at=round(at, 3), layer=layer, priority=FILL))
+    return out
+
+
+def drive(
+    conversation: Conversation, side: int, project: Project, line: str | None = None, head: Point = (0.0, 1.6, 1.3)
+) -> tuple[Performance, Plan]:
+    """Return what a side performs, and its plan: gestures whose stroke would miss its peak, since another still plays, are taken back.
+
+    The same asks performed again give the same plan.
+    """
+    asks = asks_of(conversation, side, project, line, head)
+    plan = Plan(conversation.seed, 0.0)
+    for _ in range(ROUNDS):
+        plan = perform(project, asks, conversation.length, conversation.seed, idle=False)
+        late = _missed(project, plan, asks)
+        if not late:
+            break
+        asks = [ask for ask in asks if ask.id not in late]
+    name = f"{conversation.name}, {conversation.sides[side].name or f'side {side + 1}'}"[:200]
+    return Performance(name=name, asks=tuple(asks), seed=conversation.seed, length=conversation.length, idle=False), plan
+
+
+def strokes(project: Project, plan: Plan) -> dict[str, float]:
+    """Return when the stroke of each gesture that was asked for is, seconds, by the ask's id."""
+    out: dict[str, float] = {}
+    for cue in plan.layers["arms"].cues:
+        if cue.action.kind == "gesture":
+            out[cue.meta.partition("+")[0]] = cue.start + phases(project, cue.action).stroke - cue.entry
+    return out
+
+
+def _missed(project: Project, plan: Plan, asks: list[AnyAsk]) -> set[str]:
+    """Return asks for gestures that came to nothing or miss their peak; of several in a row every other, since without one the next may
+    fit."""
+    found = strokes(project, plan)
+    out: set[str] = set()
+    before = False
+    for ask in sorted((a for a in asks if isinstance(a, Gesture)), key=lambda a: a.stroke or 0.0):
+        at = found.get(ask.id)
+        missed = at is None or abs(at - (ask.stroke or 0.0)) > TOLERANCE
+        if missed and not before:
+            out.add(ask.id)
+        before = missed and not before
+    return out
+
+
+def _keyed(segments: tuple[Segment, ...]) -> Iterator[tuple[str, Segment]]:
+    """Yield a key of each segment that stays when others change: its kind and words, and how many such came before."""
+    seen: Counter[str] = Counter()
+    for s in segments:
+        word = f"{s.kind} {s.text[:60]}".strip()
+        seen[word] += 1
+        yield (f"{word} {seen[word]}" if seen[word] > 1 or not s.text else word), s
+
+
+def _modes(conversation: Conversation, side: int) -> Iterator[tuple[float, Mode]]:
+    """Yield from when on a side talks, listens or idles: who speaks, with short silences counted to whoever spoke before."""
+    own, other = (_turns(conversation.sides[n].segments) for n in (side, 1 - side))
+    edges = sorted({0.0, *(x for start, end in (*own, *other) for x in (start, end))})
+    last: Mode | None = None
+    for at in edges:
+        talking = any(start <= at < end for start, end in own)
+        answered = any(start <= at < end for start, end in other)
+        near = any(start <= at < end + QUIET for start, end in (*own, *other))
+        mode: Mode = "talking" if talking else "listening" if answered or near else "idle"
+        if mode != last:
+            yield round(at, 3), mode
+            last = mode
+
+
+def _turns(segments: tuple[Segment, ...]) -> list[tuple[float, float]]:
+    """Return when someone speaks, with pauses shorter than TURN closed."""
+    out: list[tuple[float, float]] = []
+    for s in segments:
+        if out and s.start - out[-1][1] < TURN:
+            out[-1] = (out[-1][0], s.end)
+        else:
+            out.append((s.start, s.end))
+    return out
+
+
+def _gaps(busy: list[tuple[float, float]], length: float) -> Iterator[tuple[float, float]]:
+    """Yield stretches in which nothing is asked, at least REST long."""
+    at = 0.0
+    for start, end in (*busy, (length, length)):
+        if start - at >= REST:
+            yield at, start
+        at = max(at, end)
