@@ -32,7 +32,7 @@ WINDOW = {
     "libxkbcommon-x11.so.0": "libxkbcommon-x11-0",
     "libportaudio.so.2": "libportaudio2",
 }
-TESTING = {"Xvfb": "xvfb", "xauth": "xauth", "xdotool": "xdotool"}
+TESTING = {"Xvfb": "xvfb", "xauth": "xauth", "xdotool": "xdotool", "espeak-ng": "espeak-ng"}
 # Exports are run in these; without one its tests skip, and say so.
 ENGINES = {
     "node": "nodejs",

@@ -1,0 +1,144 @@
+"""How high a voice is, moment by moment: its fundamental frequency, F0, by YIN (de Cheveigné and Kawahara 2002) as librosa computes it.
+
+YIN finds a period in anything. A moment counts as voiced where it is audible, where the sound does repeat after that period, where its
+pitch lies in this voice's own range (two-pass quantiles, De Looze and Hirst 2008) and near its neighbours', not an octave off.
+"""
+
+from __future__ import annotations
+
+import warnings
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from metagraph.speech.sound import HOP
+
+Array = NDArray[Any]
+
+LOWEST, HIGHEST = 60.0, 600.0  # Hz
+RATE = 8000  # samples a second at least; periods are found between samples
+REPEATS = 0.55  # how well a period correlates with the next, 0..1, in a voiced moment
+FLOOR = 34.0  # dB below the loudest moments that still counts as voice
+JUMP = 6.0  # semitones away from the neighbours' median that a moment may be
+NEAR = 9  # moments either side that count as neighbours
+_SHORTEST = 3  # moments a voiced stretch has at least
+_BLOCK = 3000  # moments at a time
+PROMINENT = 0.25  # semitones a peak stands out by at least
+
+
+@dataclass(frozen=True, eq=False)
+class Pitch:
+    """times `[K]`: seconds, every 10 ms. hertz `[K]`: F0, nan where the voice is silent or voiceless."""
+
+    times: Array
+    hertz: Array
+
+
+def pitch(samples: Array, rate: int) -> Pitch:
+    """Return the pitch of a voice. samples: `[N]`, about -1..1; rate: samples a second. Hours take memory for the samples alone."""
+    count = int(len(samples) / rate / HOP) + 1
+    times = np.arange(count) * HOP
+    hertz, repeats, level = np.empty(count), np.empty(count), np.empty(count)
+    for n in range(0, count, _BLOCK):
+        part = slice(n, min(n + _BLOCK, count))
+        hertz[part], repeats[part], level[part] = _block(samples, rate, times[part])
+    loudest = float(np.percentile(level, 98))
+    voiced = (repeats > REPEATS) & (level > max(loudest - FLOOR, -80.0))
+    if voiced.sum() < _SHORTEST:
+        return Pitch(times, np.full(count, np.nan))
+    low, high = np.percentile(hertz[voiced], (15, 65)) * (0.83, 1.92)
+    voiced &= (hertz >= min(low, 0.6 * high)) & (hertz <= high)
+    voiced &= _near(hertz, voiced)
+    for start, end in stretches(voiced):
+        if end - start < _SHORTEST:
+            voiced[start:end] = False
+    return Pitch(times, np.where(voiced, hertz, np.nan))
+
+
+def _block(samples: Array, rate: int, times: Array) -> tuple[Array, Array, Array]:
+    """Return F0 (Hz), how well the sound repeats after its period (0..1) and its level (dB) at some times, evenly `HOP` apart."""
+    from librosa import yin  # half a second, first time
+
+    every = max(1, rate // RATE)
+    own = rate / every
+    size = int(2 ** np.ceil(np.log2(2.5 * own / LOWEST)))  # of a frame, samples: two of the longest periods, and some
+    first = round(times[0] * rate) - (size // 2) * every
+    last = round(times[-1] * rate) + (size - size // 2 + 1) * every
+    piece = np.asarray(samples[max(first, 0) : max(last, 0)], np.float64)
+    piece = np.pad(piece, (max(-first, 0), max(0, last - first - len(piece) - max(-first, 0))))
+    if every > 1:
+        from scipy.signal import resample_poly
+
+        piece = resample_poly(piece, 1, every)
+    starts = np.round((times - times[0]) * own).astype(int)
+    frames = np.lib.stride_tricks.sliding_window_view(piece, size)[np.minimum(starts, len(piece) - size)]
+    frames = frames - frames.mean(1, keepdims=True)
+    with warnings.catch_warnings():  # of frames of digital silence
+        warnings.simplefilter("ignore")
+        hertz = yin(frames.reshape(-1), fmin=LOWEST, fmax=HIGHEST, sr=own, frame_length=size, hop_length=size, center=False)
+    period = np.clip(np.round(own / hertz).astype(int), 2, size // 2)
+    at = np.arange(size - size // 2)[None, :]
+    one = frames[:, : size - size // 2]
+    two = np.take_along_axis(frames, at + period[:, None], 1)
+    power = (one * one).sum(1), (two * two).sum(1)
+    repeats = (one * two).sum(1) / np.sqrt(np.maximum(power[0] * power[1], 1e-20))
+    return hertz, repeats, 10 * np.log10((frames * frames).mean(1) + 1e-12)
+
+
+def _near(hertz: Array, voiced: Array) -> Array:
+    """Return which moments are about as high as the voiced ones around them."""
+    tones = np.where(voiced, 12 * np.log2(np.maximum(hertz, 1.0)), np.nan)
+    around = np.lib.stride_tricks.sliding_window_view(np.pad(tones, NEAR, constant_values=np.nan), 2 * NEAR + 1)
+    with warnings.catch_warnings():  # of moments without any neighbour
+        warnings.simplefilter("ignore", RuntimeWarning)
+        return np.asarray(np.abs(tones - np.nanmedian(around, 1)) <= JUMP)
+
+
+def stretches(some: Array) -> list[tuple[int, int]]:
+    """Return the runs of true moments in `[K]`, each from its first to behind its last."""
+    edges = np.flatnonzero(np.diff(np.concatenate([[False], np.asarray(some, bool), [False]]).astype(np.int8)))
+    return [(int(a), int(b)) for a, b in edges.reshape(-1, 2)]
+
+
+def smooth(found: Pitch) -> Array:
+    """Return the pitch in semitones over 1 Hz `[K]`, smoothed over 50 ms, short voiceless moments (up to 60 ms) bridged; nan elsewhere."""
+    tones = 12 * np.log2(found.hertz)
+    known = ~np.isnan(tones)
+    if not known.any():
+        return np.asarray(tones)
+    for start, end in stretches(~known):
+        if start > 0 and end < len(tones) and end - start <= 6:
+            tones[start:end] = np.linspace(tones[start - 1], tones[end], end - start + 2)[1:-1]
+    bell = np.exp(-0.5 * (np.arange(-5, 6) / 2.5) ** 2)
+    weight = np.convolve(~np.isnan(tones), bell, "same")
+    total = np.convolve(np.nan_to_num(tones), bell, "same")
+    return np.where(np.isnan(tones), np.nan, total / np.maximum(weight, 1e-9))
+
+
+def peaks(found: Pitch, start: float, end: float, tones: Array | None = None) -> tuple[float, ...]:
+    """Return when F0 has its local maxima between two times, seconds, the most prominent first: those that are followed and preceded by
+    the deepest falls, and, among equals, the highest. Where it only rises or falls, its highest moment. () where there is no voice.
+    tones: `smooth(found)`, where that is at hand."""
+    part = slice(int(np.searchsorted(found.times, start)), int(np.searchsorted(found.times, end, "right")))
+    tones = (smooth(found) if tones is None else tones)[part]
+    times = found.times[part]
+    known = np.flatnonzero(~np.isnan(tones))
+    if not len(known):
+        return ()
+    high = tones[known]
+    inner = np.concatenate([[-np.inf], high, [-np.inf]])
+    tops = np.flatnonzero((inner[1:-1] > inner[:-2]) & (inner[1:-1] >= inner[2:]))
+    least = high.min()
+    found_: list[tuple[float, float, float]] = []
+    for top in tops.tolist():
+        higher = np.flatnonzero(high > high[top])
+        left, right = higher[higher < top], higher[higher > top]
+        before = high[left[-1] : top].min() if len(left) else least
+        after = high[top : right[0]].min() if len(right) else least
+        stands = float(high[top] - max(before, after))
+        found_.append((stands, float(high[top]), float(times[known[top]])))
+    found_.sort(key=lambda x: (-x[0], -x[1], x[2]))
+    kept = [x for x in found_ if x[0] >= PROMINENT] or found_[:1]
+    return tuple(t for _, _, t in kept)
