@@ -1,0 +1,226 @@
+"""What one side of a conversation says, in segments: phonemic clauses, listener responses and its own hesitation pauses.
+
+A phonemic clause is a group of words round one that is strongly stressed (Boomer and Dittmann 1962; Yang et al. 2020, section 4.2).
+Words are parted at pauses and hesitations; what is longer is parted so that each part has one word that stands out by pitch, loudness and
+length, with breaks rather before small words, at commas and where one speaks on a little later; parts of about four words are preferred.
+
+A response is a turn, pauses around it, that is made of response words alone: a "yes" within a sentence is part of the sentence. Hesitation
+words are hesitations wherever they stand; those that also mean something (`vocabulary.LEXICAL`: "well", "like", "you know") only where they
+stand alone, next to another hesitation, or before a pause after which the same speaker goes on.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Collection, Sequence
+from dataclasses import dataclass
+from itertools import pairwise
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from metagraph.graph.conversation import HESITATIONS, RESPONSES, SHORTEST, Segment, Spoken, Word
+from metagraph.speech.activity import PAUSE, Stretch, activity
+from metagraph.speech.pitch import Pitch, peaks, smooth
+from metagraph.speech.sound import Heard
+from metagraph.speech.stress import parted, stresses
+from metagraph.speech.vocabulary import LEXICAL_PHRASES, Vocabulary, tokens
+
+Array = NDArray[Any]
+
+HOLDS = 1.5  # seconds within which one who hesitates goes on
+LONGEST_RESPONSE = 2.5  # seconds a response lasts at most
+BURST = 0.6  # seconds: a sound so short while the partner talks is a response, where there are no words
+AROUND = 0.5  # seconds of one's own silence before and behind it
+LONGEST_CLAUSE = 3.5  # seconds: where there are no words, longer ones are parted at their softest
+_ENDS = (".", "?", "!", ";", ":", "…")
+
+
+@dataclass(frozen=True, slots=True)
+class _Part:
+    """Words that are one segment: from the first to behind the last."""
+
+    kind: Spoken
+    first: int
+    last: int
+
+
+def segments(
+    words: Sequence[Word],
+    pitch: Pitch,
+    heard: Heard,
+    responses: Collection[str] = RESPONSES,
+    hesitations: Collection[str] = HESITATIONS,
+    partner: Heard | None = None,
+) -> tuple[Segment, ...]:
+    """Return one side's clauses, responses and hesitations, by start, never overlapping.
+
+    words: as transcribed, by start. pitch, heard: of the side's own channel. partner: of the other's, where that is another. Without words,
+    what is loud tells (`activity.activity`): what pauses part is a clause, a short sound while the partner talks a response; hesitations
+    are not found then.
+    """
+    words = in_order(words, heard.duration)
+    tones = smooth(pitch)
+    if not words:
+        return _by_loudness(pitch, tones, heard, partner)
+    said = [tokens(w.text) for w in words]
+    out: list[Segment] = []
+    for part in _parts(words, said, Vocabulary(responses), Vocabulary(hesitations)):
+        groups = [(part.first, part.last)]
+        if part.kind == "clause":
+            groups = parted(words, said, stresses(words, said, tones, heard), part.first, part.last)
+        for first, last in groups:
+            out.append(_segment(part.kind, words[first:last], pitch, tones, heard))
+    return tuple(out)
+
+
+def in_order(words: Sequence[Word], length: float) -> list[Word]:
+    """Return the words by start, none longer than to the next one's start, none past the length (seconds); those left too short go."""
+    ordered = sorted(words, key=lambda w: (w.start, w.end))
+    out: list[Word] = []
+    for word, after in zip(ordered, [*ordered[1:], None], strict=True):
+        end = min(word.end, length, after.start if after is not None and after.start > word.start + SHORTEST / 2 else length)
+        start = max(word.start, out[-1].end) if out else word.start
+        if end - start >= SHORTEST / 2:
+            out.append(word if (start, end) == (word.start, word.end) else Word(text=word.text, start=start, end=end))
+    return out
+
+
+def _segment(kind: Spoken, words: Sequence[Word], pitch: Pitch, tones: Array, heard: Heard) -> Segment:
+    start, end = words[0].start, words[-1].end
+    return Segment(
+        kind, start, end, peak_of(pitch, tones, heard, start, end) if kind == "clause" else None, " ".join(w.text for w in words)
+    )
+
+
+def peak_of(pitch: Pitch, tones: Array, heard: Heard, start: float, end: float) -> float:
+    """Return where the stress between two times is, seconds: F0's most prominent peak, or, of a voiceless one, the loudest moment.
+    tones: `pitch.smooth(pitch)`."""
+    found = peaks(pitch, start, end, tones)
+    if found:
+        return min(max(round(found[0], 3), start), end)
+    part = slice(int(np.searchsorted(heard.times, start)), int(np.searchsorted(heard.times, end, "right")))
+    level = heard.level[part]
+    return min(max(round(float(heard.times[part][int(level.argmax())]), 3), start), end) if len(level) else (start + end) / 2
+
+
+# --- by words --------------------------------------------------------------------------------------------------------
+
+
+def _parts(words: Sequence[Word], said: Sequence[tuple[str, ...]], responses: Vocabulary, hesitations: Vocabulary) -> list[_Part]:
+    """Return the words in responses, hesitations and runs between pauses that clauses are made of, in order."""
+    out: list[_Part] = []
+    for first, last in _turns(words):
+        if _all_of(said, first, last, responses) and words[last - 1].end - words[first].start <= LONGEST_RESPONSE:
+            out.append(_Part("response", first, last))
+        else:
+            out += _hesitating(words, said, first, last, responses, hesitations)
+    return out
+
+
+def _turns(words: Sequence[Word]) -> list[tuple[int, int]]:
+    """Return runs of words without a pause between them."""
+    edges = [0, *(n for n in range(1, len(words)) if words[n].start - words[n - 1].end >= PAUSE), len(words)]
+    return [(a, b) for a, b in pairwise(edges) if a < b]
+
+
+def _all_of(said: Sequence[tuple[str, ...]], first: int, last: int, phrases: Vocabulary) -> bool:
+    """Return whether words are phrases and nothing else."""
+    n = first
+    while n < last:
+        size = phrases.at(said[:last], n)
+        if not size:
+            return False
+        n += size
+    return last > first
+
+
+def _hesitating(
+    words: Sequence[Word], said: Sequence[tuple[str, ...]], first: int, last: int, responses: Vocabulary, hesitations: Vocabulary
+) -> list[_Part]:
+    """Return a turn in hesitations and what is between them; what is between, if it is response words alone, is a response."""
+    marks = [0] * (last - first)  # how many words a hesitation that begins here has
+    n = first
+    while n < last:
+        size = hesitations.at(said[:last], n)
+        if size and responses.at(said[:last], n) > size:  # "uh-huh" is no "uh"
+            size = 0
+            n += responses.at(said[:last], n)
+            continue
+        marks[n - first] = size
+        n += max(size, 1)
+    # A word with a meaning counts only by what is around it; from the end, as it may lean on one behind it.
+    for n in reversed(range(first, last)):
+        size = marks[n - first]
+        if size and tuple(t for w in said[n : n + size] for t in w) in LEXICAL_PHRASES and not _hangs(words, n, size, first, last, marks):
+            marks[n - first] = 0
+    out: list[_Part] = []
+    n = begin = first
+    while n <= last:
+        size = marks[n - first] if n < last else 1
+        if not size:
+            n += 1
+            continue
+        if n > begin:
+            alone = _all_of(said, begin, n, responses) and (n < last or begin > first)
+            out.append(_Part("response" if alone and _answers(words, begin, n) else "clause", begin, n))
+        if n < last:
+            if out and out[-1].kind == "hesitation" and out[-1].last == n:
+                out[-1] = _Part("hesitation", out[-1].first, n + size)
+            else:
+                out.append(_Part("hesitation", n, n + size))
+        n = begin = n + size
+    return out
+
+
+def _hangs(words: Sequence[Word], n: int, size: int, first: int, last: int, marks: Sequence[int]) -> bool:
+    """Return whether words with a meaning hesitate: alone between pauses, next to another hesitation and a pause, or before a pause after
+    which the speaker goes on; not as the end of a sentence."""
+    begins, ends = n == first, n + size == last
+    leans = not ends and marks[n + size - first] > 0
+    goes_on = n + size < len(words) and words[n + size].start - words[n + size - 1].end <= HOLDS
+    asked = words[n + size - 1].text.rstrip("\"')”»").endswith(_ENDS[:3])
+    if begins and ends:
+        return True
+    return (
+        (begins and leans)
+        or (ends and goes_on and not asked)
+        or (leans and any(marks[m - first] and m + marks[m - first] == n for m in range(first, n)))
+    )
+
+
+def _answers(words: Sequence[Word], first: int, last: int) -> bool:
+    return words[last - 1].end - words[first].start <= LONGEST_RESPONSE
+
+
+# --- without words ---------------------------------------------------------------------------------------------------
+
+
+def _by_loudness(pitch: Pitch, tones: Array, heard: Heard, partner: Heard | None) -> tuple[Segment, ...]:
+    own = activity(heard, pitch, partner)
+    others = activity(partner, None, heard) if partner is not None else ()
+    out: list[Segment] = []
+    for n, s in enumerate(own):
+        before = s.start - own[n - 1].end if n else np.inf
+        after = own[n + 1].start - s.end if n + 1 < len(own) else np.inf
+        if s.end - s.start < BURST and min(before, after) >= AROUND and _meanwhile(s, others):
+            out.append(Segment("response", s.start, s.end))
+            continue
+        for start, end in _shorter(s, heard):
+            out.append(Segment("clause", start, end, peak_of(pitch, tones, heard, start, end)))
+    return tuple(out)
+
+
+def _meanwhile(s: Stretch, others: Sequence[Stretch]) -> bool:
+    """Return whether the partner talks during something, or stopped or starts right beside it."""
+    return any(o.start < s.end + AROUND and o.end > s.start - AROUND for o in others)
+
+
+def _shorter(s: Stretch, heard: Heard) -> list[tuple[float, float]]:
+    """Return a stretch in parts of bearable length, cut where it is softest."""
+    if s.end - s.start <= LONGEST_CLAUSE:
+        return [(s.start, s.end)]
+    third = (s.end - s.start) / 4
+    part = slice(int(np.searchsorted(heard.times, s.start + third)), int(np.searchsorted(heard.times, s.end - third)))
+    at = round(float(heard.times[part][int(heard.level[part].argmin())]), 3)
+    return [*_shorter(Stretch(s.start, at), heard), *_shorter(Stretch(at, s.end), heard)]
