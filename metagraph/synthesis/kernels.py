@@ -220,29 +220,3 @@ def relax(
                     if total < new[into, target]:
                         new[into, target] = total
                         back[into, target] = 2 * state + met
-
-
-@_compiled_exactly
-def wander(
-    now: Array, cost: Array, starts: Array, targets: Array, costs: Array, follows: Array, fits: Array, chance: Array
-) -> tuple[Array, Array, Array]:
-    """Go one frame on from some states `[n]`: to those that follow, and by transitions that chance `[n, B]`, 0..1, picks. Returns states,
-    which of `now` they come from, and what they cost."""
-    branches = chance.shape[1]
-    room = len(now) * (branches + 1)
-    found, parent, total = np.empty(room, np.int32), np.empty(room, np.int32), np.empty(room, np.float32)
-    count = 0
-    for n in range(len(now)):
-        state = now[n]
-        if follows[state] and fits[state + 1]:
-            found[count], parent[count], total[count] = state + 1, n, cost[n]
-            count += 1
-        first, after = starts[state], starts[state + 1]
-        few = after - first <= branches
-        for m in range(min(branches, after - first)):
-            place = first + m if few else first + int(chance[n, m] * (after - first))
-            target = targets[min(place, after - 1)]
-            if fits[target]:
-                found[count], parent[count], total[count] = target, n, cost[n] + costs[min(place, after - 1)]
-                count += 1
-    return found[:count], parent[:count], total[:count]

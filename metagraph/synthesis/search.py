@@ -7,7 +7,8 @@ programming over all states: it finds a path whenever there is one, and no other
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import Any
+from typing import TYPE_CHECKING, Any
+from weakref import WeakKeyDictionary
 
 import numpy as np
 from numpy.typing import NDArray
@@ -17,10 +18,21 @@ from metagraph.synthesis.constraints import Heard, Wanted
 from metagraph.synthesis.graph import MotionGraph
 from metagraph.synthesis.states import SynthesisError
 
+if TYPE_CHECKING:
+    from metagraph.synthesis.wander import Links, Speech
+
 Array = NDArray[Any]
 
 SAVED = 200  # n_save: candidates that are kept
-BRANCHES = 20  # transitions of a state that are tried
+STARTS = 3  # so many times SAVED are the states it begins with
+BRANCHES = 2  # transitions of a run that are gone deeper into
+DEEPEST = 3  # transitions one after another in a stretch
+CHEAPEST = 8  # transitions of a state that are always tried
+TRIES = 24  # and at most so many by chance
+LONGEST = 60  # frames of a stretch that is searched at once
+LOOK = 90  # frames beyond a stretch: who goes on that long by itself is not held to be dear
+AHEAD = 0.05  # of the threshold: what a second less of that counts as
+APART = 4  # frames: ends of kept candidates
 MOST = 4_000_000_000  # bytes of way back that are kept at once
 
 
@@ -72,49 +84,106 @@ def best(graph: MotionGraph, heard: Heard, wanted: Wanted) -> Path:
 
 
 def greedy(graph: MotionGraph, heard: Heard, wanted: Wanted, seed: int = 1, saved: int = SAVED, branches: int = BRANCHES) -> Path:
-    """Return a path that has what is wanted, as the paper's search finds it: from random states on, of all that fits the cheapest are
-    kept. Raises SynthesisError when it comes to an end before the speech does."""
-    from metagraph.synthesis.kernels import wander
+    """Return a path that has what is wanted, found as the paper's search finds it, a stretch of speech after the other.
 
-    frames = len(wanted)
-    chance = np.random.default_rng(seed)
+    From random states on, depth first: a run goes along with its take, and branches off by transitions, some by chance and some the
+    cheapest; those that lead on cheapest are gone deeper into. Of what comes through a stretch only cheap ones are kept. Beyond the paper:
+    a run that goes on longer with what is said next counts as a little cheaper, no two kept ones end within a few frames of each other
+    while there are others, and what is dearer than more than enough others is not followed. saved: how many are kept; branches: how many
+    are gone deeper into of a run. Raises SynthesisError when it comes to an end before the speech does, though there may be a path.
+    """
+    from metagraph.synthesis.wander import segment
+
+    frames, chance = len(wanted), np.random.default_rng(seed)
     fits = np.flatnonzero(_fits(graph, heard, wanted, 0))
     if not len(fits):
         raise SynthesisError(_stuck(0))
-    now = np.sort(chance.choice(fits, min(saved, len(fits)), replace=False)).astype(np.int32)
-    cost = np.zeros(len(now), np.float32)
-    met = heard.peaks[now] & (wanted.window[0] >= 0)
-    states, parents = [now], [np.full(len(now), -1, np.int32)]
-    follows = ~graph.states.last
-    for t in range(1, frames):
-        if _closes(wanted, t - 1):
-            keep = met
-            now, cost, ids = now[keep], cost[keep], np.flatnonzero(keep)
-            met = np.zeros(len(now), bool)
-        else:
-            ids = np.arange(len(now))
-        fits = _fits(graph, heard, wanted, t)
-        tried = chance.random((len(now), branches), np.float32)
-        found, parent, total = wander(now, cost, graph.starts, graph.targets, graph.costs, follows, fits, tried)
+    own = np.sort(chance.choice(fits, min(STARTS * saved, len(fits)), replace=False)).astype(np.int32)
+    at, cost, met = np.zeros(len(own), np.int32), np.zeros(len(own), np.float32), np.zeros(len(own), bool)
+    links, speech = _links(graph), _speech(graph, heard, wanted)
+    best_at = np.full(2 * len(graph.states), -1, np.int32)
+    ahead = AHEAD * graph.threshold.limit / RATE
+    random = np.uint64(chance.integers(1 << 62))
+    ids, count = np.arange(len(own)), len(own)  # of runs among all that were ever made
+    tree = [(np.full(count, -1), at, own)]
+    t0 = 0
+    for t1 in _stretches(wanted):
+        off, ats, owns, _, found, paid, random = segment(
+            t0, t1, at, own, cost, met, links, speech, best_at, saved, branches, TRIES, DEEPEST, np.uint64(random)
+        )
         if not len(found):
-            raise SynthesisError(_stuck(t))
-        order = np.lexsort((chance.random(len(found)), total))
-        order = order[np.sort(np.unique(found[order], return_index=True)[1])][:saved]  # the cheapest way to each state
-        done = met[parent[order]] | (heard.peaks[found[order]] & (wanted.window[t] >= 0))
-        states.append(found[order])
-        parents.append(ids[parent[order]].astype(np.int32))
-        now, cost, met = found[order], total[order], done if wanted.window[t] >= 0 else np.zeros(len(order), bool)
-    if _closes(wanted, frames - 1):
-        if not met.any():
-            raise SynthesisError(_stuck(frames - 1))
-        cost = np.where(met, cost, np.inf).astype(np.float32)
+            raise SynthesisError(_stuck(t0))
+        keep = _kept(paid + ahead * np.maximum(0, t1 + LOOK - found[:, 3]), found[:, 4], saved, chance)
+        which, since, state, _, key = found[keep].T
+        names = np.concatenate([ids, count + np.arange(len(off) - len(ids))])
+        tree.append((names[off[len(ids) :]], ats[len(ids) :], owns[len(ids) :]))
+        count += len(off) - len(ids)
+        new = since >= 0
+        tree.append((names[which[new]], since[new], state[new]))
+        ids = names[which]
+        ids[new] = count + np.arange(int(new.sum()))
+        count += int(new.sum())
+        at, own = np.where(new, since, ats[which]).astype(np.int32), np.where(new, state, owns[which]).astype(np.int32)
+        cost, met, t0 = paid[keep], key % 2 == 1, t1
+    off, since, state = (np.concatenate(parts) for parts in zip(*tree, strict=True))
     place = int(cost.argmin())
-    total_cost = float(cost[place])
-    way = np.empty(frames, np.int64)
-    for t in range(frames - 1, -1, -1):
-        way[t] = states[t][place]
-        place = int(parents[t][place])
-    return Path(way, total_cost, _jumps(way))
+    way, run, end = np.empty(frames, np.int64), int(ids[place]), frames
+    while run >= 0:
+        first = int(since[run])
+        way[first:end] = state[run] + np.arange(end - first)
+        run, end = int(off[run]), first
+    return Path(way, float(cost[place]), _jumps(way))
+
+
+def _kept(score: Array, keys: Array, saved: int, chance: np.random.Generator) -> Array:
+    """Return which candidates are kept: the best, and of those that end within a few frames of each other one before the others."""
+    order = np.lexsort((chance.random(len(score)), score))
+    if len(order) > saved:
+        alone = np.zeros(len(order), bool)
+        alone[np.unique(keys[order] // (2 * APART), return_index=True)[1]] = True
+        order = np.concatenate([order[alone], order[~alone]])
+    return order[:saved]
+
+
+def _stretches(wanted: Wanted) -> list[int]:
+    """Return the frames after the stretches that are searched one by one: up to where a boundary's tolerance has passed, of at most
+    LONGEST frames."""
+    narrow = np.flatnonzero(wanted.allowed[:-1] & ~wanted.allowed[1:]) + 1
+    out, begin = [], 0
+    for end in [*narrow.tolist(), len(wanted)]:
+        parts = -(-(end - begin) // LONGEST)
+        out += [begin + round((end - begin) * (n + 1) / parts) for n in range(parts)]
+        begin = end
+    return out
+
+
+_LINKS: WeakKeyDictionary[MotionGraph, Links] = WeakKeyDictionary()
+
+
+def _links(graph: MotionGraph) -> Links:
+    """Return a graph's transitions, and the cheapest of each state; those are looked for once."""
+    from metagraph.synthesis.wander import Links, cheapest
+
+    found = _LINKS.get(graph)
+    if found is None:
+        found = Links(graph.starts, graph.targets, graph.costs, *cheapest(graph.starts, graph.costs, CHEAPEST))
+        _LINKS[graph] = found
+    return found
+
+
+def _speech(graph: MotionGraph, heard: Heard, wanted: Wanted) -> Speech:
+    from metagraph.synthesis.wander import Speech, next_of, until_of
+
+    new = np.ones(len(wanted), bool)
+    new[1:] = (np.diff(wanted.allowed) != 0) | (np.diff(wanted.window) != 0)
+    begins = np.flatnonzero(new)
+    ends = np.append(begins[1:], len(wanted))
+    masks, rows = np.unique(wanted.allowed[begins], return_inverse=True)
+    last = graph.states.last
+    until = np.stack([until_of(heard.kinds, graph.kept, last, mask) for mask in masks])
+    stresses, closes = wanted.window >= 0, np.array([_closes(wanted, t) for t in range(len(wanted))])
+    stretch = (np.cumsum(new) - 1).astype(np.int32)
+    return Speech(stretch, ends, rows, until, stresses[begins], closes[ends - 1], stresses, closes, next_of(heard.peaks), next_of(last) + 1)
 
 
 def _fits(graph: MotionGraph, heard: Heard, wanted: Wanted, t: int) -> Array:
