@@ -13,7 +13,7 @@ from __future__ import annotations
 
 from collections.abc import Collection, Sequence
 from dataclasses import dataclass
-from itertools import pairwise
+from itertools import pairwise, zip_longest
 from typing import Any
 
 import numpy as np
@@ -78,7 +78,7 @@ def in_order(words: Sequence[Word], length: float) -> list[Word]:
     """Return the words by start, none longer than to the next one's start, none past the length (seconds); those left too short go."""
     ordered = sorted(words, key=lambda w: (w.start, w.end))
     out: list[Word] = []
-    for word, after in zip(ordered, [*ordered[1:], None], strict=True):
+    for word, after in zip_longest(ordered, ordered[1:]):
         end = min(word.end, length, after.start if after is not None and after.start > word.start + SHORTEST / 2 else length)
         start = max(word.start, out[-1].end) if out else word.start
         if end - start >= SHORTEST / 2:

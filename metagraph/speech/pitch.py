@@ -121,24 +121,26 @@ def peaks(found: Pitch, start: float, end: float, tones: Array | None = None) ->
     """Return when F0 has its local maxima between two times, seconds, the most prominent first: those that are followed and preceded by
     the deepest falls, and, among equals, the highest. Where it only rises or falls, its highest moment. () where there is no voice.
     tones: `smooth(found)`, where that is at hand."""
-    part = slice(int(np.searchsorted(found.times, start)), int(np.searchsorted(found.times, end, "right")))
-    tones = (smooth(found) if tones is None else tones)[part]
-    times = found.times[part]
-    known = np.flatnonzero(~np.isnan(tones))
+    tones = smooth(found) if tones is None else tones
+    first, last = int(np.searchsorted(found.times, start)), int(np.searchsorted(found.times, end, "right"))
+    known = first + np.flatnonzero(~np.isnan(tones[first:last]))
     if not len(known):
         return ()
     high = tones[known]
-    inner = np.concatenate([[-np.inf], high, [-np.inf]])
-    tops = np.flatnonzero((inner[1:-1] > inner[:-2]) & (inner[1:-1] >= inner[2:]))
+    # Where it goes on falling from what is before, or rising to what comes after, is no peak.
+    inner = np.nan_to_num(tones[[max(known[0] - 1, 0), *known, min(known[-1] + 1, len(tones) - 1)]], nan=-np.inf)
+    tops = np.flatnonzero((high > inner[:-2]) & (high >= inner[2:]))
+    if not len(tops):
+        return (float(found.times[known[int(high.argmax())]]),)
     least = high.min()
-    found_: list[tuple[float, float, float]] = []
+    tall: list[tuple[float, float, float]] = []
     for top in tops.tolist():
         higher = np.flatnonzero(high > high[top])
         left, right = higher[higher < top], higher[higher > top]
         before = high[left[-1] : top].min() if len(left) else least
         after = high[top : right[0]].min() if len(right) else least
         stands = float(high[top] - max(before, after))
-        found_.append((stands, float(high[top]), float(times[known[top]])))
-    found_.sort(key=lambda x: (-x[0], -x[1], x[2]))
-    kept = [x for x in found_ if x[0] >= PROMINENT] or found_[:1]
+        tall.append((stands, float(high[top]), float(found.times[known[top]])))
+    tall.sort(key=lambda x: (-x[0], -x[1], x[2]))
+    kept = [x for x in tall if x[0] >= PROMINENT] or tall[:1]
     return tuple(t for _, _, t in kept)
