@@ -31,9 +31,10 @@ SMALL = _set("""
     don't doesn't didn't isn't wasn't can't couldn't won't
 """)
 # What a new thought begins with.
-_JOINING = _set(
-    "and or but so because when while where though although unless whether until since before after if that which who i he she we they it there from for"
-)
+_JOINING = _set("""
+    and or but so because when while where though although unless whether until since before after if that which who i he she we they it
+    there from for
+""")
 # Small words that rather end what is before them than begin what follows.
 _TRAILING = _set("me him her us them there here up out off down not")
 _INSIDE = _set("of than is was are were be been do does did have has had can could will would")  # of what is under way already
