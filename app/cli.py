@@ -70,6 +70,7 @@ def _parser() -> argparse.ArgumentParser:
     rendered.add_argument("-o", "--out", type=Path, required=True, help="a .png, .mp4, .glb or .bvh file")
     rendered.add_argument("--progress", action="store_true", help="tell after each picture of a video how many there are")
     rendered.add_argument("--clip", help="draw this clip of the project alone")
+    rendered.add_argument("--conversation", metavar="NAME", help="draw both sides of this conversation, with their sound")
     rendered.add_argument("--size", default="960x540", help="width x height in pixels (default: 960x540)")
     rendered.add_argument("--fps", type=float, default=30.0, help="pictures a second of a video (default: 30)")
     rendered.add_argument("--frames", type=int, default=24, help="pictures on a contact sheet (default: 24)")

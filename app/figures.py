@@ -8,6 +8,8 @@ from PySide6.QtCore import QObject, Signal
 
 from app.document import Document
 from app.jobs import Jobs
+from app.shown import Shown
+from metagraph.errors import FileError
 from metagraph.graph.model import Project
 from metagraph.motion.skeleton import Skeleton
 from preview.figure import Figure, SkinnedFigure, StickFigure
@@ -25,6 +27,7 @@ class Figures(QObject):
         self.document, self.jobs = document, jobs
         self._sticks: dict[str, Figure | None] = {}  # None while it is being built
         self._skinned: tuple[Key, Figure] | None = None
+        self._guests: dict[Key, Figure | None] = {}  # characters of other projects, who talk with this one's
         self._wanted: Key | None = None
         self._unreadable: Key | None = None
         document.changed.connect(self._follow)
@@ -76,6 +79,32 @@ class Figures(QObject):
             self._sticks[skeleton.fingerprint] = None
             self.jobs.start("figure", lambda _: _ready(StickFigure(skeleton)), self._built, quick=True)
         return self._sticks[skeleton.fingerprint]
+
+    def of(self, shown: Shown) -> Figure | None:
+        """Return the figure of who is shown: of another project's character that one's own. None while it is being made."""
+        skeleton, character = shown.skeleton, shown.project.character
+        if skeleton is None:
+            return None
+        if shown.folder is None or character is None or shown.clip is not None:
+            return self.figure(skeleton)
+        key = (str(shown.folder / character), skeleton.fingerprint)
+        if key == self._key(self.document.project):
+            return self.figure(skeleton)
+        if key not in self._guests:
+            self._guests[key] = None
+
+            def work(_: object) -> tuple[Key, Figure]:
+                try:
+                    return key, load_figure(Path(key[0]), skeleton)
+                except FileError:  # it moves all the same
+                    return key, _ready(StickFigure(skeleton))
+
+            self.jobs.start("character", work, self._came, quick=True)
+        return self._guests[key]
+
+    def _came(self, result: tuple[Key, Figure]) -> None:
+        self._guests[result[0]] = result[1]
+        self.changed.emit()
 
     def _built(self, figure: Figure) -> None:
         self._sticks[figure.skeleton.fingerprint] = figure

@@ -19,6 +19,7 @@ from app.headless_mimic import mimic as mimic
 from app.headless_render import draw_to, figure_of, sound_of
 from app.headless_render import render as render
 from app.headless_study import study as study
+from app.shown import Shown
 from metagraph.errors import FileError
 from metagraph.formats.clips import SUFFIXES, read_clips
 from metagraph.formats.imports import import_files
@@ -178,12 +179,13 @@ def demo(options: Namespace) -> int:
         print(f"{project.name}: {whole.clips} clips placed")
         print(f"the machine nobody had to draw: {whole.states} states, {whole.connections:,} connections")
         print(f"planned {made.end:g} s: {cues} actions on {len(LAYERS)} layers")
-    figure = figure_of(project, folder)
+    shown = Shown(project, made, made.end)
+    seen = [(figure_of(project, folder), shown)]
     sheet, video = out / f"{project.name}.png", out / f"{project.name}.mp4"
-    draw_to(sheet, project, figure, made, None, made.end, (960, 540), 30, 24, "dark")
+    draw_to(sheet, seen, made.end, (960, 540), 30, 24, "dark")
     if not quiet:
         print(f"contact sheet  {sheet.resolve()}", flush=True)
-    draw_to(video, project, figure, made, None, made.end, (640, 360), 30, 0, "dark", sound_of(project, folder, made, made.end))
+    draw_to(video, seen, made.end, (640, 360), 30, 0, "dark", sound_of(shown, folder, made.end))
     if not quiet:
         print(f"video          {video.resolve()}", flush=True)
     exported = write_export(project, out, character=folder / project.character if project.character else None)

@@ -93,12 +93,13 @@ def _write(options: Namespace, project: Project, kept: Performance, made: Plan, 
         write_atomically(out, msgspec.json.format(msgspec.json.encode(kept), indent=1))
         return out
     from app.headless_render import bake_to, draw_to, figure_of
+    from app.shown import Shown
 
-    folder = options.project.resolve().parent
+    folder, shown = options.project.resolve().parent, Shown(project, made, kept.length)
     if out.suffix in (".glb", ".bvh"):
-        bake_to(out, project, made, None, kept.length, 30.0, folder)
+        bake_to(out, shown, kept.length, 30.0, folder)
     else:
-        draw_to(out, project, figure_of(project, folder), made, None, kept.length, size, 30.0, 24, "dark")
+        draw_to(out, [(figure_of(project, folder), shown)], kept.length, size, 30.0, 24, "dark")
     return out
 
 

@@ -4,17 +4,19 @@ from __future__ import annotations
 
 import sys
 from argparse import Namespace
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 
 from app.headless_common import opened, say, staged
+from app.shown import Shown, alone
 from metagraph.graph.model import Project
 from metagraph.playback.bake import bake
 from metagraph.playback.plan import Plan
-from metagraph.playback.player import morphs_at, pose_at
+
+Seen = tuple[Any, Shown]  # a figure, and what it plays
 
 
 def figure_of(project: Project, folder: Path) -> Any:
@@ -38,39 +40,30 @@ def size_of(text: str) -> tuple[int, int]:
     return width, height
 
 
-def pictures(
-    project: Project, figure: Any, times: np.ndarray, made: Plan | None, clip: str | None, size: tuple[int, int], look: str
-) -> Iterator[np.ndarray]:
-    """Yield one picture `[H, W, 4]` for each time: of a plan, or of a clip alone. The camera holds still."""
+def pictures(seen: Sequence[Seen], times: np.ndarray, size: tuple[int, int], look: str) -> Iterator[np.ndarray]:
+    """Yield one picture `[H, W, 4]` for each time. The camera holds still."""
     from preview.camera import whole_figure
     from preview.offscreen import Offscreen
-    from preview.scene import THEMES, Actor, Scene
+    from preview.scene import THEMES, Scene
 
-    assert project.skeleton is not None
-    entry = project.clips[clip] if clip is not None else None
-
-    def pose(at: np.ndarray) -> Any:
-        if entry is not None:
-            assert entry.motion is not None
-            return entry.motion.pose_at(at)
-        assert made is not None
-        return pose_at(made, project, at)
-
-    def morphs(at: float) -> Any:
-        if not figure.morphs:
-            return None
-        if entry is not None and entry.motion is not None:
-            return figure.morph_weights(entry.motion.morphs_at(at))
-        assert made is not None
-        return figure.morph_weights(morphs_at(made, project, at))
-
-    skeleton = project.skeleton
-    _, seen = skeleton.globals(pose(times[:: max(1, len(times) // 60)]))
-    camera = whole_figure(figure.bounds(seen), size[0] / size[1])
+    some = times[:: max(1, len(times) // 60)]
+    camera = whole_figure(Scene(tuple(_actor(figure, shown, some) for figure, shown in seen)).bounds(), size[0] / size[1])
     with Offscreen(*size) as offscreen:
         for at in times:
-            rotations, positions = skeleton.globals(pose(np.asarray(at)))
-            yield offscreen.render(Scene((Actor(figure, rotations, positions, morphs(float(at))),)), camera, THEMES[look])
+            yield offscreen.render(Scene(tuple(_actor(figure, shown, at) for figure, shown in seen)), camera, THEMES[look])
+
+
+def _actor(figure: Any, shown: Shown, times: Any) -> Any:
+    """Return a figure as it is shown at one time, or at many."""
+    from preview.scene import Actor
+
+    pose, skeleton = shown.pose(times), shown.skeleton
+    assert pose is not None and skeleton is not None
+    rotations, positions = skeleton.globals(pose)
+    if shown.stand is not None:
+        rotations, positions = shown.stand.placed(rotations, positions)
+    morphs = figure.morph_weights(shown.morphs(float(times))) if figure.morphs and np.ndim(times) == 0 else None
+    return Actor(figure, rotations, positions, morphs)
 
 
 def render(options: Namespace) -> int:
@@ -84,42 +77,69 @@ def render(options: Namespace) -> int:
     if options.out.suffix not in (".png", ".mp4", ".glb", ".bvh"):
         name = options.out.suffix or options.out.name
         raise ValueError(f"pictures are written as .png, videos as .mp4, motion as .glb or .bvh, not as '{name}'")
-    size = size_of(options.size)
-    figure = figure_of(project, options.project.resolve().parent)
+    size, folder = size_of(options.size), options.project.resolve().parent
     clip = None
     if options.clip is not None:
         clip = next((e.id for e in project.clips.values() if options.clip in (e.name, e.id)), None)
         if clip is None or project.clips[clip].motion is None:
             raise ValueError(f"there is no clip '{options.clip}' in the project")
         options.seconds = project.clips[clip].duration
-    made = staged(project, options) if clip is None else None
-    seconds = options.seconds
-    if options.out.suffix in (".glb", ".bvh"):
-        bake_to(options.out, project, made, clip, seconds, options.fps, options.project.resolve().parent)
+    if options.conversation is not None:
+        shown = _talking(project, options, folder)
     else:
-        sound = sound_of(project, options.project.resolve().parent, made, seconds) if options.out.suffix == ".mp4" else None
-        draw_to(
-            options.out, project, figure, made, clip, seconds, size, options.fps, options.frames, options.theme, sound, options.progress
-        )
+        shown = alone(project, clip) if clip is not None else Shown(project, staged(project, options), options.seconds)
+    if options.out.suffix in (".glb", ".bvh"):
+        for one, out in zip(shown.both, _outs(options.out, shown), strict=True):
+            bake_to(out, one, options.seconds, options.fps, one.folder or folder)
+    else:
+        seen = [(figure_of(one.project, one.folder or folder), one) for one in shown.both]
+        sound = sound_of(shown, folder, options.seconds) if options.out.suffix == ".mp4" else None
+        draw_to(options.out, seen, options.seconds, size, options.fps, options.frames, options.theme, sound, options.progress)
     say(options, f"{options.out}", {"written": str(options.out)})
     return 0
 
 
-def sound_of(project: Project, folder: Path, made: Plan | None, seconds: float) -> tuple[np.ndarray, int] | None:
-    """Return the sound of what is said in a performance, None where nothing is."""
-    if made is None or not any(s.line and project.lines[s.line].audio for s in made.track.speeches if s.line in project.lines):
+def _talking(project: Project, options: Namespace, folder: Path) -> Shown:
+    """Return both sides of a conversation of the project, named by id or name."""
+    from app.conversation.stage import Stage
+
+    found = next((i for i, c in project.conversations.items() if options.conversation in (i, c.name)), None)
+    if found is None:
+        names = ", ".join(f"'{c.name}'" for c in project.conversations.values()) or "none"
+        raise ValueError(f"there is no conversation '{options.conversation}' in the project; it keeps {names}")
+    shown = Stage().show(project, found, folder)
+    for note in shown.notes:
+        print(f"note: {note}", file=sys.stderr)
+    options.seconds = shown.length if options.seconds is None else options.seconds
+    return shown
+
+
+def _outs(out: Path, shown: Shown) -> list[Path]:
+    """Return a file for each who is shown: both of a conversation have one each, in the character's own space."""
+    return [out] if shown.partner is None else [out.with_stem(f"{out.stem}-{n + 1}") for n in range(2)]
+
+
+def sound_of(shown: Shown, folder: Path, seconds: float) -> tuple[np.ndarray, int] | None:
+    """Return the sound of what is said, None where nothing is."""
+    lines = {
+        s.line: line
+        for one in shown.both
+        for s in one.plan.track.speeches
+        if s.line is not None and (line := one.project.lines.get(s.line)) is not None and line.audio
+    }
+    if not lines:
         return None
     from metagraph.speech.soundtrack import RATE, line_sounds, mixed, placed
 
-    sounds, notes = line_sounds(project, folder)
+    sounds, notes = line_sounds(lines, folder)
     for note in notes:
         print(f"note: {note}", file=sys.stderr)
-    return mixed(placed(made, sounds), 0, round(seconds * RATE)), RATE
+    return mixed([part for one in shown.both for part in placed(one.plan, sounds)], 0, round(seconds * RATE)), RATE
 
 
 def draw_to(
-    out: Path, project: Project, figure: Any, made: Plan | None, clip: str | None, seconds: float, size: tuple[int, int],
-    fps: float, frames: int, look: str, sound: tuple[np.ndarray, int] | None = None, progress: bool = False,
+    out: Path, seen: Sequence[Seen], seconds: float, size: tuple[int, int], fps: float, frames: int, look: str,
+    sound: tuple[np.ndarray, int] | None = None, progress: bool = False,
 ) -> None:  # fmt: skip
     """Write a contact sheet (.png) or a video (.mp4), with its sound."""
     out.parent.mkdir(parents=True, exist_ok=True)
@@ -132,20 +152,20 @@ def draw_to(
             if progress:
                 print(f"{count}/{len(times)}", file=sys.stderr, flush=True)
 
-        write_video(out, pictures(project, figure, times, made, clip, size, look), fps, size, told, sound=sound)
+        write_video(out, pictures(seen, times, size, look), fps, size, told, sound=sound)
     elif out.suffix == ".png":
         from preview.sheet import contact_sheet, write_png
 
         times = np.linspace(0, seconds, max(2, frames))
         small = (max(16, size[0] * 2 // 9), max(16, size[1] * 5 // 9))
-        images = list(pictures(project, figure, times, made, clip, small, look))
-        labels = [f"{t:.2f} s" + (f"  {_doing(made, t)}" if made is not None else "") for t in times]
+        images = list(pictures(seen, times, small, look))
+        labels = [f"{t:.2f} s  {', '.join(filter(None, (_doing(shown.plan, t) for _, shown in seen)))}".rstrip() for t in times]
         write_png(out, contact_sheet(images, 8, labels))
     else:
         raise ValueError(f"pictures are written as .png, videos as .mp4, not '{out.suffix}'")
 
 
-def bake_to(out: Path, project: Project, made: Plan | None, clip: str | None, seconds: float, fps: float, folder: Path) -> None:
+def bake_to(out: Path, shown: Shown, seconds: float, fps: float, folder: Path) -> None:
     """Write a performance, or a clip, as plain motion: what an engine or an animation program plays without a planner.
 
     A GLB has the character in it, where the project has one.
@@ -153,11 +173,8 @@ def bake_to(out: Path, project: Project, made: Plan | None, clip: str | None, se
     from metagraph.formats.bvh import write_bvh
     from metagraph.formats.gltf_writer import write_glb
 
-    if clip is not None and project.clips[clip].motion is not None:
-        motion = project.clips[clip].motion
-    else:
-        assert made is not None
-        motion = bake(made, project, seconds, fps)
+    project = shown.project
+    motion = bake(shown.plan, project, seconds, fps) if shown.clip is None else project.clips[shown.clip].motion
     assert motion is not None
     out.parent.mkdir(parents=True, exist_ok=True)
     if out.suffix == ".bvh":

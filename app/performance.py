@@ -6,11 +6,13 @@ and the old one plays until the new one is there.
 
 from __future__ import annotations
 
+from pathlib import Path
 from typing import TYPE_CHECKING
 
 import msgspec
 from PySide6.QtCore import QObject, QTimer, Signal
 
+from app.conversation.stage import Stage, keep
 from app.document import Document
 from app.jobs import Jobs
 from app.session import Session
@@ -53,6 +55,9 @@ class Performance(QObject):
         session.show_changed.connect(self.replan)
         session.performance_changed.connect(self._staged)
         session.mode_changed.connect(self._switched)
+        session.conversation_changed.connect(self._conversed)
+        self._stage = Stage()
+        self._noted: tuple[str, ...] = ()  # about a conversation, said once
         self._fires: tuple[Fire, ...] = ()  # triggers of the manual state machine, fired since it began
         self._on_stage: str | None = None
         self.live: LiveStage | None = None
@@ -80,6 +85,45 @@ class Performance(QObject):
             self.length = self.kept.length if self.kept is not None else LENGTH
             self.replan()
 
+    def _conversed(self) -> None:
+        self._noted = ()
+        self.length = self._own_length or LENGTH
+        self.session.show_plan()
+        self.replan()
+
+    @property
+    def conversation(self) -> str | None:
+        """The conversation on stage."""
+        found = self.session.conversation if self.session.mode == "meta" and self.live is None else None
+        return found if found in self.document.project.conversations else None
+
+    @property
+    def ends(self) -> bool:
+        """Whether what is on stage has an end of its own; the models improvise for ever."""
+        return self._own_length is not None
+
+    @property
+    def _own_length(self) -> float | None:
+        """Seconds of what is kept and on stage; None while the models improvise, for ever."""
+        if self.conversation is not None:
+            return self.document.project.conversations[self.conversation].length
+        return self.kept.length if self.kept is not None else None
+
+    def keep_conversation(self) -> None:
+        """Keep what both do as performances, which can be edited ask by ask and exported."""
+        ident, shown = self.conversation, self.shown
+        made: tuple[str, ...] = ()
+
+        def edit(project: Project) -> Project:
+            nonlocal made
+            project, made = keep(project, ident or "", shown)
+            return project
+
+        if ident is not None and shown.partner is not None:
+            self.document.edit("Keep as performances", edit)
+            if made:
+                self.session.set_performance(made[0])
+
     def _switched(self) -> None:
         self.stop_live()
         self._fires = ()
@@ -96,8 +140,8 @@ class Performance(QObject):
         self.replan()
 
     def _edited(self, before: Project, after: Project) -> None:
-        if self.kept is not None:
-            self.length = self.kept.length
+        if self._own_length is not None:
+            self.length = self._own_length
         if before.skeleton is not after.skeleton or after.skeleton is None:
             self.stop_live()
             self.shown = Shown(after, Plan(1, 0.0), LENGTH)
@@ -119,6 +163,7 @@ class Performance(QObject):
         show, shown, anew = self.session.show, self.session.shown, self.session.tried is not None
         stances = {layer: s for layer in LAYERS if (s := self.session.stance(layer)) is not None}
         layer = self.session.layer
+        talk, side, folder = self.conversation, self.session.side, self.document.folder or Path()
 
         def work(_: object) -> Shown:
             if show == "clip" and shown in project.clips:
@@ -128,6 +173,8 @@ class Performance(QObject):
                 return by_hand(project, length, fires, shown if show == "context" and known else None)
             if show == "context" and shown is not None:
                 return in_context(project, shown, layer, stances, anew)
+            if talk is not None and project.skeleton is not None:
+                return self._stage.show(project, talk, folder, side)
             if kept is None:
                 return Shown(project, make_plan(project, length), length)
             return Shown(project, perform(project, kept.asks, length, kept.seed, dict(kept.stances), kept.idle), length)
@@ -139,6 +186,9 @@ class Performance(QObject):
         if self.live is not None and self.session.show == "plan":
             return
         self.shown = shown
+        if shown.notes and shown.notes != self._noted:
+            self.document.failed.emit(" ".join(shown.notes))
+        self._noted = shown.notes
         self.changed.emit()
         if self._again:
             self.replan()
@@ -162,6 +212,8 @@ class Performance(QObject):
         """What is asked for: of the performance on stage, or lately of the live one."""
         if self.live is not None:
             return self.live.asks
+        if self.conversation is not None:
+            return self.shown.asks
         return self.kept.asks if self.kept is not None else ()
 
     @property
@@ -294,10 +346,11 @@ class Performance(QObject):
             return
         seconds = session.seconds + elapsed * session.speed
         length = self.shown.length
-        if self.kept is None and session.show == "plan" and not session.loop and seconds > self.length - AHEAD:
+        endless = self._own_length is None and session.show == "plan" and not session.loop
+        if endless and seconds > self.length - AHEAD:
             self.length += LENGTH
             self.replan()
-        if seconds >= length > 0 and not (self.kept is None and session.show == "plan" and not session.loop):
+        if seconds >= length > 0 and not endless:
             if session.loop:
                 seconds %= length
             else:

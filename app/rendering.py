@@ -18,7 +18,8 @@ SUFFIXES = {".mp4": "Video with sound", ".png": "Contact sheet", ".glb": "Motion
 
 @dataclass(frozen=True)
 class Wanted:
-    """What to write. performance: id of a kept one, None to improvise. size: width and height in pixels."""
+    """What to write. performance: id of a kept one, None to improvise. conversation: id of one, then of both. size: width and height in
+    pixels."""
 
     out: Path
     performance: str | None
@@ -26,6 +27,7 @@ class Wanted:
     size: tuple[int, int] = (1280, 720)
     fps: float = 30.0
     theme: str = "dark"
+    conversation: str | None = None
 
 
 def write(project: Project, folder: Path, wanted: Wanted, job: Job) -> Path:
@@ -39,6 +41,8 @@ def write(project: Project, folder: Path, wanted: Wanted, job: Job) -> Path:
         ]  # fmt: skip
         if wanted.performance is not None:
             words += ["--performance", wanted.performance]
+        if wanted.conversation is not None:
+            words += ["--conversation", wanted.conversation]
         process = subprocess.Popen(words, stdout=subprocess.DEVNULL, stderr=subprocess.PIPE, text=True, cwd=Path(__file__).parents[1])
         said: list[str] = []
         reader = threading.Thread(target=_listen, args=(process, job, said), daemon=True)

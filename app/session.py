@@ -53,6 +53,7 @@ class Session(QObject):
         self.performance: str | None = None  # the kept performance on stage, None while the models improvise
         self.asks: tuple[str, ...] = ()  # selected in the timeline
         self.conversation: str | None = None  # the conversation on stage, None for none; never while a kept performance is
+        self.side = 0  # of its two, whose plan the timeline shows
         self.copied: str | None = None  # the action whose properties can be pasted
         self.theme: Literal["dark", "light"] = "dark"
         document.changed.connect(self._follow)
@@ -179,6 +180,12 @@ class Session(QObject):
             self.set_performance(None)
         if ident != self.conversation:
             self.conversation = ident
+            self.conversation_changed.emit()
+
+    def set_side(self, side: int) -> None:
+        """Let the timeline show the plan of one side of the conversation, 0 or 1."""
+        if side != self.side:
+            self.side = side
             self.conversation_changed.emit()
 
     # --- preview

@@ -4,7 +4,10 @@ from __future__ import annotations
 
 from collections.abc import Iterable
 from dataclasses import dataclass
+from pathlib import Path
+from typing import TYPE_CHECKING
 
+from metagraph.graph.asks import AnyAsk
 from metagraph.graph.edits import EditError, place
 from metagraph.graph.model import Layer, Project
 from metagraph.motion.skeleton import Pose, Skeleton
@@ -13,6 +16,9 @@ from metagraph.playback.plan import Plan, Request
 from metagraph.playback.planner import make_plan
 from metagraph.playback.player import morphs_at, pose_at
 
+if TYPE_CHECKING:
+    from metagraph.speech.duet import Stand
+
 LEAD = 0.8  # seconds of stance before and after a clip shown in context
 
 
@@ -20,6 +26,9 @@ LEAD = 0.8  # seconds of stance before and after a clip shown in context
 class Shown:
     """project: the one the plan was made for. length: seconds. clip: the one that plays alone, then without a plan. manual: what the manual
     state machines play, where they do; `plan` then only shows it.
+
+    Of a conversation: partner: the other one. side: 0 or 1, which of the two this is. stand: where it stands. asks: what it is asked.
+    notes: what could not be read. folder: what paths in its project begin at.
     """
 
     project: Project
@@ -27,6 +36,19 @@ class Shown:
     length: float
     clip: str | None = None
     manual: ManualPlan | None = None
+    partner: Shown | None = None
+    side: int = 0
+    stand: Stand | None = None
+    asks: tuple[AnyAsk, ...] = ()
+    notes: tuple[str, ...] = ()
+    folder: Path | None = None
+
+    @property
+    def both(self) -> tuple[Shown, ...]:
+        """Who is to be seen: this one alone, or both of a conversation, its first side first."""
+        if self.partner is None:
+            return (self,)
+        return (self, self.partner) if self.side == 0 else (self.partner, self)
 
     @property
     def skeleton(self) -> Skeleton | None:

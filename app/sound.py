@@ -6,6 +6,7 @@ device, or without the library, everything else works and the status bar says wh
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from pathlib import Path
 from typing import Any
 
@@ -16,6 +17,7 @@ from app.document import Document
 from app.jobs import Jobs
 from app.performance import Performance
 from app.session import Session
+from metagraph.graph.asks import Line
 from metagraph.graph.model import Project
 
 RATE = 44100  # as speech.soundtrack's, which is not imported before something is said
@@ -38,7 +40,7 @@ class Sound(QObject):
         self.place = 0  # the next sample that is asked for
         self._stream: Any = None
         self._silent = False  # there is no way to be heard; that was told
-        self._files: dict[str, str] = {}
+        self._files: dict[str, tuple[str, int | None]] = {}
         document.changed.connect(self._edited)
         document.state_changed.connect(lambda: self._edited(document.project, document.project))
         performance.changed.connect(self._planned)
@@ -49,7 +51,15 @@ class Sound(QObject):
     # --- the lines' files
 
     def _edited(self, before: Project, after: Project) -> None:
-        files = {i: x.audio for i, x in after.lines.items() if x.audio}
+        self._want({**after.lines, **self._said()})
+
+    def _said(self) -> dict[str, Line]:
+        """Return the lines of a conversation on stage: they are in no project."""
+        both = self.performance.shown.both if self.performance.shown.partner is not None else ()
+        return {s.line: one.project.lines[s.line] for one in both for s in one.plan.track.speeches if s.line in one.project.lines}
+
+    def _want(self, lines: Mapping[str, Line]) -> None:
+        files = {i: (x.audio, x.channel) for i, x in lines.items() if x.audio}
         if files == self._files:
             return
         self._files = files
@@ -62,12 +72,12 @@ class Sound(QObject):
         def work(_: object) -> Any:
             from metagraph.speech.soundtrack import line_sounds
 
-            return line_sounds(after, folder)
+            return line_sounds(lines, folder)
 
-        self.jobs.start("Reading sounds", work, lambda made: self._read(after, *made), lambda error: self.told.emit(str(error)), quick=True)
+        self.jobs.start("Reading sounds", work, self._read, lambda error: self.told.emit(str(error)), quick=True)
 
-    def _read(self, project: Project, sounds: dict[str, np.ndarray], notes: tuple[str, ...]) -> None:
-        self.sounds = sounds
+    def _read(self, made: tuple[dict[str, np.ndarray], tuple[str, ...]]) -> None:
+        self.sounds, notes = made
         for note in notes[:1]:
             self.told.emit(note)
         self._planned()
@@ -76,12 +86,14 @@ class Sound(QObject):
 
     def _planned(self) -> None:
         shown = self.performance.shown
-        if not self.sounds or shown.clip is not None or not shown.plan.track.speeches:
+        if not set(said := self._said()) <= set(self._files):
+            self._want({**self.document.project.lines, **said})
+        if not self.sounds or shown.clip is not None or not any(one.plan.track.speeches for one in shown.both):
             self.parts = EMPTY
             return
         from metagraph.speech.soundtrack import placed
 
-        self.parts = placed(shown.plan, self.sounds)
+        self.parts = [part for one in shown.both for part in placed(one.plan, self.sounds)]
         self._moved()
 
     @property

@@ -144,7 +144,7 @@ class Lanes(QWidget):
     def _picture(self) -> QPixmap:
         """Return everything but the playhead, made anew only when something else than the playhead has changed."""
         s, p, ratio = self.session, self.performance, self.devicePixelRatioF()
-        ends = p.shown.length if p.kept is not None else None
+        ends = p.shown.length if p.ends else None
         found = self.marks()
         font = self.font()
 

@@ -14,8 +14,8 @@ from app.session import Session
 from app.theme import theme
 from metagraph.graph import anatomy
 from metagraph.graph.model import LAYERS, Project
-from metagraph.motion.skeleton import Pose
 from preview.camera import close_up, whole_figure
+from preview.figure import Figure
 from preview.scene import THEMES, Actor, Scene
 
 SPEEDS = (0.1, 0.25, 0.5, 1.0, 1.5, 2.0)
@@ -30,8 +30,8 @@ class PreviewPanel(QWidget):
         super().__init__(parent)
         self.session, self.performance, self.figures = session, performance, figures
         self.bones = False
-        self._framed: object = None  # the figure the camera was last framed on
-        self._last: tuple[Pose, np.ndarray, np.ndarray] | None = None
+        self._framed: tuple[object, ...] = ()  # whom the camera was last framed on
+        self._last: tuple[Figure, np.ndarray, np.ndarray] | None = None
         self.view = make_view(self._scene, self)
         self.view.frame_wanted.connect(self.frame_all)
         self.view.setMinimumSize(240, 200)
@@ -134,19 +134,26 @@ class PreviewPanel(QWidget):
 
     def _scene(self) -> Scene:
         """Return what is drawn now; called by the view when it paints."""
-        pose, skeleton = self.performance.pose(), self.performance.skeleton()
-        if pose is None or skeleton is None:
-            return Scene()
-        figure = self.figures.figure(skeleton)
-        if figure is None:
-            return Scene()
-        rotations, positions = skeleton.globals(pose)
-        self._last = (pose, rotations, positions)
-        if self._framed is not figure and not self.view.moved_by_hand:
-            self._framed = figure
-            self._frame(figure, positions)
-        morphs = figure.morph_weights(self.performance.morphs()) if figure.morphs else None
-        return Scene((Actor(figure, rotations, positions, morphs, self._marks(), self.bones),))
+        shown, seconds, actors = self.performance.shown, self.session.seconds, []
+        for one in shown.both:
+            pose, skeleton = one.pose(seconds), one.skeleton
+            figure = self.figures.of(one) if skeleton is not None else None
+            if pose is None or skeleton is None or figure is None:
+                continue
+            rotations, positions = skeleton.globals(pose)
+            if one.stand is not None:
+                rotations, positions = one.stand.placed(rotations, positions)
+            if one is shown:
+                self._last = (figure, rotations, positions)
+            morphs = figure.morph_weights(one.morphs(seconds)) if figure.morphs else None
+            marks = self._marks() if one is shown else {}
+            actors.append(Actor(figure, rotations, positions, morphs, marks, self.bones))
+        scene = Scene(tuple(actors))
+        framed = (*(actor.figure for actor in actors), *(one.stand for one in shown.both))
+        if actors and self._framed != framed and not self.view.moved_by_hand:
+            self._framed = framed
+            self.view.camera = whole_figure(scene.bounds(), self.view.width() / max(1, self.view.height()))
+        return scene
 
     def _marks(self) -> dict[int, tuple[float, float, float]]:
         """Point out the joints of the selected action's mask."""
@@ -190,24 +197,18 @@ class PreviewPanel(QWidget):
 
     def frame_all(self) -> None:
         self.view.moved_by_hand = False
-        self._framed = None
+        self._framed = ()
         self.view.update()
 
     def frame_face(self) -> None:
-        skeleton = self.performance.skeleton()
-        if self._last is None or skeleton is None:
+        if self._last is None:
             return
-        figure = self.figures.figure(skeleton)
-        if figure is None:
-            return
-        head = figure.head(self._last[1], self._last[2])
-        self.view.camera = close_up(head, figure.height, self.view.width() / max(1, self.view.height()))
+        figure, rotations, positions = self._last
+        stand = self.performance.shown.stand
+        head, heading = figure.head(rotations, positions), stand.turn if stand is not None else 0.0
+        self.view.camera = close_up(head, figure.height, self.view.width() / max(1, self.view.height()), heading)
         self.view.moved_by_hand = True
         self.view.update()
-
-    def _frame(self, figure: object, positions: np.ndarray) -> None:
-        aspect = self.view.width() / max(1, self.view.height())
-        self.view.camera = whole_figure(figure.bounds(positions), aspect)  # type: ignore[attr-defined]
 
     def _scrubbed(self, value: int) -> None:
         self.session.set_playing(False)

@@ -41,6 +41,8 @@ class RenderDialog(QDialog):
         self.performance, self.session, self.jobs = performance, session, jobs
         self.setAttribute(Qt.WidgetAttribute.WA_DeleteOnClose)  # what runs goes on; the status bar shows it
         kept = performance.kept
+        if performance.conversation is not None:
+            kept = performance.document.project.conversations[performance.conversation]
         self.setWindowTitle(f"Write '{kept.name}'" if kept is not None else "Write the performance")
         self.setMinimumWidth(520)
         layout = QVBoxLayout(self)
@@ -116,7 +118,7 @@ class RenderDialog(QDialog):
         document = self.performance.document
         wanted = Wanted(
             Path(self.file.text()), self.session.performance, self.seconds.value(), self.size_box.currentData(), self.fps.currentData(),
-            self.session.theme,
+            self.session.theme, self.performance.conversation,
         )  # fmt: skip
         QSettings().setValue("render/size", self.size_box.currentIndex())
         project, folder = document.project, document.folder or Path()

@@ -121,16 +121,31 @@ def _sounds(document: c.Export, folder: Path, base: Path) -> tuple[tuple[Path, .
     files, missing = [], []
     for (ident, line), name in zip(lines, names, strict=True):
         source = base / str(line.audio)
-        inside = f"lines/{name}{source.suffix}"
+        inside = f"lines/{name}{source.suffix}" if line.channel is None else f"lines/{name}.wav"
         try:
-            content = source.read_bytes()
-        except OSError as error:
-            missing.append(f"the sound of line '{ident}' is left out: {source.name} cannot be read ({error.strerror})")
+            content = source.read_bytes() if line.channel is None else _channel(source, line.channel)
+        except (OSError, FileError) as error:
+            cause = f"{source.name} cannot be read ({error.strerror})" if isinstance(error, OSError) else str(error)
+            missing.append(f"the sound of line '{ident}' is left out: {cause}")
             continue
         write_atomically(folder / inside, content)
-        document.lines[ident] = msgspec.structs.replace(line, audio=inside)
+        document.lines[ident] = msgspec.structs.replace(line, audio=inside, channel=None)
         files.append(folder / inside)
     return tuple(files), tuple(missing)
+
+
+def _channel(source: Path, channel: int) -> bytes:
+    """Return one channel of a sound as a WAV file of its own: what engines play have no channels to choose. Raises FileError."""
+    import io
+
+    import soundfile
+
+    from metagraph.speech.sound import read_sound
+
+    samples, rate = read_sound(source, channel)
+    out = io.BytesIO()
+    soundfile.write(out, samples, rate, format="WAV", subtype="PCM_16")
+    return out.getvalue()
 
 
 def _write_glb(path: Path, clips: list[Clip], skeleton: Skeleton, character: Path | Character | None) -> list[str]:

@@ -22,6 +22,7 @@ from metagraph.formats.fields import Data, DataError
 from metagraph.formats.text import TextError, parse, to_text
 from metagraph.graph.asks import Line
 from metagraph.graph.bring import Bringing
+from metagraph.graph.conversation import Conversation, Side
 from metagraph.graph.model import ClipEntry, Project
 from metagraph.motion.adopt import SkeletonMismatchError, adopt
 from metagraph.motion.clip import Clip, ClipError
@@ -114,7 +115,16 @@ def moved(project: Project, old: Path | None, new: Path) -> Project:
 
     clips = {i: replace(e, path=renew(e.path)) for i, e in project.clips.items()}
     character = renew(project.character) if project.character else None
-    return replace(project, clips=clips, character=character, lines=_lines(project, renew))
+    return replace(project, clips=clips, character=character, lines=_lines(project, renew), conversations=_conversations(project, renew))
+
+
+def _conversations(project: Project, renew: Callable[[str], str]) -> Mapping[str, Conversation]:
+    """Return the project's conversations with other paths to their sounds and to the projects that move their sides."""
+
+    def moved(side: Side) -> Side:
+        return msgspec.structs.replace(side, audio=side.audio and renew(side.audio), project=side.project and renew(side.project))
+
+    return {i: msgspec.structs.replace(c, sides=tuple(map(moved, c.sides))) for i, c in project.conversations.items()}
 
 
 def _lines(project: Project, renew: Callable[[str], str]) -> Mapping[str, Line]:
@@ -131,7 +141,7 @@ def absolute(project: Project, folder: Path) -> Project:
 
     clips = {i: replace(e, path=renew(e.path)) for i, e in project.clips.items()}
     character = renew(project.character) if project.character else None
-    return replace(project, clips=clips, character=character, lines=_lines(project, renew))
+    return replace(project, clips=clips, character=character, lines=_lines(project, renew), conversations=_conversations(project, renew))
 
 
 def relative(path: Path, folder: Path) -> str:

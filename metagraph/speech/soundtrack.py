@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from metagraph.errors import FileError
-from metagraph.graph.model import Project
+from metagraph.graph.asks import Line
 from metagraph.playback.plan import Plan
 from metagraph.speech.sound import read_sound
 
@@ -20,11 +20,11 @@ RATE = 44100  # samples a second
 FADE = 0.02  # seconds in which a line that is cut short goes
 
 
-def line_sounds(project: Project, folder: Path, rate: int = RATE) -> tuple[dict[str, Array], tuple[str, ...]]:
+def line_sounds(lines: Mapping[str, Line], folder: Path, rate: int = RATE) -> tuple[dict[str, Array], tuple[str, ...]]:
     """Return the samples of each line that has sound, `[N]` float32 at `rate`, and what could not be read, in words."""
     sounds: dict[str, Array] = {}
     notes: list[str] = []
-    for ident, line in project.lines.items():
+    for ident, line in lines.items():
         if line.audio:
             try:
                 samples, own = read_sound(folder / line.audio, line.channel)
@@ -36,16 +36,13 @@ def line_sounds(project: Project, folder: Path, rate: int = RATE) -> tuple[dict[
 
 
 def resampled(samples: Array, rate: int, wanted: int) -> Array:
-    """Return samples `[N]` at another rate, float32: what the new rate cannot hold is taken out first, then linearly."""
+    """Return samples `[N]` at another rate, float32."""
+    samples = np.asarray(samples, np.float32)
     if rate == wanted or len(samples) < 2:
-        return np.asarray(samples, np.float32)
-    spectrum = np.fft.rfft(samples)
-    if wanted < rate:
-        spectrum[int(len(spectrum) * wanted / rate) :] = 0
-    count = max(1, round(len(samples) * wanted / rate))
-    # Through the spectrum the samples of a line, a few seconds, come out exactly.
-    out = np.fft.irfft(spectrum[: count // 2 + 1], count) * (count / len(samples))
-    return np.asarray(out, np.float32)
+        return samples
+    import soxr
+
+    return np.asarray(soxr.resample(samples, rate, wanted), np.float32)
 
 
 def placed(plan: Plan, sounds: Mapping[str, Array], rate: int = RATE) -> list[tuple[float, Array]]:

@@ -51,9 +51,10 @@ def test_morphs_of_a_clip_and_of_a_plan_are_drawn(shared_data):
         {name: min(1.0, max(0.0, value)) for name, value in wanted.items()}, abs=1e-3
     )
     times = np.array([frame / entry.fps])
-    shown = next(iter(pictures(project, figure, times, None, entry.id, (160, 160), "dark")))
+    seen = [(figure, alone(project, entry.id))]
+    shown = next(iter(pictures(seen, times, (160, 160), "dark")))
     figure.morphs = ()
-    still = next(iter(pictures(project, figure, times, None, entry.id, (160, 160), "dark")))
+    still = next(iter(pictures(seen, times, (160, 160), "dark")))
     assert (shown != still).any(), "the face differs from the one without morphs"
 
 
