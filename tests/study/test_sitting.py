@@ -7,6 +7,7 @@ import random
 import shutil
 import subprocess
 import sys
+from collections import Counter
 from pathlib import Path
 
 import pytest
@@ -206,6 +207,7 @@ def test_killed_at_100_moments_nothing_is_lost_and_nothing_is_there_twice(tiny):
     study = read_study(tiny)
     draw = random.Random(20260301)
     kills, seen = 0, set()
+    ahead = Counter()  # edits that a kill came between, and the log does not have: in each phase that was begun
     for participant in study.plan.ids:
         words = [sys.executable, str(Path(__file__).with_name("scripted.py")), str(tiny), participant]
         with subprocess.Popen(words, cwd=ROOT, stdin=subprocess.PIPE, stdout=subprocess.PIPE, text=True) as process:
@@ -232,7 +234,9 @@ def test_killed_at_100_moments_nothing_is_lost_and_nothing_is_there_twice(tiny):
                     logged = sum(e["type"] == "edit" for e in log.events[begun:])
                     copy = shutil.copytree(study.data(participant), tiny.parent / f"copy {kills}")
                     made = len(reopen(copy / now.phase.file)[0].project.graphs["arms"].stances)
-                    assert made in (logged, logged + 1), "the project is as it was at the last edit"
+                    more = made - logged - ahead[participant, begun]
+                    assert more in (0, 1), "the project is as it was at the last edit"
+                    ahead[participant, begun] += more
             process.stdin.close()
         log = read(study.log(participant))
         assert log.complete
