@@ -14,6 +14,7 @@ from metagraph.graph.model import KINDS, LAYERS
 if TYPE_CHECKING:
     from app.window import Window
 
+CONVERSATION = ("converse", "rename_conversation", "rates", "word_lists", "side_sounds", "write_segments", "remove_conversation")
 LAYER_KEYS = {"body": "Alt+1", "arms": "Alt+2", "head": "Alt+3"}
 
 
@@ -110,6 +111,7 @@ def commands(window: Window) -> tuple[Command, ...]:
         Command("show_plan", "&Play", "The whole &performance", s.show_plan, ("Escape",), line=True, checked=lambda: s.show == "plan"),
         Command("alone", "&Play", "The clip &alone", window.play_alone, ("Ctrl+Return",), enabled=some),
         Command("in_context", "&Play", "In &context", window.play_in_context, ("Shift+Return",), enabled=some),
+        *_of_conversations(window),
         Command("frame", "&View", "&Frame the character", window.preview.frame_all, ("F",)),
         Command("face", "&View", "Close-up of the &face", window.preview.frame_face, ("Shift+F",)),
         Command("bones", "&View", "Show the &skeleton", window.preview.toggle_bones, ("B",), checked=lambda: window.preview.bones),
@@ -127,6 +129,22 @@ def commands(window: Window) -> tuple[Command, ...]:
         Command("about", "&Help", "&About Metagraph", o.about),
     ]  # fmt: skip
     return tuple(_of_meta(window, x) if x.id in META_ONLY else x for x in out)
+
+
+def _of_conversations(window: Window) -> tuple[Command, ...]:
+    """Return what can be done with the conversation on stage."""
+    s, o = window.session, window.dialogs
+    staged = lambda: s.conversation is not None  # noqa: E731
+    menu = "&Conversation"
+    return (
+        Command("converse", menu, "Conversation from &sound…", o.converse, tip="Read what two say, and let both characters move with it"),
+        Command("rename_conversation", menu, "Re&name conversation…", o.rename_conversation, enabled=staged, line=True),
+        Command("rates", menu, "&Rates…", o.rates, enabled=staged, tip="How often each of the two gestures and nods"),
+        Command("word_lists", menu, "&Word lists…", o.word_lists, enabled=staged, tip="Which words are responses, which hesitations"),
+        Command("side_sounds", menu, "S&ounds and names…", o.side_sounds, enabled=staged, tip="Who the two are, and which sound is whose"),
+        Command("write_segments", menu, "&Export segments…", o.write_segments, enabled=staged, tip="As ELAN or Praat TextGrid", line=True),
+        Command("remove_conversation", menu, "Remove conversation", o.remove_conversation, enabled=staged, line=True),
+    )
 
 
 def _of_meta(window: Window, command: Command) -> Command:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -116,6 +117,46 @@ class Dialogs:
         from app.panels.mimic import open_keypoints
 
         open_keypoints(w, path)
+
+    def converse(self, paths: Sequence[Path] = ()) -> None:
+        """Read a conversation from sounds and transcripts; without any they are asked for."""
+        from app.conversation import offers
+
+        offers.converse(self.window, paths)
+
+    def rename_conversation(self) -> None:
+        from app.conversation import offers
+
+        offers.rename(self.window)
+
+    def rates(self) -> None:
+        """Set how often each of the two moves with what is said."""
+        from app.conversation import offers
+
+        offers.rates(self.window)
+
+    def word_lists(self) -> None:
+        """Change which words make a segment a response or a hesitation."""
+        from app.conversation import offers
+
+        offers.word_lists(self.window)
+
+    def side_sounds(self) -> None:
+        """Say who the two are and which sound is whose."""
+        from app.conversation import offers
+
+        offers.side_sounds(self.window)
+
+    def write_segments(self) -> None:
+        """Write the segments as an ELAN file or a TextGrid."""
+        from app.conversation import offers
+
+        offers.write_segments(self.window)
+
+    def remove_conversation(self) -> None:
+        from app.conversation import offers
+
+        offers.remove(self.window)
 
     def export(self) -> None:
         w = self.window

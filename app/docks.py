@@ -10,10 +10,11 @@ from PySide6.QtWidgets import QDockWidget, QMainWindow, QScrollArea, QWidget
 _LEFT, _RIGHT, _BOTTOM = Qt.DockWidgetArea.LeftDockWidgetArea, Qt.DockWidgetArea.RightDockWidgetArea, Qt.DockWidgetArea.BottomDockWidgetArea
 PLACES = {
     "library": ("Clips", _LEFT), "preview": ("Character", _RIGHT), "properties": ("Properties", _RIGHT), "life": ("Life", _RIGHT),
-    "timeline": ("Performance", _BOTTOM), "models": ("Models", _BOTTOM), "lines": ("Lines", _BOTTOM), "problems": ("Problems", _BOTTOM),
+    "timeline": ("Performance", _BOTTOM), "conversation": ("Conversation", _BOTTOM),
+    "models": ("Models", _BOTTOM), "lines": ("Lines", _BOTTOM), "problems": ("Problems", _BOTTOM),
 }  # fmt: skip
-TABS = (("properties", "life"), ("timeline", "models", "lines", "problems"))  # which share a place; the first is in front
-ARRANGED = 3  # which docks there are; an arrangement of others, saved before, is not restored
+TABS = (("properties", "life"), ("timeline", "conversation", "models", "lines", "problems"))  # which share a place; the first is in front
+ARRANGED = 4  # which docks there are; an arrangement of others, saved before, is not restored
 
 
 class Docks(dict[str, QDockWidget]):

@@ -19,7 +19,7 @@ from app import icons
 from app.actions import Actions
 from app.canvas.canvas import Canvas
 from app.canvas.drops import Drop, load_of
-from app.commands import commands
+from app.commands import CONVERSATION, commands
 from app.compatibility import Compatibility, merged
 from app.dialogs import Dialogs
 from app.docks import Docks
@@ -132,6 +132,7 @@ class Window(QMainWindow):
 
     def make_late_panels(self) -> None:
         """Fill the docks that were left empty for a fast start."""
+        from app.conversation.panel import ConversationPanel
         from app.panels.life import LifePanel
         from app.panels.lines import LinesPanel
         from app.panels.machine import MachinePanel
@@ -150,12 +151,17 @@ class Window(QMainWindow):
         self.models.learn_wanted.connect(self.dialogs.annotate)
         self.lines = LinesPanel(self.document, self.session, self.performance, self.jobs, self)
         self.lines.told.connect(self.tell)
+        self.conversation = ConversationPanel(self.document, self.session, self.jobs, self)
+        self.conversation.files_dropped.connect(self.dialogs.converse)
+        self.conversation.add.clicked.connect(lambda: self.dialogs.converse())
+        self.conversation.more_menu.addActions([self.actions[name] for name in CONVERSATION])
+        self.conversation.more_menu.aboutToShow.connect(self.actions.refresh)
         self.machine = MachinePanel(self.document, self.session, self)
         self.centre.addWidget(self.machine)
         self.machine.setVisible(self._machine_wanted)
         for key, panel in (
             ("properties", self.properties), ("life", self.life), ("timeline", self.timeline), ("lines", self.lines),
-            ("problems", self.problems_panel),
+            ("conversation", self.conversation), ("problems", self.problems_panel),
         ):  # fmt: skip
             self.docks.fill(key, panel)
         self.docks.fill("models", self.models, scrolls=True)
@@ -474,6 +480,7 @@ class Window(QMainWindow):
 
 def late_modules() -> None:
     """Import what takes long and is not in the first picture."""
+    import app.conversation.panel
     import app.panels.annotate
     import app.panels.life
     import app.panels.lines

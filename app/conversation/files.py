@@ -1,0 +1,48 @@
+"""Which files are a conversation: sounds and transcripts among what is dropped, and what lies beside a sound."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from pathlib import Path
+
+SOUNDS = (".wav", ".flac", ".ogg", ".mp3")
+TRANSCRIPTS = (".textgrid", ".eaf", ".vtt", ".srt", ".json", ".ctm")
+
+
+def kinds_of(paths: Sequence[Path]) -> tuple[tuple[Path, ...], tuple[Path, ...]]:
+    """Return the sounds and the transcripts among files, in order of their names."""
+    ordered = sorted(paths, key=lambda p: p.name.casefold())
+    return tuple(p for p in ordered if p.suffix.lower() in SOUNDS), tuple(p for p in ordered if p.suffix.lower() in TRANSCRIPTS)
+
+
+def converses(paths: Sequence[Path]) -> bool:
+    """Whether files dropped on the window are a conversation: two sounds, a sound and its words, or a sound with two channels. A single
+    sound with one channel is a line of dialogue."""
+    sounds, transcripts = kinds_of(paths)
+    if not sounds or len(sounds) > 2 or len(sounds) + len(transcripts) < len(paths):
+        return False
+    return len(sounds) == 2 or bool(transcripts) or channels_of(sounds[0]) == 2
+
+
+def channels_of(path: Path) -> int:
+    """Return how many channels a sound file has, by its head; 0 where that cannot be read."""
+    import soundfile
+
+    try:
+        return int(soundfile.info(str(path)).channels)
+    except (soundfile.LibsndfileError, RuntimeError, OSError):
+        return 0
+
+
+def beside(sounds: Sequence[Path]) -> tuple[Path, ...]:
+    """Return the transcripts that lie beside sounds and are called like them, one a sound."""
+    out = []
+    for sound in sounds:
+        try:
+            names = {p.name.casefold(): p for p in sound.parent.iterdir()}
+        except OSError:
+            continue
+        found = next((names[n] for end in TRANSCRIPTS if (n := (sound.stem + end).casefold()) in names), None)
+        if found is not None:
+            out.append(found)
+    return tuple(out)
