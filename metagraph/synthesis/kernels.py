@@ -18,7 +18,7 @@ LANES = 64  # wide enough that the loops cost little, narrow enough that most bl
 EVERY = 4  # terms between looks at whether a block is done with
 
 
-def _compiled(function: Callable[..., Any], fast: bool = True) -> Any:
+def compiled(function: Callable[..., Any], fast: bool = True) -> Any:
     options: dict[str, Any] = {"nogil": True, "error_model": "numpy"}
     if fast:
         options["fastmath"] = True
@@ -28,12 +28,12 @@ def _compiled(function: Callable[..., Any], fast: bool = True) -> Any:
         return numba.njit(**options)(function)
 
 
-def _compiled_exactly(function: Callable[..., Any]) -> Any:
+def compiled_exactly(function: Callable[..., Any]) -> Any:
     """Compile where infinite means out of reach: fast arithmetic takes it that nothing is."""
-    return _compiled(function, fast=False)
+    return compiled(function, fast=False)
 
 
-@_compiled
+@compiled
 def _add(x: Array, y: Array, z: Array, a: Any, b: Any, c: Any, total: Array) -> None:
     """Add how far points `[64]` are from one point to the totals `[64]`. Over whole rows of memory, else it is not made of vectors."""
     for n in range(len(total)):
@@ -41,7 +41,7 @@ def _add(x: Array, y: Array, z: Array, a: Any, b: Any, c: Any, total: Array) -> 
         total[n] += np.sqrt(u * u + v * v + w * w)
 
 
-@_compiled
+@compiled
 def _least(total: Array) -> Any:
     least = total[0]
     for n in range(len(total)):
@@ -49,7 +49,7 @@ def _least(total: Array) -> Any:
     return least
 
 
-@_compiled
+@compiled
 def near(rows: Array, blocks: Array, count: int, limit: Any, places: Array, costs: Array, found: Array) -> None:
     """Find for rows `[R, T, 3]` the targets, of `count` in blocks `[B, T, 3, 64]`, that are at most `limit` away.
 
@@ -83,7 +83,7 @@ def near(rows: Array, blocks: Array, count: int, limit: Any, places: Array, cost
             found[r] = at
 
 
-@_compiled
+@compiled
 def pack(places: Array, costs: Array, found: Array, into: Array, rows: Array, counts: Array) -> tuple[Array, Array]:
     """Return the targets and costs of rows as `near` found them, one row after another, without the state that follows a row's own.
 
@@ -103,7 +103,33 @@ def pack(places: Array, costs: Array, found: Array, into: Array, rows: Array, co
     return targets[:at].copy(), packed[:at].copy()
 
 
-@_compiled
+@compiled
+def thin(counts: Array, targets: Array, costs: Array, most: Any) -> tuple[Array, Array]:
+    """Return the targets and costs of the cheapest transitions of each row, as `pack` returns them, of those that cost alike the first
+    ones. counts `[R]`: how many a row has; becomes how many are left."""
+    ends, price = np.empty(len(targets), np.int32), np.empty(len(costs), np.float32)
+    at = first = 0
+    for r in range(len(counts)):
+        after = first + counts[r]
+        if counts[r] <= most:
+            dear, alike = np.float32(np.inf), 0
+        else:
+            dear = np.partition(costs[first:after].copy(), most - 1)[most - 1]
+            alike = most
+            for place in range(first, after):
+                alike -= costs[place] < dear
+        for place in range(first, after):
+            same = costs[place] == dear
+            if costs[place] < dear or (same and alike > 0):
+                ends[at] = targets[place]
+                price[at] = costs[place]
+                at += 1
+                alike -= same
+        first, counts[r] = after, min(counts[r], most)
+    return ends[:at].copy(), price[:at].copy()
+
+
+@compiled
 def cut(starts: Array, targets: Array, costs: Array, kept: Array) -> tuple[Array, Array, Array]:
     """Return transitions, as `MotionGraph` has them, from and to states that are kept `[F]`."""
     states = len(starts) - 1
@@ -126,7 +152,7 @@ def cut(starts: Array, targets: Array, costs: Array, kept: Array) -> tuple[Array
     return begins, ends, price
 
 
-@_compiled
+@compiled
 def components(starts: Array, targets: Array, follows: Array) -> tuple[Array, int]:
     """Return which strongly connected component each state is of, and how many there are (Tarjan, without recursion).
 
@@ -196,7 +222,7 @@ def components(starts: Array, targets: Array, follows: Array) -> tuple[Array, in
     return component, made
 
 
-@_compiled_exactly
+@compiled_exactly
 def relax(
     cost: Array, new: Array, back: Array, starts: Array, targets: Array, costs: Array, follows: Array, fits: Array, peaks: Array
 ) -> None:

@@ -17,6 +17,7 @@ Array = NDArray[Any]
 KEYS = 0.2225  # of all states are key states in the paper
 STEP = 3  # k of c_(i, i+k)
 LEVEL = 0.95
+AT_ONCE = 1 << 15  # frames that are worked on at once, so that long takes are not in memory several times
 
 
 class SynthesisError(ValueError):
@@ -51,12 +52,18 @@ class States:
         """Return which take a state is of."""
         return int(np.searchsorted(self.starts, state, "right")) - 1
 
-    @property
-    def terms(self) -> Array:
-        """`[F, 2 J', 3]` float32: what a cost is the sum of lengths of differences of; joints without weight are left out."""
-        used = np.flatnonzero(self.weights)
-        w = self.weights[used, None].astype(np.float32)
-        return np.concatenate([self.places[:, used] * w, self.velocities[:, used] * (w * np.float32(self.velocity))], axis=1)
+
+def terms_of(states: States, which: Array) -> Array:
+    """Return `[n, 2 J', 3]` float32: what costs of states are sums of lengths of differences of; joints without weight are left out."""
+    used = np.flatnonzero(states.weights)
+    w = states.weights[used, None].astype(np.float32)
+    half = len(used)
+    out = np.empty((len(which), 2 * half, 3), np.float32)
+    for n in range(0, len(which), AT_ONCE):
+        some = which[n : n + AT_ONCE]
+        out[n : n + AT_ONCE, :half] = states.places[some][:, used] * w
+        out[n : n + AT_ONCE, half:] = states.velocities[some][:, used] * (w * np.float32(states.velocity))
+    return out
 
 
 def states_of(clips: Sequence[Clip], roles: Mapping[str, int] | None = None, velocity: float | None = None) -> States:
@@ -99,7 +106,10 @@ def pairs_apart(states: States, frames: int) -> tuple[Array, Array]:
 
 
 def _distance(values: Array, a: Array, b: Array, weights: Array) -> Array:
-    return np.asarray(np.linalg.norm(values[a] - values[b], axis=-1) @ weights, np.float64)
+    out = np.empty(len(a), np.float64)
+    for n in range(0, len(a), AT_ONCE):
+        out[n : n + AT_ONCE] = np.linalg.norm(values[a[n : n + AT_ONCE]] - values[b[n : n + AT_ONCE]], axis=-1) @ weights
+    return out
 
 
 def costs_apart(states: States, k: int = STEP) -> Array:
@@ -112,8 +122,10 @@ def costs_apart(states: States, k: int = STEP) -> Array:
 def key_states(states: States, share: float = KEYS, changes: Sequence[int] = ()) -> Array:
     """Return `[K]` the states that transitions may leave and enter, ascending: keyframes, closer where joints move more, and states at
     which what is heard changes. share: of all states, about, 0..1. The first and the last of a take are always among them."""
-    moved = np.linalg.norm(np.diff(states.places, axis=0), axis=-1).max(-1) if len(states) > 1 else np.zeros(0)
-    moved = np.concatenate([[0.0], moved])
+    moved = np.zeros(len(states))
+    for n in range(1, len(states), AT_ONCE):
+        some = states.places[n - 1 : n + AT_ONCE]
+        moved[n : n + AT_ONCE] = np.linalg.norm(np.diff(some, axis=0), axis=-1).max(-1)
     moved[states.starts[:-1]] = 0.0
     way = np.cumsum(moved)
     low, high = 0.0, max(float(way[-1]), 1e-9)

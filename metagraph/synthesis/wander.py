@@ -10,7 +10,7 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from metagraph.synthesis.kernels import _compiled, _compiled_exactly
+from metagraph.synthesis.kernels import compiled, compiled_exactly
 
 Array = Any
 
@@ -46,7 +46,7 @@ class Links(NamedTuple):
     cheap: Array
 
 
-@_compiled
+@compiled
 def until_of(kinds: Array, kept: Array, last: Array, mask: Any) -> Array:
     """Return `[F]` the first state from each on, itself included, that nobody may be in: of another kind, cut away, or past the take."""
     out = np.empty(len(kinds), np.int32)
@@ -60,7 +60,7 @@ def until_of(kinds: Array, kept: Array, last: Array, mask: Any) -> Array:
     return out
 
 
-@_compiled
+@compiled
 def next_of(marked: Array) -> Array:
     """Return `[F]` the first marked state from each on, itself included; F where there is none."""
     out = np.empty(len(marked), np.int32)
@@ -72,7 +72,7 @@ def next_of(marked: Array) -> Array:
     return out
 
 
-@_compiled
+@compiled
 def cheapest(starts: Array, costs: Array, most: Any) -> Any:
     """Return firsts and cheap, as `Links` has them, of at most so many transitions a state."""
     firsts = np.zeros(len(starts), np.int64)
@@ -94,7 +94,7 @@ def cheapest(starts: Array, costs: Array, most: Any) -> Any:
     return firsts, places
 
 
-@_compiled
+@compiled
 def reach(t: Any, state: Any, met: Any, speech: Any) -> Any:
     """Return the frame up to which a run goes along with the speech that is in a state at frame t: by then it has to be left."""
     stop = speech.stops[state]
@@ -114,7 +114,7 @@ def reach(t: Any, state: Any, met: Any, speech: Any) -> Any:
     return t
 
 
-@_compiled
+@compiled
 def _met(t: Any, after: Any, state: Any, met: Any, speech: Any) -> Any:
     """Return whether, before frame `after`, a run that is in a state at frame t has met a stress whose window is still open."""
     if not speech.stresses[after - 1] or speech.closes[after - 1]:
@@ -125,19 +125,19 @@ def _met(t: Any, after: Any, state: Any, met: Any, speech: Any) -> Any:
     return met
 
 
-@_compiled
+@compiled
 def _more(values: Array) -> Array:
     out = np.empty((2 * len(values), *values.shape[1:]), values.dtype)
     out[: len(values)] = values
     return out
 
 
-@_compiled
+@compiled
 def _next(random: Any) -> Any:
     return random * np.uint64(6364136223846793005) + np.uint64(1442695040888963407)
 
 
-@_compiled_exactly
+@compiled_exactly
 def _note(run: Any, cost: Any, t: Any, state: Any, far: Any, end: Any, met: Any, count: Any, found: Array, price: Array, best: Any) -> Any:
     """Write down what came through, if it is the cheapest that ends in its state; return how many there are."""
     key = 2 * end + met
@@ -152,7 +152,7 @@ def _note(run: Any, cost: Any, t: Any, state: Any, far: Any, end: Any, met: Any,
     return count
 
 
-@_compiled_exactly
+@compiled_exactly
 def segment(
     t0: Any, t1: Any, at: Array, own: Array, price: Array, mets: Array, links: Any, speech: Any, best: Array,
     saved: Any, branches: Any, tries: Any, deepest: Any, random: Any,
@@ -224,7 +224,7 @@ def segment(
                         worth = links.costs[place] / (far - end) * (np.float32(0.5) + chance)
                         spot = picks
                         if picks == branches:
-                            spot = np.argmax(score)
+                            spot = int(np.argmax(score))
                             if score[spot] <= worth:
                                 continue
                         else:

@@ -24,7 +24,7 @@ from metagraph.graph.conversation import SOUNDS, Segment  # noqa: E402
 from metagraph.synthesis.constraints import Heard, wanted  # noqa: E402
 from metagraph.synthesis.graph import MotionGraph, Threshold, build, threshold  # noqa: E402
 from metagraph.synthesis.search import best, greedy  # noqa: E402
-from metagraph.synthesis.states import States, key_states, states_of, with_velocity  # noqa: E402
+from metagraph.synthesis.states import States, key_states, states_of, terms_of, with_velocity  # noqa: E402
 
 Array = Any
 ROWS = 12  # the straightforward one compares
@@ -37,14 +37,16 @@ def synthetic(frames: int, joints: int = 25, seed: int = 1) -> States:
     way = np.cumsum(chance.normal(0, 0.03, (knots, joints, 3)), axis=0)
     moving = np.repeat(chance.random(knots // 8 + 1) < 0.6, 8)[:knots]
     way = np.cumsum(np.where(moving[:, None, None], np.diff(way, axis=0, prepend=0), 0.0), axis=0)
-    t = np.arange(frames) / 15
-    place = t.astype(int)
-    part = (t - place)[:, None, None]
-    part = part * part * (3 - 2 * part)
-    places = chance.normal(0, 0.4, (1, joints, 3)) + 0.3 * np.tanh((1 - part) * way[place] + part * way[place + 1])
+    rest = chance.normal(0, 0.4, (1, joints, 3))
     starts = np.linspace(0, frames, max(2, frames // 2500) + 1).astype(int)
-    parts = [np.gradient(places[a:b], 1 / 30, axis=0) for a, b in itertools.pairwise(starts)]
-    places32, velocities = places.astype(np.float32), np.concatenate(parts).astype(np.float32)
+    places32, velocities = np.empty((frames, joints, 3), np.float32), np.empty((frames, joints, 3), np.float32)
+    for a, b in itertools.pairwise(starts):  # take by take, so that the whole is never in memory in 64 bits
+        t = np.arange(a, b) / 15
+        place = t.astype(int)
+        part = (t - place)[:, None, None]
+        part = part * part * (3 - 2 * part)
+        places = rest + 0.3 * np.tanh((1 - part) * way[place] + part * way[place + 1])
+        places32[a:b], velocities[a:b] = places, np.gradient(places, 1 / 30, axis=0)
     return with_velocity(States(places32, velocities, np.ones(joints, np.float32), starts, 0.0), 1 / 30)
 
 
@@ -52,8 +54,7 @@ def limit_for(states: States, keys: Array, share: float) -> float:
     """Return the threshold that accepts about a share of all pairs of key states."""
     chance = np.random.default_rng(2)
     a, b = (chance.choice(keys, 600) for _ in range(2))
-    terms = states.terms
-    return float(np.quantile(np.linalg.norm(terms[a][:, None] - terms[b][None], axis=-1).sum(-1), share))
+    return float(np.quantile([np.linalg.norm(x - terms_of(states, b), axis=-1).sum(-1) for x in terms_of(states, a)], share))
 
 
 def straightforward(states: States, keys: Array, limit: float, rows: Array) -> list[Array]:
