@@ -11,7 +11,7 @@ from typing import Any
 import numpy as np
 
 from app.headless_common import opened, say, staged
-from app.shown import Shown, alone
+from app.shown import ASIDE, Shown, alone
 from metagraph.graph.model import Project
 from metagraph.playback.bake import bake
 from metagraph.playback.plan import Plan
@@ -47,7 +47,8 @@ def pictures(seen: Sequence[Seen], times: np.ndarray, size: tuple[int, int], loo
     from preview.scene import THEMES, Scene
 
     some = times[:: max(1, len(times) // 60)]
-    camera = whole_figure(Scene(tuple(_actor(figure, shown, some) for figure, shown in seen)).bounds(), size[0] / size[1])
+    scene = Scene(tuple(_actor(figure, shown, some) for figure, shown in seen))
+    camera = whole_figure(scene.bounds(), size[0] / size[1], ASIDE if len(seen) > 1 else 0.0)
     with Offscreen(*size) as offscreen:
         for at in times:
             yield offscreen.render(Scene(tuple(_actor(figure, shown, at) for figure, shown in seen)), camera, THEMES[look])
@@ -157,10 +158,10 @@ def draw_to(
         from preview.sheet import contact_sheet, write_png
 
         times = np.linspace(0, seconds, max(2, frames))
-        small = (max(16, size[0] * 2 // 9), max(16, size[1] * 5 // 9))
+        small = (max(16, size[0] * 2 * len(seen) // 9), max(16, size[1] * 5 // 9))
         images = list(pictures(seen, times, small, look))
         labels = [f"{t:.2f} s  {', '.join(filter(None, (_doing(shown.plan, t) for _, shown in seen)))}".rstrip() for t in times]
-        write_png(out, contact_sheet(images, 8, labels))
+        write_png(out, contact_sheet(images, 8 // len(seen), labels))
     else:
         raise ValueError(f"pictures are written as .png, videos as .mp4, not '{out.suffix}'")
 

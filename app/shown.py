@@ -19,6 +19,7 @@ from metagraph.playback.player import morphs_at, pose_at
 if TYPE_CHECKING:
     from metagraph.speech.duet import Stand
 
+ASIDE = -0.35  # radians the camera goes round two who talk, to see them from the side and not one of them from behind
 LEAD = 0.8  # seconds of stance before and after a clip shown in context
 
 

@@ -11,6 +11,7 @@ from app.figures import Figures
 from app.panels.view import make_view
 from app.performance import Performance
 from app.session import Session
+from app.shown import ASIDE
 from app.theme import theme
 from metagraph.graph import anatomy
 from metagraph.graph.model import LAYERS, Project
@@ -152,7 +153,8 @@ class PreviewPanel(QWidget):
         framed = (*(actor.figure for actor in actors), *(one.stand for one in shown.both))
         if actors and self._framed != framed and not self.view.moved_by_hand:
             self._framed = framed
-            self.view.camera = whole_figure(scene.bounds(), self.view.width() / max(1, self.view.height()))
+            aside = ASIDE if shown.partner is not None else 0.0
+            self.view.camera = whole_figure(scene.bounds(), self.view.width() / max(1, self.view.height()), aside)
         return scene
 
     def _marks(self) -> dict[int, tuple[float, float, float]]:

@@ -21,6 +21,7 @@ PARTNER = "partner"  # the named point where the other's head is
 TOLERANCE = 0.1  # seconds a stroke may be off its peak (section 7.2)
 ROUNDS = 12  # in which what would come too late is taken back
 CLAUSE, ANSWER, FILL = 3, 2, 1  # priorities: an own clause before an answer before what fills the time
+PLAIN = ("beat", "explain", "open")  # tags of gestures that go with any words
 TURN = 0.6  # seconds of one's own silence after which one listens
 QUIET = 2.0  # seconds of both's silence after which one idles
 REST = 3.5  # seconds nobody asks anything of a character after which it may fidget
@@ -39,13 +40,14 @@ def asks_of(
     rates = conversation.sides[side].rates
     kinds = {layer: {kind for _, kind in project.graphs[layer].index} for layer in project.graphs}
     nods = "gesture" in kinds["head"]
-    heard = heard_by(conversation, side)
+    heard, said = heard_by(conversation, side), _meanings(project)
     busy = [(s.start, s.end) for s in conversation.sides[side].segments]
     for key, s in _keyed(heard):
         drawn = uniform(conversation.seed, str(side), key)
         if s.kind == "clause" and "gesture" in kinds["arms"] and drawn < rates.clause:
             stroke = (s.start + s.end) / 2 if s.peak is None else s.peak
-            out.append(Gesture(id=key, at=s.start, stroke=stroke, priority=CLAUSE))
+            tags = _tags(said, s.text, uniform(conversation.seed, str(side), key, "tags"))
+            out.append(Gesture(id=key, at=s.start, stroke=stroke, tags=tags, priority=CLAUSE))
         elif s.kind in ("response", "hesitation") and nods and drawn < (rates.response if s.kind == "response" else rates.hesitation):
             out.append(Nod(id=key, at=s.start, priority=ANSWER))
             busy.append((s.start, s.end + 1.0))
@@ -55,6 +57,25 @@ def asks_of(
             at = start + (0.2 + 0.5 * uniform(conversation.seed, str(side), f"when {n}")) * (end - start - 2.0)
             out.append(Fidget(id=f"fidget {n}", at=round(at, 3), layer=layer, priority=FILL))
     return out
+
+
+def _meanings(project: Project) -> Counter[str]:
+    """Return the tags of the gestures of the stance that the arms begin in, and how many have each."""
+    graph = project.graphs["arms"]
+    stance = graph.start if graph.start is not None else next(iter(graph.stances), "")
+    return Counter(tag for action in graph.of(stance, "gesture") for tag in action.tags)
+
+
+def _tags(meanings: Counter[str], text: str, drawn: float) -> tuple[str, ...]:
+    """Return what a clause's gesture is to mean: what one of its words says, else nothing in particular: a beat, or what explains.
+
+    Gestures that mean something of their own would otherwise say what the words do not.
+    """
+    words = [word for word in (w.strip(".,;:!?\"'").casefold() for w in text.split()) if word in meanings and word not in PLAIN]
+    if words:
+        return (words[-1],)
+    plain = [tag for tag in PLAIN for _ in range(meanings[tag])]
+    return (plain[int(drawn * len(plain))],) if plain else ()
 
 
 def drive(

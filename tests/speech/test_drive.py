@@ -135,3 +135,20 @@ def test_whatever_is_said_every_ask_can_be_written_and_strokes_meet_their_peaks(
     for ask in performance.asks:
         if isinstance(ask, Gesture):
             assert abs(found[ask.id] - (ask.stroke or 0.0)) <= TOLERANCE
+
+
+def test_words_that_gestures_are_tagged_with_get_such_gestures_and_other_words_plain_ones(sample: Project) -> None:
+    words = ("I told you so", "it was that big", "the dog sat down", "and it went on")
+    some = tuple(clause(1 + 3 * n, 2 + 3 * n, text) for n, text in enumerate(words))
+    tags = [a.tags for a in asks_of(said(*some, clause=1.0), 0, sample) if isinstance(a, Gesture)]
+    assert tags[:2] == [("you",), ("big",)]
+    assert all(t[0] in ("beat", "explain", "open") for t in tags[2:])
+
+
+def test_gestures_without_tags_are_asked_for_without(sample: Project) -> None:
+    from dataclasses import replace
+
+    graph = sample.graphs["arms"]
+    bare = sample.with_graph(graph.with_actions({i: replace(a, tags=()) for i, a in graph.actions.items()}))
+    tags = {a.tags for a in asks_of(said(*clauses(5), clause=1.0), 0, bare) if isinstance(a, Gesture)}
+    assert tags == {()}
