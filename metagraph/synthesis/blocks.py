@@ -152,7 +152,7 @@ class _Kept:
         if self.folder is None:
             return self.blocks.get(first)
         try:
-            with np.load(self._place(first), allow_pickle=False) as held:
+            with self._place(first).open("rb") as file, np.load(file, allow_pickle=False) as held:
                 found = held["counts"], held["targets"], held["costs"]
         except (FileNotFoundError, KeyError, ValueError, EOFError, zipfile.BadZipFile):
             return None  # not made yet, or spoiled: it is made again
