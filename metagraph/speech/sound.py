@@ -51,12 +51,13 @@ class Heard:
 
 @dataclass(frozen=True, eq=False)
 class Recording:
-    """A sound file, channels apart: samples `[C, N]`, about -1..1, `rate` a second. clipped: share of each channel's samples that were
-    cut off at full scale, 0..1 `[C]`."""
+    """A sound file, channels apart: samples `[C, N]`, about -1..1, `rate` a second; `original`: how many the file has. clipped: share of
+    each channel's samples that were cut off at full scale, 0..1 `[C]`."""
 
     samples: Array
     rate: int
     clipped: tuple[float, ...]
+    original: int
 
     @property
     def duration(self) -> float:
@@ -129,7 +130,7 @@ def _read_blocks(file: Any, rate: int, every: int) -> Recording:
             parts.append(_thinned(rest, taps, every))
     if not count:
         raise RuntimeError("it holds no sound")
-    return Recording(np.concatenate(parts, 1), round(rate / every), tuple((clipped / count).tolist()))
+    return Recording(np.concatenate(parts, 1), round(rate / every), tuple((clipped / count).tolist()), rate)
 
 
 def _thinned(samples: Array, taps: Array, every: int) -> Array:
