@@ -76,6 +76,10 @@ def commands(window: Window) -> tuple[Command, ...]:
         Command("use_times", "&Graph", "Use proposed &times", lambda: window.compatibility.use_proposed(s.actions),
                 tip="Begin and end where no jump shows", enabled=lambda: bool(s.actions) and window.compatibility.judged is not None)
     )  # fmt: skip
+    out.append(
+        Command("motion_graph", "&Graph", "Motion &graph of takes…", o.motion_graph, tip="New motion from takes, and clips cut from them",
+                enabled=lambda: bool(d.project.clips))
+    )  # fmt: skip
     out.append(Command("patterns", "&Graph", "Name &patterns…", o.patterns, tip="What words in clip names mean"))
     for number, kind in enumerate(KINDS, 1):
         text = f"Label as &{number} {kind}"

@@ -71,6 +71,16 @@ class Dialogs:
         dialog.raise_()
         dialog.activateWindow()
 
+    def motion_graph(self) -> None:
+        """Show the motion graph of takes."""
+        w = self.window
+        from app.motion_graph.dialog import MotionGraphDialog
+
+        dialog = w.findChild(MotionGraphDialog) or MotionGraphDialog(w.document, w.session, w.jobs, w)
+        dialog.show()
+        dialog.raise_()
+        dialog.activateWindow()
+
     def patterns(self) -> None:
         """Show what words in clip names mean, and what was learned."""
         w = self.window

@@ -1,0 +1,418 @@
+"""The motion graph's window: choose takes, see what counts as a jump, let new motion be found, cut long takes into clips."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from functools import partial
+from typing import Any
+
+import msgspec
+from PySide6.QtCore import Qt, QTimer
+from PySide6.QtWidgets import (
+    QComboBox,
+    QDialog,
+    QDoubleSpinBox,
+    QHBoxLayout,
+    QHeaderView,
+    QLabel,
+    QProgressBar,
+    QPushButton,
+    QSpinBox,
+    QTableWidget,
+    QTableWidgetItem,
+    QVBoxLayout,
+    QWidget,
+)
+
+from app.document import Document
+from app.jobs import Job, Jobs
+from app.motion_graph.plot import CostPlot
+from app.motion_graph.wishes import Wishes
+from app.motion_graph.work import LEAST, LONG, MOST, Found, Takes, pieces, save, speech_of, synthesise, table, takes_of, usable
+from app.session import Session
+from app.words import many
+from metagraph.graph import edits
+from metagraph.graph.model import Project
+
+KS = (2, 3, 4)  # of the table
+FOLDER = "motion-graph"  # beside the project file, where new clips are kept
+NONE = "nothing known"
+
+
+class MotionGraphDialog(QDialog):
+    """Stays open beside the window."""
+
+    def __init__(self, document: Document, session: Session, jobs: Jobs, parent: QWidget | None = None) -> None:
+        super().__init__(parent)
+        self.document, self.session, self.jobs = document, session, jobs
+        self.setAttribute(Qt.WidgetAttribute.WA_DeleteOnClose)
+        self.setWindowTitle("Motion graph")
+        self.resize(1080, 720)
+        self.states: Any = None  # synthesis.states.States of the chosen takes
+        self.limit: Any = None  # synthesis.graph.Threshold
+        self.graph: Any = None  # synthesis.graph.MotionGraph, None until it is built for what is chosen now
+        self.takes = Takes((), (), ())
+        self._job: Job | None = None
+        self._then: tuple[str, bool] = ("", False)  # what is to be done once the graph is there
+        self._soon = QTimer(self, singleShot=True, interval=200)
+        self._soon.timeout.connect(self._compare)
+        self._build_left()
+        self._build_right()
+        self.wishes = Wishes(document, self)
+        self.wishes.wanted.connect(self.find)
+        box = QVBoxLayout(self)
+        box.setContentsMargins(14, 12, 14, 12)
+        box.setSpacing(10)
+        columns = QHBoxLayout()
+        columns.setSpacing(18)
+        columns.addLayout(self.left, 4)
+        columns.addLayout(self.right, 5)
+        box.addLayout(columns, 1)
+        box.addWidget(self.wishes)
+        box.addLayout(self._foot())
+        document.changed.connect(self._follow)
+        self._fill()
+
+    # --- building
+
+    def _heading(self, words: str) -> QLabel:
+        out = QLabel(words, self)
+        out.setProperty("heading", True)
+        return out
+
+    def _build_left(self) -> None:
+        self.left = QVBoxLayout()
+        self.left.setSpacing(6)
+        self.title = self._heading("Takes")
+        self.list = QTableWidget(0, 3, self)
+        self.list.setHorizontalHeaderLabels(["Clip", "Length", "What was heard"])
+        self.list.setAccessibleName("Takes")
+        self.list.verticalHeader().hide()
+        self.list.setShowGrid(False)
+        self.list.setSelectionBehavior(QTableWidget.SelectionBehavior.SelectRows)
+        self.list.setEditTriggers(QTableWidget.EditTrigger.NoEditTriggers)
+        header = self.list.horizontalHeader()
+        header.setSectionResizeMode(0, QHeaderView.ResizeMode.Stretch)
+        header.setSectionResizeMode(2, QHeaderView.ResizeMode.ResizeToContents)
+        header.setHighlightSections(False)
+        self.list.itemChanged.connect(self._checked)
+        self.cut_button = QPushButton("Cut selected takes into clips", self, autoDefault=False)
+        self.cut_button.setToolTip("At still moments in a pose it comes back to, so that no jump shows; the clips then wait to be labelled")
+        self.cut_button.clicked.connect(self.cut)
+        self.left.addWidget(self.title)
+        self.left.addWidget(self.list, 1)
+        self.left.addWidget(self.cut_button, 0, Qt.AlignmentFlag.AlignLeft)
+
+    def _build_right(self) -> None:
+        self.right = QVBoxLayout()
+        self.right.setSpacing(6)
+        self.right.addWidget(self._heading("What counts as a jump"))
+        row = QHBoxLayout()
+        self.k = QSpinBox(self, minimum=2, maximum=10, value=3)
+        self.k.setToolTip("Costs are those of a frame and one so many frames later: the larger, the more transitions, and the rougher")
+        self.k.setAccessibleName("Frames apart")
+        self.level = QDoubleSpinBox(self, minimum=50, maximum=99.9, value=95, suffix=" %", decimals=1)
+        self.level.setToolTip("Transitions may cost as much as so many of these costs")
+        self.level.setAccessibleName("Level")
+        for words, field in (("Frames apart (k)", self.k), ("Level", self.level)):
+            row.addWidget(QLabel(words, self))
+            row.addWidget(field)
+            row.addSpacing(10)
+            field.valueChanged.connect(self._changed)
+        row.addStretch(1)
+        self.right.addLayout(row)
+        self.plot = CostPlot(self.session, self)
+        self.right.addWidget(self.plot, 1)
+        self.words = QLabel(self, wordWrap=True)
+        self.words.setProperty("dim", True)
+        self.right.addWidget(self.words)
+        self.table = QTableWidget(len(KS), 5, self)
+        self.table.setHorizontalHeaderLabels(["k", "Frames", "Transitions", "Frames kept", "Transitions kept"])
+        self.table.setAccessibleName("Frames and transitions for each k")
+        self.table.verticalHeader().hide()
+        self.table.setShowGrid(False)
+        self.table.setSelectionMode(QTableWidget.SelectionMode.NoSelection)
+        self.table.setFocusPolicy(Qt.FocusPolicy.NoFocus)
+        self.table.setEditTriggers(QTableWidget.EditTrigger.NoEditTriggers)
+        self.table.horizontalHeader().setSectionResizeMode(QHeaderView.ResizeMode.Stretch)
+        self.table.horizontalHeader().setHighlightSections(False)
+        self.table.setFixedHeight(self.table.horizontalHeader().sizeHint().height() + len(KS) * self.table.rowHeight(0) + 4)
+        self.right.addWidget(self.table)
+        self.count_button = QPushButton("Compare k = 2, 3, 4", self, autoDefault=False)
+        self.count_button.setToolTip("Kept is what leads on: the largest part in which every frame can be reached from every other")
+        self.count_button.clicked.connect(self.count)
+        self.right.addWidget(self.count_button, 0, Qt.AlignmentFlag.AlignLeft)
+        self._show_table({})
+
+    def _foot(self) -> QHBoxLayout:
+        row = QHBoxLayout()
+        self.said = QLabel(self, wordWrap=True)
+        self.said.setTextInteractionFlags(Qt.TextInteractionFlag.TextSelectableByMouse)
+        self.progress = QProgressBar(self, maximumWidth=180, textVisible=False)
+        self.progress.hide()
+        self.stop = QPushButton("Cancel", self, autoDefault=False)
+        self.stop.clicked.connect(self.cancel)
+        self.stop.hide()
+        close = QPushButton("Close", self, autoDefault=False)
+        close.clicked.connect(self.close)
+        row.addWidget(self.said, 1)
+        for widget in (self.progress, self.stop, close):
+            row.addWidget(widget)
+        return row
+
+    # --- takes
+
+    def _fill(self) -> None:
+        """List the clips that can be takes; the long ones are chosen, all where none is long."""
+        project, chosen = self.document.project, set(self.chosen())
+        found = usable(project)
+        if not self.list.rowCount():
+            chosen = {i for i in found if project.clips[i].duration >= LONG} or set(found)
+        self.list.blockSignals(True)
+        self.list.setRowCount(len(found))
+        for row, ident in enumerate(found):
+            entry = project.clips[ident]
+            item = QTableWidgetItem(entry.name)
+            item.setData(Qt.ItemDataRole.UserRole, ident)
+            item.setFlags(Qt.ItemFlag.ItemIsEnabled | Qt.ItemFlag.ItemIsSelectable | Qt.ItemFlag.ItemIsUserCheckable)
+            item.setCheckState(Qt.CheckState.Checked if ident in chosen else Qt.CheckState.Unchecked)
+            length = QTableWidgetItem(f"{entry.duration:.1f} s")
+            length.setTextAlignment(Qt.AlignmentFlag.AlignRight | Qt.AlignmentFlag.AlignVCenter)
+            self.list.setItem(row, 0, item)
+            self.list.setItem(row, 1, length)
+            self.list.setCellWidget(row, 2, self._speech_box(project, ident))
+        self.list.blockSignals(False)
+        self._changed()
+
+    def _speech_box(self, project: Project, clip: str) -> QComboBox:
+        """Choose which side of which conversation was recorded along with a clip."""
+        box = QComboBox(self.list)
+        box.setAccessibleName(f"What was heard during {project.clips[clip].name}")
+        box.addItem(NONE, None)
+        for ident, talk in project.conversations.items():
+            for n, side in enumerate(talk.sides):
+                box.addItem(f"{talk.name}: {side.name or f'side {n + 1}'}", (ident, n))
+        box.setCurrentIndex(max(0, box.findData(speech_of(project, clip))))
+        box.activated.connect(partial(self._tell_speech, clip, box))
+        return box
+
+    def _tell_speech(self, clip: str, box: QComboBox, _: int) -> None:
+        chosen = box.currentData()
+
+        def edit(project: Project) -> Project:
+            talks = dict(project.conversations)
+            for ident, talk in project.conversations.items():
+                sides = [msgspec.structs.replace(s, take=None) if s.take == clip else s for s in talk.sides]
+                if chosen is not None and ident == chosen[0]:
+                    sides[chosen[1]] = msgspec.structs.replace(sides[chosen[1]], take=clip)
+                talks[ident] = msgspec.structs.replace(talk, sides=tuple(sides))
+            return replace(project, conversations=talks)
+
+        self.document.edit("Tell what was heard", edit)
+
+    def chosen(self) -> list[str]:
+        """Return the ids of the takes that are checked."""
+        rows = (self.list.item(row, 0) for row in range(self.list.rowCount()))
+        return [i.data(Qt.ItemDataRole.UserRole) for i in rows if i is not None and i.checkState() == Qt.CheckState.Checked]
+
+    def _checked(self, item: QTableWidgetItem) -> None:
+        if item.column() == 0:
+            self._changed()
+
+    def _follow(self, before: Project, after: Project) -> None:
+        if before.clips is not after.clips or before.conversations is not after.conversations or before.skeleton is not after.skeleton:
+            self._fill()
+            self.wishes.fill()
+
+    # --- what counts as a jump
+
+    def _changed(self) -> None:
+        """Something was chosen: compare frames anew, soon."""
+        self.graph = None
+        self.takes = takes_of(self.document.project, self.chosen())
+        seconds = sum(clip.duration for clip in self.takes.clips)
+        self.title.setText(f"Takes · {len(self.takes.ids)} chosen, {seconds / 60:.1f} min" if self.takes.ids else "Takes")
+        self._soon.start()
+
+    def _compare(self) -> None:
+        takes, k, level = self.takes, self.k.value(), self.level.value() / 100
+        known = self.states if self.states is not None and self.states[0] == takes.clips else None
+        if not takes.ids:
+            self._show_limit(None)
+            return
+
+        def work(_: Job) -> Any:
+            from metagraph.synthesis.graph import threshold
+            from metagraph.synthesis.states import states_of
+
+            states = known[1] if known is not None else states_of(takes.clips)
+            return takes.clips, states, threshold(states, k, level)
+
+        self.jobs.start("Comparing frames", work, self._compared, self._failed, quick=True)
+
+    def _compared(self, made: Any) -> None:
+        clips, states, limit = made
+        if clips != self.takes.clips:
+            return
+        self.states = (clips, states)
+        self._show_limit(limit)
+
+    def _show_limit(self, limit: Any) -> None:
+        self.limit = limit
+        self.plot.show_threshold(limit)
+        if limit is None:
+            self.words.setText("Choose takes: long recordings, of which frames that are alike become transitions.")
+            return
+        fitted = "A transition may cost" if limit.distribution is None else "Johnson's S_B, fitted: a transition may cost"
+        off = abs(limit.limit - limit.observed) / max(limit.observed, 1e-9)
+        beside = f" ({off:.0%} off)".replace("%", " %") if off > 0.05 else ""
+        self.words.setText(
+            f"{fitted} {limit.limit:.3g} m, summed over joints. Dotted: the costs themselves say {limit.observed:.3g} m{beside}."
+        )
+
+    # --- jobs
+
+    def _start(self, title: str, work: Any, done: Any) -> None:
+        if self._job is not None:
+            return
+        self.said.setText("")
+        job = self.jobs.start(title, work, done, self._failed)
+        self._job = job
+        self.progress.setRange(0, 0)
+        self.progress.show()
+        self.stop.show()
+        self._enable()
+        job.progress.connect(self._tell)
+        job.ended.connect(self._ended)
+
+    def _tell(self, done: int, total: int, _: str) -> None:
+        self.progress.setRange(0, total)
+        self.progress.setValue(done)
+
+    def _ended(self) -> None:
+        self._job = None
+        self.progress.hide()
+        self.stop.hide()
+        self._enable()
+
+    def _enable(self) -> None:
+        free = self._job is None
+        for button in (self.count_button, self.cut_button, self.wishes.go):
+            button.setEnabled(free)
+
+    def cancel(self) -> None:
+        if self._job is not None:
+            self._job.cancel()
+            self.said.setText("Cancelled; nothing was changed.")
+
+    def _failed(self, error: Exception) -> None:
+        text = str(error)
+        self.said.setText(f"{text[:1].upper()}{text[1:].rstrip('.')}.")
+
+    def count(self) -> None:
+        """Fill the table: how much is kept for each k."""
+        takes, level = self.takes, self.level.value() / 100
+        if not takes.ids:
+            self._failed(ValueError("choose takes first"))
+            return
+        self._start("Motion graphs", lambda job: table(takes, KS, level, job.tell, lambda: job.cancelled), self._show_table)
+
+    def _show_table(self, rows: Any) -> None:
+        for row, k in enumerate(KS):
+            found = rows.get(k)
+            texts = [str(k), *(("–",) * 4 if found is None else (f"{x:,}" for x in found))]
+            if found is not None and found[0]:
+                texts[3] += f"  ({found[2] / found[0]:.0%})".replace("%", " %")
+            for column, text in enumerate(texts):
+                item = QTableWidgetItem(text)
+                item.setTextAlignment(Qt.AlignmentFlag.AlignRight | Qt.AlignmentFlag.AlignVCenter)
+                self.table.setItem(row, column, item)
+
+    # --- new motion
+
+    def find(self) -> None:
+        """Find new motion as wished, and add it to the library."""
+        folder = self._folder()
+        if folder is None:
+            return
+        takes, wish, graph, limit = self.takes, self.wishes.wish(), self.graph, self.limit
+        if not takes.ids or limit is None or self.states is None:
+            self._failed(ValueError("choose takes first; their frames are compared before anything can be found"))
+            return
+        states, name, taken = self.states[1], self.wishes.name(), {e.name for e in self.document.project.clips.values()}
+
+        def work(job: Job) -> Any:
+            from metagraph.synthesis.constraints import changes
+            from metagraph.synthesis.graph import build
+            from metagraph.synthesis.states import key_states
+
+            made = graph
+            if made is None:
+                keys = key_states(states, changes=changes(states, takes.speech))
+                made = build(states, limit, keys, progress=job.tell, cancelled=lambda: job.cancelled)
+            found = synthesise(made, takes, wish, name)
+            return made, found, () if job.cancelled else save([found.clip], folder, FOLDER, taken)
+
+        self._start("New motion", work, self._found)
+
+    def _found(self, made: Any) -> None:
+        self.graph, found, loaded = made[0], made[1], made[2]
+        graph = self.graph
+        assert isinstance(found, Found)
+        self._keep(loaded, "Add new motion")
+        self.graph = graph  # the takes are the same
+        self.said.setText(found.words())
+
+    def _keep(self, loaded: Any, words: str) -> None:
+        """Add kept clips to the library, choose them and play the first."""
+        self.document.edit(words, lambda p: edits.add_clips(p, loaded))
+        paths = {path for path, *_ in loaded}
+        new = [e.id for e in self.document.project.clips.values() if e.path in paths]
+        if new:
+            self.session.select_clips(tuple(new))
+            self.session.show_clip(new[0])
+            self.session.set_playing(True)
+
+    def _folder(self) -> Any:
+        folder = self.document.folder
+        if folder is None:
+            self._failed(ValueError("save the project first: new clips are kept as files beside it"))
+        return folder
+
+    # --- clips from takes
+
+    def cut(self) -> None:
+        """Cut the selected takes, or all that are chosen, into clips that wait to be labelled."""
+        folder = self._folder()
+        if folder is None:
+            return
+        rows = {index.row() for index in self.list.selectionModel().selectedRows()}
+        ids = [self.list.item(row, 0).data(Qt.ItemDataRole.UserRole) for row in sorted(rows)] or list(self.takes.ids)
+        project, k, level = self.document.project, self.k.value(), self.level.value() / 100
+        clips = takes_of(project, ids).clips
+        if not clips:
+            self._failed(ValueError("choose takes first"))
+            return
+        taken = {e.name for e in project.clips.values()}
+
+        def work(job: Job) -> Any:
+            from metagraph.synthesis.cut import candidates
+
+            from metagraph.synthesis.graph import threshold
+            from metagraph.synthesis.states import states_of
+
+            limit = threshold(states_of(clips), k, level).limit
+            cuts = []
+            for n, clip in enumerate(clips):
+                job.tell(n, len(clips))
+                cuts += pieces(clip, [(start, end) for start, end, _ in candidates(clip, limit, LEAST, MOST)])
+            return save(cuts, folder, FOLDER, taken) if cuts and not job.cancelled else ()
+
+        self._start("Cutting takes", work, self._cut)
+
+    def _cut(self, loaded: Any) -> None:
+        if not loaded:
+            self.said.setText("No still moments were found that these takes leave and come back to: raise k or the level, or cut by hand.")
+            return
+        self._keep(loaded, "Cut takes into clips")
+        self.said.setText(f"{many(len(loaded), 'clip')} in the library, not labelled yet: Graph > Label clips… proposes what each is.")
