@@ -11,6 +11,7 @@ from PySide6.QtCore import QObject, Signal
 from PySide6.QtWidgets import QFileDialog, QMessageBox, QWidget
 
 from app.canvas.drops import ANNOTATIONS, Drop, Load
+from app.conversation.files import converses, kinds_of
 from app.document import Document, state_folder, untitled_journal
 from app.jobs import Job, Jobs
 from app.kept_maps import kept_maps
@@ -33,6 +34,7 @@ PRACTICE = Path(__file__).resolve().parents[1] / "sample_clips" / f"practice{SUF
 
 class Files(QObject):
     """told: words for the status bar. report: (title, lines) to read. imported: (Imported, Drop or None). opened: a project is shown.
+    conversation_dropped, lines_dropped: the paths of sounds, and of transcripts, that were dropped.
     annotation_dropped: the path of an annotation among files to import. repaired: (title, ids of clips, lines) to look
     through; the lines say what else is to be read. noticed: the same, with nothing that has to be read."""
 
@@ -41,6 +43,8 @@ class Files(QObject):
     imported = Signal(object, object)
     opened = Signal()
     annotation_dropped = Signal(str)
+    conversation_dropped = Signal(object)
+    lines_dropped = Signal(object)
     repaired = Signal(str, object, object)
     noticed = Signal(str, object, object)
 
@@ -233,6 +237,15 @@ class Files(QObject):
             return import_files(project, folder, paths, tell, lambda: job.cancelled, "ask", remembered)
 
         self.jobs.start("Importing clips", work, done, self._failed)
+
+    def import_sounds(self, paths: Sequence[Path]) -> None:
+        """Ask what two in conversation say in sounds, or take each for a line of dialogue."""
+        if self._refuse():
+            return
+        if converses(paths):
+            self.conversation_dropped.emit(tuple(paths))
+        else:
+            self.lines_dropped.emit(list(kinds_of(paths)[0]))
 
     def _imported(self, result: Imported, drop: Drop | None) -> None:
         count = len(result.loaded)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from pathlib import Path
 from typing import TYPE_CHECKING
 
 from PySide6.QtCore import QEvent, QPointF, QSettings, Qt, QTimer
@@ -18,7 +19,7 @@ from PySide6.QtWidgets import (
 from app import icons
 from app.actions import Actions
 from app.canvas.canvas import Canvas
-from app.canvas.drops import Drop, load_of
+from app.canvas.drops import Drop, load_of, sounds_of
 from app.commands import CONVERSATION, commands
 from app.compatibility import Compatibility, merged
 from app.dialogs import Dialogs
@@ -227,6 +228,8 @@ class Window(QMainWindow):
         d.loaded.connect(self.notice.clear)
         self.files.imported.connect(self._imported)
         self.files.annotation_dropped.connect(self.dialogs.annotate)
+        self.files.conversation_dropped.connect(self.dialogs.converse)
+        self.files.lines_dropped.connect(self._add_lines)
         self.files.opened.connect(self._opened)
         self._check_timer = QTimer(self, singleShot=True, interval=CHECK_AFTER)
         self._check_timer.timeout.connect(self._check)
@@ -345,6 +348,11 @@ class Window(QMainWindow):
         elif load.clips:
             self.session.select_clips(load.clips if len(load.clips) < 2 else ())
 
+    def _add_lines(self, paths: list[Path]) -> None:
+        self.make_late_panels()
+        self.show_dock("lines")
+        self.lines.add_files(paths)
+
     def _repaired(self, title: str, clips: tuple[str, ...], lines: list[str]) -> None:
         self.notice.tell("Some clips were repaired: look…", "What reading them put right, and what to leave as it is in the files",
                          lambda: self.dialogs.repairs(title, clips, tuple(lines)))  # fmt: skip
@@ -451,10 +459,15 @@ class Window(QMainWindow):
         return super().event(event)
 
     def dragEnterEvent(self, event: QDragEnterEvent) -> None:
-        if load_of(event.mimeData()).files:
+        if load_of(event.mimeData()).files or sounds_of(event.mimeData()):
             event.acceptProposedAction()
 
     def dropEvent(self, event: QDropEvent) -> None:
+        sounds = sounds_of(event.mimeData())
+        if sounds:
+            event.acceptProposedAction()
+            self.files.import_sounds(sounds)
+            return
         files = load_of(event.mimeData()).files
         if files:
             event.acceptProposedAction()

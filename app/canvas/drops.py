@@ -4,10 +4,12 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
+from pathlib import Path
 
 from PySide6.QtCore import QMimeData
 
 from app.canvas.layout import Hit
+from app.conversation.files import kinds_of
 from metagraph.formats.clips import SUFFIXES
 from metagraph.graph.edits import EditError, move_actions, place, refusal, to_stance
 from metagraph.graph.model import Kind, Layer, Project
@@ -50,6 +52,12 @@ def load_of(data: QMimeData) -> Load:
     files = tuple(u.toLocalFile() for u in data.urls() if u.isLocalFile()) if data.hasUrls() else ()
     ends = (*SUFFIXES, ANNOTATIONS)
     return Load(clips, actions, tuple(f for f in files if "." not in f.rsplit("/", 1)[-1] or f.lower().endswith(ends)))
+
+
+def sounds_of(data: QMimeData) -> tuple[Path, ...]:
+    """Return the sounds that mime data carries, and their transcripts after them; nothing where no sound is among them."""
+    sounds, transcripts = kinds_of([Path(u.toLocalFile()) for u in data.urls() if u.isLocalFile()])
+    return (*sounds, *transcripts) if sounds else ()
 
 
 @dataclass(frozen=True)

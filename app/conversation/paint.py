@@ -145,8 +145,7 @@ def _told(painter: QPainter, t: Theme, heard: Heard | None, area: QRectF) -> Non
         painter.drawText(inner, MIDDLE | Qt.TextFlag.TextWordWrap, f"⚠  {words}")
     elif heard.told:
         painter.setPen(QColor(t.dim))
-        side = MIDDLE if heard.wave is None else Qt.AlignmentFlag.AlignBottom
-        painter.drawText(inner.adjusted(0, 0, 0, -4), side, heard.told)
+        painter.drawText(inner, MIDDLE if heard.wave is None else Qt.AlignmentFlag.AlignTop | Qt.AlignmentFlag.AlignRight, heard.told)
         painter.fillRect(QRectF(area.left(), area.bottom() - 2, area.width() * heard.part, 2), QColor(t.dim))
 
 
@@ -162,8 +161,8 @@ def _words(painter: QPainter, t: Theme, scene: Scene, side: int, lane: Lane) -> 
     for n, word in enumerate(some):
         left = scale.x(word.start)
         until = scale.x(some[n + 1].start) if n + 1 < len(some) else left + 300.0
-        words = word.text if advance(word.text, key) <= until - left - 3 else elided(word.text, key, int(until - left - 3))
-        if len(words) > 1 or words == word.text:
+        words = word.text if advance(word.text, key) <= until - left - 4 else elided(word.text, key, int(until - left - 4))
+        if len(words) > 3 or words == word.text:
             painter.drawText(QRectF(left + 1, lane.words.top(), 400, lane.words.height()), MIDDLE, words)
     painter.setFont(own)
 
@@ -240,7 +239,8 @@ def empty(painter: QPainter, t: Theme, area: QRectF, lines: Sequence[str]) -> No
         bubble.lineTo(tail + 5, rect.bottom() - 1)
         painter.setPen(Qt.PenStyle.NoPen)
         painter.setBrush(QColor(t.sounds[kind]))
-        painter.drawPath(bubble.simplified())
+        bubble.setFillRule(Qt.FillRule.WindingFill)
+        painter.drawPath(bubble)
         painter.setPen(QPen(QColor(INK), 2, Qt.PenStyle.SolidLine, Qt.PenCapStyle.RoundCap))
         for n, tall in enumerate((4, 8, 5, 10, 6, 3) if side == 0 else (3, 6, 4, 3, 5, 2)):
             x = rect.left() + 12 + n * 6

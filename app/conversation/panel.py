@@ -2,14 +2,12 @@
 
 from __future__ import annotations
 
-from pathlib import Path
-
 from PySide6.QtCore import Qt, QTimer, Signal
 from PySide6.QtGui import QDragEnterEvent, QDropEvent
 from PySide6.QtWidgets import QComboBox, QHBoxLayout, QLabel, QMenu, QToolButton, QVBoxLayout, QWidget
 
+from app.canvas.drops import sounds_of
 from app.conversation.editing import Editing
-from app.conversation.files import kinds_of
 from app.conversation.lanes import segment_words, side_name
 from app.conversation.reading import Sounds
 from app.conversation.view import View
@@ -115,19 +113,11 @@ class ConversationPanel(QWidget):
     # --- drops
 
     def dragEnterEvent(self, event: QDragEnterEvent) -> None:
-        if self._files(event):
+        if sounds_of(event.mimeData()):
             event.acceptProposedAction()
 
     def dropEvent(self, event: QDropEvent) -> None:
-        paths = self._files(event)
+        paths = sounds_of(event.mimeData())
         if paths:
             event.acceptProposedAction()
             self.files_dropped.emit(paths)
-
-    @staticmethod
-    def _files(event: QDropEvent | QDragEnterEvent) -> tuple[Path, ...]:
-        """Return the sounds and transcripts among what is dragged; nothing where there is no sound."""
-        urls = event.mimeData().urls()
-        paths = tuple(Path(u.toLocalFile()) for u in urls if u.isLocalFile())
-        sounds, transcripts = kinds_of(paths)
-        return (*sounds, *transcripts) if sounds else ()

@@ -36,7 +36,7 @@ from app.theme import theme
 from metagraph.graph.conversation import Conversation
 from metagraph.graph.edits import EditError
 
-ZOOM = 1.2
+ZOOM, USUAL = 1.2, 100.0  # of a turn of the wheel; pixels a second to begin with: most words have room
 EMPTY = (
     "Drop the sound of a conversation here",
     "one file with a channel for each of the two, or two files; with their words as TextGrid, ELAN, subtitles or JSON, if there are any.",
@@ -56,7 +56,7 @@ class View(QWidget):
         super().__init__(parent)
         self.editing, self.sounds = editing, sounds
         self.document, self.session = editing.document, editing.session
-        self.each, self.first = 44.0, 0.0
+        self.each, self.first = USUAL, 0.0
         self.gesture: MouseGesture | None = None
         self.held: Conversation | None = None  # as it would be if what is dragged were let go
         self.over: Hit = NOTHING
@@ -125,7 +125,7 @@ class View(QWidget):
 
     def _staged(self) -> None:
         self._stop_dragging()
-        self.first, self.each = 0.0, 44.0
+        self.first, self.each = 0.0, USUAL
         self.update()
 
     def _read(self) -> None:
