@@ -13,6 +13,7 @@ from typing import Any
 from app.headless_label import arguments as label_arguments
 from app.headless_live import arguments as live_arguments
 from app.headless_mimic import arguments as mimic_arguments
+from app.headless_speech import arguments as speech_arguments
 from app.headless_study import arguments as study_arguments
 from metagraph import __version__
 
@@ -34,6 +35,7 @@ examples:
   metagraph annotate my.metagraph.yaml talk.eaf --learn
   metagraph export my.metagraph.yaml -o game/
   metagraph mimic my.metagraph.yaml keypoints.json -o show.mp4
+  metagraph speech talk.wav --words talk.TextGrid -o talk.eaf
   metagraph live my.metagraph.yaml            play, and do what agents ask
   metagraph study report my-study/            what a timing study found
 
@@ -101,6 +103,7 @@ def _parser() -> argparse.ArgumentParser:
     live_arguments(played)
     mimicked = command("mimic", "tell what stances a person's keypoints show, and let the character do as they do")
     mimic_arguments(mimicked)
+    speech_arguments(command("speech", "read a conversation of two into clauses, responses and hesitations", project=False))
     words = "time people at work: reports, data for other tools, simulated studies"
     study_arguments(commands.add_parser("study", help=words, description=words[:1].upper() + words[1:] + "."))
     info = command("info", "tell what is in a project, an export or a clip file", project=False)
@@ -118,7 +121,9 @@ def _performance(parser: argparse.ArgumentParser, seconds: float) -> None:
     parser.add_argument("--seed", type=int, help="another performance of the same project (default: the project's seed)")
 
 
-COMMANDS = ("window", "import", "label", "check", "plan", "render", "annotate", "export", "live", "mimic", "study", "info", "demo")
+COMMANDS = (
+    "window", "import", "label", "check", "plan", "render", "annotate", "export", "live", "mimic", "speech", "study", "info", "demo",
+)  # fmt: skip
 
 
 def main(arguments: Sequence[str] | None = None) -> int:

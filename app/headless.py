@@ -18,6 +18,7 @@ from app.headless_live import live as live
 from app.headless_mimic import mimic as mimic
 from app.headless_render import draw_to, figure_of, sound_of
 from app.headless_render import render as render
+from app.headless_speech import speech as speech
 from app.headless_study import study as study
 from app.shown import Shown
 from metagraph.errors import FileError

@@ -182,7 +182,7 @@ def _voice(reading: _Reading, path: Path, channel: int | None, called: str, samp
 def _tell_clipped(reading: _Reading, called: str, clipped: float) -> None:
     if clipped > CLIPPED:
         reading.notes.append(
-            f"{called}: {100 * clipped:.2g} % of the samples are cut off at full scale; its loudness and pitch are less sure. Record it softer."
+            f"{called}: {100 * clipped:.2g} % of the samples are cut off at full scale; loudness and pitch are less sure. Record softer."
         )
 
 
