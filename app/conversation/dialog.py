@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -42,6 +43,7 @@ if TYPE_CHECKING:
     from metagraph.formats.conversations import Read
 
 TYPED = 700  # milliseconds of quiet after a word list was typed in before the sound is read by it
+NUMBERED = re.compile(r"speaker[ _-]?\d+", re.IGNORECASE)  # names a program gave; ours are as good
 MOST = 6  # notes that are shown; more of them do not help
 
 
@@ -98,7 +100,7 @@ class ImportDialog(QDialog):
         self.job: Job | None = None
         self.setAttribute(Qt.WidgetAttribute.WA_DeleteOnClose)
         self.setWindowTitle("Conversation from sound")
-        self.resize(820, 620)
+        self.resize(820, 500)
         self._soon = QTimer(self, singleShot=True, interval=TYPED)
         self._soon.timeout.connect(self.start)
         self._build()
@@ -137,6 +139,10 @@ class ImportDialog(QDialog):
         self.notes.hide()
         layout.addWidget(self.notes)
         layout.addLayout(self._foot())
+        self.session.theme_changed.connect(self._restyle)
+        self._restyle()
+
+    def _restyle(self) -> None:
         t = theme(self.session.theme)
         self.setStyleSheet(f"QFrame#card {{ background: {t.card}; border: 1px solid {t.line}; border-radius: 8px; }}")
 
@@ -217,7 +223,7 @@ class ImportDialog(QDialog):
         self.read = read
         for card, side in zip(self.cards, self.sides(), strict=True):
             if not card.name.isModified():
-                card.name.setText(side.name)
+                card.name.setText("" if NUMBERED.fullmatch(side.name) else side.name)
         minutes = clock(round(read.conversation.length))
         self._show(f"Read {minutes} of conversation.")
 

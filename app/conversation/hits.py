@@ -57,18 +57,16 @@ def _peak(conversation: Conversation, side: int, scale: Scale, x: float) -> int 
 
 def _segment(conversation: Conversation, side: int, scale: Scale, x: float) -> Hit:
     segments, seconds, reach = conversation.sides[side].segments, scale.seconds(x), EDGE / scale.each
-    best: tuple[float, Hit] | None = None
+    edges: list[tuple[float, bool, Hit]] = []  # how far off, whether it is held from outside, and what
     for n in visible(segments, seconds - reach, seconds + reach):
         left, right = scale.x(segments[n].start), scale.x(segments[n].end)
         inner = EDGE if right - left > NARROW else 0.0
-        for part, edge, inside in (("start", left, x - left), ("end", right, right - x)):
-            if -EDGE <= inside <= inner and (best is None or abs(edge - x) < best[0]):
-                best = abs(edge - x), Hit(part, side, n)  # type: ignore[arg-type]
-        if left <= x <= right and inner == 0.0:
+        if left <= x <= right and (inner == 0.0 or left + inner < x < right - inner):
             return Hit("body", side, n)
-        if left + inner < x < right - inner:
-            return Hit("body", side, n)
-    return best[1] if best is not None else Hit("gap", side)
+        for part, inside in (("start", x - left), ("end", right - x)):
+            if -EDGE <= inside <= inner:
+                edges.append((round(abs(inside), 3), inside < 0, Hit(part, side, n)))  # type: ignore[arg-type]
+    return min(edges, key=lambda e: e[:2])[2] if edges else Hit("gap", side)
 
 
 # --- snapping

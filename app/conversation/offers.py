@@ -103,7 +103,10 @@ def write_segments(window: Window) -> None:
     from metagraph.formats.conversation_writers import write_elan, write_textgrid
 
     try:
-        (write_textgrid if path.suffix.lower() == ".textgrid" else write_elan)(found[1], path)
+        if path.suffix.lower() == ".textgrid":
+            write_textgrid(found[1], path)
+        else:
+            write_elan(found[1], path, window.document.folder)
     except (FileError, OSError) as error:
         window.tell(str(error))
         return

@@ -165,6 +165,7 @@ class RatesDialog(SettingDialog):
             for side in (0, 1):
                 field = QDoubleSpinBox(self, toolTip=tip, suffix=" %", decimals=0)
                 field.setRange(0, 100)
+                field.lineEdit().setTextMargins(6, 0, 0, 0)
                 field.setAccessibleName(f"{side_name(self.conversation, side)} {words}")
                 field.setValue(100 * getattr(self.conversation.sides[side].rates, name))
                 self.fields[side][name] = field
@@ -199,7 +200,7 @@ class SidesDialog(SettingDialog):
     title, text = "Sounds and names", "Change sounds and names"
 
     def build(self, layout: QVBoxLayout) -> None:
-        self.resize(560, 0)
+        self.resize(680, 0)
         self.names: list[QLineEdit] = []
         self.sounds: list[QLineEdit] = []
         self.channels: list[QComboBox] = []
