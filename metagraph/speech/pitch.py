@@ -25,6 +25,7 @@ JUMP = 6.0  # semitones away from the neighbours' median that a moment may be
 NEAR = 9  # moments either side that count as neighbours
 _SHORTEST = 3  # moments a voiced stretch has at least
 _BLOCK = 3000  # moments at a time
+_PIECE, _TRIED = 500, 12000  # moments in a piece; and in all those that tell a voice's range
 PROMINENT = 0.25  # semitones a peak stands out by at least
 
 
@@ -40,16 +41,22 @@ def pitch(samples: Array, rate: int) -> Pitch:
     """Return the pitch of a voice. samples: `[N]`, about -1..1; rate: samples a second. Hours take memory for the samples alone."""
     count = int(len(samples) / rate / HOP) + 1
     times = np.arange(count) * HOP
-    hertz, repeats, level = np.empty(count), np.empty(count), np.empty(count)
-    for n in range(0, count, _BLOCK):
-        part = slice(n, min(n + _BLOCK, count))
-        hertz[part], repeats[part], level[part] = _block(samples, rate, times[part])
-    loudest = float(np.percentile(level, 98))
-    voiced = (repeats > REPEATS) & (level > max(loudest - FLOOR, -80.0))
+    unvoiced = Pitch(times, np.full(count, np.nan))
+    some = max(1, -(-count // _TRIED))  # of pieces of `_PIECE` moments, every so many tell this voice's range
+    parts = [slice(n, min(n + _PIECE, count)) for n in range(0, count, _PIECE * some)]
+    hertz, repeats, level = _blocks(samples, rate, [times[p] for p in parts], (LOWEST, HIGHEST))
+    voiced = _voiced(repeats, level)
     if voiced.sum() < _SHORTEST:
-        return Pitch(times, np.full(count, np.nan))
-    low, high = np.percentile(hertz[voiced], (15, 65)) * (0.83, 1.92)
-    voiced &= (hertz >= min(low, 0.6 * high)) & (hertz <= high)
+        if some == 1:
+            return unvoiced
+        low, high = LOWEST, HIGHEST
+    else:
+        low, high = np.percentile(hertz[voiced], (15, 65)) * (0.83, 1.92)
+        low, high = float(np.clip(low, LOWEST, HIGHEST / 3)), float(np.clip(high, 2.5 * LOWEST, HIGHEST))
+        low = min(low, high / 2.5)
+    parts = [slice(n, min(n + _BLOCK, count)) for n in range(0, count, _BLOCK)]
+    hertz, repeats, level = _blocks(samples, rate, [times[p] for p in parts], (low, high))
+    voiced = _voiced(repeats, level)
     voiced &= _near(hertz, voiced)
     for start, end in stretches(voiced):
         if end - start < _SHORTEST:
@@ -57,8 +64,18 @@ def pitch(samples: Array, rate: int) -> Pitch:
     return Pitch(times, np.where(voiced, hertz, np.nan))
 
 
-def _block(samples: Array, rate: int, times: Array) -> tuple[Array, Array, Array]:
-    """Return F0 (Hz), how well the sound repeats after its period (0..1) and its level (dB) at some times, evenly `HOP` apart."""
+def _voiced(repeats: Array, level: Array) -> Array:
+    return np.asarray((repeats > REPEATS) & (level > max(float(np.percentile(level, 98)) - FLOOR, -80.0)))
+
+
+def _blocks(samples: Array, rate: int, times: list[Array], bounds: tuple[float, float]) -> tuple[Array, Array, Array]:
+    found = [_block(samples, rate, t, bounds) for t in times]
+    hertz, repeats, level = (np.concatenate([f[n] for f in found]) for n in range(3))
+    return hertz, repeats, level
+
+
+def _block(samples: Array, rate: int, times: Array, bounds: tuple[float, float]) -> tuple[Array, Array, Array]:
+    """Return F0 within bounds (Hz), how well the sound repeats after its period (0..1) and its level (dB) at times `HOP` apart."""
     from librosa import yin  # half a second, first time
 
     every = max(1, rate // RATE)
@@ -77,13 +94,14 @@ def _block(samples: Array, rate: int, times: Array) -> tuple[Array, Array, Array
     frames = frames - frames.mean(1, keepdims=True)
     with warnings.catch_warnings():  # of frames of digital silence
         warnings.simplefilter("ignore")
-        hertz = yin(frames.reshape(-1), fmin=LOWEST, fmax=HIGHEST, sr=own, frame_length=size, hop_length=size, center=False)
+        hertz = yin(frames.reshape(-1), fmin=bounds[0], fmax=bounds[1], sr=own, frame_length=size, hop_length=size, center=False)
     period = np.clip(np.round(own / hertz).astype(int), 2, size // 2)
     at = np.arange(size - size // 2)[None, :]
     one = frames[:, : size - size // 2]
     two = np.take_along_axis(frames, at + period[:, None], 1)
     power = (one * one).sum(1), (two * two).sum(1)
     repeats = (one * two).sum(1) / np.sqrt(np.maximum(power[0] * power[1], 1e-20))
+    repeats[(hertz >= 0.98 * bounds[1]) | (hertz <= 1.005 * bounds[0])] = 0.0  # at the edge of what was tried: none was found
     return hertz, repeats, 10 * np.log10((frames * frames).mean(1) + 1e-12)
 
 
