@@ -37,6 +37,7 @@ from metagraph.graph.model import Project
 KS = (2, 3, 4)  # of the table
 FOLDER = "motion-graph"  # beside the project file, where new clips are kept
 NONE = "nothing known"
+ROW = 36  # pixels
 
 
 class MotionGraphDialog(QDialog):
@@ -93,7 +94,9 @@ class MotionGraphDialog(QDialog):
         self.list.setEditTriggers(QTableWidget.EditTrigger.NoEditTriggers)
         header = self.list.horizontalHeader()
         header.setSectionResizeMode(0, QHeaderView.ResizeMode.Stretch)
-        header.setSectionResizeMode(2, QHeaderView.ResizeMode.ResizeToContents)
+        header.setSectionResizeMode(1, QHeaderView.ResizeMode.ResizeToContents)
+        header.resizeSection(2, 190)
+        self.list.verticalHeader().setDefaultSectionSize(ROW)
         header.setHighlightSections(False)
         self.list.itemChanged.connect(self._checked)
         self.cut_button = QPushButton("Cut selected takes into clips", self, autoDefault=False)
@@ -127,7 +130,8 @@ class MotionGraphDialog(QDialog):
         self.words.setProperty("dim", True)
         self.right.addWidget(self.words)
         self.table = QTableWidget(len(KS), 5, self)
-        self.table.setHorizontalHeaderLabels(["k", "Frames", "Transitions", "Frames kept", "Transitions kept"])
+        self.table.setHorizontalHeaderLabels(["k", "Frames", "Transitions", "Frames kept", "Trans. kept"])
+        self.table.horizontalHeader().setDefaultAlignment(Qt.AlignmentFlag.AlignRight | Qt.AlignmentFlag.AlignVCenter)
         self.table.setAccessibleName("Frames and transitions for each k")
         self.table.verticalHeader().hide()
         self.table.setShowGrid(False)
@@ -167,7 +171,8 @@ class MotionGraphDialog(QDialog):
         project, chosen = self.document.project, set(self.chosen())
         found = usable(project)
         if not self.list.rowCount():
-            chosen = {i for i in found if project.clips[i].duration >= LONG} or set(found)
+            recorded = [i for i in found if not project.clips[i].path.startswith(f"{FOLDER}/")]
+            chosen = {i for i in recorded if project.clips[i].duration >= LONG} or set(recorded)
         self.list.blockSignals(True)
         self.list.setRowCount(len(found))
         for row, ident in enumerate(found):
@@ -192,7 +197,8 @@ class MotionGraphDialog(QDialog):
         for ident, talk in project.conversations.items():
             for n, side in enumerate(talk.sides):
                 box.addItem(f"{talk.name}: {side.name or f'side {n + 1}'}", (ident, n))
-        box.setCurrentIndex(max(0, box.findData(speech_of(project, clip))))
+                if speech_of(project, clip) == (ident, n):
+                    box.setCurrentIndex(box.count() - 1)
         box.activated.connect(partial(self._tell_speech, clip, box))
         return box
 
@@ -357,11 +363,12 @@ class MotionGraphDialog(QDialog):
 
     def _found(self, made: Any) -> None:
         self.graph, found, loaded = made[0], made[1], made[2]
-        graph = self.graph
+        graph, takes_told = self.graph, self.takes.told
         assert isinstance(found, Found)
         self._keep(loaded, "Add new motion")
         self.graph = graph  # the takes are the same
-        self.said.setText(found.words())
+        deaf = "" if takes_told or not self.wishes.talks else " What was heard during the takes is not known, so speech did not guide it."
+        self.said.setText(found.words() + deaf)
 
     def _keep(self, loaded: Any, words: str) -> None:
         """Add kept clips to the library, choose them and play the first."""

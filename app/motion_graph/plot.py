@@ -7,7 +7,7 @@ from typing import Any
 import numpy as np
 import pyqtgraph as pg
 from PySide6.QtCore import Qt
-from PySide6.QtWidgets import QWidget
+from PySide6.QtWidgets import QVBoxLayout, QWidget
 
 from app.session import Session
 from app.theme import theme
@@ -21,8 +21,6 @@ class CostPlot(QWidget):
 
     def __init__(self, session: Session, parent: QWidget | None = None) -> None:
         super().__init__(parent)
-        from PySide6.QtWidgets import QVBoxLayout
-
         self.session = session
         self.shown: Any = None
         self.plot = pg.PlotWidget(self)
@@ -32,7 +30,7 @@ class CostPlot(QWidget):
         self.plot.setFocusPolicy(Qt.FocusPolicy.NoFocus)
         self.plot.getAxis("left").setStyle(showValues=False)
         self.plot.getAxis("left").setWidth(12)
-        self.plot.setLabel("bottom", "cost, m")
+        self.plot.getAxis("bottom").enableAutoSIPrefix(False)
         layout = QVBoxLayout(self)
         layout.setContentsMargins(0, 0, 0, 0)
         layout.addWidget(self.plot)

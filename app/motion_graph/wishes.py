@@ -83,14 +83,14 @@ class Wishes(QFrame):
 
     def fill(self) -> None:
         """List whose speech there is."""
-        chosen = self.speech.currentData()
+        chosen, first = self.speech.currentData(), not self.speech.count()
         self.speech.clear()
         self.speech.addItem("no speech", None)
         for ident, talk in self.document.project.conversations.items():
             for n, side in enumerate(talk.sides):
                 self.speech.addItem(f"{talk.name}: {side.name or f'side {n + 1}'}", (ident, n))
-        found = self.speech.findData(chosen)
-        self.speech.setCurrentIndex(found if found >= 0 else min(1, self.speech.count() - 1))
+                if chosen == (ident, n) or (first and self.speech.count() == 2):
+                    self.speech.setCurrentIndex(self.speech.count() - 1)
         self._limits()
 
     def _limits(self) -> None:
@@ -98,6 +98,11 @@ class Wishes(QFrame):
         for box in (*self.kinds.values(), self.peaks, self.tolerance, self.start):
             box.setEnabled(talks)
         self.seed.setEnabled(not self.search.currentData())
+
+    @property
+    def talks(self) -> bool:
+        """Whether it is to go with speech."""
+        return self.speech.currentData() is not None
 
     def wish(self) -> Wish:
         """Return what is asked for now."""

@@ -1,0 +1,151 @@
+"""The motion graph's window: takes are chosen, new motion is found and kept, long takes are cut, with real events."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from pathlib import Path
+
+import msgspec
+import pytest
+from PySide6.QtCore import QPoint, Qt
+from PySide6.QtTest import QTest
+
+from app.motion_graph.dialog import FOLDER, MotionGraphDialog
+from metagraph.formats.store import absolute, open_project, save_project
+from metagraph.graph.conversation import Conversation, Segment, Side
+from metagraph.graph.model import Project
+
+ROOT = Path(__file__).parents[3]
+
+
+@pytest.fixture
+def shown(drive, tmp_path):
+    """The dialog on a saved project of the sample's stances, with a conversation whose first side has a take."""
+    whole = absolute(open_project(ROOT / "sample_clips" / "sample.metagraph.yaml").project, ROOT / "sample_clips")
+    some = {i: e for i, e in whole.clips.items() if "stance" in e.name or "arms_crossed__beat" in e.name}
+    project = Project(name="some", clips=some, skeleton=whole.skeleton, next_id=whole.next_id)
+    take = next(e.id for e in project.clips.values() if e.name == "hand_to_chin__stance")
+    ada = Side(name="Ada", take=take, segments=(Segment("clause", 1.0, 2.0, 1.5),))
+    project = replace(project, conversations={"v9000": Conversation(name="talk", length=7.0, sides=(ada, Side(name="Ben")))})
+    save_project(project, tmp_path / "copy.metagraph.yaml")
+    drive.files.open(tmp_path / "copy.metagraph.yaml")
+    drive.wait(lambda: drive.document.folder == tmp_path and drive.document.project.skeleton is not None)
+    drive.window.dialogs.motion_graph()
+    dialog = drive.window.findChild(MotionGraphDialog)
+    drive.wait(lambda: dialog.limit is not None)
+    yield drive, dialog
+    dialog.close()
+
+
+def press(button) -> None:
+    QTest.mouseClick(button, Qt.MouseButton.LeftButton, pos=button.rect().center())
+
+
+def colours(widget) -> int:
+    """How many colours a widget shows: one where nothing is painted."""
+    image = widget.grab().toImage()
+    return len({image.pixel(x, y) for x in range(0, image.width(), 3) for y in range(0, image.height(), 3)})
+
+
+def test_long_clips_are_chosen_and_what_was_heard_is_shown(shown):
+    _, dialog = shown
+    names = {dialog.document.project.clips[i].name for i in dialog.chosen()}
+    assert "hand_to_chin__stance" in names and not any("beat" in n for n in names)
+    row = next(r for r in range(dialog.list.rowCount()) if dialog.list.item(r, 0).text() == "hand_to_chin__stance")
+    assert dialog.list.cellWidget(row, 2).currentText() == "talk: Ada"
+    assert "0." in dialog.words.text() and colours(dialog.plot) > 3
+
+
+def test_k_and_level_move_the_threshold(shown):
+    drive, dialog = shown
+    before = dialog.limit.limit
+    dialog.k.setFocus()
+    QTest.keyClick(dialog.k, Qt.Key.Key_Up)
+    drive.wait(lambda: dialog.limit.limit > before)
+    higher = dialog.limit.limit
+    dialog.level.setValue(80)
+    drive.wait(lambda: dialog.limit.limit < higher)
+
+
+def test_a_take_that_is_unchecked_is_left_out(shown):
+    drive, dialog = shown
+    before = len(dialog.takes.ids)
+    cell = dialog.list.visualItemRect(dialog.list.item(0, 0))
+    QTest.mouseClick(dialog.list.viewport(), Qt.MouseButton.LeftButton, pos=QPoint(cell.left() + 14, cell.center().y()))
+    drive.wait(lambda: len(dialog.takes.ids) == before - 1)
+
+
+def test_the_table_is_filled(shown):
+    drive, dialog = shown
+    press(dialog.count_button)
+    assert not dialog.count_button.isEnabled() and dialog.stop.isVisible()
+    drive.wait(lambda: dialog.table.item(0, 1).text() != "–", 60)
+    kept = [int(dialog.table.item(row, 2).text().replace(",", "")) for row in range(3)]
+    assert kept[0] < kept[1] < kept[2]
+    drive.wait(dialog.count_button.isEnabled)
+
+
+def test_new_motion_is_found_kept_as_a_file_and_played_and_one_undo_takes_it_back(shown, tmp_path):
+    drive, dialog = shown
+    count = len(drive.document.project.clips)
+    assert dialog.wishes.speech.currentText() == "talk: Ada"
+    dialog.wishes.speech.setCurrentIndex(0)
+    dialog.wishes.length.setValue(4.0)
+    press(dialog.wishes.go)
+    drive.wait(lambda: len(drive.document.project.clips) == count + 1, 60)
+    assert "cost" in dialog.said.text()
+    made = drive.document.project.clips[drive.session.clips[0]]
+    assert (tmp_path / made.path).parent.name == FOLDER and (tmp_path / made.path).is_file()
+    assert drive.session.show == "clip" and drive.session.shown == made.id
+    drive.wait(lambda: drive.performance.shown.clip == made.id)
+    drive.document.undo_stack.undo()
+    assert len(drive.document.project.clips) == count
+
+
+def test_what_cannot_be_had_is_said_with_a_remedy_and_nothing_is_added(shown):
+    drive, dialog = shown
+    project = drive.document.project
+    talk = project.conversations["v9000"]
+    never = msgspec.structs.replace(talk.sides[1], segments=(Segment("response", 1.0, 6.0),))
+    sides = (talk.sides[0], never)
+    drive.document.edit("test", lambda p: replace(p, conversations={"v9000": msgspec.structs.replace(talk, sides=sides)}))
+    dialog.wishes.speech.setCurrentIndex(2)
+    dialog.wishes.length.setValue(6.0)
+    drive.wait(lambda: dialog.limit is not None and not dialog._soon.isActive())
+    count = len(drive.document.project.clips)
+    press(dialog.wishes.go)
+    drive.wait(lambda: bool(dialog.said.text()), 60)
+    assert "No motion goes with this speech" in dialog.said.text() and "tolerance" in dialog.said.text()
+    assert len(drive.document.project.clips) == count
+
+
+def test_who_was_heard_during_a_take_can_be_told_and_undone(shown):
+    drive, dialog = shown
+    row = next(r for r in range(dialog.list.rowCount()) if dialog.list.item(r, 0).text() == "arms_crossed__stance")
+    box = dialog.list.cellWidget(row, 2)
+    box.setFocus()
+    QTest.keyClick(box, Qt.Key.Key_End)
+    clip = dialog.list.item(row, 0).data(Qt.ItemDataRole.UserRole)
+    assert drive.document.project.conversations["v9000"].sides[1].take == clip
+    drive.document.undo_stack.undo()
+    assert drive.document.project.conversations["v9000"].sides[1].take is None
+
+
+def test_takes_are_cut_into_clips_that_wait_to_be_labelled(shown):
+    drive, dialog = shown
+    count = len(drive.document.project.clips)
+    press(dialog.cut_button)
+    drive.wait(lambda: bool(dialog.said.text()), 60)
+    new = [e for e in drive.document.project.clips.values() if e.path.startswith(FOLDER)]
+    assert len(new) == len(drive.document.project.clips) - count
+    assert all(e.id not in drive.document.project.uses for e in new)
+    assert ("not labelled yet" in dialog.said.text()) == bool(new)
+
+
+def test_an_unsaved_project_is_asked_to_be_saved_first(toys):
+    toys.window.dialogs.motion_graph()
+    dialog = toys.window.findChild(MotionGraphDialog)
+    toys.wait(lambda: dialog.limit is not None or bool(dialog.words.text()))
+    press(dialog.wishes.go)
+    assert "Save the project first" in dialog.said.text()
+    dialog.close()
