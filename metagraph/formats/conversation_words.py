@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
+from functools import cached_property
 from pathlib import Path
 
 import msgspec
@@ -26,6 +27,11 @@ class Voice:
     called: str
     heard: Heard
     pitch: Pitch
+
+    @cached_property
+    def top(self) -> float:
+        """How loud it is at its loudest, dB."""
+        return max(float(np.percentile(self.heard.level, 99)), HUSH)
 
 
 @dataclass(frozen=True)
@@ -133,8 +139,7 @@ def _loudness(voices: Sequence[Voice], words: Sequence[Word], side: int) -> floa
 def _level(voice: Voice, start: float, end: float) -> float:
     heard = voice.heard
     part = heard.level[int(np.searchsorted(heard.times, start)) : int(np.searchsorted(heard.times, end, "right"))]
-    top = max(float(np.percentile(heard.level, 99)), HUSH)
-    return max(float(part.mean()) - top, -60.0) if len(part) else -60.0
+    return max(float(part.mean()) - voice.top, -60.0) if len(part) else -60.0
 
 
 def within(notes: list[str], called: str, told: Told, length: float) -> list[Word]:

@@ -55,7 +55,8 @@ def pitch(samples: Array, rate: int) -> Pitch:
         low, high = float(np.clip(low, LOWEST, HIGHEST / 3)), float(np.clip(high, 2.5 * LOWEST, HIGHEST))
         low = min(low, high / 2.5)
     parts = [slice(n, min(n + _BLOCK, count)) for n in range(0, count, _BLOCK)]
-    hertz, repeats, level = _blocks(samples, rate, [times[p] for p in parts], (low, high))
+    audible = float(np.percentile(level, 98)) - FLOOR - 6.0
+    hertz, repeats, level = _blocks(samples, rate, [times[p] for p in parts], (low, high), audible)
     voiced = _voiced(repeats, level)
     voiced &= _near(hertz, voiced)
     for start, end in stretches(voiced):
@@ -68,14 +69,17 @@ def _voiced(repeats: Array, level: Array) -> Array:
     return np.asarray((repeats > REPEATS) & (level > max(float(np.percentile(level, 98)) - FLOOR, -80.0)))
 
 
-def _blocks(samples: Array, rate: int, times: list[Array], bounds: tuple[float, float]) -> tuple[Array, Array, Array]:
-    found = [_block(samples, rate, t, bounds) for t in times]
+def _blocks(
+    samples: Array, rate: int, times: list[Array], bounds: tuple[float, float], audible: float = -120.0
+) -> tuple[Array, Array, Array]:
+    found = [_block(samples, rate, t, bounds, audible) for t in times]
     hertz, repeats, level = (np.concatenate([f[n] for f in found]) for n in range(3))
     return hertz, repeats, level
 
 
-def _block(samples: Array, rate: int, times: Array, bounds: tuple[float, float]) -> tuple[Array, Array, Array]:
-    """Return F0 within bounds (Hz), how well the sound repeats after its period (0..1) and its level (dB) at times `HOP` apart."""
+def _block(samples: Array, rate: int, times: Array, bounds: tuple[float, float], audible: float) -> tuple[Array, Array, Array]:
+    """Return F0 within bounds (Hz), how well the sound repeats after its period (0..1) and its level (dB) at times `HOP` apart. Moments
+    softer than `audible` dB are passed over: nan, 0."""
     from librosa import yin  # half a second, first time
 
     every = max(1, rate // RATE)
@@ -92,17 +96,23 @@ def _block(samples: Array, rate: int, times: Array, bounds: tuple[float, float])
     starts = np.round((times - times[0]) * own).astype(int)
     frames = np.lib.stride_tricks.sliding_window_view(piece, size)[np.minimum(starts, len(piece) - size)]
     frames = frames - frames.mean(1, keepdims=True)
+    level = 10 * np.log10((frames * frames).mean(1) + 1e-12)
+    hertz, repeats = np.full(len(times), np.nan), np.zeros(len(times))
+    some = level > audible
+    if not some.any():
+        return hertz, repeats, level
+    frames = frames[some]
     with warnings.catch_warnings():  # of frames of digital silence
         warnings.simplefilter("ignore")
-        hertz = yin(frames.reshape(-1), fmin=bounds[0], fmax=bounds[1], sr=own, frame_length=size, hop_length=size, center=False)
-    period = np.clip(np.round(own / hertz).astype(int), 2, size // 2)
-    at = np.arange(size - size // 2)[None, :]
+        found = yin(frames.reshape(-1), fmin=bounds[0], fmax=bounds[1], sr=own, frame_length=size, hop_length=size, center=False)
+    period = np.clip(np.round(own / found).astype(int), 2, size // 2)
     one = frames[:, : size - size // 2]
-    two = np.take_along_axis(frames, at + period[:, None], 1)
-    power = (one * one).sum(1), (two * two).sum(1)
-    repeats = (one * two).sum(1) / np.sqrt(np.maximum(power[0] * power[1], 1e-20))
-    repeats[(hertz >= 0.98 * bounds[1]) | (hertz <= 1.005 * bounds[0])] = 0.0  # at the edge of what was tried: none was found
-    return hertz, repeats, 10 * np.log10((frames * frames).mean(1) + 1e-12)
+    two = np.take_along_axis(frames, np.arange(size - size // 2)[None, :] + period[:, None], 1)
+    power = np.einsum("nk,nk->n", one, one) * np.einsum("nk,nk->n", two, two)
+    alike = np.einsum("nk,nk->n", one, two) / np.sqrt(np.maximum(power, 1e-20))
+    alike[(found >= 0.98 * bounds[1]) | (found <= 1.005 * bounds[0])] = 0.0  # at the edge of what was tried: none was found
+    hertz[some], repeats[some] = found, alike
+    return hertz, repeats, level
 
 
 def _near(hertz: Array, voiced: Array) -> Array:
