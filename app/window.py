@@ -6,7 +6,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from PySide6.QtCore import QEvent, QPointF, QSettings, Qt, QTimer
-from PySide6.QtGui import QCloseEvent, QDragEnterEvent, QDropEvent
+from PySide6.QtGui import QCloseEvent, QDragEnterEvent, QDragMoveEvent, QDropEvent
 from PySide6.QtWidgets import (
     QAbstractButton,
     QApplication,
@@ -208,6 +208,7 @@ class Window(QMainWindow):
         self.learned.failed.connect(self.tell)
         for signal in (
             s.layer_changed, s.selection_changed, s.show_changed, s.playing_changed, s.stance_changed, s.performance_changed,
+            s.conversation_changed,
         ):  # fmt: skip
             signal.connect(self.refresh)
         s.theme_changed.connect(self.restyle)
@@ -461,6 +462,9 @@ class Window(QMainWindow):
     def dragEnterEvent(self, event: QDragEnterEvent) -> None:
         if load_of(event.mimeData()).files or sounds_of(event.mimeData()):
             event.acceptProposedAction()
+
+    def dragMoveEvent(self, event: QDragMoveEvent) -> None:
+        self.dragEnterEvent(event)  # type: ignore[arg-type]
 
     def dropEvent(self, event: QDropEvent) -> None:
         sounds = sounds_of(event.mimeData())

@@ -192,6 +192,7 @@ class View(QWidget):
 
     def mousePressEvent(self, event: QMouseEvent) -> None:
         at, hit = event.position(), self._hit(event.position())
+        self.pointer = at
         if self.gesture is not None or hit.part == "nothing":
             return
         if event.button() == Qt.MouseButton.MiddleButton:
