@@ -26,7 +26,7 @@ Array = NDArray[Any]
 SAVED = 200  # n_save: candidates that are kept
 STARTS = 3  # so many times SAVED are the states it begins with
 BRANCHES = 2  # transitions of a run that are gone deeper into
-DEEPEST = 3  # transitions one after another in a stretch
+DEEPEST = (3, 6, 9)  # transitions one after another in a stretch; a search that came to an end goes deeper
 CHEAPEST = 8  # transitions of a state that are always tried
 TRIES = 24  # and at most so many by chance
 LONGEST = 60  # frames of a stretch that is searched at once
@@ -92,6 +92,15 @@ def greedy(graph: MotionGraph, heard: Heard, wanted: Wanted, seed: int = 1, save
     while there are others, and what is dearer than more than enough others is not followed. saved: how many are kept; branches: how many
     are gone deeper into of a run. Raises SynthesisError when it comes to an end before the speech does, though there may be a path.
     """
+    for deepest in DEEPEST[:-1]:
+        try:
+            return _greedy(graph, heard, wanted, seed, saved, branches, deepest)
+        except SynthesisError:
+            continue
+    return _greedy(graph, heard, wanted, seed, saved, branches, DEEPEST[-1])
+
+
+def _greedy(graph: MotionGraph, heard: Heard, wanted: Wanted, seed: int, saved: int, branches: int, deepest: int) -> Path:
     from metagraph.synthesis.wander import segment
 
     frames, chance = len(wanted), np.random.default_rng(seed)
@@ -109,7 +118,7 @@ def greedy(graph: MotionGraph, heard: Heard, wanted: Wanted, seed: int = 1, save
     t0 = 0
     for t1 in _stretches(wanted):
         off, ats, owns, _, found, paid, random = segment(
-            t0, t1, at, own, cost, met, links, speech, best_at, saved, branches, TRIES, DEEPEST, np.uint64(random)
+            t0, t1, at, own, cost, met, links, speech, best_at, saved, branches, TRIES, deepest, np.uint64(random)
         )
         if not len(found):
             raise SynthesisError(_stuck(t0))
