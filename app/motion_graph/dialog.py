@@ -2,14 +2,10 @@
 
 from __future__ import annotations
 
-from dataclasses import replace
-from functools import partial
 from typing import Any
 
-import msgspec
 from PySide6.QtCore import Qt, QTimer
 from PySide6.QtWidgets import (
-    QComboBox,
     QDialog,
     QDoubleSpinBox,
     QHBoxLayout,
@@ -27,17 +23,16 @@ from PySide6.QtWidgets import (
 from app.document import Document
 from app.jobs import Job, Jobs
 from app.motion_graph.plot import CostPlot
+from app.motion_graph.rates import RatesDialog
+from app.motion_graph.takes import TakesList
 from app.motion_graph.wishes import Wishes
-from app.motion_graph.work import LEAST, LONG, MOST, Found, Takes, pieces, save, speech_of, synthesise, table, takes_of, usable
+from app.motion_graph.work import FOLDER, LEAST, MOST, Found, Takes, pieces, save, synthesise, table, takes_of
 from app.session import Session
 from app.words import many
 from metagraph.graph import edits
 from metagraph.graph.model import Project
 
 KS = (2, 3, 4)  # of the table
-FOLDER = "motion-graph"  # beside the project file, where new clips are kept
-NONE = "nothing known"
-ROW = 36  # pixels
 
 
 class MotionGraphDialog(QDialog):
@@ -57,7 +52,10 @@ class MotionGraphDialog(QDialog):
         self._then: tuple[str, bool] = ("", False)  # what is to be done once the graph is there
         self._soon = QTimer(self, singleShot=True, interval=200)
         self._soon.timeout.connect(self._compare)
-        self._build_left()
+        self.picked = TakesList(document, self)
+        self.picked.changed.connect(self._changed)
+        self.picked.cut_wanted.connect(self.cut)
+        self.picked.rates_wanted.connect(self.count_rates)
         self._build_right()
         self.wishes = Wishes(document, self)
         self.wishes.wanted.connect(self.find)
@@ -66,13 +64,13 @@ class MotionGraphDialog(QDialog):
         box.setSpacing(10)
         columns = QHBoxLayout()
         columns.setSpacing(18)
-        columns.addLayout(self.left, 4)
+        columns.addWidget(self.picked, 4)
         columns.addLayout(self.right, 5)
         box.addLayout(columns, 1)
         box.addWidget(self.wishes)
         box.addLayout(self._foot())
         document.changed.connect(self._follow)
-        self._fill()
+        self.picked.fill()
 
     # --- building
 
@@ -80,31 +78,6 @@ class MotionGraphDialog(QDialog):
         out = QLabel(words, self)
         out.setProperty("heading", True)
         return out
-
-    def _build_left(self) -> None:
-        self.left = QVBoxLayout()
-        self.left.setSpacing(6)
-        self.title = self._heading("Takes")
-        self.list = QTableWidget(0, 3, self)
-        self.list.setHorizontalHeaderLabels(["Clip", "Length", "What was heard"])
-        self.list.setAccessibleName("Takes")
-        self.list.verticalHeader().hide()
-        self.list.setShowGrid(False)
-        self.list.setSelectionBehavior(QTableWidget.SelectionBehavior.SelectRows)
-        self.list.setEditTriggers(QTableWidget.EditTrigger.NoEditTriggers)
-        header = self.list.horizontalHeader()
-        header.setSectionResizeMode(0, QHeaderView.ResizeMode.Stretch)
-        header.setSectionResizeMode(1, QHeaderView.ResizeMode.ResizeToContents)
-        header.resizeSection(2, 190)
-        self.list.verticalHeader().setDefaultSectionSize(ROW)
-        header.setHighlightSections(False)
-        self.list.itemChanged.connect(self._checked)
-        self.cut_button = QPushButton("Cut selected takes into clips", self, autoDefault=False)
-        self.cut_button.setToolTip("At still moments in a pose it comes back to, so that no jump shows; the clips then wait to be labelled")
-        self.cut_button.clicked.connect(self.cut)
-        self.left.addWidget(self.title)
-        self.left.addWidget(self.list, 1)
-        self.left.addWidget(self.cut_button, 0, Qt.AlignmentFlag.AlignLeft)
 
     def _build_right(self) -> None:
         self.right = QVBoxLayout()
@@ -164,70 +137,9 @@ class MotionGraphDialog(QDialog):
             row.addWidget(widget)
         return row
 
-    # --- takes
-
-    def _fill(self) -> None:
-        """List the clips that can be takes; the long ones are chosen, all where none is long."""
-        project, chosen = self.document.project, set(self.chosen())
-        found = usable(project)
-        if not self.list.rowCount():
-            recorded = [i for i in found if not project.clips[i].path.startswith(f"{FOLDER}/")]
-            chosen = {i for i in recorded if project.clips[i].duration >= LONG} or set(recorded)
-        self.list.blockSignals(True)
-        self.list.setRowCount(len(found))
-        for row, ident in enumerate(found):
-            entry = project.clips[ident]
-            item = QTableWidgetItem(entry.name)
-            item.setData(Qt.ItemDataRole.UserRole, ident)
-            item.setFlags(Qt.ItemFlag.ItemIsEnabled | Qt.ItemFlag.ItemIsSelectable | Qt.ItemFlag.ItemIsUserCheckable)
-            item.setCheckState(Qt.CheckState.Checked if ident in chosen else Qt.CheckState.Unchecked)
-            length = QTableWidgetItem(f"{entry.duration:.1f} s")
-            length.setTextAlignment(Qt.AlignmentFlag.AlignRight | Qt.AlignmentFlag.AlignVCenter)
-            self.list.setItem(row, 0, item)
-            self.list.setItem(row, 1, length)
-            self.list.setCellWidget(row, 2, self._speech_box(project, ident))
-        self.list.blockSignals(False)
-        self._changed()
-
-    def _speech_box(self, project: Project, clip: str) -> QComboBox:
-        """Choose which side of which conversation was recorded along with a clip."""
-        box = QComboBox(self.list)
-        box.setAccessibleName(f"What was heard during {project.clips[clip].name}")
-        box.addItem(NONE, None)
-        for ident, talk in project.conversations.items():
-            for n, side in enumerate(talk.sides):
-                box.addItem(f"{talk.name}: {side.name or f'side {n + 1}'}", (ident, n))
-                if speech_of(project, clip) == (ident, n):
-                    box.setCurrentIndex(box.count() - 1)
-        box.activated.connect(partial(self._tell_speech, clip, box))
-        return box
-
-    def _tell_speech(self, clip: str, box: QComboBox, _: int) -> None:
-        chosen = box.currentData()
-
-        def edit(project: Project) -> Project:
-            talks = dict(project.conversations)
-            for ident, talk in project.conversations.items():
-                sides = [msgspec.structs.replace(s, take=None) if s.take == clip else s for s in talk.sides]
-                if chosen is not None and ident == chosen[0]:
-                    sides[chosen[1]] = msgspec.structs.replace(sides[chosen[1]], take=clip)
-                talks[ident] = msgspec.structs.replace(talk, sides=tuple(sides))
-            return replace(project, conversations=talks)
-
-        self.document.edit("Tell what was heard", edit)
-
-    def chosen(self) -> list[str]:
-        """Return the ids of the takes that are checked."""
-        rows = (self.list.item(row, 0) for row in range(self.list.rowCount()))
-        return [i.data(Qt.ItemDataRole.UserRole) for i in rows if i is not None and i.checkState() == Qt.CheckState.Checked]
-
-    def _checked(self, item: QTableWidgetItem) -> None:
-        if item.column() == 0:
-            self._changed()
-
     def _follow(self, before: Project, after: Project) -> None:
         if before.clips is not after.clips or before.conversations is not after.conversations or before.skeleton is not after.skeleton:
-            self._fill()
+            self.picked.fill()
             self.wishes.fill()
 
     # --- what counts as a jump
@@ -235,9 +147,9 @@ class MotionGraphDialog(QDialog):
     def _changed(self) -> None:
         """Something was chosen: compare frames anew, soon."""
         self.graph = None
-        self.takes = takes_of(self.document.project, self.chosen())
+        self.takes = takes_of(self.document.project, self.picked.chosen())
         seconds = sum(clip.duration for clip in self.takes.clips)
-        self.title.setText(f"Takes · {len(self.takes.ids)} chosen, {seconds / 60:.1f} min" if self.takes.ids else "Takes")
+        self.picked.title.setText(f"Takes · {len(self.takes.ids)} chosen, {seconds / 60:.1f} min" if self.takes.ids else "Takes")
         self._soon.start()
 
     def _compare(self) -> None:
@@ -303,7 +215,7 @@ class MotionGraphDialog(QDialog):
 
     def _enable(self) -> None:
         free = self._job is None
-        for button in (self.count_button, self.cut_button, self.wishes.go):
+        for button in (self.count_button, self.picked.cut_button, self.picked.rates_button, self.wishes.go):
             button.setEnabled(free)
 
     def cancel(self) -> None:
@@ -333,6 +245,24 @@ class MotionGraphDialog(QDialog):
                 item = QTableWidgetItem(text)
                 item.setTextAlignment(Qt.AlignmentFlag.AlignRight | Qt.AlignmentFlag.AlignVCenter)
                 self.table.setItem(row, column, item)
+
+    def count_rates(self) -> None:
+        """Count how often people moved when something was said, over the chosen takes that know it."""
+        takes = self.takes
+        if not takes.told:
+            self._failed(ValueError("choose takes and say beside each what was heard during it: a conversation's side"))
+            return
+
+        def work(_: Job) -> Any:
+            from metagraph.synthesis.cooccurrence import table as counted
+
+            told = [n for n, speech in enumerate(takes.speech) if speech]
+            return counted([takes.clips[n] for n in told], [takes.speech[n] for n in told])
+
+        self._start("Counting movements", work, self._show_rates)
+
+    def _show_rates(self, rows: Any) -> None:
+        RatesDialog(self.document, rows, self).open()
 
     # --- new motion
 
@@ -393,8 +323,7 @@ class MotionGraphDialog(QDialog):
         folder = self._folder()
         if folder is None:
             return
-        rows = {index.row() for index in self.list.selectionModel().selectedRows()}
-        ids = [self.list.item(row, 0).data(Qt.ItemDataRole.UserRole) for row in sorted(rows)] or list(self.takes.ids)
+        ids = self.picked.selected()
         project, k, level = self.document.project, self.k.value(), self.level.value() / 100
         clips = takes_of(project, ids).clips
         if not clips:

@@ -17,6 +17,7 @@ from metagraph.graph.edits import free_name
 from metagraph.graph.model import Project
 from metagraph.motion.clip import Clip
 
+FOLDER = "motion-graph"  # beside the project file, where new clips are kept
 LONG = 6.0  # seconds from which a clip is a take; shorter ones are chosen by hand
 LEAST, MOST = 1.0, 8.0  # seconds of clips cut from takes
 Loaded = tuple[str, int, str, Clip]  # what `add_clips` takes

@@ -10,9 +10,11 @@ import pytest
 from PySide6.QtCore import QPoint, Qt
 from PySide6.QtTest import QTest
 
-from app.motion_graph.dialog import FOLDER, MotionGraphDialog
+from app.motion_graph.dialog import MotionGraphDialog
+from app.motion_graph.rates import RatesDialog
+from app.motion_graph.work import FOLDER
 from metagraph.formats.store import absolute, open_project, save_project
-from metagraph.graph.conversation import Conversation, Segment, Side
+from metagraph.graph.conversation import Conversation, Rates, Segment, Side
 from metagraph.graph.model import Project
 
 ROOT = Path(__file__).parents[3]
@@ -49,10 +51,10 @@ def colours(widget) -> int:
 
 def test_long_clips_are_chosen_and_what_was_heard_is_shown(shown):
     _, dialog = shown
-    names = {dialog.document.project.clips[i].name for i in dialog.chosen()}
+    names = {dialog.document.project.clips[i].name for i in dialog.picked.chosen()}
     assert "hand_to_chin__stance" in names and not any("beat" in n for n in names)
-    row = next(r for r in range(dialog.list.rowCount()) if dialog.list.item(r, 0).text() == "hand_to_chin__stance")
-    assert dialog.list.cellWidget(row, 2).currentText() == "talk: Ada"
+    row = next(r for r in range(dialog.picked.list.rowCount()) if dialog.picked.list.item(r, 0).text() == "hand_to_chin__stance")
+    assert dialog.picked.list.cellWidget(row, 2).currentText() == "talk: Ada"
     assert "0." in dialog.words.text() and colours(dialog.plot) > 3
 
 
@@ -70,8 +72,8 @@ def test_k_and_level_move_the_threshold(shown):
 def test_a_take_that_is_unchecked_is_left_out(shown):
     drive, dialog = shown
     before = len(dialog.takes.ids)
-    cell = dialog.list.visualItemRect(dialog.list.item(0, 0))
-    QTest.mouseClick(dialog.list.viewport(), Qt.MouseButton.LeftButton, pos=QPoint(cell.left() + 14, cell.center().y()))
+    cell = dialog.picked.list.visualItemRect(dialog.picked.list.item(0, 0))
+    QTest.mouseClick(dialog.picked.list.viewport(), Qt.MouseButton.LeftButton, pos=QPoint(cell.left() + 14, cell.center().y()))
     drive.wait(lambda: len(dialog.takes.ids) == before - 1)
 
 
@@ -119,13 +121,36 @@ def test_what_cannot_be_had_is_said_with_a_remedy_and_nothing_is_added(shown):
     assert len(drive.document.project.clips) == count
 
 
+def test_movements_with_speech_are_counted_and_become_a_sides_rates(shown):
+    drive, dialog = shown
+    press(dialog.picked.rates_button)
+    drive.wait(lambda: dialog.findChild(RatesDialog) is not None, 60)
+    rates = dialog.findChild(RatesDialog)
+    assert [rates.table.item(row, 2).text() for row in range(5)] == ["1", "1", "1", "0", "0"]
+    matched = int(rates.table.item(2, 1).text())
+    rates.who.setCurrentIndex(1)
+    press(rates.go)
+    sides = drive.document.project.conversations["v9000"].sides
+    assert sides[0].rates == Rates(clause=float(matched)) and sides[1].rates == Rates()
+    drive.document.undo_stack.undo()
+    assert drive.document.project.conversations["v9000"].sides[0].rates == Rates()
+
+
+def test_movements_cannot_be_counted_where_nobody_knows_what_was_heard(shown):
+    _, dialog = shown
+    row = next(r for r in range(dialog.picked.list.rowCount()) if dialog.picked.list.item(r, 0).text() == "hand_to_chin__stance")
+    dialog.picked.list.item(row, 0).setCheckState(Qt.CheckState.Unchecked)
+    press(dialog.picked.rates_button)
+    assert "what was heard during it" in dialog.said.text()
+
+
 def test_who_was_heard_during_a_take_can_be_told_and_undone(shown):
     drive, dialog = shown
-    row = next(r for r in range(dialog.list.rowCount()) if dialog.list.item(r, 0).text() == "arms_crossed__stance")
-    box = dialog.list.cellWidget(row, 2)
+    row = next(r for r in range(dialog.picked.list.rowCount()) if dialog.picked.list.item(r, 0).text() == "arms_crossed__stance")
+    box = dialog.picked.list.cellWidget(row, 2)
     box.setFocus()
     QTest.keyClick(box, Qt.Key.Key_End)
-    clip = dialog.list.item(row, 0).data(Qt.ItemDataRole.UserRole)
+    clip = dialog.picked.list.item(row, 0).data(Qt.ItemDataRole.UserRole)
     assert drive.document.project.conversations["v9000"].sides[1].take == clip
     drive.document.undo_stack.undo()
     assert drive.document.project.conversations["v9000"].sides[1].take is None
@@ -134,7 +159,7 @@ def test_who_was_heard_during_a_take_can_be_told_and_undone(shown):
 def test_takes_are_cut_into_clips_that_wait_to_be_labelled(shown):
     drive, dialog = shown
     count = len(drive.document.project.clips)
-    press(dialog.cut_button)
+    press(dialog.picked.cut_button)
     drive.wait(lambda: bool(dialog.said.text()), 60)
     new = [e for e in drive.document.project.clips.values() if e.path.startswith(FOLDER)]
     assert len(new) == len(drive.document.project.clips) - count

@@ -1,0 +1,132 @@
+"""The list of takes: which clips are chosen, and what was heard during them."""
+
+from __future__ import annotations
+
+from functools import partial
+
+from PySide6.QtCore import Qt, Signal
+from PySide6.QtWidgets import (
+    QComboBox,
+    QHBoxLayout,
+    QHeaderView,
+    QLabel,
+    QPushButton,
+    QTableWidget,
+    QTableWidgetItem,
+    QVBoxLayout,
+    QWidget,
+)
+
+from app.document import Document
+from app.motion_graph.work import FOLDER, LONG, speech_of, usable
+from metagraph.graph.conversing import change_side
+from metagraph.graph.model import Project
+
+NONE = "nothing known"
+ROW = 36  # pixels
+
+
+class TakesList(QWidget):
+    """changed: other takes are chosen, or what was heard. cut_wanted, rates_wanted: its buttons."""
+
+    changed = Signal()
+    cut_wanted = Signal()
+    rates_wanted = Signal()
+
+    def __init__(self, document: Document, parent: QWidget | None = None) -> None:
+        super().__init__(parent)
+        self.document = document
+        box = QVBoxLayout(self)
+        box.setContentsMargins(0, 0, 0, 0)
+        box.setSpacing(6)
+        self.title = QLabel("Takes", self)
+        self.title.setProperty("heading", True)
+        self.list = QTableWidget(0, 3, self)
+        self.list.setHorizontalHeaderLabels(["Clip", "Length", "What was heard"])
+        self.list.setAccessibleName("Takes")
+        self.list.verticalHeader().hide()
+        self.list.setShowGrid(False)
+        self.list.setSelectionBehavior(QTableWidget.SelectionBehavior.SelectRows)
+        self.list.setEditTriggers(QTableWidget.EditTrigger.NoEditTriggers)
+        header = self.list.horizontalHeader()
+        header.setSectionResizeMode(0, QHeaderView.ResizeMode.Stretch)
+        header.setSectionResizeMode(1, QHeaderView.ResizeMode.ResizeToContents)
+        header.resizeSection(2, 190)
+        self.list.verticalHeader().setDefaultSectionSize(ROW)
+        header.setHighlightSections(False)
+        self.list.itemChanged.connect(self._checked)
+        self.cut_button = QPushButton("Cut selected takes into clips", self, autoDefault=False)
+        self.cut_button.setToolTip("At still moments in a pose it comes back to, so that no jump shows; the clips then wait to be labelled")
+        self.cut_button.clicked.connect(self.cut_wanted)
+        box.addWidget(self.title)
+        box.addWidget(self.list, 1)
+        self.rates_button = QPushButton("Count movements with speech…", self, autoDefault=False)
+        self.rates_button.setToolTip("How often hands and head moved when something was said")
+        self.rates_button.clicked.connect(self.rates_wanted)
+        row = QHBoxLayout()
+        row.addWidget(self.cut_button)
+        row.addWidget(self.rates_button)
+        row.addStretch(1)
+        box.addLayout(row)
+
+    def fill(self) -> None:
+        """List the clips that can be takes; the long ones are chosen, all where none is long."""
+        project, chosen = self.document.project, set(self.chosen())
+        found = usable(project)
+        if not self.list.rowCount():
+            recorded = [i for i in found if not project.clips[i].path.startswith(f"{FOLDER}/")]
+            chosen = {i for i in recorded if project.clips[i].duration >= LONG} or set(recorded)
+        self.list.blockSignals(True)
+        self.list.setRowCount(len(found))
+        for row, ident in enumerate(found):
+            entry = project.clips[ident]
+            item = QTableWidgetItem(entry.name)
+            item.setData(Qt.ItemDataRole.UserRole, ident)
+            item.setFlags(Qt.ItemFlag.ItemIsEnabled | Qt.ItemFlag.ItemIsSelectable | Qt.ItemFlag.ItemIsUserCheckable)
+            item.setCheckState(Qt.CheckState.Checked if ident in chosen else Qt.CheckState.Unchecked)
+            length = QTableWidgetItem(f"{entry.duration:.1f} s")
+            length.setTextAlignment(Qt.AlignmentFlag.AlignRight | Qt.AlignmentFlag.AlignVCenter)
+            self.list.setItem(row, 0, item)
+            self.list.setItem(row, 1, length)
+            self.list.setCellWidget(row, 2, self._speech_box(project, ident))
+        self.list.blockSignals(False)
+        self.changed.emit()
+
+    def _speech_box(self, project: Project, clip: str) -> QComboBox:
+        """Choose which side of which conversation was recorded along with a clip."""
+        box = QComboBox(self.list)
+        box.setAccessibleName(f"What was heard during {project.clips[clip].name}")
+        box.addItem(NONE, None)
+        for ident, talk in project.conversations.items():
+            for n, side in enumerate(talk.sides):
+                box.addItem(f"{talk.name}: {side.name or f'side {n + 1}'}", (ident, n))
+                if speech_of(project, clip) == (ident, n):
+                    box.setCurrentIndex(box.count() - 1)
+        box.activated.connect(partial(self._tell_speech, clip, box))
+        return box
+
+    def _tell_speech(self, clip: str, box: QComboBox, _: int) -> None:
+        chosen = box.currentData()
+
+        def edit(project: Project) -> Project:
+            for ident, talk in project.conversations.items():
+                for n, side in enumerate(talk.sides):
+                    if side.take == clip:
+                        project = change_side(project, ident, n, take=None)
+            return project if chosen is None else change_side(project, *chosen, take=clip)
+
+        self.document.edit("Tell what was heard", edit)
+
+    def chosen(self) -> list[str]:
+        """Return the ids of the takes that are checked."""
+        rows = (self.list.item(row, 0) for row in range(self.list.rowCount()))
+        return [i.data(Qt.ItemDataRole.UserRole) for i in rows if i is not None and i.checkState() == Qt.CheckState.Checked]
+
+    def _checked(self, item: QTableWidgetItem) -> None:
+        if item.column() == 0:
+            self.changed.emit()
+
+    def selected(self) -> list[str]:
+        """Return the ids of the takes in selected rows; of those that are checked where none is selected."""
+        rows = sorted({index.row() for index in self.list.selectionModel().selectedRows()})
+        return [self.list.item(row, 0).data(Qt.ItemDataRole.UserRole) for row in rows] or self.chosen()
