@@ -7,7 +7,7 @@ from dataclasses import dataclass
 
 import numpy as np
 from PySide6.QtCore import QPointF, QRectF, Qt
-from PySide6.QtGui import QColor, QFont, QPainter, QPainterPath, QPen
+from PySide6.QtGui import QColor, QFont, QImage, QPainter, QPainterPath, QPen
 
 from app.conversation.hits import Hit
 from app.conversation.lanes import AXIS, Lane, lanes, pitch_y, segment_rect, side_name, visible, words_in
@@ -16,12 +16,14 @@ from app.conversation.waves import Envelope, joined, painted
 from app.panels.lanes import LEFT, RULER, Scale, advance, elided
 from app.panels.strip import STEPS, clock
 from app.theme import SOUND_MARKS, Theme
-from metagraph.graph.conversation import Conversation
+from metagraph.graph.conversation import Conversation, Segment
 
 INK = "#17181b"  # on the fills
 MIDDLE = Qt.AlignmentFlag.AlignVCenter
 LEGIBLE = 26.0  # pixels a second from which on words are shown
-DOTS = 8.0  # pixels a second from which on peaks are shown
+DOTS = 20.0  # pixels a second from which on peaks are shown
+NARROW = 16.0  # pixels up to which a segment is a plain stroke without words
+MOST = 300  # narrow ones that are outlined where all of them are selected
 SMALL = 11  # pixels of what stands beside
 
 
@@ -98,16 +100,14 @@ def _titles(painter: QPainter, t: Theme, scene: Scene, side: int, lane: Lane) ->
 
 def _wave(painter: QPainter, t: Theme, scene: Scene, side: int, lane: Lane) -> None:
     """The waveform with what is segmented behind it, its pitch over it; where it is not there, why."""
-    area, scale, heard = lane.wave, scene.scale, scene.heard[side]
+    area, heard = lane.wave, scene.heard[side]
     painter.setPen(Qt.PenStyle.NoPen)
     painter.setBrush(QColor(t.field))
     painter.drawRoundedRect(area, 4, 4)
     segments = scene.conversation.sides[side].segments
-    for n in visible(segments, scale.first, scale.seconds(scene.width)):
-        shade = QColor(t.sounds[segments[n].kind])
-        shade.setAlpha(70 if (side, n) in scene.chosen else 26)
-        rect = segment_rect(segments[n], scale, lane)
-        painter.fillRect(QRectF(rect.left(), area.top(), rect.width(), area.height() + lane.words.height()), shade)
+    chosen = {n for of, n in scene.chosen if of == side}
+    behind = QRectF(area.left(), area.top(), area.width(), area.height() + lane.words.height())
+    _strokes(painter, t, scene, segments, behind, (26, 70), chosen)
     painter.setPen(QPen(QColor(t.line), 1, Qt.PenStyle.DotLine))
     for hertz in AXIS:
         y = round(float(pitch_y(hertz, area))) + 0.5
@@ -172,13 +172,16 @@ def _segments(painter: QPainter, t: Theme, scene: Scene, side: int, lane: Lane) 
     painter.setPen(Qt.PenStyle.NoPen)
     painter.setBrush(QColor(t.field))
     painter.drawRoundedRect(lane.segments, 4, 4)
-    key = painter.font().toString()
-    for n in visible(segments, scale.first, scale.seconds(scene.width)):
+    key, seen = painter.font().toString(), visible(segments, scale.first, scale.seconds(scene.width))
+    wide = [n for n in seen if segments[n].end - segments[n].start > NARROW / scale.each]
+    if len(wide) < len(seen):
+        few = set(wide)
+        narrow = [segments[n] for n in seen if n not in few]
+        _strokes(painter, t, scene, narrow, lane.segments.adjusted(0, 1, 0, -1), (255, 255), ())
+        wide += [n for n in seen if n not in few and (side, n) in scene.chosen][:MOST]
+    for n in wide:
         segment = segments[n]
         rect, fill, chosen = segment_rect(segment, scale, lane), QColor(t.sounds[segment.kind]), (side, n) in scene.chosen
-        if rect.width() <= 5 and not chosen:
-            painter.fillRect(rect, fill)
-            continue
         rect = rect.adjusted(0.5, 1, -0.5, -1)
         if scene.over.side == side and scene.over.at == n and scene.over.part in ("start", "end", "body"):
             fill = fill.lighter(112)
@@ -212,6 +215,32 @@ def _peaks(painter: QPainter, t: Theme, scene: Scene, side: int, lane: Lane) -> 
         painter.setPen(QPen(QColor(t.field), 1.5))
         painter.setBrush(QColor(t.text) if held else fill)
         painter.drawEllipse(at, 5.5 if held else 4.5, 5.5 if held else 4.5)
+
+
+def _strokes(
+    painter: QPainter, t: Theme, scene: Scene, segments: Sequence[Segment], area: QRectF, alphas: tuple[int, int], chosen: Collection[int]
+) -> None:
+    """Paint segments as plain strokes in one picture a pixel high, however many there are. alphas: 0..255, of a stroke, of a chosen one."""
+    seen = visible(segments, scene.scale.first, scene.scale.seconds(scene.width))
+    if not seen:
+        return
+    some = segments[seen.start : seen.stop]
+    wide = max(1, int(area.width() * scene.ratio))
+    starts, ends = np.array([s.start for s in some]), np.array([s.end for s in some])
+    kinds = list(t.sounds)
+    ink = np.array([kinds.index(s.kind) + len(kinds) * (n in chosen) for n, s in enumerate(some, seen.start)])
+    inks = np.array([_premultiplied(QColor(color), alpha) for alpha in alphas for color in t.sounds.values()], np.uint8)
+    columns = scene.scale.first + (np.arange(wide) + 0.5) / (scene.scale.each * scene.ratio)  # seconds of their middles
+    at = np.clip(np.searchsorted(starts, columns, "right") - 1, 0, len(some) - 1)
+    inside = (columns >= starts[at]) & (columns < ends[at])
+    row = np.ascontiguousarray(np.where(inside[:, None], inks[ink[at]], 0).astype(np.uint8)[None])
+    image = QImage(row.data, wide, 1, row.strides[0], QImage.Format.Format_ARGB32_Premultiplied)
+    painter.drawImage(area, image)
+
+
+def _premultiplied(color: QColor, alpha: int) -> tuple[int, int, int, int]:
+    part = alpha / 255
+    return round(color.blue() * part), round(color.green() * part), round(color.red() * part), alpha
 
 
 def peak_y(seconds: float, heard: Heard | None, lane: Lane) -> float:
