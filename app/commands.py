@@ -146,6 +146,10 @@ def _of_conversations(window: Window) -> tuple[Command, ...]:
         Command("rates", menu, "&Rates…", o.rates, enabled=staged, tip="How often each of the two gestures and nods"),
         Command("word_lists", menu, "&Word lists…", o.word_lists, enabled=staged, tip="Which words are responses, which hesitations"),
         Command("side_sounds", menu, "S&ounds and names…", o.side_sounds, enabled=staged, tip="Who the two are, and which sound is whose"),
+        Command("other_side", menu, "The &other's plan", lambda: s.set_side(1 - s.side), enabled=staged, line=True,
+                tip="Whose plan the timeline shows"),
+        Command("keep_conversation", menu, "&Keep as performances", window.performance.keep_conversation, enabled=staged,
+                tip="What both do, as requests that can be edited one by one, and exported"),
         Command("write_segments", menu, "&Export segments…", o.write_segments, enabled=staged, tip="As ELAN or Praat TextGrid", line=True),
         Command("remove_conversation", menu, "Remove conversation", o.remove_conversation, enabled=staged, line=True),
     )

@@ -109,7 +109,8 @@ class Jobs(QObject):
     def _ended(self, job: Job) -> None:
         if job in self.running:
             self.running.remove(job)
-            self.changed.emit()
+            if not self._stopped:  # else nobody is there any more to be told
+                self.changed.emit()
 
     def stop(self) -> None:
         """Cancel everything, wait for it, and take nothing more; at closing.

@@ -19,6 +19,7 @@ from PySide6.QtWidgets import (
 )
 
 from app.asks import ask_menu
+from app.conversation.lanes import side_name
 from app.document import Document
 from app.panels.lane_view import Lanes
 from app.panels.lanes import outcome, wanted
@@ -27,6 +28,7 @@ from app.session import Session
 from app.words import many
 from metagraph.graph import edits, staging
 from metagraph.graph.asks import Performance as KeptPerformance
+from metagraph.graph.conversing import change_conversation
 from metagraph.graph.edits import EditError
 from metagraph.graph.model import LAYERS
 
@@ -49,7 +51,7 @@ class TimelinePanel(QWidget):
         self.stage = QComboBox(self, toolTip="Which performance is on stage; improvised, the models fill the time on their own")
         self.stage.setAccessibleName("Performance")
         self.stage.setMinimumWidth(150)
-        self.stage.activated.connect(lambda _: session.set_performance(self.stage.currentData()))
+        self.stage.activated.connect(self._put_on)
         row.addWidget(self.stage)
         self.more = QToolButton(self, text="…", toolTip="New, rename, length, remove")
         self.more.setAccessibleName("Performances")
@@ -94,6 +96,7 @@ class TimelinePanel(QWidget):
         self._live()
         session.performance_changed.connect(self._restage)
         session.performance_changed.connect(self._words)
+        session.conversation_changed.connect(self._restage)
         session.mode_changed.connect(self._switched)
         document.changed.connect(lambda before, after: self._restage())
         self._restage()
@@ -105,14 +108,28 @@ class TimelinePanel(QWidget):
             part.setEnabled(self.session.mode == "meta")
         self._words()
 
+    def _put_on(self, _: int) -> None:
+        """Put on stage what was chosen: a performance, improvising, or the other of two who talk."""
+        chosen = self.stage.currentData()
+        if isinstance(chosen, int):
+            self.session.set_side(chosen)
+        else:
+            self.session.set_conversation(None)
+            self.session.set_performance(chosen)
+
     def _restage(self) -> None:
         """Show which performance is on stage, and its seed."""
-        wanted = [(IMPROVISED, None), *((p.name, i) for i, p in self.document.project.performances.items())]
+        wanted: list[tuple[str, str | int | None]] = [(IMPROVISED, None)]
+        wanted += [(p.name, i) for i, p in self.document.project.performances.items()]
+        talk = self.document.project.conversations.get(self.session.conversation or "")
+        if talk is not None:  # then it is one of the two whose plan is seen
+            wanted += [(f"{talk.name}: {side_name(talk, side)}", side) for side in (0, 1)]
+        shown = self.session.performance if talk is None else self.session.side
         if wanted != [(self.stage.itemText(n), self.stage.itemData(n)) for n in range(self.stage.count())]:
             self.stage.clear()
             for name, ident in wanted:
                 self.stage.addItem(name, ident)
-        self.stage.setCurrentIndex(next((n for n, (_, i) in enumerate(wanted) if i == self.session.performance), 0))
+        self.stage.setCurrentIndex(next((n for n, (_, i) in enumerate(wanted) if i == shown), 0))
         self._show_seed()
 
     # --- performances
@@ -224,16 +241,21 @@ class TimelinePanel(QWidget):
         ask_menu(self, self.performance, None).exec(self.ask.mapToGlobal(self.ask.rect().bottomLeft()))
 
     def _seeded(self, seed: int) -> None:
-        kept = self.performance.kept
-        if kept is not None and kept.seed is not None:
+        kept, talk = self.performance.kept, self.performance.conversation
+        if talk is not None:
+            if seed != self.document.project.conversations[talk].seed:
+                self.document.edit("Change seed", lambda p: change_conversation(p, talk, seed=seed), merge="seed")
+        elif kept is not None and kept.seed is not None:
             if seed != kept.seed:
                 self._change("Change seed", seed=seed)
         elif seed != self.document.project.settings.seed:
             self.document.edit("Change seed", lambda p: edits.set_settings(p, seed=seed), merge="seed")
 
     def _show_seed(self) -> None:
-        kept = self.performance.kept
+        kept, talk = self.performance.kept, self.performance.conversation
         seed = kept.seed if kept is not None and kept.seed is not None else self.document.project.settings.seed
+        if talk is not None:
+            seed = self.document.project.conversations[talk].seed
         if self.seed.value() != seed:
             self.seed.blockSignals(True)
             self.seed.setValue(seed)
@@ -271,6 +293,12 @@ class TimelinePanel(QWidget):
             lost_words = "".join(f" {r.message[:1].upper()}{r.message[1:]}." for r in shown.plan.reports[-1:])
             words = f"{many(count, 'state')} in {shown.length:g} s." if count else "Nothing plays yet: drop clips and draw links."
             self.title.say("Alone. Esc for the whole machine." if self.session.show == "context" else words + lost_words)
+        elif shown.partner is not None and self.session.show == "plan":
+            talk = self.performance.document.project.conversations.get(self.session.conversation or "")
+            who = side_name(talk, shown.side) if talk is not None else "One of the two"
+            gestures = sum(1 for cue in shown.plan.layers["arms"].cues if cue.action.kind == "gesture")
+            nods = len(shown.plan.layers["head"].cues)
+            self.title.say(f"{who} in conversation: {many(gestures, 'gesture')} of the hands, {many(nods, 'nod')}.")
         elif self.session.show == "context":
             self.title.say("In context: stance, action, back to the stance. Esc for the performance.")
         else:
