@@ -13,6 +13,7 @@ from typing import Any
 from app.headless_label import arguments as label_arguments
 from app.headless_live import arguments as live_arguments
 from app.headless_mimic import arguments as mimic_arguments
+from app.headless_motion_graph import arguments as motion_graph_arguments
 from app.headless_speech import arguments as speech_arguments
 from app.headless_study import arguments as study_arguments
 from metagraph import __version__
@@ -106,6 +107,8 @@ def _parser() -> argparse.ArgumentParser:
     speech_arguments(command("speech", "read a conversation of two into clauses, responses and hesitations", project=False))
     words = "time people at work: reports, data for other tools, simulated studies"
     study_arguments(commands.add_parser("study", help=words, description=words[:1].upper() + words[1:] + "."))
+    words = "graphs over the frames of long takes, motion that goes with speech, and how well that works"
+    motion_graph_arguments(commands.add_parser("motion-graph", help=words, description=words[:1].upper() + words[1:] + "."))
     info = command("info", "tell what is in a project, an export or a clip file", project=False)
     info.add_argument("path", type=Path, help="a project, an exported JSON, or a clip file")
     demo = command("demo", "the main job without a window: sample project to performance, pictures, video and export", project=False)
@@ -122,7 +125,8 @@ def _performance(parser: argparse.ArgumentParser, seconds: float) -> None:
 
 
 COMMANDS = (
-    "window", "import", "label", "check", "plan", "render", "annotate", "export", "live", "mimic", "speech", "study", "info", "demo",
+    "window", "import", "label", "check", "plan", "render", "annotate", "export", "live", "mimic", "speech", "study", "motion-graph",
+    "info", "demo",
 )  # fmt: skip
 
 
@@ -142,7 +146,7 @@ def main(arguments: Sequence[str] | None = None) -> int:
     try:
         from app import headless
 
-        run: Any = getattr(headless, options.command if options.command != "import" else "import_clips")
+        run: Any = getattr(headless, {"import": "import_clips"}.get(options.command, options.command.replace("-", "_")))
         return int(run(options))
     except BrokenPipeError:  # whoever read our words has read enough
         sys.stdout = None  # type: ignore[assignment]  # nothing is left to flush

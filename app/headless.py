@@ -16,6 +16,7 @@ from app.headless_export import export as export
 from app.headless_label import label as label
 from app.headless_live import live as live
 from app.headless_mimic import mimic as mimic
+from app.headless_motion_graph import motion_graph as motion_graph
 from app.headless_render import draw_to, figure_of, sound_of
 from app.headless_render import render as render
 from app.headless_speech import speech as speech
