@@ -10,6 +10,7 @@ import os
 import re
 from collections.abc import Sequence
 from datetime import UTC, datetime
+from itertools import zip_longest
 from pathlib import Path
 from urllib.parse import quote
 from xml.sax.saxutils import escape, quoteattr
@@ -117,7 +118,7 @@ def _names(sides: Sequence[Side]) -> tuple[str, str]:
 def _apart(rows: Sequence[Row]) -> list[Row]:
     """Return rows by start, each ending where the next begins at the latest; those left without length go."""
     ordered = sorted(rows)
-    out = [(a, min(b, after[0]) if after else b, text) for (a, b, text), after in zip(ordered, [*ordered[1:], None], strict=True)]
+    out = [(a, min(b, after[0]) if after else b, text) for (a, b, text), after in zip_longest(ordered, ordered[1:])]
     return [r for r in out if r[0] < r[1]]
 
 

@@ -62,12 +62,14 @@ class Collected:
     def fail(self, cause: str, where: str = "", remedy: str = "Correct it there, or save the transcript anew.") -> FileError:
         return FileError(self.path, cause, where, remedy)
 
-    def add(self, speaker: str, text: str, start: float, end: float, where: str = "") -> None:
-        """Add a text, of one word or of several, which share its time by their letters. start, end: seconds. Raises FileError."""
+    def add(self, speaker: str, text: str, start: float, end: float, where: str = "", whole: bool = False) -> None:
+        """Add a text, of one word or of several, which share its time by their letters unless it is `whole`. start, end: seconds. Raises
+        FileError."""
         if not (abs(start) <= LATEST and abs(end) <= LATEST):
             raise self.fail(f"a word's time is {start:g} to {end:g} s", where)
         words = self.speakers.setdefault(speaker[:200], [])
-        texts = [t for t in text.split() if not is_silent(t)] if not is_silent(text.strip()) else []
+        texts = [" ".join(text.split())] if whole else text.split()
+        texts = [t for t in texts if not is_silent(t)] if not is_silent(text) else []
         if not texts:
             return
         start = max(start, 0.0)
@@ -212,7 +214,11 @@ def _from_textgrid(path: Path) -> Transcript:
 
 def _from_elan(path: Path) -> Transcript:
     read = read_elan(path)
-    tiers = [_tier(t.name, t.participant, [(i.text, i.start, i.end) for i in t.intervals]) for t in read.tiers if not _of_movement(t)]
+    tiers = [
+        _tier(t.name, t.participant, [(i.text, round(i.start, 6), round(i.end, 6)) for i in t.intervals])
+        for t in read.tiers
+        if not _of_movement(t)
+    ]
     return _from_tiers(path, tiers, read.notes)
 
 
@@ -263,8 +269,9 @@ def _from_tiers(path: Path, tiers: Sequence[_Tier], notes: Iterable[str]) -> Tra
     ours = {t.whose for t in tiers if t.role == "segments"}
     for tier in worded:
         out.speakers.setdefault(tier.whose, [])
+        whole = tier.role == "words" and sum(" " in x.strip() for x, *_ in tier.rows) <= 0.3 * sum(not is_silent(x) for x, *_ in tier.rows)
         for text, start, end in tier.rows:
-            out.add(tier.whose, text, start, end, f"tier '{tier.name}'")
+            out.add(tier.whose, text, start, end, f"tier '{tier.name}'", whole)
     for name in ours:
         out.speakers.setdefault(name, [])
     segments = {t.whose: _segments(out, t, tiers) for t in tiers if t.role == "segments"}

@@ -62,7 +62,7 @@ def _ours(out: Collected, text: str) -> Transcript:
     for name, side in zip(names, read.sides, strict=True):
         out.speakers[name] = []
         for word in side.words:
-            out.add(name, word.text, word.start, word.end)
+            out.add(name, word.text, word.start, word.end, whole=True)
     return out.finished({name: side.segments for name, side in zip(names, read.sides, strict=True)})
 
 

@@ -205,6 +205,7 @@ def _library() -> Any:
     return library
 
 
+@cache  # as spoken again, it may come out a sample longer
 def synthesise(text: str, voice: str, pitch: int, rate: int) -> tuple[Array, list[float], float]:
     """Return SSML spoken: samples `[N]`, when each word begins and when the last ends, seconds. Silence at both ends is cut."""
     library = _library()
