@@ -2,9 +2,11 @@
 
 from __future__ import annotations
 
+import signal
 import sys
 from argparse import ArgumentParser, Namespace
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterator, Sequence
+from contextlib import contextmanager
 from dataclasses import asdict
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -153,6 +155,17 @@ def _telling(options: Namespace, what: str) -> Callable[[int, int], None]:
             print(f"\r{what}: {done:,} of {total:,}", end="\n" if done == total else "", file=sys.stderr, flush=True)
 
     return progress
+
+
+@contextmanager
+def _until_stopped() -> Iterator[Callable[[], bool]]:
+    """Yield what tells whether Ctrl+C was pressed, so that what is done by then is kept."""
+    stopped: list[int] = []
+    before = signal.signal(signal.SIGINT, lambda *_: stopped.append(1))
+    try:
+        yield lambda: bool(stopped)
+    finally:
+        signal.signal(signal.SIGINT, before)
 
 
 def _rates(clips: Sequence[Clip]) -> str:
@@ -318,15 +331,21 @@ def evaluate(options: Namespace) -> int:
     clips, speech, _ = _paired(options)
     if note := _rates(clips):
         print(f"note: {note}", file=sys.stderr)
-    found = run(
-        clips, speech, SETTINGS[:1] if options.quick else SETTINGS, options.search or ("greedy", "exact"), options.k, options.level,
-        options.keys, options.most, seed=options.seed, progress=_telling(options, "cases"),
-    )  # fmt: skip
+    with _until_stopped() as stopped:
+        found = run(
+            clips, speech, SETTINGS[:1] if options.quick else SETTINGS, options.search or ("greedy", "exact"), options.k, options.level,
+            options.keys, options.most, seed=options.seed, progress=_telling(options, "cases"), cancelled=stopped,
+        )  # fmt: skip
     if options.out is not None:
         write_atomically(options.out, csv_of(found.cases).encode())
-    data = {"rows": [asdict(r) for r in found.rows], "graphs": [asdict(g) for g in found.graphs], "cases": len(found.cases)}
+    data = {
+        "rows": [asdict(r) for r in found.rows],
+        "graphs": [asdict(g) for g in found.graphs],
+        "cases": len(found.cases),
+        "whole": found.whole,
+    }
     say(options, table_of(found) + (f"\n{options.out}" if options.out is not None else ""), data)
-    return 0
+    return 0 if found.whole else 3
 
 
 def co_occurrence(options: Namespace) -> int:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import signal
 from pathlib import Path
 
 import pytest
@@ -74,6 +75,25 @@ def test_held_out_speech_is_counted(folder: Path, capsys: pytest.CaptureFixture[
     assert len((tmp_path / "cases.csv").read_text().splitlines()) == 1 + 3 * 2
     data = json.loads(run(capsys, "evaluate", *given, "--search", "greedy", "--json"))
     assert [r["search"] for r in data["rows"]] == ["greedy"] and data["cases"] == 3
+
+
+def test_an_evaluation_that_is_stopped_keeps_its_cases(
+    folder: Path, capsys: pytest.CaptureFixture[str], tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    seen: list[int] = []
+
+    def told(done: int, total: int) -> None:
+        seen.append(done)
+        if done == 2:
+            signal.raise_signal(signal.SIGINT)  # as Ctrl+C does
+
+    monkeypatch.setattr("app.headless_motion_graph._telling", lambda *_: told)
+    before = signal.getsignal(signal.SIGINT)
+    given = [str(folder / "takes"), *said(folder), "--search", "greedy"]
+    assert main(["motion-graph", "evaluate", *given, "-o", str(tmp_path / "cases.csv")]) == 3
+    assert "cancelled" in capsys.readouterr().out and seen == [1, 2]
+    assert len((tmp_path / "cases.csv").read_text().splitlines()) == 3
+    assert signal.getsignal(signal.SIGINT) is before
 
 
 def test_what_goes_with_what_is_counted(folder: Path, capsys: pytest.CaptureFixture[str]) -> None:
