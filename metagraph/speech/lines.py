@@ -22,6 +22,8 @@ from metagraph.speech.textgrid import Interval, TextGrid, Tier, read_textgrid
 
 Array = NDArray[Any]
 
+CONVERSATION = 7200.0  # seconds of one at most
+FINE = 24000  # samples a second that a mouth is read from
 _VOWELS = ("aa", "E", "I", "O", "U", "RR")
 
 
@@ -33,7 +35,7 @@ def read_voice(audio: str | Path, phones: str | Path | None = None, channel: int
 
 def read_spoken(audio: str | Path, channel: int | None = None, words: Sequence[Word] = ()) -> Voice:
     """Read a voice from its sound and, where there are any, the words that were transcribed. Raises FileError."""
-    samples, rate = read_sound(audio, channel)
+    samples, rate = read_sound(audio, channel, CONVERSATION, FINE)
     if not words:
         return _voice(samples, rate, None)
     tier = Tier("words", tuple(Interval(w.start, w.end, w.text) for w in words))

@@ -20,6 +20,7 @@ Array = NDArray[Any]
 
 HOP, WINDOW = 0.010, 0.030  # seconds
 LONGEST = 1800.0  # seconds of one line
+LONG = 300.0  # seconds from which samples are kept as float32
 SPEECH = (250.0, 3400.0)  # Hz: where syllables are loud and hum and hiss are not
 SMOOTH = 0.020  # seconds, of loudness
 DIP, BELOW = 2.0, 24.0  # dB: a syllable stands out by; and is at most so much below the loudest
@@ -65,15 +66,17 @@ class Recording:
         return float(self.samples.shape[1] / self.rate)
 
 
-def read_sound(path: str | Path, channel: int | None = None) -> tuple[Array, int]:
-    """Read a sound file: samples `[N]` float64 of one channel, from 0, or of all mixed, and samples a second. Raises FileError."""
-    samples, rate = read_channels(path)
+def read_sound(path: str | Path, channel: int | None = None, longest: float = LONGEST, most: int | None = None) -> tuple[Array, int]:
+    """Read a sound file: samples `[N]` of one channel, from 0, or of all mixed, and samples a second. longest: seconds it may last. most:
+    as for `read_recording`. Raises FileError."""
+    read = read_recording(path, longest, most)
+    samples = read.samples
     if channel is None:
-        return np.asarray(samples.mean(0)), rate
+        return np.asarray(samples.mean(0)), read.rate
     if channel >= len(samples):
         count = f"{len(samples)} channels" if len(samples) > 1 else "one channel"
         raise FileError(path, f"has {count}; there is no channel {channel + 1}", remedy="Choose the sound anew.")
-    return samples[channel], rate
+    return samples[channel], read.rate
 
 
 def read_channels(path: str | Path, longest: float = LONGEST) -> tuple[Array, int]:
@@ -117,7 +120,7 @@ def _read_blocks(file: Any, rate: int, every: int) -> Recording:
         clipped += _cut_off(block)
         count += len(block)
         if every == 1:
-            parts.append(block.T)
+            parts.append(block.T if file.frames < LONG * rate else block.T.astype(np.float32))
             continue
         before = np.concatenate([before, block])
         full = (len(before) - len(taps) + 1) // every * every
