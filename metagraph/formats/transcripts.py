@@ -141,7 +141,7 @@ def settled(words: Iterable[Word]) -> tuple[tuple[Word, ...], list[str]]:
             out[n] = Word(text=out[n].text, start=out[n].start, end=out[n + 1].start)
     notes = []
     if moved:
-        notes.append(f"{count(moved, 'word')} stood out of order and were sorted by time")
+        notes.append(f"{count(moved, 'word')} out of order, sorted by time")
     if over:
         notes.append(f"{count(over, 'word')} overlapped the one before, which ends there now")
     if gone:
@@ -266,16 +266,35 @@ def _from_tiers(path: Path, tiers: Sequence[_Tier], notes: Iterable[str]) -> Tra
         raise out.fail(
             f"no tier holds words; its tiers are {names}", "", "Name the tier that does 'words', or 'Ann - words' of two speakers."
         )
+    worded = _one_each(out, worded)
     ours = {t.whose for t in tiers if t.role == "segments"}
     for tier in worded:
         out.speakers.setdefault(tier.whose, [])
-        whole = tier.role == "words" and sum(" " in x.strip() for x, *_ in tier.rows) <= 0.3 * sum(not is_silent(x) for x, *_ in tier.rows)
+        whole = tier.role == "words" and sum(len(x.split()) > 1 for x, *_ in tier.rows) <= 0.3 * sum(
+            not is_silent(x) for x, *_ in tier.rows
+        )
         for text, start, end in tier.rows:
             out.add(tier.whose, text, start, end, f"tier '{tier.name}'", whole)
     for name in ours:
         out.speakers.setdefault(name, [])
     segments = {t.whose: _segments(out, t, tiers) for t in tiers if t.role == "segments"}
     return out.finished({name: s for name, s in segments.items() if s is not None})
+
+
+def _one_each(out: Collected, tiers: Sequence[_Tier]) -> list[_Tier]:
+    """Return one tier a speaker: of several, as of words and their translation, the one with most words, or else most intervals."""
+    best: dict[str, _Tier] = {}
+
+    def much(tier: _Tier) -> tuple[int, int]:
+        return sum(len(x.split()) for x, *_ in tier.rows if not is_silent(x)), len(tier.rows)
+
+    for tier in tiers:
+        if tier.whose not in best or much(tier) > much(best[tier.whose]):
+            best[tier.whose] = tier
+    for tier in tiers:
+        if tier is not best[tier.whose] and any(not is_silent(x) for x, *_ in tier.rows):
+            out.notes.append(f"tier '{tier.name}' left out, as '{best[tier.whose].name}' holds more words of the same speaker")
+    return list(best.values())
 
 
 def _wordy(tier: _Tier) -> bool:

@@ -125,6 +125,11 @@ def test_overlapping_intervals_of_a_tier_are_settled_and_told(read: Reader) -> N
     assert rows(found) == {"": [("one", 1, 1.5), ("two", 1.5, 3)]} and any("overlapped" in n for n in found.notes)
 
 
+def test_of_several_tiers_of_a_speaker_the_one_with_most_words_counts(read: Reader) -> None:
+    found = read(grid(("words", [(1, 2, "one"), (2, 3, "two")]), ("text", [(1, 3, "one two")]), ("word", [(1, 3, "eins")])))
+    assert rows(found) == {"": [("one", 1, 2), ("two", 2, 3)]} and any("tier 'word' left out" in n for n in found.notes)
+
+
 def test_segments_of_ours_are_read_and_others_left_out(read: Reader) -> None:
     found = read(
         grid(
