@@ -6,6 +6,7 @@ programming over all states: it finds a path whenever there is one, and no other
 
 from __future__ import annotations
 
+from contextlib import suppress
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 from weakref import WeakKeyDictionary
@@ -25,14 +26,14 @@ Array = NDArray[Any]
 
 SAVED = 200  # n_save: candidates that are kept
 STARTS = 3  # so many times SAVED are the states it begins with
-BRANCHES = 2  # transitions of a run that are gone deeper into
-DEEPEST = (3, 6, 9)  # transitions one after another in a stretch; a search that came to an end goes deeper
-CHEAPEST = 8  # transitions of a state that are always tried
-TRIES = 24  # and at most so many by chance
+BRANCHES = 1  # transitions of a run that are gone deeper into
+DEEPER = ((3, 0), (6, 1), (6, 2))  # transitions one after another in a stretch, branches more: when a search comes to an end
+CHEAPEST = 32  # transitions of a state that are always tried
+TRIES = 16  # and at most so many by chance
 LONGEST = 60  # frames of a stretch that is searched at once
 LOOK = 90  # frames beyond a stretch: who goes on that long by itself is not held to be dear
 AHEAD = 0.05  # of the threshold: what a second less of that counts as
-APART = 4  # frames: ends of kept candidates
+APART = 3  # frames: ends of kept candidates
 MOST = 4_000_000_000  # bytes of way back that are kept at once
 
 
@@ -89,15 +90,15 @@ def greedy(graph: MotionGraph, heard: Heard, wanted: Wanted, seed: int = 1, save
     From random states on, depth first: a run goes along with its take, and branches off by transitions, some by chance and some the
     cheapest; those that lead on cheapest are gone deeper into. Of what comes through a stretch only cheap ones are kept. Beyond the paper:
     a run that goes on longer with what is said next counts as a little cheaper, no two kept ones end within a few frames of each other
-    while there are others, and what is dearer than more than enough others is not followed. saved: how many are kept; branches: how many
+    while there are others, what is dearer than more than enough others is not followed, and a search that comes to an end is tried again,
+    deeper. saved: how many are kept; branches: how many
     are gone deeper into of a run. Raises SynthesisError when it comes to an end before the speech does, though there may be a path.
     """
-    for deepest in DEEPEST[:-1]:
-        try:
-            return _greedy(graph, heard, wanted, seed, saved, branches, deepest)
-        except SynthesisError:
-            continue
-    return _greedy(graph, heard, wanted, seed, saved, branches, DEEPEST[-1])
+    *first, last = ((branches + more, deepest) for deepest, more in DEEPER)
+    for wide, deep in first:
+        with suppress(SynthesisError):
+            return _greedy(graph, heard, wanted, seed, saved, wide, deep)
+    return _greedy(graph, heard, wanted, seed, saved, *last)
 
 
 def _greedy(graph: MotionGraph, heard: Heard, wanted: Wanted, seed: int, saved: int, branches: int, deepest: int) -> Path:
