@@ -195,6 +195,7 @@ class Dialogs:
             if keys and not command.id.startswith("stance_"):
                 rows.append(f"<tr><td style='padding-right:24px'>{command.text.replace('&', '')}</td><td><b>{keys}</b></td></tr>")
         rows.append("<tr><td>Stance 1 to 9</td><td><b>Ctrl+1 … Ctrl+9</b></td></tr>")
+        rows.append("<tr><td colspan=2>In a conversation: 1 2 3 label, S split, M merge, P stress, Tab and arrows choose</td></tr>")
         box = QMessageBox(
             QMessageBox.Icon.NoIcon, "Keyboard shortcuts", f"<table>{''.join(rows)}</table>", QMessageBox.StandardButton.Ok, w
         )

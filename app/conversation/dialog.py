@@ -26,7 +26,7 @@ from PySide6.QtWidgets import (
     QWidget,
 )
 
-from app.conversation.files import TRANSCRIPTS
+from app.conversation.files import TRANSCRIPTS, facts_of
 from app.conversation.panel import PLURALS
 from app.conversation.settings import WordLists, caption
 from app.document import Document
@@ -95,6 +95,7 @@ class ImportDialog(QDialog):
         super().__init__(parent)
         self.document, self.session, self.jobs = document, session, jobs
         self.sounds, self.transcripts = tuple(sounds), tuple(transcripts)[:2]
+        self.facts = tuple(facts_of(p) for p in self.sounds)
         self.read: Read | None = None
         self.swapped = False  # the second of what was read is the first of the two
         self.job: Job | None = None
@@ -238,7 +239,7 @@ class ImportDialog(QDialog):
         self.stop.setVisible(busy)
         self.again.setVisible(not busy and self.read is None)
         self.go.setEnabled(self.read is not None)
-        self.files.setText(" · ".join(p.name for p in (*self.sounds, *self.transcripts)))
+        self.files.setText(" · ".join((*self.facts, *(p.name for p in self.transcripts))))
         self.no_words.setEnabled(bool(self.transcripts) and not busy)
         self.other_words.setVisible(len(self.transcripts) == 2)
         self.other_words.setEnabled(not busy)

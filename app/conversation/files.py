@@ -34,6 +34,18 @@ def channels_of(path: Path) -> int:
         return 0
 
 
+def facts_of(path: Path) -> str:
+    """Return a sound file's name with its channels and length, by its head; the name alone where that cannot be read."""
+    import soundfile
+
+    try:
+        info = soundfile.info(str(path))
+    except (soundfile.LibsndfileError, RuntimeError, OSError):
+        return path.name
+    minutes, seconds = divmod(round(info.duration), 60)
+    return f"{path.name} ({'one channel' if info.channels == 1 else f'{info.channels} channels'}, {minutes}:{seconds:02d})"
+
+
 def beside(sounds: Sequence[Path]) -> tuple[Path, ...]:
     """Return the transcripts that lie beside sounds and are called like them, one a sound."""
     out = []

@@ -52,11 +52,11 @@ def paint(painter: QPainter, t: Theme, scene: Scene) -> None:
         painter.save()
         painter.setClipRect(lane.whole.adjusted(0, 0, 0, 2))
         _wave(painter, t, scene, side, lane)
+        if scene.scale.each >= DOTS:
+            _peaks(painter, t, scene, side, lane)
         if scene.scale.each >= LEGIBLE:
             _words(painter, t, scene, side, lane)
         _segments(painter, t, scene, side, lane)
-        if scene.scale.each >= DOTS:
-            _peaks(painter, t, scene, side, lane)
         painter.restore()
     x = scene.scale.x(scene.conversation.length)
     if x < scene.width:
@@ -203,14 +203,15 @@ def _segments(painter: QPainter, t: Theme, scene: Scene, side: int, lane: Lane) 
 def _peaks(painter: QPainter, t: Theme, scene: Scene, side: int, lane: Lane) -> None:
     """The stress of every clause: a dot on its pitch, and a line down to its segment."""
     scale, segments, heard = scene.scale, scene.conversation.sides[side].segments, scene.heard[side]
-    fill = QColor(t.sounds["clause"])
+    fill, stem = QColor(t.sounds["clause"]), QColor(t.sounds["clause"])
+    stem.setAlpha(130)
     for n in visible(segments, scale.first, scale.seconds(scene.width)):
         segment = segments[n]
         if segment.kind != "clause" or segment.peak is None:
             continue
         at = QPointF(scale.x(segment.peak), peak_y(segment.peak, heard, lane))
         held = scene.over.part == "peak" and (scene.over.side, scene.over.at) == (side, n)
-        painter.setPen(QPen(fill, 1.4))
+        painter.setPen(QPen(stem, 1.4))
         painter.drawLine(at, QPointF(at.x(), lane.segments.top()))
         painter.setPen(QPen(QColor(t.field), 1.5))
         painter.setBrush(QColor(t.text) if held else fill)

@@ -7,7 +7,7 @@ from pathlib import Path
 import numpy as np
 import soundfile
 
-from app.conversation.files import beside, channels_of, converses, kinds_of
+from app.conversation.files import beside, channels_of, converses, facts_of, kinds_of
 
 
 def sound(path: Path, channels: int) -> Path:
@@ -42,3 +42,5 @@ def test_a_file_that_is_no_sound_has_no_channels(tmp_path: Path) -> None:
     (tmp_path / "no.wav").write_text("no")
     assert channels_of(tmp_path / "no.wav") == 0
     assert channels_of(tmp_path / "gone.wav") == 0
+    assert facts_of(tmp_path / "gone.wav") == "gone.wav"
+    assert facts_of(sound(tmp_path / "a.wav", 2)) == "a.wav (2 channels, 0:00)"
