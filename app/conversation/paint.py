@@ -7,7 +7,7 @@ from dataclasses import dataclass
 
 import numpy as np
 from PySide6.QtCore import QPointF, QRectF, Qt
-from PySide6.QtGui import QColor, QFont, QImage, QPainter, QPainterPath, QPen
+from PySide6.QtGui import QColor, QFont, QImage, QPainter, QPen
 
 from app.conversation.hits import Hit
 from app.conversation.lanes import AXIS, Lane, lanes, pitch_y, segment_rect, side_name, visible, words_in
@@ -260,17 +260,14 @@ def empty(painter: QPainter, t: Theme, area: QRectF, lines: Sequence[str]) -> No
     painter.setRenderHint(QPainter.RenderHint.Antialiasing)
     middle, top = area.center().x(), area.center().y() - 62
     for side, (shift, kind, high) in enumerate(((-58.0, "clause", 0.0), (4.0, "response", 12.0))):
-        bubble = QPainterPath()
         rect = QRectF(middle + shift, top + high, 54, 30)
-        bubble.addRoundedRect(rect, 9, 9)
-        tail = rect.left() + (12 if side == 0 else 42)
-        bubble.moveTo(tail - 5, rect.bottom() - 1)
-        bubble.lineTo(tail + (-6 if side == 0 else 6), rect.bottom() + 9)
-        bubble.lineTo(tail + 5, rect.bottom() - 1)
+        tail, out = rect.left() + (12 if side == 0 else 42), -6 if side == 0 else 6
         painter.setPen(Qt.PenStyle.NoPen)
         painter.setBrush(QColor(t.sounds[kind]))
-        bubble.setFillRule(Qt.FillRule.WindingFill)
-        painter.drawPath(bubble)
+        painter.drawRoundedRect(rect, 9, 9)
+        painter.drawPolygon(
+            [QPointF(tail - 5, rect.bottom() - 2), QPointF(tail + out, rect.bottom() + 9), QPointF(tail + 5, rect.bottom() - 2)]
+        )
         painter.setPen(QPen(QColor(INK), 2, Qt.PenStyle.SolidLine, Qt.PenCapStyle.RoundCap))
         for n, tall in enumerate((4, 8, 5, 10, 6, 3) if side == 0 else (3, 6, 4, 3, 5, 2)):
             x = rect.left() + 12 + n * 6
