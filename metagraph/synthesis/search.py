@@ -91,8 +91,8 @@ def greedy(graph: MotionGraph, heard: Heard, wanted: Wanted, seed: int = 1, save
     cheapest; those that lead on cheapest are gone deeper into. Of what comes through a stretch only cheap ones are kept. Beyond the paper:
     a run that goes on longer with what is said next counts as a little cheaper, no two kept ones end within a few frames of each other
     while there are others, what is dearer than more than enough others is not followed, and a search that comes to an end is tried again,
-    deeper. saved: how many are kept; branches: how many
-    are gone deeper into of a run. Raises SynthesisError when it comes to an end before the speech does, though there may be a path.
+    deeper. saved: how many are kept; branches: how many are gone deeper into of a run. Raises SynthesisError when it comes to an end before
+    the speech does, though there may be a path.
     """
     *first, last = ((branches + more, deepest) for deepest, more in DEEPER)
     for wide, deep in first:

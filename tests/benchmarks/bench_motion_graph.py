@@ -217,7 +217,7 @@ def scale(sizes: list[int]) -> list[dict[str, Any]]:
 def drawn(rows: list[dict[str, Any]]) -> str:
     """Return seconds and memory against frames as an SVG; both axes are logarithmic."""
     left, right, top, bottom = 70.0, 470.0, 46.0, 330.0
-    low, high = -2.0, 5.0  # powers of ten of seconds and GiB
+    low, high = -2.0, 4.0  # powers of ten of seconds and GiB
 
     def x(frames: float) -> float:
         return left + (right - left) * (np.log10(frames) - 4) / 2
@@ -227,7 +227,7 @@ def drawn(rows: list[dict[str, Any]]) -> str:
 
     style = (
         "text{font:12px system-ui,sans-serif;fill:#57606a}.t{font-weight:600;fill:#24292f}line{stroke:#d0d7de}"
-        ".a{stroke:#0969da;fill:#0969da}.b{stroke:#8250df;fill:#8250df}.c{stroke:#bf5b04;fill:#bf5b04}polyline{fill:none!important;"
+        ".a{stroke:#0969da;fill:#0969da}.b{stroke:#8250df;fill:#8250df}.c{stroke:#bf5b04;fill:#bf5b04}polyline{"
         "stroke-width:2.5}text.a,text.b,text.c{stroke:none}@media(prefers-color-scheme:dark){text{fill:#9198a1}.t{fill:#e6edf3}"
         "line{stroke:#3d444d}.a{stroke:#4493f8;fill:#4493f8}.b{stroke:#ab7df8;fill:#ab7df8}.c{stroke:#f0883e;fill:#f0883e}}"
     )
@@ -245,11 +245,11 @@ def drawn(rows: list[dict[str, Any]]) -> str:
         out.append(f"<text x='{x(frames):.1f}' y='{bottom + 20}' text-anchor='middle'>{words}</text>")
     for css, field, words in (("c", "numpy", "NumPy, seconds"), ("a", "seconds", "seconds"), ("b", "gib", "peak GiB")):
         known = [(x(r["frames"]), y(r[field])) for r in rows if r[field]]
-        out.append(f"<polyline class='{css}' points='{' '.join(f'{a:.1f},{b:.1f}' for a, b in known)}'/>")
+        out.append(f"<polyline class='{css}' style='fill:none' points='{' '.join(f'{a:.1f},{b:.1f}' for a, b in known)}'/>")
         out += [f"<circle class='{css}' cx='{a:.1f}' cy='{b:.1f}' r='3.5'/>" for a, b in known]
         shown = [r for r in rows if r[field]][-1][field]
         out.append(f"<text class='{css}' x='{known[-1][0] + 10:.1f}' y='{known[-1][1] + 4:.1f}'>{words}: {shown:,.3g}</text>")
-    what = f"{SHARE:.1%} of pairs of key states near enough, the {MOST} cheapest of each kept; NumPy extrapolated from three rows"
+    what = f"{SHARE:.1%} of pairs of key states near enough, the {MOST} cheapest of each kept; best runs, NumPy from three rows"
     out.append(f"<text x='{left}' y='{bottom + 46}'>{what}</text></svg>")
     return "\n".join(out) + "\n"
 
