@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any
 
@@ -89,8 +89,6 @@ def build(
     build that was ended takes up where it was. cluster: a `distributed.Client` whose workers make the blocks. Raises SynthesisError when
     it was cancelled, or when nothing is connected.
     """
-    from metagraph.synthesis.kernels import components, cut
-
     limit = threshold(states) if limit is None else limit
     keys = key_states(states) if keys is None else np.asarray(keys)
     work = work_of(states, keys, limit.limit, most)
@@ -99,16 +97,24 @@ def build(
     starts = np.zeros(len(states) + 1, np.int64)
     starts[keys + 1] = rows
     starts = np.cumsum(starts)
-    kept = np.ones(len(states), bool)
-    if connected:
-        component, count = components(starts, targets, ~states.last)
-        sizes = np.bincount(component, minlength=count)
-        if sizes.max() < 2:
-            raise SynthesisError(
-                f"no two states are connected both ways: at {limit.limit:.3g} m the threshold is too low for these takes; "
-                "raise k or the level, or add takes that come back to the same poses"
-            )
-        kept = component == int(sizes.argmax())
-        if not kept.all():
-            starts, targets, costs = cut(starts, targets, costs, kept)
-    return MotionGraph(states, limit, keys, starts, targets, costs, kept)
+    graph = MotionGraph(states, limit, keys, starts, targets, costs, np.ones(len(states), bool))
+    return largest(graph) if connected else graph
+
+
+def largest(graph: MotionGraph) -> MotionGraph:
+    """Return what is left of a graph in its largest strongly connected component: from every state there is a way to every other. Raises
+    SynthesisError when no two states are."""
+    from metagraph.synthesis.kernels import components, cut
+
+    component, count = components(graph.starts, graph.targets, ~graph.states.last)
+    sizes = np.bincount(component, minlength=count)
+    if sizes.max() < 2:
+        raise SynthesisError(
+            f"no two states are connected both ways: at {graph.threshold.limit:.3g} m the threshold is too low for these takes; "
+            "raise k or the level, or add takes that come back to the same poses"
+        )
+    kept = component == int(sizes.argmax())
+    if kept.all():
+        return graph
+    starts, targets, costs = cut(graph.starts, graph.targets, graph.costs, kept)
+    return replace(graph, starts=starts, targets=targets, costs=costs, kept=kept)
