@@ -8,6 +8,7 @@ from __future__ import annotations
 import math
 from collections.abc import Mapping
 from dataclasses import fields
+from functools import lru_cache
 from typing import Any
 
 import msgspec
@@ -17,7 +18,7 @@ from metagraph.formats.fields import Data, DataError, fill, floats, get, items, 
 from metagraph.formats.manual_data import manual_data, manual_from
 from metagraph.formats.takes import REPAIRS
 from metagraph.graph.asks import words_of
-from metagraph.graph.conversation import Conversation
+from metagraph.graph.conversation import Conversation, Segment, Side, Word
 from metagraph.graph.model import (
     KINDS,
     LAYERS,
@@ -135,8 +136,26 @@ STRUCTS: dict[str, Any] = {
 
 
 def struct_data(value: Any) -> Any:
-    """Return what one of `STRUCTS` holds, fields at their default left out."""
+    """Return what one of `STRUCTS` holds, fields at their default left out. It is not to be changed in place."""
+    if isinstance(value, Mapping) and any(isinstance(v, Conversation) for v in value.values()):
+        return {key: _conversation_data(v) for key, v in value.items()}
     return _rounded(msgspec.to_builtins(value))
+
+
+def _conversation_data(conversation: Conversation) -> Data:
+    """Return a conversation; what most edits leave as it was, thousands of words of each side, is not worked out anew."""
+    short = tuple(msgspec.structs.replace(side, words=(), segments=()) for side in conversation.sides)
+    out: Data = _rounded(msgspec.to_builtins(msgspec.structs.replace(conversation, sides=short)))
+    for n, side in enumerate(conversation.sides):
+        rows = {"words": side.words, "segments": side.segments}
+        data = {**out["sides"][n], **{name: _rows_data(some) for name, some in rows.items() if some}}
+        out["sides"][n] = {name: data[name] for name in Side.__struct_fields__ if name in data}
+    return out
+
+
+@lru_cache(maxsize=64)
+def _rows_data(rows: tuple[Word | Segment, ...]) -> list[Data]:
+    return [_rounded(row) for row in msgspec.to_builtins(rows)]
 
 
 def _rounded(value: Any) -> Any:

@@ -12,6 +12,8 @@ from collections.abc import Callable, Mapping, Sequence
 from pathlib import Path
 from typing import Any, BinaryIO
 
+import msgspec
+
 from metagraph.errors import FileError
 from metagraph.formats.data import (
     STRUCTS,
@@ -248,7 +250,7 @@ class Journal:
         assert self._file is not None
         start = self._file.tell()
         try:
-            self._file.write(json.dumps(record, separators=(",", ":"), allow_nan=False).encode() + b"\n")
+            self._file.write(_encoded(record) + b"\n")
             self._file.flush()
         except OSError as error:
             self._cut(start)
@@ -276,6 +278,13 @@ class Journal:
         """Forget the journal: everything in it has been saved, or was declined."""
         self.close()
         self.path.unlink(missing_ok=True)
+
+
+def _encoded(record: Data) -> bytes:
+    try:
+        return msgspec.json.encode(record)  # ten times as fast, for long conversations
+    except UnicodeEncodeError:  # a path that is no text
+        return json.dumps(record, separators=(",", ":"), allow_nan=False).encode()
 
 
 def _digest(path: Path | None) -> str | None:

@@ -13,6 +13,7 @@ from itertools import pairwise
 from pathlib import Path
 from typing import Any
 
+import msgspec
 import pytest
 from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
@@ -21,7 +22,8 @@ from metagraph.errors import FileError
 from metagraph.formats.data import from_data, to_data
 from metagraph.formats.journal import Journal, apply, changes, journal_path, recover
 from metagraph.formats.store import SUFFIX, save_project
-from metagraph.graph import edits
+from metagraph.graph import conversing, edits
+from metagraph.graph.conversation import Conversation, Rates, Segment, Side, Word
 from metagraph.graph.model import Project
 from tests.projects import clip, histories
 
@@ -348,3 +350,44 @@ def test_a_process_killed_between_edits_loses_none_that_was_finished(saved: Path
     assert found is not None
     assert found[1] >= finished + 1  # at most one more, whose number was not printed yet
     assert found[0].clips["c1"].name == f"name {found[1] - 1}"
+
+
+# --- conversations
+
+
+def talk(words: int, segments: int) -> Project:
+    """A conversation whose first side has some words, three a segment; the second says as many, but is not segmented."""
+    said = tuple(Word(text=f"wörd{n}", start=n / 3, end=n / 3 + 0.3) for n in range(words))
+    clauses = tuple(Segment("clause", float(n), n + 0.9, n + 0.1 + 0.2, "a b c") for n in range(segments))
+    sides = (Side(name="Ada", words=said, segments=clauses, rates=Rates(clause=0.5)), Side(words=said))
+    return conversing.add_conversation(Project("talk"), Conversation(name="x", length=words / 3 + 1, sides=sides))[0]
+
+
+def test_what_a_conversation_is_kept_as_is_what_its_type_says() -> None:
+    project = talk(6, 2)
+    (kept,) = to_data(project)["conversations"].values()
+    plain = msgspec.to_builtins(next(iter(project.conversations.values())))
+    assert list(kept["sides"][0]) == list(plain["sides"][0]), "in the same order"
+    assert kept["sides"][0]["words"][1] == {"text": "wörd1", "start": 0.333333, "end": 0.633333}
+    assert kept["sides"][1] == {"words": kept["sides"][0]["words"]}
+    assert kept["sides"][0]["segments"] == [{**s, "peak": round(s["peak"], 6)} for s in plain["sides"][0]["segments"]]
+
+
+def test_edits_of_a_conversation_are_recovered_and_do_not_touch_its_words_again(tmp_path: Path) -> None:
+    from metagraph.formats import data
+
+    states = [talk(300, 100)]
+    (ident,) = states[0].conversations
+    for at in (0, 5, 7):
+        states.append(conversing.move_segment(states[-1], ident, 0, at, 0.05))
+    states.append(conversing.change_side(states[-1], ident, 1, name="Ben \udcff"))  # what a name that is no text becomes
+    journal = Journal(tmp_path / "journal", None)
+    journal.begin(states[0])
+    before = data._rows_data.cache_info().misses
+    for a, b in pairwise(states):
+        journal.edit(a, b)
+    journal.close()
+    assert data._rows_data.cache_info().misses - before <= 3, "one list of segments an edit, no words"
+    found = recover(tmp_path / "journal", None)
+    assert found is not None and found[1] == 4
+    assert found[0].conversations == from_data(to_data(states[-1])).conversations
