@@ -2,12 +2,15 @@
 
 from __future__ import annotations
 
+from app.commands import CONVERSATION
 from app.manual.place import META_ONLY
 
-# Other clips, other projects, other files: everybody works on the same. Twins make clips. What changes how the window works stays.
+# Other clips, other projects, other files: everybody works on the same. Twins and motion graphs make clips, conversations bring sounds
+# and other characters. What changes how the window works stays.
 FILES = frozenset({
     "new", "open", "sample", "practice", "save", "save_as", "import", "import_files", "annotate", "watch", "find_missing", "character",
     "no_character", "export", "render", "twins", "repairs", "skeleton", "joint_maps", "live", "mimic", "study", "count_operators", "manual",
+    "motion_graph", *CONVERSATION, "other_side", "keep_conversation",
 })  # fmt: skip
 PROPOSALS = frozenset({"propose", "use_times", "patterns", "compatibility"})  # made by the program, for neither condition or both
 

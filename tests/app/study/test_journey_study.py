@@ -245,6 +245,18 @@ def test_proposals_are_offered_where_the_study_allows_them():
     assert offered("undo", "manual", False) and not offered("label_gesture", "manual", False) and not offered("open", "meta", True)
 
 
+def test_no_command_that_brings_other_material_is_offered_while_a_task_is_worked_on(drive):
+    from app.commands import commands
+    from app.study.offer import offered
+
+    table = commands(drive.window)
+    conversations = [c.id for c in table if c.menu == "&Conversation"]
+    assert len(conversations) == 9
+    for ident in (*conversations, "motion_graph"):
+        assert any(c.id == ident for c in table)
+        assert not any(offered(ident, mode, labels) for mode in ("meta", "manual") for labels in (True, False)), ident
+
+
 KILLED = """
 import os, sys, random
 from pathlib import Path
