@@ -80,7 +80,7 @@ def test_without_a_screen_only_drawing_is_needed_and_tests_need_it_all(run: Modu
     monkeypatch.setattr(run.shutil, "which", lambda program: None)
     assert run.missing(False, False) == ["libegl1", "libgl1"]
     assert set(run.missing(True, False)) == {*run.DRAWING.values(), *run.WINDOW.values()}
-    assert set(run.missing(False, True)) == {*run.DRAWING.values(), *run.WINDOW.values(), "xvfb", "xauth", "xdotool"}
+    assert set(run.missing(False, True)) == {*run.DRAWING.values(), *run.WINDOW.values(), "xvfb", "xauth", "xdotool", "espeak-ng"}
 
 
 def test_a_library_that_cannot_be_loaded_is_missing(run: ModuleType) -> None:

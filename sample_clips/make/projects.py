@@ -8,10 +8,13 @@ from typing import cast
 
 import msgspec
 
+from metagraph.formats.conversations import read_conversation
 from metagraph.formats.imports import import_files
 from metagraph.formats.store import SUFFIX, save_project
 from metagraph.graph import asks as a
 from metagraph.graph import edits, staging
+from metagraph.graph.conversation import Conversation
+from metagraph.graph.conversing import add_conversation
 from metagraph.graph.model import LAYERS, Kind, Layer, Limb, Project, Timing
 from sample_clips.make.babble import sample_lines
 from sample_clips.make.catalogue import BASE, Entry, catalogue
@@ -73,7 +76,16 @@ def sample() -> Project:
     for entry in sorted(entries, key=lambda e: ("stance", "gesture", "fidget", "transition").index(e.kind)):
         project = _place(project, entry, clips[entry.name], ids)
     lines = {name: msgspec.structs.replace(line, asks=WITH_LINES.get(name, ())) for name, line in sample_lines().items()}
-    return staging.add_performance(replace(project, lines=lines), GREETING)[0]
+    project = staging.add_performance(replace(project, lines=lines), GREETING)[0]
+    return add_conversation(project, conversation())[0]
+
+
+def conversation() -> Conversation:
+    """Return the sample conversation as it is read from its sound and words (see `make.talk`)."""
+    folder = HERE / "conversation"
+    read = read_conversation([folder / "talk.ogg"], [folder / "talk.json"], HERE, "Office").conversation
+    sides = tuple(msgspec.structs.replace(side, name=name) for side, name in zip(read.sides, ("Ada", "Ben"), strict=True))
+    return msgspec.structs.replace(read, sides=sides)
 
 
 def _words(name: str) -> str:

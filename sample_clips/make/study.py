@@ -120,7 +120,7 @@ def main() -> None:
     FOLDER.mkdir(exist_ok=True)
     (FOLDER / "study.yaml").write_text(text(), encoding="utf-8")
     whole = sample()
-    whole = replace(whole, lines={}, performances={})
+    whole = replace(whole, lines={}, performances={}, conversations={})
     for task in TASKS:
         path = FOLDER / f"{task}{SUFFIX}"
         save_project(reference(task, whole), path, HERE / f"sample{SUFFIX}")

@@ -61,7 +61,7 @@ def test_it_keeps_a_conversation_in_a_project(files: tuple[Path, Path], tmp_path
     shutil.copy(SAMPLE / "mannequin.glb", tmp_path)
     code, data, _ = run(capsys, files[0], "--words", files[1], "--project", project, "--name", "Dogs")
     kept = open_project(project).project.conversations
-    assert code == 0 and list(kept) == [data["kept"]] and data["kept"].startswith("v")
+    assert code == 0 and list(kept)[-1] == data["kept"] and data["kept"].startswith("v")
     assert kept[data["kept"]].name == "Dogs" and kept[data["kept"]].sides[0].audio == "talk.wav"
 
 
