@@ -31,8 +31,9 @@ class Editing(QObject):
         self.document, self.session, self.sounds = document, session, sounds
         self.chosen: frozenset[Place] = frozenset()
         self.last: Place | None = None  # the one selected last: where keys go on from
+        self._ident: str | None = None  # of the conversation on stage
         document.changed.connect(self._follow)
-        session.conversation_changed.connect(lambda: self.select(()))
+        session.conversation_changed.connect(self._staged)
 
     @property
     def conversation(self) -> Conversation | None:
@@ -77,6 +78,11 @@ class Editing(QObject):
         """Select what the other of the two says at that time."""
         found = self.segment(self.last)
         self._select_near(side, found.start if found is not None else self.session.seconds)
+
+    def _staged(self) -> None:
+        if self.session.conversation != self._ident:  # else it is the other of the two that the timeline shows
+            self._ident = self.session.conversation
+            self.select(())
 
     def _select_near(self, side: int, seconds: float) -> bool:
         of = self.conversation

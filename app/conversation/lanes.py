@@ -18,7 +18,7 @@ from metagraph.graph.conversation import Conversation, Segment, Word
 
 GAP = 8.0  # pixels between the two
 WORDS, SEGMENTS, TALLEST = 17.0, 26.0, 190.0  # pixels of the words, of the segments, of a side at most
-LEAST = 2 * 92 + RULER  # pixels all of it needs
+LEAST = 2 * 74 + GAP + 4 + RULER  # pixels all of it needs
 HERTZ = (60.0, 500.0)  # from the bottom to the top of a waveform; an octave is as high everywhere
 AXIS = (100.0, 200.0, 400.0)
 NEAREST = 400.0  # pixels a second at most
@@ -39,7 +39,7 @@ class Lane:
 
 def lanes(width: float, height: float) -> tuple[Lane, Lane]:
     """Return the lanes of the two, one under the other."""
-    each = min(TALLEST, max(80.0, (height - RULER - GAP - 4) / 2))
+    each = min(TALLEST, max(74.0, (height - RULER - GAP - 4) / 2))
     segments = min(SEGMENTS, each * 0.28)
     out = []
     for side in (0, 1):

@@ -40,6 +40,7 @@ class Scene:
     ratio: float
     chosen: Collection[tuple[int, int]]
     over: Hit
+    side: int = 0  # whose plan the timeline shows
 
 
 def paint(painter: QPainter, t: Theme, scene: Scene) -> None:
@@ -81,10 +82,16 @@ def _titles(painter: QPainter, t: Theme, scene: Scene, side: int, lane: Lane) ->
     own, small, bold = painter.font(), QFont(painter.font()), QFont(painter.font())
     small.setPixelSize(SMALL)
     bold.setWeight(QFont.Weight.DemiBold)
+    over, name = scene.over == Hit("title", side), side_name(scene.conversation, side)
+    if over:
+        painter.fillRect(QRectF(0, lane.whole.top(), LEFT - 1, lane.whole.height()), QColor(t.hover))
+    if side == scene.side:
+        painter.fillRect(QRectF(3, lane.wave.top() + 3, 3, lane.whole.height() - 6), QColor(t.text))
+    if advance(name, bold.toString()) > LEFT - 16:
+        bold.setPixelSize(SMALL)
     painter.setFont(bold)
-    painter.setPen(QColor(t.text))
-    name = elided(side_name(scene.conversation, side), bold.toString(), LEFT - 16)
-    painter.drawText(QRectF(12, lane.wave.top() + 2, LEFT - 14, 18), MIDDLE, name)
+    painter.setPen(QColor(t.text if over or side == scene.side else t.dim))
+    painter.drawText(QRectF(12, lane.wave.top() + 2, LEFT - 14, 18), MIDDLE, elided(name, bold.toString(), LEFT - 16))
     painter.setFont(small)
     painter.setPen(QColor(t.dim))
     right = Qt.AlignmentFlag.AlignRight | MIDDLE
@@ -145,7 +152,11 @@ def _told(painter: QPainter, t: Theme, heard: Heard | None, area: QRectF) -> Non
         painter.drawText(inner, MIDDLE | Qt.TextFlag.TextWordWrap, f"⚠  {words}")
     elif heard.told:
         painter.setPen(QColor(t.dim))
-        painter.drawText(inner, MIDDLE if heard.wave is None else Qt.AlignmentFlag.AlignTop | Qt.AlignmentFlag.AlignRight, heard.told)
+        if heard.wave is not None:  # then it stands over the waveform
+            wide = advance(heard.told, painter.font().toString()) + 12
+            inner = QRectF(area.right() - wide - 6, area.top() + 3, wide, 18)
+            painter.fillRect(inner, QColor(t.panel))
+        painter.drawText(inner, MIDDLE if heard.wave is None else Qt.AlignmentFlag.AlignCenter, heard.told)
         painter.fillRect(QRectF(area.left(), area.bottom() - 2, area.width() * heard.part, 2), QColor(t.dim))
 
 

@@ -102,7 +102,7 @@ class ConversationPanel(QWidget):
         )
         chosen, found = self.editing.chosen, self.editing.segment(self.editing.last)
         if len(chosen) == 1 and found is not None and self.editing.last is not None:
-            self.title.say(f"{side_name(of, self.editing.last[0])}: {segment_words(found)}", True)
+            self.title.say(f"{side_name(of, self.editing.last[0])}: {segment_words(found)}".replace("\n", ", "), True)
         elif chosen:
             self.title.say(f"{many(len(chosen), 'segment')} selected", True)
         else:

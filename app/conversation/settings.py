@@ -25,7 +25,7 @@ from app.conversation.files import SOUNDS, channels_of
 from app.conversation.lanes import side_name
 from app.document import Document
 from app.theme import SOUND_MARKS, strengthen
-from metagraph.formats.store import relative
+from metagraph.formats.store import SUFFIX, relative
 from metagraph.graph import conversing
 from metagraph.graph.conversation import HESITATIONS, RESPONSES, Conversation, Rates
 from metagraph.graph.edits import EditError
@@ -138,6 +138,7 @@ class WordsDialog(SettingDialog):
         self.lists = WordLists(self)
         self.lists.show_lists(self.conversation.responses, self.conversation.hesitations)
         layout.addWidget(self.lists, 1)
+        self.lists.edits[0].setFocus()
 
     def change(self, project: Project) -> Project:
         return conversing.set_word_lists(project, self.ident, *self.lists.lists())
@@ -195,38 +196,54 @@ class RatesDialog(SettingDialog):
 
 
 class SidesDialog(SettingDialog):
-    """Who the two are and which sound is whose."""
+    """Who the two are, which sound is whose, whose graph moves each, and how far apart they stand."""
 
     title, text = "Sounds and names", "Change sounds and names"
 
     def build(self, layout: QVBoxLayout) -> None:
-        self.resize(680, 0)
+        self.resize(720, 0)
         self.names: list[QLineEdit] = []
         self.sounds: list[QLineEdit] = []
         self.channels: list[QComboBox] = []
+        self.movers: list[QLineEdit] = []
         grid = QGridLayout()
         grid.setHorizontalSpacing(10)
         grid.setVerticalSpacing(8)
         grid.setColumnStretch(1, 1)
         for side, of in enumerate(self.conversation.sides):
-            top = 4 * side
+            top = 6 * side
             grid.addWidget(caption(("First speaker", "Second speaker")[side], self), top, 0, 1, 3)
-            name, sound, channel = QLineEdit(of.name, self), QLineEdit(of.audio or "", self), QComboBox(self)
-            name.setPlaceholderText(f"Speaker {side + 1}")
-            sound.setPlaceholderText("No sound")
-            for widget, words in ((name, "Name"), (sound, "Sound"), (channel, "Channel")):
+            name, sound, channel, mover = QLineEdit(of.name, self), QLineEdit(of.audio or "", self), QComboBox(self), QLineEdit(self)
+            mover.setText(of.project or "")
+            mover.setToolTip("The project whose graph and character move this one")
+            mover.setClearButtonEnabled(True)
+            for row, (words, widget, empty) in enumerate(
+                (("Name", name, f"Speaker {side + 1}"), ("Sound", sound, "No sound"), ("Channel", channel, ""),
+                 ("Moved by", mover, "This project")), top + 1,
+            ):  # fmt: skip
                 widget.setAccessibleName(f"{words} of the {('first', 'second')[side]} speaker")
-            choose = QToolButton(self, text="Choose…", toolTip="Choose a sound file")
-            choose.clicked.connect(lambda _=False, side=side: self.choose(side))
-            for row, (words, widget) in enumerate((("Name", name), ("Sound", sound), ("Channel", channel)), top + 1):
                 grid.addWidget(QLabel(words, self), row, 0)
                 grid.addWidget(widget, row, 1)
-            grid.addWidget(choose, top + 2, 2)
+                if isinstance(widget, QLineEdit):
+                    widget.setPlaceholderText(empty)
+            for row, tip, choose in ((top + 2, "Choose a sound file", self.choose), (top + 4, "Choose a project", self.choose_project)):
+                button = QToolButton(self, text="Choose…", toolTip=tip)
+                button.clicked.connect(lambda _=False, side=side, choose=choose: choose(side))
+                grid.addWidget(button, row, 2)
+            grid.setRowMinimumHeight(top + 5, 6)
             self.names.append(name)
             self.sounds.append(sound)
             self.channels.append(channel)
+            self.movers.append(mover)
             self._show_channels(side, of.channel)
             sound.editingFinished.connect(lambda side=side: self._show_channels(side, self.channels[side].currentData()))
+        self.distance = QDoubleSpinBox(self, suffix=" m", decimals=2, singleStep=0.1, toolTip="How far apart the two stand")
+        self.distance.setRange(0.2, 20)
+        self.distance.setValue(self.conversation.distance)
+        self.distance.lineEdit().setTextMargins(6, 0, 0, 0)
+        self.distance.setAccessibleName("Distance between the two")
+        grid.addWidget(QLabel("Distance", self), 12, 0)
+        grid.addWidget(self.distance, 12, 1, Qt.AlignmentFlag.AlignLeft)
         layout.addLayout(grid)
 
     def _show_channels(self, side: int, chosen: int | None) -> None:
@@ -242,16 +259,40 @@ class SidesDialog(SettingDialog):
         box.setCurrentIndex(max(0, box.findData(chosen)))
 
     def choose(self, side: int) -> None:
-        ends = " ".join(f"*{s}" for s in SOUNDS)
-        name, _ = QFileDialog.getOpenFileName(self, "Choose a sound", str(self.document.folder or Path.home()), f"Sounds ({ends})")
-        if name:
-            folder = self.document.folder
-            self.sounds[side].setText(relative(Path(name), folder) if folder is not None else Path(name).as_posix())
+        """Ask for a sound."""
+        if self._ask(self.sounds[side], "Choose a sound", f"Sounds ({' '.join(f'*{s}' for s in SOUNDS)})"):
             self._show_channels(side, self.channels[side].currentData())
+
+    def choose_project(self, side: int) -> None:
+        """Ask for the project whose graph moves a side."""
+        self._ask(self.movers[side], "Choose a project", f"Projects (*{SUFFIX})")
+
+    def _ask(self, field: QLineEdit, title: str, kinds: str) -> bool:
+        folder = self.document.folder
+        name, _ = QFileDialog.getOpenFileName(self, title, str(folder or Path.home()), kinds)
+        if name:
+            field.setText(relative(Path(name), folder) if folder is not None else Path(name).as_posix())
+        return bool(name)
+
+    def _mover(self, side: int) -> str | None:
+        """Return the path of the project that moves a side, None for the one at hand. Raises EditError where there is none."""
+        text = self.movers[side].text().strip()
+        if not text or text == self.conversation.sides[side].project:
+            return text or None
+        whole = (self.document.folder or Path()) / text
+        if not whole.is_file():
+            raise EditError(f"there is no project at {whole}: choose another, or clear the field to let this project move the speaker")
+        own = self.document.path
+        return None if own is not None and own.exists() and whole.samefile(own) else text
 
     def change(self, project: Project) -> Project:
         for side in (0, 1):
             sound = self.sounds[side].text().strip() or None
             channel = self.channels[side].currentData() if sound is not None else None
-            project = conversing.change_side(project, self.ident, side, name=self.names[side].text(), audio=sound, channel=channel)
-        return project
+            project = conversing.change_side(
+                project, self.ident, side, name=self.names[side].text(), audio=sound, channel=channel, project=self._mover(side)
+            )
+        distance = round(self.distance.value(), 3)
+        if distance == round(self.conversation.distance, 2):  # as it was, to what is shown of it
+            return project
+        return conversing.change_conversation(project, self.ident, distance=distance)

@@ -29,6 +29,8 @@ class Stage:
 
         conversation = project.conversations[ident]
         notes: list[str] = []
+        wanted = {(str(folder / s.project), _written(folder / s.project)) for s in conversation.sides if s.project is not None}
+        self._projects = {key: found for key, found in self._projects.items() if key in wanted}
         projects = [self._project(project, s.project, folder, notes) for s in conversation.sides]
         key = tuple((s.audio, s.channel, s.words, _written(folder / s.audio) if s.audio else None) for s in conversation.sides)
         if key not in self._voices:
@@ -59,7 +61,7 @@ class Stage:
             if found.project.skeleton is None:
                 notes.append(f"{whole.name} has no clips: this side moves with the graph at hand.")
                 return project
-            self._projects = {key: found.project}
+            self._projects[key] = found.project
         return self._projects[key]
 
 

@@ -65,6 +65,7 @@ class View(QWidget):
         self._still: Once[QPixmap] = Once()
         self._came = 0  # how often more of a sound has come
         self._by_keys = False
+        self._ident: str | None = None  # of the conversation on stage
         self.setMinimumHeight(LEAST)
         self.setMouseTracking(True)
         self.setFocusPolicy(Qt.FocusPolicy.StrongFocus)
@@ -125,7 +126,9 @@ class View(QWidget):
 
     def _staged(self) -> None:
         self._stop_dragging()
-        self.first, self.each = 0.0, USUAL
+        if self.session.conversation != self._ident:  # else it is the other of the two that the timeline shows
+            self._ident = self.session.conversation
+            self.first, self.each = 0.0, USUAL
         self.update()
 
     def _read(self) -> None:
@@ -175,13 +178,13 @@ class View(QWidget):
             picture.setDevicePixelRatio(ratio)
             painter = QPainter(picture)
             painter.setFont(self.font())
-            scene = Scene(of, heard, self.scale(), self.width(), self.height(), ratio, chosen, self.over)
+            scene = Scene(of, heard, self.scale(), self.width(), self.height(), ratio, chosen, self.over, s.side)
             paint(painter, theme(s.theme), scene)
             painter.end()
             self.painted += 1
             return picture
 
-        values = (self.scale(), self.size(), ratio, s.theme, chosen, self.over, self._came, self.font().toString())
+        values = (self.scale(), self.size(), ratio, s.theme, s.side, chosen, self.over, self._came, self.font().toString())
         return self._still.of(values, (of, *heard), make)
 
     # --- the mouse
@@ -197,7 +200,9 @@ class View(QWidget):
             return
         if event.button() == Qt.MouseButton.MiddleButton:
             self.gesture = Pan(self, at)
-        elif event.button() == Qt.MouseButton.LeftButton and hit.part != "title":
+        elif event.button() == Qt.MouseButton.LeftButton and hit.part == "title":
+            self.session.set_side(hit.side)
+        elif event.button() == Qt.MouseButton.LeftButton:
             if hit.at >= 0:
                 self._select(hit, event.modifiers())
             elif not event.modifiers():
@@ -261,7 +266,8 @@ class View(QWidget):
 
     def _show_cursor(self, hit: Hit) -> None:
         shape = Qt.CursorShape
-        by_part = {"start": shape.SizeHorCursor, "end": shape.SizeHorCursor, "peak": shape.SizeHorCursor, "gap": shape.CrossCursor}
+        by_part = dict.fromkeys(("start", "end", "peak"), shape.SizeHorCursor)
+        by_part |= {"gap": shape.CrossCursor, "title": shape.PointingHandCursor}
         held = isinstance(self.gesture, Pan) or (hit.part == "body" and self.gesture is not None)
         self.setCursor(shape.ClosedHandCursor if held else by_part.get(hit.part, shape.ArrowCursor))
 
@@ -361,7 +367,10 @@ class View(QWidget):
             said = [w for w in words_in(of.sides[hit.side].words, seconds, seconds) if w.start <= seconds <= w.end]
             return f"{said[0].text}\n{said[0].start:.2f} to {said[0].end:.2f} s" if said else ""
         if hit.part == "title":
-            side = of.sides[hit.side]
+            side, whose = of.sides[hit.side], hit.side == self.session.side
             channel = f", channel {side.channel + 1}" if side.channel is not None else ""
-            return f"{side_name(of, hit.side)}\n{side.audio}{channel}" if side.audio else side_name(of, hit.side)
+            sound = [f"{side.audio}{channel}"] if side.audio else []
+            mover = [f"Moved by {side.project}"] if side.project else []
+            shown = "Performance shows this one's plan" if whose else "Click to see this one's plan in Performance"
+            return "\n".join((side_name(of, hit.side), *sound, *mover, shown))
         return "Drag to make a segment" if hit.part == "gap" else ""

@@ -65,6 +65,8 @@ def test_fields_and_rates_are_set_and_nothing_changes_where_they_are_the_same() 
     of = after.conversations[ident]
     assert (of.distance, of.sides[1].name, of.sides[1].rates.clause, of.sides[1].rates.response) == (2.0, "Bea", 0.62, 0.58)
     assert c.set_rates(after, ident, 1, clause=0.62) is after
+    moved = c.change_side(before, ident, 1, project="other.metagraph.yaml")
+    assert [s.project for s in moved.conversations[ident].sides] == [None, "other.metagraph.yaml"]
 
 
 def test_a_move_stops_at_the_neighbours_and_takes_the_peak_along() -> None:

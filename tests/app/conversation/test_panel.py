@@ -74,3 +74,29 @@ def test_sound_dropped_on_the_panel_opens_the_dialog(talk: Any) -> None:
     assert dialog.isVisible()
     assert not talk.drive.drop_files((panel, QPoint(300, 100)), talk.words), "words without sound are nothing"
     dialog.reject()
+
+
+def test_a_click_on_a_name_shows_that_ones_plan_and_marks_it_and_leaves_the_rest_as_it_is(talk: Any) -> None:
+    from app.conversation.lanes import lanes
+
+    drive, view = talk.drive, talk.view
+    talk.editing.select({(0, 2)})
+    view.zoom(0.5, 300)
+    view.look_at(3.0)
+
+    def mark(side: int) -> str:
+        lane = lanes(view.width(), view.height())[side]
+        return view.grab().toImage().pixelColor(4, round(lane.wave.center().y())).name()
+
+    marked, plain = mark(0), mark(1)
+    assert marked != plain
+    name = QPoint(30, round(lanes(view.width(), view.height())[1].wave.top()) + 10)
+    assert "Click to see" in view.tip(name.toPointF())
+    drive.click((view, name))
+    assert drive.session.side == 1
+    assert drive.timeline.stage.currentText() == "talk: Ben"
+    QTest.mouseMove(view, QPoint(300, 3))
+    assert (mark(0), mark(1)) == (plain, marked)
+    assert talk.editing.chosen == {(0, 2)}
+    assert (view.first, view.each) == (3.0, 50.0)
+    assert "Performance shows" in view.tip(name.toPointF())

@@ -137,6 +137,26 @@ def test_a_side_moved_by_another_project_uses_that_ones_clips_and_one_that_canno
         assert any("missing" in note for note in shown.notes) == told
 
 
+def test_two_other_projects_are_each_read_once(talking, monkeypatch):
+    from app.conversation import stage
+
+    folder, read = talking.parent, []
+    project = open_project(talking).project
+    talk = project.conversations["v9000"]
+    for name in ("one", "two"):
+        save_project(absolute(replace(project, conversations={}), folder), folder / f"{name}.metagraph.yaml")
+    whole = stage.open_whole
+    monkeypatch.setattr(stage, "open_whole", lambda path: (read.append(path.name), whole(path))[1])
+    sides = tuple(msgspec.structs.replace(s, project=f"{n}.metagraph.yaml") for s, n in zip(talk.sides, ("one", "two"), strict=True))
+    both, own = Stage(), replace(project, conversations={"v9000": msgspec.structs.replace(talk, sides=sides)})
+    for _ in range(3):
+        both.show(own, "v9000", folder)
+    assert read == ["one.metagraph.yaml", "two.metagraph.yaml"]
+    both.show(project, "v9000", folder)
+    both.show(own, "v9000", folder)
+    assert len(read) == 4, "what no side needs is not kept"
+
+
 def test_it_is_written_from_the_command_line_as_a_video_with_sound_and_as_motion_for_each(talking, tmp_path):
     def run(*words: str) -> subprocess.CompletedProcess[str]:
         whole = [sys.executable, "-m", "app.cli", "render", str(talking), "--conversation", "Greeting", *words]
