@@ -123,11 +123,11 @@ def style_sheet(look: Theme) -> str:
     QComboBox::drop-down {{ border: none; width: 22px; }}
     QComboBox::down-arrow {{ image: url({marks}/down_{t.name}.svg); width: 12px; height: 12px; }}
     QCheckBox {{ spacing: 8px; }}
-    QCheckBox::indicator, QTreeView::indicator {{ width: 14px; height: 14px; border: 1px solid {t.dim};
+    QCheckBox::indicator, QAbstractItemView::indicator {{ width: 14px; height: 14px; border: 1px solid {t.dim};
         border-radius: 4px; background: {t.field}; }}
-    QCheckBox::indicator:checked, QTreeView::indicator:checked {{ image: url({marks}/check_{t.name}.svg); }}
-    QCheckBox::indicator:indeterminate, QTreeView::indicator:indeterminate {{ image: url({marks}/part_{t.name}.svg); }}
-    QCheckBox::indicator:disabled, QTreeView::indicator:disabled {{ border-color: {t.line}; }}
+    QCheckBox::indicator:checked, QAbstractItemView::indicator:checked {{ image: url({marks}/check_{t.name}.svg); }}
+    QCheckBox::indicator:indeterminate, QAbstractItemView::indicator:indeterminate {{ image: url({marks}/part_{t.name}.svg); }}
+    QCheckBox::indicator:disabled, QAbstractItemView::indicator:disabled {{ border-color: {t.line}; }}
     QCheckBox::indicator:focus {{ border-color: {t.text}; }}
     QComboBox QAbstractItemView {{ background: {t.card}; border: 1px solid {t.line}; outline: none; }}
     QListView, QTreeView, QTableView, QScrollArea, QGraphicsView {{ background: {t.panel}; border: none; outline: none; }}

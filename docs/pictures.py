@@ -1,8 +1,8 @@
 """Take the pictures of the documentation from the real window: `python docs/pictures.py` (on a screen, or under `xvfb-run`).
 
-Writes docs/window.png, practice.png, empty.png, light.png, requests.png, models.png, label.png, export.png, web.png and
-performance.png, from our own sample clips only; with names behind it, only those. The web page needs Node, Chromium and what
-tests/package.json names.
+Writes docs/window.png, practice.png, empty.png, light.png, requests.png, models.png, label.png, export.png, web.png,
+conversation.png, motion-graph.png and performance.png, from our own sample clips only; with names behind it, only those. The web
+page needs Node, Chromium and what tests/package.json names.
 """
 
 from __future__ import annotations
@@ -197,6 +197,50 @@ def labelling() -> None:
     close(out)
 
 
+def conversation() -> None:
+    """Two who talk, on their lanes."""
+    from app.files import SAMPLE
+
+    out = window()
+    out.files.open(SAMPLE, template=True)  # type: ignore[attr-defined]
+    wait(20000, lambda: bool(out.document.project.conversations))  # type: ignore[attr-defined]
+    session = out.session  # type: ignore[attr-defined]
+    session.set_conversation(next(iter(out.document.project.conversations)))  # type: ignore[attr-defined]
+    out.show_dock("conversation")  # type: ignore[attr-defined]
+    wait(20000, lambda: out.performance.shown.partner is not None and not out.jobs.running)  # type: ignore[attr-defined]
+    session.set_playing(False)
+    session.seek(9.7)
+    wait(2500)
+    shoot(out, "conversation.png")
+    close(out)
+
+
+def motion_graph() -> None:
+    """What counts as a jump between the sample's stances, and new motion from them."""
+    from app.motion_graph.dialog import MotionGraphDialog
+    from metagraph.formats.store import absolute, open_project, save_project
+
+    samples = ROOT / "sample_clips"
+    out = window()
+    with tempfile.TemporaryDirectory() as place:
+        path = Path(place) / "sample.metagraph.yaml"
+        save_project(absolute(open_project(samples / "sample.metagraph.yaml").project, samples), path)
+        out.files.open(path)  # type: ignore[attr-defined]
+        wait(20000, lambda: bool(out.document.project.clips) and not out.jobs.running)  # type: ignore[attr-defined]
+        out.dialogs.motion_graph()  # type: ignore[attr-defined]
+        dialog = out.findChild(MotionGraphDialog)  # type: ignore[attr-defined]
+        wait(20000, lambda: dialog.limit is not None)
+        dialog.count()
+        wait(60000, lambda: not dialog.stop.isVisible())
+        dialog.wishes.speech.setCurrentIndex(0)
+        dialog.find()
+        wait(60000, lambda: not dialog.stop.isVisible())
+        wait(1500)
+        shoot(dialog, "motion-graph.png")
+        dialog.close()
+        close(out)
+
+
 def page() -> None:
     """The web page, in a browser, having been asked to wave."""
     from metagraph.engines.targets import registry, web
@@ -248,6 +292,8 @@ PICTURES: dict[str, Callable[[], None]] = {
     "models": models,
     "label": labelling,
     "export": exporting,
+    "conversation": conversation,
+    "motion-graph": motion_graph,
     "web": page,
     "performance": performance,
 }

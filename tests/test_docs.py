@@ -39,7 +39,17 @@ def of(*languages: str) -> list[object]:
 @pytest.fixture
 def samples(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
     """A copy of the sample projects to work in."""
-    for name in ("sample.metagraph.yaml", "practice.metagraph.yaml", "mannequin.glb", "clips", "lines", "annotation", "keypoints", "study"):
+    for name in (
+        "sample.metagraph.yaml",
+        "practice.metagraph.yaml",
+        "mannequin.glb",
+        "clips",
+        "lines",
+        "conversation",
+        "annotation",
+        "keypoints",
+        "study",
+    ):
         source = ROOT / "sample_clips" / name
         shutil.copytree(source, tmp_path / name) if source.is_dir() else shutil.copy(source, tmp_path / name)
     monkeypatch.chdir(tmp_path)

@@ -25,7 +25,7 @@ if TYPE_CHECKING:
     from app.window import Window
 
 CLOSED = "Not during a study: everybody works on the same clips."
-HIDDEN = ("models", "lines")  # docks that no task needs
+HIDDEN = ("models", "lines", "conversation")  # docks that no task needs
 
 
 class Guide(QObject):

@@ -11,18 +11,8 @@ from sample_clips.make import talk as maker
 from sample_clips.make.talk import RATE, MissingError, Said, Talk, Turn, write_sound, write_words
 
 __all__ = [
-    "RATE",
-    "TURNS",
-    "Said",
-    "Talk",
-    "Turn",
-    "make_conversation",
-    "speak",
-    "synthesise",
-    "write_sound",
-    "write_textgrid",
-    "write_words",
-]
+    "RATE", "TURNS", "Said", "Talk", "Turn", "make_conversation", "speak", "synthesise", "write_sound", "write_textgrid", "write_words",
+]  # fmt: skip
 
 TURNS = (
     Turn(0, 0.6, ("so I was *walking* home", "from the *station* last night", "and there was this *enormous* dog")),
