@@ -39,12 +39,12 @@ class Stage:
         made = duet(conversation, ident, projects, heard)
         both = tuple(
             Shown(
-                p.project, p.plan, made.length, stand=p.stand, asks=p.performance.asks, notes=(*notes, *told),
+                p.project, p.plan, made.length, side=n, stand=p.stand, asks=p.performance.asks, notes=(*notes, *told),
                 folder=folder if s.project is None else (folder / s.project).parent,
             )
-            for p, s in zip(made.parts, conversation.sides, strict=True)
+            for n, (p, s) in enumerate(zip(made.parts, conversation.sides, strict=True))
         )  # fmt: skip
-        return replace(both[side], partner=both[1 - side], side=side)
+        return replace(both[side], partner=both[1 - side])
 
     def _project(self, project: Project, path: str | None, folder: Path, notes: list[str]) -> Project:
         """Return the project whose graph moves a side: another one's, or the one at hand where that cannot be read."""
