@@ -101,7 +101,7 @@ class ImportDialog(QDialog):
         self.job: Job | None = None
         self.setAttribute(Qt.WidgetAttribute.WA_DeleteOnClose)
         self.setWindowTitle("Conversation from sound")
-        self.resize(820, 500)
+        self.resize(920, 500)  # at which both cards are as wide
         self._soon = QTimer(self, singleShot=True, interval=TYPED)
         self._soon.timeout.connect(self.start)
         self._build()
@@ -252,6 +252,14 @@ class ImportDialog(QDialog):
         self.notes.setStyleSheet(f"color: {t.error if failure else t.warning}")
         self.notes.setText("\n".join(f"⚠  {n}" for n in notes[:MOST]) + "".join(f"\n{m}" for m in more))
         self.notes.setVisible(bool(notes))
+        self._fit()
+
+    def _fit(self) -> None:
+        """Grow as high as the notes need: a layout does not ask for what words need that are broken into lines."""
+        layout = self.layout()
+        if layout is not None:
+            layout.activate()
+            self.resize(self.width(), max(self.height(), layout.totalHeightForWidth(self.width())))
 
     def sides(self) -> tuple[Side, ...]:
         """Return the two as they were read, the first first."""

@@ -124,7 +124,10 @@ def _voices(reading: _Reading, audio: list[Path], worded: bool) -> tuple[Voice, 
         pair = [_voice(reading, path, n, f"{path.name}, {_SIDES[n]} channel", read.samples[n], read.rate) for n in (0, 1)]
         _tell_clipped(reading, pair[one].called, read.clipped[one])
         return pair[0], pair[1]
-    why = "has one channel" if channels == 1 else "has the same sound in both channels"
+    hushed = float(np.abs(read.samples).max()) <= 10 ** (HUSH / 20)
+    if hushed and not worded:
+        raise FileError(path, "is silent", remedy="Check the microphone, or what was exported, and save the sound anew.")
+    why = "is silent" if hushed else "has one channel" if channels == 1 else "has the same sound in both channels"
     if not worded:
         raise FileError(
             path,

@@ -262,7 +262,9 @@ def _from_tiers(path: Path, tiers: Sequence[_Tier], notes: Iterable[str]) -> Tra
     if not worded:  # empty ones count where there is nothing else
         worded = [t for t in tiers if t.role in ("words", "phrases", "")]
     if not worded and not any(t.role == "segments" for t in tiers):
-        names = ", ".join(f"'{t.name[:40]}'" for t in tiers[:8]) or "none"
+        if not tiers:
+            raise out.fail("it has no tiers", "", "Save it anew with a tier of words for each speaker, or go on without words.")
+        names = ", ".join(f"'{t.name[:40]}'" for t in tiers[:8])
         raise out.fail(
             f"no tier holds words; its tiers are {names}", "", "Name the tier that does 'words', or 'Ann - words' of two speakers."
         )

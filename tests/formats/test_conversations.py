@@ -159,8 +159,11 @@ def test_a_cancelled_reading_ends(files: tuple[Path, Path]) -> None:
 def test_silence_says_so(tmp_path: Path) -> None:
     read = read_conversation([sound(tmp_path / "a.wav", np.zeros(3 * RATE), 1e-6 * buzz(3))])
     assert all(not s.segments for s in read.conversation.sides)
+    for quiet in ((np.zeros(3 * RATE),), (np.zeros(3 * RATE), np.zeros(3 * RATE))):
+        with pytest.raises(FileError, match=r"is silent.*microphone"):
+            read_conversation([sound(tmp_path / "b.wav", *quiet)])
     with pytest.raises(FileError, match="same sound in both channels"):
-        read_conversation([sound(tmp_path / "b.wav", np.zeros(3 * RATE), np.zeros(3 * RATE))])
+        read_conversation([sound(tmp_path / "b.wav", buzz(3), buzz(3))])
     one = read_conversation([sound(tmp_path / "c.wav", np.zeros(6 * RATE), buzz(6))])
     assert said(one, "left channel is silent", "transcript") and said(one, "c.wav, left channel: it is silent", "microphone")
     assert one.conversation.sides[1].segments and not one.conversation.sides[0].segments

@@ -76,6 +76,7 @@ def test_a_transcript_without_words_is_told(read: Reader, text: str) -> None:
         ("a 1 0.5 -0.2 so\n", "lasts -0.2"),
         ("a 1 5e8 0.2 so\n", "time is"),
         (grid(("phones", [(0, 1, "a")])), "no tier holds words"),
+        (grid(), "it has no tiers"),
     ],
 )
 def test_what_is_no_transcript_says_what_place_and_remedy(read: Reader, text: str, cause: str) -> None:

@@ -134,6 +134,20 @@ def test_a_failed_read_says_why_and_keeps_the_dialog(drive: Any, tmp_path: Path)
     assert not drive.document.project.conversations
 
 
+def test_many_notes_leave_the_names_as_high_as_they_are(drive: Any, tmp_path: Path) -> None:
+    audio, _ = make_conversation(tmp_path)
+    words = tmp_path / "over.srt"
+    words.write_text("1\n00:00:01,000 --> 00:00:05,000\nhello there you\n\n2\n00:00:03,000 --> 00:00:06,000\nand over it\n")
+    drive.window.dialogs.converse((audio, words))
+    dialog = dialog_of(drive)
+    wait_read(drive, dialog)
+    assert dialog.notes.text().count("⚠") >= 4
+    drive.pause(50)
+    for field in (dialog.name, *(c.name for c in dialog.cards)):
+        assert field.height() >= field.sizeHint().height()
+    dialog.reject()
+
+
 def test_reading_can_be_stopped_and_taken_up_again(drive: Any, tmp_path: Path) -> None:
     audio, words = make_conversation(tmp_path)
     drive.window.dialogs.converse((audio,))
