@@ -222,23 +222,45 @@ def components(starts: Array, targets: Array, follows: Array) -> tuple[Array, in
     return component, made
 
 
+@compiled
+def cheap(starts: Array, targets: Array, costs: Array, bound: Any) -> Any:
+    """Return the transitions that cost no more than `bound`: starts, targets and costs as before."""
+    firsts = np.zeros(len(starts), np.int64)
+    for state in range(len(starts) - 1):
+        count = 0
+        for place in range(starts[state], starts[state + 1]):
+            count += costs[place] <= bound
+        firsts[state + 1] = firsts[state] + count
+    out, prices = np.empty(firsts[-1], targets.dtype), np.empty(firsts[-1], costs.dtype)
+    at = 0
+    for place in range(len(targets)):
+        if costs[place] <= bound:
+            out[at], prices[at] = targets[place], costs[place]
+            at += 1
+    return firsts, out, prices
+
+
 @compiled_exactly
 def relax(
-    cost: Array, new: Array, back: Array, starts: Array, targets: Array, costs: Array, follows: Array, fits: Array, peaks: Array
+    cost: Array, new: Array, back: Array, starts: Array, targets: Array, costs: Array, follows: Array, fits: Array, peaks: Array, bound: Any
 ) -> None:
     """Go one frame on from all states: cost, new `[2, F]` what the cheapest way to a state costs, without and with its stress met;
-    back `[2, F]`: where it comes from, 2 state + met. fits, peaks `[F]`: which states may come, and which of them meet the stress."""
+    back `[2, F]`: where it comes from, 2 state + met. fits, peaks `[F]`: which states may come, and which of them meet the stress.
+    bound: what no way may cost more than."""
     for met in range(2):
         for state in range(cost.shape[1]):
             so_far = cost[met, state]
-            if not so_far < np.inf:
+            if not (so_far <= bound and so_far < np.inf):
                 continue
+            left = bound - so_far
             if follows[state] and fits[state + 1]:
                 into = 1 if peaks[state + 1] else met
                 if so_far < new[into, state + 1]:
                     new[into, state + 1] = so_far
                     back[into, state + 1] = 2 * state + met
             for place in range(starts[state], starts[state + 1]):
+                if costs[place] > left:
+                    continue
                 target = targets[place]
                 if fits[target]:
                     into = 1 if peaks[target] else met

@@ -48,18 +48,41 @@ class Path:
 
 
 def best(graph: MotionGraph, heard: Heard, wanted: Wanted) -> Path:
-    """Return the cheapest path that has what is wanted. Raises SynthesisError when there is none, saying at what time all end."""
-    from metagraph.synthesis.kernels import relax
+    """Return the cheapest path that has what is wanted. Raises SynthesisError when there is none, saying at what time all end.
 
+    Ways dearer than a bound are not followed, which is exact: what is found within it is the cheapest. The bound grows until there is
+    one, up to what the greedy search found.
+    """
     states, frames = len(graph.states), len(wanted)
     if 8 * states * frames > MOST:
         raise SynthesisError(
             f"the best path over {states:,} states and {frames / RATE:.0f} s needs {8e-9 * states * frames:.1f} GB: "
             "search shorter stretches, or with the greedy search"
         )
+    try:
+        dear = greedy(graph, heard, wanted).cost
+        bounds = [share * dear + 1e-6 for share in (0.4, 0.7)] + [dear * (1 + 1e-5) + 1e-6]
+    except SynthesisError:
+        bounds = [share * graph.threshold.limit for share in (1.0, 4.0)]
+    back = np.empty((frames, 2, states), np.int32)
+    for bound in (*bounds, float("inf")):
+        try:
+            return _best_within(graph, heard, wanted, back, bound)
+        except SynthesisError:
+            if bound == float("inf"):
+                raise
+    raise AssertionError("a search without a bound finds a path or says that there is none")
+
+
+def _best_within(graph: MotionGraph, heard: Heard, wanted: Wanted, back: Array, bound: float) -> Path:
+    """Return the cheapest path of those that cost no more than a bound. back: room for the way back `[T, 2, F]`. Raises SynthesisError when
+    there is none."""
+    from metagraph.synthesis.kernels import cheap, relax
+
+    states, frames, most = len(graph.states), len(wanted), np.float32(bound)
+    links = cheap(graph.starts, graph.targets, graph.costs, most) if np.isfinite(bound) else (graph.starts, graph.targets, graph.costs)
     follows = ~graph.states.last
     cost = np.full((2, states), np.inf, np.float32)
-    back = np.full((frames, 2, states), -1, np.int32)
     fits = _fits(graph, heard, wanted, 0)
     met = fits & heard.peaks & (wanted.window[0] >= 0)
     cost[0, fits & ~met] = 0
@@ -68,7 +91,7 @@ def best(graph: MotionGraph, heard: Heard, wanted: Wanted) -> Path:
     for t in range(1, frames):
         new = np.full((2, states), np.inf, np.float32)
         fits = _fits(graph, heard, wanted, t)
-        relax(cost, new, back[t], graph.starts, graph.targets, graph.costs, follows, fits, heard.peaks & (wanted.window[t] >= 0))
+        relax(cost, new, back[t], *links, follows, fits, heard.peaks & (wanted.window[t] >= 0), most)
         cost = new
         _close(cost, wanted, t)
     met_at, state = np.unravel_index(int(cost.argmin()), cost.shape)

@@ -140,3 +140,27 @@ def test_a_search_that_would_not_fit_in_memory_is_refused() -> None:
     want = Wanted(np.full(20_000_000, ALL, np.uint8), np.full(20_000_000, -1, np.int32))
     with pytest.raises(SynthesisError, match="greedy"):
         best(graph, Heard(np.full(40, ALL, np.uint8), np.zeros(40, bool)), want)
+
+
+def test_the_best_path_is_the_same_whatever_bound_it_is_searched_within() -> None:
+    from metagraph.synthesis.search import _best_within
+
+    found = 0
+    for seed in range(12):
+        chance = np.random.default_rng(seed)
+        pairs = {(int(a), int(b)) for a, b in chance.integers(0, 60, (300, 2)) if b != a + 1}
+        graph = graph_of(60, [0, 25, 60], {e: float(chance.uniform(0.1, 2)) for e in pairs})
+        sound = Heard(chance.choice([IDLE, CLAUSE], 60).astype(np.uint8), chance.random(60) < 0.3)
+        want = Wanted(chance.choice([IDLE, CLAUSE, ALL], 25).astype(np.uint8), np.full(25, -1, np.int32))
+        try:
+            path = best(graph, sound, want)
+        except SynthesisError:
+            continue
+        found += 1
+        back = np.empty((len(want), 2, len(graph.states)), np.int32)
+        for bound in (float("inf"), path.cost + 1e-5, 10 * path.cost + 1.0):
+            assert _best_within(graph, sound, want, back, bound).cost == pytest.approx(path.cost, abs=1e-5)
+        assert path.cost > 0
+        with pytest.raises(SynthesisError):
+            _best_within(graph, sound, want, back, path.cost * 0.99)
+    assert found >= 4
