@@ -53,8 +53,9 @@ class Rates(Struct, frozen=True, kw_only=True, omit_defaults=True, forbid_unknow
 
 class Side(Struct, frozen=True, kw_only=True, omit_defaults=True, forbid_unknown_fields=True):
     """One of the two. audio: path of its sound, relative to the project file; channel: which of that file's channels is its own, from 0;
-    None for all of them mixed. project: path of another project whose graph moves this side, None for this one. take: id of the clip that
-    was recorded along with it, from the same moment. words: as transcribed, by start. segments: of its own speech, by start, never overlapping, none idle."""
+    None for all of them mixed. project: path of another project whose graph moves this side, None for this one. take: id of the clip
+    that was recorded along with it, from the same moment. words: as transcribed, by start. segments: of its own speech, by start, never
+    overlapping, none idle."""
 
     name: _Name = ""
     audio: str | None = None

@@ -75,11 +75,6 @@ def hear(
     return replace(after, reports=(*after.reports, *meant.refused)) if meant.refused else after
 
 
-def _belongs(ident: str, owner: str) -> bool:
-    """Whether a request was made by an ask: its own, or one of its parts."""
-    return owner in _owners(ident)
-
-
 def _owners(ident: str) -> Iterator[str]:
     """Yield the asks a request may have been made by: that of its own id, and those of which it would be a part."""
     yield ident

@@ -49,14 +49,6 @@ def pose_at(plan: Plan, project: Project, seconds: Any, alive: bool = True) -> P
     return Pose(pose.rotations.reshape(*shape, 4), pose.translations.reshape(*shape, 3))
 
 
-def clip_pose_at(project: Project, action: Action, seconds: Any) -> Pose:
-    """Return a clip's own pose at clip seconds `[...]`, not composed: what a clip looks like alone."""
-    entry = project.clips[action.clip]
-    if entry.motion is None:
-        raise ValueError(f"the file of clip '{entry.name}' is missing")
-    return entry.motion.pose_at(seconds)
-
-
 def cue_weight(cue: Cue, times: Array) -> Array:
     """Return how much of the cue shows at `times [N]`: 0 outside it, rising over its blend in, falling over its blend out."""
     rise = ease((times - cue.start) / cue.blend_in) if cue.blend_in > 0 else (times >= cue.start).astype(float)

@@ -79,13 +79,6 @@ def read_sound(path: str | Path, channel: int | None = None, longest: float = LO
     return samples[channel], read.rate
 
 
-def read_channels(path: str | Path, longest: float = LONGEST) -> tuple[Array, int]:
-    """Read a sound file: samples `[C, N]` float64, channels apart, and samples a second. longest: seconds it may last. What it is, its
-    content says, whatever it is called. Raises FileError."""
-    read = read_recording(path, longest)
-    return read.samples, read.rate
-
-
 def read_recording(path: str | Path, longest: float = LONGEST, most: int | None = None) -> Recording:
     """Read a sound file, channels apart, block by block. most: samples a second at most, at least 8000; where the file has more, what is
     too high is taken out, every second, third ... is kept, as float32, so that hours fit into memory. Raises FileError."""
