@@ -152,7 +152,7 @@ def _of_conversations(window: Window) -> tuple[Command, ...]:
                 tip="What both do, as requests that can be edited one by one, and exported"),
         Command("write_segments", menu, "&Export segments…", o.write_segments, enabled=staged, tip="As ELAN or Praat TextGrid", line=True),
         Command("remove_conversation", menu, "Remove conversation", o.remove_conversation, enabled=staged, line=True),
-    )
+    )  # fmt: skip
 
 
 def _of_meta(window: Window, command: Command) -> Command:
