@@ -9,7 +9,7 @@ from __future__ import annotations
 from collections import Counter
 from collections.abc import Iterator
 
-from metagraph.graph.asks import AnyAsk, Behave, Fidget, Gesture, Look, Nod, Performance, Place, Point, Say
+from metagraph.graph.asks import AnyAsk, Behave, Change, Fidget, Gesture, Look, Nod, Performance, Place, Point, Say
 from metagraph.graph.conversation import Conversation, Segment, heard_by
 from metagraph.graph.model import Layer, Mode, Project
 from metagraph.playback.choice import uniform
@@ -26,6 +26,7 @@ TURN = 0.6  # seconds of one's own silence after which one listens
 QUIET = 2.0  # seconds of both's silence after which one idles
 REST = 3.5  # seconds nobody asks anything of a character after which it may fidget
 FIDGETS = 0.5  # how often it does
+SHIFTS = 0.4  # how often the body changes its stance as one begins to speak, where most shifts of posture are (Cassell et al. 2001)
 
 
 def asks_of(
@@ -51,6 +52,11 @@ def asks_of(
         elif s.kind in ("response", "hesitation") and nods and drawn < (rates.response if s.kind == "response" else rates.hesitation):
             out.append(Nod(id=key, at=s.start, priority=ANSWER))
             busy.append((s.start, s.end + 1.0))
+    if "transition" in kinds["body"]:
+        own = _turns(conversation.sides[side].segments)
+        for n, (start, end) in enumerate(own):
+            if end - start > TURN and uniform(conversation.seed, str(side), f"shift {n}") < SHIFTS:
+                out.append(Change(id=f"shift {n}", at=max(0.0, round(start - 0.3, 3)), layer="body", priority=FILL))
     for n, (start, end) in enumerate(_gaps(sorted(busy), conversation.length)):
         layer: Layer = "arms" if "fidget" in kinds["arms"] else "body"
         if "fidget" in kinds[layer] and uniform(conversation.seed, str(side), f"fidget {n}") < FIDGETS:

@@ -8,7 +8,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from metagraph.graph.asks import Behave, Fidget, Gesture, Nod
+from metagraph.graph.asks import Behave, Change, Fidget, Gesture, Nod
 from metagraph.graph.conversation import SPOKEN, Conversation, Rates, Segment, Side, Spoken, heard_by
 from metagraph.graph.model import Project
 from metagraph.playback.hear import perform
@@ -152,3 +152,12 @@ def test_gestures_without_tags_are_asked_for_without(sample: Project) -> None:
     bare = sample.with_graph(graph.with_actions({i: replace(a, tags=()) for i, a in graph.actions.items()}))
     tags = {a.tags for a in asks_of(said(*clauses(5), clause=1.0), 0, bare) if isinstance(a, Gesture)}
     assert tags == {()}
+
+
+def test_the_body_shifts_its_weight_only_where_a_turn_begins(sample: Project) -> None:
+    some = tuple(clause(1 + 4 * n, 3 + 4 * n, f"words {n}") for n in range(30))
+    asks = [a for a in asks_of(said(*some, length=130), 0, sample) if isinstance(a, Change)]
+    starts = {round(s.start - 0.3, 3) for s in some}
+    assert {a.layer for a in asks} == {"body"} and {a.at for a in asks} <= starts
+    assert 6 <= len(asks) <= 18
+    assert not [a for a in asks_of(said(*some, length=130), 0, Project()) if isinstance(a, Change)]
