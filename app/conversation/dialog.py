@@ -105,6 +105,7 @@ class ImportDialog(QDialog):
         self._soon = QTimer(self, singleShot=True, interval=TYPED)
         self._soon.timeout.connect(self.start)
         self._build()
+        document.loaded.connect(self.reject)  # what was read is said relative to the project it was read for
         self.start()
 
     # --- building

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from PySide6.QtCore import Qt, QTimer, Signal
-from PySide6.QtGui import QDragEnterEvent, QDragMoveEvent, QDropEvent
+from PySide6.QtGui import QDragEnterEvent, QDragMoveEvent, QDropEvent, QResizeEvent
 from PySide6.QtWidgets import QComboBox, QHBoxLayout, QLabel, QMenu, QToolButton, QVBoxLayout, QWidget
 
 from app.canvas.drops import sounds_of
@@ -20,6 +20,7 @@ from app.words import many
 from metagraph.graph.conversation import SPOKEN
 
 NONE = "None on stage"
+BRIEF = 1000  # pixels of the panel below which the legend leaves its words out: the sentence beside needs the room
 PLURALS = {"clause": "clauses", "response": "responses", "hesitation": "hesitations"}
 
 
@@ -45,6 +46,7 @@ class ConversationPanel(QWidget):
         document.changed.connect(lambda before, after: self._restage())
         session.conversation_changed.connect(self._restage)
         session.theme_changed.connect(self._soon.start)
+        session.mode_changed.connect(self._soon.start)
         self.editing.changed.connect(self._soon.start)
         self._restage()
 
@@ -67,7 +69,7 @@ class ConversationPanel(QWidget):
         self.title.setMinimumHeight(2 * self.title.fontMetrics().height())
         row.addWidget(self.title, 1)
         self.legend = QLabel(self, textFormat=Qt.TextFormat.RichText)
-        self.legend.setToolTip("What segments are. Keys 1, 2 and 3 label the selected ones.")
+        self.legend.setToolTip("Clauses, responses and hesitations. Keys 1, 2 and 3 label the selected ones.")
         row.addWidget(self.legend)
         self.add = QToolButton(self, text="From sound…", toolTip="Read a conversation from sound files, and their words if there are any")
         row.addWidget(self.add)
@@ -93,13 +95,17 @@ class ConversationPanel(QWidget):
             self.title.say("")
             return
         counts = {kind: sum(s.kind == kind for side in of.sides for s in side.segments) for kind in SPOKEN}
+        brief = self.width() < BRIEF
         self.legend.setText(
             "&nbsp;&nbsp; ".join(
                 f"<span style='background:{t.sounds[k]}; color:#17181b'>&nbsp;{SOUND_MARKS[k]}&nbsp;</span> "
-                f"<span style='color:{t.dim}'>{counts[k]:,} {PLURALS[k] if counts[k] != 1 else k}</span>"
+                f"<span style='color:{t.dim}'>{counts[k]:,}{'' if brief else ' ' + (PLURALS[k] if counts[k] != 1 else k)}</span>"
                 for k in SPOKEN
             )
         )
+        if self.session.mode == "manual":
+            self.title.say("Now the machine you draw moves one character. Back in the meta-graph, both move with what is said.")
+            return
         chosen, found = self.editing.chosen, self.editing.segment(self.editing.last)
         if len(chosen) == 1 and found is not None and self.editing.last is not None:
             self.title.say(f"{side_name(of, self.editing.last[0])}: {segment_words(found)}".replace("\n", ", "), True)
@@ -109,6 +115,10 @@ class ConversationPanel(QWidget):
             minutes, seconds = divmod(round(of.length), 60)
             both = " and ".join(side_name(of, side) for side in (0, 1))
             self.title.say(f"{both}, {minutes}:{seconds:02d}")
+
+    def resizeEvent(self, event: QResizeEvent) -> None:
+        super().resizeEvent(event)
+        self._soon.start()
 
     # --- drops
 

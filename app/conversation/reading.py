@@ -21,6 +21,7 @@ LONGEST = 36000.0  # seconds of a conversation
 KEPT = 16000  # samples a second that waveform and pitch need
 BLOCK = 60  # seconds of the waveform at a time
 HOPS = 100.0  # pitches a second
+ANEW = "Menu “…” above, Sounds and names, chooses another."
 Key = tuple[str, int | None]  # a sound's path, and the channel
 
 
@@ -122,7 +123,7 @@ class _Work:
                 samples |= _read(path, mine)
             except FileError as error:
                 for heard in mine.values():
-                    heard.told, heard.missing = "", str(error)
+                    heard.told, heard.missing = "", f"{error} {ANEW}"
             if job.cancelled:
                 return
         for key, (sound, rate) in samples.items():
@@ -147,7 +148,7 @@ def _read(path: str, wanted: dict[Key, Heard]) -> dict[Key, tuple[Any, int]]:
         channel = key[1]
         if channel is not None and channel >= len(read.samples):
             heard.told = ""
-            heard.missing = f"{Path(path).name} has no channel {channel + 1}. Choose its sound anew."
+            heard.missing = f"{Path(path).name} has no channel {channel + 1}. {ANEW}"
             continue
         out[key] = (read.samples.mean(0) if channel is None else read.samples[channel], read.rate)
         heard.length = read.duration

@@ -109,6 +109,7 @@ class SettingDialog(QDialog):
         strengthen(self.go)
         buttons.accepted.connect(self.accept)
         buttons.rejected.connect(self.reject)
+        document.loaded.connect(self.reject)
         layout.addWidget(buttons)
 
     def build(self, layout: QVBoxLayout) -> None:

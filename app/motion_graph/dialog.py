@@ -49,7 +49,7 @@ class MotionGraphDialog(QDialog):
         self.graph: Any = None  # synthesis.graph.MotionGraph, None until it is built for what is chosen now
         self.takes = Takes((), (), ())
         self._job: Job | None = None
-        self._then: tuple[str, bool] = ("", False)  # what is to be done once the graph is there
+        self._counted: Any = None  # the takes and the level that the table is of
         self._soon = QTimer(self, singleShot=True, interval=200)
         self._soon.timeout.connect(self._compare)
         self.picked = TakesList(document, self)
@@ -69,6 +69,7 @@ class MotionGraphDialog(QDialog):
         box.addLayout(columns, 1)
         box.addWidget(self.wishes)
         box.addLayout(self._foot())
+        document.loaded.connect(self._leave)
         document.changed.connect(self._follow)
         self.picked.fill()
 
@@ -94,6 +95,7 @@ class MotionGraphDialog(QDialog):
             row.addWidget(QLabel(words, self))
             row.addWidget(field)
             row.addSpacing(10)
+            field.lineEdit().setTextMargins(6, 0, 0, 0)
             field.valueChanged.connect(self._changed)
         row.addStretch(1)
         self.right.addLayout(row)
@@ -137,6 +139,13 @@ class MotionGraphDialog(QDialog):
             row.addWidget(widget)
         return row
 
+    def _leave(self) -> None:
+        """Another project comes: what is being made for the one before is not for it."""
+        if self._job is not None:
+            self._job.cancel()
+        self.states = self.graph = None
+        self.said.setText("")
+
     def _follow(self, before: Project, after: Project) -> None:
         if before.clips is not after.clips or before.conversations is not after.conversations or before.skeleton is not after.skeleton:
             self.picked.fill()
@@ -148,6 +157,8 @@ class MotionGraphDialog(QDialog):
         """Something was chosen: compare frames anew, soon."""
         self.graph = None
         self.takes = takes_of(self.document.project, self.picked.chosen())
+        if self._counted != (self.takes.clips, self.level.value()):
+            self._show_table({})
         seconds = sum(clip.duration for clip in self.takes.clips)
         self.picked.title.setText(f"Takes · {len(self.takes.ids)} chosen, {seconds / 60:.1f} min" if self.takes.ids else "Takes")
         self._soon.start()
@@ -179,7 +190,9 @@ class MotionGraphDialog(QDialog):
         self.limit = limit
         self.plot.show_threshold(limit)
         if limit is None:
-            self.words.setText("Choose takes: long recordings, of which frames that are alike become transitions.")
+            none = not self.picked.list.rowCount()
+            first = "There are no clips yet. Import long recordings:" if none else "Choose takes, long recordings:"
+            self.words.setText(f"{first} of frames that are alike, transitions are made.")
             return
         fitted = "A transition may cost" if limit.distribution is None else "Johnson's S_B, fitted: a transition may cost"
         off = abs(limit.limit - limit.observed) / max(limit.observed, 1e-9)
@@ -233,6 +246,7 @@ class MotionGraphDialog(QDialog):
         if not takes.ids:
             self._failed(ValueError("choose takes first"))
             return
+        self._counted = (takes.clips, self.level.value())
         self._start("Motion graphs", lambda job: table(takes, KS, level, job.tell, lambda: job.cancelled), self._show_table)
 
     def _show_table(self, rows: Any) -> None:
@@ -268,12 +282,12 @@ class MotionGraphDialog(QDialog):
 
     def find(self) -> None:
         """Find new motion as wished, and add it to the library."""
-        folder = self._folder()
-        if folder is None:
-            return
         takes, wish, graph, limit = self.takes, self.wishes.wish(), self.graph, self.limit
         if not takes.ids or limit is None or self.states is None:
             self._failed(ValueError("choose takes first; their frames are compared before anything can be found"))
+            return
+        folder = self._folder()
+        if folder is None:
             return
         states, name, taken = self.states[1], self.wishes.name(), {e.name for e in self.document.project.clips.values()}
 
@@ -320,20 +334,19 @@ class MotionGraphDialog(QDialog):
 
     def cut(self) -> None:
         """Cut the selected takes, or all that are chosen, into clips that wait to be labelled."""
-        folder = self._folder()
-        if folder is None:
-            return
         ids = self.picked.selected()
         project, k, level = self.document.project, self.k.value(), self.level.value() / 100
         clips = takes_of(project, ids).clips
         if not clips:
             self._failed(ValueError("choose takes first"))
             return
+        folder = self._folder()
+        if folder is None:
+            return
         taken = {e.name for e in project.clips.values()}
 
         def work(job: Job) -> Any:
             from metagraph.synthesis.cut import candidates
-
             from metagraph.synthesis.graph import threshold
             from metagraph.synthesis.states import states_of
 

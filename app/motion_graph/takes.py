@@ -54,6 +54,7 @@ class TakesList(QWidget):
         header.resizeSection(2, 190)
         self.list.verticalHeader().setDefaultSectionSize(ROW)
         header.setHighlightSections(False)
+        header.setDefaultAlignment(Qt.AlignmentFlag.AlignLeft | Qt.AlignmentFlag.AlignVCenter)
         self.list.itemChanged.connect(self._checked)
         self.cut_button = QPushButton("Cut selected takes into clips", self, autoDefault=False)
         self.cut_button.setToolTip("At still moments in a pose it comes back to, so that no jump shows; the clips then wait to be labelled")

@@ -98,13 +98,21 @@ def synthesise(graph: Any, takes: Takes, wish: Wish, name: str) -> Found:
     from metagraph.synthesis.assemble import assemble
     from metagraph.synthesis.constraints import heard, wanted
     from metagraph.synthesis.search import best, greedy
+    from metagraph.synthesis.states import SynthesisError
 
     said = heard(graph.states, takes.speech)
     # Takes nobody annotated went with anything.
     use = wish.use if takes.told else ()
     asked = wanted(wish.segments, wish.seconds, wish.tolerance, use, wish.peaks and takes.told)
     began = time.perf_counter()
-    path = best(graph, said, asked) if wish.exact else greedy(graph, said, asked, seed=wish.seed)
+    try:
+        path = best(graph, said, asked) if wish.exact else greedy(graph, said, asked, seed=wish.seed)
+    except SynthesisError as error:
+        if use and wish.segments:
+            raise
+        raise SynthesisError(
+            f"these takes cannot go on for {wish.seconds:g} s without a jump: choose more takes, raise k or the level, or ask for less"
+        ) from error
     took = time.perf_counter() - began
     return Found(assemble(graph.states, takes.clips, path, name), path.cost, len(path.jumps), took)
 

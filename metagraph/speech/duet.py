@@ -74,12 +74,12 @@ def voices(conversation: Conversation, folder: Path) -> tuple[tuple[Voice | None
     """Return each side's voice, None where its sound is missing, and what could not be read, in words. folder: what paths begin at."""
     found: list[Voice | None] = []
     notes: list[str] = []
-    for side in conversation.sides:
+    for n, side in enumerate(conversation.sides, 1):
         try:
             found.append(read_spoken(folder / side.audio, side.channel, side.words) if side.audio else None)
         except FileError as error:
             found.append(None)
-            notes.append(f"{side.name or 'a side'}: {error}")
+            notes.append(f"{side.name or f'Speaker {n}'}: {error}")
     return (found[0], found[1]), tuple(dict.fromkeys(notes))
 
 

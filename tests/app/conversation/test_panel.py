@@ -65,6 +65,14 @@ def test_reading_that_was_cancelled_is_told_and_begun_anew_when_it_is_chosen_aga
     assert not any(h.missing for h in sounds.heard.values())
 
 
+def test_while_a_machine_is_drawn_the_panel_says_that_it_moves_the_character(talk: Any) -> None:
+    panel, drive = talk.drive.window.conversation, talk.drive
+    drive.actions["manual"].trigger()
+    drive.wait(lambda: "the machine you draw" in panel.title.words)
+    drive.actions["manual"].trigger()
+    drive.wait(lambda: "the machine you draw" not in panel.title.words)
+
+
 def test_sound_dropped_on_the_panel_opens_the_dialog(talk: Any) -> None:
     from app.conversation.dialog import ImportDialog
 

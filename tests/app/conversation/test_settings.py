@@ -10,6 +10,7 @@ from PySide6.QtCore import Qt
 from PySide6.QtTest import QTest
 from PySide6.QtWidgets import QFileDialog, QToolButton
 
+from app.conversation.dialog import ImportDialog
 from app.conversation.settings import SidesDialog
 from metagraph.formats.store import save_project
 from metagraph.graph import conversing
@@ -61,6 +62,17 @@ def test_a_project_that_moves_its_own_side_is_this_project(talk: Any, tmp_path: 
     QTest.keyClicks(dialog.movers[0], "this.metagraph.yaml")
     QTest.mouseClick(dialog.go, Qt.MouseButton.LeftButton)
     assert talk.conversation.sides[0].project is None
+
+
+def test_a_dialog_goes_with_the_project_it_is_about(talk: Any) -> None:
+    dialog = opened(talk)
+    talk.drive.window.dialogs.converse((talk.audio, talk.words))
+    reading = next(d for d in talk.drive.window.findChildren(ImportDialog) if d.isVisible())
+    talk.drive.document.load(Project("other"), None)
+    assert not dialog.isVisible()
+    assert not reading.isVisible()
+    talk.drive.wait(lambda: not talk.drive.jobs.running, 60)
+    assert not talk.drive.document.project.conversations
 
 
 def test_how_far_apart_they_stand_is_set_with_all_the_rest_in_one_step(talk: Any) -> None:

@@ -12,7 +12,7 @@ from PySide6.QtTest import QTest
 
 from app.motion_graph.dialog import MotionGraphDialog
 from app.motion_graph.rates import RatesDialog
-from app.motion_graph.work import FOLDER
+from app.motion_graph.work import FOLDER, LEAST, MOST
 from metagraph.formats.store import absolute, open_project, save_project
 from metagraph.graph.conversation import Conversation, Rates, Segment, Side
 from metagraph.graph.model import Project
@@ -161,10 +161,65 @@ def test_takes_are_cut_into_clips_that_wait_to_be_labelled(shown):
     count = len(drive.document.project.clips)
     press(dialog.picked.cut_button)
     drive.wait(lambda: bool(dialog.said.text()), 60)
+    assert "not labelled yet" in dialog.said.text(), "the stances rest, leave and come back"
     new = [e for e in drive.document.project.clips.values() if e.path.startswith(FOLDER)]
-    assert len(new) == len(drive.document.project.clips) - count
+    assert new and len(new) == len(drive.document.project.clips) - count
     assert all(e.id not in drive.document.project.uses for e in new)
-    assert ("not labelled yet" in dialog.said.text()) == bool(new)
+    assert all(LEAST <= e.duration <= MOST for e in new)
+    assert all((drive.document.folder / e.path).is_file() for e in new)
+    assert drive.session.clips == tuple(e.id for e in new), "they are selected, to be labelled"
+    drive.document.undo_stack.undo()
+    assert len(drive.document.project.clips) == count
+
+
+def test_what_was_counted_of_other_takes_is_not_shown_any_more(shown):
+    drive, dialog = shown
+    press(dialog.count_button)
+    drive.wait(lambda: dialog.table.item(0, 1).text() != "–" and dialog.count_button.isEnabled(), 60)
+    dialog.k.setValue(4)
+    assert dialog.table.item(0, 1).text() != "–", "the table is of each k"
+    dialog.picked.list.item(0, 0).setCheckState(Qt.CheckState.Unchecked)
+    assert dialog.table.item(0, 1).text() == "–"
+
+
+def test_what_is_found_for_one_project_is_not_put_into_the_next(shown, tmp_path):
+    drive, dialog = shown
+    dialog.wishes.speech.setCurrentIndex(0)
+    press(dialog.wishes.go)
+    drive.document.load(Project("next"), None)
+    drive.wait(lambda: dialog._job is None and not drive.jobs.running, 60)
+    drive.pause(100)
+    assert not drive.document.project.clips and not dialog.said.text()
+    drive.wait(lambda: "Import long recordings" in dialog.words.text())
+    press(dialog.wishes.go)
+    assert "Choose takes first" in dialog.said.text()
+
+
+def only(dialog, wanted: int) -> None:
+    for row in range(dialog.picked.list.rowCount()):
+        state = Qt.CheckState.Checked if row == wanted else Qt.CheckState.Unchecked
+        dialog.picked.list.item(row, 0).setCheckState(state)
+
+
+def asked(drive, dialog) -> str:
+    """Ask for more motion than there is, without speech; return what is said."""
+    dialog.wishes.speech.setCurrentIndex(0)
+    dialog.wishes.length.setValue(200)
+    drive.pause(300)
+    drive.wait(lambda: not dialog._soon.isActive() and dialog.states is not None and dialog.states[0] == dialog.takes.clips)
+    press(dialog.wishes.go)
+    drive.wait(lambda: bool(dialog.said.text()), 60)
+    return dialog.said.text()
+
+
+def test_a_graph_of_which_nothing_is_left_is_said_with_a_remedy(shown):
+    drive, dialog = shown
+    only(dialog, 0)
+    dialog.k.setValue(2)
+    dialog.level.setValue(50)
+    count = len(drive.document.project.clips)
+    assert "raise k or the level" in asked(drive, dialog)
+    assert len(drive.document.project.clips) == count
 
 
 def test_an_unsaved_project_is_asked_to_be_saved_first(toys):

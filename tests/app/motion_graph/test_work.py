@@ -12,7 +12,7 @@ from metagraph.formats.clips import read_clips
 from metagraph.graph.conversation import Conversation, Segment, Side
 from metagraph.graph.model import Project
 from metagraph.synthesis.graph import build
-from metagraph.synthesis.states import SynthesisError
+from metagraph.synthesis.states import SynthesisError, states_of
 
 
 def stances(project: Project) -> list[str]:
@@ -48,7 +48,7 @@ def test_new_motion_goes_with_speech_where_the_takes_know_theirs(sample: Project
     ids = stances(sample)
     takes = takes_of(told(sample, ids[0]), ids)
     from metagraph.synthesis.constraints import changes
-    from metagraph.synthesis.states import key_states, states_of
+    from metagraph.synthesis.states import key_states
 
     states = states_of(takes.clips)
     graph = build(states, keys=key_states(states, changes=changes(states, takes.speech)))
@@ -56,6 +56,21 @@ def test_new_motion_goes_with_speech_where_the_takes_know_theirs(sample: Project
     assert found.clip.duration == pytest.approx(2.0, abs=0.05) and found.clip.name == "new" and "cost" in found.words()
     with pytest.raises(SynthesisError, match="allow more tolerance"):
         synthesise(graph, takes, Wish(4.0, (Segment("response", 0.0, 4.0),), tolerance=0.0), "new")
+
+
+@pytest.mark.parametrize(("exact", "search"), [(True, "best"), (False, "greedy")])
+def test_where_speech_does_not_constrain_nothing_is_said_of_it(
+    sample: Project, monkeypatch: pytest.MonkeyPatch, exact: bool, search: str
+) -> None:
+    from metagraph.synthesis import search as searches
+
+    def stuck(*_: object, **__: object) -> None:
+        raise SynthesisError("no motion goes with this speech beyond 0.0 s: allow more tolerance")
+
+    takes = takes_of(sample, stances(sample)[:2])
+    monkeypatch.setattr(searches, search, stuck)
+    with pytest.raises(SynthesisError, match="cannot go on for 9 s without a jump: choose more takes"):
+        synthesise(build(states_of(takes.clips)), takes, Wish(9.0, (Segment("clause", 0.5, 1.5, 1.0),), exact), "new")
 
 
 def test_speech_nobody_told_the_takes_about_constrains_nothing(sample: Project) -> None:
