@@ -177,7 +177,13 @@ class MotionGraphDialog(QDialog):
             states = known[1] if known is not None else states_of(takes.clips)
             return takes.clips, states, threshold(states, k, level)
 
-        self.jobs.start("Comparing frames", work, self._compared, self._failed, quick=True)
+        self.jobs.start("Comparing frames", work, self._compared, self._incomparable, quick=True)
+
+    def _incomparable(self, error: Exception) -> None:
+        """What takes before could do is not what these can."""
+        self.states = None
+        self._show_limit(None)
+        self._failed(error)
 
     def _compared(self, made: Any) -> None:
         clips, states, limit = made
@@ -283,8 +289,9 @@ class MotionGraphDialog(QDialog):
     def find(self) -> None:
         """Find new motion as wished, and add it to the library."""
         takes, wish, graph, limit = self.takes, self.wishes.wish(), self.graph, self.limit
-        if not takes.ids or limit is None or self.states is None:
-            self._failed(ValueError("choose takes first; their frames are compared before anything can be found"))
+        if not takes.ids or limit is None or self.states is None or self.states[0] != takes.clips:
+            why = "these takes cannot be compared: choose others" if takes.ids else "choose takes first"
+            self._failed(ValueError(f"{why}; their frames are compared before anything can be found"))
             return
         folder = self._folder()
         if folder is None:

@@ -18,7 +18,7 @@ from PySide6.QtWidgets import (
 )
 
 from app.document import Document
-from app.motion_graph.work import FOLDER, LONG, speech_of, usable
+from app.motion_graph.work import FOLDER, LONG, left_out, speech_of, usable
 from metagraph.graph.conversing import change_side
 from metagraph.graph.model import Project
 
@@ -56,11 +56,15 @@ class TakesList(QWidget):
         header.setHighlightSections(False)
         header.setDefaultAlignment(Qt.AlignmentFlag.AlignLeft | Qt.AlignmentFlag.AlignVCenter)
         self.list.itemChanged.connect(self._checked)
+        self.note = QLabel(self, wordWrap=True)
+        self.note.setProperty("dim", True)
+        self.note.hide()
         self.cut_button = QPushButton("Cut selected takes into clips", self, autoDefault=False)
         self.cut_button.setToolTip("At still moments in a pose it comes back to, so that no jump shows; the clips then wait to be labelled")
         self.cut_button.clicked.connect(self.cut_wanted)
         box.addWidget(self.title)
         box.addWidget(self.list, 1)
+        box.addWidget(self.note)
         self.rates_button = QPushButton("Count movements with speech…", self, autoDefault=False)
         self.rates_button.setToolTip("How often hands and head moved when something was said")
         self.rates_button.clicked.connect(self.rates_wanted)
@@ -74,6 +78,8 @@ class TakesList(QWidget):
         """List the clips that can be takes; the long ones are chosen, all where none is long."""
         project, chosen = self.document.project, set(self.chosen())
         found = usable(project)
+        self.note.setText(left_out(project))
+        self.note.setVisible(bool(self.note.text()))
         if not self.list.rowCount():
             recorded = [i for i in found if not project.clips[i].path.startswith(f"{FOLDER}/")]
             chosen = {i for i in recorded if project.clips[i].duration >= LONG} or set(recorded)

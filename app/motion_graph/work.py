@@ -12,6 +12,9 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
+import msgspec
+
+from app.words import many
 from metagraph.graph.conversation import SOUNDS, Segment, Sound, heard_by
 from metagraph.graph.edits import free_name
 from metagraph.graph.model import Project
@@ -52,13 +55,38 @@ def speech_of(project: Project, clip: str) -> tuple[str, int] | None:
     return next(((i, n) for i, c in project.conversations.items() for n, s in enumerate(c.sides) if s.take == clip), None)
 
 
+def left_out(project: Project) -> str:
+    """Return which clips cannot be takes, and why, in words; "" where all can."""
+    moving = [e for e in project.clips.values() if e.motion is not None]
+    alike = [e for e in moving if e.motion is not None and e.motion.skeleton == project.skeleton]
+    still = sum(e.frames <= 1 for e in alike)
+    reasons = (
+        (still, "of one frame"),
+        (len(moving) - len(alike), "of another skeleton"),
+        (len(project.clips) - len(moving), "whose file is missing"),
+    )
+    told = [f"{many(count, 'clip')} {why}" for count, why in reasons if count]
+    return f"Left out: {', '.join(told)}." if told else ""
+
+
+def during(heard: Sequence[Segment], seconds: float) -> tuple[Segment, ...]:
+    """Return what was heard while a take lasted: what goes on after its end is cut there."""
+    out = []
+    for s in heard:
+        if s.start < seconds:
+            peak = s.peak if s.peak is not None and s.peak < seconds else None
+            out.append(s if s.end <= seconds else msgspec.structs.replace(s, end=seconds, peak=peak))
+    return tuple(out)
+
+
 def takes_of(project: Project, ids: Collection[str]) -> Takes:
     """Return the chosen clips as takes; those without motion are left out."""
     found = [i for i in usable(project) if i in ids]
     speech = []
     for ident in found:
         recorded = speech_of(project, ident)
-        speech.append(heard_by(project.conversations[recorded[0]], recorded[1]) if recorded is not None else ())
+        heard = heard_by(project.conversations[recorded[0]], recorded[1]) if recorded is not None else ()
+        speech.append(during(heard, project.clips[ident].duration))
     return Takes(tuple(found), tuple(m for i in found if (m := project.clips[i].motion) is not None), tuple(speech))
 
 

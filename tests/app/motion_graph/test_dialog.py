@@ -222,6 +222,19 @@ def test_a_graph_of_which_nothing_is_left_is_said_with_a_remedy(shown):
     assert len(drive.document.project.clips) == count
 
 
+def test_takes_too_short_to_compare_are_told_and_what_was_known_of_others_is_not_used(shown):
+    drive, dialog = shown
+    long = drive.document.project.clips[dialog.takes.ids[0]]
+    short = replace(long, id="c9500", name="two frames", motion=long.motion.trimmed(0, 2), frames=2)
+    drive.document.edit("test", lambda p: replace(p, clips={**p.clips, "c9500": short}))
+    rows = range(dialog.picked.list.rowCount())
+    only(dialog, next(r for r in rows if dialog.picked.list.item(r, 0).text() == "two frames"))
+    drive.wait(lambda: "no take has more than 3 frames" in dialog.said.text().lower())
+    assert dialog.limit is None
+    press(dialog.wishes.go)
+    assert "cannot be compared" in dialog.said.text()
+
+
 def test_an_unsaved_project_is_asked_to_be_saved_first(toys):
     toys.window.dialogs.motion_graph()
     dialog = toys.window.findChild(MotionGraphDialog)

@@ -7,7 +7,7 @@ from pathlib import Path
 
 import pytest
 
-from app.motion_graph.work import Wish, pieces, save, speech_of, synthesise, table, takes_of, usable
+from app.motion_graph.work import Wish, during, left_out, pieces, save, speech_of, synthesise, table, takes_of, usable
 from metagraph.formats.clips import read_clips
 from metagraph.graph.conversation import Conversation, Segment, Side
 from metagraph.graph.model import Project
@@ -42,6 +42,33 @@ def test_a_take_knows_what_was_heard_during_it_the_partners_hesitations_and_not_
     assert speech_of(project, clip) == ("v1", 1) and speech_of(project, other) is None
     assert [[s.kind for s in speech] for speech in takes.speech] == [["clause", "hesitation"], []]
     assert takes.told and not takes_of(project, [other]).told
+
+
+def test_what_goes_on_after_a_takes_end_was_not_heard_during_it(sample: Project) -> None:
+    said = (Segment("clause", 1.0, 2.0, 1.5), Segment("clause", 3.0, 5.0, 4.5, "so on"), Segment("response", 6.0, 7.0))
+    assert during(said, 10.0) == said
+    assert during(said, 4.0) == (said[0], Segment("clause", 3.0, 4.0, None, "so on"))
+    assert during(said, 3.0) == said[:1]
+    clip = stances(sample)[0]
+    end = sample.clips[clip].duration
+    ben = Side(take=clip, segments=tuple(Segment("clause", n + 0.1, n + 0.9) for n in range(60)))
+    project = replace(sample, conversations={"v1": Conversation(name="long", length=60.0, sides=(Side(), ben))})
+    assert takes_of(project, [clip]).speech[0][-1].end <= end
+
+
+def test_clips_that_cannot_be_takes_are_told_with_the_reason(sample: Project) -> None:
+    from metagraph.motion.skeleton import Skeleton
+
+    a, b, c = stances(sample)[:3]
+    still = replace(sample.clips[a], motion=sample.clips[a].motion.trimmed(0, 1), frames=1)
+    lost = replace(sample.clips[b], motion=None)
+    own = sample.clips[c].motion
+    longer = Skeleton(own.skeleton.names, own.skeleton.parents, own.skeleton.rest_rotations, 2 * own.skeleton.rest_translations)
+    odd = replace(sample.clips[c], motion=replace(own, skeleton=longer))
+    project = replace(sample, clips={**sample.clips, a: still, b: lost, c: odd})
+    assert left_out(sample) == ""
+    assert left_out(project) == "Left out: 1 clip of one frame, 1 clip of another skeleton, 1 clip whose file is missing."
+    assert not {a, b, c} & set(usable(project))
 
 
 def test_new_motion_goes_with_speech_where_the_takes_know_theirs(sample: Project) -> None:
