@@ -307,7 +307,7 @@ class MotionGraphDialog(QDialog):
             if made is None:
                 keys = key_states(states, changes=changes(states, takes.speech))
                 made = build(states, limit, keys, progress=job.tell, cancelled=lambda: job.cancelled)
-            found = synthesise(made, takes, wish, name)
+            found = synthesise(made, takes, wish, name, lambda: job.cancelled)
             return made, found, () if job.cancelled else save([found.clip], folder, FOLDER, taken)
 
         self._start("New motion", work, self._found)

@@ -121,8 +121,9 @@ class Found:
         return f"{self.clip.duration:.1f} s with {jumps}, cost {self.cost:.3g} m, found in {self.took:.2f} s."
 
 
-def synthesise(graph: Any, takes: Takes, wish: Wish, name: str) -> Found:
-    """Return motion of the takes that goes with what is wished. Raises SynthesisError when there is none, saying what would help."""
+def synthesise(graph: Any, takes: Takes, wish: Wish, name: str, cancelled: Callable[[], bool] | None = None) -> Found:
+    """Return motion of the takes that goes with what is wished. Raises SynthesisError when there is none, saying what would help, or
+    when it was cancelled."""
     from metagraph.synthesis.assemble import assemble
     from metagraph.synthesis.constraints import heard, wanted
     from metagraph.synthesis.search import best, greedy
@@ -134,9 +135,9 @@ def synthesise(graph: Any, takes: Takes, wish: Wish, name: str) -> Found:
     asked = wanted(wish.segments, wish.seconds, wish.tolerance, use, wish.peaks and takes.told)
     began = time.perf_counter()
     try:
-        path = best(graph, said, asked) if wish.exact else greedy(graph, said, asked, seed=wish.seed)
+        path = best(graph, said, asked, cancelled) if wish.exact else greedy(graph, said, asked, seed=wish.seed, cancelled=cancelled)
     except SynthesisError as error:
-        if use and wish.segments:
+        if (use and wish.segments) or (cancelled is not None and cancelled()):
             raise
         raise SynthesisError(
             f"these takes cannot go on for {wish.seconds:g} s without a jump: choose more takes, raise k or the level, or ask for less"

@@ -6,6 +6,7 @@ programming over all states: it finds a path whenever there is one, and no other
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from contextlib import suppress
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
@@ -23,6 +24,7 @@ if TYPE_CHECKING:
     from metagraph.synthesis.wander import Links, Speech
 
 Array = NDArray[Any]
+Cancelled = Callable[[], bool] | None
 
 SAVED = 200  # n_save: candidates that are kept
 STARTS = 3  # so many times SAVED are the states it begins with
@@ -47,8 +49,9 @@ class Path:
     jumps: Array
 
 
-def best(graph: MotionGraph, heard: Heard, wanted: Wanted) -> Path:
-    """Return the cheapest path that has what is wanted. Raises SynthesisError when there is none, saying at what time all end.
+def best(graph: MotionGraph, heard: Heard, wanted: Wanted, cancelled: Cancelled = None) -> Path:
+    """Return the cheapest path that has what is wanted. Raises SynthesisError when there is none, saying at what time all end, or when
+    it was cancelled.
 
     Ways dearer than a bound are not followed, which is exact: what is found within it is the cheapest. The bound grows until there is
     one, up to what the greedy search found.
@@ -60,21 +63,28 @@ def best(graph: MotionGraph, heard: Heard, wanted: Wanted) -> Path:
             "search shorter stretches, or with the greedy search"
         )
     try:
-        dear = greedy(graph, heard, wanted).cost
+        deepest, more = DEEPER[0]
+        dear = _greedy(graph, heard, wanted, 1, SAVED, BRANCHES + more, deepest, cancelled).cost
         bounds = [share * dear + 1e-6 for share in (0.4, 0.7)] + [dear * (1 + 1e-5) + 1e-6]
     except SynthesisError:
         bounds = [share * graph.threshold.limit for share in (1.0, 4.0)]
     back = np.empty((frames, 2, states), np.int32)
     for bound in (*bounds, float("inf")):
         try:
-            return _best_within(graph, heard, wanted, back, bound)
+            return _best_within(graph, heard, wanted, back, bound, cancelled)
         except SynthesisError:
-            if bound == float("inf"):
+            if bound == float("inf") or (cancelled is not None and cancelled()):
                 raise
     raise AssertionError("a search without a bound finds a path or says that there is none")
 
 
-def _best_within(graph: MotionGraph, heard: Heard, wanted: Wanted, back: Array, bound: float) -> Path:
+def _go_on(cancelled: Cancelled) -> None:
+    """Raise SynthesisError when it was cancelled."""
+    if cancelled is not None and cancelled():
+        raise SynthesisError("the search was cancelled")
+
+
+def _best_within(graph: MotionGraph, heard: Heard, wanted: Wanted, back: Array, bound: float, cancelled: Cancelled = None) -> Path:
     """Return the cheapest path of those that cost no more than a bound. back: room for the way back `[T, 2, F]`. Raises SynthesisError when
     there is none."""
     from metagraph.synthesis.kernels import cheap, relax
@@ -89,6 +99,7 @@ def _best_within(graph: MotionGraph, heard: Heard, wanted: Wanted, back: Array, 
     cost[1, met] = 0
     _close(cost, wanted, 0)
     for t in range(1, frames):
+        _go_on(cancelled)
         new = np.full((2, states), np.inf, np.float32)
         fits = _fits(graph, heard, wanted, t)
         relax(cost, new, back[t], *links, follows, fits, heard.peaks & (wanted.window[t] >= 0), most)
@@ -107,7 +118,15 @@ def _best_within(graph: MotionGraph, heard: Heard, wanted: Wanted, back: Array, 
     return Path(way, total, _jumps(way))
 
 
-def greedy(graph: MotionGraph, heard: Heard, wanted: Wanted, seed: int = 1, saved: int = SAVED, branches: int = BRANCHES) -> Path:
+def greedy(
+    graph: MotionGraph,
+    heard: Heard,
+    wanted: Wanted,
+    seed: int = 1,
+    saved: int = SAVED,
+    branches: int = BRANCHES,
+    cancelled: Cancelled = None,
+) -> Path:
     """Return a path that has what is wanted, found as the paper's search finds it, a stretch of speech after the other.
 
     From random states on, depth first: a run goes along with its take, and branches off by transitions, some by chance and some the
@@ -115,16 +134,19 @@ def greedy(graph: MotionGraph, heard: Heard, wanted: Wanted, seed: int = 1, save
     a run that goes on longer with what is said next counts as a little cheaper, no two kept ones end within a few frames of each other
     while there are others, what is dearer than more than enough others is not followed, and a search that comes to an end is tried again,
     deeper. saved: how many are kept; branches: how many are gone deeper into of a run. Raises SynthesisError when it comes to an end before
-    the speech does, though there may be a path.
+    the speech does, though there may be a path, or when it was cancelled.
     """
     *first, last = ((branches + more, deepest) for deepest, more in DEEPER)
     for wide, deep in first:
         with suppress(SynthesisError):
-            return _greedy(graph, heard, wanted, seed, saved, wide, deep)
-    return _greedy(graph, heard, wanted, seed, saved, *last)
+            return _greedy(graph, heard, wanted, seed, saved, wide, deep, cancelled)
+        _go_on(cancelled)
+    return _greedy(graph, heard, wanted, seed, saved, *last, cancelled)
 
 
-def _greedy(graph: MotionGraph, heard: Heard, wanted: Wanted, seed: int, saved: int, branches: int, deepest: int) -> Path:
+def _greedy(
+    graph: MotionGraph, heard: Heard, wanted: Wanted, seed: int, saved: int, branches: int, deepest: int, cancelled: Cancelled
+) -> Path:
     from metagraph.synthesis.wander import segment
 
     frames, chance = len(wanted), np.random.default_rng(seed)
@@ -141,6 +163,7 @@ def _greedy(graph: MotionGraph, heard: Heard, wanted: Wanted, seed: int, saved: 
     tree = [(np.full(count, -1), at, own)]
     t0 = 0
     for t1 in _stretches(wanted):
+        _go_on(cancelled)
         off, ats, owns, _, found, paid, random = segment(
             t0, t1, at, own, cost, met, links, speech, best_at, saved, branches, TRIES, deepest, np.uint64(random)
         )

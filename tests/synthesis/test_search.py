@@ -164,3 +164,20 @@ def test_the_best_path_is_the_same_whatever_bound_it_is_searched_within() -> Non
         with pytest.raises(SynthesisError):
             _best_within(graph, sound, want, back, path.cost * 0.99)
     assert found >= 4
+
+
+@pytest.mark.parametrize("exact", [True, False])
+def test_a_search_that_is_cancelled_ends_soon_and_says_so(exact: bool) -> None:
+    graph = graph_of(40, [0, 40], {(n, 0): 0.5 for n in range(1, 40)})
+    sound = Heard(np.full(40, IDLE, np.uint8), np.zeros(40, bool))
+    want = wanted([], 600.0)
+    asked = 0
+
+    def cancelled() -> bool:
+        nonlocal asked
+        asked += 1
+        return asked > 5
+
+    with pytest.raises(SynthesisError, match="the search was cancelled"):
+        best(graph, sound, want, cancelled) if exact else greedy(graph, sound, want, cancelled=cancelled)
+    assert asked < 20
