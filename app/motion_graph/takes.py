@@ -6,10 +6,10 @@ from functools import partial
 
 from PySide6.QtCore import Qt, Signal
 from PySide6.QtWidgets import (
-    QComboBox,
     QHBoxLayout,
     QHeaderView,
     QLabel,
+    QMenu,
     QPushButton,
     QTableWidget,
     QTableWidgetItem,
@@ -19,11 +19,13 @@ from PySide6.QtWidgets import (
 
 from app.document import Document
 from app.motion_graph.work import FOLDER, LONG, left_out, speech_of, usable
+from metagraph.graph.conversation import Conversation
 from metagraph.graph.conversing import change_side
 from metagraph.graph.model import Project
 
 NONE = "nothing known"
-ROW = 36  # pixels
+ROW = 30  # pixels
+HEARD = 2  # the column of what was heard
 
 
 class TakesList(QWidget):
@@ -56,6 +58,9 @@ class TakesList(QWidget):
         header.setHighlightSections(False)
         header.setDefaultAlignment(Qt.AlignmentFlag.AlignLeft | Qt.AlignmentFlag.AlignVCenter)
         self.list.itemChanged.connect(self._checked)
+        self.menu = QMenu(self)
+        self.list.cellClicked.connect(self.ask_speech)
+        self.list.cellActivated.connect(self.ask_speech)  # Enter
         self.note = QLabel(self, wordWrap=True)
         self.note.setProperty("dim", True)
         self.note.hide()
@@ -95,26 +100,38 @@ class TakesList(QWidget):
             length.setTextAlignment(Qt.AlignmentFlag.AlignRight | Qt.AlignmentFlag.AlignVCenter)
             self.list.setItem(row, 0, item)
             self.list.setItem(row, 1, length)
-            self.list.setCellWidget(row, 2, self._speech_box(project, ident))
+            self.list.setItem(row, 2, self._heard(project, ident))
         self.list.blockSignals(False)
         self.changed.emit()
 
-    def _speech_box(self, project: Project, clip: str) -> QComboBox:
-        """Choose which side of which conversation was recorded along with a clip."""
-        box = QComboBox(self.list)
-        box.setAccessibleName(f"What was heard during {project.clips[clip].name}")
-        box.addItem(NONE, None)
-        for ident, talk in project.conversations.items():
-            for n, side in enumerate(talk.sides):
-                box.addItem(f"{talk.name}: {side.name or f'side {n + 1}'}", (ident, n))
-                if speech_of(project, clip) == (ident, n):
-                    box.setCurrentIndex(box.count() - 1)
-        box.activated.connect(partial(self._tell_speech, clip, box))
-        return box
+    def _heard(self, project: Project, clip: str) -> QTableWidgetItem:
+        """Say which side of which conversation was recorded along with a clip; a click asks for another."""
+        recorded = speech_of(project, clip)
+        words = NONE
+        if recorded is not None:
+            talk = project.conversations[recorded[0]]
+            words = side_words(talk, recorded[1])
+        item = QTableWidgetItem(f"{words}  ▾" if project.conversations else words)
+        item.setToolTip("Click to say whose side of which conversation was recorded along with it")
+        return item
 
-    def _tell_speech(self, clip: str, box: QComboBox, _: int) -> None:
-        chosen = box.currentData()
+    def ask_speech(self, row: int, column: int = HEARD) -> None:
+        """Offer the sides of the project's conversations below the cell."""
+        project = self.document.project
+        if column != HEARD or not project.conversations:
+            return
+        clip = self.list.item(row, 0).data(Qt.ItemDataRole.UserRole)
+        now = speech_of(project, clip)
+        self.menu.clear()
+        sides = [((ident, n), side_words(talk, n)) for ident, talk in project.conversations.items() for n in range(2)]
+        for key, words in [(None, NONE), *sides]:
+            action = self.menu.addAction(words, partial(self._tell_speech, clip, key))
+            action.setCheckable(True)
+            action.setChecked(key == now)
+        below = self.list.visualItemRect(self.list.item(row, HEARD)).bottomLeft()
+        self.menu.popup(self.list.viewport().mapToGlobal(below))
 
+    def _tell_speech(self, clip: str, chosen: tuple[str, int] | None) -> None:
         def edit(project: Project) -> Project:
             for ident, talk in project.conversations.items():
                 for n, side in enumerate(talk.sides):
@@ -137,3 +154,8 @@ class TakesList(QWidget):
         """Return the ids of the takes in selected rows; of those that are checked where none is selected."""
         rows = sorted({index.row() for index in self.list.selectionModel().selectedRows()})
         return [self.list.item(row, 0).data(Qt.ItemDataRole.UserRole) for row in rows] or self.chosen()
+
+
+def side_words(talk: Conversation, side: int) -> str:
+    """Return a side of a conversation in words."""
+    return f"{talk.name}: {talk.sides[side].name or f'speaker {side + 1}'}"

@@ -6,6 +6,7 @@ from PySide6.QtCore import Signal
 from PySide6.QtWidgets import QCheckBox, QComboBox, QDoubleSpinBox, QFrame, QHBoxLayout, QLabel, QPushButton, QVBoxLayout, QWidget
 
 from app.document import Document
+from app.motion_graph.takes import side_words
 from app.motion_graph.work import Wish
 from app.theme import strengthen
 from metagraph.graph.conversation import SOUNDS, Sound, heard_by
@@ -89,8 +90,8 @@ class Wishes(QFrame):
         self.speech.clear()
         self.speech.addItem("no speech", None)
         for ident, talk in self.document.project.conversations.items():
-            for n, side in enumerate(talk.sides):
-                self.speech.addItem(f"{talk.name}: {side.name or f'side {n + 1}'}", (ident, n))
+            for n in range(2):
+                self.speech.addItem(side_words(talk, n), (ident, n))
                 if chosen == (ident, n) or (first and self.speech.count() == 2):
                     self.speech.setCurrentIndex(self.speech.count() - 1)
         self._limits()
