@@ -27,7 +27,7 @@ def dialog_of(drive: Any) -> ImportDialog:
 
 
 def wait_read(drive: Any, dialog: ImportDialog) -> None:
-    drive.wait(lambda: dialog.job is None and not dialog._soon.isActive(), 90)
+    drive.wait(lambda: dialog.job is None and not dialog._soon.isActive(), 240)
 
 
 def test_two_who_talk_are_dropped_edited_saved_reopened_and_exported(drive: Any, tmp_path: Path, monkeypatch: Any) -> None:

@@ -26,9 +26,9 @@ def test_dropped_seen_heard_and_written(drive: Any, tmp_path: Path) -> None:
     drive.wait(lambda: drive.performance.skeleton() is not None and not drive.jobs.running)
     assert drive.drop_files((drive.window.statusBar(), QPoint(200, 8)), audio, words)
     dialog = next(d for d in drive.window.findChildren(ImportDialog) if d.isVisible())
-    drive.wait(dialog.go.isEnabled, 90)
+    drive.wait(dialog.go.isEnabled, 240)  # the first of all has the reader compiled
     QTest.mouseClick(dialog.go, Qt.MouseButton.LeftButton)
-    drive.wait(lambda: drive.performance.shown.partner is not None, 60)
+    drive.wait(lambda: drive.performance.shown.partner is not None, 120)
     drive.session.set_playing(False)
 
     talk = drive.document.project.conversations[drive.session.conversation]
