@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 import os
+import subprocess
+import sys
 from pathlib import Path
 
 import numpy as np
@@ -16,10 +18,23 @@ from metagraph.motion.clip import Clip
 
 ROOT = Path(__file__).resolve().parents[1]
 
+# Processes that compile the same kernels at once would leave a cache that crashes both, from then on: each keeps its own.
+WORKER = os.environ.get("PYTEST_XDIST_WORKER")
+KERNELS = ROOT / ".pytest_cache" / "numba" / str(WORKER)
+if WORKER:
+    os.environ["NUMBA_CACHE_DIR"] = str(KERNELS)
+
 # The gate must give the same answer twice; at the desk, examples are drawn anew each time.
 settings.register_profile("gate", derandomize=True, deadline=None)
 settings.register_profile("desk", deadline=None)
 settings.load_profile("gate" if os.environ.get("CI") else "desk")
+
+
+@pytest.fixture(scope="session", autouse=True)
+def compiled() -> None:
+    """A new cache is filled before the first test: some kernels compile for longer than a window is waited for."""
+    if WORKER and not KERNELS.exists():
+        subprocess.run([sys.executable, "-m", "tests.kernels"], cwd=ROOT, check=True)
 
 
 @pytest.fixture(scope="session")

@@ -224,10 +224,27 @@ def test_the_tests_are_lint_types_imports_and_pytest_and_one_failure_is_a_failur
     monkeypatch.setattr(run.subprocess, "call", calls)
     assert run.run_tests([]) == 1
     assert [Path(command[0]).name.removesuffix(".exe") for command in calls] == ["ruff", "ruff", "mypy", "lint-imports", "python"]
+    monkeypatch.setattr(run, "spread", lambda arguments: ["--spread"])
     calls = Started(0)
     monkeypatch.setattr(run.subprocess, "call", calls)
     assert run.run_tests(["-k", "journal"]) == 0
-    assert [command[1:] for command in calls] == [["-m", "pytest", "-k", "journal"]]
+    assert [command[1:] for command in calls] == [["-m", "pytest", "--spread", "-k", "journal"]]
+
+
+@pytest.mark.parametrize(
+    ("arguments", "cores", "processes"),
+    [
+        ([], 1, 1), ([], 2, 2), ([], 64, 2), (["tests/app"], 2, 2), (["-k", "journal", "-x"], 2, 2),
+        (["tests/test_run.py"], 2, 1), (["tests/test_run.py::test_it"], 2, 1), (["-n", "4"], 8, 1), (["-n0"], 8, 1),
+        (["tests/app", "--dist=load"], 8, 1), (["-s"], 8, 1), (["--pdb"], 8, 1), (["-p", "no:xdist"], 8, 1),
+    ],
+)  # fmt: skip
+def test_tests_are_spread_over_two_cores_unless_asked_otherwise(
+    run: ModuleType, monkeypatch: pytest.MonkeyPatch, arguments: list[str], cores: int, processes: int
+) -> None:
+    monkeypatch.setattr(run.os, "sched_getaffinity", lambda process: set(range(cores)), raising=False)
+    found = run.spread(arguments)
+    assert found[:2] == (["-n", "2"] if processes == 2 else [])
 
 
 # --- engines exports are tested in

@@ -155,8 +155,8 @@ class Driver:
 
 
 @pytest.fixture
-def drive(qapp: object, qtbot: object, monkeypatch: pytest.MonkeyPatch) -> Iterator[Driver]:
-    """A window with nothing in it."""
+def drive(qapp: object, qtbot: object, monkeypatch: pytest.MonkeyPatch, request: pytest.FixtureRequest) -> Iterator[Driver]:
+    """A window with nothing in it. Its clips have pictures in journeys only: the process that draws them costs more than most tests."""
     if sys.platform.startswith("linux"):
         if QGuiApplication.platformName() != "xcb":
             pytest.skip("needs an X screen (Xvfb): real drags and OpenGL widgets do not work on others")
@@ -164,14 +164,25 @@ def drive(qapp: object, qtbot: object, monkeypatch: pytest.MonkeyPatch) -> Itera
             pytest.skip("needs xdotool to move the real pointer")
     else:
         pytest.skip("real drags are driven on X11 only")
-    from app.window import Window
+    import app.window
+    from app.theme import Theme, apply, style_sheet
+    from app.thumbnails import Thumbnails
+
+    def styled(app: QApplication, look: Theme) -> None:
+        """The application outlives each window here: the same style again would only polish every widget anew."""
+        if app.styleSheet() != style_sheet(look):
+            apply(app, look)
+
+    monkeypatch.setattr(app.window, "apply", styled)
+    if "journey" not in request.path.stem:
+        monkeypatch.setattr(Thumbnails, "_order", lambda *order: None)
 
     def unexpected(*args: object, **kwargs: object) -> object:
         raise AssertionError(f"an unexpected question: {args[1:3]}")
 
     monkeypatch.setattr(QMessageBox, "question", unexpected)
     monkeypatch.setattr(QMessageBox, "warning", unexpected)
-    window = Window()
+    window = app.window.Window()
     window.resize(1680, 1020)
     window.show()
     qtbot.waitExposed(window)  # type: ignore[attr-defined]

@@ -331,10 +331,10 @@ def test_a_client_drives_a_gesture_that_is_seen_in_the_preview(live):
         assert said["id"] == "w" and said["state"] in ("planned", "late") and said["actions"] == ["rest long"]
         assert refused["state"] == "refused" and "none" in refused["why"]
         cue = next(c for c in arms() if c.meta.endswith("/w"))
-        drive.wait(lambda: drive.session.seconds > (cue.start + cue.end) / 2 - 0.1)
         arm = drive.document.project.skeleton.index("LeftUpperArm")
-        turned = np.abs(drive.performance.pose().rotations[arm] - before.rotations[arm]).max()
-        assert turned > 0.1, "the arm is up in the picture"
+        turned = lambda: np.abs(drive.performance.pose().rotations[arm] - before.rotations[arm]).max()  # noqa: E731
+        # The arm is up in the picture. Between two looks more than half of it may pass, where the machine is busy.
+        drive.wait(lambda: bool(cue.start < drive.session.seconds < cue.end and turned() > 0.1))
         painted = drive.preview.frames
         drive.wait(lambda: drive.preview.frames > painted + 2)
         drive.wait(lambda: any(m.ask.id.endswith("/w") for m in board(drive).marks()))
