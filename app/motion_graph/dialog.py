@@ -33,6 +33,8 @@ from metagraph.graph import edits
 from metagraph.graph.model import Project
 
 KS = (2, 3, 4)  # of the table
+LONG = 4000  # ms after which a wait is explained
+WAIT = "Working… The first time after installing, the search is compiled for this machine: up to a minute."
 
 
 class MotionGraphDialog(QDialog):
@@ -50,6 +52,8 @@ class MotionGraphDialog(QDialog):
         self.takes = Takes((), (), ())
         self._job: Job | None = None
         self._counted: Any = None  # the takes and the level that the table is of
+        self._long = QTimer(self, singleShot=True, interval=LONG)
+        self._long.timeout.connect(self._explain)
         self._soon = QTimer(self, singleShot=True, interval=200)
         self._soon.timeout.connect(self._compare)
         self.picked = TakesList(document, self)
@@ -213,6 +217,7 @@ class MotionGraphDialog(QDialog):
         if self._job is not None:
             return
         self.said.setText("")
+        self._long.start()
         job = self.jobs.start(title, work, done, self._failed)
         self._job = job
         self.progress.setRange(0, 0)
@@ -226,8 +231,16 @@ class MotionGraphDialog(QDialog):
         self.progress.setRange(0, total)
         self.progress.setValue(done)
 
+    def _explain(self) -> None:
+        """Say why it takes so long, if it does."""
+        if self._job is not None and not self.said.text():
+            self.said.setText(WAIT)
+
     def _ended(self) -> None:
         self._job = None
+        self._long.stop()
+        if self.said.text() == WAIT:
+            self.said.setText("")
         self.progress.hide()
         self.stop.hide()
         self._enable()

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import time
 from dataclasses import replace
 from pathlib import Path
 
@@ -81,7 +82,7 @@ def test_the_table_is_filled(shown):
     drive, dialog = shown
     press(dialog.count_button)
     assert not dialog.count_button.isEnabled() and dialog.stop.isVisible()
-    drive.wait(lambda: dialog.table.item(0, 1).text() != "–", 60)
+    drive.wait(lambda: dialog.table.item(0, 1).text() != "–", 120)
     kept = [int(dialog.table.item(row, 2).text().replace(",", "")) for row in range(3)]
     assert kept[0] < kept[1] < kept[2]
     drive.wait(dialog.count_button.isEnabled)
@@ -94,7 +95,7 @@ def test_new_motion_is_found_kept_as_a_file_and_played_and_one_undo_takes_it_bac
     dialog.wishes.speech.setCurrentIndex(0)
     dialog.wishes.length.setValue(4.0)
     press(dialog.wishes.go)
-    drive.wait(lambda: len(drive.document.project.clips) == count + 1, 60)
+    drive.wait(lambda: len(drive.document.project.clips) == count + 1, 180)
     assert "cost" in dialog.said.text()
     made = drive.document.project.clips[drive.session.clips[0]]
     assert (tmp_path / made.path).parent.name == FOLDER and (tmp_path / made.path).is_file()
@@ -102,6 +103,15 @@ def test_new_motion_is_found_kept_as_a_file_and_played_and_one_undo_takes_it_bac
     drive.wait(lambda: drive.performance.shown.clip == made.id)
     drive.document.undo_stack.undo()
     assert len(drive.document.project.clips) == count
+
+
+def test_a_long_wait_is_explained_and_the_words_give_way_to_what_comes_of_it(shown):
+    drive, dialog = shown
+    dialog._start("A wait", lambda job: time.sleep(0.4), lambda _: dialog.said.setText("done"))
+    dialog._long.start(0)
+    drive.wait(lambda: "compiled" in dialog.said.text())
+    drive.wait(lambda: dialog.said.text() == "done")
+    assert not dialog._long.isActive()
 
 
 def test_what_cannot_be_had_is_said_with_a_remedy_and_nothing_is_added(shown):
@@ -116,7 +126,7 @@ def test_what_cannot_be_had_is_said_with_a_remedy_and_nothing_is_added(shown):
     drive.wait(lambda: dialog.limit is not None and not dialog._soon.isActive())
     count = len(drive.document.project.clips)
     press(dialog.wishes.go)
-    drive.wait(lambda: bool(dialog.said.text()), 60)
+    drive.wait(lambda: dialog._job is None and bool(dialog.said.text()), 120)
     assert "No motion goes with this speech" in dialog.said.text() and "tolerance" in dialog.said.text()
     assert len(drive.document.project.clips) == count
 
@@ -164,7 +174,7 @@ def test_takes_are_cut_into_clips_that_wait_to_be_labelled(shown):
     drive, dialog = shown
     count = len(drive.document.project.clips)
     press(dialog.picked.cut_button)
-    drive.wait(lambda: bool(dialog.said.text()), 60)
+    drive.wait(lambda: dialog._job is None and bool(dialog.said.text()), 120)
     assert "not labelled yet" in dialog.said.text(), "the stances rest, leave and come back"
     new = [e for e in drive.document.project.clips.values() if e.path.startswith(FOLDER)]
     assert new and len(new) == len(drive.document.project.clips) - count
@@ -179,7 +189,7 @@ def test_takes_are_cut_into_clips_that_wait_to_be_labelled(shown):
 def test_what_was_counted_of_other_takes_is_not_shown_any_more(shown):
     drive, dialog = shown
     press(dialog.count_button)
-    drive.wait(lambda: dialog.table.item(0, 1).text() != "–" and dialog.count_button.isEnabled(), 60)
+    drive.wait(lambda: dialog.table.item(0, 1).text() != "–" and dialog.count_button.isEnabled(), 120)
     dialog.k.setValue(4)
     assert dialog.table.item(0, 1).text() != "–", "the table is of each k"
     dialog.picked.list.item(0, 0).setCheckState(Qt.CheckState.Unchecked)
@@ -212,7 +222,7 @@ def asked(drive, dialog) -> str:
     drive.pause(300)
     drive.wait(lambda: not dialog._soon.isActive() and dialog.states is not None and dialog.states[0] == dialog.takes.clips)
     press(dialog.wishes.go)
-    drive.wait(lambda: bool(dialog.said.text()), 60)
+    drive.wait(lambda: dialog._job is None and bool(dialog.said.text()), 120)
     return dialog.said.text()
 
 
