@@ -135,6 +135,12 @@ def commands(window: Window) -> tuple[Command, ...]:
     return tuple(_of_meta(window, x) if x.id in META_ONLY else x for x in out)
 
 
+def _moved(window: Window) -> bool:
+    """Whether somebody on stage moves with new motion instead of a graph."""
+    talk = window.document.project.conversations.get(window.session.conversation or "")
+    return talk is not None and any(side.motion is not None for side in talk.sides)
+
+
 def _of_conversations(window: Window) -> tuple[Command, ...]:
     """Return what can be done with the conversation on stage."""
     s, o = window.session, window.dialogs
@@ -148,6 +154,8 @@ def _of_conversations(window: Window) -> tuple[Command, ...]:
         Command("side_sounds", menu, "S&ounds and names…", o.side_sounds, enabled=staged, tip="Who the two are, and which sound is whose"),
         Command("other_side", menu, "The &other's plan", lambda: s.set_side(1 - s.side), enabled=staged, line=True,
                 tip="Whose plan the timeline shows"),
+        Command("graph_again", menu, "Move with the &graph again", o.graph_again, enabled=lambda: _moved(window),
+                tip="Instead of new motion that was found for it"),
         Command("keep_conversation", menu, "&Keep as performances", window.performance.keep_conversation, enabled=staged,
                 tip="What both do, as requests that can be edited one by one, and exported"),
         Command("write_segments", menu, "&Export segments…", o.write_segments, enabled=staged, tip="As ELAN or Praat TextGrid", line=True),

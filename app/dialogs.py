@@ -139,6 +139,12 @@ class Dialogs:
 
         offers.rename(self.window)
 
+    def graph_again(self) -> None:
+        """Let the graph move both again, instead of new motion that was found for them."""
+        from app.conversation import offers
+
+        offers.graph_again(self.window)
+
     def rates(self) -> None:
         """Set how often each of the two moves with what is said."""
         from app.conversation import offers

@@ -175,7 +175,8 @@ def bake_to(out: Path, shown: Shown, seconds: float, fps: float, folder: Path) -
     from metagraph.formats.gltf_writer import write_glb
 
     project = shown.project
-    motion = bake(shown.plan, project, seconds, fps) if shown.clip is None else project.clips[shown.clip].motion
+    whole = shown.clip or shown.motion
+    motion = bake(shown.plan, project, seconds, fps) if whole is None else project.clips[whole].motion
     assert motion is not None
     out.parent.mkdir(parents=True, exist_ok=True)
     if out.suffix == ".bvh":

@@ -5,12 +5,15 @@ from __future__ import annotations
 from collections.abc import Iterable
 from dataclasses import dataclass
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
 
 from metagraph.graph.asks import AnyAsk
 from metagraph.graph.edits import EditError, place
 from metagraph.graph.model import Layer, Project
 from metagraph.motion.skeleton import Pose, Skeleton
+from metagraph.playback.life.evaluate import enliven
 from metagraph.playback.manual import Fire, ManualPlan, link_alone, make_manual_plan, manual_morphs_at, manual_pose_at, state_alone
 from metagraph.playback.plan import Plan, Request
 from metagraph.playback.planner import make_plan
@@ -29,7 +32,8 @@ class Shown:
     state machines play, where they do; `plan` then only shows it.
 
     Of a conversation: partner: the other one. side: 0 or 1, which of the two this is. stand: where it stands. asks: what it is asked.
-    notes: what could not be read. folder: what paths in its project begin at.
+    notes: what could not be read. folder: what paths in its project begin at. motion: the clip it moves with instead of its plan, which
+    still says where it looks and what it says.
     """
 
     project: Project
@@ -43,6 +47,7 @@ class Shown:
     asks: tuple[AnyAsk, ...] = ()
     notes: tuple[str, ...] = ()
     folder: Path | None = None
+    motion: str | None = None
 
     @property
     def both(self) -> tuple[Shown, ...]:
@@ -68,7 +73,21 @@ class Shown:
             return None
         if self.manual is not None:
             return manual_pose_at(self.manual, self.project, seconds)
+        if self.motion is not None:
+            return self._moved(seconds)
         return pose_at(self.plan, self.project, seconds)
+
+    def _moved(self, seconds: Any) -> Pose | None:
+        """Return the pose of the clip it moves with, alive: eyes, lids and lips are the plan's."""
+        clip = self.project.clips[self.motion or ""].motion
+        if clip is None:
+            return None
+        times = np.asarray(seconds, np.float64).reshape(-1)
+        pose = clip.pose_at(np.clip(times, 0.0, clip.duration))
+        if self.project.life.on and self.plan.life.end > 0:
+            pose = enliven(pose, self.project, self.plan.life, self.plan.track, times)
+        shape = (*np.shape(seconds), len(clip.skeleton))
+        return Pose(pose.rotations.reshape(*shape, 4), pose.translations.reshape(*shape, 3))
 
     def morphs(self, seconds: float) -> dict[str, float]:
         """Return face shapes and their weights, 0..1, at a time."""

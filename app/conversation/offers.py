@@ -72,6 +72,14 @@ def rates(window: Window) -> None:
         RatesDialog(window.document, *found, window).open()
 
 
+def graph_again(window: Window) -> None:
+    """Let the graph move both again."""
+    found = on_stage(window)
+    if found is not None:
+        both = lambda p: conversing.change_side(conversing.change_side(p, found[0], 0, motion=None), found[0], 1, motion=None)  # noqa: E731
+        _edit(window, "Move with the graph again", both)
+
+
 def word_lists(window: Window) -> None:
     found = on_stage(window)
     if found is not None:

@@ -11,6 +11,7 @@ from app.shown import Shown
 from metagraph.errors import FileError
 from metagraph.graph import staging
 from metagraph.graph.asks import Performance
+from metagraph.graph.conversation import Side
 from metagraph.graph.model import Project
 
 Key = tuple[Any, ...]
@@ -37,9 +38,10 @@ class Stage:
             self._voices = {key: voices(conversation, folder)}
         heard, told = self._voices[key]
         made = duet(conversation, ident, projects, heard)
+        moved = [_motion(p.project, s, notes) for p, s in zip(made.parts, conversation.sides, strict=True)]
         both = tuple(
             Shown(
-                p.project, p.plan, made.length, side=n, stand=p.stand, asks=p.performance.asks, notes=(*notes, *told),
+                p.project, p.plan, made.length, side=n, stand=p.stand, motion=moved[n], asks=p.performance.asks, notes=(*notes, *told),
                 folder=folder if s.project is None else (folder / s.project).parent,
             )
             for n, (p, s) in enumerate(zip(made.parts, conversation.sides, strict=True))
@@ -63,6 +65,17 @@ class Stage:
                 return project
             self._projects[key] = found.project
         return self._projects[key]
+
+
+def _motion(project: Project, side: Side, notes: list[str]) -> str | None:
+    """Return the clip a side moves with instead of a graph, if it is there and fits."""
+    if side.motion is None:
+        return None
+    entry = project.clips.get(side.motion)
+    if entry is None or entry.motion is None or entry.motion.skeleton != project.skeleton:
+        notes.append(f"The new motion of {side.name or 'a side'} is missing: it moves with its graph.")
+        return None
+    return side.motion
 
 
 def _written(path: Path) -> int:

@@ -30,6 +30,7 @@ from app.motion_graph.work import FOLDER, LEAST, MOST, Found, Takes, pieces, sav
 from app.session import Session
 from app.words import many
 from metagraph.graph import edits
+from metagraph.graph.conversing import change_side
 from metagraph.graph.model import Project
 
 KS = (2, 3, 4)  # of the table
@@ -51,6 +52,7 @@ class MotionGraphDialog(QDialog):
         self.graph: Any = None  # synthesis.graph.MotionGraph, None until it is built for what is chosen now
         self.takes = Takes((), (), ())
         self._job: Job | None = None
+        self._for: tuple[str, int] | None = None  # the side that is to move with what is found
         self._counted: Any = None  # the takes and the level that the table is of
         self._long = QTimer(self, singleShot=True, interval=LONG)
         self._long.timeout.connect(self._explain)
@@ -309,6 +311,7 @@ class MotionGraphDialog(QDialog):
         folder = self._folder()
         if folder is None:
             return
+        self._for = self.wishes.moves
         states, name, taken = self.states[1], self.wishes.name(), {e.name for e in self.document.project.clips.values()}
 
         def work(job: Job) -> Any:
@@ -329,17 +332,29 @@ class MotionGraphDialog(QDialog):
         self.graph, found, loaded = made[0], made[1], made[2]
         graph, takes_told = self.graph, self.takes.told
         assert isinstance(found, Found)
-        self._keep(loaded, "Add new motion")
+        self._keep(loaded, "Add new motion", self._for)
         self.graph = graph  # the takes are the same
         deaf = "" if takes_told or not self.wishes.talks else " What was heard during the takes is not known, so speech did not guide it."
         self.said.setText(found.words() + deaf)
 
-    def _keep(self, loaded: Any, words: str) -> None:
-        """Add kept clips to the library, choose them and play the first."""
-        self.document.edit(words, lambda p: edits.add_clips(p, loaded))
+    def _keep(self, loaded: Any, words: str, side: tuple[str, int] | None = None) -> None:
+        """Add kept clips to the library, choose them and play the first; or let it move a side of a conversation, and play that."""
         paths = {path for path, *_ in loaded}
+
+        def edit(project: Project) -> Project:
+            project = edits.add_clips(project, loaded)
+            made = next((e.id for e in project.clips.values() if e.path in paths), None)
+            return project if side is None or made is None else change_side(project, *side, motion=made)
+
+        self.document.edit(words, edit)
         new = [e.id for e in self.document.project.clips.values() if e.path in paths]
-        if new:
+        if new and side is not None:
+            self.session.set_conversation(side[0])
+            self.session.set_side(side[1])
+            self.session.show_plan()
+            self.session.seek(0.0)
+            self.session.set_playing(True)
+        elif new:
             self.session.select_clips(tuple(new))
             self.session.show_clip(new[0])
             self.session.set_playing(True)

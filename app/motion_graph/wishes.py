@@ -69,6 +69,11 @@ class Wishes(QFrame):
         row.addSpacing(8)
         row.addWidget(QLabel("give or take", self))
         row.addWidget(self.tolerance)
+        self.whole = QCheckBox("Move the speaker with it", self)
+        self.whole.setToolTip("Motion for the whole conversation, which then moves this speaker instead of the graph")
+        self.whole.toggled.connect(self._limits)
+        row.addSpacing(8)
+        row.addWidget(self.whole)
         row.addStretch(1)
         self.go = QPushButton("Find", self, autoDefault=False)
         self.go.clicked.connect(self.wanted)
@@ -101,15 +106,26 @@ class Wishes(QFrame):
         for box in (*self.kinds.values(), self.peaks, self.tolerance, self.start):
             box.setEnabled(talks)
         self.seed.setEnabled(not self.search.currentData())
+        self.whole.setEnabled(talks)
+        self.start.setEnabled(talks and self.moves is None)
+        self.length.setEnabled(self.moves is None)
 
     @property
     def talks(self) -> bool:
         """Whether it is to go with speech."""
         return self.speech.currentData() is not None
 
+    @property
+    def moves(self) -> tuple[str, int] | None:
+        """Which side of which conversation is to move with it; None for neither."""
+        chosen: tuple[str, int] | None = self.speech.currentData()
+        return chosen if self.whole.isChecked() else None
+
     def wish(self) -> Wish:
         """Return what is asked for now."""
         chosen, seconds, start = self.speech.currentData(), self.length.value(), self.start.value()
+        if self.moves is not None:
+            seconds, start = self.document.project.conversations[self.moves[0]].length, 0.0
         use = tuple(kind for kind in SOUNDS if self.kinds[kind].isChecked()) if chosen is not None else ()
         segments = ()
         if chosen is not None:
@@ -128,4 +144,5 @@ class Wishes(QFrame):
         if chosen is None:
             return "new motion"
         talk = self.document.project.conversations[chosen[0]]
-        return f"{talk.name} {talk.sides[chosen[1]].name or chosen[1] + 1} {self.start.value():g}s"
+        part = "" if self.moves is not None else f" {self.start.value():g}s"
+        return f"{talk.name} {talk.sides[chosen[1]].name or chosen[1] + 1}{part}"

@@ -298,6 +298,9 @@ class TimelinePanel(QWidget):
             who = side_name(talk, shown.side) if talk is not None else "One of the two"
             gestures = sum(1 for cue in shown.plan.layers["arms"].cues if cue.action.kind == "gesture")
             nods = len(shown.plan.layers["head"].cues)
+            if shown.motion is not None:
+                self.title.say(f"{who} moves with '{shown.project.clips[shown.motion].name}'; its graph would do this.")
+                return
             self.title.say(f"{who} in conversation: {many(gestures, 'gesture')} of the hands, {many(nods, 'nod')}.")
         elif self.session.show == "context":
             self.title.say("In context: stance, action, back to the stance. Esc for the performance.")

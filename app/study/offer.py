@@ -10,7 +10,7 @@ from app.manual.place import META_ONLY
 FILES = frozenset({
     "new", "open", "sample", "practice", "save", "save_as", "import", "import_files", "annotate", "watch", "find_missing", "character",
     "no_character", "export", "render", "twins", "repairs", "skeleton", "joint_maps", "live", "mimic", "study", "count_operators", "manual",
-    "motion_graph", *CONVERSATION, "other_side", "keep_conversation",
+    "motion_graph", *CONVERSATION, "other_side", "graph_again", "keep_conversation",
 })  # fmt: skip
 PROPOSALS = frozenset({"propose", "use_times", "patterns", "compatibility"})  # made by the program, for neither condition or both
 

@@ -54,14 +54,16 @@ class Rates(Struct, frozen=True, kw_only=True, omit_defaults=True, forbid_unknow
 class Side(Struct, frozen=True, kw_only=True, omit_defaults=True, forbid_unknown_fields=True):
     """One of the two. audio: path of its sound, relative to the project file; channel: which of that file's channels is its own, from 0;
     None for all of them mixed. project: path of another project whose graph moves this side, None for this one. take: id of the clip
-    that was recorded along with it, from the same moment. words: as transcribed, by start. segments: of its own speech, by start, never
-    overlapping, none idle."""
+    that was recorded along with it, from the same moment. motion: id of the clip it moves with from the beginning on, instead of a
+    graph: new motion of a motion graph. words: as transcribed, by start. segments: of its own speech, by start, never overlapping, none
+    idle."""
 
     name: _Name = ""
     audio: str | None = None
     channel: Annotated[int, Meta(ge=0, le=63)] | None = None
     project: str | None = None
     take: str | None = None
+    motion: str | None = None
     words: tuple[Word, ...] = ()
     segments: tuple[Segment, ...] = ()
     rates: Rates = Rates()

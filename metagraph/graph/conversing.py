@@ -47,7 +47,7 @@ def change_conversation(project: Project, ident: str, **changes: Any) -> Project
 
 
 def change_side(project: Project, ident: str, side: int, /, **changes: Any) -> Project:
-    """Set fields of one of the two: name, audio, channel, project, rates. Raises EditError, also for values out of range."""
+    """Set fields of one of the two: name, audio, channel, project, take, motion, rates. Raises EditError, also for values out of range."""
     of = _conversation(project, ident)
     if "name" in changes:
         changes["name"] = _clean(str(changes["name"]))

@@ -157,6 +157,26 @@ def test_two_other_projects_are_each_read_once(talking, monkeypatch):
     assert len(read) == 4, "what no side needs is not kept"
 
 
+def test_a_side_can_move_with_a_clip_instead_of_its_graph_and_still_speaks_and_a_lost_one_is_told(talking):
+    project = open_project(talking).project
+    talk = project.conversations["v9000"]
+    clip = next(e for e in project.clips.values() if e.name.endswith("wave_hello_rt_01"))
+
+    def shown(motion: str | None):
+        sides = (msgspec.structs.replace(talk.sides[0], motion=motion), talk.sides[1])
+        return Stage().show(replace(project, conversations={"v9000": msgspec.structs.replace(talk, sides=sides)}), "v9000", talking.parent)
+
+    still, moved, lost = shown(None), shown(clip.id), shown("c0")
+    arm = project.skeleton.index("RightUpperArm") if "RightUpperArm" in project.skeleton else 10
+    times = np.linspace(0, clip.duration, 7)
+    assert np.abs(moved.pose(times).rotations[:, arm] - clip.motion.pose_at(times).rotations[:, arm]).max() < 1e-3
+    assert np.array_equal(moved.pose(1.0).rotations, moved.pose(np.array([1.0])).rotations[0])
+    assert moved.pose(100.0) is not None, "beyond its end it holds its last pose"
+    assert moved.plan.track.speeches == still.plan.track.speeches != ()
+    assert moved.partner.motion is None
+    assert lost.motion is None and any("missing" in note for note in lost.notes)
+
+
 def test_it_is_written_from_the_command_line_as_a_video_with_sound_and_as_motion_for_each(talking, tmp_path):
     def run(*words: str) -> subprocess.CompletedProcess[str]:
         whole = [sys.executable, "-m", "app.cli", "render", str(talking), "--conversation", "Greeting", *words]

@@ -105,6 +105,27 @@ def test_new_motion_is_found_kept_as_a_file_and_played_and_one_undo_takes_it_bac
     assert len(drive.document.project.clips) == count
 
 
+def test_new_motion_can_move_the_speaker_of_a_conversation_until_the_graph_does_again(shown):
+    drive, dialog = shown
+    for box in dialog.wishes.kinds.values():
+        box.setChecked(False)
+    dialog.wishes.peaks.setChecked(False)
+    dialog.wishes.whole.setChecked(True)
+    assert not dialog.wishes.start.isEnabled() and not dialog.wishes.length.isEnabled()
+    press(dialog.wishes.go)
+    drive.wait(lambda: drive.document.project.conversations["v9000"].sides[0].motion is not None, 180)
+    made = drive.document.project.clips[drive.document.project.conversations["v9000"].sides[0].motion]
+    assert made.duration == pytest.approx(7.0, abs=0.1) and drive.session.conversation == "v9000"
+    drive.wait(lambda: drive.performance.shown.motion == made.id, 60)
+    assert made.name in drive.timeline.title.words
+    drive.actions["graph_again"].trigger()
+    drive.wait(lambda: drive.performance.shown.partner is not None and drive.performance.shown.motion is None, 60)
+    drive.document.undo_stack.undo()
+    drive.document.undo_stack.undo()
+    assert made.id not in drive.document.project.clips
+    assert drive.document.project.conversations["v9000"].sides[0].motion is None
+
+
 def test_a_long_wait_is_explained_and_the_words_give_way_to_what_comes_of_it(shown):
     drive, dialog = shown
     dialog._start("A wait", lambda job: time.sleep(0.4), lambda _: dialog.said.setText("done"))
