@@ -251,7 +251,7 @@ def test_no_command_that_brings_other_material_is_offered_while_a_task_is_worked
 
     table = commands(drive.window)
     conversations = [c.id for c in table if c.menu == "&Conversation"]
-    assert len(conversations) == 9
+    assert len(conversations) == 10
     for ident in (*conversations, "motion_graph"):
         assert any(c.id == ident for c in table)
         assert not any(offered(ident, mode, labels) for mode in ("meta", "manual") for labels in (True, False)), ident
