@@ -137,9 +137,9 @@ class View(QWidget):
 
     def _playhead(self, seconds: float) -> None:
         width = self.width() - LEFT
-        if width > 40 and self.gesture is None and self.editing.conversation is not None and self.session.playing:
+        if width > 40 and self.gesture is None and self.editing.conversation is not None:
             x = (seconds - self.first) * self.each
-            if x > width * 0.85 or x < 0:
+            if not 0 <= x <= width * (0.85 if self.session.playing else 1.0):
                 self.look_at(seconds - 0.15 * width / self.each)
         self.update()
 

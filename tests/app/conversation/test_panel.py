@@ -108,3 +108,14 @@ def test_a_click_on_a_name_shows_that_ones_plan_and_marks_it_and_leaves_the_rest
     assert talk.editing.chosen == {(0, 2)}
     assert (view.first, view.each) == (3.0, 50.0)
     assert "Performance shows" in view.tip(name.toPointF())
+
+
+def test_a_playhead_that_is_moved_out_of_sight_is_followed_and_one_in_sight_is_not(talk: Any) -> None:
+    view, session = talk.view, talk.drive.session
+    session.seek(29.0)
+    far = view.first
+    assert view.scale().x(29.0) < view.width()
+    session.seek(0.0)
+    assert view.first == 0.0 < far
+    session.seek(view.scale().seconds(view.width() - 5))
+    assert view.first == 0.0
