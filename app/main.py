@@ -12,7 +12,7 @@ from PySide6.QtGui import QSurfaceFormat
 from PySide6.QtWidgets import QApplication
 
 if TYPE_CHECKING:
-    from app.window import Window
+    from app.shell.window import Window
 
 
 def prepare() -> QApplication:
@@ -37,8 +37,8 @@ def prepare() -> QApplication:
 
 def open_window(path: Path | None, sample: bool = False) -> Window:
     """Show a window on a project, the sample project, or nothing."""
-    from app.files import SAMPLE
-    from app.window import Window
+    from app.project.files import SAMPLE
+    from app.shell.window import Window
 
     window = Window()
     window.show()

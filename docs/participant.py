@@ -78,8 +78,8 @@ class Bot:
 
 def done(condition: str, clips: int) -> dict[str, Any]:
     """Do a task; return what it took."""
-    from app.files import SAMPLE
-    from app.window import Window
+    from app.project.files import SAMPLE
+    from app.shell.window import Window
     from metagraph.formats.store import open_project
     from tests.app.conftest import Driver
     from tests.app.participant import Participant, bare, task

@@ -32,7 +32,7 @@ def wait(milliseconds: int, until: Callable[[], bool] | None = None) -> None:
 
 
 def window(theme: str = "dark") -> object:
-    from app.window import Window
+    from app.shell.window import Window
 
     QSettings().clear()
     out = Window()
@@ -57,7 +57,7 @@ def close(out: object) -> None:
 
 def finished(name: str, theme: str, machine: bool, action: str) -> None:
     """The sample project with an action selected and playing."""
-    from app.files import SAMPLE
+    from app.project.files import SAMPLE
 
     out = window(theme)
     out.files.open(SAMPLE, template=True)  # type: ignore[attr-defined]
@@ -80,7 +80,7 @@ def finished(name: str, theme: str, machine: bool, action: str) -> None:
 
 def half_labelled() -> None:
     """The practice project with a part of its clips placed, two holes and a misfit left to see."""
-    from app.files import PRACTICE
+    from app.project.files import PRACTICE
     from metagraph.graph import edits
 
     out = window()
@@ -113,7 +113,7 @@ def half_labelled() -> None:
 
 def requests() -> None:
     """The lanes of a performance: requests, what plays, one that is late and one that cannot."""
-    from app.files import SAMPLE
+    from app.project.files import SAMPLE
     from metagraph.graph import asks as a
 
     out = window()
@@ -137,8 +137,8 @@ def requests() -> None:
 
 def models() -> None:
     """The heat map of a model learned from our own annotation, beside what it generates."""
-    from app.files import SAMPLE
-    from app.panels.annotate import open_annotation
+    from app.features.models.annotation_dialog import open_annotation
+    from app.project.files import SAMPLE
 
     out = window()
     out.files.open(SAMPLE, template=True)  # type: ignore[attr-defined]
@@ -156,8 +156,8 @@ def models() -> None:
 
 def exporting() -> None:
     """The export dialog, on a target that loses something."""
-    from app.files import SAMPLE
-    from app.panels.export import ExportDialog
+    from app.features.export.export_dialog import ExportDialog
+    from app.project.files import SAMPLE
 
     out = window()
     out.files.open(SAMPLE, template=True)  # type: ignore[attr-defined]
@@ -174,8 +174,8 @@ def exporting() -> None:
 
 def labelling() -> None:
     """A clip of the practice project under review."""
-    from app.files import PRACTICE
-    from app.panels.review import ReviewDialog
+    from app.features.labelling.review_dialog import ReviewDialog
+    from app.project.files import PRACTICE
 
     out = window()
     out.files.open(PRACTICE, template=True)  # type: ignore[attr-defined]
@@ -199,7 +199,7 @@ def labelling() -> None:
 
 def conversation() -> None:
     """Two who talk, on their lanes."""
-    from app.files import SAMPLE
+    from app.project.files import SAMPLE
 
     out = window()
     out.files.open(SAMPLE, template=True)  # type: ignore[attr-defined]
@@ -217,7 +217,7 @@ def conversation() -> None:
 
 def motion_graph() -> None:
     """What counts as a jump between the sample's stances, and new motion from them."""
-    from app.motion_graph.dialog import MotionGraphDialog
+    from app.features.motion_graph.motion_graph_dialog import MotionGraphDialog
     from metagraph.formats.store import absolute, open_project, save_project
 
     samples = ROOT / "sample_clips"
@@ -270,7 +270,7 @@ def page() -> None:
 
 def performance() -> None:
     """A contact sheet of a performance."""
-    from app.cli import main as command
+    from app.cli.parser import main as command
 
     sample = str(ROOT / "sample_clips" / "sample.metagraph.yaml")
     command(["render", sample, "-s", "46", "--seed", "7", "-o", str(ROOT / "docs" / "performance.png")])

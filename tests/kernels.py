@@ -8,7 +8,7 @@ from pathlib import Path
 def main() -> None:
     import numpy as np
 
-    from app.motion_graph.work import Wish, synthesise, takes_of, usable
+    from app.features.motion_graph.synthesis_jobs import Wish, synthesise, takes_of, usable
     from metagraph.formats.store import open_project
     from metagraph.speech.pitch import pitch
     from metagraph.synthesis.graph import build

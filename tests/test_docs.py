@@ -12,7 +12,7 @@ from pathlib import Path
 
 import pytest
 
-from app.cli import main
+from app.cli.parser import main
 from metagraph.formats.store import from_text
 from metagraph.study.plan import from_text as study_from_text
 

@@ -64,7 +64,7 @@ class Driver:
 
     def card(self, clip: str) -> tuple[QWidget, QPoint]:
         """The library card of a clip, by name; scrolled into sight."""
-        from app.panels.library import ENTRY
+        from app.features.library.library_panel import ENTRY
 
         view, proxy = self.library.list, self.library.proxy  # type: ignore[attr-defined]
         for row in range(proxy.rowCount()):
@@ -164,16 +164,16 @@ def drive(qapp: object, qtbot: object, monkeypatch: pytest.MonkeyPatch, request:
             pytest.skip("needs xdotool to move the real pointer")
     else:
         pytest.skip("real drags are driven on X11 only")
-    import app.window
-    from app.theme import Theme, apply, style_sheet
-    from app.thumbnails import Thumbnails
+    import app.shell.window
+    from app.look.theme import Theme, apply, style_sheet
+    from app.stage.thumbnails import Thumbnails
 
     def styled(app: QApplication, look: Theme) -> None:
         """The application outlives each window here: the same style again would only polish every widget anew."""
         if app.styleSheet() != style_sheet(look):
             apply(app, look)
 
-    monkeypatch.setattr(app.window, "apply", styled)
+    monkeypatch.setattr(app.shell.window, "apply", styled)
     if "journey" not in request.path.stem:
         monkeypatch.setattr(Thumbnails, "_order", lambda *order: None)
 
@@ -182,7 +182,7 @@ def drive(qapp: object, qtbot: object, monkeypatch: pytest.MonkeyPatch, request:
 
     monkeypatch.setattr(QMessageBox, "question", unexpected)
     monkeypatch.setattr(QMessageBox, "warning", unexpected)
-    window = app.window.Window()
+    window = app.shell.window.Window()
     window.resize(1680, 1020)
     window.show()
     qtbot.waitExposed(window)  # type: ignore[attr-defined]

@@ -16,7 +16,7 @@ from PySide6.QtCore import QPoint, QPointF, Qt, QTimer
 from PySide6.QtTest import QTest
 from PySide6.QtWidgets import QApplication, QScrollArea
 
-from app.study.operators import Hands
+from app.features.study.operator_events import Hands
 from metagraph.graph import edits
 from metagraph.graph.expand import ends_in
 from metagraph.graph.model import LAYERS, LIMBS, Layer, Project
@@ -219,7 +219,7 @@ class Participant:
 
     def _room(self, canvas: Any, across: int, down: int) -> None:
         """Zoom out, by the wheel, until all that comes has room."""
-        from app.manual.scene import View
+        from app.features.manual.manual_scene import View
 
         scale = min(1.0, canvas.width() / (230 * across + 40), canvas.height() / (120 * down + 60))
         canvas.look_at(View(scale, 0.0, 0.0))

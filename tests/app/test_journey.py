@@ -26,7 +26,7 @@ ROOT = Path(__file__).resolve().parents[2]
 
 def export_and_check(drive, folder: Path) -> None:
     """Export through the dialog; the JSON validates, and reads back as the same graph."""
-    from app.panels.export import ExportDialog
+    from app.features.export.export_dialog import ExportDialog
 
     drive.actions["export"].trigger()
     dialog = drive.window.findChild(ExportDialog)
@@ -169,7 +169,7 @@ from pathlib import Path
 from PySide6.QtCore import QTimer
 from app.main import prepare
 app = prepare()
-from app.window import Window
+from app.shell.window import Window
 from metagraph.graph import edits
 window = Window()
 window.show()

@@ -10,8 +10,8 @@ from PySide6.QtCore import QPoint, Qt
 from PySide6.QtTest import QTest
 from PySide6.QtWidgets import QApplication, QFileDialog, QMessageBox
 
-from app.files import SAMPLE
-from app.panels.annotate import AnnotateDialog
+from app.features.models.annotation_dialog import AnnotateDialog
+from app.project.files import SAMPLE
 from metagraph.formats.store import open_project
 from metagraph.graph import edits
 

@@ -12,7 +12,7 @@ pytestmark = [pytest.mark.window, pytest.mark.gl]
 
 @pytest.fixture(scope="module")
 def sample():
-    from app.files import SAMPLE
+    from app.project.files import SAMPLE
 
     return open_project(SAMPLE).project
 

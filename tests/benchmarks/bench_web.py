@@ -16,7 +16,7 @@ from pathlib import Path
 ROOT = Path(__file__).resolve().parents[2]
 sys.path.insert(0, str(ROOT))
 
-from app.opening import open_whole  # noqa: E402
+from app.project.opening import open_whole  # noqa: E402
 from metagraph.engines.targets import registry, web  # noqa: E402
 
 RUNS = 5

@@ -31,7 +31,7 @@ started = float(sys.argv[1])
 from app.main import prepare
 app = prepare()
 from app.main import open_window
-from app.files import SAMPLE
+from app.project.files import SAMPLE
 window = open_window(None, sample=True)
 window.resize(1680, 1020)
 seen = []
@@ -80,7 +80,7 @@ def linger(seconds: float) -> None:
 
 def opened(window: object) -> None:
     """Open the sample project and wait until everything has settled."""
-    from app.files import SAMPLE
+    from app.project.files import SAMPLE
 
     window.files.open(SAMPLE, template=True)
     wait(lambda: bool(window.document.project.clips) and window.performance.skeleton() is not None and not window.jobs.running)
@@ -92,7 +92,7 @@ def stalls() -> None:
     from app.main import prepare
 
     prepare()
-    from app.window import Window
+    from app.shell.window import Window
     from metagraph.graph import edits
 
     window = Window()
@@ -181,7 +181,7 @@ def edit_latency() -> None:
     from app.main import prepare
 
     prepare()
-    from app.window import Window
+    from app.shell.window import Window
 
     window = Window()
     window.resize(1680, 1020)
@@ -243,7 +243,7 @@ def proposing() -> None:
     from app.main import prepare
 
     prepare()
-    from app.window import Window
+    from app.shell.window import Window
     from metagraph.suggest.propose import accept, propose
 
     window = Window()
@@ -324,7 +324,9 @@ def main() -> None:
         os.environ.update(XDG_DATA_HOME=folder, XDG_CONFIG_HOME=folder, PYTHONPYCACHEPREFIX=f"{folder}/cache", METAGRAPH_BENCH="1")
         os.environ.pop("PYTHONDONTWRITEBYTECODE", None)  # modules are compiled once, as they are for people
         subprocess.run(
-            [sys.executable, "-c", "import app.window; from app.window import late_modules; late_modules()"], check=True, cwd=ROOT
+            [sys.executable, "-c", "import app.shell.window; from app.shell.window import late_modules; late_modules()"],
+            check=True,
+            cwd=ROOT,
         )
         for name in chosen:
             if name == "cold":

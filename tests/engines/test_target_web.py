@@ -81,7 +81,7 @@ def test_the_page_poses_the_character_as_the_preview_does_and_its_picture_matche
     for place, joint in enumerate(project.skeleton.names):
         assert np.linalg.norm(np.array(joints[joint]) - positions[place]) < 1e-4, joint
 
-    from app.headless_render import figure_of
+    from app.cli.render_command import figure_of
     from preview.camera import Camera
     from preview.offscreen import Offscreen
     from preview.scene import Actor, Scene

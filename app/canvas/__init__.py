@@ -1,1 +1,0 @@
-"""The meta-graph in the middle of the window."""

@@ -1,0 +1,130 @@
+"""`metagraph annotate`: learn from an annotation, or perform it, without a window."""
+
+from __future__ import annotations
+
+import json
+import sys
+from argparse import Namespace
+from collections.abc import Iterable, Mapping
+from difflib import get_close_matches
+from pathlib import Path
+from typing import Any
+
+from app.features.models.annotation_reading import Reading, begin, into, told
+from app.project.opening import open_whole
+from metagraph.errors import FileError
+from metagraph.formats.elan import read_elan
+from metagraph.formats.store import save_project
+from metagraph.graph.model import LAYERS, Layer
+from metagraph.playback.annotation import IGNORE, MEANINGS, ROLES, Annotation, is_meaning, label_of
+from metagraph.playback.compare import compare
+from metagraph.playback.learn import Act, learn, state_words, states_of
+
+
+def annotate(options: Namespace) -> int:
+    """Say what an annotation is read as; with `learn` or `perform`, work it into the project and save that."""
+    path: Path = options.project
+    opened = open_whole(path)
+    project = opened.project
+    reading = _reading(read_elan(options.annotation), options, project.tiers, project.labels)
+    if options.smoothing < 0:
+        raise ValueError("--smoothing is 0 or more")
+    doubts = told(reading)
+    if not any(reading.observed.values()) and (options.learn or options.perform is not None):
+        tiers = ", ".join(repr(t.name) for t in reading.annotation.tiers[:12]) or "none"
+        raise FileError(
+            options.annotation, f"nothing in it is read as an action; its tiers are {tiers}", "in its tiers",
+            f"Say what they stand for: --tier \"NAME=left arm\" (or {', '.join(list(ROLES)[1:])}).",
+        )  # fmt: skip
+    made = into(project, reading, LAYERS if options.learn else (), options.states, options.perform, options.smoothing)
+    saved = bool(made.learned) or made.performance is not None
+    if saved:
+        save_project(made.project, path, path)
+    models = {layer: _layer(layer, acts, options) for layer, acts in reading.observed.items() if acts}
+    data = {
+        "annotation": str(options.annotation),
+        "seconds": round(reading.annotation.end, 3),
+        "tiers": dict(reading.roles),
+        "labels": [{"layer": x.layer, "label": x.text, "count": x.count, "meaning": x.meaning} for x in reading.labels],
+        "layers": models,
+        "learned": list(made.learned),
+        "performance": made.performance,
+        "saved": saved,
+        "notes": [*opened.notes, *doubts],
+    }
+    for note in data["notes"]:  # type: ignore[attr-defined]
+        print(f"note: {note}", file=sys.stderr)
+    print(json.dumps(data) if options.json else "\n".join(_lines(data, reading, path)))
+    return 0 if models else 3
+
+
+def _reading(annotation: Annotation, options: Namespace, tiers: Mapping[str, str], labels: Mapping[str, str]) -> Reading:
+    names = [tier.name for tier in annotation.tiers]
+    roles = _said(options.tier, "--tier", "LH=left arm", names)
+    for role in roles.values():
+        if role not in (*ROLES, IGNORE):
+            raise ValueError(f"a tier is read as one of {', '.join((*ROLES, IGNORE))}, not '{role}'")
+    found = begin(annotation, roles, tiers, labels=(labels,))
+    here = [x for label in found.labels for x in (label.text, label.key)]
+    said = _said(options.label, "--label", "nod=gesture positive", here, label_of)
+    for meaning in said.values():
+        if not is_meaning(meaning):
+            raise ValueError(f"a label means {', '.join(MEANINGS)}, with tags behind it, not '{meaning}'")
+    return Reading(annotation, found.roles, said, found.memory)
+
+
+def _said(given: Iterable[str], option: str, example: str, known: list[str], spelled: Any = str) -> dict[str, str]:
+    """Return NAME=WORDS options as a mapping. Raises ValueError for names that are not there."""
+    out = {}
+    for text in given:
+        name, equals, words = text.rpartition("=")
+        name, words = spelled(name.strip()), " ".join(words.casefold().split())
+        if not equals or not words:
+            raise ValueError(f"{option} is given as \"{example}\", not '{text}'")
+        if name not in known:
+            near = get_close_matches(name, known, 1)
+            hint = f"did you mean '{near[0]}'?" if near else f"there are {', '.join(known[:12]) or 'none'}"
+            raise ValueError(f"{option}: there is no '{name}' in the annotation; {hint}")
+        out[name] = words
+    return out
+
+
+def _layer(layer: Layer, acts: tuple[Act, ...], options: Namespace) -> dict[str, Any]:
+    """Return a layer's model and how often it makes what was seen."""
+    model = learn(layer, [acts], options.states, options.smoothing)
+    found = compare(model, [acts])
+    assert found.observed is not None
+    return {
+        "actions": len(acts),
+        "per_minute": round(found.observed.rate, 2),
+        "states": [state_words(state, layer) for state in states_of(model)],
+        "matrix": [[round(p, 4) for p in row] for row in model.matrix],
+        "lengths": [list(pair) for pair in model.lengths],
+        "gap": model.gap,
+        "positive": model.positive,
+        "negative": model.negative,
+        "seen": [round(float(x), 4) for x in found.observed.shares()],
+        "made": [round(float(x), 4) for x in found.generated.shares()],
+        "chance": [round(float(x), 4) for x in found.deviation],
+    }
+
+
+def _lines(data: Mapping[str, Any], reading: Reading, path: Path) -> Iterable[str]:
+    yield f"{data['annotation']}: {data['seconds']:g} s, {len(data['tiers'])} tiers"
+    for tier in reading.annotation.tiers:
+        yield f"  {tier.name:24} {len(tier.intervals):5}  {reading.roles[tier.name]}"
+    for label in data["labels"][:30]:
+        yield f"  {label['layer']:5} {label['label']:24} {label['count']:4} x  {label['meaning']}"
+    if len(data["labels"]) > 30:
+        yield f"  and {len(data['labels']) - 30} rarer labels"
+    for layer, found in data["layers"].items():
+        yield f"{layer}: {found['actions']} actions, {found['per_minute']:g} a minute, {found['gap']:g} s of rest on average"
+        for n, state in enumerate(found["states"]):
+            row = "".join(f"{100 * p:5.0f}" if p else "    ." for p in found["matrix"][n])
+            often = f"seen {found['seen'][n]:4.0%}, made {found['made'][n]:4.0%}"
+            yield f"  {state:26}{row}   {often}   {found['lengths'][n][0]:.1f} s, deviation {found['lengths'][n][1]:.1f}"
+    if data["learned"]:
+        yield f"learned: {', '.join(data['learned'])}"
+    if data["performance"]:
+        yield f"kept as a performance: {data['performance']}"
+    yield f"saved {path}" if data["saved"] else "nothing was saved; --learn learns models from it, --perform NAME keeps it as a performance"

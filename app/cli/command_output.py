@@ -1,0 +1,50 @@
+"""What the commands share: a project read, a performance planned, words or JSON said."""
+
+from __future__ import annotations
+
+import json
+import sys
+from argparse import Namespace
+from pathlib import Path
+from typing import Any
+
+from app.project.opening import open_whole
+from metagraph.graph.asks import Performance
+from metagraph.graph.model import Project
+from metagraph.playback.hear import perform
+from metagraph.playback.plan import Plan
+from metagraph.playback.planner import make_plan
+
+LONGEST = 36000  # seconds of one performance, ten hours
+
+
+def opened(path: Path) -> Project:
+    found = open_whole(path)
+    for note in found.notes:
+        print(f"note: {note}", file=sys.stderr)
+    return found.project
+
+
+def staged(project: Project, options: Namespace) -> Plan:
+    """Return the performance that is asked for, or an improvised one; its length goes into the options."""
+    kept = _kept(project, options.performance) if options.performance is not None else None
+    if options.seconds is None:
+        options.seconds = kept.length if kept is not None else options.usual_seconds
+    if not 0 < options.seconds <= LONGEST:
+        raise ValueError(f"a performance lasts more than 0 and at most {LONGEST} seconds")
+    if kept is None:
+        return make_plan(project, options.seconds, seed=options.seed)
+    seed = kept.seed if options.seed is None else options.seed
+    return perform(project, kept.asks, options.seconds, seed, dict(kept.stances), kept.idle)
+
+
+def _kept(project: Project, name: str) -> Performance:
+    found = next((p for i, p in project.performances.items() if name in (i, p.name)), None)
+    if found is None:
+        names = ", ".join(f"'{p.name}'" for p in project.performances.values()) or "none"
+        raise ValueError(f"there is no performance '{name}' in the project; it keeps {names}")
+    return found
+
+
+def say(options: Namespace, words: str, data: Any) -> None:
+    print(json.dumps(data) if options.json else words)

@@ -1,0 +1,120 @@
+"""Exporting without a window: for a target, again whenever the project is saved, with vectors."""
+
+from __future__ import annotations
+
+import sys
+import time
+from argparse import Namespace
+from pathlib import Path
+from typing import Any
+
+from app.cli.command_output import opened, say
+from metagraph.engines.export import ExportError
+from metagraph.errors import FileError
+
+LOOK = 0.3  # seconds between two looks at the project file
+SHOWN = 8  # files named on the screen
+
+
+def export(options: Namespace) -> int:
+    """Write a project for a target; with `watch` go on until interrupted."""
+    from metagraph.engines.targets import registry
+
+    if options.targets:
+        for target in registry.targets().values():
+            print(f"{target.name:18} {target.title}: {target.files}{' (experimental)' if target.untried else ''}")
+        return 0
+    if options.project is None or options.out is None:
+        print("metagraph export: which project, and where to? metagraph export my.metagraph.yaml -o game/", file=sys.stderr)
+        return 2
+    registry.target(options.target)  # a wrong name is told before anything is read
+    if options.serve and options.target != "web":
+        print("metagraph export: only the web page can be served: --target web --serve", file=sys.stderr)
+        return 2
+    if not (options.watch or options.serve):
+        _once(options)
+        return 0
+    try:
+        _go_on(options)
+    except KeyboardInterrupt:
+        print("stopped", file=sys.stderr)
+    return 0
+
+
+def _go_on(options: Namespace) -> None:
+    """Export and go on: serving, watching, or both."""
+    from metagraph.engines.serve import Served
+
+    if not options.watch:
+        _once(options)
+    if options.serve:
+        options.out.mkdir(parents=True, exist_ok=True)
+        print(f"the page is at {Served(options.out).url} (Ctrl+C stops)", file=sys.stderr, flush=True)
+    if options.watch:
+        _watch(options)
+    while True:
+        time.sleep(3600)
+
+
+def _watch(options: Namespace) -> None:
+    """Export, and again after each saving; what goes wrong is told, and the next saving tried."""
+    seen: tuple[int, int] | None = None
+    while True:
+        now = _state(options.project)
+        if now is not None and now != seen:
+            seen = now
+            try:
+                _once(options)
+            except (FileError, ExportError) as error:
+                print(f"error: {error}", file=sys.stderr, flush=True)
+        time.sleep(LOOK)
+
+
+def _state(path: Path) -> tuple[int, int] | None:
+    """Return what changes when a file is saved; None while it is not there, as in the middle of saving."""
+    try:
+        found = path.stat()
+    except OSError:
+        return None
+    return found.st_mtime_ns, found.st_size
+
+
+def _once(options: Namespace) -> None:
+    from metagraph.engines.targets import registry
+    from metagraph.graph.manual_meta import exportable
+
+    project, differences = exportable(opened(options.project))
+    character = options.project.resolve().parent / project.character if project.character and not options.no_mesh else None
+    made = registry.write(project, options.target, options.out, character, options.expanded, base=options.project.resolve().parent)
+    files = list(made.files)
+    if options.vectors:
+        from metagraph.engines.vectors import write_vectors
+
+        graph = next((path for path in files if path.suffix == ".json" and path.with_suffix(".glb") in files), None)
+        if graph is None:
+            print(f"note: target '{options.target}' is not played by a runtime: there are no vectors for it", file=sys.stderr)
+        else:
+            files.append(write_vectors(graph))
+    for warning in made.warnings:
+        print(f"warning: {warning}", file=sys.stderr)
+    untried = registry.target(options.target).untried
+    if untried:
+        print(f"experimental: {untried}", file=sys.stderr)
+    for words in differences:
+        print(f"differs: {words}", file=sys.stderr)
+    for loss in made.losses:
+        print(f"loses: {loss}", file=sys.stderr)
+    data: dict[str, Any] = {
+        **{path.suffix[1:]: str(path) for path in made.files[:2] if made.target == registry.DEFAULT},
+        "target": made.target,
+        "files": [str(path) for path in files],
+        "clips": made.clips,
+        "losses": list(made.losses),
+        **({"differences": differences} if differences else {}),
+        "warnings": list(made.warnings),
+    }
+    shown = (
+        data["files"] if len(files) <= SHOWN else [*data["files"][: SHOWN - 1], f"... and {len(files) - SHOWN + 1} more in {options.out}"]
+    )
+    say(options, "\n".join(shown), data)
+    sys.stdout.flush()

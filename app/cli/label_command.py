@@ -1,0 +1,132 @@
+"""Labelling a folder without a window: import, propose, place what is sure, and write down what was decided and why."""
+
+from __future__ import annotations
+
+import argparse
+import sys
+import time
+from argparse import Namespace
+from collections.abc import Mapping
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+if TYPE_CHECKING:  # reading a command line must not wait for arrays
+    from metagraph.graph.model import Project
+    from metagraph.suggest.alike import Example
+    from metagraph.suggest.words_patterns import Patterns
+
+
+def arguments(parser: argparse.ArgumentParser) -> None:
+    """Add the options of `label`."""
+    parser.add_argument("folder", type=Path, help="a folder of clips, or a project whose clips wait to be labelled")
+    parser.add_argument("-o", "--out", type=Path, help="the project to write (default: beside the folder, called after it)")
+    parser.add_argument(
+        "--above", type=float, default=0.0, metavar="SURE", help="place only what is at least so sure, 0 to 1 (default: all)"
+    )
+    parser.add_argument(
+        "--from", dest="sources", action="append", choices=("name", "motion", "learned"), help="believe only this; may be repeated"
+    )
+    parser.add_argument("--learned", action="store_true", help="use what you taught the window: corrections, name patterns, saved projects")
+    parser.add_argument("--patterns", type=Path, metavar="FILE", help="name patterns exported from the window (Graph menu)")
+    parser.add_argument("--no-pictures", action="store_true", help="leave the pictures out of the report")
+
+
+def label(options: Namespace) -> int:
+    """Label a folder or project; write the project and an HTML report beside it."""
+    from app.cli.command_output import say
+    from app.features.labelling.label_report import needs_a_look, report
+    from metagraph.errors import FileError
+    from metagraph.formats.atomic import write_atomically
+    from metagraph.formats.store import SUFFIX, save_project
+    from metagraph.graph.check import check
+    from metagraph.suggest.propose import SOURCES, accept, propose
+
+    began = time.perf_counter()
+    source: Path = options.folder
+    if not source.exists():
+        raise FileError(source, "there is no such folder or project", "on labelling it", "Give a folder of clips, or a project.")
+    path: Path = options.out or (source if source.is_file() else source.resolve().parent / f"{source.resolve().name}{SUFFIX}")
+    if path.suffix not in (".yaml", ".yml"):
+        path = path.with_name(path.name + SUFFIX)
+    patterns, examples = _taught(options, path)
+    project, notes = _project(source, path)
+    found = propose(project, patterns=patterns, examples=examples, sources=tuple(options.sources or SOURCES))
+    taken = accept(project, found, options.above)
+    save_project(taken.project, path, source if source.is_file() else path)
+    place = path.with_name(path.name.removesuffix(SUFFIX) + ".labels.html")
+    drawn = {} if options.no_pictures else _pictures(taken.project, path.resolve().parent, [*found.proposals])
+    write_atomically(place, report(taken.project, found, taken, drawn, notes).encode())
+    look = [p for p in found.doubtful if needs_a_look(p, taken)]
+    errors = [p.message for p in check(taken.project) if p.severity == "error"]
+    seconds = time.perf_counter() - began
+    for note in notes:
+        print(f"note: {note}", file=sys.stderr)
+    for stance, rest in taken.held.items():
+        if (made := taken.project.stance(stance)) is not None:
+            print(f"held: {made.name}: {rest.reason}", file=sys.stderr)
+    for clip, why in taken.left.items():
+        print(f"left: {project.clips[clip].name}: {why}", file=sys.stderr)
+    words = f"{path}: {len(taken.placed)} of {len(found.proposals)} clips labelled in {seconds:.1f} s, {len(look)} need a look\n{place}"
+    names = {clip: project.clips[clip].name for clip in found.proposals}
+    data = {
+        "project": str(path), "report": str(place), "labelled": len(taken.placed), "left": {names[c]: why for c, why in taken.left.items()},
+        "held": {s.name: r.reason for i, r in taken.held.items() if (s := taken.project.stance(i)) is not None},
+        "look": [names[p.clip] for p in look], "errors": errors, "seconds": round(seconds, 2),
+    }  # fmt: skip
+    say(options, words, data)
+    return 3 if taken.left or errors else 0
+
+
+def _taught(options: Namespace, path: Path) -> tuple[Patterns | None, list[Example]]:
+    """Return the name patterns to read with and the examples to learn from; neither unless asked for, so that a run is the same
+    everywhere."""
+    from app.features.labelling.pattern_files import read_patterns
+    from metagraph.suggest.words import merged
+
+    given = read_patterns(options.patterns) if options.patterns is not None else None
+    if not options.learned:
+        return given, []
+    from PySide6.QtCore import QCoreApplication
+
+    from app.project.learned import Learned
+
+    QCoreApplication.setApplicationName("Metagraph")  # as the window is called: that is where it keeps what it learned
+    QCoreApplication.setOrganizationName("Metagraph")
+    learned = Learned()
+    learned.failed.connect(lambda words: print(f"note: {words}", file=sys.stderr))
+    patterns = learned.patterns
+    return merged(patterns, given) if given is not None else patterns, learned.examples_beside(path)
+
+
+def _project(source: Path, path: Path) -> tuple[Project, list[str]]:
+    """Return the project to label, and what there is to say about what was read."""
+    from app.cli.command_output import opened
+    from metagraph.errors import FileError
+    from metagraph.formats.imports import import_files
+    from metagraph.formats.store import SUFFIX
+    from metagraph.graph.model import Project
+
+    if source.is_file():
+        return opened(source), []
+    empty = Project(name=path.name.removesuffix(SUFFIX))
+    result = import_files(empty, path.resolve().parent, [source])
+    if not result.loaded:
+        why = result.failures[0] if result.failures else "no clip was found in it"
+        raise FileError(source, why, "on importing it", "Clips are BVH, GLB, glTF, VRM animation or FBX files.")
+    return result.into(empty), [*result.failures, *result.notes]
+
+
+def _pictures(project: Project, folder: Path, clips: list[str]) -> Mapping[str, Any]:
+    """Return a picture of each clip's most telling pose; none where nothing can be drawn here."""
+    from app.cli.render_command import figure_of
+    from metagraph.errors import FileError
+    from preview.offscreen import Offscreen, OpenGLError
+    from preview.thumbnail import clip_thumbnail
+
+    try:
+        figure = figure_of(project, folder)
+        with Offscreen(192, 192) as stage:
+            return {c: clip_thumbnail(stage, figure, m, size=192, scale=1) for c in clips if (m := project.clips[c].motion) is not None}
+    except (OpenGLError, FileError) as error:
+        print(f"note: the report has no pictures: {error}", file=sys.stderr)
+        return {}

@@ -1,0 +1,122 @@
+"""`metagraph live`: a character that plays and listens, without a window."""
+
+from __future__ import annotations
+
+import contextlib
+import os
+import signal
+import sys
+import time
+from argparse import ArgumentParser, Namespace
+from typing import TYPE_CHECKING
+
+from metagraph.live import OSC_PORT, PORT
+
+if TYPE_CHECKING:
+    from metagraph.live.server import Options, Server
+    from metagraph.live.session import LiveSession
+    from metagraph.live.wire import Batch, Ready, Result
+
+
+def arguments(parser: ArgumentParser) -> None:
+    """Add the command's options."""
+    parser.add_argument("--port", type=int, default=PORT, help=f"of the WebSocket, 0 for any that is free (default: {PORT})")
+    parser.add_argument("--osc-port", type=int, default=OSC_PORT, metavar="PORT",
+                        help=f"of OSC over UDP, 0 for any that is free (default: {OSC_PORT})")  # fmt: skip
+    parser.add_argument("--no-websocket", action="store_true", help="do not listen for WebSocket")
+    parser.add_argument("--no-osc", action="store_true", help="do not listen for OSC")
+    parser.add_argument("--no-stdin", action="store_true", help="do not read requests from standard input, nor end with it")
+    parser.add_argument("--host", default="", help="listen there, not on this machine alone; needs a token")
+    parser.add_argument("--token", help="what clients must say first (default: $METAGRAPH_TOKEN)")
+    parser.add_argument("--origin", action="append", default=[], help='let web pages of this origin connect; "null" for files')
+    parser.add_argument("--seed", type=int, help="another performance of the same project (default: the project's seed)")
+    parser.add_argument("--no-idle", action="store_true", help="do nothing that is not asked for")
+    parser.add_argument("--keep", metavar="NAME", help="keep what was asked in the project at the end, as a performance")
+
+
+def live(options: Namespace) -> int:
+    """Play until standard input ends or the program is interrupted."""
+    import asyncio
+    import gc
+
+    from app.project.opening import open_whole
+    from metagraph.live.server import Options, checked
+    from metagraph.live.session import LiveSession
+
+    wanted = checked(
+        Options(
+            host=options.host,
+            port=None if options.no_websocket else options.port,
+            osc=None if options.no_osc else options.osc_port,
+            token=options.token or os.environ.get("METAGRAPH_TOKEN") or None,
+            origins=tuple(options.origin),
+            stdio=not options.no_stdin,
+        )
+    )
+    opened = open_whole(options.project)
+    for note in opened.notes:
+        print(f"note: {note}", file=sys.stderr)
+    session = LiveSession(opened.project, options.seed, idle=not options.no_idle)
+    session.warm()
+    gc.freeze()  # what was loaded stays; looking through it again and again would show as a hitch
+    with contextlib.suppress(KeyboardInterrupt):
+        asyncio.run(_play(session, wanted, options.json))
+    if options.keep is not None:
+        _keep(session, options)
+    return 0
+
+
+async def _play(session: LiveSession, options: Options, as_json: bool) -> None:
+    from metagraph.live.server import Server
+    from metagraph.live.wire import exchange
+
+    server = Server(options, time.monotonic)
+    ready = await server.open()
+    _end_by_signals(server)
+    _greet(server, ready, options, as_json)
+    begin = time.monotonic()
+
+    def step(batch: Batch | None) -> Result:
+        return exchange(session, time.monotonic() - begin, batch)
+
+    try:
+        await server.run(step)
+    finally:
+        await server.close()
+
+
+def _end_by_signals(server: Server) -> None:
+    import asyncio
+
+    loop = asyncio.get_running_loop()
+    for number in (signal.SIGINT, signal.SIGTERM):
+        with contextlib.suppress(NotImplementedError):  # Windows interrupts otherwise
+            loop.add_signal_handler(number, server.stopped.set)
+
+
+def _greet(server: Server, ready: Ready, options: Options, as_json: bool) -> None:
+    """Say where one can be reached: to programs with a line of JSON on standard output, to people in words."""
+    if as_json:
+        import msgspec
+
+        line = msgspec.json.encode({"event": "ready"} | msgspec.to_builtins(ready))
+        if options.stdio:
+            server.say(line)
+        else:
+            print(line.decode(), flush=True)
+        return
+    ways = ["JSON lines on standard input"] if options.stdio else []
+    ways += [f"WebSocket on {ready.websocket}"] if ready.websocket is not None else []
+    ways += [f"OSC on {ready.osc[0]}, port {ready.osc[1]}"] if ready.osc is not None else []
+    token = "; clients need the token" if ready.token else ""
+    print(f"The character listens: {', '.join(ways) or 'to nobody'}{token}. Ctrl+C ends it.", file=sys.stderr, flush=True)
+
+
+def _keep(session: LiveSession, options: Namespace) -> None:
+    """Add the session to the project as it is saved now."""
+    from metagraph.formats.store import open_project, save_project
+    from metagraph.graph.staging import add_performance
+
+    project, ident = add_performance(open_project(options.project).project, session.performance(options.keep))
+    save_project(project, options.project, options.project)
+    print(f"kept as '{project.performances[ident].name}'", file=sys.stderr)

@@ -1,0 +1,197 @@
+"""`metagraph render`: a performance, or one clip, as pictures, a video with sound, or plain motion."""
+
+from __future__ import annotations
+
+import sys
+from argparse import Namespace
+from collections.abc import Iterator, Sequence
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from app.cli.command_output import opened, say, staged
+from app.stage.playback_source import ASIDE, Shown, alone
+from metagraph.graph.model import Project
+from metagraph.playback.bake import bake
+from metagraph.playback.plan import Plan
+
+Seen = tuple[Any, Shown]  # a figure, and what it plays
+
+
+def figure_of(project: Project, folder: Path) -> Any:
+    from preview.figure import SkinnedFigure, StickFigure
+
+    assert project.skeleton is not None
+    if project.character is not None:
+        from metagraph.formats.gltf import read_character
+
+        return SkinnedFigure(read_character(folder / project.character), project.skeleton)
+    return StickFigure(project.skeleton)
+
+
+def size_of(text: str) -> tuple[int, int]:
+    try:
+        width, height = (int(x) for x in text.lower().split("x"))
+    except ValueError:
+        raise ValueError(f"a size is given as 960x540, not {text!r}") from None
+    if not (16 <= width <= 7680 and 16 <= height <= 7680):
+        raise ValueError("a size lies between 16x16 and 7680x7680")
+    return width, height
+
+
+def pictures(seen: Sequence[Seen], times: np.ndarray, size: tuple[int, int], look: str) -> Iterator[np.ndarray]:
+    """Yield one picture `[H, W, 4]` for each time. The camera holds still."""
+    from preview.camera import whole_figure
+    from preview.offscreen import Offscreen
+    from preview.scene import THEMES, Scene
+
+    some = times[:: max(1, len(times) // 60)]
+    scene = Scene(tuple(_actor(figure, shown, some) for figure, shown in seen))
+    camera = whole_figure(scene.bounds(), size[0] / size[1], ASIDE if len(seen) > 1 else 0.0)
+    with Offscreen(*size) as offscreen:
+        for at in times:
+            yield offscreen.render(Scene(tuple(_actor(figure, shown, at) for figure, shown in seen)), camera, THEMES[look])
+
+
+def _actor(figure: Any, shown: Shown, times: Any) -> Any:
+    """Return a figure as it is shown at one time, or at many."""
+    from preview.scene import Actor
+
+    pose, skeleton = shown.pose(times), shown.skeleton
+    assert pose is not None and skeleton is not None
+    rotations, positions = skeleton.globals(pose)
+    if shown.stand is not None:
+        rotations, positions = shown.stand.placed(rotations, positions)
+    morphs = figure.morph_weights(shown.morphs(float(times))) if figure.morphs and np.ndim(times) == 0 else None
+    return Actor(figure, rotations, positions, morphs)
+
+
+def render(options: Namespace) -> int:
+    project = opened(options.project)
+    if project.skeleton is None:
+        raise ValueError("the project has no clips; there is nothing to draw")
+    if not 1 <= options.fps <= 240:
+        raise ValueError("a video has 1 to 240 pictures a second")
+    if not 2 <= options.frames <= 1000:
+        raise ValueError("a contact sheet has 2 to 1000 pictures")
+    if options.out.suffix not in (".png", ".mp4", ".glb", ".bvh"):
+        name = options.out.suffix or options.out.name
+        raise ValueError(f"pictures are written as .png, videos as .mp4, motion as .glb or .bvh, not as '{name}'")
+    size, folder = size_of(options.size), options.project.resolve().parent
+    clip = None
+    if options.clip is not None:
+        clip = next((e.id for e in project.clips.values() if options.clip in (e.name, e.id)), None)
+        if clip is None or project.clips[clip].motion is None:
+            raise ValueError(f"there is no clip '{options.clip}' in the project")
+        options.seconds = project.clips[clip].duration
+    if options.conversation is not None:
+        shown = _talking(project, options, folder)
+    else:
+        shown = alone(project, clip) if clip is not None else Shown(project, staged(project, options), options.seconds)
+    if options.out.suffix in (".glb", ".bvh"):
+        for one, out in zip(shown.both, _outs(options.out, shown), strict=True):
+            bake_to(out, one, options.seconds, options.fps, one.folder or folder)
+    else:
+        seen = [(figure_of(one.project, one.folder or folder), one) for one in shown.both]
+        sound = sound_of(shown, folder, options.seconds) if options.out.suffix == ".mp4" else None
+        draw_to(options.out, seen, options.seconds, size, options.fps, options.frames, options.theme, sound, options.progress)
+    say(options, f"{options.out}", {"written": str(options.out)})
+    return 0
+
+
+def _talking(project: Project, options: Namespace, folder: Path) -> Shown:
+    """Return both sides of a conversation of the project, named by id or name."""
+    from app.stage.conversation_plans import Stage
+
+    found = next((i for i, c in project.conversations.items() if options.conversation in (i, c.name)), None)
+    if found is None:
+        names = ", ".join(f"'{c.name}'" for c in project.conversations.values()) or "none"
+        raise ValueError(f"there is no conversation '{options.conversation}' in the project; it keeps {names}")
+    shown = Stage().show(project, found, folder)
+    for note in shown.notes:
+        print(f"note: {note}", file=sys.stderr)
+    options.seconds = shown.length if options.seconds is None else options.seconds
+    return shown
+
+
+def _outs(out: Path, shown: Shown) -> list[Path]:
+    """Return a file for each who is shown: both of a conversation have one each, in the character's own space."""
+    return [out] if shown.partner is None else [out.with_stem(f"{out.stem}-{n + 1}") for n in range(2)]
+
+
+def sound_of(shown: Shown, folder: Path, seconds: float) -> tuple[np.ndarray, int] | None:
+    """Return the sound of what is said, None where nothing is."""
+    lines = {
+        s.line: line
+        for one in shown.both
+        for s in one.plan.track.speeches
+        if s.line is not None and (line := one.project.lines.get(s.line)) is not None and line.audio
+    }
+    if not lines:
+        return None
+    from metagraph.speech.soundtrack import RATE, line_sounds, mixed, placed
+
+    sounds, notes = line_sounds(lines, folder)
+    for note in notes:
+        print(f"note: {note}", file=sys.stderr)
+    return mixed([part for one in shown.both for part in placed(one.plan, sounds)], 0, round(seconds * RATE)), RATE
+
+
+def draw_to(
+    out: Path, seen: Sequence[Seen], seconds: float, size: tuple[int, int], fps: float, frames: int, look: str,
+    sound: tuple[np.ndarray, int] | None = None, progress: bool = False,
+) -> None:  # fmt: skip
+    """Write a contact sheet (.png) or a video (.mp4), with its sound."""
+    out.parent.mkdir(parents=True, exist_ok=True)
+    if out.suffix == ".mp4":
+        from preview.video import write_video
+
+        times = np.arange(max(1, round(seconds * fps))) / fps
+
+        def told(count: int) -> None:
+            if progress:
+                print(f"{count}/{len(times)}", file=sys.stderr, flush=True)
+
+        write_video(out, pictures(seen, times, size, look), fps, size, told, sound=sound)
+    elif out.suffix == ".png":
+        from preview.sheet import contact_sheet, write_png
+
+        times = np.linspace(0, seconds, max(2, frames))
+        small = (max(16, size[0] * 2 * len(seen) // 9), max(16, size[1] * 5 // 9))
+        images = list(pictures(seen, times, small, look))
+        labels = [f"{t:.2f} s  {', '.join(filter(None, (_doing(shown.plan, t) for _, shown in seen)))}".rstrip() for t in times]
+        write_png(out, contact_sheet(images, 8 // len(seen), labels))
+    else:
+        raise ValueError(f"pictures are written as .png, videos as .mp4, not '{out.suffix}'")
+
+
+def bake_to(out: Path, shown: Shown, seconds: float, fps: float, folder: Path) -> None:
+    """Write a performance, or a clip, as plain motion: what an engine or an animation program plays without a planner.
+
+    A GLB has the character in it, where the project has one.
+    """
+    from metagraph.formats.bvh import write_bvh
+    from metagraph.formats.gltf_writer import write_glb
+
+    project = shown.project
+    whole = shown.clip or shown.motion
+    motion = bake(shown.plan, project, seconds, fps) if whole is None else project.clips[whole].motion
+    assert motion is not None
+    out.parent.mkdir(parents=True, exist_ok=True)
+    if out.suffix == ".bvh":
+        write_bvh(motion, out)
+    else:
+        body = None
+        if project.character is not None:
+            from metagraph.formats.gltf import read_character
+
+            body = read_character(folder / project.character)
+            if body.skeleton != project.skeleton:
+                body = None  # it would not move with this motion
+        write_glb(out, [motion], body)
+
+
+def _doing(made: Plan, seconds: float) -> str:
+    cue = next((cue for layer in ("arms", "head", "body") if (cue := made.layers[layer].cue_at(seconds)) is not None), None)  # type: ignore[index]
+    return cue.action.name if cue is not None else ""

@@ -1,0 +1,1 @@
+"""The features: each a folder that exports `contribute(shell)`, and none knows another."""

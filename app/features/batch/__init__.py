@@ -1,0 +1,1 @@
+"""Renaming, pasting and replacing of several actions at once."""

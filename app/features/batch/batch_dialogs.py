@@ -1,0 +1,190 @@
+"""Dialogs that edit many actions at once: names by pattern or replaced text, pasted properties, another clip."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+from PySide6.QtCore import Qt
+from PySide6.QtWidgets import (
+    QCheckBox,
+    QComboBox,
+    QCompleter,
+    QDialog,
+    QDialogButtonBox,
+    QFormLayout,
+    QLabel,
+    QLineEdit,
+    QTabWidget,
+    QTreeWidget,
+    QTreeWidgetItem,
+    QVBoxLayout,
+    QWidget,
+)
+
+from app.look.theme import strengthen
+from app.project.document import Document
+from metagraph.graph import batch
+from metagraph.graph.edits import EditError
+
+TITLES = {
+    "blends": "Blend in and out",
+    "part": "Start and end",
+    "exit": "Earliest exit",
+    "phases": "Ready, stroke, hold",
+    "limb": "Limb",
+    "joints": "Joints it moves",
+    "tags": "Tags",
+    "likelihood": "Likelihood",
+    "variation": "Cooldown and spacing",
+}
+
+
+class BatchDialog(QDialog):
+    """A dialog about some actions that ends in one edit. trouble: where it says what is wrong."""
+
+    def __init__(self, document: Document, actions: Sequence[str], title: str, verb: str, parent: QWidget | None = None) -> None:
+        super().__init__(parent)
+        self.document, self.actions = document, tuple(actions)
+        self.setAttribute(Qt.WidgetAttribute.WA_DeleteOnClose)
+        self.setWindowTitle(title)
+        self.setMinimumWidth(520)
+        self.body = QVBoxLayout(self)
+        self.trouble = QLabel(self, wordWrap=True)
+        self.buttons = QDialogButtonBox(QDialogButtonBox.StandardButton.Cancel, self)
+        self.go = self.buttons.addButton(verb, QDialogButtonBox.ButtonRole.AcceptRole)
+        strengthen(self.go)
+        self.buttons.accepted.connect(self.finish)
+        self.buttons.rejected.connect(self.reject)
+
+    def close_up(self) -> None:
+        """Put trouble and buttons below what was added."""
+        self.body.addWidget(self.trouble)
+        self.body.addWidget(self.buttons)
+
+    def finish(self) -> None:
+        raise NotImplementedError
+
+
+class RenameDialog(BatchDialog):
+    """New names for many actions, seen before they are given."""
+
+    def __init__(self, document: Document, actions: Sequence[str], parent: QWidget | None = None) -> None:
+        super().__init__(document, actions, f"Rename {len(actions)} actions", "Rename", parent)
+        self.names: dict[str, str] = {}
+        self.tabs = QTabWidget(self)
+        self.pattern = QLineEdit("{stance} {name}", self)
+        self.pattern.setAccessibleName("Pattern")
+        words = QLabel(f"In braces: {', '.join(batch.FIELDS)}. {{n:02}} counts 01, 02, ...", self, wordWrap=True)
+        words.setProperty("dim", True)
+        self._page("By pattern", ("Pattern", self.pattern), ("", words))
+        self.find, self.put, self.regex = QLineEdit(self), QLineEdit(self), QCheckBox("regular expression", self)
+        self.find.setAccessibleName("Find")
+        self.put.setAccessibleName("Replace with")
+        self._page("Find and replace", ("Find", self.find), ("Replace with", self.put), ("", self.regex))
+        self.preview = QTreeWidget(self, rootIsDecorated=False)
+        self.preview.setHeaderLabels(["Now", "Then"])
+        self.preview.setColumnWidth(0, 240)
+        self.body.addWidget(self.tabs)
+        self.body.addWidget(self.preview, 1)
+        self.close_up()
+        for line in (self.pattern, self.find, self.put):
+            line.textChanged.connect(self._show)
+        self.regex.toggled.connect(self._show)
+        self.tabs.currentChanged.connect(self._show)
+        self._show()
+
+    def _page(self, title: str, *rows: tuple[str, QWidget]) -> None:
+        page = QWidget(self)
+        form = QFormLayout(page)
+        for words, widget in rows:
+            form.addRow(words, widget)
+        self.tabs.addTab(page, title)
+
+    def _show(self) -> None:
+        project = self.document.project
+        self.names, words = {}, ""
+        try:
+            if self.tabs.currentIndex() == 0:
+                self.names = batch.names_by_pattern(project, self.actions, self.pattern.text())
+            elif self.find.text():
+                self.names = batch.names_replaced(project, self.actions, self.find.text(), self.put.text(), self.regex.isChecked())
+        except EditError as error:
+            words = str(error)
+        self.trouble.setText(words)
+        self.go.setEnabled(bool(self.names))
+        self.preview.clear()
+        for ident, name in self.names.items():
+            action = project.action(ident)
+            QTreeWidgetItem(self.preview, [action.name if action is not None else "", name])
+
+    def finish(self) -> None:
+        names = self.names
+        self.document.edit(f"Rename {len(names)} actions", lambda p: batch.rename(p, names))
+        self.accept()
+
+
+class PasteDialog(BatchDialog):
+    """Which properties of a copied action the selected ones get."""
+
+    def __init__(self, document: Document, source: str, actions: Sequence[str], parent: QWidget | None = None) -> None:
+        super().__init__(document, [a for a in actions if a != source], "Paste properties", "Paste", parent)
+        self.source = source
+        copied = document.project.action(source)
+        count = len(self.actions)
+        name = copied.name if copied is not None else ""
+        self.body.addWidget(QLabel(f"From '{name}' to {count} action{'s' if count != 1 else ''}:", self))
+        self.boxes = {group: QCheckBox(TITLES[group], self) for group in batch.PROPERTIES}
+        for group, box in self.boxes.items():
+            box.setChecked(group in ("blends", "tags"))
+            box.toggled.connect(self._enable)
+            self.body.addWidget(box)
+        self.close_up()
+        self._enable()
+
+    def _enable(self) -> None:
+        self.go.setEnabled(bool(self.actions) and any(box.isChecked() for box in self.boxes.values()))
+
+    def finish(self) -> None:
+        groups = [group for group, box in self.boxes.items() if box.isChecked()]
+        try:
+            after = batch.paste(self.document.project, self.source, self.actions, groups)
+        except EditError as error:
+            self.trouble.setText(str(error))
+            return
+        self.document.edit("Paste properties", lambda p: after)
+        self.accept()
+
+
+class ReplaceDialog(BatchDialog):
+    """Another clip for actions, which keep their settings."""
+
+    def __init__(self, document: Document, actions: Sequence[str], parent: QWidget | None = None) -> None:
+        super().__init__(document, actions, "Replace the clip", "Replace", parent)
+        self.clips = QComboBox(self, editable=True)
+        self.clips.setInsertPolicy(QComboBox.InsertPolicy.NoInsert)
+        self.clips.setAccessibleName("Clip")
+        for clip in document.project.clips.values():
+            self.clips.addItem(clip.name, clip.id)
+        finder = self.clips.completer()
+        if finder is not None:
+            finder.setFilterMode(Qt.MatchFlag.MatchContains)
+            finder.setCompletionMode(QCompleter.CompletionMode.PopupCompletion)
+        form = QFormLayout()
+        form.addRow("Clip", self.clips)
+        words = QLabel("Timing, limb, tags and all else stay; times beyond the clip's end are cut to it.", self, wordWrap=True)
+        words.setProperty("dim", True)
+        self.body.addLayout(form)
+        self.body.addWidget(words)
+        self.close_up()
+        first = document.project.action(self.actions[0]) if self.actions else None
+        if first is not None:
+            self.clips.setCurrentIndex(self.clips.findData(first.clip))
+
+    def finish(self) -> None:
+        place = self.clips.findText(self.clips.currentText(), Qt.MatchFlag.MatchFixedString)
+        if place < 0:
+            self.trouble.setText(f"there is no clip '{self.clips.currentText()}' in the library")
+            return
+        clip = str(self.clips.itemData(place))
+        self.document.edit("Replace the clip", lambda p: batch.replace_clip(p, self.actions, clip))
+        self.accept()

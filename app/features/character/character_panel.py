@@ -1,0 +1,253 @@
+"""The preview panel: the character, live, with its transport, and the base pose always named."""
+
+from __future__ import annotations
+
+import numpy as np
+from PySide6.QtCore import QElapsedTimer, Qt, QTimer
+from PySide6.QtWidgets import QComboBox, QHBoxLayout, QLabel, QSizePolicy, QSlider, QToolButton, QVBoxLayout, QWidget
+
+from app.look import icons
+from app.look.theme import theme
+from app.stage.figures import Figures
+from app.stage.gl_view import make_view
+from app.stage.performance import Performance
+from app.stage.playback_source import ASIDE
+from app.stage.session import Session
+from metagraph.graph import anatomy
+from metagraph.graph.model import LAYERS, Project
+from preview.camera import close_up, whole_figure
+from preview.figure import Figure
+from preview.scene import THEMES, Actor, Scene
+
+SPEEDS = (0.1, 0.25, 0.5, 1.0, 1.5, 2.0)
+BASE_TIP = "The pose all layers are added to. Right-click a clip in the library to take it from there."
+FRAME = 16  # milliseconds between frames
+
+
+class PreviewPanel(QWidget):
+    """Shows what the performance plays at the playhead. Drives the playhead while playing."""
+
+    def __init__(self, session: Session, performance: Performance, figures: Figures, parent: QWidget | None = None) -> None:
+        super().__init__(parent)
+        self.session, self.performance, self.figures = session, performance, figures
+        self.bones = False
+        self._framed: tuple[object, ...] = ()  # whom the camera was last framed on
+        self._last: tuple[Figure, np.ndarray, np.ndarray] | None = None
+        self.view = make_view(self._scene, self)
+        self.view.frame_wanted.connect(self.frame_all)
+        self.view.setMinimumSize(240, 200)
+        self.view.setToolTip("Drag to orbit, right-drag to pan, wheel to zoom, double-click to frame")
+        self.frames = 0
+        self.view.painted.connect(self._painted)
+        layout = QVBoxLayout(self)
+        layout.setContentsMargins(0, 0, 0, 0)
+        layout.setSpacing(0)
+        layout.addWidget(self.view, 1)
+        self.scrub = QSlider(Qt.Orientation.Horizontal, self, toolTip="Scrub")
+        self.scrub.setRange(0, 10000)
+        self.scrub.setAccessibleName("Playhead")
+        self.scrub.setSingleStep(50)
+        self.scrub.setPageStep(500)
+        self.scrub.actionTriggered.connect(lambda _: self._scrubbed(self.scrub.sliderPosition()))
+        held = QHBoxLayout()
+        held.setContentsMargins(12, 6, 12, 0)
+        held.addWidget(self.scrub)
+        layout.addLayout(held)
+        layout.addLayout(self._transport())
+        layout.addLayout(self._captions())
+        self._clock = QElapsedTimer()
+        self._clock.start()
+        self._timer = QTimer(self, interval=FRAME)
+        self._timer.setTimerType(Qt.TimerType.PreciseTimer)
+        self._timer.timeout.connect(self._tick)
+        self._timer.start()
+        session.moved.connect(lambda _: self.view.update())
+        session.playing_changed.connect(self._show_state)
+        session.show_changed.connect(self._show_state)
+        session.selection_changed.connect(self.view.update)
+        session.theme_changed.connect(self._restyle)
+        performance.changed.connect(self._changed)
+        performance.document.changed.connect(self._edited)
+        figures.changed.connect(self.view.update)
+        self._restyle()
+        self._show_state()
+
+    # --- building
+
+    def _transport(self) -> QHBoxLayout:
+        row = QHBoxLayout()
+        row.setContentsMargins(8, 2, 8, 2)
+        row.setSpacing(2)
+
+        def button(tip: str, slot: object, checkable: bool = False) -> QToolButton:
+            out = QToolButton(self, toolTip=tip, checkable=checkable)
+            out.setFocusPolicy(Qt.FocusPolicy.TabFocus)
+            out.setAccessibleName(tip.split(" (")[0])
+            out.clicked.connect(slot)
+            row.addWidget(out)
+            return out
+
+        self.start_button = button("Back to the start (Home)", lambda: self.session.seek(0.0))
+        self.play_button = button("Play or pause (Space)", lambda: self.session.set_playing(not self.session.playing))
+        self.loop_button = button("Loop (L)", self._set_loop, checkable=True)
+        self.loop_button.setChecked(self.session.loop)
+        self.speed_box = QComboBox(self, toolTip="Speed")
+        self.speed_box.setAccessibleName("Speed")
+        self.speed_box.addItems([f"{s:g}×" for s in SPEEDS])
+        self.speed_box.setCurrentIndex(SPEEDS.index(1.0))
+        self.speed_box.activated.connect(lambda i: setattr(self.session, "speed", SPEEDS[i]))
+        row.addWidget(self.speed_box)
+        row.addStretch(1)
+        self.time = QLabel("0:00.0", self)
+        self.time.setMinimumWidth(52)
+        self.time.setAlignment(Qt.AlignmentFlag.AlignCenter)
+        row.addWidget(self.time)
+        row.addStretch(1)
+        self.frame_button = button("Frame the whole character (F)", self.frame_all)
+        self.face_button = button("Close-up of the face (Shift+F)", self.frame_face)
+        self.bones_button = button("Show the skeleton (B)", self._set_bones, checkable=True)
+        return row
+
+    def _captions(self) -> QVBoxLayout:
+        """What plays, and the base pose below it; long names are cut, not the window widened."""
+        lines = QVBoxLayout()
+        lines.setContentsMargins(12, 0, 12, 8)
+        lines.setSpacing(2)
+        self.caption, self.base = QLabel("", self), QLabel("", self, toolTip=BASE_TIP)
+        for label in (self.caption, self.base):
+            label.setProperty("dim", True)
+            label.setSizePolicy(QSizePolicy.Policy.Ignored, QSizePolicy.Policy.Preferred)
+            lines.addWidget(label)
+        return lines
+
+    def _restyle(self) -> None:
+        look = theme(self.session.theme)
+        self.view.theme = THEMES[look.name]
+        for button, name in (
+            (self.start_button, "start"), (self.loop_button, "loop"), (self.frame_button, "frame"),
+            (self.face_button, "face"), (self.bones_button, "bones"),
+        ):  # fmt: skip
+            button.setIcon(icons.icon(name, look.text))
+        self._show_state()
+        self.view.update()
+
+    # --- drawing
+
+    def _scene(self) -> Scene:
+        """Return what is drawn now; called by the view when it paints."""
+        shown, seconds, actors = self.performance.shown, self.session.seconds, []
+        for one in shown.both:
+            pose, skeleton = one.pose(seconds), one.skeleton
+            figure = self.figures.of(one) if skeleton is not None else None
+            if pose is None or skeleton is None or figure is None:
+                continue
+            rotations, positions = skeleton.globals(pose)
+            if one.stand is not None:
+                rotations, positions = one.stand.placed(rotations, positions)
+            if one is shown:
+                self._last = (figure, rotations, positions)
+            morphs = figure.morph_weights(one.morphs(seconds)) if figure.morphs else None
+            marks = self._marks() if one is shown else {}
+            actors.append(Actor(figure, rotations, positions, morphs, marks, self.bones))
+        scene = Scene(tuple(actors))
+        framed = (*(actor.figure for actor in actors), *(one.stand for one in shown.both))
+        if actors and self._framed != framed and not self.view.moved_by_hand:
+            self._framed = framed
+            aside = ASIDE if shown.partner is not None else 0.0
+            self.view.camera = whole_figure(scene.bounds(), self.view.width() / max(1, self.view.height()), aside)
+        return scene
+
+    def _marks(self) -> dict[int, tuple[float, float, float]]:
+        """Point out the joints of the selected action's mask."""
+        project = self.performance.document.project
+        actions = self.session.selected_actions()
+        if len(actions) != 1 or not actions[0].joints or project.skeleton is None:
+            return {}
+        moved = anatomy.mask(project, actions[0])
+        color = theme(self.session.theme).fill(actions[0].kind)
+        return {} if moved is None else {int(j): (color.redF(), color.greenF(), color.blueF()) for j in np.flatnonzero(moved)}
+
+    def _tick(self) -> None:
+        elapsed = self._clock.restart() / 1000
+        if self.session.playing and self.isVisible():
+            self.performance.advance(min(elapsed, 0.25))
+
+    def _painted(self, _: float) -> None:
+        self.frames += 1
+        seconds = self.session.seconds
+        self.time.setText(f"{int(seconds // 60)}:{seconds % 60:04.1f}")
+        length = max(1e-6, self.performance.shown.length)
+        if not self.scrub.isSliderDown():
+            self.scrub.setValue(round(10000 * min(1.0, seconds / length)))
+        self.caption.setText(self._words())
+
+    def _words(self) -> str:
+        """Say what plays: the clip alone, or each layer's action and when the next begins."""
+        shown = self.performance.shown
+        if shown.clip is not None:
+            return f"{shown.project.clips[shown.clip].name}, alone"
+        seconds, out = self.session.seconds, []
+        for layer in LAYERS:
+            cue = shown.plan.layers[layer].cue_at(seconds)
+            if cue is not None:
+                out.append(f"{layer}: {cue.action.name}")
+        if self.session.show == "context":
+            out.append("in context")
+        return "   ".join(out)
+
+    # --- commands
+
+    def frame_all(self) -> None:
+        self.view.moved_by_hand = False
+        self._framed = ()
+        self.view.update()
+
+    def frame_face(self) -> None:
+        if self._last is None:
+            return
+        figure, rotations, positions = self._last
+        stand = self.performance.shown.stand
+        head, heading = figure.head(rotations, positions), stand.turn if stand is not None else 0.0
+        self.view.camera = close_up(head, figure.height, self.view.width() / max(1, self.view.height()), heading)
+        self.view.moved_by_hand = True
+        self.view.update()
+
+    def _scrubbed(self, value: int) -> None:
+        self.session.set_playing(False)
+        self.session.seek(value / 10000 * self.performance.shown.length)
+
+    def _set_loop(self, on: bool) -> None:
+        self.session.loop = on
+        self.loop_button.setChecked(on)
+
+    def toggle_loop(self) -> None:
+        self._set_loop(not self.session.loop)
+
+    def _set_bones(self, on: bool) -> None:
+        self.bones = on
+        self.bones_button.setChecked(on)
+        self.view.update()
+
+    def toggle_bones(self) -> None:
+        self._set_bones(not self.bones)
+
+    # --- following
+
+    def _show_state(self) -> None:
+        look = theme(self.session.theme)
+        self.play_button.setIcon(icons.icon("pause" if self.session.playing else "play", look.text))
+        self._clock.restart()
+
+    def _changed(self) -> None:
+        self.view.update()
+
+    def _edited(self, before: Project, after: Project) -> None:
+        base, entry = after.base, after.clips.get(after.base.clip or "")
+        if after.skeleton is None:
+            self.base.setText("")
+        elif entry is None:
+            self.base.setText("Base pose: rest pose")
+        else:
+            self.base.setText(f"Base pose: {entry.name}, frame {base.frame}")
+        self.base.setToolTip(f"{self.base.text()}\n{BASE_TIP}")
+        self.view.update()

@@ -1,0 +1,1 @@
+"""Which clip enters and leaves which stance without a jump, as a table."""

@@ -1,0 +1,1 @@
+"""Two who talk: lanes of sound, words and segments."""

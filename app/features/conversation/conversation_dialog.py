@@ -1,0 +1,325 @@
+"""A conversation from sound: what was found, who is who, what makes a response or a hesitation, and what comes of it."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Sequence
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import msgspec
+from PySide6.QtCore import Qt, QTimer, Signal
+from PySide6.QtGui import QIcon
+from PySide6.QtWidgets import (
+    QDialog,
+    QDialogButtonBox,
+    QFileDialog,
+    QFrame,
+    QGridLayout,
+    QHBoxLayout,
+    QLabel,
+    QLineEdit,
+    QProgressBar,
+    QPushButton,
+    QToolButton,
+    QVBoxLayout,
+    QWidget,
+)
+
+from app.features.conversation.conversation_panel import PLURALS
+from app.features.conversation.conversation_settings import WordLists, caption
+from app.look.plural import many
+from app.look.theme import SOUND_MARKS, strengthen, theme
+from app.project.document import Document
+from app.project.jobs import Job, Jobs
+from app.project.speech_files import TRANSCRIPTS, facts_of
+from app.stage.session import Session
+from app.widgets.act_strip import clock
+from metagraph.graph import conversing
+from metagraph.graph.conversation import HESITATIONS, RESPONSES, SPOKEN, Conversation, Side
+from metagraph.graph.model import Project
+
+if TYPE_CHECKING:
+    from metagraph.formats.conversations import Read
+
+TYPED = 700  # milliseconds of quiet after a word list was typed in before the sound is read by it
+NUMBERED = re.compile(r"speaker[ _-]?\d+", re.IGNORECASE)  # names a program gave; ours are as good
+MOST = 6  # notes that are shown; more of them do not help
+
+
+class Card(QFrame):
+    """One of the two: name, sound, words, and how many segments."""
+
+    def __init__(self, title: str, parent: QWidget) -> None:
+        super().__init__(parent)
+        self.setObjectName("card")
+        grid = QGridLayout(self)
+        grid.setContentsMargins(14, 10, 14, 12)
+        grid.setHorizontalSpacing(12)
+        grid.setVerticalSpacing(6)
+        grid.setColumnStretch(1, 1)
+        grid.addWidget(caption(title, self), 0, 0, 1, 2)
+        self.name = QLineEdit(self)
+        self.name.setPlaceholderText(title)
+        self.name.setAccessibleName(f"Name of the {title.lower()}")
+        self.sound, self.words, self.segments = QLabel(self), QLabel(self), QLabel(self)
+        for row, (words, widget) in enumerate(
+            (("Name", self.name), ("Sound", self.sound), ("Words", self.words), ("Segments", self.segments)), 1
+        ):
+            grid.addWidget(caption(words, self, True), row, 0)
+            grid.addWidget(widget, row, 1)
+            if isinstance(widget, QLabel):
+                widget.setTextFormat(Qt.TextFormat.PlainText)
+
+    def show_side(self, side: Side | None) -> None:
+        """Show what was read of it; None while that is not known."""
+        if side is None:
+            for label in (self.sound, self.words, self.segments):
+                label.setText("…")
+            return
+        sound = Path(side.audio).name if side.audio else "none"
+        self.sound.setText(f"{sound}, channel {side.channel + 1}" if side.channel is not None else sound)
+        self.words.setText(many(len(side.words), "word") if side.words else "none: told by its loudness")
+        counts = {k: sum(s.kind == k for s in side.segments) for k in SPOKEN}
+        self.segments.setText("   ".join(f"{SOUND_MARKS[k]} {n:,} {PLURALS[k] if n != 1 else k}" for k, n in counts.items()))
+
+
+class ImportDialog(QDialog):
+    """imported: the id of the conversation that was added. It is read on a thread, anew whenever files or lists change."""
+
+    imported = Signal(str)
+
+    def __init__(
+        self, document: Document, session: Session, jobs: Jobs, sounds: Sequence[Path], transcripts: Sequence[Path], parent: QWidget
+    ) -> None:
+        super().__init__(parent)
+        self.document, self.session, self.jobs = document, session, jobs
+        self.sounds, self.transcripts = tuple(sounds), tuple(transcripts)[:2]
+        self.facts = tuple(facts_of(p) for p in self.sounds)
+        self.read: Read | None = None
+        self.swapped = False  # the second of what was read is the first of the two
+        self.job: Job | None = None
+        self.setAttribute(Qt.WidgetAttribute.WA_DeleteOnClose)
+        self.setWindowTitle("Conversation from sound")
+        self.resize(920, 500)  # at which both cards are as wide
+        self._soon = QTimer(self, singleShot=True, interval=TYPED)
+        self._soon.timeout.connect(self.start)
+        self._build()
+        document.loaded.connect(self.reject)  # what was read is said relative to the project it was read for
+        self.start()
+
+    # --- building
+
+    def _build(self) -> None:
+        layout = QVBoxLayout(self)
+        layout.setContentsMargins(18, 16, 18, 14)
+        layout.setSpacing(12)
+        row = QHBoxLayout()
+        row.setSpacing(12)
+        row.addWidget(caption("Name", self, True))
+        self.name = QLineEdit(self.sounds[0].stem, self)
+        self.name.setAccessibleName("Name of the conversation")
+        row.addWidget(self.name, 1)
+        layout.addLayout(row)
+        layout.addLayout(self._found())
+        row = QHBoxLayout()
+        row.setSpacing(10)
+        self.cards = (Card("First speaker", self), Card("Second speaker", self))
+        self.swap = QToolButton(self, text="⇄", toolTip="Swap the two: who stands left, and is driven by this project's own graph")
+        self.swap.setAccessibleName("Swap the two")
+        self.swap.clicked.connect(self.swap_sides)
+        row.addWidget(self.cards[0], 1)
+        row.addWidget(self.swap)
+        row.addWidget(self.cards[1], 1)
+        layout.addLayout(row)
+        self.lists = WordLists(self)
+        self.lists.show_lists(RESPONSES, HESITATIONS)
+        self.lists.changed.connect(self._soon.start)
+        layout.addWidget(self.lists, 1)
+        self.notes = QLabel(self, wordWrap=True)
+        self.notes.setTextFormat(Qt.TextFormat.PlainText)
+        self.notes.hide()
+        layout.addWidget(self.notes)
+        layout.addLayout(self._foot())
+        self.session.theme_changed.connect(self._restyle)
+        self._restyle()
+
+    def _restyle(self) -> None:
+        t = theme(self.session.theme)
+        self.setStyleSheet(f"QFrame#card {{ background: {t.card}; border: 1px solid {t.line}; border-radius: 8px; }}")
+
+    def _found(self) -> QHBoxLayout:
+        """The row of what was found, with what can be done about the words."""
+        row = QHBoxLayout()
+        row.setSpacing(8)
+        row.addWidget(caption("Found", self, True))
+        self.files = QLabel(self, wordWrap=True)
+        row.addWidget(self.files, 1)
+        self.add_words = QToolButton(self, text="Add words…", toolTip="A transcript: TextGrid, ELAN, WebVTT, SRT, JSON or CTM")
+        self.add_words.clicked.connect(self.ask_words)
+        self.other_words = QToolButton(self, text="Swap words", toolTip="The words that were taken for the one's are the other's")
+        self.other_words.clicked.connect(self.swap_words)
+        self.no_words = QToolButton(self, text="Without words", toolTip="Read the sound alone: by loudness and pauses")
+        self.no_words.clicked.connect(lambda: self.take_words(()))
+        for button in (self.add_words, self.other_words, self.no_words):
+            row.addWidget(button)
+        return row
+
+    def _foot(self) -> QHBoxLayout:
+        row = QHBoxLayout()
+        row.setSpacing(10)
+        self.told = QLabel("Reading …", self)
+        self.told.setProperty("dim", True)
+        self.bar = QProgressBar(self, textVisible=False)
+        self.bar.setRange(0, 0)
+        self.bar.setFixedWidth(150)
+        self.stop = QToolButton(self, text="Stop", toolTip="Stop reading; the dialog stays")
+        self.stop.clicked.connect(self.stop_reading)
+        self.again = QToolButton(self, text="Read again", toolTip="Read the files once more")
+        self.again.clicked.connect(self.start)
+        for widget in (self.bar, self.told, self.stop, self.again):
+            row.addWidget(widget)
+        row.addStretch(1)
+        buttons = QDialogButtonBox(QDialogButtonBox.StandardButton.Cancel, self)
+        buttons.button(QDialogButtonBox.StandardButton.Cancel).setIcon(QIcon())
+        self.go = QPushButton("Add", self)
+        strengthen(self.go)
+        buttons.addButton(self.go, QDialogButtonBox.ButtonRole.AcceptRole)
+        buttons.accepted.connect(self.accept)
+        buttons.rejected.connect(self.reject)
+        row.addWidget(buttons)
+        return row
+
+    # --- reading
+
+    def start(self) -> None:
+        """Read everything, by the lists as they are; what was being read is not waited for."""
+        self._soon.stop()
+        self._end_job()
+        self.read = None
+        sounds, transcripts, folder = self.sounds, self.transcripts, self.document.folder
+        responses, hesitations = self.lists.lists()
+
+        def work(job: Job) -> Any:
+            from metagraph.formats.conversations import read_conversation
+
+            return read_conversation(
+                sounds, transcripts, folder=folder, responses=responses, hesitations=hesitations, cancelled=lambda: job.cancelled
+            )
+
+        self.job = self.jobs.start("Reading the conversation", work, self._came, self._failed)
+        self._show("Reading the sound and its words …", busy=True)
+
+    def _end_job(self) -> None:
+        if self.job is not None:
+            self.job.cancel()
+            self.job = None
+
+    def stop_reading(self) -> None:
+        self._soon.stop()
+        self._end_job()
+        self._show("Stopped.")
+
+    def _came(self, read: Read) -> None:
+        self.job = None
+        self.read = read
+        for card, side in zip(self.cards, self.sides(), strict=True):
+            if not card.name.isModified():
+                card.name.setText("" if NUMBERED.fullmatch(side.name) else side.name)
+        minutes = clock(round(read.conversation.length))
+        self._show(f"Read {minutes} of conversation.")
+
+    def _failed(self, error: Exception) -> None:
+        self.job = None
+        self._show("It could not be read.", failure=str(error))
+
+    def _show(self, told: str, busy: bool = False, failure: str = "") -> None:
+        """Show how things are."""
+        self.told.setText(told)
+        self.bar.setVisible(busy)
+        self.stop.setVisible(busy)
+        self.again.setVisible(not busy and self.read is None)
+        self.go.setEnabled(self.read is not None)
+        self.files.setText(" · ".join((*self.facts, *(p.name for p in self.transcripts))))
+        self.no_words.setEnabled(bool(self.transcripts) and not busy)
+        self.other_words.setVisible(len(self.transcripts) == 2)
+        self.other_words.setEnabled(not busy)
+        self.swap.setEnabled(self.read is not None)
+        for n, card in enumerate(self.cards):
+            card.show_side(self.sides()[n] if self.read is not None else None)
+        notes = list(self.read.notes) if self.read is not None else [failure] if failure else []
+        more = [f"… and {len(notes) - MOST} more"] if len(notes) > MOST else []
+        t = theme(self.session.theme)
+        self.notes.setStyleSheet(f"color: {t.error if failure else t.warning}")
+        self.notes.setText("\n".join(f"⚠  {n}" for n in notes[:MOST]) + "".join(f"\n{m}" for m in more))
+        self.notes.setVisible(bool(notes))
+        self._fit()
+
+    def _fit(self) -> None:
+        """Grow as high as the notes need: a layout does not ask for what words need that are broken into lines."""
+        layout = self.layout()
+        if layout is not None:
+            layout.activate()
+            self.resize(self.width(), max(self.height(), layout.totalHeightForWidth(self.width())))
+
+    def sides(self) -> tuple[Side, ...]:
+        """Return the two as they were read, the first first."""
+        assert self.read is not None
+        found = self.read.conversation.sides
+        return found[::-1] if self.swapped else found
+
+    # --- choosing
+
+    def swap_sides(self) -> None:
+        """Let the second be the first."""
+        self.swapped = not self.swapped
+        a, b = self.cards
+        names = (b.name.text(), b.name.isModified()), (a.name.text(), a.name.isModified())
+        for card, (name, typed) in zip(self.cards, names, strict=True):
+            card.name.setText(name)
+            card.name.setModified(typed)
+        self._show(self.told.text())
+
+    def swap_words(self) -> None:
+        """Let the words of the one be the other's."""
+        self.take_words(self.transcripts[::-1])
+
+    def take_words(self, transcripts: Sequence[Path]) -> None:
+        self.transcripts = tuple(transcripts)[-2:]  # one for both, or one for each
+        self.start()
+
+    def ask_words(self) -> None:
+        ends = " ".join(f"*{s}" for s in (*TRANSCRIPTS, ".TextGrid"))
+        names, _ = QFileDialog.getOpenFileNames(self, "Words of the conversation", str(self.sounds[0].parent), f"Transcripts ({ends})")
+        if names:
+            self.take_words([*self.transcripts, *(p for n in names if (p := Path(n)) not in self.transcripts)])
+
+    def made(self) -> Conversation:
+        """Return the conversation as it would be added."""
+        assert self.read is not None
+        named = (msgspec.structs.replace(s, name=" ".join(c.name.text().split())) for s, c in zip(self.sides(), self.cards, strict=True))
+        name = " ".join(self.name.text().split()) or self.sounds[0].stem
+        return msgspec.structs.replace(self.read.conversation, name=name, sides=tuple(named))
+
+    def accept(self) -> None:
+        """Add it as one undo step, and put it on stage."""
+        if self.read is None:
+            return
+        conversation, ident = self.made(), ""
+
+        def edit(project: Project) -> Project:
+            nonlocal ident
+            project, ident = conversing.add_conversation(project, conversation)
+            return project
+
+        self.document.edit("Add conversation", edit)
+        self.session.set_conversation(ident)
+        self.session.show_plan()
+        self.session.seek(0.0)
+        self.imported.emit(ident)
+        super().accept()
+
+    def done(self, result: int) -> None:
+        self._soon.stop()
+        self._end_job()
+        super().done(result)

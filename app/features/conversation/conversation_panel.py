@@ -1,0 +1,136 @@
+"""The conversation panel: which conversation is on stage, what its segments are, and the lanes."""
+
+from __future__ import annotations
+
+from PySide6.QtCore import Qt, QTimer, Signal
+from PySide6.QtGui import QDragEnterEvent, QDragMoveEvent, QDropEvent, QResizeEvent
+from PySide6.QtWidgets import QComboBox, QHBoxLayout, QLabel, QMenu, QToolButton, QVBoxLayout, QWidget
+
+from app.features.conversation.segment_editing import Editing
+from app.features.conversation.segment_lanes import segment_words, side_name
+from app.features.conversation.segment_view import View
+from app.features.conversation.sound_reading import Sounds
+from app.features.graph.graph_drops import sounds_of
+from app.features.timeline.timeline_panel import Sentence
+from app.look.plural import many
+from app.look.theme import SOUND_MARKS, theme
+from app.project.document import Document
+from app.project.jobs import Jobs
+from app.stage.session import Session
+from metagraph.graph.conversation import SPOKEN
+
+NONE = "None on stage"
+BRIEF = 1000  # pixels of the panel below which the legend leaves its words out: the sentence beside needs the room
+PLURALS = {"clause": "clauses", "response": "responses", "hesitation": "hesitations"}
+
+
+class ConversationPanel(QWidget):
+    """files_dropped: sounds and transcripts were dropped here. more_menu: filled by the window's commands."""
+
+    files_dropped = Signal(object)
+
+    def __init__(self, document: Document, session: Session, jobs: Jobs, parent: QWidget | None = None) -> None:
+        super().__init__(parent)
+        self.document, self.session = document, session
+        self.sounds = Sounds(document, session, jobs, self)
+        self.editing = Editing(document, session, self.sounds, self)
+        self.setAcceptDrops(True)
+        layout = QVBoxLayout(self)
+        layout.setContentsMargins(0, 4, 0, 0)
+        layout.setSpacing(0)
+        layout.addLayout(self._header())
+        self.view = View(self.editing, self.sounds, self)
+        layout.addWidget(self.view, 1)
+        self._soon = QTimer(self, singleShot=True, interval=0)  # many changes in a row are counted once
+        self._soon.timeout.connect(self._words)
+        document.changed.connect(lambda before, after: self._restage())
+        session.conversation_changed.connect(self._restage)
+        session.theme_changed.connect(self._soon.start)
+        session.mode_changed.connect(self._soon.start)
+        self.editing.changed.connect(self._soon.start)
+        self._restage()
+
+    def _header(self) -> QHBoxLayout:
+        row = QHBoxLayout()
+        row.setContentsMargins(12, 0, 12, 2)
+        row.setSpacing(8)
+        self.stage = QComboBox(self, toolTip="Which conversation is on stage: it moves both characters")
+        self.stage.setAccessibleName("Conversation on stage")
+        self.stage.setMinimumWidth(150)
+        self.stage.activated.connect(lambda _: self.session.set_conversation(self.stage.currentData()))
+        row.addWidget(self.stage)
+        self.more = QToolButton(self, text="…", toolTip="Rename, rates, word lists, export, remove")
+        self.more.setAccessibleName("Conversations")
+        self.more.setPopupMode(QToolButton.ToolButtonPopupMode.InstantPopup)
+        self.more_menu = QMenu(self)
+        self.more.setMenu(self.more_menu)
+        row.addWidget(self.more)
+        self.title = Sentence(self)
+        self.title.setMinimumHeight(2 * self.title.fontMetrics().height())
+        row.addWidget(self.title, 1)
+        self.legend = QLabel(self, textFormat=Qt.TextFormat.RichText)
+        self.legend.setToolTip("Clauses, responses and hesitations. Keys 1, 2 and 3 label the selected ones.")
+        row.addWidget(self.legend)
+        self.add = QToolButton(self, text="From sound…", toolTip="Read a conversation from sound files, and their words if there are any")
+        row.addWidget(self.add)
+        return row
+
+    # --- showing
+
+    def _restage(self) -> None:
+        """Show which conversations there are, and which is on stage."""
+        wanted = [(NONE, None), *((c.name, i) for i, c in self.document.project.conversations.items())]
+        if wanted != [(self.stage.itemText(n), self.stage.itemData(n)) for n in range(self.stage.count())]:
+            self.stage.clear()
+            for name, ident in wanted:
+                self.stage.addItem(name, ident)
+        self.stage.setCurrentIndex(next((n for n, (_, i) in enumerate(wanted) if i == self.session.conversation), 0))
+        self.stage.setEnabled(len(wanted) > 1)
+        self._soon.start()
+
+    def _words(self) -> None:
+        of, t = self.editing.conversation, theme(self.session.theme)
+        self.legend.setVisible(of is not None)
+        if of is None:
+            self.title.say("")
+            return
+        counts = {kind: sum(s.kind == kind for side in of.sides for s in side.segments) for kind in SPOKEN}
+        brief = self.width() < BRIEF
+        self.legend.setText(
+            "&nbsp;&nbsp; ".join(
+                f"<span style='background:{t.sounds[k]}; color:#17181b'>&nbsp;{SOUND_MARKS[k]}&nbsp;</span> "
+                f"<span style='color:{t.dim}'>{counts[k]:,}{'' if brief else ' ' + (PLURALS[k] if counts[k] != 1 else k)}</span>"
+                for k in SPOKEN
+            )
+        )
+        if self.session.mode == "manual":
+            self.title.say("Now the machine you draw moves one character. Back in the meta-graph, both move with what is said.")
+            return
+        chosen, found = self.editing.chosen, self.editing.segment(self.editing.last)
+        if len(chosen) == 1 and found is not None and self.editing.last is not None:
+            self.title.say(f"{side_name(of, self.editing.last[0])}: {segment_words(found)}".replace("\n", ", "), True)
+        elif chosen:
+            self.title.say(f"{many(len(chosen), 'segment')} selected", True)
+        else:
+            minutes, seconds = divmod(round(of.length), 60)
+            both = " and ".join(side_name(of, side) for side in (0, 1))
+            self.title.say(f"{both}, {minutes}:{seconds:02d}")
+
+    def resizeEvent(self, event: QResizeEvent) -> None:
+        super().resizeEvent(event)
+        self._soon.start()
+
+    # --- drops
+
+    def dragEnterEvent(self, event: QDragEnterEvent) -> None:
+        if sounds_of(event.mimeData()):
+            event.acceptProposedAction()
+
+    def dragMoveEvent(self, event: QDragMoveEvent) -> None:
+        self.dragEnterEvent(event)  # type: ignore[arg-type]
+
+    def dropEvent(self, event: QDropEvent) -> None:
+        paths = sounds_of(event.mimeData())
+        if paths:
+            event.acceptProposedAction()
+            self.files_dropped.emit(paths)

@@ -1,0 +1,299 @@
+"""Small dialogs about a conversation: how often each of the two moves with what is said, which words are what, whose sound is whose."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+from PySide6.QtCore import Qt, Signal
+from PySide6.QtWidgets import (
+    QComboBox,
+    QDialog,
+    QDialogButtonBox,
+    QDoubleSpinBox,
+    QFileDialog,
+    QGridLayout,
+    QHBoxLayout,
+    QLabel,
+    QLineEdit,
+    QPlainTextEdit,
+    QToolButton,
+    QVBoxLayout,
+    QWidget,
+)
+
+from app.features.conversation.segment_lanes import side_name
+from app.look.theme import SOUND_MARKS, strengthen
+from app.project.document import Document
+from app.project.speech_files import SOUNDS, channels_of
+from metagraph.formats.store import SUFFIX, relative
+from metagraph.graph import conversing
+from metagraph.graph.conversation import HESITATIONS, RESPONSES, Conversation, Rates
+from metagraph.graph.edits import EditError
+from metagraph.graph.model import Project
+
+RATES = {
+    "clause": ("gestures with its own clauses", "How often the hands move with a clause"),
+    "response": ("nods with its own responses", "How often the head nods with a “yeah” or “mm-hmm”"),
+    "hesitation": ("nods when the other hesitates", "How often the head nods while the partner says “er”"),
+}
+ACTORS = {"female": "the woman", "male": "the man"}
+
+
+def asked(words: str) -> tuple[str, ...]:
+    """Return the words of a list that was typed: one a line, or parted by commas."""
+    return tuple(dict.fromkeys(x for part in words.replace(",", "\n").split("\n") if (x := " ".join(part.split()))))
+
+
+def caption(words: str, parent: QWidget, dim: bool = False) -> QLabel:
+    out = QLabel(words, parent, wordWrap=dim)
+    out.setProperty("dim" if dim else "title", True)
+    return out
+
+
+class WordLists(QWidget):
+    """The two lists of words, beside each other. changed: something was typed."""
+
+    changed = Signal()
+
+    def __init__(self, parent: QWidget) -> None:
+        super().__init__(parent)
+        grid = QGridLayout(self)
+        grid.setContentsMargins(0, 0, 0, 0)
+        grid.setHorizontalSpacing(16)
+        grid.setVerticalSpacing(4)
+        self.edits: list[QPlainTextEdit] = []
+        for column, (title, kind, usual) in enumerate(
+            (("Listener responses", "response", RESPONSES), ("Hesitations", "hesitation", HESITATIONS))
+        ):
+            row = QHBoxLayout()
+            row.addWidget(caption(f"{SOUND_MARKS[kind]}  {title}", self), 1)
+            reset = QToolButton(self, text="Usual", toolTip="The list as it comes with the program")
+            reset.clicked.connect(lambda _=False, n=column, words=usual: self.edits[n].setPlainText(", ".join(words)))
+            row.addWidget(reset)
+            edit = QPlainTextEdit(self)
+            edit.setAccessibleName(title)
+            edit.setTabChangesFocus(True)
+            edit.setMinimumHeight(72)
+            edit.textChanged.connect(self.changed)
+            grid.addLayout(row, 0, column)
+            grid.addWidget(edit, 1, column)
+            self.edits.append(edit)
+
+    def show_lists(self, responses: tuple[str, ...], hesitations: tuple[str, ...]) -> None:
+        for edit, words in zip(self.edits, (responses, hesitations), strict=True):
+            edit.setPlainText(", ".join(words))
+
+    def lists(self) -> tuple[tuple[str, ...], tuple[str, ...]]:
+        return asked(self.edits[0].toPlainText()), asked(self.edits[1].toPlainText())
+
+
+class SettingDialog(QDialog):
+    """One step of undo for all that is set in it; what cannot be is said, and the dialog stays."""
+
+    title = text = ""
+
+    def __init__(self, document: Document, ident: str, conversation: Conversation, parent: QWidget) -> None:
+        super().__init__(parent)
+        self.document, self.ident, self.conversation = document, ident, conversation
+        self.setAttribute(Qt.WidgetAttribute.WA_DeleteOnClose)
+        self.setWindowTitle(self.title)
+        layout = QVBoxLayout(self)
+        layout.setContentsMargins(18, 16, 18, 14)
+        layout.setSpacing(12)
+        self.build(layout)
+        self.said = QLabel(self, wordWrap=True)
+        self.said.hide()
+        layout.addWidget(self.said)
+        buttons = QDialogButtonBox(QDialogButtonBox.StandardButton.Cancel | QDialogButtonBox.StandardButton.Ok, self)
+        self.go = buttons.button(QDialogButtonBox.StandardButton.Ok)
+        strengthen(self.go)
+        buttons.accepted.connect(self.accept)
+        buttons.rejected.connect(self.reject)
+        document.loaded.connect(self.reject)
+        layout.addWidget(buttons)
+
+    def build(self, layout: QVBoxLayout) -> None:
+        raise NotImplementedError
+
+    def change(self, project: Project) -> Project:
+        raise NotImplementedError
+
+    def accept(self) -> None:
+        try:
+            self.document.edit(self.text, self.change)
+        except EditError as error:
+            self.said.setText(f"{str(error)[:1].upper()}{str(error)[1:]}.")
+            self.said.show()
+            return
+        super().accept()
+
+
+class WordsDialog(SettingDialog):
+    """Which words make a segment a response or a hesitation."""
+
+    title, text = "Word lists", "Change word lists"
+
+    def build(self, layout: QVBoxLayout) -> None:
+        self.resize(620, 380)
+        layout.addWidget(caption("Segments made of nothing but these words are labelled so; what you labelled yourself stays.", self, True))
+        self.lists = WordLists(self)
+        self.lists.show_lists(self.conversation.responses, self.conversation.hesitations)
+        layout.addWidget(self.lists, 1)
+        self.lists.edits[0].setFocus()
+
+    def change(self, project: Project) -> Project:
+        return conversing.set_word_lists(project, self.ident, *self.lists.lists())
+
+
+class RatesDialog(SettingDialog):
+    """How often each of the two moves with what is said."""
+
+    title, text = "Rates", "Change rates"
+
+    def build(self, layout: QVBoxLayout) -> None:
+        layout.addWidget(
+            caption("How often each of the two moves with what is said. Beside: what actors did (Yang et al. 2020).", self, True)
+        )
+        grid = QGridLayout()
+        grid.setHorizontalSpacing(18)
+        grid.setVerticalSpacing(8)
+        for side in (0, 1):
+            grid.addWidget(caption(side_name(self.conversation, side), self), 0, 1 + side)
+        for column, actor in enumerate(ACTORS.values()):
+            grid.addWidget(caption(actor.capitalize(), self, True), 0, 3 + column)
+        self.fields: list[dict[str, QDoubleSpinBox]] = [{}, {}]
+        for row, (name, (words, tip)) in enumerate(RATES.items(), 1):
+            grid.addWidget(QLabel(words.capitalize(), self), row, 0)
+            for side in (0, 1):
+                field = QDoubleSpinBox(self, toolTip=tip, suffix=" %", decimals=0)
+                field.setRange(0, 100)
+                field.lineEdit().setTextMargins(6, 0, 0, 0)
+                field.setAccessibleName(f"{side_name(self.conversation, side)} {words}")
+                field.setValue(100 * getattr(self.conversation.sides[side].rates, name))
+                self.fields[side][name] = field
+                grid.addWidget(field, row, 1 + side)
+            for column, actor in enumerate(ACTORS):
+                grid.addWidget(caption(f"{100 * getattr(conversing.PAPER[actor], name):.0f} %", self, True), row, 3 + column)
+        for side in (0, 1):
+            row_of = QHBoxLayout()
+            row_of.setSpacing(2)
+            for actor, words in ACTORS.items():
+                button = QToolButton(self, text=f"As {words}", toolTip=f"The rates of {words} in the paper")
+                button.clicked.connect(lambda _=False, side=side, rates=conversing.PAPER[actor]: self.take(side, rates))
+                row_of.addWidget(button)
+            grid.addLayout(row_of, 4, 1 + side)
+        layout.addLayout(grid)
+        layout.addStretch(1)
+
+    def take(self, side: int, rates: Rates) -> None:
+        for name, field in self.fields[side].items():
+            field.setValue(100 * getattr(rates, name))
+
+    def change(self, project: Project) -> Project:
+        for side in (0, 1):
+            values = {name: round(field.value() / 100, 4) for name, field in self.fields[side].items()}
+            project = conversing.set_rates(project, self.ident, side, **values)
+        return project
+
+
+class SidesDialog(SettingDialog):
+    """Who the two are, which sound is whose, whose graph moves each, and how far apart they stand."""
+
+    title, text = "Sounds and names", "Change sounds and names"
+
+    def build(self, layout: QVBoxLayout) -> None:
+        self.resize(720, 0)
+        self.names: list[QLineEdit] = []
+        self.sounds: list[QLineEdit] = []
+        self.channels: list[QComboBox] = []
+        self.movers: list[QLineEdit] = []
+        grid = QGridLayout()
+        grid.setHorizontalSpacing(10)
+        grid.setVerticalSpacing(8)
+        grid.setColumnStretch(1, 1)
+        for side, of in enumerate(self.conversation.sides):
+            top = 6 * side
+            grid.addWidget(caption(("First speaker", "Second speaker")[side], self), top, 0, 1, 3)
+            name, sound, channel, mover = QLineEdit(of.name, self), QLineEdit(of.audio or "", self), QComboBox(self), QLineEdit(self)
+            mover.setText(of.project or "")
+            mover.setToolTip("The project whose graph and character move this one")
+            mover.setClearButtonEnabled(True)
+            for row, (words, widget, empty) in enumerate(
+                (("Name", name, f"Speaker {side + 1}"), ("Sound", sound, "No sound"), ("Channel", channel, ""),
+                 ("Moved by", mover, "This project")), top + 1,
+            ):  # fmt: skip
+                widget.setAccessibleName(f"{words} of the {('first', 'second')[side]} speaker")
+                grid.addWidget(QLabel(words, self), row, 0)
+                grid.addWidget(widget, row, 1)
+                if isinstance(widget, QLineEdit):
+                    widget.setPlaceholderText(empty)
+            for row, tip, choose in ((top + 2, "Choose a sound file", self.choose), (top + 4, "Choose a project", self.choose_project)):
+                button = QToolButton(self, text="Choose…", toolTip=tip)
+                button.clicked.connect(lambda _=False, side=side, choose=choose: choose(side))
+                grid.addWidget(button, row, 2)
+            grid.setRowMinimumHeight(top + 5, 6)
+            self.names.append(name)
+            self.sounds.append(sound)
+            self.channels.append(channel)
+            self.movers.append(mover)
+            self._show_channels(side, of.channel)
+            sound.editingFinished.connect(lambda side=side: self._show_channels(side, self.channels[side].currentData()))
+        self.distance = QDoubleSpinBox(self, suffix=" m", decimals=2, singleStep=0.1, toolTip="How far apart the two stand")
+        self.distance.setRange(0.2, 20)
+        self.distance.setValue(self.conversation.distance)
+        self.distance.lineEdit().setTextMargins(6, 0, 0, 0)
+        self.distance.setAccessibleName("Distance between the two")
+        grid.addWidget(QLabel("Distance", self), 12, 0)
+        grid.addWidget(self.distance, 12, 1, Qt.AlignmentFlag.AlignLeft)
+        layout.addLayout(grid)
+
+    def _show_channels(self, side: int, chosen: int | None) -> None:
+        """Offer the channels that the sound has, as far as that is known."""
+        name = self.sounds[side].text().strip()
+        count = channels_of((self.document.folder or Path()) / name) if name else 0
+        box = self.channels[side]
+        box.clear()
+        box.addItem("All, mixed", None)
+        for n in range(max(count, 0 if chosen is None else chosen + 1)):
+            words = f"{n + 1}" + ((" (left)", " (right)")[n] if count == 2 and n < 2 else "")
+            box.addItem(words, n)
+        box.setCurrentIndex(max(0, box.findData(chosen)))
+
+    def choose(self, side: int) -> None:
+        """Ask for a sound."""
+        if self._ask(self.sounds[side], "Choose a sound", f"Sounds ({' '.join(f'*{s}' for s in SOUNDS)})"):
+            self._show_channels(side, self.channels[side].currentData())
+
+    def choose_project(self, side: int) -> None:
+        """Ask for the project whose graph moves a side."""
+        self._ask(self.movers[side], "Choose a project", f"Projects (*{SUFFIX})")
+
+    def _ask(self, field: QLineEdit, title: str, kinds: str) -> bool:
+        folder = self.document.folder
+        name, _ = QFileDialog.getOpenFileName(self, title, str(folder or Path.home()), kinds)
+        if name:
+            field.setText(relative(Path(name), folder) if folder is not None else Path(name).as_posix())
+        return bool(name)
+
+    def _mover(self, side: int) -> str | None:
+        """Return the path of the project that moves a side, None for the one at hand. Raises EditError where there is none."""
+        text = self.movers[side].text().strip()
+        if not text or text == self.conversation.sides[side].project:
+            return text or None
+        whole = (self.document.folder or Path()) / text
+        if not whole.is_file():
+            raise EditError(f"there is no project at {whole}: choose another, or clear the field to let this project move the speaker")
+        own = self.document.path
+        return None if own is not None and own.exists() and whole.samefile(own) else text
+
+    def change(self, project: Project) -> Project:
+        for side in (0, 1):
+            sound = self.sounds[side].text().strip() or None
+            channel = self.channels[side].currentData() if sound is not None else None
+            project = conversing.change_side(
+                project, self.ident, side, name=self.names[side].text(), audio=sound, channel=channel, project=self._mover(side)
+            )
+        distance = round(self.distance.value(), 3)
+        if distance == round(self.conversation.distance, 2):  # as it was, to what is shown of it
+            return project
+        return conversing.change_conversation(project, self.ident, distance=distance)

@@ -1,0 +1,190 @@
+"""Drags of the mouse on a conversation's lanes as objects, from press to release. Only `finish` changes the project, in one step."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Protocol
+
+from PySide6.QtCore import QPointF
+
+from app.features.conversation.segment_hits import Hit, snapped, word_edges
+from app.project.document import Edit
+from metagraph.graph import conversing
+from metagraph.graph.edits import EditError
+
+if TYPE_CHECKING:
+    from app.features.conversation.segment_view import View
+
+CATCH = 3.0  # pixels the mouse must move for a press to become a drag
+
+
+class MouseGesture(Protocol):
+    """One drag, from press to release. free: nothing is to snap."""
+
+    def update(self, at: QPointF, free: bool) -> None: ...
+    def finish(self) -> None: ...
+    def cancel(self) -> None: ...
+
+
+class SegmentDrag:
+    """What drags of segments share: what it would make is shown while it lasts, and made at its end. words: beside the pointer."""
+
+    text = ""
+
+    def __init__(self, view: View, hit: Hit, at: QPointF) -> None:
+        self.view, self.hit, self.origin = view, hit, at
+        self.begun = False
+        self.words = ""
+        self.seconds = 0.0  # where the words stand
+        self.made: Edit | None = None
+
+    def update(self, at: QPointF, free: bool) -> None:
+        self.begun = self.begun or abs(at.x() - self.origin.x()) >= CATCH
+        if not self.begun:
+            return
+        self.made = self.edit(at, free)
+        self.view.hold(self.made)
+
+    def finish(self) -> None:
+        self.view.hold(None)
+        if self.begun and self.made is not None:
+            self.view.editing.edit(self.text, self.made)
+
+    def cancel(self) -> None:
+        self.view.hold(None)
+
+    def edit(self, at: QPointF, free: bool) -> Edit | None:
+        """Return what releasing the button now would do."""
+        raise NotImplementedError
+
+    def caught(self, seconds: float, free: bool) -> float:
+        """Return a time, caught by where a word begins or ends."""
+        of = self.view.editing.conversation
+        words = of.sides[self.hit.side].words if of is not None else ()
+        return snapped(seconds, word_edges(words, seconds), self.view.scale(), not free)
+
+
+class EdgeDrag(SegmentDrag):
+    """Drags where a segment begins or ends."""
+
+    text = "Change segment"
+
+    def edit(self, at: QPointF, free: bool) -> Edit | None:
+        view, hit, ident = self.view, self.hit, self.view.session.conversation
+        segment = view.editing.segment((hit.side, hit.at))
+        if segment is None or ident is None:
+            return None
+        before = segment.start if hit.part == "start" else segment.end
+        to = self.caught(before + (at.x() - self.origin.x()) / view.each, free)
+        self.words, self.seconds = f"{max(0.0, to):.2f} s  ({to - before:+.2f})", to
+        return lambda p: conversing.resize_segment(p, ident, hit.side, hit.at, **{hit.part: to})
+
+
+class BodyDrag(SegmentDrag):
+    """Drags a segment in time; whichever of its ends is nearer to a word's catches it. Let go without moving it, it alone is selected."""
+
+    text = "Move segment"
+
+    def edit(self, at: QPointF, free: bool) -> Edit | None:
+        view, hit, ident = self.view, self.hit, self.view.session.conversation
+        segment = view.editing.segment((hit.side, hit.at))
+        if segment is None or ident is None:
+            return None
+        by = (at.x() - self.origin.x()) / view.each
+        caught = [to - edge for edge in (segment.start, segment.end) if (to := self.caught(edge + by, free)) != edge + by]
+        by = min(caught, key=lambda c: abs(c - by), default=by)
+        self.words, self.seconds = f"{max(0.0, segment.start + by):.2f} s  ({by:+.2f})", segment.start + by
+        return lambda p: conversing.move_segment(p, ident, hit.side, hit.at, by)
+
+
+class PeakDrag(SegmentDrag):
+    """Drags the stress of a clause; where the pitch is highest catches it."""
+
+    text = "Move stress"
+
+    def edit(self, at: QPointF, free: bool) -> Edit | None:
+        view, hit, of = self.view, self.hit, self.view.editing.conversation
+        segment, ident = view.editing.segment((hit.side, hit.at)), self.view.session.conversation
+        if segment is None or segment.peak is None or of is None or ident is None:
+            return None
+        heard = view.sounds.of(of, hit.side)
+        to = segment.peak + (at.x() - self.origin.x()) / view.each
+        tops = [m for m in (heard.maxima if heard is not None else ()) if segment.start <= m <= segment.end]
+        to = min(max(segment.start, snapped(to, tops, view.scale(), not free)), segment.end)
+        self.words, self.seconds = f"Stress at {to:.2f} s", to
+        return lambda p: conversing.set_peak(p, ident, hit.side, hit.at, to)
+
+
+class NewDrag(SegmentDrag):
+    """Draws a new segment where none is."""
+
+    text = "Add segment"
+
+    def edit(self, at: QPointF, free: bool) -> Edit | None:
+        view, side, ident = self.view, self.hit.side, self.view.session.conversation
+        scale = view.scale()
+        start, end = (self.caught(scale.seconds(x), free) for x in (self.origin.x(), at.x()))
+        self.words, self.seconds = f"New: {abs(end - start):.2f} s", end
+        self._span = start, end
+        if ident is None or not _can(view, lambda p: conversing.add_segment(p, ident, side, "clause", start, end)[0]):
+            return None
+        return lambda p: conversing.add_segment(p, ident, side, "clause", start, end)[0]
+
+    def finish(self) -> None:
+        self.view.hold(None)
+        if self.begun and self.made is not None:
+            self.view.editing.add(self.hit.side, "clause", *self._span)
+
+    _span = (0.0, 0.0)
+
+
+class Scrub:
+    """Moves the playhead with the mouse."""
+
+    def __init__(self, view: View, at: QPointF) -> None:
+        self.view, self.before = view, view.session.seconds
+        view.session.set_playing(False)
+        self.update(at, False)
+
+    def update(self, at: QPointF, free: bool) -> None:
+        self.view.session.seek(self.view.scale().seconds(max(at.x(), self.view.scale().x(self.view.first))))
+
+    def finish(self) -> None:
+        """The playhead is where it is."""
+
+    def cancel(self) -> None:
+        self.view.session.seek(self.before)
+
+
+class Pan:
+    """Moves along in time with the mouse."""
+
+    def __init__(self, view: View, at: QPointF) -> None:
+        self.view, self.origin, self.before = view, at.x(), view.first
+
+    def update(self, at: QPointF, free: bool) -> None:
+        self.view.look_at(self.before - (at.x() - self.origin) / self.view.each)
+
+    def finish(self) -> None:
+        """What is in sight is."""
+
+    def cancel(self) -> None:
+        self.view.look_at(self.before)
+
+
+def _can(view: View, edit: Edit) -> bool:
+    try:
+        edit(view.document.project)
+    except EditError:
+        return False
+    return True
+
+
+def gesture_for(view: View, hit: Hit, at: QPointF) -> MouseGesture:
+    """Return what a press on something begins."""
+    if hit.part in ("start", "end"):
+        return EdgeDrag(view, hit, at)
+    if hit.part == "body":
+        return BodyDrag(view, hit, at)
+    if hit.part == "peak":
+        return PeakDrag(view, hit, at)
+    return NewDrag(view, hit, at) if hit.part == "gap" else Scrub(view, at)

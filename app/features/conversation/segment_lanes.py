@@ -1,0 +1,94 @@
+"""Where things stand on the lanes of a conversation: for each of the two a waveform with its pitch, the words, and the segments.
+
+Functions of values. Seconds and pixels are the timeline's.
+"""
+
+from __future__ import annotations
+
+from bisect import bisect_left, bisect_right
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+from PySide6.QtCore import QRectF
+
+from app.widgets.lane_geometry import LEFT, RULER, Scale
+from metagraph.graph.conversation import Conversation, Segment, Word
+
+GAP = 8.0  # pixels between the two
+WORDS, SEGMENTS, TALLEST = 17.0, 26.0, 190.0  # pixels of the words, of the segments, of a side at most
+LEAST = 2 * 74 + GAP + 4 + RULER  # pixels all of it needs
+HERTZ = (60.0, 500.0)  # from the bottom to the top of a waveform; an octave is as high everywhere
+AXIS = (100.0, 200.0, 400.0)
+NEAREST = 400.0  # pixels a second at most
+
+
+@dataclass(frozen=True)
+class Lane:
+    """Where a side is. The title stands left of it."""
+
+    wave: QRectF
+    words: QRectF
+    segments: QRectF
+
+    @property
+    def whole(self) -> QRectF:
+        return self.wave.united(self.segments)
+
+
+def lanes(width: float, height: float) -> tuple[Lane, Lane]:
+    """Return the lanes of the two, one under the other."""
+    each = min(TALLEST, max(74.0, (height - RULER - GAP - 4) / 2))
+    segments = min(SEGMENTS, each * 0.28)
+    out = []
+    for side in (0, 1):
+        top, wide = RULER + side * (each + GAP), max(1.0, width - LEFT)
+        tall = each - WORDS - segments
+        out.append(
+            Lane(QRectF(LEFT, top, wide, tall), QRectF(LEFT, top + tall, wide, WORDS), QRectF(LEFT, top + tall + WORDS, wide, segments - 2))
+        )
+    return out[0], out[1]
+
+
+def farthest(width: float, length: float) -> float:
+    """Return the fewest pixels a second: at which all of it is in sight."""
+    return min(2.0, max(40.0, width - LEFT - 8) / max(length, 1e-3))
+
+
+def pitch_y(hertz: Any, wave: QRectF) -> Any:
+    """Return how high a pitch stands in its waveform's lane; hertz: a number or an array."""
+    low, high = np.log2(HERTZ[0]), np.log2(HERTZ[1])
+    part = (np.log2(np.clip(hertz, *HERTZ)) - low) / (high - low)
+    return wave.bottom() - 4 - part * (wave.height() - 8)
+
+
+def visible(segments: Sequence[Segment], begin: float, end: float) -> range:
+    """Return the places of the segments that are in sight, one that only touches it, too."""
+    first = bisect_left(segments, begin, key=lambda s: s.end)
+    return range(first, max(first, bisect_right(segments, end, key=lambda s: s.start)))
+
+
+def words_in(words: Sequence[Word], begin: float, end: float) -> Sequence[Word]:
+    """Return the words that start in a stretch, and the one before."""
+    first = bisect_left(words, begin, key=lambda w: w.start)
+    return words[max(0, first - 1) : bisect_right(words, end, key=lambda w: w.start)]
+
+
+def segment_rect(segment: Segment, scale: Scale, lane: Lane) -> QRectF:
+    left = scale.x(segment.start)
+    return QRectF(left, lane.segments.top(), max(1.5, scale.x(segment.end) - left), lane.segments.height())
+
+
+def segment_words(segment: Segment) -> str:
+    """Return a segment in words: what is said, what it is, from when to when, and its stress."""
+    what = {"clause": "Clause", "response": "Listener response", "hesitation": "Hesitation pause"}[segment.kind]
+    lines = [f"“{segment.text}”"] if segment.text else []
+    lines.append(f"{what}, {segment.start:.2f} to {segment.end:.2f} s")
+    if segment.kind == "clause":
+        lines.append(f"Stress at {segment.peak:.2f} s" if segment.peak is not None else "No stress: drag in the waveform above to set it")
+    return "\n".join(lines)
+
+
+def side_name(conversation: Conversation, side: int) -> str:
+    return conversation.sides[side].name or f"Speaker {side + 1}"

@@ -1,0 +1,289 @@
+"""What a conversation's lanes look like. Functions of values; only what is in sight is looked at."""
+
+from __future__ import annotations
+
+from collections.abc import Collection, Sequence
+from dataclasses import dataclass
+
+import numpy as np
+from PySide6.QtCore import QPointF, QRectF, Qt
+from PySide6.QtGui import QColor, QFont, QImage, QPainter, QPen
+
+from app.features.conversation.segment_hits import Hit
+from app.features.conversation.segment_lanes import AXIS, Lane, lanes, pitch_y, segment_rect, side_name, visible, words_in
+from app.features.conversation.sound_reading import Heard
+from app.features.conversation.waveforms import Envelope, joined, painted
+from app.look.theme import SOUND_MARKS, Theme
+from app.widgets.act_strip import STEPS, clock
+from app.widgets.lane_geometry import LEFT, RULER, Scale, advance, elided
+from metagraph.graph.conversation import Conversation, Segment
+
+INK = "#17181b"  # on the fills
+MIDDLE = Qt.AlignmentFlag.AlignVCenter
+LEGIBLE = 26.0  # pixels a second from which on words are shown
+DOTS = 20.0  # pixels a second from which on peaks are shown
+NARROW = 16.0  # pixels up to which a segment is a plain stroke without words
+MOST = 300  # narrow ones that are outlined where all of them are selected
+SMALL = 11  # pixels of what stands beside
+
+
+@dataclass(frozen=True)
+class Scene:
+    """All that is painted. heard: the sound of each side. ratio: pixels of the screen to one of the window. chosen: (side, place) of the
+    selected segments. over: what the pointer is on."""
+
+    conversation: Conversation
+    heard: Sequence[Heard | None]
+    scale: Scale
+    width: float
+    height: float
+    ratio: float
+    chosen: Collection[tuple[int, int]]
+    over: Hit
+    side: int = 0  # whose plan the timeline shows
+
+
+def paint(painter: QPainter, t: Theme, scene: Scene) -> None:
+    """Paint everything but the playhead."""
+    painter.fillRect(QRectF(0, 0, scene.width, scene.height), QColor(t.panel))
+    painter.setRenderHint(QPainter.RenderHint.Antialiasing)
+    _ruler(painter, t, scene)
+    for side, lane in enumerate(lanes(scene.width, scene.height)):
+        _titles(painter, t, scene, side, lane)
+        painter.save()
+        painter.setClipRect(lane.whole.adjusted(0, 0, 0, 2))
+        _wave(painter, t, scene, side, lane)
+        if scene.scale.each >= DOTS:
+            _peaks(painter, t, scene, side, lane)
+        if scene.scale.each >= LEGIBLE:
+            _words(painter, t, scene, side, lane)
+        _segments(painter, t, scene, side, lane)
+        painter.restore()
+    x = scene.scale.x(scene.conversation.length)
+    if x < scene.width:
+        veil = QColor(t.panel)
+        veil.setAlpha(190)
+        painter.fillRect(QRectF(max(x, LEFT), RULER, scene.width, scene.height), veil)
+
+
+def _ruler(painter: QPainter, t: Theme, scene: Scene) -> None:
+    scale = scene.scale
+    step = next((s for s in (0.1, 0.2, *STEPS) if s * scale.each >= 64), STEPS[-1])
+    painter.setPen(QColor(t.dim))
+    n = int(scale.first // step)
+    while (x := scale.x(n * step)) < scene.width:
+        if x >= LEFT - 1:
+            painter.drawText(QRectF(x - 40, 0, 80, RULER), Qt.AlignmentFlag.AlignCenter, clock(round(n * step, 3)))
+        n += 1
+
+
+def _titles(painter: QPainter, t: Theme, scene: Scene, side: int, lane: Lane) -> None:
+    """Who it is, the pitches' axis, and what the rows below are."""
+    own, small, bold = painter.font(), QFont(painter.font()), QFont(painter.font())
+    small.setPixelSize(SMALL)
+    bold.setWeight(QFont.Weight.DemiBold)
+    over, name = scene.over == Hit("title", side), side_name(scene.conversation, side)
+    if over:
+        painter.fillRect(QRectF(0, lane.whole.top(), LEFT - 1, lane.whole.height()), QColor(t.hover))
+    if side == scene.side:
+        painter.fillRect(QRectF(3, lane.wave.top() + 3, 3, lane.whole.height() - 6), QColor(t.text))
+    if advance(name, bold.toString()) > LEFT - 16:
+        bold.setPixelSize(SMALL)
+    painter.setFont(bold)
+    painter.setPen(QColor(t.text if over or side == scene.side else t.dim))
+    painter.drawText(QRectF(12, lane.wave.top() + 2, LEFT - 14, 18), MIDDLE, elided(name, bold.toString(), LEFT - 16))
+    painter.setFont(small)
+    painter.setPen(QColor(t.dim))
+    right = Qt.AlignmentFlag.AlignRight | MIDDLE
+    for hertz in AXIS:
+        y = float(pitch_y(hertz, lane.wave))
+        if y > lane.wave.top() + 26 and y < lane.wave.bottom() - 5:
+            painter.drawText(QRectF(12, y - 8, LEFT - 18, 16), right, f"{hertz:.0f} Hz")
+    if lane.wave.height() > 34:
+        painter.drawText(QRectF(12, lane.words.top(), LEFT - 14, lane.words.height()), MIDDLE, "Words")
+        painter.drawText(QRectF(12, lane.segments.top(), LEFT - 14, lane.segments.height()), MIDDLE, "Segments")
+    painter.setFont(own)
+
+
+def _wave(painter: QPainter, t: Theme, scene: Scene, side: int, lane: Lane) -> None:
+    """The waveform with what is segmented behind it, its pitch over it; where it is not there, why."""
+    area, heard = lane.wave, scene.heard[side]
+    painter.setPen(Qt.PenStyle.NoPen)
+    painter.setBrush(QColor(t.field))
+    painter.drawRoundedRect(area, 4, 4)
+    segments = scene.conversation.sides[side].segments
+    chosen = {n for of, n in scene.chosen if of == side}
+    behind = QRectF(area.left(), area.top(), area.width(), area.height() + lane.words.height())
+    _strokes(painter, t, scene, segments, behind, (26, 70), chosen)
+    painter.setPen(QPen(QColor(t.line), 1, Qt.PenStyle.DotLine))
+    for hertz in AXIS:
+        y = round(float(pitch_y(hertz, area))) + 0.5
+        painter.drawLine(QPointF(area.left(), y), QPointF(area.right(), y))
+    if heard is not None and heard.wave is not None:
+        middle, half = area.height() / 2, area.height() / 2 - 3
+        grow = half / max(heard.loudest, 1e-3)
+        color = QColor(t.dim)
+        color.setAlphaF(0.62)
+        _curve(painter, heard.wave, scene, area, color, lambda v: middle - v * grow, 1.0)
+    if heard is not None and heard.pitch is not None:
+        _curve(painter, heard.pitch, scene, area, QColor(t.text), lambda v: pitch_y(v, area) - area.top(), 1.7)
+    _told(painter, t, heard, area)
+
+
+def _curve(painter: QPainter, of: Envelope, scene: Scene, area: QRectF, color: QColor, y: object, thick: float) -> None:
+    """Paint an envelope, pixel for pixel of the screen. y: from a value to pixels below the top of the area."""
+    ratio, wide = scene.ratio, int(area.width() * scene.ratio)
+    low, high = of.columns(scene.scale.first, scene.scale.each * ratio, wide)
+    there = high >= low
+    top, bottom = (y(np.where(there, v, 1.0)) * ratio for v in (high, low))  # type: ignore[operator]
+    top, bottom = np.where(there, top, np.inf), np.where(there, bottom, -np.inf)
+    top, bottom = joined(top, bottom, thick * ratio)
+    picture = painted(top, bottom, int(area.height() * ratio), color)
+    picture.setDevicePixelRatio(ratio)
+    painter.drawImage(area.topLeft(), picture)
+
+
+def _told(painter: QPainter, t: Theme, heard: Heard | None, area: QRectF) -> None:
+    """Say why there is no sound, or how far it is."""
+    inner = area.adjusted(14, 2, -14, -2)
+    if heard is None or heard.missing:
+        words = heard.missing if heard is not None else "No sound is given for this side. Choose one in the menu “…” above."
+        painter.setPen(QColor(t.warning))
+        painter.drawText(inner, MIDDLE | Qt.TextFlag.TextWordWrap, f"⚠  {words}")
+    elif heard.told:
+        painter.setPen(QColor(t.dim))
+        if heard.wave is not None:  # then it stands over the waveform
+            wide = advance(heard.told, painter.font().toString()) + 12
+            inner = QRectF(area.right() - wide - 6, area.top() + 3, wide, 18)
+            painter.fillRect(inner, QColor(t.panel))
+        painter.drawText(inner, MIDDLE if heard.wave is None else Qt.AlignmentFlag.AlignCenter, heard.told)
+        painter.fillRect(QRectF(area.left(), area.bottom() - 2, area.width() * heard.part, 2), QColor(t.dim))
+
+
+def _words(painter: QPainter, t: Theme, scene: Scene, side: int, lane: Lane) -> None:
+    """The words where they are said, as far as there is room before the next."""
+    scale, font = scene.scale, QFont(painter.font())
+    own = painter.font()
+    font.setPixelSize(12)
+    painter.setFont(font)
+    key = font.toString()
+    painter.setPen(QColor(t.text))
+    some = words_in(scene.conversation.sides[side].words, scale.first, scale.seconds(scene.width))
+    for n, word in enumerate(some):
+        left = scale.x(word.start)
+        until = scale.x(some[n + 1].start) if n + 1 < len(some) else left + 300.0
+        words = word.text if advance(word.text, key) <= until - left - 4 else elided(word.text, key, int(until - left - 4))
+        if len(words) > 3 or words == word.text:
+            painter.drawText(QRectF(left + 1, lane.words.top(), 400, lane.words.height()), MIDDLE, words)
+    painter.setFont(own)
+
+
+def _segments(painter: QPainter, t: Theme, scene: Scene, side: int, lane: Lane) -> None:
+    scale, segments = scene.scale, scene.conversation.sides[side].segments
+    painter.setPen(Qt.PenStyle.NoPen)
+    painter.setBrush(QColor(t.field))
+    painter.drawRoundedRect(lane.segments, 4, 4)
+    key, seen = painter.font().toString(), visible(segments, scale.first, scale.seconds(scene.width))
+    wide = [n for n in seen if segments[n].end - segments[n].start > NARROW / scale.each]
+    if len(wide) < len(seen):
+        few = set(wide)
+        narrow = [segments[n] for n in seen if n not in few]
+        _strokes(painter, t, scene, narrow, lane.segments.adjusted(0, 1, 0, -1), (255, 255), ())
+        wide += [n for n in seen if n not in few and (side, n) in scene.chosen][:MOST]
+    for n in wide:
+        segment = segments[n]
+        rect, fill, chosen = segment_rect(segment, scale, lane), QColor(t.sounds[segment.kind]), (side, n) in scene.chosen
+        rect = rect.adjusted(0.5, 1, -0.5, -1)
+        if scene.over.side == side and scene.over.at == n and scene.over.part in ("start", "end", "body"):
+            fill = fill.lighter(112)
+        painter.setPen(QPen(QColor(t.text), 2) if chosen else Qt.PenStyle.NoPen)
+        painter.setBrush(fill)
+        painter.drawRoundedRect(rect, 4, 4)
+        left = max(rect.left(), LEFT)
+        room = rect.right() - left - 10
+        mark = SOUND_MARKS[segment.kind]
+        if room < advance(mark, key) - 2:
+            continue
+        painter.setPen(QColor(INK))
+        words = f"{mark} {segment.text}".strip() if segment.text else f"{mark} {segment.kind}"
+        out = elided(words, key, int(room))
+        out = out if len(out) > 4 or out == words else mark
+        painter.drawText(QRectF(left + 6, rect.top(), room + 4, rect.height()), MIDDLE, out)
+
+
+def _peaks(painter: QPainter, t: Theme, scene: Scene, side: int, lane: Lane) -> None:
+    """The stress of every clause: a dot on its pitch, and a line down to its segment."""
+    scale, segments, heard = scene.scale, scene.conversation.sides[side].segments, scene.heard[side]
+    fill, stem = QColor(t.sounds["clause"]), QColor(t.sounds["clause"])
+    stem.setAlpha(130)
+    for n in visible(segments, scale.first, scale.seconds(scene.width)):
+        segment = segments[n]
+        if segment.kind != "clause" or segment.peak is None:
+            continue
+        at = QPointF(scale.x(segment.peak), peak_y(segment.peak, heard, lane))
+        held = scene.over.part == "peak" and (scene.over.side, scene.over.at) == (side, n)
+        painter.setPen(QPen(stem, 1.4))
+        painter.drawLine(at, QPointF(at.x(), lane.segments.top()))
+        painter.setPen(QPen(QColor(t.field), 1.5))
+        painter.setBrush(QColor(t.text) if held else fill)
+        painter.drawEllipse(at, 5.5 if held else 4.5, 5.5 if held else 4.5)
+
+
+def _strokes(
+    painter: QPainter, t: Theme, scene: Scene, segments: Sequence[Segment], area: QRectF, alphas: tuple[int, int], chosen: Collection[int]
+) -> None:
+    """Paint segments as plain strokes in one picture a pixel high, however many there are. alphas: 0..255, of a stroke, of a chosen one."""
+    seen = visible(segments, scene.scale.first, scene.scale.seconds(scene.width))
+    if not seen:
+        return
+    some = segments[seen.start : seen.stop]
+    wide = max(1, int(area.width() * scene.ratio))
+    starts, ends = np.array([s.start for s in some]), np.array([s.end for s in some])
+    kinds = list(t.sounds)
+    ink = np.array([kinds.index(s.kind) + len(kinds) * (n in chosen) for n, s in enumerate(some, seen.start)])
+    inks = np.array([_premultiplied(QColor(color), alpha) for alpha in alphas for color in t.sounds.values()], np.uint8)
+    columns = scene.scale.first + (np.arange(wide) + 0.5) / (scene.scale.each * scene.ratio)  # seconds of their middles
+    at = np.clip(np.searchsorted(starts, columns, "right") - 1, 0, len(some) - 1)
+    inside = (columns >= starts[at]) & (columns < ends[at])
+    row = np.ascontiguousarray(np.where(inside[:, None], inks[ink[at]], 0).astype(np.uint8)[None])
+    image = QImage(row.data, wide, 1, row.strides[0], QImage.Format.Format_ARGB32_Premultiplied)
+    painter.drawImage(area, image)
+
+
+def _premultiplied(color: QColor, alpha: int) -> tuple[int, int, int, int]:
+    part = alpha / 255
+    return round(color.blue() * part), round(color.green() * part), round(color.red() * part), alpha
+
+
+def peak_y(seconds: float, heard: Heard | None, lane: Lane) -> float:
+    """Return how high a peak's dot stands: on the pitch, or below all of it where there is none."""
+    if heard is not None and heard.pitch is not None:
+        values, at = heard.pitch.lows[0], round(seconds * heard.pitch.rate)
+        near = values[max(0, at - 5) : at + 6]
+        near = near[np.isfinite(near)]
+        if len(near):
+            return float(pitch_y(float(near.max()), lane.wave))
+    return lane.wave.bottom() - 8
+
+
+def empty(painter: QPainter, t: Theme, area: QRectF, lines: Sequence[str]) -> None:
+    """Paint what an empty panel says: two who talk, and how to bring them in."""
+    painter.setRenderHint(QPainter.RenderHint.Antialiasing)
+    middle, top = area.center().x(), area.center().y() - 62
+    for side, (shift, kind, high) in enumerate(((-58.0, "clause", 0.0), (4.0, "response", 12.0))):
+        rect = QRectF(middle + shift, top + high, 54, 30)
+        tail, out = rect.left() + (12 if side == 0 else 42), -6 if side == 0 else 6
+        painter.setPen(Qt.PenStyle.NoPen)
+        painter.setBrush(QColor(t.sounds[kind]))
+        painter.drawRoundedRect(rect, 9, 9)
+        painter.drawPolygon(
+            [QPointF(tail - 5, rect.bottom() - 2), QPointF(tail + out, rect.bottom() + 9), QPointF(tail + 5, rect.bottom() - 2)]
+        )
+        painter.setPen(QPen(QColor(INK), 2, Qt.PenStyle.SolidLine, Qt.PenCapStyle.RoundCap))
+        for n, tall in enumerate((4, 8, 5, 10, 6, 3) if side == 0 else (3, 6, 4, 3, 5, 2)):
+            x = rect.left() + 12 + n * 6
+            painter.drawLine(QPointF(x, rect.center().y() - tall), QPointF(x, rect.center().y() + tall))
+    painter.setPen(QColor(t.text))
+    for n, line in enumerate(lines):
+        painter.drawText(QRectF(area.left(), top + 62 + n * 20, area.width(), 20), Qt.AlignmentFlag.AlignCenter, line)
+        painter.setPen(QColor(t.dim))

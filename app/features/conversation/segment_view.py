@@ -1,0 +1,376 @@
+"""The widget of a conversation's lanes: paints them, and turns the mouse and the keys into edits."""
+
+from __future__ import annotations
+
+from functools import partial
+
+from PySide6.QtCore import QPointF, QRectF, Qt
+from PySide6.QtGui import (
+    QColor,
+    QContextMenuEvent,
+    QFocusEvent,
+    QFont,
+    QHelpEvent,
+    QKeyEvent,
+    QMouseEvent,
+    QPainter,
+    QPaintEvent,
+    QPen,
+    QPixmap,
+    QWheelEvent,
+)
+from PySide6.QtWidgets import QMenu, QToolTip, QWidget
+
+from app.features.conversation.segment_editing import Editing
+from app.features.conversation.segment_gestures import MouseGesture, Pan, SegmentDrag, gesture_for
+from app.features.conversation.segment_hits import NOTHING, Hit, hit_at
+from app.features.conversation.segment_keys import DEEDS, deed_of
+from app.features.conversation.segment_lanes import LEAST, NEAREST, farthest, segment_words, side_name, words_in
+from app.features.conversation.segment_paint import Scene, empty, paint
+from app.features.conversation.sound_reading import Sounds
+from app.look.theme import theme
+from app.project.document import Edit
+from app.widgets.lane_geometry import LEFT, Scale
+from app.widgets.lane_paint import badge, playhead
+from app.widgets.memo import Once
+from metagraph.graph.conversation import Conversation
+from metagraph.graph.edits import EditError
+
+ZOOM, USUAL = 1.2, 100.0  # of a turn of the wheel; pixels a second to begin with: most words have room
+EMPTY = (
+    "Drop the sound of a conversation here",
+    "one file with a channel for each of the two, or two files; with their words as TextGrid, ELAN, subtitles or JSON, if there are any.",
+    "What both say then stands here, in clauses, responses and hesitations, and moves two characters.",
+)
+UNCHOSEN = ("No conversation is on stage", "Choose one above, or drop the sound of another here.")
+TEXT = (
+    "Segments of a conversation. Left and Right choose one, Up and Down the speaker, 1 to 3 label it, S splits, M merges, Delete removes."
+)
+
+
+class View(QWidget):
+    """A press on a segment selects it, a drag moves it, or its edge, or its stress; a drag in a gap makes one; elsewhere it moves the
+    playhead. The wheel zooms, with Shift, or the middle button, it moves along."""
+
+    def __init__(self, editing: Editing, sounds: Sounds, parent: QWidget) -> None:
+        super().__init__(parent)
+        self.editing, self.sounds = editing, sounds
+        self.document, self.session = editing.document, editing.session
+        self.each, self.first = USUAL, 0.0
+        self.gesture: MouseGesture | None = None
+        self.held: Conversation | None = None  # as it would be if what is dragged were let go
+        self.over: Hit = NOTHING
+        self.pointer = QPointF(-1, -1)
+        self.painted = 0  # how often the lanes were painted, not only the playhead over them
+        self._still: Once[QPixmap] = Once()
+        self._came = 0  # how often more of a sound has come
+        self._by_keys = False
+        self._ident: str | None = None  # of the conversation on stage
+        self.setMinimumHeight(LEAST)
+        self.setMouseTracking(True)
+        self.setFocusPolicy(Qt.FocusPolicy.StrongFocus)
+        self.setAccessibleName("Conversation")
+        self.setAccessibleDescription(TEXT)
+        sounds.changed.connect(self._read)
+        editing.changed.connect(self._chosen)
+        self.document.changed.connect(lambda before, after: self.update())
+        self.session.moved.connect(self._playhead)
+        self.session.theme_changed.connect(self.update)
+        self.session.conversation_changed.connect(self._staged)
+
+    # --- what is in sight
+
+    def conversation(self) -> Conversation | None:
+        """Return the conversation as it is drawn: with what is being dragged."""
+        return self.held or self.editing.conversation
+
+    def scale(self) -> Scale:
+        return Scale(self.first, self.each)
+
+    def look_at(self, first: float) -> None:
+        """Begin at a time, but never leave the conversation."""
+        of = self.editing.conversation
+        length = of.length if of is not None else 0.0
+        self.first = min(max(0.0, first), max(0.0, length - 0.5 * max(0, self.width() - LEFT) / self.each))
+        self.update()
+
+    def zoom(self, by: float, x: float) -> None:
+        """Zoom about a place on the screen."""
+        of = self.editing.conversation
+        at, least = self.scale().seconds(x), farthest(self.width(), of.length if of is not None else 60.0)
+        self.each = min(NEAREST, max(least, self.each * by))
+        self.look_at(at - (x - LEFT) / self.each)
+
+    def hold(self, edit: Edit | None) -> None:
+        """Show what an edit would make, without making it; None shows what is."""
+        self.held = None
+        ident = self.session.conversation
+        if edit is not None and ident is not None:
+            try:
+                self.held = edit(self.document.project).conversations[ident]
+            except EditError:
+                self.held = None
+        self.update()
+
+    def reveal(self) -> None:
+        """Bring the selected segment in sight."""
+        found = self.editing.segment(self.editing.last)
+        if found is not None and self.gesture is None:
+            left, right = self.scale().x(found.start), self.scale().x(found.end)
+            if left < LEFT or right > self.width():
+                self.look_at(found.start - 0.3 * (self.width() - LEFT) / self.each)
+
+    def _chosen(self) -> None:
+        self.reveal()
+        self.update()
+
+    def _staged(self) -> None:
+        self._stop_dragging()
+        if self.session.conversation != self._ident:  # else it is the other of the two that the timeline shows
+            self._ident = self.session.conversation
+            self.first, self.each = 0.0, USUAL
+        self.update()
+
+    def _read(self) -> None:
+        self._came += 1
+        self.update()
+
+    def _playhead(self, seconds: float) -> None:
+        width = self.width() - LEFT
+        if width > 40 and self.gesture is None and self.editing.conversation is not None:
+            x = (seconds - self.first) * self.each
+            if not 0 <= x <= width * (0.85 if self.session.playing else 1.0):
+                self.look_at(seconds - 0.15 * width / self.each)
+        self.update()
+
+    # --- painting
+
+    def paintEvent(self, event: QPaintEvent) -> None:
+        t, painter, of = theme(self.session.theme), QPainter(self), self.conversation()
+        if of is None:
+            painter.fillRect(self.rect(), QColor(t.panel))
+            empty(painter, t, QRectF(self.rect()), UNCHOSEN if self.document.project.conversations else EMPTY)
+            painter.end()
+            return
+        painter.drawPixmap(0, 0, self._picture(of))
+        x = self.scale().x(self.session.seconds)
+        if x >= LEFT - 1:
+            playhead(painter, t, x, self.height())
+        drag = self.gesture
+        if isinstance(drag, SegmentDrag) and drag.begun and drag.words:
+            font = QFont(self.font())
+            font.setFeature(QFont.Tag("tnum"), 1)
+            painter.setFont(font)
+            badge(painter, t, QPointF(self.scale().x(drag.seconds), 0), drag.words, self.width())
+        if self.hasFocus() and self._by_keys:
+            painter.setPen(QPen(QColor(t.dim), 1))
+            painter.setBrush(Qt.BrushStyle.NoBrush)
+            painter.drawRect(QRectF(self.rect()).adjusted(0.5, 0.5, -0.5, -0.5))
+        painter.end()
+
+    def _picture(self, of: Conversation) -> QPixmap:
+        """Return everything but the playhead, made anew only when something else than the playhead has changed."""
+        ratio, chosen, s = self.devicePixelRatioF(), self.editing.chosen, self.session
+        heard = tuple(self.sounds.of(of, side) for side in (0, 1))
+
+        def make() -> QPixmap:
+            picture = QPixmap(self.size() * ratio)
+            picture.setDevicePixelRatio(ratio)
+            painter = QPainter(picture)
+            painter.setFont(self.font())
+            scene = Scene(of, heard, self.scale(), self.width(), self.height(), ratio, chosen, self.over, s.side)
+            paint(painter, theme(s.theme), scene)
+            painter.end()
+            self.painted += 1
+            return picture
+
+        values = (self.scale(), self.size(), ratio, s.theme, s.side, chosen, self.over, self._came, self.font().toString())
+        return self._still.of(values, (of, *heard), make)
+
+    # --- the mouse
+
+    def _hit(self, at: QPointF) -> Hit:
+        of = self.editing.conversation
+        return hit_at(of, self.scale(), (self.width(), self.height()), at) if of is not None else NOTHING
+
+    def mousePressEvent(self, event: QMouseEvent) -> None:
+        at, hit = event.position(), self._hit(event.position())
+        self.pointer = at
+        if self.gesture is not None or hit.part == "nothing":
+            return
+        if event.button() == Qt.MouseButton.MiddleButton:
+            self.gesture = Pan(self, at)
+        elif event.button() == Qt.MouseButton.LeftButton and hit.part == "title":
+            self.session.set_side(hit.side)
+        elif event.button() == Qt.MouseButton.LeftButton:
+            if hit.at >= 0:
+                self._select(hit, event.modifiers())
+            elif not event.modifiers():
+                self.editing.select(())
+            self.gesture = gesture_for(self, hit, at)
+        self._show_cursor(hit)
+
+    def _select(self, hit: Hit, modifiers: Qt.KeyboardModifier) -> None:
+        editing, place = self.editing, (hit.side, hit.at)
+        last = editing.last
+        if modifiers & Qt.KeyboardModifier.ShiftModifier and last is not None and last[0] == hit.side:
+            run = range(min(last[1], hit.at), max(last[1], hit.at) + 1)
+            editing.select(editing.chosen | {(hit.side, n) for n in run}, last)
+        elif modifiers & Qt.KeyboardModifier.ControlModifier:
+            editing.select(editing.chosen ^ {place}, place)
+        elif place not in editing.chosen:
+            editing.select({place})
+        else:
+            editing.select(editing.chosen, place)
+
+    def mouseMoveEvent(self, event: QMouseEvent) -> None:
+        self.pointer = event.position()
+        if self.gesture is not None:
+            self.gesture.update(event.position(), bool(event.modifiers() & Qt.KeyboardModifier.AltModifier))
+            return
+        hit = self._hit(event.position())
+        if hit != self.over:
+            self.over = hit
+            self._show_cursor(hit)
+            self.update()
+
+    def mouseReleaseEvent(self, event: QMouseEvent) -> None:
+        gesture, self.gesture = self.gesture, None
+        if gesture is None:
+            return
+        moved = not isinstance(gesture, SegmentDrag) or gesture.begun
+        gesture.finish()
+        if not moved and isinstance(gesture, SegmentDrag) and not event.modifiers() and gesture.hit.at >= 0:
+            self.editing.select({(gesture.hit.side, gesture.hit.at)})
+        self.over = self._hit(event.position())
+        self._show_cursor(self.over)
+        self.update()
+
+    def mouseDoubleClickEvent(self, event: QMouseEvent) -> None:
+        hit = self._hit(event.position())
+        if event.button() == Qt.MouseButton.LeftButton and hit.at >= 0 and hit.part != "peak":
+            self.editing.select({(hit.side, hit.at)})
+            self.editing.relabel_next()
+
+    def leaveEvent(self, event: object) -> None:
+        self.over, self.pointer = NOTHING, QPointF(-1, -1)
+        self.update()
+
+    def wheelEvent(self, event: QWheelEvent) -> None:
+        delta = event.angleDelta()
+        if event.modifiers() & Qt.KeyboardModifier.ShiftModifier or abs(delta.x()) > abs(delta.y()):
+            self.look_at(self.first - (delta.x() or delta.y()) / 2 / self.each)
+        else:
+            self.zoom(ZOOM ** (delta.y() / 120), event.position().x())
+        event.accept()
+
+    def _show_cursor(self, hit: Hit) -> None:
+        shape = Qt.CursorShape
+        by_part = dict.fromkeys(("start", "end", "peak"), shape.SizeHorCursor)
+        by_part |= {"gap": shape.CrossCursor, "title": shape.PointingHandCursor}
+        held = isinstance(self.gesture, Pan) or (hit.part == "body" and self.gesture is not None)
+        self.setCursor(shape.ClosedHandCursor if held else by_part.get(hit.part, shape.ArrowCursor))
+
+    def _stop_dragging(self) -> bool:
+        """Cancel what is being dragged; return whether something was."""
+        gesture, self.gesture = self.gesture, None
+        if gesture is not None:
+            gesture.cancel()
+            self._show_cursor(NOTHING)
+        return gesture is not None
+
+    # --- menu, keys and tips
+
+    def contextMenuEvent(self, event: QContextMenuEvent) -> None:
+        if self.editing.conversation is None or self.gesture is not None:
+            return
+        if event.reason() == QContextMenuEvent.Reason.Keyboard:
+            x = min(max(LEFT, self.scale().x(self.session.seconds)), self.width())
+            self.menu(self.session.seconds).popup(self.mapToGlobal(QPointF(x, 40).toPoint()))
+            return
+        hit = self._hit(QPointF(event.pos()))
+        if hit.at >= 0 and (hit.side, hit.at) not in self.editing.chosen:
+            self.editing.select({(hit.side, hit.at)})
+        if hit.part not in ("nothing", "title"):
+            self.menu(self.scale().seconds(event.pos().x())).popup(event.globalPos())
+
+    def menu(self, seconds: float) -> QMenu:
+        """Return what can be done with the selected segments, at a time."""
+        menu = QMenu(self)
+        menu.setAttribute(Qt.WidgetAttribute.WA_DeleteOnClose)
+        for deed in DEEDS:
+            if deed.hidden:
+                continue
+            if deed.line:
+                menu.addSeparator()
+            action = menu.addAction(f"{deed.text}\t{deed.shown}", partial(deed.run, self.editing, seconds))
+            action.setEnabled(bool(self.editing.chosen) or not deed.needs)
+        return menu
+
+    def _seconds(self) -> float:
+        """Return the time keys are about: under the pointer where that is on a segment, else the playhead."""
+        hit = self._hit(self.pointer)
+        return self.scale().seconds(self.pointer.x()) if hit.at >= 0 and hit.part != "peak" else self.session.seconds
+
+    def keyPressEvent(self, event: QKeyEvent) -> None:
+        deed, key = deed_of(event.key(), event.modifiers()), event.key()
+        if key == Qt.Key.Key_Escape and (self._stop_dragging() or self.editing.chosen):
+            self.editing.select(())
+            self.update()
+        elif self.gesture is not None or self.editing.conversation is None:
+            event.ignore()  # what is held is not edited by keys as well
+        elif deed is not None and (self.editing.chosen or not deed.needs):
+            deed.run(self.editing, self._seconds())
+        elif key in (Qt.Key.Key_Plus, Qt.Key.Key_Equal, Qt.Key.Key_Minus):
+            self.zoom(1 / ZOOM if key == Qt.Key.Key_Minus else ZOOM, min(max(LEFT, self.scale().x(self.session.seconds)), self.width()))
+        elif key in (Qt.Key.Key_PageUp, Qt.Key.Key_PageDown):
+            page = 0.8 * (self.width() - LEFT) / self.each
+            self.look_at(self.first + (page if key == Qt.Key.Key_PageDown else -page))
+        else:
+            super().keyPressEvent(event)
+
+    def focusNextPrevChild(self, following: bool) -> bool:
+        """Tab goes from segment to segment, and on to the next panel at the last."""
+        return self.editing.step(1 if following else -1) or super().focusNextPrevChild(following)
+
+    def focusInEvent(self, event: QFocusEvent) -> None:
+        self._by_keys = event.reason() in (Qt.FocusReason.TabFocusReason, Qt.FocusReason.BacktabFocusReason)
+        super().focusInEvent(event)
+        self.update()
+
+    def focusOutEvent(self, event: QFocusEvent) -> None:
+        super().focusOutEvent(event)
+        self.update()
+
+    def event(self, event: object) -> bool:
+        if isinstance(event, QHelpEvent):
+            QToolTip.showText(event.globalPos(), self.tip(QPointF(event.pos())), self)
+            return True
+        if isinstance(event, QKeyEvent) and event.type() == QKeyEvent.Type.ShortcutOverride and self.editing.conversation is not None:
+            deed = deed_of(event.key(), event.modifiers())
+            escapes = event.key() == Qt.Key.Key_Escape and (self.gesture is not None or self.editing.chosen)
+            if escapes or (deed is not None and (self.editing.chosen or not deed.needs)):
+                event.accept()  # here it is about segments, not about what is selected elsewhere
+                return True
+        return super().event(event)  # type: ignore[arg-type]
+
+    def tip(self, at: QPointF) -> str:
+        """Return what to say about what is under a point."""
+        of, hit = self.editing.conversation, self._hit(at)
+        if of is None or self.gesture is not None:
+            return ""
+        if hit.at >= 0:
+            words = segment_words(of.sides[hit.side].segments[hit.at])
+            return words + ("\nDrag it to another top of the pitch" if hit.part == "peak" else "")
+        if hit.part == "wave":
+            seconds = self.scale().seconds(at.x())
+            said = [w for w in words_in(of.sides[hit.side].words, seconds, seconds) if w.start <= seconds <= w.end]
+            return f"{said[0].text}\n{said[0].start:.2f} to {said[0].end:.2f} s" if said else ""
+        if hit.part == "title":
+            side, whose = of.sides[hit.side], hit.side == self.session.side
+            channel = f", channel {side.channel + 1}" if side.channel is not None else ""
+            sound = [f"{side.audio}{channel}"] if side.audio else []
+            mover = [f"Moved by {side.project}"] if side.project else []
+            shown = "Performance shows this one's plan" if whose else "Click to see this one's plan in Performance"
+            return "\n".join((side_name(of, hit.side), *sound, *mover, shown))
+        return "Drag to make a segment" if hit.part == "gap" else ""

@@ -1,0 +1,262 @@
+"""The export dialog: for which engine, where to, with what; what will be written and lost; progress, and the folder opened."""
+
+from __future__ import annotations
+
+import json
+from dataclasses import dataclass
+from functools import cache
+from html import escape
+from pathlib import Path
+from typing import Any
+
+from PySide6.QtCore import QSettings, Qt, QUrl
+from PySide6.QtGui import QDesktopServices
+from PySide6.QtWidgets import (
+    QCheckBox,
+    QDialog,
+    QDialogButtonBox,
+    QFileDialog,
+    QFormLayout,
+    QHBoxLayout,
+    QLabel,
+    QLineEdit,
+    QProgressBar,
+    QPushButton,
+    QScrollArea,
+    QTreeWidget,
+    QTreeWidgetItem,
+    QVBoxLayout,
+    QWidget,
+)
+
+from app.look.theme import strengthen
+from app.project.document import Document
+from app.project.jobs import Job, Jobs
+from metagraph.engines.targets import registry
+from metagraph.engines.targets.target import Report, Target
+from metagraph.engines.vectors import write_vectors
+from metagraph.graph.check import check
+from metagraph.graph.expand import size
+from metagraph.graph.manual_meta import exportable
+
+NAME = Qt.ItemDataRole.UserRole
+
+
+@dataclass(frozen=True)
+class Choice:
+    """What was last chosen for a project. folder: empty for the usual one."""
+
+    target: str = registry.DEFAULT
+    folder: str = ""
+    mesh: bool = True
+    expanded: bool = False
+    vectors: bool = False
+
+
+@cache
+def served(folder: str) -> str:
+    """Return the address at which this program shows a folder to the browser, as long as it runs."""
+    from metagraph.engines.serve import Served
+
+    return Served(folder).url
+
+
+class ExportDialog(QDialog):
+    """manual: export what the manual state machines amount to, instead of the meta-graph."""
+
+    def __init__(self, document: Document, jobs: Jobs, parent: QWidget | None = None, manual: bool = False) -> None:
+        super().__init__(parent)
+        self.document, self.jobs = document, jobs
+        self.project, self.differences = exportable(document.project, manual)
+        self.setAttribute(Qt.WidgetAttribute.WA_DeleteOnClose)  # a running export goes on; the status bar shows it
+        self.setWindowTitle("Export for engines")
+        self.resize(860, 560)
+        self.written = ""  # the target that was last written
+        chosen = self._remembered()
+        self.targets = self._list()
+        self.title = QLabel(self)
+        self.title.setProperty("heading", True)
+        self.words, self.losses, self.trouble = (QLabel(self, wordWrap=True) for _ in range(3))
+        self.words.setProperty("dim", True)
+        self.losses.setTextFormat(Qt.TextFormat.RichText)
+        self.losses.setAlignment(Qt.AlignmentFlag.AlignTop)
+        lost = QScrollArea(self, widgetResizable=True)
+        lost.setFrameShape(QScrollArea.Shape.NoFrame)
+        lost.setWidget(self.losses)
+        self.progress = QProgressBar(self)
+        self.progress.hide()
+        right = QVBoxLayout()
+        right.setSpacing(10)
+        for part in (self.title, self.words):
+            right.addWidget(part)
+        right.addLayout(self._form(chosen))
+        right.addWidget(lost, 1)
+        right.addWidget(self.trouble)
+        right.addWidget(self.progress)
+        columns = QHBoxLayout()
+        columns.setSpacing(20)
+        columns.addWidget(self.targets)
+        columns.addLayout(right, 1)
+        layout = QVBoxLayout(self)
+        layout.addLayout(columns, 1)
+        layout.addWidget(self._buttons())
+        self.targets.currentItemChanged.connect(self._describe)
+        self._select(chosen.target)
+        errors = [p for p in check(self.project) if p.severity == "error"]
+        if errors:
+            self.go.setEnabled(False)
+            self.trouble.setText(f"First: {errors[0].message}. {errors[0].remedy}")
+
+    # --- parts
+
+    def _list(self) -> QTreeWidget:
+        out = QTreeWidget(self, headerHidden=True, rootIsDecorated=False)
+        out.setAccessibleName("Target")
+        out.setFixedWidth(260)
+        groups: dict[str, QTreeWidgetItem] = {}
+        for target in registry.targets().values():
+            if target.group not in groups:
+                groups[target.group] = QTreeWidgetItem(out, [target.group])
+                groups[target.group].setFlags(Qt.ItemFlag.ItemIsEnabled)
+                groups[target.group].setForeground(0, self.palette().placeholderText())
+            item = QTreeWidgetItem(groups[target.group], [target.title])
+            item.setData(0, NAME, target.name)
+        out.expandAll()
+        out.setItemsExpandable(False)
+        return out
+
+    def _form(self, chosen: Choice) -> QFormLayout:
+        project = self.document.project
+        form = QFormLayout()
+        row = QHBoxLayout()
+        self.folder = QLineEdit(chosen.folder or self._usual(), self)
+        self.folder.setAccessibleName("Folder")
+        browse = QPushButton("Choose…", self)
+        browse.clicked.connect(self._browse)
+        row.addWidget(self.folder, 1)
+        row.addWidget(browse)
+        form.addRow("Folder", row)
+        self.mesh = QCheckBox("the character's mesh in the GLB", self)
+        self.mesh.setChecked(chosen.mesh and project.character is not None)
+        self.mesh.setEnabled(project.character is not None)
+        self.expanded = QCheckBox("the expanded state machine in the JSON", self)
+        self.expanded.setChecked(chosen.expanded)
+        self.vectors = QCheckBox("conformance vectors, which prove that a runtime plays the same", self)
+        self.vectors.setChecked(chosen.vectors)
+        for words, box in zip(("Include", "", ""), (self.mesh, self.expanded, self.vectors), strict=True):
+            form.addRow(words, box)
+        return form
+
+    def _buttons(self) -> QDialogButtonBox:
+        buttons = QDialogButtonBox(QDialogButtonBox.StandardButton.Close, self)
+        self.open_button = buttons.addButton("Open folder", QDialogButtonBox.ButtonRole.ActionRole)
+        self.open_button.setEnabled(False)
+        self.open_button.clicked.connect(self._open)
+        self.go = buttons.addButton("Export", QDialogButtonBox.ButtonRole.AcceptRole)
+        strengthen(self.go)
+        buttons.accepted.connect(self._export)
+        buttons.rejected.connect(self.reject)
+        return buttons
+
+    # --- what is chosen
+
+    def _key(self) -> str:
+        return f"export/{self.document.path}" if self.document.path else "export/unsaved"
+
+    def _remembered(self) -> Choice:
+        """Return what was last chosen for this project; what cannot be read is as nothing."""
+        try:
+            data: Any = json.loads(str(QSettings().value(self._key()) or "{}"))
+            known = Choice(**data)
+            return known if known.target in registry.targets() else Choice(folder=known.folder)
+        except (ValueError, TypeError):
+            return Choice()
+
+    def _usual(self) -> str:
+        folder = self.document.folder or Path.home()
+        return str(folder / f"{self.document.project.name}-export")
+
+    def _select(self, name: str) -> None:
+        found = next(i for group in self._groups() for i in (group.child(n) for n in range(group.childCount())) if i.data(0, NAME) == name)
+        self.targets.setCurrentItem(found)
+
+    def _groups(self) -> list[QTreeWidgetItem]:
+        return [item for n in range(self.targets.topLevelItemCount()) if (item := self.targets.topLevelItem(n)) is not None]
+
+    @property
+    def target(self) -> Target:
+        """The target that is chosen."""
+        item = self.targets.currentItem()
+        name = item.data(0, NAME) if item is not None else None
+        return registry.target(name or registry.DEFAULT)
+
+    def _describe(self) -> None:
+        target, project = self.target, self.project
+        whole = size(project)
+        played = (target.name == registry.DEFAULT) or target.group == registry.target(registry.DEFAULT).group
+        self.title.setText(target.title)
+        joints = len(project.skeleton) if project.skeleton else 0
+        self.words.setText(f"Writes {target.files}. {whole.states} actions, {whole.clips} clips on {joints} joints.")
+        for box in (self.expanded, self.vectors):
+            box.setVisible(played)
+        rows = [f"<li>{escape(words)}</li>" for words in registry.losses(project, target.name)]
+        note = f"<p><b>Experimental</b>: {escape(target.untried)}.</p>" if target.untried else ""
+        nothing = "<p>Nothing else is lost.</p>" if self.differences else "<p>Nothing is lost.</p>"
+        lost = f"<p><b>What it loses</b></p><ul style='margin-left:-20px'>{''.join(rows)}</ul>" if rows else nothing
+        told = "".join(f"<li>{escape(words)}</li>" for words in self.differences)
+        differs = f"<p><b>How it differs from what was drawn</b></p><ul style='margin-left:-20px'>{told}</ul>" if told else ""
+        self.losses.setText(note + differs + lost)
+
+    def _browse(self) -> None:
+        name = QFileDialog.getExistingDirectory(self, "Export into", self.folder.text())
+        if name:
+            self.folder.setText(name)
+
+    def _open(self) -> None:
+        """Show what was written: a web page in the browser, all else as a folder."""
+        folder = self.folder.text()
+        QDesktopServices.openUrl(QUrl(served(folder)) if self.written == "web" else QUrl.fromLocalFile(folder))
+
+    # --- writing
+
+    def _export(self) -> None:
+        project, folder, name = self.project, Path(self.folder.text()), self.target.name
+        base = self.document.folder
+        expanded, vectors = self.expanded.isChecked(), self.vectors.isChecked() and not self.vectors.isHidden()
+        character = (base or Path()) / project.character if project.character and self.mesh.isChecked() else None
+        chosen = {"target": name, "folder": str(folder), "mesh": self.mesh.isChecked(), "expanded": expanded, "vectors": vectors}
+        QSettings().setValue(self._key(), json.dumps(chosen))
+        self.go.setEnabled(False)
+        self.trouble.clear()
+        self.progress.setRange(0, 0)
+        self.progress.show()
+
+        def work(job: Job) -> Report:
+            made = registry.write(project, name, folder, character, expanded, job.tell, base)
+            if vectors:
+                write_vectors(next(path for path in made.files if path.suffix == ".json"))
+            return made
+
+        job = self.jobs.start("Exporting", work, self._done, self._failed)
+        job.progress.connect(self._tell)
+
+    def _tell(self, done: int, total: int, words: str) -> None:
+        self.progress.setRange(0, total)
+        self.progress.setValue(done)
+
+    def _done(self, made: Report) -> None:
+        self.progress.hide()
+        self.go.setEnabled(True)
+        self.open_button.setEnabled(True)
+        self.written = made.target
+        self.open_button.setText("Open in browser" if made.target == "web" else "Open folder")
+        main = [path.name for path in sorted(made.files, key=lambda path: -path.stat().st_size)[:3]]
+        more = f" and {len(made.files) - 3} more files" if len(made.files) > 3 else ""
+        size = sum(path.stat().st_size for path in made.files) / 1e6
+        self.words.setText(f"Written: {', '.join(main)}{more}, {size:.1f} MB with {made.clips} clips.")
+        self.trouble.setText("\n".join(made.warnings[:5]))
+
+    def _failed(self, error: Exception) -> None:
+        self.progress.hide()
+        self.go.setEnabled(True)
+        self.trouble.setText(str(error))

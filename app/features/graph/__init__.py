@@ -1,0 +1,1 @@
+"""The meta-graph on its canvas."""

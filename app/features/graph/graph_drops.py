@@ -1,0 +1,148 @@
+"""What a drop on the canvas would do: said in words before it happens, done by the same value when it does."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from pathlib import Path
+
+from PySide6.QtCore import QMimeData
+
+from app.features.graph.graph_layout import Hit
+from app.project.speech_files import kinds_of
+from metagraph.formats.clips import SUFFIXES
+from metagraph.graph.edits import EditError, move_actions, place, refusal, to_stance
+from metagraph.graph.model import Kind, Layer, Project
+
+CLIPS = "application/x-metagraph-clips"
+ACTIONS = "application/x-metagraph-actions"
+ANNOTATIONS = ".eaf"
+
+
+@dataclass(frozen=True)
+class Load:
+    """What is being dragged: clips, actions or files."""
+
+    clips: tuple[str, ...] = ()
+    actions: tuple[str, ...] = ()
+    files: tuple[str, ...] = ()
+
+    def __bool__(self) -> bool:
+        return bool(self.clips or self.actions or self.files)
+
+    @property
+    def count(self) -> int:
+        return len(self.clips) or len(self.actions) or len(self.files)
+
+
+def mime(clips: Sequence[str] = (), actions: Sequence[str] = ()) -> QMimeData:
+    """Return what a drag of clips or actions carries."""
+    out = QMimeData()
+    if clips:
+        out.setData(CLIPS, "\n".join(clips).encode())
+    if actions:
+        out.setData(ACTIONS, "\n".join(actions).encode())
+    return out
+
+
+def load_of(data: QMimeData) -> Load:
+    """Return what mime data carries; files that cannot be clips are left out, folders are kept."""
+    clips = tuple(bytes(data.data(CLIPS).data()).decode().split("\n")) if data.hasFormat(CLIPS) else ()
+    actions = tuple(bytes(data.data(ACTIONS).data()).decode().split("\n")) if data.hasFormat(ACTIONS) else ()
+    files = tuple(u.toLocalFile() for u in data.urls() if u.isLocalFile()) if data.hasUrls() else ()
+    ends = (*SUFFIXES, ANNOTATIONS)
+    return Load(clips, actions, tuple(f for f in files if "." not in f.rsplit("/", 1)[-1] or f.lower().endswith(ends)))
+
+
+def sounds_of(data: QMimeData) -> tuple[Path, ...]:
+    """Return the sounds that mime data carries, and their transcripts after them; nothing where no sound is among them."""
+    sounds, transcripts = kinds_of([Path(u.toLocalFile()) for u in data.urls() if u.isLocalFile()])
+    return (*sounds, *transcripts) if sounds else ()
+
+
+@dataclass(frozen=True)
+class Drop:
+    """kind, stance, end: where things go; stance None makes a new one, kind None keeps each action's own.
+
+    words: what will happen, or why not.
+    """
+
+    possible: bool
+    words: str
+    kind: Kind | None = None
+    stance: str | None = None
+    end: str | None = None
+
+
+def drop_at(project: Project, layer: Layer, stance: str | None, other: str | None, hit: Hit, load: Load) -> Drop:
+    """Return what dropping `load` on `hit` does; the current stance and the other stance say where."""
+    if not load:
+        return Drop(False, "only clips, folders of clips and actions can be dropped here")
+    if load.files and all(f.lower().endswith(ANNOTATIONS) for f in load.files):
+        return Drop(True, "drop to learn from this annotation")
+    if load.actions and hit.area == "chip" and hit.ident is not None:
+        return _move(project, hit.ident, load)
+    what = _count(load)
+    if hit.area in ("card", "add"):
+        kind: Kind = "stance"
+        target, end = None, None
+        words = f"drop {what} as a new stance"
+    elif hit.area in ("loop", "chip"):
+        kind, target, end = "stance", hit.ident, None
+        words = f"drop {what} as {'another loop' if load.count == 1 else 'more loops'} of *{_name(project, hit.ident)}*"
+    elif hit.area in ("node", "row", "bar", "other") and hit.kind is not None:
+        kind, target, end = hit.kind, stance, other if hit.kind == "transition" else None
+        noun = f"{kind}s" if load.count > 1 else f"a {kind}"
+        words = f"drop {what} as {noun} of *{_name(project, stance)}*"
+        if kind == "transition":
+            noun = "transitions" if load.count > 1 else "a transition"
+            words = f"drop {what} as {noun} from *{_name(project, stance)}* to *{_name(project, other)}*"
+    else:
+        return Drop(False, "drop on one of the nodes")
+    clips = [a.clip for i in load.actions if (a := project.action(i)) is not None] or list(load.clips)
+    if load.files and not clips:
+        # Files are imported first; only what does not depend on the clips can be refused now.
+        clips = [next(iter(project.clips))] if project.clips else []
+        why = refusal(project, clips, layer, kind, target, end) if clips else None
+        if not clips and kind != "stance":
+            why = f"make a stance first: drop a clip on the middle of the {layer} layer"
+    else:
+        why = refusal(project, clips, layer, kind, target, end)
+    if why is None and load.actions and target is None and kind == "stance":
+        why = "drag its clip from the library to make a new stance of it"
+    if why is not None:
+        return Drop(False, why, kind, target, end)
+    return Drop(True, words, kind, target, end)
+
+
+def _move(project: Project, stance: str, load: Load) -> Drop:
+    """Actions dropped on a stance's chip move there and stay what they are."""
+    name = _name(project, stance)
+    if all((a := project.action(i)) is None or a.stance == stance for i in load.actions):
+        return Drop(False, f"already in *{name}*", None, stance)
+    try:
+        to_stance(project, load.actions, stance)
+    except EditError as error:
+        return Drop(False, str(error), None, stance)
+    return Drop(True, f"move {_count(load)} to *{name}*", None, stance)
+
+
+def perform(project: Project, layer: Layer, drop: Drop, load: Load) -> Project:
+    """Do what a possible drop said, for clips or actions. Raises EditError."""
+    if load.actions:
+        assert drop.stance is not None
+        if drop.kind is None:
+            return to_stance(project, load.actions, drop.stance)
+        return move_actions(project, load.actions, drop.kind, drop.stance, drop.end)
+    assert drop.kind is not None
+    return place(project, load.clips, layer, drop.kind, drop.stance, drop.end)
+
+
+def _count(load: Load) -> str:
+    noun = "clip" if load.clips else "action" if load.actions else "file"
+    return f"{load.count} {noun}s" if load.count > 1 else f"this {noun}"
+
+
+def _name(project: Project, stance: str | None) -> str:
+    found = project.stance(stance)
+    return found.name if found is not None else "?"

@@ -1,0 +1,332 @@
+"""Draws a laid-out canvas. Takes values, draws them, knows nothing of widgets or events."""
+
+from __future__ import annotations
+
+from collections.abc import Collection
+from dataclasses import dataclass, field
+
+from PySide6.QtCore import QPointF, QRectF, Qt
+from PySide6.QtGui import QColor, QFont, QFontMetricsF, QImage, QPainter, QPainterPath, QPen, QRegion
+
+from app.features.graph.graph_drops import Drop
+from app.features.graph.graph_layout import GRID, Chip, Hit, Layout, Node, bar_part
+from app.features.graph.repoint import draw_arrow
+from app.look.plural import short
+from app.look.theme import KIND_MARKS, KIND_TITLES, Theme
+from metagraph.graph.model import Action, Kind, Project
+
+RADIUS = 8.0
+NOWHERE = Hit("nothing")
+TEACH = {
+    "gesture": "Drop clips that mean something\nor beat time: a shrug, a point.",
+    "fidget": "Drop small habits here:\na scratch, tapping fingers.",
+    "transition": "Drop clips that lead to another stance.",
+}
+
+
+@dataclass(frozen=True)
+class Look:
+    """Everything that is drawn besides the layout."""
+
+    theme: Theme
+    project: Project
+    selected: Collection[str] = ()
+    hover: Hit = NOWHERE
+    focus: str | None = None
+    playing: Collection[str] = ()  # actions under the playhead
+    misfits: dict[str, str] = field(default_factory=dict)  # action -> what is wrong with its ends
+    picture: QImage | None = None
+    chip_pictures: dict[str, QImage] = field(default_factory=dict)
+    other: str | None = None
+    drop: Drop | None = None
+    drop_hit: Hit = NOWHERE
+    arrow: tuple[QPointF, QPointF] | None = None  # being dragged, from where to where
+    sentence: str = ""
+
+
+def paint(painter: QPainter, layout: Layout, look: Look, font: QFont, stale: QRegion | None = None) -> None:
+    """Draw a canvas. stale: the part that is to be drawn anew, None for all; while the stance moves that is little."""
+
+    def wanted(rect: QRectF) -> bool:
+        return stale is None or stale.intersects(rect.toAlignedRect().adjusted(-2, -2, 2, 2))
+
+    painter.setRenderHints(QPainter.RenderHint.Antialiasing | QPainter.RenderHint.SmoothPixmapTransform)
+    painter.fillRect(QRectF(QPointF(0, 0), layout.size), QColor(look.theme.ground))
+    painter.setFont(font)
+    _curves(painter, layout, look)
+    for chip in layout.chips:
+        if wanted(chip.rect):
+            _chip(painter, chip, layout, look, font)
+    if wanted(layout.card):
+        _card(painter, layout, look, font)
+    for node in layout.nodes.values():
+        if wanted(node.rect):
+            _node(painter, node, layout, look, font)
+    painter.setFont(font)
+    painter.setPen(QColor(look.theme.dim))
+    painter.drawText(layout.foot, Qt.AlignmentFlag.AlignVCenter | Qt.AlignmentFlag.AlignLeft | Qt.TextFlag.TextWordWrap, look.sentence)
+    if look.arrow is not None:
+        draw_arrow(painter, *look.arrow, look.theme.kind("transition"), look.drop is not None and look.drop.possible)
+
+
+def _bold(font: QFont) -> QFont:
+    out = QFont(font)
+    out.setWeight(QFont.Weight.DemiBold)
+    return out
+
+
+def _box(painter: QPainter, rect: QRectF, fill: QColor, edge: QColor | None, width: float = 1.0, dashed: bool = False) -> None:
+    painter.setBrush(fill)
+    if edge is None:
+        painter.setPen(Qt.PenStyle.NoPen)
+    else:
+        pen = QPen(edge, width)
+        if dashed:
+            pen.setDashPattern([4, 3])
+        painter.setPen(pen)
+    painter.drawRoundedRect(rect.adjusted(width / 2, width / 2, -width / 2, -width / 2), RADIUS, RADIUS)
+
+
+def _elided(font: QFont, text: str, width: float) -> str:
+    return QFontMetricsF(font).elidedText(text, Qt.TextElideMode.ElideRight, width)
+
+
+def _curves(painter: QPainter, layout: Layout, look: Look) -> None:
+    """Join the stance to its nodes: thicker with more actions, dashed when there are none."""
+    card = layout.card
+    for kind, node in layout.nodes.items():
+        color = look.theme.fill(kind)
+        color.setAlpha(150 if node.count else 70)
+        pen = QPen(color, 1.6)
+        if not node.count:
+            pen.setDashPattern([3, 4])
+        painter.setPen(pen)
+        painter.setBrush(Qt.BrushStyle.NoBrush)
+        path = QPainterPath()
+        if kind == "transition":
+            path.moveTo(card.center().x(), card.bottom())
+            path.lineTo(card.center().x(), node.rect.top())
+        else:
+            sign = -1 if kind == "gesture" else 1
+            start = QPointF(card.left() if sign < 0 else card.right(), card.top() + card.height() * 0.42)
+            reach = node.rect.right() if sign < 0 else node.rect.left()
+            end = QPointF(reach, min(node.rect.center().y(), card.bottom()))
+            bend = max(20.0, abs(end.x() - start.x()) * 0.5)
+            path.moveTo(start)
+            path.cubicTo(start + QPointF(sign * bend, 0), end - QPointF(sign * bend, 0), end)
+        painter.drawPath(path)
+
+
+def _chip(painter: QPainter, chip: Chip, layout: Layout, look: Look, font: QFont) -> None:
+    t = look.theme
+    target = look.drop is not None and (
+        (look.drop_hit.area == "add" and chip.stance is None)
+        or (look.drop_hit.area == "chip" and look.drop_hit.ident == chip.stance and chip.stance is not None)
+    )
+    current = chip.stance is not None and chip.stance == layout.stance
+    hover = (look.hover.area == "add" and chip.stance is None) or (
+        look.hover.area == "chip" and chip.stance is not None and look.hover.ident == chip.stance
+    )
+    edge = t.fill("stance") if current or target else QColor(t.line)
+    _box(
+        painter,
+        chip.rect,
+        QColor(t.hover if hover or target else t.panel),
+        edge,
+        1.5 if current else 1.0,
+        dashed=bool(chip.words) and not current,
+    )
+    if chip.stance is None:
+        painter.setPen(QPen(QColor(t.text), 1.6))
+        c = chip.rect.center()
+        painter.drawLine(c - QPointF(5, 0), c + QPointF(5, 0))
+        painter.drawLine(c - QPointF(0, 5), c + QPointF(0, 5))
+        return
+    inner = chip.rect.adjusted(10, 0, -10, 0)
+    picture = look.chip_pictures.get(chip.stance)
+    if picture is not None:
+        size = chip.rect.height() - 6
+        half = QRectF(picture.width() * 0.24, picture.height() * 0.03, picture.width() * 0.52, picture.height() * 0.52)
+        painter.drawImage(QRectF(chip.rect.left() + 5, chip.rect.top() + 3, size, size), picture, half)
+    else:
+        painter.setPen(Qt.PenStyle.NoPen)
+        painter.setBrush(t.fill("stance"))
+        painter.drawEllipse(QPointF(chip.rect.left() + 16, chip.rect.center().y()), 4, 4)
+    inner.setLeft(chip.rect.left() + (chip.rect.height() + 8 if picture is not None else 28))
+    metrics = QFontMetricsF(font)
+    right = chip.words or ""
+    count = str(chip.count)
+    used = metrics.horizontalAdvance(count) + (metrics.horizontalAdvance(right) + 8 if right else 0) + 8
+    painter.setFont(_bold(font) if current else font)
+    painter.setPen(QColor(t.text))
+    name = _elided(painter.font(), chip.name, inner.width() - used)
+    painter.drawText(inner, Qt.AlignmentFlag.AlignVCenter | Qt.AlignmentFlag.AlignLeft, name)
+    painter.setFont(font)
+    painter.setPen(QColor(t.dim))
+    painter.drawText(inner, Qt.AlignmentFlag.AlignVCenter | Qt.AlignmentFlag.AlignRight, count)
+    if right:
+        painter.setPen(QColor(t.warning))
+        painter.drawText(
+            inner.adjusted(0, 0, -metrics.horizontalAdvance(count) - 8, 0),
+            Qt.AlignmentFlag.AlignVCenter | Qt.AlignmentFlag.AlignRight,
+            right,
+        )
+
+
+def _card(painter: QPainter, layout: Layout, look: Look, font: QFont) -> None:
+    t, card = look.theme, layout.card
+    dragging = look.drop is not None
+    stance = look.project.stance(layout.stance)
+    edge = t.fill("stance") if stance is not None or dragging else QColor(t.line)
+    loops = look.project.graphs[stance.layer].of(stance.id, "stance") if stance is not None else ()
+    chosen = any(loop.id in look.selected for loop in loops)
+    _box(painter, card, QColor(t.hover if chosen else t.card), edge, 2.0 if stance is not None else 1.2, dashed=stance is None)
+    if stance is None:
+        painter.setPen(QColor(t.dim))
+        painter.setFont(font)
+        painter.drawText(
+            card.adjusted(14, 14, -14, -14), Qt.AlignmentFlag.AlignCenter | Qt.TextFlag.TextWordWrap,
+            "Drop a resting clip here\nto make the first stance\nof this layer:\nhands at the sides, say.",
+        )  # fmt: skip
+    else:
+        head = QRectF(card.left() + 12, card.top() + 8, card.width() - 24, 24)
+        bold = _bold(font)
+        painter.setFont(bold)
+        name = _elided(bold, stance.name, head.width() - 20)
+        wide = QFontMetricsF(bold).horizontalAdvance(name)
+        left = head.center().x() - (wide + 16) / 2
+        painter.setPen(Qt.PenStyle.NoPen)
+        painter.setBrush(t.fill("stance"))
+        painter.drawEllipse(QPointF(left + 4, head.center().y()), 4.5, 4.5)
+        painter.setPen(QColor(t.text))
+        painter.drawText(QRectF(left + 16, head.top(), wide + 4, head.height()), Qt.AlignmentFlag.AlignVCenter, name)
+        area = QRectF(card.left() + 4, head.bottom() + 2, card.width() - 8, card.height() - 24 - head.height() - 14)
+        if look.picture is not None:
+            size = min(area.width(), area.height())
+            painter.drawImage(QRectF(area.center().x() - size / 2, area.center().y() - size / 2, size, size), look.picture)
+        start = look.project.graphs[stance.layer].start == stance.id
+        words = f"{len(loops)} loop{'s' if len(loops) != 1 else ''}" if loops else "no loop yet"
+        painter.setFont(font)
+        painter.setPen(QColor(t.dim if loops else t.warning))
+        foot = QRectF(card.left() + 12, card.bottom() - 26, card.width() - 24, 20)
+        words += "  ·  starts here" if start and card.width() > 150 else ""
+        painter.drawText(foot, Qt.AlignmentFlag.AlignCenter, _elided(font, words, foot.width()))
+    if dragging and look.drop is not None and look.drop_hit.area in ("card", "loop"):
+        zone = layout.loops if look.drop_hit.area == "loop" else QRectF(card.topLeft(), QPointF(card.right(), layout.loops.top()))
+        if stance is None:
+            zone = card
+        _offer(painter, zone, look, "stance", font)
+
+
+def _offer(painter: QPainter, rect: QRectF, look: Look, kind: Kind, font: QFont) -> None:
+    """Say in a dashed box what a drop will do, or why it will not."""
+    assert look.drop is not None
+    t = look.theme
+    color = QColor(t.kinds[kind]) if look.drop.possible else QColor(t.warning)
+    fill = QColor(t.ground)
+    fill.setAlpha(225)
+    _box(painter, rect.adjusted(5, 5, -5, -5), fill, color, 1.4, dashed=True)
+    painter.setPen(color)
+    painter.setFont(font)
+    painter.drawText(
+        rect.adjusted(14, 8, -14, -8), Qt.AlignmentFlag.AlignCenter | Qt.TextFlag.TextWordWrap, look.drop.words.replace("*", "")
+    )
+
+
+def _node(painter: QPainter, node: Node, layout: Layout, look: Look, font: QFont) -> None:
+    t = look.theme
+    target = look.drop is not None and look.drop_hit.kind == node.kind and look.drop_hit.area not in ("card", "loop", "chip", "add")
+    edge = t.fill(node.kind) if target and look.drop is not None and look.drop.possible else QColor(t.line)
+    _box(painter, node.rect, QColor(t.card), edge, 1.5 if target else 1.0)
+    head = node.header.adjusted(2 * GRID, 0, -2 * GRID, 0)
+    painter.setFont(font)
+    painter.setPen(t.kind(node.kind))
+    painter.drawText(head, Qt.AlignmentFlag.AlignVCenter | Qt.AlignmentFlag.AlignLeft, KIND_MARKS[node.kind])
+    painter.setFont(_bold(font))
+    painter.setPen(QColor(t.text))
+    painter.drawText(head.adjusted(20, 0, 0, 0), Qt.AlignmentFlag.AlignVCenter | Qt.AlignmentFlag.AlignLeft, KIND_TITLES[node.kind])
+    painter.setFont(font)
+    painter.setPen(QColor(t.dim))
+    painter.drawText(head, Qt.AlignmentFlag.AlignVCenter | Qt.AlignmentFlag.AlignRight, str(node.count))
+    if node.kind == "transition" and layout.stance is not None:
+        _other(painter, node, look, font)
+    for row in node.rows:
+        _row(painter, row.action, row.rect, row.bar, node.kind, look, font)
+    if node.most > 0:
+        track = QRectF(node.rect.right() - 6, node.body.top(), 3, node.body.height())
+        share = len(node.rows) / max(1, node.count)
+        top = track.top() + track.height() * (1 - share) * node.scroll / node.most
+        painter.setPen(Qt.PenStyle.NoPen)
+        painter.setBrush(QColor(t.line))
+        painter.drawRoundedRect(QRectF(track.left(), top, 3, max(16.0, track.height() * share)), 1.5, 1.5)
+    if not node.count and not target:
+        painter.setPen(QColor(t.dim))
+        text = TEACH[node.kind] if layout.stance is not None else "Make a stance first."
+        flags = Qt.AlignmentFlag.AlignLeft | Qt.AlignmentFlag.AlignTop | Qt.TextFlag.TextWordWrap
+        painter.drawText(node.body.adjusted(2 * GRID, 2, -GRID, 0), flags, text)
+    if target:
+        free = QRectF(node.rect.left() + 3, node.rect.bottom() - 60, node.rect.width() - 6, 56)
+        if node.rect.height() < 130:
+            free = QRectF(node.rect.left() + 3, node.header.bottom() - 2, node.rect.width() - 6, node.rect.height() - node.header.height())
+        _offer(painter, free, look, node.kind, font)
+
+
+def _other(painter: QPainter, node: Node, look: Look, font: QFont) -> None:
+    """The chooser of the stance that dropped transitions end in."""
+    t, rect = look.theme, node.other
+    found = look.project.stance(look.other)
+    hover = look.hover.area == "other"
+    _box(painter, rect, QColor(t.hover if hover else t.field), QColor(t.line))
+    painter.setFont(font)
+    painter.setPen(QColor(t.text if found is not None else t.warning))
+    text = f"to {found.name}" if found is not None else "needs another stance"
+    painter.drawText(rect.adjusted(8, 0, -18, 0), Qt.AlignmentFlag.AlignVCenter, _elided(font, text, rect.width() - 28))
+    painter.setPen(QPen(QColor(t.dim), 1.4))
+    c = QPointF(rect.right() - 12, rect.center().y())
+    painter.drawPolyline([c + QPointF(-3.5, -2), c + QPointF(0, 2), c + QPointF(3.5, -2)])
+
+
+def _row(painter: QPainter, action: Action, rect: QRectF, bar: QRectF, kind: Kind, look: Look, font: QFont) -> None:
+    t = look.theme
+    selected, hover = action.id in look.selected, look.hover.ident == action.id and look.hover.area in ("row", "bar", "head")
+    if selected or hover:
+        fill = QColor(t.hover)
+        fill.setAlpha(255 if selected else 130)
+        painter.setPen(QPen(QColor(t.dim), 1) if action.id == look.focus and selected else Qt.PenStyle.NoPen)
+        painter.setBrush(fill)
+        painter.drawRoundedRect(rect.adjusted(0, 1, 0, -1), 5, 5)
+    stance = look.project.stance(action.stance)
+    text = short(action.name, stance.name) if stance is not None else action.name
+    if kind == "transition":
+        end = look.project.stance(action.end_stance)
+        text = end.name if end is not None else f"?  {action.name}"
+    left = rect.left() + 8
+    if kind == "transition":
+        if hover and look.hover.area == "head":
+            _box(painter, QRectF(rect.left() + 3, rect.top() + 3, 22, rect.height() - 6), QColor(t.field), t.kind(kind))
+        painter.setFont(font)
+        painter.setPen(t.kind(kind))
+        painter.drawText(QRectF(left, rect.top(), 18, rect.height()), Qt.AlignmentFlag.AlignVCenter, "→")
+        left += 17
+    if action.id in look.playing:
+        painter.setPen(Qt.PenStyle.NoPen)
+        painter.setBrush(t.kind(kind))
+        painter.drawRoundedRect(QRectF(rect.left() + 1, rect.top() + 5, 3, rect.height() - 10), 1.5, 1.5)
+    room = bar.left() - left - 8
+    if action.id in look.misfits:
+        painter.setPen(QPen(QColor(t.warning), 1.4))
+        painter.setBrush(Qt.BrushStyle.NoBrush)
+        c = QPointF(bar.left() - 12, rect.center().y())
+        painter.drawPolygon([c + QPointF(0, -5), c + QPointF(5.5, 4.5), c + QPointF(-5.5, 4.5)])
+        painter.drawLine(c + QPointF(0, -1.5), c + QPointF(0, 1.5))
+        room -= 18
+    painter.setFont(font)
+    painter.setPen(QColor(t.text))
+    painter.drawText(QRectF(left, rect.top(), room, rect.height()), Qt.AlignmentFlag.AlignVCenter, _elided(font, text, room))
+    painter.setPen(Qt.PenStyle.NoPen)
+    painter.setBrush(QColor(t.line))
+    painter.drawRoundedRect(bar, 1.5, 1.5)
+    painter.setBrush(t.fill(kind))
+    painter.drawRoundedRect(QRectF(bar.left(), bar.top(), max(3.0, bar.width() * bar_part(action.likelihood)), bar.height()), 1.5, 1.5)
+    if hover and look.hover.area == "bar":
+        painter.drawEllipse(QPointF(bar.left() + bar.width() * bar_part(action.likelihood), bar.center().y()), 4.5, 4.5)

@@ -1,0 +1,1 @@
+"""Proposals for clips, looked through and accepted."""

@@ -1,0 +1,310 @@
+"""Name patterns: what words in clips' names mean, as the user wrote and corrected it; tried out on a name, and shared as a file."""
+
+from __future__ import annotations
+
+from html import escape
+from pathlib import Path
+
+from PySide6.QtCore import QModelIndex, Qt, Signal
+from PySide6.QtGui import QKeyEvent, QKeySequence, QShortcut
+from PySide6.QtWidgets import (
+    QAbstractItemView,
+    QCheckBox,
+    QComboBox,
+    QDialog,
+    QDialogButtonBox,
+    QFileDialog,
+    QGridLayout,
+    QHBoxLayout,
+    QHeaderView,
+    QLabel,
+    QLineEdit,
+    QMessageBox,
+    QPushButton,
+    QTableView,
+    QVBoxLayout,
+    QWidget,
+)
+
+from app.features.labelling.pattern_files import read_patterns, write_patterns
+from app.features.labelling.pattern_table import ABOUT, MINE, NOBODY, Chosen, MeaningEditor, PatternTable, Row, fill_meanings, without
+from app.look.theme import KIND_MARKS, theme
+from app.project.document import Document
+from app.project.learned import Learned
+from app.stage.session import Session
+from metagraph.errors import FileError
+from metagraph.suggest.words import NameGuess, Patterns, PatternsError, merged, read_names
+from metagraph.suggest.words_patterns import FIELDS
+
+FILTER = "Name patterns (*.json);;All files (*)"
+PARTS = (("kind", "Kind"), ("layer", "Layer"), ("stance", "Stance"), ("end_stance", "Ends in"), ("limb", "Arm"), ("tags", "Tags"))
+
+
+class _Table(QTableView):
+    """remove_wanted: the key that removes was pressed on it."""
+
+    remove_wanted = Signal()
+
+    def keyPressEvent(self, event: QKeyEvent) -> None:
+        if event.matches(QKeySequence.StandardKey.Delete) or event.key() == Qt.Key.Key_Backspace:
+            self.remove_wanted.emit()
+        else:
+            super().keyPressEvent(event)
+
+
+class PatternsDialog(QDialog):
+    """Every change is kept at once, for all projects."""
+
+    def __init__(self, document: Document, session: Session, learned: Learned, parent: QWidget | None = None) -> None:
+        super().__init__(parent)
+        self.document, self.session, self.learned = document, session, learned
+        self.setAttribute(Qt.WidgetAttribute.WA_DeleteOnClose)
+        self.setWindowTitle("Name patterns")
+        self.resize(760, 720)
+        layout = QVBoxLayout(self)
+        layout.setSpacing(10)
+        layout.addWidget(QLabel("What words in clip names mean when labels are proposed. Kept for all your projects.", self, wordWrap=True))
+        layout.addLayout(self._trial())
+        layout.addLayout(self._finder())
+        layout.addWidget(self._table(), 1)
+        layout.addLayout(self._adder())
+        self.words = QLabel(self, wordWrap=True)
+        self.words.setVisible(False)
+        layout.addWidget(self.words)
+        layout.addLayout(self._foot())
+        learned.changed.connect(self._show)
+        self._show()
+        self.name.setFocus()
+
+    # --- building
+
+    def _trial(self) -> QVBoxLayout:
+        self.name = QLineEdit(self, placeholderText="Type a clip name to try, like IdleSeated_Wave_Rt_02")
+        self.name.setAccessibleName("Try a name")
+        self.name.setClearButtonEnabled(True)
+        self.name.textChanged.connect(self._try)
+        self.read = QLabel(self)
+        self.read.setTextFormat(Qt.TextFormat.RichText)
+        self.read.setAlignment(Qt.AlignmentFlag.AlignTop)
+        self.read.setMinimumHeight(7 * self.fontMetrics().height())
+        column = QVBoxLayout()
+        column.addWidget(self.name)
+        column.addWidget(self.read)
+        return column
+
+    def _finder(self) -> QHBoxLayout:
+        self.search = QLineEdit(self, placeholderText="Search words and meanings")
+        self.search.setAccessibleName("Search")
+        self.search.setClearButtonEnabled(True)
+        self.every = QCheckBox("Built-in words too", self)
+        self.search.textChanged.connect(self._look)
+        self.every.toggled.connect(self._look)
+        QShortcut(QKeySequence(QKeySequence.StandardKey.Find), self, self.search.setFocus)
+        row = QHBoxLayout()
+        row.addWidget(self.search, 1)
+        row.addWidget(self.every)
+        return row
+
+    def _table(self) -> _Table:
+        self.model = PatternTable(self.learned.edit, self._tell, self)
+        self.chosen = Chosen(self)
+        self.chosen.setSourceModel(self.model)
+        self.table = _Table(self)
+        self.table.setAccessibleName("Name patterns")
+        self.table.setModel(self.chosen)
+        self.table.setItemDelegate(MeaningEditor(self.table))
+        self.table.setSelectionBehavior(QAbstractItemView.SelectionBehavior.SelectRows)
+        self.table.setSortingEnabled(True)
+        self.table.sortByColumn(0, Qt.SortOrder.AscendingOrder)
+        self.table.setShowGrid(False)
+        self.table.setAlternatingRowColors(True)
+        self.table.verticalHeader().hide()
+        self.table.verticalHeader().setDefaultSectionSize(2 * self.fontMetrics().height() - 6)
+        self.table.setTabKeyNavigation(False)
+        header = self.table.horizontalHeader()
+        header.setSectionResizeMode(QHeaderView.ResizeMode.Interactive)
+        header.setSectionResizeMode(0, QHeaderView.ResizeMode.Stretch)
+        header.setHighlightSections(False)
+        header.setDefaultAlignment(Qt.AlignmentFlag.AlignLeft | Qt.AlignmentFlag.AlignVCenter)
+        for column, width in ((1, 120), (2, 170), (3, 150)):
+            self.table.setColumnWidth(column, width)
+        self.table.remove_wanted.connect(self._remove)
+        self.table.selectionModel().selectionChanged.connect(lambda *_: self._refresh())
+        return self.table
+
+    def _adder(self) -> QGridLayout:
+        self.phrase = QLineEdit(self, placeholderText="words, like check watch")
+        self.phrase.setAccessibleName("Words of the new pattern")
+        self.field = QComboBox(self)
+        self.field.setAccessibleName("About")
+        for name in FIELDS:
+            self.field.addItem(ABOUT[name], name)
+        self.meaning = QComboBox(self)
+        self.meaning.setAccessibleName("Meaning")
+        self.field.currentIndexChanged.connect(lambda _: fill_meanings(self.meaning, self.field.currentData()))
+        fill_meanings(self.meaning, "kinds")
+        self.add = QPushButton("Add", self)
+        self.add.clicked.connect(self._add)
+        self.phrase.returnPressed.connect(self._add)
+        self.remove = QPushButton("Remove", self)
+        self.remove.setToolTip("Forget the selected patterns; of built-in ones, that they mean anything (Delete)")
+        self.remove.clicked.connect(self._remove)
+        grid = QGridLayout()
+        for column, (widget, wide) in enumerate(((self.phrase, 3), (self.field, 1), (self.meaning, 2), (self.add, 0), (self.remove, 0))):
+            grid.addWidget(widget, 0, column)
+            grid.setColumnStretch(column, wide)
+        return grid
+
+    def _foot(self) -> QHBoxLayout:
+        self.on = QCheckBox("Learn from my corrections", self)
+        self.on.setChecked(self.learned.on)
+        self.on.toggled.connect(self.learned.set_on)
+        self.forget = QPushButton("Forget all learned…", self)
+        self.forget.clicked.connect(self._forget)
+        self.take, self.give = QPushButton("Import…", self), QPushButton("Export…", self)
+        self.take.clicked.connect(self._import)
+        self.give.clicked.connect(self._export)
+        close = QDialogButtonBox(QDialogButtonBox.StandardButton.Close, self)
+        close.rejected.connect(self.reject)
+        for button in (*self.findChildren(QPushButton), *close.buttons()):
+            if isinstance(button, QPushButton):
+                button.setAutoDefault(False)  # Enter in a line adds or tries; it closes nothing
+        row = QHBoxLayout()
+        row.addWidget(self.on)
+        row.addWidget(self.forget)
+        row.addStretch(1)
+        row.addWidget(self.take)
+        row.addWidget(self.give)
+        row.addWidget(close)
+        return row
+
+    # --- showing
+
+    def _show(self) -> None:
+        kept = self._selected()
+        # What was learned is shown, and can be forgotten, while it is not used.
+        self.model.fill(self.learned.every_pattern)
+        self._look()
+        rows = [i for i, row in enumerate(self.model.rows) if (row.field, row.phrase) in {(r.field, r.phrase) for r in kept}]
+        for i in rows[:1]:
+            self.table.setCurrentIndex(self.chosen.mapFromSource(self.model.index(i, 0)))
+        self._try()
+        self._refresh()
+
+    def _look(self) -> None:
+        self.chosen.look(self.search.text(), self.every.isChecked())
+        self._refresh()
+
+    def _refresh(self) -> None:
+        self.remove.setEnabled(bool(self._selected()))
+        self.forget.setEnabled(bool(self.model.patterns.learned) or bool(self.learned.clips))
+
+    def _try(self) -> None:
+        name = self.name.text().strip()
+        if not name:
+            self.read.setText("<i>Nothing is tried.</i>")
+            return
+        names = [clip.name for clip in self.document.project.clips.values()]
+        self.read.setText(self._said(read_names([*names, name], self.learned.patterns)[name]))
+
+    def _said(self, guess: NameGuess) -> str:
+        look = theme(self.session.theme)
+        rows = []
+        for part, title in PARTS:
+            belief = getattr(guess, part)
+            if belief is None:
+                continue
+            text = escape(", ".join(belief.value) if part == "tags" else str(belief.value))
+            if part == "kind":
+                text = f"<span style='color:{look.kinds[belief.value]}'>{KIND_MARKS[belief.value]} {text}</span>"
+            cells = (title, f"<b>{text}</b>", f"{belief.confidence:.0%}", escape(belief.reason))
+            rows.append("<tr>" + "".join(f"<td style='padding-right:14px'>{cell}</td>" for cell in cells) + "</tr>")
+        return f"<table>{''.join(rows)}</table>" if rows else "<i>This name says nothing.</i>"
+
+    def _tell(self, words: str) -> None:
+        self.words.setText(words)
+        self.words.setVisible(bool(words))
+
+    # --- changing
+
+    def _selected(self) -> list[Row]:
+        return [index.data(Qt.ItemDataRole.UserRole) for index in self.table.selectionModel().selectedRows()]
+
+    def _add(self) -> None:
+        phrase = " ".join(self.phrase.text().lower().split())
+        field = self.field.currentData()
+        meaning = self.meaning.currentText() if self.meaning.isEditable() else self.meaning.currentData()
+        try:
+            self.model.patterns.with_pattern(field, phrase, " ".join(meaning.split()))
+        except PatternsError as error:
+            self._tell(str(error))
+            self.phrase.setFocus()
+            return
+        self._tell("")
+        self.search.clear()
+        self.learned.edit(lambda p: p.with_pattern(field, phrase, " ".join(meaning.split())))
+        self.phrase.clear()
+        self.phrase.setFocus()
+        at = next((i for i, row in enumerate(self.model.rows) if (row.source, row.field, row.phrase) == (MINE, field, phrase)), None)
+        if at is None:
+            self._tell(f"'{phrase}' means that already, built in.")
+            return
+        index = self.chosen.mapFromSource(self.model.index(at, 0))
+        self.table.setCurrentIndex(index)
+        self.table.scrollTo(index)
+
+    def _remove(self) -> None:
+        rows = self._selected()
+        if not rows:
+            return
+        place = self.table.currentIndex().row()
+
+        def change(patterns: Patterns) -> Patterns:
+            for row in rows:
+                patterns = without(patterns, row)
+            return patterns
+
+        self.learned.edit(change)
+        taken = [row for row in rows if row.source == NOBODY]
+        self._tell(f"'{taken[0].phrase}' means nothing any more. Remove it again to have it back." if len(taken) == 1 else "")
+        if self.chosen.rowCount():
+            self.table.setCurrentIndex(self.chosen.index(min(place, self.chosen.rowCount() - 1), 0, QModelIndex()))
+
+    def _forget(self) -> None:
+        count, clips = sum(map(len, self.model.patterns.learned.values())), self.learned.clips
+        known = f"{count} word{'s' if count != 1 else ''} learned from corrections"
+        words = f"{known} and {clips} labelled clip{'s' if clips != 1 else ''} of saved projects are forgotten. Patterns you wrote stay."
+        buttons = QMessageBox.StandardButton
+        box = QMessageBox(QMessageBox.Icon.Question, "Forget all learned?", words, buttons.Cancel, self)
+        go = box.addButton("Forget", QMessageBox.ButtonRole.DestructiveRole)
+        box.setDefaultButton(buttons.Cancel)
+        box.setAttribute(Qt.WidgetAttribute.WA_DeleteOnClose)
+        go.clicked.connect(self.learned.forget)
+        box.open()
+
+    # --- sharing
+
+    def _import(self) -> None:
+        name, _ = QFileDialog.getOpenFileName(self, "Import name patterns", str(self.document.folder or Path.home()), FILTER)
+        if name:
+            try:
+                theirs = read_patterns(Path(name))
+            except FileError as error:
+                self._tell(str(error))
+                return
+            self.learned.edit(lambda mine: merged(mine, theirs))
+            own = sum(map(len, theirs.changes.values()))
+            learned = sum(map(len, theirs.learned.values()))
+            self._tell(f"{own} pattern{'s' if own != 1 else ''} and {learned} learned were taken from {Path(name).name}.")
+
+    def _export(self) -> None:
+        start = (self.document.folder or Path.home()) / "name-patterns.json"
+        name, _ = QFileDialog.getSaveFileName(self, "Export name patterns", str(start), FILTER)
+        if name:
+            path = Path(name) if Path(name).suffix else Path(name + ".json")
+            try:
+                write_patterns(path, self.model.patterns)
+            except FileError as error:
+                self._tell(str(error))
+                return
+            self._tell(f"Written to {path.name}, for others to import, or for metagraph label --patterns.")

@@ -1,0 +1,403 @@
+"""Going through proposals on the character: one clip after another, out of its stance and back; Enter accepts, a key corrects.
+
+The keyboard alone is enough; the mouse can do the same. Every clip is one undo step.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from html import escape
+from typing import Any
+
+from PySide6.QtCore import QEvent, QObject, Qt
+from PySide6.QtGui import QKeyEvent, QKeySequence
+from PySide6.QtWidgets import (
+    QDialog,
+    QFrame,
+    QHBoxLayout,
+    QInputDialog,
+    QLabel,
+    QLineEdit,
+    QPushButton,
+    QScrollArea,
+    QSplitter,
+    QVBoxLayout,
+    QWidget,
+)
+
+from app.features.labelling import review_words
+from app.features.labelling.proposal_preview import Span, trial
+from app.features.labelling.review_fields import ReviewFields, Row
+from app.features.labelling.review_queue import ReviewQueue
+from app.features.labelling.review_session import Reviewing
+from app.features.labelling.review_stage import ReviewStage
+from app.look.theme import strengthen, theme
+from app.project.document import Document
+from app.project.jobs import Jobs
+from app.project.learned import Learned
+from app.stage.figures import Figures
+from app.stage.playback_source import Shown, alone
+from app.stage.session import Session
+from metagraph.suggest.proposal import Proposal
+from metagraph.suggest.review import DECIDING, Field, Review
+
+TITLES: dict[str, str] = {"kind": "Is a", "layer": "Layer", "stance": "Stance", "end_stance": "Ends in", "limb": "Arm"}
+FRAME = 1 / 30  # seconds a step goes
+LEAST = 2 / 30  # seconds a clip keeps at least
+
+
+_Tried = tuple[int, Proposal | None, Shown, Span | None]  # the trial's number, the times found, what plays
+
+
+class ReviewDialog(QDialog):
+    """current: the clip that is looked at. row: the field that keys correct."""
+
+    def __init__(
+        self, document: Document, session: Session, jobs: Jobs, figures: Figures, learned: Learned, parent: QWidget | None = None
+    ) -> None:
+        super().__init__(parent)
+        self.document, self.session, self.jobs = document, session, jobs
+        self.work = Reviewing(document, jobs, learned, self)
+        self.current: str | None = None
+        self.row: Field = "kind"
+        self.context = True  # the clip plays out of its stance and back, not alone
+        self._trials = 0
+        if session.playing:
+            session.set_playing(False)  # one character at a time
+            self.finished.connect(lambda _: session.set_playing(True))
+        self.setAttribute(Qt.WidgetAttribute.WA_DeleteOnClose)
+        self.setWindowTitle("Label clips")
+        self.resize(1380, 850)
+        self.queue = ReviewQueue(session, self)
+        self.stage = ReviewStage(session, figures, self)
+        self.fields = ReviewFields(session, self)
+        self._build()
+        self.queue.picked.connect(self.go_to)
+        self.queue.sure_wanted.connect(self.accept_sure)
+        self.queue.limit_changed.connect(self._count)
+        self.fields.chosen.connect(self._choose)
+        self.fields.picked.connect(self._pick)
+        self.work.found.connect(self._begin)
+        self.work.changed.connect(self._refresh)
+        self.work.failed.connect(self._failed)
+        session.theme_changed.connect(self._restyle)
+        self._keys = self._key_table()
+        self._restyle()
+        self.work.start()
+
+    @property
+    def review(self) -> Review:
+        return self.work.review
+
+    # --- building
+
+    def _build(self) -> None:
+        self.legend = QLabel(self)
+        self.legend.setWordWrap(True)
+        self.legend.setTextFormat(Qt.TextFormat.RichText)
+        self.legend.setAlignment(Qt.AlignmentFlag.AlignCenter)
+        middle = QWidget(self)
+        centre = QVBoxLayout(middle)
+        centre.setContentsMargins(4, 12, 4, 10)
+        centre.addWidget(self.stage, 1)
+        centre.addWidget(self.legend)
+        split = QSplitter(Qt.Orientation.Horizontal, self)
+        split.setChildrenCollapsible(False)
+        for part, least in ((self.queue, 230), (middle, 360), (self._side(), 360)):
+            split.addWidget(part)
+            part.setMinimumWidth(least)
+        split.setSizes([290, 660, 430])
+        split.setStretchFactor(1, 1)
+        layout = QVBoxLayout(self)
+        layout.setContentsMargins(0, 0, 0, 0)
+        layout.addWidget(split)
+        self.setFocusPolicy(Qt.FocusPolicy.StrongFocus)
+        for field in (self.queue.limit, self.tags):
+            field.installEventFilter(self)
+        self.setFocus()
+
+    def _side(self) -> QWidget:
+        """The right side: the fields, and what is done with them."""
+        self.tags = QLineEdit(self)
+        self.tags.setAccessibleName("Tags")
+        self.tags.setPlaceholderText("none")
+        self.tags.setToolTip("Words it may be asked for by, with commas between them (T)")
+        self.tags.editingFinished.connect(self._tag)
+        label = QLabel("Tags", self)
+        label.setProperty("dim", True)
+        label.setFixedWidth(72)
+        line = QHBoxLayout()
+        line.setContentsMargins(12, 6, 12, 6)
+        line.addWidget(label)
+        line.addWidget(self.tags, 1)
+        self.timing = QLabel(self)
+        self.timing.setWordWrap(True)
+        self.timing.setTextFormat(Qt.TextFormat.RichText)
+        self.timing.setContentsMargins(12, 4, 12, 0)
+        self.timing.setProperty("dim", True)
+        inner = QWidget(self)
+        column = QVBoxLayout(inner)
+        column.setContentsMargins(0, 0, 6, 0)
+        column.addWidget(self.fields)
+        column.addLayout(line)
+        column.addWidget(self.timing)
+        column.addStretch(1)
+        scroll = QScrollArea(self)
+        scroll.setWidgetResizable(True)
+        scroll.setFrameShape(QFrame.Shape.NoFrame)
+        scroll.setHorizontalScrollBarPolicy(Qt.ScrollBarPolicy.ScrollBarAlwaysOff)
+        scroll.setFocusPolicy(Qt.FocusPolicy.NoFocus)
+        scroll.setWidget(inner)
+        self.back, self.shut, self.go = QPushButton("Undo", self), QPushButton("Close", self), QPushButton("Accept", self)
+        for button, run in ((self.back, self.undo), (self.shut, self.close), (self.go, self.accept_current)):
+            button.setAutoDefault(False)
+            button.setFocusPolicy(Qt.FocusPolicy.NoFocus)
+            button.clicked.connect(run)
+        strengthen(self.go)
+        self.go.setMinimumWidth(120)
+        buttons = QHBoxLayout()
+        buttons.addWidget(self.back)
+        buttons.addWidget(self.shut)
+        buttons.addStretch(1)
+        buttons.addWidget(self.go)
+        out = QWidget(self)
+        side = QVBoxLayout(out)
+        side.setContentsMargins(4, 12, 12, 12)
+        side.addWidget(scroll, 1)
+        side.addLayout(buttons)
+        return out
+
+    def _restyle(self) -> None:
+        self.legend.setText(review_words.legend(theme(self.session.theme)))
+        self._refresh()
+
+    # --- where it is
+
+    def _begin(self) -> None:
+        self.queue.fill(self.work.clips)
+        self._refresh()
+        self.go_to(self.work.after(None))
+
+    def go_to(self, clip: str | None) -> None:
+        """Look at a clip; None when nothing is left to look at."""
+        self.current = clip
+        if clip is not None:
+            self.row = self.review.doubtful(clip)
+            self.queue.go_to(clip)
+        self.work.look_at()
+        self._show()
+        self._play()
+
+    def _later(self) -> None:
+        self.go_to(self.work.after(self.current))
+
+    def _earlier(self) -> None:
+        self.go_to(self.work.before(self.current))
+
+    # --- correcting
+
+    def _tell(self, name: Field, value: Any) -> None:
+        if self.current is not None:
+            self.work.tell(self.current, name, value)
+            self._play()
+
+    def _pick(self, name: str) -> None:
+        self.row = name  # type: ignore[assignment]
+        self._show()
+
+    def _choose(self, name: str, value: Any) -> None:
+        """Take a value for a field of the current clip."""
+        self.row = name  # type: ignore[assignment]
+        if self.current is not None and value != self.review.value(self.current, self.row):
+            self._tell(self.row, value)
+        self._show()
+
+    def _turn(self, step: int) -> None:
+        """Take the next or the previous value of the current field."""
+        if self.current is None:
+            return
+        values = [v for v, _ in self.review.choices(self.current, self.row)]
+        if values:
+            now = self.review.value(self.current, self.row)
+            self._choose(self.row, values[(values.index(now) + step) % len(values)] if now in values else values[0])
+
+    def _move(self, step: int) -> None:
+        names = [row.name for row in self.fields.rows]
+        if names:
+            self._pick(names[(names.index(self.row) + step) % len(names)])
+
+    def _number(self, place: int) -> None:
+        if self.current is not None:
+            choices = self.review.choices(self.current, self.row)
+            if place < len(choices):
+                self._choose(self.row, choices[place][0])
+
+    def _tag(self) -> None:
+        if self.current is None:
+            return
+        tags = tuple(dict.fromkeys(t for word in self.tags.text().split(",") if (t := " ".join(word.split()))))
+        belief = self.review.found.proposals[self.current].tags
+        if tags != (belief.value if belief is not None else ()):
+            self._tell("tags", tags)
+
+    def _cut(self, name: str) -> None:
+        """Let the clip start or end at what is just seen."""
+        shown, span = self.stage.shown, self.stage.strip.span
+        if self.current is None or shown is None:
+            return
+        old, length = self.review.found.proposals[self.current].timing, self.document.project.clips[self.current].duration
+        start, end = float(old.get("start") or 0.0), float(old.get("end") or length)
+        seen = self.stage.seconds if span is None else self.stage.seconds - span.start + start
+        seconds = min(max(0.0, seen), end - LEAST) if name == "start" else min(max(seen, start + LEAST), length)
+        self._tell("timing", {name: round(seconds, 3)})
+
+    def _new_stance(self) -> None:
+        """Ask for the name of a stance there is not yet."""
+        if self.current is None:
+            return
+        ends = self.row == "end_stance"
+        words, ok = QInputDialog.getText(self, "New stance", "Name of the stance it ends in:" if ends else "Name of the stance:")
+        if ok and words.strip():
+            self._choose("end_stance" if ends else "stance", " ".join(words.split()))
+
+    def _toggle_context(self) -> None:
+        self.context = not self.context
+        self._play()
+
+    def _edit_tags(self) -> None:
+        self.tags.setFocus()
+        self.tags.selectAll()
+
+    # --- accepting
+
+    def accept_current(self) -> None:
+        """Place the clip as it is shown, and go on; close when nothing is left."""
+        if self.current is None:
+            self.close()
+        else:
+            self._place([self.current], f"Label {self.document.project.clips[self.current].name}", self.current)
+
+    def accept_sure(self) -> None:
+        """Place all that wait, are as sure as wanted, and are not disputed, as one step."""
+        if clips := self.work.sure_ones(self.queue.least):
+            self._place(clips, f"Label {len(clips)} clips", None)
+
+    def _place(self, clips: list[str], words: str, step: str | None) -> None:
+        taken = self.work.place(clips, words, step)
+        why = next(iter(taken.left.items()), None)
+        if not taken.placed:
+            self.stage.tell(f"<b>Not placed:</b> {escape(why[1] if why is not None else 'it is no longer there')}.")
+            return
+        self.go_to(self.work.after(self.current))
+        if why is not None:
+            self.queue.words.setText(f"{len(taken.placed)} placed; not {self.document.project.clips[why[0]].name}: {why[1]}.")
+
+    def undo(self) -> None:
+        """Take the last step back, and look at that clip again."""
+        if self.work.can_undo:
+            self.go_to(self.work.undo())
+
+    # --- showing
+
+    def _refresh(self) -> None:
+        self.queue.refresh(self.review, self.document.project)
+        self._count()
+        self._show()
+
+    def _count(self) -> None:
+        if self.work.looked:
+            self.queue.count(len(self.work.waiting()), len(self.work.sure_ones(self.queue.least)), self.work.pace)
+        self.back.setEnabled(self.work.can_undo)
+
+    def _show(self) -> None:
+        """Show what the current clip is taken for."""
+        clip, project = self.current, self.document.project
+        self.go.setText("Accept" if clip is not None else "Done")
+        self.tags.setEnabled(clip is not None)
+        if clip is None or clip not in project.clips:
+            self.fields.show_rows((), "")
+            self.timing.setText("")
+            self.tags.setText("")
+            self.stage.tell("<b>Every clip is placed.</b>" if self.work.looked else "Looking at names and motion…")
+            return
+        p = self.review.found.proposals[clip]
+        rows = []
+        for name in DECIDING:
+            if choices := self.review.choices(clip, name):
+                belief = getattr(p, name)
+                sure, reason = (belief.confidence, belief.reason) if belief is not None else (0.0, "nothing says which")
+                rows.append(Row(name, TITLES[name], choices, self.review.value(clip, name), sure, reason, p.kind.value))
+        if self.row not in {row.name for row in rows}:
+            self.row = "kind"
+        self.fields.show_rows(rows, self.row)
+        if self.focusWidget() is not self.tags:
+            self.tags.setText(", ".join(p.tags.value) if p.tags is not None else "")
+        self.timing.setText(review_words.timing(p, project.clips[clip].duration))
+        self.stage.tell(review_words.headline(self.review, project, clip, theme(self.session.theme)))
+
+    def _play(self) -> None:
+        """Plan the clip as it would be placed, on a thread, and play it."""
+        clip, project, review, context = self.current, self.document.project, self.review, self.context
+        self._trials += 1
+        number = self._trials
+        if clip is None or clip not in project.clips:
+            self.stage.play(None, None)
+            return
+
+        def work(_: object) -> _Tried:
+            times = review.timed(project, clip) if clip in review.said else None
+            ready = review.with_times(times) if times is not None else review
+            return (number, times, *trial(project, ready, clip)) if context else (number, times, alone(project, clip), None)
+
+        self.jobs.start("trial", work, self._tried, self._failed, quick=True)
+
+    def _tried(self, made: _Tried) -> None:
+        number, times, shown, span = made
+        if number == self._trials:
+            self.stage.play(shown, span)
+            if times is not None:
+                self.work.times_found(times)
+
+    def _failed(self, error: object) -> None:
+        self.stage.tell(escape(str(error)))
+
+    # --- keys
+
+    def _key_table(self) -> dict[int, Callable[[], object]]:
+        k, stage = Qt.Key, self.stage
+        table: dict[int, Callable[[], object]] = {
+            k.Key_Return: self.accept_current, k.Key_Enter: self.accept_current, k.Key_Backspace: self.undo, k.Key_A: self.accept_sure,
+            k.Key_Up: lambda: self._move(-1), k.Key_Down: lambda: self._move(1), k.Key_Left: lambda: self._turn(-1),
+            k.Key_Right: lambda: self._turn(1), k.Key_Tab: self._later, k.Key_Backtab: self._earlier, k.Key_PageDown: self._later,
+            k.Key_PageUp: self._earlier, k.Key_Space: stage.toggle, k.Key_Home: stage.replay, k.Key_C: self._toggle_context,
+            k.Key_N: self._new_stance, k.Key_T: self._edit_tags, k.Key_BracketLeft: lambda: self._cut("start"),
+            k.Key_BracketRight: lambda: self._cut("end"), k.Key_Comma: lambda: stage.step(-FRAME), k.Key_Period: lambda: stage.step(FRAME),
+        }  # fmt: skip
+        return table | {k.Key_1 + n: lambda n=n: self._number(n) for n in range(9)}
+
+    def event(self, event: QEvent) -> bool:
+        # Tab would go from widget to widget.
+        if event.type() == QEvent.Type.KeyPress and isinstance(event, QKeyEvent) and event.key() in (Qt.Key.Key_Tab, Qt.Key.Key_Backtab):
+            self.keyPressEvent(event)
+            return True
+        return super().event(event)
+
+    def eventFilter(self, watched: QObject, event: QEvent) -> bool:
+        """Give the keys back when a field is done."""
+        done = (Qt.Key.Key_Return, Qt.Key.Key_Enter, Qt.Key.Key_Escape, Qt.Key.Key_Tab)
+        if event.type() == QEvent.Type.KeyPress and isinstance(event, QKeyEvent) and event.key() in done:
+            if event.key() == Qt.Key.Key_Escape and watched is self.tags and self.current is not None:
+                belief = self.review.found.proposals[self.current].tags
+                self.tags.setText(", ".join(belief.value) if belief is not None else "")
+            self.setFocus()
+            return True
+        return super().eventFilter(watched, event)
+
+    def keyPressEvent(self, event: QKeyEvent) -> None:
+        control = Qt.KeyboardModifier.ControlModifier | Qt.KeyboardModifier.AltModifier | Qt.KeyboardModifier.MetaModifier
+        if event.matches(QKeySequence.StandardKey.Undo):
+            self.undo()
+        elif not event.modifiers() & control and (run := self._keys.get(event.key())) is not None:
+            run()
+        else:
+            super().keyPressEvent(event)  # Esc closes

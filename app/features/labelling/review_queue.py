@@ -1,0 +1,136 @@
+"""The clips of a review, what is done and what is left, and accepting all that are sure at once."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+from PySide6.QtCore import Qt, Signal
+from PySide6.QtGui import QColor
+from PySide6.QtWidgets import (
+    QHBoxLayout,
+    QHeaderView,
+    QLabel,
+    QProgressBar,
+    QPushButton,
+    QSpinBox,
+    QTreeWidget,
+    QTreeWidgetItem,
+    QVBoxLayout,
+    QWidget,
+)
+
+from app.features.labelling.review_words import about
+from app.look.theme import KIND_MARKS, theme
+from app.stage.session import Session
+from metagraph.graph.model import Project
+from metagraph.suggest.propose import waiting
+from metagraph.suggest.review import Pace, Review
+
+CLIP = Qt.ItemDataRole.UserRole
+DOUBT = 0.7  # below it a clip is marked as worth a look
+
+
+class ReviewQueue(QWidget):
+    """clips: all of the review, in the order they are gone through. picked: a clip was clicked. sure_wanted: accept the sure ones.
+    limit_changed: how sure that is."""
+
+    picked = Signal(str)
+    sure_wanted = Signal()
+    limit_changed = Signal()
+
+    def __init__(self, session: Session, parent: QWidget | None = None) -> None:
+        super().__init__(parent)
+        self.session = session
+        self.clips: tuple[str, ...] = ()
+        self._items: dict[str, QTreeWidgetItem] = {}
+        self.bar = QProgressBar(self, textVisible=False)
+        self.words = QLabel("Looking at names and motion…", self, wordWrap=True)
+        self.words.setProperty("dim", True)
+        self.list = QTreeWidget(self)
+        self.list.setRootIsDecorated(False)
+        self.list.setUniformRowHeights(True)
+        self.list.setHeaderHidden(True)
+        self.list.setColumnCount(2)
+        self.list.setAccessibleName("Clips to look at")
+        header = self.list.header()
+        header.setStretchLastSection(False)
+        header.setSectionResizeMode(0, QHeaderView.ResizeMode.Stretch)
+        header.setSectionResizeMode(1, QHeaderView.ResizeMode.ResizeToContents)
+        self.list.currentItemChanged.connect(lambda item, _: self.picked.emit(item.data(0, CLIP)) if item is not None else None)
+        self.sure = QPushButton("Accept the sure", self)
+        self.sure.setAutoDefault(False)
+        self.sure.setToolTip("Places all that are at least so sure, and about which nothing is disputed (A)")
+        self.sure.clicked.connect(self.sure_wanted)
+        self.limit = QSpinBox(self)
+        self.limit.setRange(0, 100)
+        self.limit.setValue(90)
+        self.limit.setSuffix(" %")
+        self.limit.setFixedWidth(78)
+        self.limit.setAlignment(Qt.AlignmentFlag.AlignCenter)
+        self.limit.setAccessibleName("At least so sure")
+        self.limit.setToolTip("How sure a proposal must be to be accepted with the others")
+        self.limit.valueChanged.connect(self.limit_changed)
+        for widget in (self.list, self.sure):
+            widget.setFocusPolicy(Qt.FocusPolicy.NoFocus)  # keys are the review's, wherever the mouse has been
+        column = QVBoxLayout(self)
+        column.setContentsMargins(12, 12, 4, 12)
+        column.addWidget(self.bar)
+        column.addWidget(self.words)
+        column.addWidget(self.list, 1)
+        row = QHBoxLayout()
+        row.addWidget(self.sure, 1)
+        row.addWidget(self.limit)
+        column.addLayout(row)
+
+    @property
+    def least(self) -> float:
+        """How sure a proposal must be to be accepted with the others, 0..1."""
+        return self.limit.value() / 100
+
+    def fill(self, clips: Sequence[str]) -> None:
+        """List other clips."""
+        self.list.blockSignals(True)
+        self.list.clear()
+        self.clips, self._items = tuple(clips), {}
+        for clip in clips:
+            item = self._items[clip] = QTreeWidgetItem(self.list, ["", ""])
+            item.setData(0, CLIP, clip)
+            item.setTextAlignment(1, Qt.AlignmentFlag.AlignRight | Qt.AlignmentFlag.AlignVCenter)
+        self.list.blockSignals(False)
+
+    def go_to(self, clip: str) -> None:
+        """Show a clip as the current one; `picked` is not emitted."""
+        self.list.blockSignals(True)
+        self.list.setCurrentItem(self._items[clip])
+        self.list.blockSignals(False)
+
+    def refresh(self, review: Review, project: Project) -> None:
+        """Show what each clip is taken for now, and whether it is placed."""
+        look, open_ = theme(self.session.theme), set(waiting(project))
+        for clip, item in self._items.items():
+            entry, p = project.clips.get(clip), review.found.proposals[clip]
+            item.setHidden(entry is None)
+            if entry is None:
+                continue
+            placed, kind = clip not in open_, p.kind.value
+            item.setText(0, f"{KIND_MARKS[kind]}  {entry.name}")
+            item.setToolTip(0, entry.name)
+            item.setText(1, "✓" if placed else f"{p.confidence:.0%}")
+            odd = not placed and (bool(p.conflicts) or p.good is False or p.confidence < DOUBT)
+            item.setForeground(0, QColor(look.dim) if placed else look.kind(kind))
+            item.setForeground(1, QColor(look.warning if odd else look.dim))
+
+    def count(self, left: int, sure: int, pace: Pace) -> None:
+        """Show how far it is. left: clips that are not placed. sure: those of them that can be accepted at once."""
+        total = len(self.clips)
+        self.bar.setMaximum(max(1, total))
+        self.bar.setValue(total - left)
+        if not total:
+            self.words.setText("Every clip is placed.")
+        elif not left:
+            self.words.setText(f"All {total} clips are placed.")
+        else:
+            how = "at your pace" if pace.known else "at the usual pace"
+            self.words.setText(f"{total - left} of {total} placed, {about(pace.left(left))} left {how}")
+        self.sure.setText(f"Accept {sure} sure" if sure else "None is so sure")
+        self.sure.setEnabled(sure > 0)

@@ -1,0 +1,145 @@
+"""A review at work on a document: proposals made and made anew, corrections kept and learned from, clips placed and taken back."""
+
+from __future__ import annotations
+
+from PySide6.QtCore import QElapsedTimer, QObject, QTimer, Signal
+
+from app.project.document import Document
+from app.project.jobs import Job, Jobs
+from app.project.learned import Learned
+from metagraph.graph.model import Project
+from metagraph.suggest.accept import Taken
+from metagraph.suggest.proposal import Proposal, Proposals
+from metagraph.suggest.propose import propose, waiting
+from metagraph.suggest.review import Field, Pace, Review
+
+REST = 400  # milliseconds of quiet after a correction before the rest is proposed anew
+
+
+class Reviewing(QObject):
+    """clips: all of the review, in the order they are gone through. found: the first proposals are there. changed: proposals or what is
+    placed. failed: words."""
+
+    found = Signal()
+    changed = Signal()
+    failed = Signal(str)
+
+    def __init__(self, document: Document, jobs: Jobs, learned: Learned, parent: QObject | None = None) -> None:
+        super().__init__(parent)
+        self.document, self.jobs, self.learned = document, jobs, learned
+        self.review, self.pace = Review(Proposals({}, {})), Pace()
+        self.clips: tuple[str, ...] = ()
+        self.looked = False  # whether proposals have come
+        self._steps: list[str | None] = []  # the clips placed here, one per undo step; None for many at once
+        self._clock = QElapsedTimer()
+        self._anew = QTimer(self, singleShot=True, interval=REST)
+        self._anew.timeout.connect(self._propose_anew)
+        document.changed.connect(self._edited)
+
+    def start(self) -> None:
+        """Propose what the clips are that are not placed yet, on a thread."""
+        project = self.document.project
+        self.jobs.start("Proposing labels", lambda job: self._proposals(project, None, job), self._first, self._failed)
+
+    def _first(self, found: Proposals) -> None:
+        self.review = Review(found).settled(self.document.project)
+        self.clips = tuple(c for c in self.review.order() if c in self.document.project.clips)
+        self.looked = True
+        self.found.emit()
+
+    def _failed(self, error: Exception) -> None:
+        self.failed.emit(str(error))
+
+    def _proposals(self, project: Project, clips: list[str] | None, job: Job) -> Proposals:
+        """Propose, with what was learned from other projects; on a job's thread."""
+        patterns, examples = self.learned.patterns, self.learned.examples_for(self.document)
+        return propose(project, clips, patterns, examples, cancelled=lambda: job.cancelled, progress=job.tell)
+
+    def _propose_anew(self) -> None:
+        """Look again at what is left, with what was just learned."""
+        project, waiting = self.document.project, self.waiting()
+        if waiting:
+            self.jobs.start("labels anew", lambda job: self._proposals(project, waiting, job), self._again, self._failed, quick=True)
+
+    def _again(self, found: Proposals) -> None:
+        self.review = self.review.anew(found).settled(self.document.project)
+        self.changed.emit()
+
+    # --- what is left
+
+    def waiting(self) -> list[str]:
+        """Return the clips that are not placed yet, in order. One that only lends a stance a still moment is not."""
+        there = set(waiting(self.document.project))
+        return [c for c in self.clips if c in there]
+
+    def sure_ones(self, least: float) -> list[str]:
+        """Return the clips that wait, are at least so sure, and are not disputed."""
+        proposals = self.review.found.proposals
+        return [c for c in self.waiting() if proposals[c].confidence >= least and not proposals[c].conflicts]
+
+    def after(self, clip: str | None) -> str | None:
+        """Return the next clip that waits, from the beginning again after the last; None when none does."""
+        at = self.clips.index(clip) if clip in self.clips else -1
+        waiting = set(self.waiting())
+        return next((c for c in (*self.clips[at + 1 :], *self.clips[: at + 1]) if c in waiting), None)
+
+    def before(self, clip: str | None) -> str | None:
+        """Return the clip before, whether it is placed or not."""
+        there = [c for c in self.clips if c in self.document.project.clips]
+        return there[max(0, there.index(clip) - 1)] if clip in there else next(iter(there), None)
+
+    # --- deciding
+
+    def look_at(self) -> None:
+        """Begin to count the time a decision takes."""
+        self._clock.restart()
+
+    def tell(self, clip: str, name: Field, value: object) -> None:
+        """Correct a field of a clip's proposal; the project changes when it is placed."""
+        self.review = self.review.tell(clip, name, value)
+        self.changed.emit()
+
+    def times_found(self, p: Proposal) -> None:
+        """Take over the times that were looked for after a correction."""
+        self.review = self.review.with_times(p)
+        self.changed.emit()
+
+    def place(self, clips: list[str], words: str, step: str | None) -> Taken:
+        """Place clips as proposed and corrected, as one undo step named so. step: the clip that was looked at, None for many at once."""
+        review, project = self.review, self.document.project
+        taken = review.take(project, clips)
+        if not taken.placed:
+            return taken
+        if step is not None:
+            self.pace.decided(self._clock.elapsed() / 1000)
+        self._steps.append(step)
+        at = self.document.undo_stack.index()
+        self.document.edit(words, lambda p: taken.project if p is project else review.take(p, clips).project)
+        if self.document.undo_stack.index() == at:
+            self._steps.pop()  # it was placed just so already
+        self._learn(clips)
+        return taken
+
+    def _learn(self, clips: list[str]) -> None:
+        """Remember what was corrected of clips that are now placed, and look at the rest anew."""
+        entries = self.document.project.clips
+        names = [entries[c].name for c in self.clips if c in entries]
+        told = [(c, name, value) for c in clips for name, value in self.review.said.get(c, {}).items() if name != "timing"]
+        for clip, name, value in told:
+            self.learned.correct(entries[clip].name, name, value, names)
+        if told:
+            self._anew.start()
+
+    @property
+    def can_undo(self) -> bool:
+        return bool(self._steps)
+
+    def undo(self) -> str | None:
+        """Take the last step back; return the clip to look at again."""
+        step = self._steps.pop()
+        self.document.undo()
+        return step if step is not None else next(iter(self.waiting()), None)
+
+    def _edited(self, before: Project, after: Project) -> None:
+        self.review = self.review.settled(after)
+        self.changed.emit()

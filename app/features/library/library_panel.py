@@ -1,0 +1,570 @@
+"""The clip library: thumbnails, search, filters; clips are dragged from here, files and folders dropped onto it."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Sequence
+from dataclasses import dataclass
+
+from PySide6.QtCore import (
+    QAbstractListModel,
+    QEvent,
+    QItemSelection,
+    QItemSelectionModel,
+    QMimeData,
+    QModelIndex,
+    QPersistentModelIndex,
+    QRect,
+    QSize,
+    QSortFilterProxyModel,
+    Qt,
+    Signal,
+)
+from PySide6.QtGui import (
+    QAction,
+    QColor,
+    QContextMenuEvent,
+    QDrag,
+    QDragEnterEvent,
+    QDragMoveEvent,
+    QDropEvent,
+    QFont,
+    QFontMetrics,
+    QKeyEvent,
+    QPainter,
+    QPen,
+    QResizeEvent,
+)
+from PySide6.QtWidgets import (
+    QAbstractItemView,
+    QHBoxLayout,
+    QInputDialog,
+    QLabel,
+    QLineEdit,
+    QListView,
+    QMenu,
+    QPushButton,
+    QStackedLayout,
+    QStyle,
+    QStyledItemDelegate,
+    QStyleOptionViewItem,
+    QToolButton,
+    QVBoxLayout,
+    QWidget,
+)
+
+from app.features.graph.graph_drops import load_of, mime
+from app.features.graph.graph_gestures import drag_picture
+from app.look import icons
+from app.look.theme import KIND_MARKS, theme
+from app.project.document import Document
+from app.stage.session import Session
+from app.stage.thumbnails import Thumbnails
+from metagraph.graph import edits
+from metagraph.graph.model import KINDS, LAYERS, ClipEntry, Kind, Project
+
+Index = QModelIndex | QPersistentModelIndex
+ENTRY = Qt.ItemDataRole.UserRole
+CARD_WIDTH, CARD_HEIGHT = 124, 176
+PICTURE = 108
+
+
+@dataclass(frozen=True)
+class Filter:
+    """What the library shows. labelled: None for both. kind, layer: None for any; they look at the actions that use a clip."""
+
+    text: str = ""
+    labelled: bool | None = None
+    layer: str | None = None
+    kind: str | None = None
+
+    def takes(self, project: Project, entry: ClipEntry) -> bool:
+        if self.labelled is not None and (entry.id in project.uses or entry.id in project.drawn) != self.labelled:
+            return False
+        if (self.layer or self.kind) and not any(
+            (not self.layer or a.layer == self.layer) and (not self.kind or a.kind == self.kind) for a in project.uses.get(entry.id, ())
+        ):
+            return False
+        name = f"{entry.name} {entry.path}".lower()
+        return all(word in name for word in self.text.lower().split())
+
+
+class ClipModel(QAbstractListModel):
+    """The project's clips, in their order."""
+
+    def __init__(self, document: Document) -> None:
+        super().__init__(document)
+        self.document = document
+        self.entries: list[ClipEntry] = list(document.project.clips.values())
+        document.changed.connect(self._follow)
+
+    def rowCount(self, parent: Index = QModelIndex()) -> int:  # noqa: B008 - Qt's signature
+        return 0 if parent.isValid() else len(self.entries)
+
+    def data(self, index: Index, role: int = Qt.ItemDataRole.DisplayRole) -> object:
+        if not index.isValid() or index.row() >= len(self.entries):
+            return None
+        entry = self.entries[index.row()]
+        if role == Qt.ItemDataRole.DisplayRole:
+            return entry.name
+        if role == ENTRY:
+            return entry
+        if role == Qt.ItemDataRole.ToolTipRole:
+            notes = "".join(f"\n{note}" for note in (entry.motion.notes if entry.motion is not None else ("The file is missing.",)))
+            uses = ", ".join(f"{a.kind} ({a.layer})" for a in self.document.project.uses.get(entry.id, ()))
+            uses = uses or ("drawn as a state" if entry.id in self.document.project.drawn else "not placed yet")
+            return f"{entry.name}\n{entry.duration:.2f} s, {entry.frames} frames at {entry.fps:g} fps\n{entry.path}\n{uses}{notes}"
+        if role == Qt.ItemDataRole.AccessibleTextRole:
+            return f"{entry.name}, {entry.duration:.1f} seconds"
+        return None
+
+    def flags(self, index: Index) -> Qt.ItemFlag:
+        return super().flags(index) | Qt.ItemFlag.ItemIsDragEnabled
+
+    def mimeData(self, indexes: Sequence[QModelIndex]) -> QMimeData:
+        return mime(clips=[self.entries[i.row()].id for i in indexes])
+
+    def _follow(self, before: Project, after: Project) -> None:
+        if before.clips is not after.clips:
+            fresh = list(after.clips.values())
+            same = [e.id for e in fresh] == [e.id for e in self.entries]
+            if same:
+                self.entries = fresh
+            else:
+                self.beginResetModel()
+                self.entries = fresh
+                self.endResetModel()
+        if before is not after and self.entries:
+            self.dataChanged.emit(self.index(0), self.index(len(self.entries) - 1))
+
+
+class FilterModel(QSortFilterProxyModel):
+    def __init__(self, model: ClipModel) -> None:
+        super().__init__(model)
+        self.filter = Filter()
+        self.setSourceModel(model)
+
+    def set_filter(self, rule: Filter) -> None:
+        if rule != self.filter:
+            if hasattr(self, "beginFilterChange"):
+                self.beginFilterChange()
+                self.filter = rule
+                self.endFilterChange()
+            else:
+                self.filter = rule
+                self.invalidateFilter()
+
+    def filterAcceptsRow(self, row: int, parent: Index) -> bool:
+        model = self.sourceModel()
+        assert isinstance(model, ClipModel)
+        return self.filter.takes(model.document.project, model.entries[row])
+
+    def mimeData(self, indexes: Sequence[QModelIndex]) -> QMimeData:
+        return mime(clips=[i.data(ENTRY).id for i in indexes])
+
+
+class CardDelegate(QStyledItemDelegate):
+    """Draws a clip as a card: picture, name, length, a stripe and mark for each kind it serves as."""
+
+    def __init__(self, panel: LibraryPanel) -> None:
+        super().__init__(panel)
+        self.panel = panel
+
+    def sizeHint(self, option: QStyleOptionViewItem, index: Index) -> QSize:
+        return self.panel.list.gridSize()
+
+    def paint(self, painter: QPainter, option: QStyleOptionViewItem, index: Index) -> None:
+        entry: ClipEntry = index.data(ENTRY)
+        if entry is None:
+            return
+        t = theme(self.panel.session.theme)
+        project = self.panel.document.project
+        rect = option.rect.adjusted(4, 4, -4, -4)  # type: ignore[attr-defined]
+        state = option.state  # type: ignore[attr-defined]
+        selected, hover = bool(state & QStyle.StateFlag.State_Selected), bool(state & QStyle.StateFlag.State_MouseOver)
+        painter.save()
+        painter.setRenderHint(QPainter.RenderHint.Antialiasing)
+        painter.setRenderHint(QPainter.RenderHint.SmoothPixmapTransform)
+        painter.setBrush(QColor(t.hover if hover or selected else t.field))
+        painter.setPen(QPen(QColor(t.text if selected else t.line), 1.6 if selected else 1))
+        painter.drawRoundedRect(rect, 6, 6)
+        picture = self.panel.thumbnails.picture(entry.id, bare=True)
+        box = QRect(rect.left() + (rect.width() - PICTURE) // 2, rect.top() + 2, PICTURE, PICTURE)
+        if picture is not None:
+            painter.drawImage(box, picture)
+        elif entry.motion is None:
+            painter.setPen(QColor(t.warning))
+            painter.drawText(box, Qt.AlignmentFlag.AlignCenter | Qt.TextFlag.TextWordWrap, "file\nmissing")
+        kinds = list(dict.fromkeys(a.kind for a in project.uses.get(entry.id, ())))
+        drawn = entry.id in project.drawn and not kinds  # a state of a machine is of no kind
+        marks = [QColor(t.dim)] if drawn else [t.fill(kind) for kind in kinds]
+        for place, mark in enumerate(marks):
+            height = (rect.height() - 12) / len(marks)
+            painter.setPen(Qt.PenStyle.NoPen)
+            painter.setBrush(mark)
+            painter.drawRoundedRect(rect.left() + 3, round(rect.top() + 6 + place * height), 4, round(height - 1), 2, 2)
+        font = QFont(option.font)  # type: ignore[attr-defined]
+        font.setPixelSize(12)
+        painter.setFont(font)
+        painter.setPen(QColor(t.text))
+        line = QRect(rect.left() + 11, rect.bottom() - 53, rect.width() - 16, 16)
+        for part in two_lines(entry.name, painter.fontMetrics(), line.width()):
+            painter.drawText(line, Qt.AlignmentFlag.AlignVCenter, part)
+            line.translate(0, 16)
+        painter.setPen(QColor(t.dim))
+        line.moveTop(rect.bottom() - 20)
+        painter.drawText(line, Qt.AlignmentFlag.AlignVCenter, f"{entry.duration:.1f} s")
+        right = line.right()
+        for kind in reversed(kinds):
+            painter.setPen(t.kind(kind))
+            right -= 14
+            painter.drawText(QRect(right, line.top(), 14, line.height()), Qt.AlignmentFlag.AlignCenter, KIND_MARKS[kind])
+        if project.base.clip == entry.id:
+            painter.setPen(QColor(t.dim))
+            painter.drawText(
+                line.adjusted(0, 0, right - line.right() - 2, 0), Qt.AlignmentFlag.AlignRight | Qt.AlignmentFlag.AlignVCenter, "base"
+            )
+        painter.restore()
+
+
+def two_lines(name: str, metrics: QFontMetrics, width: int) -> tuple[str, ...]:
+    """Break a name over at most two lines, after a separator where there is one; names tell clips apart by their ends."""
+    if metrics.horizontalAdvance(name) <= width:
+        return (name,)
+    fits = max((n for n in range(1, len(name)) if metrics.horizontalAdvance(name[:n]) <= width), default=1)
+    cuts = [n for n in range(fits, fits // 2, -1) if name[n - 1] in "_- .@"]
+    cut = cuts[0] if cuts else fits
+    return name[:cut], metrics.elidedText(name[cut:], Qt.TextElideMode.ElideMiddle, width)
+
+
+class Search(QLineEdit):
+    """left: the keyboard should go to what was found: Down or Enter. Esc clears it."""
+
+    left = Signal()
+
+    def __init__(self, parent: QWidget) -> None:
+        super().__init__(parent, clearButtonEnabled=True, toolTip="Words of a clip's name or path (Ctrl+F); Down goes to the clips")
+        self.setAccessibleName("Search clips")
+
+    def event(self, event: QEvent) -> bool:
+        if event.type() == QEvent.Type.ShortcutOverride and event.key() == Qt.Key.Key_Escape and self.text():  # type: ignore[attr-defined]
+            event.accept()
+            return True
+        return super().event(event)
+
+    def keyPressEvent(self, event: QKeyEvent) -> None:
+        if event.key() in (Qt.Key.Key_Down, Qt.Key.Key_Return, Qt.Key.Key_Enter):
+            self.left.emit()
+        elif event.key() == Qt.Key.Key_Escape:
+            self.clear()
+        else:
+            super().keyPressEvent(event)
+
+
+class ClipList(QListView):
+    """files_dropped: paths. A click plays the clip alone, a second click plays it in context."""
+
+    files_dropped = Signal(object)
+    label = Signal(str)
+
+    def __init__(self, panel: LibraryPanel) -> None:
+        super().__init__(panel)
+        self.panel = panel
+        self.setViewMode(QListView.ViewMode.IconMode)
+        self.setResizeMode(QListView.ResizeMode.Adjust)
+        self.setMovement(QListView.Movement.Static)
+        self.setUniformItemSizes(True)
+        self.setGridSize(QSize(CARD_WIDTH, CARD_HEIGHT))
+        self.setSelectionMode(QAbstractItemView.SelectionMode.ExtendedSelection)
+        self.setDragEnabled(True)
+        self.setAcceptDrops(True)
+        self.setDragDropMode(QAbstractItemView.DragDropMode.DragDrop)
+        self.viewport().setAcceptDrops(True)  # cards that stay in place turn it off, and with it files from outside
+        self.setMouseTracking(True)
+        self.setVerticalScrollMode(QAbstractItemView.ScrollMode.ScrollPerPixel)
+        self.setVerticalScrollBarPolicy(Qt.ScrollBarPolicy.ScrollBarAlwaysOn)
+        self.setHorizontalScrollBarPolicy(Qt.ScrollBarPolicy.ScrollBarAlwaysOff)
+        self.setAccessibleName("Clips")
+
+    def startDrag(self, actions: Qt.DropAction) -> None:
+        chosen = [i.data(ENTRY) for i in self.selectedIndexes()]
+        if not chosen:
+            return
+        drag = QDrag(self)
+        drag.setMimeData(mime(clips=[e.id for e in chosen]))
+        drag.setPixmap(drag_picture(chosen[0].name if len(chosen) == 1 else f"{len(chosen)} clips", self))
+        drag.exec(Qt.DropAction.CopyAction)
+
+    def resizeEvent(self, event: QResizeEvent) -> None:
+        """Fill the width with as many columns as fit."""
+        width = self.viewport().width() - 2
+        self.setGridSize(QSize(max(CARD_WIDTH, width // max(1, width // CARD_WIDTH)), CARD_HEIGHT))
+        super().resizeEvent(event)
+
+    def mouseReleaseEvent(self, event: object) -> None:
+        super().mouseReleaseEvent(event)  # type: ignore[arg-type]
+        index = self.indexAt(event.position().toPoint())  # type: ignore[attr-defined]
+        if not index.isValid() or len(self.selectedIndexes()) != 1 or event.button() != Qt.MouseButton.LeftButton:  # type: ignore[attr-defined]
+            return
+        self.play(index.data(ENTRY).id)
+
+    def play(self, clip: str) -> None:
+        """Play a clip alone; when it already does, in context."""
+        session = self.panel.session
+        if session.show == "clip" and session.shown == clip:
+            session.show_context(clip)
+        else:
+            session.show_clip(clip)
+
+    def keyPressEvent(self, event: QKeyEvent) -> None:
+        if event.key() in (Qt.Key.Key_Return, Qt.Key.Key_Enter) and self.currentIndex().isValid():
+            self.play(self.currentIndex().data(ENTRY).id)
+        elif event.text() in ("1", "2", "3", "4"):
+            event.ignore()  # the window's keys label the selection
+        else:
+            super().keyPressEvent(event)
+
+    def contextMenuEvent(self, event: QContextMenuEvent) -> None:
+        index = self.indexAt(event.pos())
+        if index.isValid():
+            self.panel.menu(index.data(ENTRY)).exec(event.globalPos())
+
+    def dragEnterEvent(self, event: QDragEnterEvent) -> None:
+        if load_of(event.mimeData()).files:
+            event.acceptProposedAction()
+        else:
+            event.ignore()
+
+    def dragMoveEvent(self, event: QDragMoveEvent) -> None:
+        if load_of(event.mimeData()).files:
+            event.acceptProposedAction()
+        else:
+            event.ignore()
+
+    def dropEvent(self, event: QDropEvent) -> None:
+        files = load_of(event.mimeData()).files
+        if files:
+            event.acceptProposedAction()
+            self.files_dropped.emit(files)
+
+
+class LibraryPanel(QWidget):
+    """import_wanted: the user asks for a folder. files_dropped: paths to import."""
+
+    import_wanted = Signal()
+    files_dropped = Signal(object)
+
+    def __init__(self, document: Document, session: Session, thumbnails: Thumbnails, parent: QWidget | None = None) -> None:
+        super().__init__(parent)
+        self.document, self.session, self.thumbnails = document, session, thumbnails
+        self.row_actions: list[QAction] = []  # the window's commands that go into a clip's menu
+        self.model = ClipModel(document)
+        self.proxy = FilterModel(self.model)
+        self.search = Search(self)
+        self.search.textChanged.connect(self._refilter)
+        self.list = ClipList(self)
+        self.list.setModel(self.proxy)
+        self.list.setItemDelegate(CardDelegate(self))
+        self.list.files_dropped.connect(self.files_dropped)
+        self.search.left.connect(self._into_list)
+        self._following = False
+        selection = self.list.selectionModel()
+        selection.selectionChanged.connect(self._selected)
+        layout = QVBoxLayout(self)
+        layout.setContentsMargins(8, 8, 4, 0)
+        layout.setSpacing(6)
+        layout.addWidget(self.search)
+        layout.addLayout(self._filters())
+        self.stack = QStackedLayout()
+        self.stack.addWidget(self.list)
+        self.stack.addWidget(self._empty())
+        layout.addLayout(self.stack, 1)
+        self.setAcceptDrops(True)
+        document.changed.connect(self._follow)
+        session.selection_changed.connect(self._show_selection)
+        session.theme_changed.connect(self.list.viewport().update)
+        thumbnails.ready.connect(lambda _: self.list.viewport().update())
+        self._count()
+
+    def _filters(self) -> QHBoxLayout:
+        row = QHBoxLayout()
+        row.setSpacing(2)
+        self.chips: dict[str, QToolButton] = {}
+
+        def chip(key: str, text: str, tip: str) -> None:
+            button = QToolButton(self, text=text, toolTip=tip, checkable=True)
+            button.clicked.connect(lambda _=False, k=key: self._chip(k))
+            self.chips[key] = button
+            row.addWidget(button)
+
+        chip("all", "All", "All clips")
+        chip("unlabelled", "Unlabelled", "Clips that were not placed yet")
+        chip("labelled", "Placed", "Clips that are in the graph")
+        self.more = QToolButton(self, text="Any kind", toolTip="Show the clips of a layer or kind only")
+        self.more.setAccessibleName("Layer or kind")
+        self.more.setPopupMode(QToolButton.ToolButtonPopupMode.InstantPopup)
+        menu = QMenu(self.more)
+        menu.addAction("Any kind, any layer", lambda: self._narrow(None, None))
+        menu.addSeparator()
+        for kind in KINDS:
+            menu.addAction(f"{KIND_MARKS[kind]}  {kind.capitalize()}", lambda k=kind: self._narrow(None, k))
+        menu.addSeparator()
+        for layer in LAYERS:
+            menu.addAction(f"{layer.capitalize()} layer", lambda x=layer: self._narrow(x, None))
+        self.more.setMenu(menu)
+        row.addWidget(self.more)
+        row.addStretch(1)
+        self.chips["all"].setChecked(True)
+        return row
+
+    def _empty(self) -> QWidget:
+        page = QWidget(self)
+        box = QVBoxLayout(page)
+        box.addStretch(2)
+        self.empty = QLabel("Drop a folder of clips here\n\nBVH, GLB, glTF, VRM animation\nand, with the extra, FBX", page)
+        self.empty.setAlignment(Qt.AlignmentFlag.AlignCenter)
+        self.empty.setProperty("dim", True)
+        box.addWidget(self.empty)
+        button = QPushButton("Import a folder…", page)
+        button.clicked.connect(self.import_wanted)
+        self.empty_button = button
+        row = QHBoxLayout()
+        row.addStretch(1)
+        row.addWidget(button)
+        row.addStretch(1)
+        box.addLayout(row)
+        box.addStretch(3)
+        return page
+
+    def dragEnterEvent(self, event: QDragEnterEvent) -> None:
+        self.list.dragEnterEvent(event)
+
+    def dropEvent(self, event: QDropEvent) -> None:
+        self.list.dropEvent(event)
+
+    # --- filtering
+
+    def _chip(self, key: str) -> None:
+        for name, button in self.chips.items():
+            button.setChecked(name == key)
+        self._refilter()
+
+    def _narrow(self, layer: str | None, kind: Kind | None) -> None:
+        word = layer or kind
+        self.more.setText((word or "any kind").capitalize())
+        beside = Qt.ToolButtonStyle.ToolButtonTextBesideIcon
+        self.more.setToolButtonStyle(beside if word else Qt.ToolButtonStyle.ToolButtonIconOnly)
+        self._refilter(layer=layer, kind=kind)
+
+    def _refilter(self, *_: object, **more: str | None) -> None:
+        checked = next((k for k, b in self.chips.items() if b.isChecked()), "all")
+        labelled = {"all": None, "unlabelled": False, "labelled": True}[checked]
+        old = self.proxy.filter
+        layer, kind = more.get("layer", old.layer), more.get("kind", old.kind)
+        if more:
+            layer, kind = more["layer"], more["kind"]
+        self.proxy.set_filter(Filter(self.search.text(), labelled, layer, kind))
+        self._count()
+
+    def _count(self) -> None:
+        project = self.document.project
+        total = len(project.clips)
+        loose = sum(1 for c in project.clips if c not in project.uses and c not in project.drawn)
+        self.chips["unlabelled"].setText(f"Unlabelled {loose}" if total else "Unlabelled")
+        self.search.setPlaceholderText(f"Search {total} clip{'s' if total != 1 else ''}" if total else "Search")
+        nothing = not total
+        hidden = bool(total) and self.proxy.rowCount() == 0
+        self.empty_button.setVisible(nothing)
+        if hidden:
+            self.empty.setText("No clip matches.\nClear the search or the filters.")
+        else:
+            self.empty.setText("Drop a folder of clips here\n\nBVH, GLB, glTF, VRM animation\nand, with the extra, FBX")
+        self.stack.setCurrentIndex(1 if nothing or hidden else 0)
+
+    # --- selection
+
+    def _into_list(self) -> None:
+        """Give the keyboard to the clips, the first one chosen unless one is already."""
+        if self.proxy.rowCount():
+            self.list.setFocus(Qt.FocusReason.TabFocusReason)
+            if not self.list.selectedIndexes():
+                self.list.setCurrentIndex(self.proxy.index(0, 0))
+
+    def _selected(self, *_: QItemSelection) -> None:
+        if self._following:
+            return
+        rows = sorted(self.list.selectedIndexes(), key=lambda i: i.row())
+        self._following = True
+        self.session.select_clips(tuple(i.data(ENTRY).id for i in rows))
+        self._following = False
+
+    def _show_selection(self) -> None:
+        """Follow the session: selected clips, or the clips of selected actions faintly by scrolling to the first."""
+        if self._following:
+            return
+        self._following = True
+        wanted = set(self.session.clips)
+        if not wanted:
+            self.list.clearSelection()
+            self._following = False
+            return
+        chosen = QItemSelection()
+        first = None
+        for row in range(self.proxy.rowCount()):
+            index = self.proxy.index(row, 0)
+            if index.data(ENTRY).id in wanted:
+                chosen.select(index, index)
+                first = first or index
+        self.list.selectionModel().select(chosen, QItemSelectionModel.SelectionFlag.ClearAndSelect)
+        if first is not None and len(wanted) == 1:
+            self.list.scrollTo(first)
+        self._following = False
+
+    def _follow(self, before: Project, after: Project) -> None:
+        if before.clips is not after.clips or before.graphs is not after.graphs or before.manual is not after.manual:
+            rule = self.proxy.filter
+            if rule.labelled is not None or rule.layer or rule.kind:
+                self._following = True  # clips leaving the view are not deselected by hand
+                self.proxy.invalidate()
+                self._following = False
+            self._count()
+        if before.base != after.base:
+            self.list.viewport().update()
+
+    # --- commands
+
+    def menu(self, entry: ClipEntry) -> QMenu:
+        """Return what can be done with a clip, and with all selected ones."""
+        out = QMenu(self)
+        chosen = self.session.clips if entry.id in self.session.clips else (entry.id,)
+        out.addAction("Play alone", lambda: self.session.show_clip(entry.id))
+        out.addAction("Play in context", lambda: self.session.show_context(entry.id))
+        out.addSeparator()
+        out.addAction("Use its first frame as base pose", lambda: self.use_as_base(entry.id, 0))
+        if self.session.show == "clip" and self.session.shown == entry.id:
+            frame = round(self.session.seconds * entry.fps)
+            out.addAction(f"Use this frame ({frame}) as base pose", lambda: self.use_as_base(entry.id, frame))
+        out.addAction("Use the rest pose as base pose", lambda: self.document.edit("Set base pose", lambda p: edits.set_base(p, None)))
+        out.addSeparator()
+        out.addAction("Rename…\tF2", lambda: self.rename(entry.id))
+        out.addActions(self.row_actions)
+        out.addSeparator()
+        noun = f"{len(chosen)} clips" if len(chosen) > 1 else "clip"
+        out.addAction(f"Remove {noun} from the project\tDel", lambda: self.remove(chosen))
+        return out
+
+    def use_as_base(self, clip: str, frame: int) -> None:
+        self.document.edit("Set base pose", lambda p: edits.set_base(p, clip, frame))
+
+    def rename(self, clip: str) -> None:
+        entry = self.document.project.clips[clip]
+        name, accepted = QInputDialog.getText(self, "Rename clip", "Name:", text=entry.name)
+        if accepted and name.strip():
+            self.document.edit("Rename clip", lambda p: edits.rename_clip(p, clip, name))
+
+    def remove(self, clips: Iterable[str]) -> None:
+        gone = tuple(clips)
+        if gone:
+            self.document.edit(f"Remove {len(gone)} clip{'s' if len(gone) > 1 else ''}", lambda p: edits.remove_clips(p, gone))
+
+    def restyle(self) -> None:
+        self.more.setIcon(icons.icon("more", theme(self.session.theme).text))

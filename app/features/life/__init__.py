@@ -1,0 +1,1 @@
+"""Breathing, gaze, blinks and lips."""

@@ -1,0 +1,237 @@
+"""The life panel: how much the character breathes, looks about, blinks and speaks of itself; a slider and an off for each amount."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from functools import partial
+
+from PySide6.QtCore import Qt
+from PySide6.QtGui import QMouseEvent, QWheelEvent
+from PySide6.QtWidgets import (
+    QButtonGroup,
+    QCheckBox,
+    QDoubleSpinBox,
+    QGridLayout,
+    QHBoxLayout,
+    QLabel,
+    QScrollArea,
+    QSlider,
+    QToolButton,
+    QVBoxLayout,
+    QWidget,
+)
+
+from app.project.document import Document
+from app.stage.session import Session
+from app.widgets.request_menu import MODE_WORDS
+from metagraph.graph import staging
+from metagraph.graph.edits import EditError
+from metagraph.graph.life import DIALS, MANNER_DIALS, MANNERS, Dial, Life, manner, with_life
+from metagraph.graph.model import MODES, Mode, Project
+
+
+class Slider(QSlider):
+    """A slider that a double click puts back and that the wheel moves only once it has the keyboard."""
+
+    def __init__(self, parent: QWidget, steps: int, put_back: Callable[[], None]) -> None:
+        super().__init__(Qt.Orientation.Horizontal, parent)
+        self.setRange(0, steps)
+        self.setPageStep(max(1, steps // 10))
+        self.setFocusPolicy(Qt.FocusPolicy.StrongFocus)
+        self._put_back = put_back
+
+    def mouseDoubleClickEvent(self, event: QMouseEvent) -> None:
+        self._put_back()
+
+    def wheelEvent(self, event: QWheelEvent) -> None:
+        if self.hasFocus():
+            super().wheelEvent(event)
+        else:
+            event.ignore()
+
+
+class Row:
+    """One dial: a tick for on and off, its name, its slider, its number with the unit."""
+
+    def __init__(self, dial: Dial, grid: QGridLayout, row: int, parent: QWidget, set_value: Callable[[float, bool], None], default: float):
+        self.dial, self.default, self._set = dial, default, set_value
+        self._before = default  # what it was before it was turned off
+        self.tick = QCheckBox(dial.label, parent)
+        self.tick.setToolTip(f"{dial.tip}\nUntick it to turn it off." if dial.off is not None else dial.tip)
+        self.label = QLabel(dial.label, parent, toolTip=dial.tip)
+        self.slider = Slider(parent, round((dial.high - dial.low) / dial.step), self.put_back)
+        self.slider.setToolTip(f"{dial.tip}\nDouble-click puts it back to {default:g} {dial.unit}".rstrip())
+        self.slider.setAccessibleName(dial.label)
+        decimals = 0 if dial.step >= 1 else 1 if dial.step >= 0.1 else 3 if dial.step < 0.01 else 2
+        self.number = QDoubleSpinBox(parent, minimum=dial.low, maximum=dial.high, singleStep=dial.step, decimals=decimals)
+        self.number.setSuffix(f" {dial.unit}" if dial.unit else "")
+        self.number.setAccessibleName(dial.label)
+        self.number.setKeyboardTracking(False)
+        self.number.setFixedWidth(92)
+        self.number.lineEdit().setTextMargins(6, 0, 0, 0)
+        head = self.tick if dial.off is not None else self.label
+        (self.label if head is self.tick else self.tick).hide()
+        grid.addWidget(head, row, 0)
+        grid.addWidget(self.slider, row, 1)
+        grid.addWidget(self.number, row, 2)
+        self.slider.valueChanged.connect(self._slid)
+        self.slider.sliderReleased.connect(lambda: self._set(self.number.value(), True))
+        self.number.valueChanged.connect(lambda v: self._set(v, True))
+        self.tick.clicked.connect(self._toggle)
+
+    def show_value(self, value: float) -> None:
+        for widget in (self.slider, self.number):
+            widget.blockSignals(True)
+        self.slider.setValue(round((value - self.dial.low) / self.dial.step))
+        self.number.setValue(value)
+        self.tick.setChecked(value != self.dial.off)
+        if value != self.dial.off:
+            self._before = value
+        for widget in (self.slider, self.number):
+            widget.blockSignals(False)
+
+    def _slid(self, place: int) -> None:
+        self._set(min(self.dial.high, self.dial.low + place * self.dial.step), not self.slider.isSliderDown())
+
+    def _toggle(self, on: bool) -> None:
+        if self.dial.off is not None:
+            self._set(self._before if on and self._before != self.dial.off else self.default if on else self.dial.off, True)
+
+    def put_back(self) -> None:
+        self._set(self.default, True)
+
+
+class LifePanel(QWidget):
+    """Stillness over all; below it every amount, or what a mode makes of them."""
+
+    def __init__(self, document: Document, session: Session, parent: QWidget | None = None) -> None:
+        super().__init__(parent)
+        self.document, self.session = document, session
+        self.mode: Mode | None = None  # whose factors are shown; None for the amounts themselves
+        outer = QVBoxLayout(self)
+        outer.setContentsMargins(12, 8, 12, 8)
+        outer.setSpacing(8)
+        self.on = QCheckBox("Alive: breathes, looks, blinks and speaks of itself", self)
+        self.on.clicked.connect(lambda on: self._change("Turn life on or off", on=on))
+        outer.addWidget(self.on)
+        top = QGridLayout()
+        top.setHorizontalSpacing(10)
+        outer.addLayout(top)
+        self.rows: dict[str, Row] = {"stillness": self._row(DIALS[0], top, 0, None)}
+        self.rows["stillness"].tick.setText("Stillness")
+        tabs = QHBoxLayout()
+        tabs.setSpacing(2)
+        self.tabs = QButtonGroup(self)
+        for n, (words, tip) in enumerate(
+            (("Always", "The amounts themselves"), *((MODE_WORDS[m], f"What {m} makes of them, as factors") for m in MODES))
+        ):
+            button = QToolButton(self, text=words, checkable=True, toolTip=tip)
+            button.setChecked(n == 0)
+            self.tabs.addButton(button, n)
+            tabs.addWidget(button)
+        tabs.addStretch(1)
+        self.tabs.idClicked.connect(lambda n: self.show_mode(None if n == 0 else MODES[n - 1]))
+        outer.addLayout(tabs)
+        area = QScrollArea(self, widgetResizable=True)
+        area.setFrameShape(QScrollArea.Shape.NoFrame)
+        area.setStyleSheet("QScrollArea { background: transparent; }")  # no box in the panel
+        area.viewport().setAutoFillBackground(False)
+        area.setHorizontalScrollBarPolicy(Qt.ScrollBarPolicy.ScrollBarAlwaysOff)
+        outer.addWidget(area, 1)
+        self.area = area
+        self.pages: dict[Mode | None, QWidget] = {}
+        self.manner_rows: dict[Mode, dict[str, Row]] = {}
+        self._fill(None)
+        document.changed.connect(self._edited)
+        self._show()
+
+    def _row(self, dial: Dial, grid: QGridLayout, row: int, mode: Mode | None) -> Row:
+        default = getattr(Life() if mode is None else MANNERS[mode], dial.name)
+        return Row(dial, grid, row, self, partial(self._dial, dial, mode), default)
+
+    def _fill(self, mode: Mode | None) -> None:
+        """Make the page of the amounts, or of one mode, when it is first shown."""
+        page = QWidget(self.area)
+        page.setAutoFillBackground(False)
+        grid = QGridLayout(page)
+        grid.setContentsMargins(0, 0, 8, 0)
+        grid.setHorizontalSpacing(10)
+        grid.setVerticalSpacing(5)
+        grid.setColumnStretch(1, 1)
+        rows: dict[str, Row] = {}
+        group, n = "", 0
+        for dial in DIALS[1:] if mode is None else MANNER_DIALS:
+            if dial.group != group:
+                title = QLabel(dial.group, page)
+                title.setProperty("title", True)
+                title.setContentsMargins(0, 8 if group else 0, 0, 0)
+                grid.addWidget(title, n, 0, 1, 3)
+                group, n = dial.group, n + 1
+            rows[dial.name] = self._row(dial, grid, n, mode)
+            n += 1
+        if mode is not None:
+            back = QToolButton(page, text="Back to the usual")
+            back.clicked.connect(lambda: self._usual(mode))
+            grid.addWidget(back, n, 0, 1, 2)
+            n += 1
+        grid.setRowStretch(n, 1)
+        self.pages[mode] = page
+        if mode is None:
+            self.rows |= rows
+        else:
+            self.manner_rows[mode] = rows
+
+    def show_mode(self, mode: Mode | None) -> None:
+        """Show the amounts, or what one mode makes of them."""
+        if mode not in self.pages:
+            self._fill(mode)
+        self.mode = mode
+        self._show()
+
+    def _show(self) -> None:
+        life = self.document.project.life
+        if self.area.widget() is not self.pages[self.mode]:
+            self.area.takeWidget()
+            self.area.setWidget(self.pages[self.mode])
+            self.pages[self.mode].setAutoFillBackground(False)  # which the area turns on
+            self.pages[self.mode].show()
+        self.on.setChecked(life.on)
+        for name, row in self.rows.items():
+            row.show_value(getattr(life, name))
+        for mode, rows in self.manner_rows.items():
+            for name, row in rows.items():
+                row.show_value(getattr(manner(life, mode), name))
+        self.area.setEnabled(life.on)
+
+    def _edited(self, before: Project, after: Project) -> None:
+        if before.life is not after.life:
+            self._show()
+
+    # --- changing
+
+    def _dial(self, dial: Dial, mode: Mode | None, value: float, done: bool) -> None:
+        """Set a number; what is dragged is one step to undo."""
+        value = round(value, 4)
+        self._change(f"Change {dial.label.lower()}", f"life/{mode}/{dial.name}", mode, **{dial.name: value})
+        if done:
+            self.document.finish_merging()
+
+    def _change(self, text: str, merge: str | None = None, mode: Mode | None = None, **changes: float) -> None:
+        try:
+            life = with_life(self.document.project.life, mode, **changes)
+        except ValueError as error:
+            self.document.failed.emit(str(error))
+            return
+        self._set(text, life, merge)
+
+    def _usual(self, mode: Mode) -> None:
+        life = self.document.project.life
+        modes = {m: x for m, x in life.modes.items() if m != mode}
+        self._set(f"Put {mode} back to the usual", None, None, modes=modes)
+
+    def _set(self, text: str, life: Life | None, merge: str | None, **changes: object) -> None:
+        fields = {f: getattr(life, f) for f in life.__struct_fields__} if life is not None else changes
+        try:
+            self.document.edit(text, lambda p: staging.set_life(p, **fields), merge)
+        except EditError as error:
+            self.document.failed.emit(str(error))

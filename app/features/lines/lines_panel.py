@@ -1,0 +1,288 @@
+"""The lines panel: the dialogue an agent calls by its ids, with text and sound; each can be said now."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import msgspec
+from PySide6.QtCore import QEvent, QItemSelection, QItemSelectionModel, Qt, Signal
+from PySide6.QtGui import QColor, QDragEnterEvent, QDragMoveEvent, QDropEvent, QKeyEvent
+from PySide6.QtWidgets import (
+    QAbstractItemView,
+    QFileDialog,
+    QHBoxLayout,
+    QHeaderView,
+    QLabel,
+    QLineEdit,
+    QTableWidget,
+    QTableWidgetItem,
+    QToolButton,
+    QVBoxLayout,
+    QWidget,
+)
+
+from app.features.lines.line_files import LISTS, SOUNDS, Lines, add_lines, read_lines
+from app.look.plural import many
+from app.look.theme import Theme, theme
+from app.project.document import Document
+from app.project.jobs import Jobs
+from app.stage.performance import Performance
+from app.stage.session import Session
+from metagraph.graph import staging
+from metagraph.graph.asks import Line, Say
+from metagraph.graph.edits import EditError
+from metagraph.graph.model import Project
+from metagraph.playback.understand import spoken_seconds
+
+COLUMNS = ("Id", "Words", "Sound", "Length", "With it")
+ID, WORDS, SOUND, LENGTH, ASKS = range(5)
+WIDEST = 180  # pixels of the ids at most
+EMPTY = "Drop sound files here, or a list (CSV: id, text, sound).\nAn agent then says a line by its id, and the lips follow its sound."
+
+
+class Table(QTableWidget):
+    """deleted: the Delete key was pressed. said: Enter was."""
+
+    deleted = Signal()
+    said = Signal()
+
+    def event(self, event: QEvent) -> bool:
+        mine = (Qt.Key.Key_Delete, Qt.Key.Key_Return, Qt.Key.Key_Enter)
+        if event.type() == QEvent.Type.ShortcutOverride and isinstance(event, QKeyEvent) and event.key() in mine:
+            event.accept()  # here they are about lines, not about what is selected elsewhere
+            return True
+        return super().event(event)
+
+    def keyPressEvent(self, event: QKeyEvent) -> None:
+        if event.key() == Qt.Key.Key_Delete:
+            self.deleted.emit()
+        elif event.key() in (Qt.Key.Key_Return, Qt.Key.Key_Enter) and self.state() != QAbstractItemView.State.EditingState:
+            self.said.emit()
+        else:
+            super().keyPressEvent(event)
+
+
+class LinesPanel(QWidget):
+    """told: words about what could not be read."""
+
+    told = Signal(str)
+
+    def __init__(self, document: Document, session: Session, performance: Performance, jobs: Jobs, parent: QWidget | None = None) -> None:
+        super().__init__(parent)
+        self.document, self.session, self.performance, self.jobs = document, session, performance, jobs
+        self._filling = False
+        self._rows: dict[int, tuple[object, ...]] = {}  # what each row shows
+        self.setAcceptDrops(True)
+        layout = QVBoxLayout(self)
+        layout.setContentsMargins(12, 6, 12, 6)
+        layout.setSpacing(6)
+        row = QHBoxLayout()
+        row.setSpacing(8)
+        self.search = QLineEdit(self, placeholderText="Search lines", clearButtonEnabled=True)
+        self.search.setAccessibleName("Search lines")
+        self.search.setMaximumWidth(220)
+        self.search.textChanged.connect(self._search)
+        row.addWidget(self.search)
+        self.words = QLabel(self)
+        self.words.setProperty("dim", True)
+        row.addWidget(self.words, 1)
+        for text, tip, run in (
+            ("Say it now", "The selected line, at the playhead (Enter)", self.say),
+            ("Add files…", "Sounds, or a list of lines", self.ask_files),
+            ("Add words…", "A line without sound", self.add_words),
+        ):
+            button = QToolButton(self, text=text, toolTip=tip)
+            button.clicked.connect(run)
+            row.addWidget(button)
+            if run == self.say:
+                self.say_button = button
+        layout.addLayout(row)
+        self.table = Table(0, len(COLUMNS), self)
+        self.table.setHorizontalHeaderLabels(COLUMNS)
+        self.table.verticalHeader().hide()
+        self.table.setSelectionBehavior(QAbstractItemView.SelectionBehavior.SelectRows)
+        self.table.setEditTriggers(QAbstractItemView.EditTrigger.DoubleClicked | QAbstractItemView.EditTrigger.EditKeyPressed)
+        self.table.setShowGrid(False)
+        self.table.setAlternatingRowColors(True)
+        header = self.table.horizontalHeader()
+        header.setMinimumSectionSize(56)
+        header.setSectionResizeMode(WORDS, QHeaderView.ResizeMode.Stretch)
+        header.setDefaultAlignment(Qt.AlignmentFlag.AlignLeft)
+        self.table.setColumnWidth(SOUND, 190)
+        self.table.itemChanged.connect(self._typed)
+        self.table.itemSelectionChanged.connect(lambda: self.say_button.setEnabled(bool(self.table.selectedItems())))
+        self.say_button.setEnabled(False)
+        self.table.setAccessibleName("Lines")
+        self.table.deleted.connect(self.remove)
+        self.table.said.connect(self.say)
+        layout.addWidget(self.table, 1)
+        self.empty = QLabel(EMPTY, self, alignment=Qt.AlignmentFlag.AlignCenter)
+        self.empty.setProperty("dim", True)
+        layout.addWidget(self.empty, 1)
+        document.changed.connect(self._edited)
+        session.theme_changed.connect(self.refresh)
+        self.refresh()
+
+    # --- showing
+
+    def _edited(self, before: Project, after: Project) -> None:
+        if before.lines is not after.lines or before.voices is not after.voices:
+            self.refresh()
+
+    def refresh(self) -> None:
+        """Show the lines as they are."""
+        project, chosen, look = self.document.project, set(self.chosen()), theme(self.session.theme)
+        here = self.table.currentItem()
+        current = (here.data(Qt.ItemDataRole.UserRole), here.column()) if here is not None else None
+        self._filling = True
+        self.table.setUpdatesEnabled(False)
+        self.table.setRowCount(len(project.lines))
+        selection = QItemSelection()
+        model, last = self.table.model(), len(COLUMNS) - 1
+        for n, (ident, line) in enumerate(project.lines.items()):
+            shown = (ident, line, project.voices.get(ident), look.name)
+            first = self.table.item(n, ID)
+            if first is None or not _same(self._rows.get(n), shown):
+                self._row(n, ident, line, look)
+                self._rows[n] = shown
+            if ident in chosen:
+                selection.select(model.index(n, 0), model.index(n, last))
+        self.table.selectionModel().select(selection, QItemSelectionModel.SelectionFlag.ClearAndSelect)
+        if current is not None:
+            row = next((n for n, i in enumerate(project.lines) if i == current[0]), -1)
+            if row >= 0:
+                self.table.selectionModel().setCurrentIndex(model.index(row, current[1]), QItemSelectionModel.SelectionFlag.NoUpdate)
+        for column in (ID, LENGTH, ASKS):
+            self.table.resizeColumnToContents(column)
+        if self.table.columnWidth(ID) > WIDEST:
+            self.table.setColumnWidth(ID, WIDEST)
+        self.table.setUpdatesEnabled(True)
+        self._filling = False
+        self.table.setVisible(bool(project.lines))
+        self.empty.setVisible(not project.lines)
+        self.search.setVisible(bool(project.lines))
+        silent = sum(1 for x in project.lines.values() if not x.audio)
+        self.words.setText(f"{many(len(project.lines), 'line')}{f', {silent} without sound' if silent else ''}" if project.lines else "")
+        self._search(self.search.text())
+
+    def _row(self, n: int, ident: str, line: Line, look: Theme) -> None:
+        """Fill a row of the table."""
+        project = self.document.project
+        lost = bool(line.audio) and ident not in project.voices
+        seconds = spoken_seconds(project, ident, line.text)
+        asks = many(len(line.asks), "request") if line.asks else ""
+        texts = (ident, line.text, Path(line.audio).name if line.audio else "", f"{seconds:.1f} s", asks)
+        for column, text in enumerate(texts):
+            item = self.table.item(n, column)
+            if item is None:
+                item = QTableWidgetItem()
+                self.table.setItem(n, column, item)
+            item.setText(text)
+            item.setData(Qt.ItemDataRole.UserRole, ident)
+            if column >= SOUND and item.flags() & Qt.ItemFlag.ItemIsEditable:
+                item.setFlags(item.flags() & ~Qt.ItemFlag.ItemIsEditable)
+            if column == SOUND:
+                item.setForeground(QColor(look.warning if lost else look.dim))
+                item.setToolTip("The sound could not be read; the lips follow the letters" if lost else line.audio or "")
+            elif column in (ID, WORDS):
+                item.setToolTip(text if len(text) > 24 else "")
+
+    def _search(self, text: str) -> None:
+        wanted = text.lower().split()
+        for n, (ident, line) in enumerate(self.document.project.lines.items()):
+            found = f"{ident} {line.text}".lower()
+            self.table.setRowHidden(n, not all(word in found for word in wanted))
+
+    def chosen(self) -> list[str]:
+        """Return the ids of the selected lines."""
+        rows = sorted({i.row() for i in self.table.selectedItems()})
+        return [str(self.table.item(n, ID).data(Qt.ItemDataRole.UserRole)) for n in rows]
+
+    # --- changing
+
+    def _try(self, text: str, function: object) -> None:
+        try:
+            self.document.edit(text, function)  # type: ignore[arg-type]
+        except EditError as error:
+            self.told.emit(str(error))
+            self.refresh()
+
+    def _typed(self, item: QTableWidgetItem) -> None:
+        if self._filling:
+            return
+        ident, text = str(item.data(Qt.ItemDataRole.UserRole)), item.text()
+        self._rows.pop(item.row(), None)  # what was typed may be refused
+        if item.column() == ID:
+            self._try("Rename line", lambda p: staging.rename_line(p, ident, text))
+        else:
+            line = self.document.project.lines[ident]
+            self._try("Change line", lambda p: staging.set_line(p, ident, msgspec.structs.replace(line, text=text.strip()[:20000])))
+
+    def remove(self) -> None:
+        """Remove the selected lines; their sound files stay where they are."""
+        chosen = self.chosen()
+
+        def edit(project: Project) -> Project:
+            for ident in chosen:
+                project = staging.set_line(project, ident, None)
+            return project
+
+        if chosen:
+            self._try(f"Remove {many(len(chosen), 'line')}", edit)
+
+    def add_words(self) -> None:
+        """Add a line and let its words be typed."""
+        lines = self.document.project.lines
+        self.search.clear()  # the new one must be seen
+        number = next(n for n in range(1, len(lines) + 2) if str(n) not in lines)
+        self._try("Add line", lambda p: staging.set_line(p, str(number), Line(text="Hello")))
+        self.table.setCurrentCell(len(lines), WORDS)
+        self.table.editItem(self.table.item(len(lines), WORDS))
+
+    def ask_files(self) -> None:
+        names = " ".join(f"*{s}" for s in (*SOUNDS, *LISTS))
+        paths, _ = QFileDialog.getOpenFileNames(self, "Add lines", str(self.document.folder or Path.home()), f"Sounds and lists ({names})")
+        if paths:
+            self.add_files([Path(p) for p in paths])
+
+    def add_files(self, paths: list[Path]) -> None:
+        """Read sounds and lists on a thread, then add their lines as one step."""
+        folder = self.document.folder
+
+        def done(read: Lines) -> None:
+            if read.lines:
+                self._try(f"Add {many(len(read.lines), 'line')}", lambda p: add_lines(p, read))
+            if read.notes:
+                more = f" (and {len(read.notes) - 1} more)" if len(read.notes) > 1 else ""
+                self.told.emit(read.notes[0] + more)
+
+        self.jobs.start("Reading lines", lambda _: read_lines(paths, folder), done, lambda error: self.told.emit(str(error)))
+
+    def say(self) -> None:
+        """Ask for the selected line at the playhead."""
+        for ident in self.chosen()[:1]:
+            self.performance.ask(Say(line=ident), "Ask for a line")
+
+    # --- files dropped
+
+    def dragEnterEvent(self, event: QDragEnterEvent) -> None:
+        if self._files(event):
+            event.acceptProposedAction()
+
+    def dragMoveEvent(self, event: QDragMoveEvent) -> None:
+        event.acceptProposedAction()
+
+    def dropEvent(self, event: QDropEvent) -> None:
+        paths = self._files(event)
+        if paths:
+            event.acceptProposedAction()
+            self.add_files(paths)
+
+    def _files(self, event: QDropEvent) -> list[Path]:
+        paths = [Path(u.toLocalFile()) for u in event.mimeData().urls() if u.isLocalFile()]
+        return [p for p in paths if p.suffix.lower() in (*SOUNDS, *LISTS)]
+
+
+def _same(before: tuple[object, ...] | None, now: tuple[object, ...]) -> bool:
+    """Whether a row shows the same; a line and its voice by identity, since every edit makes new ones of what it changes."""
+    return before is not None and before[0] == now[0] and before[1] is now[1] and before[2] is now[2] and before[3] == now[3]

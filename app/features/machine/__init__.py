@@ -1,0 +1,1 @@
+"""The expanded state machine beside the meta-graph."""

@@ -1,0 +1,167 @@
+"""The machine nobody had to draw: the expanded graph of the current layer, every state and connection."""
+
+from __future__ import annotations
+
+import math
+
+from PySide6.QtCore import QPointF, QRectF, Qt
+from PySide6.QtGui import QColor, QHelpEvent, QMouseEvent, QPainter, QPaintEvent, QPen, QPixmap
+from PySide6.QtWidgets import QToolTip, QWidget
+
+from app.look.theme import KIND_MARKS, theme
+from app.project.document import Document
+from app.stage.session import Session
+from metagraph.graph.expand import connections, ends_in, size
+from metagraph.graph.model import Action, MetaGraph, Project
+
+MOST = 6000  # connections drawn; more would be one solid disc
+
+
+def places(graph: MetaGraph, area: QRectF) -> dict[str, QPointF]:
+    """Return where each state is: stances on a ring, their actions on rings round them."""
+    stances = list(graph.stances)
+    out: dict[str, QPointF] = {}
+    centre = area.center() + QPointF(0, 24)
+    wide, high = area.width() / 2 - 60, area.height() / 2 - 60
+    for n, stance in enumerate(stances):
+        turn = 2 * math.pi * n / max(1, len(stances)) - math.pi / 2
+        middle = centre if len(stances) == 1 else centre + QPointF(math.cos(turn) * wide * 0.66, math.sin(turn) * high * 0.66)
+        loops = graph.of(stance, "stance")
+        for k, loop in enumerate(loops):
+            out[loop.id] = middle + QPointF((k - (len(loops) - 1) / 2) * 14, 0)
+        around = [*graph.of(stance, "gesture"), *graph.of(stance, "fidget")]
+        room = min(wide, high) * (0.30 if len(stances) > 1 else 0.7)
+        reach = max(24.0, min(room, 26.0 + 2.2 * len(around)))
+        for k, action in enumerate(around):
+            a = 2 * math.pi * k / max(1, len(around)) + turn
+            out[action.id] = middle + QPointF(math.cos(a) * reach, math.sin(a) * reach)
+    spread: dict[tuple[str, str], int] = {}
+    for action in graph.actions.values():
+        if action.kind == "transition" and action.id not in out:
+            start, end = graph.of(action.stance, "stance"), graph.of(action.end_stance or "", "stance")
+            if not start or not end or start[0].id not in out or end[0].id not in out:
+                continue
+            a, b = out[start[0].id], out[end[0].id]
+            key = (action.stance, action.end_stance or "")
+            spread[key] = spread.get(key, 0) + 1
+            across = QPointF(-(b - a).y(), (b - a).x())
+            length = math.hypot(across.x(), across.y()) or 1.0
+            out[action.id] = a * 0.5 + b * 0.5 + across * ((8 + 7 * spread[key]) / length)
+    return out
+
+
+class MachinePanel(QWidget):
+    """Draws the machine when it is looked at; click a state to go to its action."""
+
+    def __init__(self, document: Document, session: Session, parent: QWidget | None = None) -> None:
+        super().__init__(parent)
+        self.document, self.session = document, session
+        self._picture: QPixmap | None = None
+        self._places: dict[str, QPointF] = {}
+        self.setMinimumSize(280, 240)
+        self.setMouseTracking(True)
+        self.setAccessibleName("Expanded state machine")
+        document.changed.connect(self._edited)
+        for signal in (session.layer_changed, session.theme_changed, session.selection_changed):
+            signal.connect(self._stale)
+
+    def _edited(self, before: Project, after: Project) -> None:
+        if before.graphs is not after.graphs:
+            self._stale()
+
+    def _stale(self) -> None:
+        self._picture = None
+        self.update()
+
+    def resizeEvent(self, event: object) -> None:
+        self._stale()
+
+    def paintEvent(self, event: QPaintEvent) -> None:
+        if self._picture is None:
+            self._picture = self._draw()
+        painter = QPainter(self)
+        painter.drawPixmap(0, 0, self._picture)
+        painter.end()
+
+    def _draw(self) -> QPixmap:
+        t = theme(self.session.theme)
+        ratio = self.devicePixelRatioF()
+        out = QPixmap(round(self.width() * ratio), round(self.height() * ratio))
+        out.setDevicePixelRatio(ratio)
+        out.fill(QColor(t.panel))
+        painter = QPainter(out)
+        painter.setRenderHint(QPainter.RenderHint.Antialiasing)
+        graph = self.document.project.graphs[self.session.layer]
+        self._places = places(graph, QRectF(self.rect()))
+        chosen = set(self.session.actions)
+        line = QColor(t.text)
+        whole = size(self.document.project, self.session.layer)
+        line.setAlpha(max(14, min(70, 4200 // max(1, whole.connections))))
+        painter.setPen(QPen(line, 0.8))
+        strong = []
+        for n, c in enumerate(connections(self.document.project, graph)):
+            if n >= MOST:
+                break
+            if c.source in self._places and c.target in self._places:
+                if c.source in chosen or c.target in chosen:
+                    strong.append(c)
+                painter.drawLine(self._places[c.source], self._places[c.target])
+        painter.setPen(QPen(QColor(t.text), 1.2))
+        for c in strong:
+            painter.drawLine(self._places[c.source], self._places[c.target])
+        for ident, at in self._places.items():
+            action = graph.actions[ident]
+            radius = 8.0 if action.kind == "stance" else 4.5
+            painter.setPen(QPen(QColor(t.text if ident in chosen else t.panel), 1.6))
+            painter.setBrush(t.fill(action.kind))
+            painter.drawEllipse(at, radius, radius)
+            if action.kind == "stance":
+                stance = graph.stances.get(action.stance)
+                below = max((self._places[a.id].y() for a in graph.of(action.stance, "gesture") if a.id in self._places), default=at.y())
+                box = QRectF(at.x() - 70, max(below, at.y() + 4) + 7, 140, 18)
+                painter.setPen(QColor(t.text))
+                painter.drawText(box, Qt.AlignmentFlag.AlignCenter, stance.name if stance else "")
+        self._words(painter, whole.clips, whole.states, whole.connections)
+        painter.end()
+        return out
+
+    def _words(self, painter: QPainter, clips: int, states: int, links: int) -> None:
+        t = theme(self.session.theme)
+        painter.setPen(QColor(t.text))
+        font = painter.font()
+        font.setPixelSize(22)
+        font.setBold(True)
+        painter.setFont(font)
+        painter.drawText(QRectF(20, 14, 400, 30), Qt.AlignmentFlag.AlignVCenter, f"{links:,} connections")
+        font.setPixelSize(13)
+        font.setBold(False)
+        painter.setFont(font)
+        painter.setPen(QColor(t.dim))
+        painter.drawText(
+            QRectF(20, 44, 420, 20), Qt.AlignmentFlag.AlignVCenter, f"among {states} states, in the {self.session.layer} layer alone."
+        )
+        painter.drawText(QRectF(20, 64, 420, 20), Qt.AlignmentFlag.AlignVCenter, f"You placed {clips} clips.")
+        if links > MOST:
+            painter.drawText(QRectF(20, 84, 420, 20), Qt.AlignmentFlag.AlignVCenter, f"The first {MOST:,} are drawn.")
+
+    def _at(self, point: QPointF) -> Action | None:
+        near = min(self._places.items(), key=lambda item: (item[1] - point).manhattanLength(), default=None)
+        if near is None or (near[1] - point).manhattanLength() > 12:
+            return None
+        return self.document.project.graphs[self.session.layer].actions.get(near[0])
+
+    def mousePressEvent(self, event: QMouseEvent) -> None:
+        action = self._at(event.position())
+        if action is not None:
+            self.session.jump(action=action.id)
+
+    def event(self, event: object) -> bool:
+        if isinstance(event, QHelpEvent):
+            action = self._at(QPointF(event.pos()))
+            words = ""
+            if action is not None:
+                end = self.document.project.stance(ends_in(action))
+                words = f"{KIND_MARKS[action.kind]} {action.name}\nleads to {end.name if end else '?'}"
+            QToolTip.showText(event.globalPos(), words, self)
+            return True
+        return super().event(event)  # type: ignore[arg-type]

@@ -1,0 +1,217 @@
+"""What can be done in the editor: one list that makes the menus and the keys, and the words about what is under the mouse."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import TYPE_CHECKING
+
+from PySide6.QtCore import Qt
+from PySide6.QtGui import QKeyEvent, QKeySequence
+from PySide6.QtWidgets import QMenu
+
+from app.features.graph.graph_drops import Load
+from app.features.manual.arranging import arranged
+from app.features.manual.manual_painter import facts, words_of
+from app.features.manual.manual_scene import Hit
+from metagraph.graph import manual_edits
+from metagraph.graph.manual import ANY, Link
+from metagraph.graph.model import Project
+
+if TYPE_CHECKING:
+    from app.features.manual.manual_canvas import ManualCanvas
+
+Run = Callable[[], object]
+Standard = QKeySequence.StandardKey
+SHIFT = 28.0  # units by which a duplicate stands beside what it is of
+
+
+class Clipboard:
+    """What was copied last: states with the links among them, or the settings of a link."""
+
+    piece: manual_edits.Piece | None = None
+    settings: Link | None = None
+
+
+kept = Clipboard()
+
+
+def remove(canvas: ManualCanvas) -> None:
+    s = canvas.session
+    count = len(s.states) + len(s.links)
+    what = f"{count} nodes and links" if s.states and s.links else f"{count} states" if s.states else f"{count} links"
+    text = f"Remove {what if count > 1 else 'state' if s.states else 'link'}"
+    canvas.do(text, lambda p: manual_edits.remove(p, s.states, s.links))
+
+
+def rename(canvas: ManualCanvas) -> None:
+    """Go to the field of the selected state's name, or of the clip's in the library."""
+    window, s = canvas.window(), canvas.session
+    if len(s.clips) == 1:
+        window.library.rename(s.clips[0])  # type: ignore[attr-defined]
+    elif len(s.states) == 1:
+        field = window.manual.editor.inspector.name  # type: ignore[attr-defined]
+        window.show_dock("properties")  # type: ignore[attr-defined]
+        field.setFocus()
+        field.selectAll()
+
+
+def copy(canvas: ManualCanvas) -> None:
+    """Keep the selected states, or the settings of the selected link."""
+    s, project = canvas.session, canvas.document.project
+    if s.states:
+        kept.piece, kept.settings = manual_edits.copied(project, s.states), None
+    elif len(s.links) == 1:
+        kept.piece, kept.settings = None, project.link(s.links[0])
+
+
+def paste(canvas: ManualCanvas) -> None:
+    """Paste states where the mouse is, or settings onto the selected links."""
+    links, settings = canvas.session.links, kept.settings
+    if settings is not None and links:
+        canvas.do("Paste link settings", lambda p: manual_edits.paste_settings(p, links, settings))
+    elif kept.piece is not None:
+        at = canvas.view.back(canvas.at)
+        _paste(canvas, kept.piece, at.x(), at.y(), "Paste")
+
+
+def duplicate(canvas: ManualCanvas) -> None:
+    piece = manual_edits.copied(canvas.document.project, canvas.session.states)
+    if piece.states:
+        x, y = min(s.x for s in piece.states), min(s.y for s in piece.states)
+        _paste(canvas, piece, x + SHIFT, y + SHIFT, "Duplicate")
+
+
+def _paste(canvas: ManualCanvas, piece: manual_edits.Piece, x: float, y: float, verb: str) -> None:
+    layer = canvas.session.layer
+    made: tuple[str, ...] = ()
+
+    def edit(project: Project) -> Project:
+        nonlocal made
+        after, made = manual_edits.paste(project, layer, piece, round(x / 8) * 8, round(y / 8) * 8)
+        return after
+
+    if canvas.do(f"{verb} {len(piece.states)} state{'s' if len(piece.states) != 1 else ''}", edit):
+        canvas.session.select_states(made)
+
+
+def select_all(canvas: ManualCanvas) -> None:
+    canvas.session.select_states(tuple(canvas.scene().manual.states))
+
+
+def arrange(canvas: ManualCanvas) -> None:
+    """Put every node where the automatic layout has it, and show all."""
+    layer, places = canvas.session.layer, arranged(canvas.scene().manual)
+    canvas.do("Arrange nodes", lambda p: manual_edits.move_nodes(p, layer, places))
+    canvas.session.select_states()
+    canvas.fit()
+
+
+def start_here(canvas: ManualCanvas, state: str) -> None:
+    canvas.do("Start here", lambda p: manual_edits.set_start(p, state))
+
+
+def nudge(canvas: ManualCanvas, x: float, y: float) -> None:
+    """Move the selected nodes a little."""
+    layer, found = canvas.session.layer, canvas.scene().manual.states
+    places = {i: (found[i].x + x, found[i].y + y) for i in canvas.session.states if i in found}
+    if places:
+        canvas.do("Move node" if len(places) == 1 else f"Move {len(places)} nodes", lambda p: manual_edits.move_nodes(p, layer, places))
+
+
+def can_paste(canvas: ManualCanvas) -> bool:
+    return kept.piece is not None or (kept.settings is not None and bool(canvas.session.links))
+
+
+def for_key(canvas: ManualCanvas, event: QKeyEvent) -> Run | None:
+    """Return what a key does here, None where it is the window's."""
+    s = canvas.session
+    if event.key() == Qt.Key.Key_Escape:
+        return canvas.cancel if canvas.gesture is not None else None
+    if event.key() == Qt.Key.Key_D and event.modifiers() == Qt.KeyboardModifier.ControlModifier:  # on X11 also a key to delete
+        return lambda: duplicate(canvas)
+    for standard, run in (
+        (Standard.Delete, remove), (Standard.Copy, copy), (Standard.Paste, paste), (Standard.SelectAll, select_all),
+    ):  # fmt: skip
+        if event.matches(standard):
+            return lambda: run(canvas)
+    plain = not event.modifiers() & ~Qt.KeyboardModifier.KeypadModifier
+    if event.key() == Qt.Key.Key_F and plain:
+        return canvas.fit
+    if event.key() == Qt.Key.Key_Backspace and plain:
+        return lambda: remove(canvas)
+    arrow = {Qt.Key.Key_Left: (-1, 0), Qt.Key.Key_Right: (1, 0), Qt.Key.Key_Up: (0, -1), Qt.Key.Key_Down: (0, 1)}
+    step = arrow.get(Qt.Key(event.key()))
+    if step is not None and s.states:
+        far = 24 if event.modifiers() & Qt.KeyboardModifier.ShiftModifier else 8
+        return lambda: nudge(canvas, step[0] * far, step[1] * far)
+    return None
+
+
+def menu(canvas: ManualCanvas, hit: Hit) -> QMenu:
+    """Return what can be done with what is under the mouse; it is selected, unless it is already."""
+    out = QMenu(canvas)
+    out.setAttribute(Qt.WidgetAttribute.WA_DeleteOnClose)
+    s = canvas.session
+
+    def add(text: str, run: Run, keys: str = "", enabled: bool = True) -> None:
+        action = out.addAction(f"{text}\t{keys}" if keys else text, run)
+        action.setEnabled(enabled)
+
+    node = hit.area in ("node", "edge")
+    if node and hit.ident != ANY and hit.ident not in s.states:
+        s.select_states((hit.ident,))
+    if hit.area == "link" and hit.ident not in s.links:
+        s.select_states((), (hit.ident,))
+    if node:
+        add("Draw link from here", lambda: canvas.begin_link(hit.ident))
+    if node and hit.ident != ANY:
+        add("Start here", lambda: start_here(canvas, hit.ident), enabled=canvas.scene().manual.start != hit.ident)
+        add("Play alone", lambda: s.show_context(hit.ident))
+        out.addSeparator()
+        add("Copy", lambda: copy(canvas), "Ctrl+C")
+        add("Duplicate", lambda: duplicate(canvas), "Ctrl+D")
+        add("Remove", lambda: remove(canvas), "Del")
+    elif hit.area == "link":
+        add("Play link", lambda: s.show_context(hit.ident))
+        out.addSeparator()
+        add("Copy settings", lambda: copy(canvas), "Ctrl+C", len(s.links) == 1)
+        add("Paste settings", lambda: paste(canvas), "Ctrl+V", kept.settings is not None)
+        add("Remove", lambda: remove(canvas), "Del")
+    elif not node:
+        add("Paste", lambda: paste(canvas), "Ctrl+V", kept.piece is not None)
+        add("Select all", lambda: select_all(canvas), "Ctrl+A")
+        out.addSeparator()
+        add("Arrange nodes", lambda: arrange(canvas), enabled=bool(canvas.scene().manual.states))
+        add("Show all", lambda: _show_all(canvas), "F")
+    return out
+
+
+def _show_all(canvas: ManualCanvas) -> None:
+    canvas.session.select_states()
+    canvas.fit()
+
+
+def drop_words(project: Project, load: Load) -> tuple[bool, str]:
+    """Return whether a drop makes states, and what it does or why not."""
+    why = manual_edits.refusal(project, load.clips) if load.clips else None
+    words = why or f"drop to make {f'{load.count} states' if load.count > 1 else 'a state'} here"
+    return why is None, words[:1].upper() + words[1:]
+
+
+def tip(canvas: ManualCanvas, hit: Hit) -> str:
+    """Return what to say about what is under the mouse."""
+    manual = canvas.scene().manual
+    trouble = canvas.troubles.get(hit.ident, "")
+    if hit.ident == ANY:
+        return "Any state: links from here can be taken from every state\nDrag from its border to a state"
+    if hit.area in ("node", "edge") and hit.ident in manual.states:
+        state = manual.states[hit.ident]
+        help_ = "Drag to draw a link" if hit.area == "edge" else "Drag to move, double-click to play it alone"
+        return "\n".join(x for x in (state.name, facts(canvas.document.project, state), trouble, help_) if x)
+    if hit.area == "link" and hit.ident in manual.links:
+        link = manual.links[hit.ident]
+        source, target = manual.states.get(link.source), manual.states.get(link.target)
+        names = f"{source.name if source else 'Any state'} → {target.name if target else '?'}"
+        when = "on request: " if link.condition.when == "request" else "when finished " if not words_of(link) else "at "
+        return "\n".join(x for x in (names, f"{when}{words_of(link)}".strip(), f"blends for {link.blend:g} s", trouble) if x)
+    return ""

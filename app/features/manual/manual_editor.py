@@ -1,0 +1,85 @@
+"""The editor as it stands in the window's middle: the canvas, and above it what is fired, arranged and shown."""
+
+from __future__ import annotations
+
+from PySide6.QtWidgets import QHBoxLayout, QLabel, QToolButton, QVBoxLayout, QWidget
+
+from app.features.manual import manual_commands as commands
+from app.features.manual.manual_canvas import ManualCanvas
+from app.features.manual.manual_inspector import Inspector
+from app.look.plural import many
+from app.widgets.form_fields import Chooser
+from metagraph.graph.check import Problem
+from metagraph.graph.model import Project
+
+
+class ManualEditor(QWidget):
+    """canvas and inspector; `show_problems` marks what is wrong."""
+
+    def __init__(self, canvas: ManualCanvas, parent: QWidget | None = None) -> None:
+        super().__init__(parent)
+        self.canvas, self.session = canvas, canvas.session
+        self.inspector = Inspector(canvas, canvas.performance)
+        self.words = QLabel(self)
+        self.words.setProperty("dim", True)
+        self.trigger = Chooser(self, toolTip="A trigger that links of this layer wait for")
+        self.trigger.setMinimumWidth(150)
+        self.fire = _button(self, "Fire", "Fire it now: the machine goes there over the shortest way of links")
+        self.fire.clicked.connect(self._fire)
+        self.arrange = _button(self, "Arrange", "Put the nodes in columns, from the start on")
+        self.arrange.clicked.connect(lambda: commands.arrange(canvas))
+        self.fit = _button(self, "Show all", "Show what is selected, or all (F)")
+        self.fit.clicked.connect(canvas.fit)
+        row = QHBoxLayout()
+        row.setContentsMargins(12, 6, 12, 6)
+        row.setSpacing(8)
+        row.addWidget(self.words)
+        row.addStretch(1)
+        for part in (self.trigger, self.fire, self.arrange, self.fit):
+            row.addWidget(part)
+        layout = QVBoxLayout(self)
+        layout.setContentsMargins(0, 0, 0, 0)
+        layout.setSpacing(0)
+        layout.addLayout(row)
+        layout.addWidget(canvas, 1)
+        canvas.document.changed.connect(self._edited)
+        canvas.viewed.connect(self.show_words)
+        self.session.layer_changed.connect(self.show_words)
+        self.show_words()
+
+    def _edited(self, before: Project, after: Project) -> None:
+        if before.manual is not after.manual:
+            self.show_words()
+
+    def show_words(self) -> None:
+        """Show how large the layer's machine is, and its triggers."""
+        manual = self.canvas.scene().manual
+        zoom = f"{self.canvas.view.scale * 100:.0f} %"
+        self.words.setText(f"{many(len(manual.states), 'state')}, {many(len(manual.links), 'link')}    {zoom}")
+        chosen = self.trigger.currentData()
+        first = chosen if chosen in manual.triggers else next(iter(manual.triggers), None)
+        self.trigger.show_entries([(t, t) for t in manual.triggers], first, "no trigger yet")
+        for part in (self.trigger, self.fire):
+            part.setEnabled(bool(manual.triggers))
+        self.arrange.setEnabled(bool(manual.states))
+
+    def _fire(self) -> None:
+        trigger = self.trigger.currentData()
+        if trigger:
+            self.canvas.performance.fire(trigger)
+
+    def show_problems(self, problems: tuple[Problem, ...]) -> None:
+        """Mark the states and links that have problems."""
+        troubles: dict[str, str] = {}
+        for p in problems:
+            ident = p.state or p.link
+            if ident and p.severity != "hint":
+                troubles.setdefault(ident, f"{p.message[:1].upper()}{p.message[1:]}. {p.remedy}")
+        self.canvas.set_troubles(troubles)
+        self.inspector.show_selection()
+
+
+def _button(parent: QWidget, text: str, tip: str) -> QToolButton:
+    out = QToolButton(parent, text=text, toolTip=tip)
+    out.setStyleSheet("QToolButton { padding: 5px 12px; }")
+    return out

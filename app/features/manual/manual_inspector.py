@@ -1,0 +1,381 @@
+"""Properties in the editor: of states or links, one or many at once, or of the whole machine when nothing is selected."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from html import escape
+from typing import Any
+
+from PySide6.QtCore import Qt
+from PySide6.QtWidgets import (
+    QButtonGroup,
+    QCheckBox,
+    QFormLayout,
+    QHBoxLayout,
+    QLabel,
+    QPushButton,
+    QScrollArea,
+    QStackedWidget,
+    QToolButton,
+    QVBoxLayout,
+    QWidget,
+)
+
+from app.features.manual import manual_commands as commands
+from app.features.manual.manual_canvas import ManualCanvas
+from app.features.manual.manual_mask import StateMask
+from app.look.plural import many
+from app.look.theme import theme
+from app.stage.performance import Performance
+from app.widgets.form_fields import MIXED, Chooser, Field, Mixed, Seconds, common
+from metagraph.graph import manual_edits
+from metagraph.graph.manual import Link, State
+from metagraph.graph.model import LIMBS, Project
+from metagraph.playback.manual import action_of
+
+WHEN = (("when its source has finished", "finished"), ("on request", "request"))
+
+
+class Inspector(QScrollArea):
+    """Every control writes through one edit; what is shown is read back from the project."""
+
+    def __init__(self, canvas: ManualCanvas, performance: Performance, parent: QWidget | None = None) -> None:
+        super().__init__(parent)
+        self.canvas, self.performance = canvas, performance
+        self.document, self.session = canvas.document, canvas.session
+        self.setWidgetResizable(True)
+        self.setFrameShape(QScrollArea.Shape.NoFrame)
+        self.setHorizontalScrollBarPolicy(Qt.ScrollBarPolicy.ScrollBarAlwaysOff)
+        self.pages = QStackedWidget(self)
+        for page in (self._machine_page(), self._state_page(), self._link_page()):
+            self.pages.addWidget(page)
+        self.setWidget(self.pages)
+        self.document.changed.connect(self._edited)
+        for signal in (self.session.selection_changed, self.session.layer_changed, self.session.theme_changed):
+            signal.connect(self.show_selection)
+        self.show_selection()
+
+    # --- building
+
+    def _page(self) -> tuple[QWidget, QVBoxLayout, QFormLayout]:
+        page = QWidget(self)
+        box = QVBoxLayout(page)
+        box.setContentsMargins(14, 10, 14, 14)
+        box.setSpacing(8)
+        form = QFormLayout()
+        form.setHorizontalSpacing(14)
+        form.setVerticalSpacing(7)
+        form.setLabelAlignment(Qt.AlignmentFlag.AlignLeft | Qt.AlignmentFlag.AlignVCenter)
+        form.setFieldGrowthPolicy(QFormLayout.FieldGrowthPolicy.AllNonFixedFieldsGrow)
+        return page, box, form
+
+    def _machine_page(self) -> QWidget:
+        page, box, form = self._page()
+        self.title, self.words = QLabel(page), QLabel(page, wordWrap=True)
+        self.title.setProperty("title", True)
+        self.words.setProperty("dim", True)
+        box.addWidget(self.title)
+        box.addWidget(self.words)
+        self.start = Chooser(page, toolTip="The state this layer begins in")
+        self.start.activated.connect(lambda n: self._try("Start here", lambda p: manual_edits.set_start(p, self.start.itemData(n))))
+        form.addRow("Begins in", self.start)
+        box.addLayout(form)
+        self.triggers_title = QLabel("Triggers: click to fire one now", page)
+        self.triggers_title.setProperty("dim", True)
+        box.addWidget(self.triggers_title)
+        self.triggers = QVBoxLayout()
+        self.triggers.setSpacing(3)
+        box.addLayout(self.triggers)
+        self._shown_triggers: tuple[str, ...] = ()
+        box.addStretch(1)
+        return page
+
+    def _state_page(self) -> QWidget:
+        page, box, form = self._page()
+        self.name = Field(page, "Name of the state", "Name")
+        self.name.editingFinished.connect(self._rename)
+        box.addWidget(self.name)
+        self.clip = QLabel(page, wordWrap=True)
+        self.clip.setProperty("dim", True)
+        box.addWidget(self.clip)
+        box.addLayout(form)
+        self.loop = QCheckBox("plays over and over", page)
+        self.loop.setToolTip("Otherwise it holds its last frame")
+        self.loop.clicked.connect(lambda: self._state("Change loop", loop=self.loop.checkState() != Qt.CheckState.Unchecked))
+        form.addRow("Loop", self.loop)
+        self.first, self.last = Seconds(page, "Start in the clip"), Seconds(page, "End in the clip")
+        self.first.valueChanged.connect(lambda v: self._trim("start", v))
+        self.last.valueChanged.connect(lambda v: self._trim("end", v))
+        form.addRow("Start, end", _row(page, self.first, self.last))
+        self.limb = QButtonGroup(page)
+        row = QWidget(page)
+        line = QHBoxLayout(row)
+        line.setContentsMargins(0, 0, 0, 0)
+        line.setSpacing(2)
+        for n, limb in enumerate(LIMBS):
+            tip = f"Moves {limb} arm{'s' if limb == 'both' else ''}; the other keeps to the base pose"
+            button = QToolButton(row, text=limb.capitalize(), checkable=True, toolTip=tip)
+            self.limb.addButton(button, n)
+            line.addWidget(button)
+        line.addStretch(1)
+        self.limb.idClicked.connect(lambda n: self._state("Change limb", limb=LIMBS[n]))
+        form.addRow("Limb", row)
+        self.joints = QPushButton(page, toolTip="Let it move only some joints")
+        self.joints.setFocusPolicy(Qt.FocusPolicy.TabFocus)
+        self.joints.clicked.connect(lambda: StateMask(self.document, self.session, self).open())
+        form.addRow("Joints", self.joints)
+        self.layer = QLabel(page)
+        form.addRow("Layer", self.layer)
+        self.begin = QPushButton("Start here", page, toolTip="Let the layer begin in this state")
+        self.begin.clicked.connect(lambda: commands.start_here(self.canvas, self.session.states[0]))
+        self.alone = QPushButton("Play alone", page)
+        self.alone.clicked.connect(lambda: self.session.show_context(self.session.states[0]))
+        box.addWidget(_row(page, self.begin, self.alone))
+        self.state_trouble = QLabel(page, wordWrap=True)
+        box.addWidget(self.state_trouble)
+        box.addStretch(1)
+        return page
+
+    def _link_page(self) -> QWidget:
+        page, box, form = self._page()
+        self.ends = QLabel(page, wordWrap=True)
+        self.ends.setProperty("title", True)
+        box.addWidget(self.ends)
+        box.addLayout(form)
+        self.when = Chooser(page, toolTip="When the link is taken")
+        self.when.activated.connect(lambda n: self._link("Change condition", condition={"when": WHEN[n][1]}))
+        form.addRow("Taken", self.when)
+        self.trigger = Field(page, "What is fired to take it", "Trigger")
+        self.trigger.editingFinished.connect(self._retrigger)
+        form.addRow("Trigger", self.trigger)
+        self.weight = Seconds(page, "Weight against the other links taken when the source has finished; 1 is usual", 1000, "", 0.1)
+        self.weight.valueChanged.connect(self._weigh)
+        form.addRow("Weight", self.weight)
+        self.leaves = QCheckBox("at", page)
+        self.leaves.setAccessibleName("Has exit time")
+        self.leaves.setToolTip("Whether the source is left at a moment of its clip")
+        self.leaves.clicked.connect(self._leave)
+        self.exit = Seconds(page, "Exit time: seconds of the source's clip at which it may be left")
+        self.exit.valueChanged.connect(lambda v: self._number("Change exit time", "exit_time", v))
+        form.addRow("Exit time", _row(page, self.leaves, self.exit))
+        self.blend = Seconds(page, "Blend: seconds in which the target takes over")
+        self.blend.valueChanged.connect(lambda v: self._number("Change blend", "blend", v))
+        form.addRow("Blend", self.blend)
+        self.form = form
+        self.fire = QPushButton("Fire", page, toolTip="Fire its trigger now")
+        self.fire.clicked.connect(self._fire)
+        self.play = QPushButton("Play link", page, toolTip="Play its source's end, the blend, and its target's beginning")
+        self.play.clicked.connect(lambda: self.session.show_context(self.session.links[0]))
+        box.addWidget(_row(page, self.fire, self.play))
+        self.copy = QPushButton("Copy settings", page)
+        self.copy.clicked.connect(lambda: (commands.copy(self.canvas), self.show_selection()))
+        self.paste = QPushButton("Paste settings", page)
+        self.paste.clicked.connect(lambda: commands.paste(self.canvas))
+        box.addWidget(_row(page, self.copy, self.paste))
+        for button in (self.fire, self.play, self.copy, self.paste, self.begin, self.alone):
+            button.setFocusPolicy(Qt.FocusPolicy.TabFocus)  # after a click the space bar still plays
+        self.link_trouble = QLabel(page, wordWrap=True)
+        box.addWidget(self.link_trouble)
+        box.addStretch(1)
+        return page
+
+    # --- showing
+
+    def _edited(self, before: Project, after: Project) -> None:
+        if before.manual is not after.manual or before.clips is not after.clips:
+            self.show_selection()
+
+    def states(self) -> list[State]:
+        return [s for i in self.session.states if (s := self.document.project.state(i)) is not None]
+
+    def links(self) -> list[Link]:
+        return [x for i in self.session.links if (x := self.document.project.link(i)) is not None]
+
+    def show_selection(self) -> None:
+        """Show what is selected as it is; links come before states, which are selected with them."""
+        links, states = self.links(), self.states()
+        self.pages.setCurrentIndex(2 if links and not states else 1 if states else 0)
+        if links and not states:
+            self._show_links(links)
+        elif states:
+            self._show_states(states)
+        else:
+            self._show_machine()
+
+    def _trouble(self, label: QLabel, idents: list[str]) -> None:
+        words = [self.canvas.troubles[i] for i in idents if i in self.canvas.troubles]
+        label.setText(words[0] if words else "")
+        label.setStyleSheet(f"color: {theme(self.session.theme).warning}")
+
+    def _show_machine(self) -> None:
+        manual = self.canvas.scene().manual
+        self.title.setText(f"{self.session.layer.capitalize()} layer")
+        self.words.setText(f"{many(len(manual.states), 'state')}, {many(len(manual.links), 'link')}. Select one to change it.")
+        self.start.show_entries([(s.name, s.id) for s in manual.states.values()], manual.start, "no state yet")
+        self.start.setEnabled(bool(manual.states))
+        self.triggers_title.setVisible(bool(manual.triggers))
+        if manual.triggers != self._shown_triggers:
+            self._shown_triggers = manual.triggers
+            while (item := self.triggers.takeAt(0)) is not None:
+                item.widget().deleteLater()
+            for trigger in manual.triggers:
+                button = QPushButton(trigger, self)
+                button.setFocusPolicy(Qt.FocusPolicy.TabFocus)
+                button.clicked.connect(lambda _=False, t=trigger: self.performance.fire(t))
+                self.triggers.addWidget(button)
+
+    def _show_states(self, states: list[State]) -> None:
+        project, one = self.document.project, len(states) == 1
+        first = states[0]
+        self.name.setEnabled(one)
+        self.name.show_text(first.name if one else many(len(states), "state"), tuple(s.id for s in states))
+        clips = {project.clips[s.clip].name if s.clip in project.clips else "a clip that is gone" for s in states}
+        self.clip.setText(f"plays {next(iter(clips))}" if len(clips) == 1 else f"play {many(len(clips), 'clip')}")
+        loop = common([s.loop for s in states])
+        self.loop.setTristate(loop is Mixed)
+        self.loop.setCheckState(_check(loop))
+        spans = [project.span(action_of(s)) for s in states]
+        self.first.show_value(common([round(a, 4) for a, _ in spans]))
+        self.last.show_value(common([round(b, 4) for _, b in spans]))
+        limb = common([s.limb for s in states])
+        self.limb.setExclusive(limb is not Mixed)
+        for n, name in enumerate(LIMBS):
+            self.limb.button(n).setChecked(name == limb)
+        joints = common([s.joints for s in states])
+        self.joints.setText(MIXED if joints is Mixed else f"{len(joints)} joints…" if joints else "All…")
+        self.joints.setEnabled(project.skeleton is not None)
+        self.layer.setText(first.layer)
+        start = self.canvas.scene().manual.start
+        self.begin.setEnabled(one and start != first.id)
+        self.begin.setText("Starts here" if one and start == first.id else "Start here")
+        self.alone.setEnabled(one)
+        self._trouble(self.state_trouble, [s.id for s in states])
+
+    def _show_links(self, links: list[Link]) -> None:
+        project, one = self.document.project, len(links) == 1
+        source, target = project.state(links[0].source), project.state(links[0].target)
+        names = f"{escape(source.name) if source else 'Any state'} → {escape(target.name) if target else '?'}"
+        self.ends.setText(names if one else many(len(links), "link"))
+        when = common([x.condition.when for x in links])
+        self.when.show_entries(WHEN, None if when is Mixed else when, MIXED)
+        trigger = common([x.condition.trigger for x in links])
+        self.trigger.show_text(MIXED if trigger is Mixed else trigger, tuple(x.id for x in links))
+        self.form.setRowVisible(self.trigger, when != "finished")
+        self.form.setRowVisible(self.weight, when != "request")
+        self.weight.show_value(common([x.condition.weight for x in links]))
+        left = common([x.exit_time is not None for x in links])
+        self.leaves.setTristate(left is Mixed)
+        self.leaves.setCheckState(_check(left))
+        otherwise = {"request": "at once", "finished": "at its end"}.get(str(when), "none")
+        self.leaves.setText("at" if left is not False else otherwise)
+        at = common([x.exit_time for x in links])
+        self.exit.setVisible(left is not False)
+        if at is not None:
+            self.exit.show_value(at)
+        self.blend.show_value(common([x.blend for x in links]))
+        self.fire.setVisible(one and when == "request")
+        self.play.setEnabled(one)
+        self.copy.setEnabled(one)
+        self.paste.setEnabled(commands.kept.settings is not None)
+        self._trouble(self.link_trouble, [x.id for x in links])
+
+    # --- editing
+
+    def _try(self, text: str, edit: Callable[[Project], Project]) -> None:
+        if not self.canvas.do(text, edit):
+            self.show_selection()
+
+    def _state(self, text: str, **changes: Any) -> None:
+        chosen = self.session.states
+        self._try(text, lambda p: manual_edits.update_states(p, chosen, **changes))
+
+    def _link(self, text: str, **changes: Any) -> None:
+        chosen = self.session.links
+        self._try(text, lambda p: manual_edits.update_links(p, chosen, **changes))
+
+    def _number(self, text: str, field: str, value: float) -> None:
+        if value < 0:  # "mixed" was typed over with nothing
+            self.show_selection()
+        else:
+            self._link(text, **{field: round(value, 3)})
+
+    def _rename(self) -> None:
+        states = self.states()
+        name = " ".join(self.name.text().split())
+        if len(states) == 1 and name != states[0].name:
+            self._state("Rename state", name=name)
+
+    def _trim(self, field: str, value: float) -> None:
+        chosen = self.session.states
+
+        def edit(project: Project) -> Project:
+            for ident in chosen:
+                state = project.state(ident)
+                entry = project.clips.get(state.clip) if state is not None else None
+                if state is None or entry is None:
+                    continue
+                start, end = project.span(action_of(state))
+                shortest = 1 / entry.fps
+                if field == "start":
+                    at: float | None = round(min(max(0.0, value), max(0.0, end - shortest)), 3)
+                else:
+                    at = round(max(value, start + shortest), 3)
+                    at = None if at >= entry.duration - shortest / 2 else at
+                project = manual_edits.update_states(project, [ident], **{field: at})
+            return project
+
+        if value >= 0:
+            self._try("Trim", edit)
+        self.show_selection()  # what was out of the clip was clamped
+
+    def _retrigger(self) -> None:
+        links, words = self.links(), self.trigger.text()
+        mixed = bool(links) and common([x.condition.trigger for x in links]) is Mixed
+        if links and not (mixed and words == MIXED) and any(x.condition.trigger != words for x in links):
+            self._link("Change trigger", condition={"trigger": words})
+
+    def _weigh(self, value: float) -> None:
+        if value > 0:
+            self._link("Change weight", condition={"weight": round(value, 3)})
+        else:
+            self.show_selection()
+
+    def _leave(self) -> None:
+        """Give links an exit time, at the end of what their source plays, or none."""
+        on, chosen = self.leaves.checkState() != Qt.CheckState.Unchecked, self.session.links
+
+        def edit(project: Project) -> Project:
+            for ident in chosen:
+                link = project.link(ident)
+                if link is None or (on and link.exit_time is not None):
+                    continue
+                source = project.state(link.source)
+                span = project.span(action_of(source)) if source is not None else (0.0, 1.0)
+                at = round(max(span[0], span[1] - link.blend), 3)
+                project = manual_edits.update_links(project, [ident], exit_time=at if on else None)
+            return project
+
+        self._try("Change exit time", edit)
+        self.show_selection()
+
+    def _fire(self) -> None:
+        links = self.links()
+        if links and links[0].condition.trigger:
+            self.performance.fire(links[0].condition.trigger)
+
+
+def _row(parent: QWidget, *fields: QWidget) -> QWidget:
+    row = QWidget(parent)
+    line = QHBoxLayout(row)
+    line.setContentsMargins(0, 0, 0, 0)
+    for field in fields:
+        line.addWidget(field, 0 if isinstance(field, QCheckBox) else 1)
+    if any(isinstance(f, QCheckBox) for f in fields):
+        line.addStretch(1)
+    return row
+
+
+def _check(value: Any) -> Qt.CheckState:
+    if value is Mixed:
+        return Qt.CheckState.PartiallyChecked
+    return Qt.CheckState.Checked if value else Qt.CheckState.Unchecked

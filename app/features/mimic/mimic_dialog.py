@@ -1,0 +1,181 @@
+"""Mimicking a recording of keypoints: what was read, how it is to be mimicked, and the requests that become of it."""
+
+from __future__ import annotations
+
+import re
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from PySide6.QtCore import QSettings, Qt
+from PySide6.QtGui import QIcon
+from PySide6.QtWidgets import (
+    QCheckBox,
+    QDialog,
+    QDialogButtonBox,
+    QFileDialog,
+    QFormLayout,
+    QHBoxLayout,
+    QLabel,
+    QMessageBox,
+    QPushButton,
+    QVBoxLayout,
+)
+
+from app.look.plural import many
+from app.look.theme import strengthen
+from app.project.jobs import Job
+from metagraph.formats.keypoints import read_keypoints
+from metagraph.graph import staging
+from metagraph.graph.asks import Performance
+from metagraph.graph.model import LAYERS, Project
+from metagraph.mimicry.performing import REST, Mimicry, mimic_performance, placed
+from metagraph.mimicry.points import Keypoints
+
+if TYPE_CHECKING:
+    from app.shell.window import Window
+
+FILTER = "Keypoints of OpenPose or MediaPipe (*.json *.jsonl);;All files (*)"
+SAMPLE = Path(__file__).resolve().parents[3] / "sample_clips" / "keypoints" / "conversation.openpose.json"
+_NUMBERED = re.compile(r"_\d+_keypoints\.json$", re.I)
+
+
+class MimicDialog(QDialog):
+    """How a recording is mimicked; `accept` makes requests of it, in the performance on stage or a new one."""
+
+    def __init__(self, window: Window, keypoints: Keypoints, name: str) -> None:
+        super().__init__(window)
+        self.window_, self.keypoints, self.name = window, keypoints, name
+        self.setAttribute(Qt.WidgetAttribute.WA_DeleteOnClose)
+        self.setWindowTitle("Mimic keypoints")
+        self.setMinimumWidth(480)
+        layout = QVBoxLayout(self)
+        deep = "with depth" if keypoints.dims == 3 else "without depth"
+        facts = QLabel(f"{name}: {many(len(keypoints), 'frame')}, {keypoints.seconds:.1f} s, {deep}", self)
+        facts.setWordWrap(True)
+        layout.addWidget(facts)
+        for note in keypoints.notes:
+            layout.addWidget(self._dim(f"{note[:1].upper()}{note[1:]}."))
+        form = QFormLayout()
+        layout.addLayout(form)
+        self.mirror = self._box(
+            "As in a mirror", "The character moves its right where the person moves the left, as somebody face to face does", True
+        )
+        form.addRow("Sides", self.mirror)
+        row = QHBoxLayout()
+        self.layers = {layer: self._box(layer.capitalize(), f"The {layer} goes to the stances the person is in", True) for layer in LAYERS}
+        project = window.document.project
+        for layer, box in self.layers.items():
+            box.setEnabled(bool(project.graphs[layer].stances))
+            box.setChecked(box.isEnabled())
+            box.toggled.connect(lambda _: self._changed())
+            row.addWidget(box)
+        row.addStretch(1)
+        form.addRow("Layers", row)
+        self.gaze = self._box("Look where the person looks", "The character looks where the person's head is turned", False)
+        form.addRow("Gaze", self.gaze)
+        kept = window.performance.kept
+        into = f"What is seen is added to '{kept.name}'." if kept is not None else "What is seen becomes a new performance."
+        layout.addWidget(self._dim(f"{into} Gestures and fidgets go on as they do."))
+        if keypoints.dims == 2:
+            layout.addWidget(self._dim("Without depth, leaning towards the camera is not seen."))
+        buttons = QDialogButtonBox(QDialogButtonBox.StandardButton.Cancel, self)
+        buttons.button(QDialogButtonBox.StandardButton.Cancel).setIcon(QIcon())
+        self.go = QPushButton("Mimic", self)
+        strengthen(self.go)
+        buttons.addButton(self.go, QDialogButtonBox.ButtonRole.AcceptRole)
+        self.go.setDefault(True)
+        buttons.accepted.connect(self.accept)
+        buttons.rejected.connect(self.reject)
+        layout.addWidget(buttons)
+
+    def _dim(self, words: str) -> QLabel:
+        label = QLabel(words, self, wordWrap=True)
+        label.setProperty("dim", True)
+        return label
+
+    def _box(self, words: str, tip: str, on: bool) -> QCheckBox:
+        box = QCheckBox(words, self)
+        box.setToolTip(tip)
+        box.setChecked(on)
+        return box
+
+    def _changed(self) -> None:
+        self.go.setEnabled(any(box.isChecked() for box in self.layers.values()))
+
+    def accept(self) -> None:
+        """Look through the recording on a thread, then make requests of what was seen."""
+        window, keypoints, name = self.window_, self.keypoints, self.name
+        project, stage = window.document.project, window.session.performance
+        kept = window.performance.kept
+        into = kept or Performance(name=Path(name).stem, length=round(keypoints.seconds + REST, 3))
+        mirror, gaze = self.mirror.isChecked(), self.gaze.isChecked()
+        layers = [layer for layer, box in self.layers.items() if box.isChecked()]
+
+        def work(job: Job) -> Mimicry:
+            def tell(done: int, total: int) -> None:
+                job.tell(done, total, name)
+                if job.cancelled:
+                    raise RuntimeError("stopped")
+
+            return mimic_performance(project, keypoints, mirror, layers, gaze, into, tell)
+
+        def failed(error: Exception) -> None:
+            QMessageBox.warning(window, "Not mimicked", str(error))
+
+        def done(found: Mimicry) -> None:
+            if window.document.project.skeleton is project.skeleton:
+                _taken(window, found, stage if kept is not None else None)
+            else:
+                window.tell("What was seen was dropped, since another project was opened.")
+
+        window.jobs.start(f"Mimicking {name}", work, done, failed)
+        super().accept()
+
+
+def _taken(window: Window, found: Mimicry, stage: str | None) -> None:
+    """Add what was asked to the performance it was planned for, or keep it as a new one."""
+    made = stage
+
+    def edit(project: Project) -> Project:
+        nonlocal made
+        timed = placed(project, found.performance)
+        if stage is not None and stage in project.performances:
+            there = {ask.id for ask in project.performances[stage].asks}
+            asks = (*project.performances[stage].asks, *(ask for ask in timed.asks if ask.id not in there))
+            return staging.change_performance(project, stage, asks=asks, length=max(timed.length, project.performances[stage].length))
+        project, made = staging.add_performance(project, timed)
+        return project
+
+    if not found.sightings:
+        window.tell("No stance of the project was made out in the keypoints.")
+        return
+    window.document.edit("Mimic keypoints", edit)
+    window.session.set_performance(made)
+    window.session.show_plan()
+    window.tell(f"Saw {many(len(found.sightings), 'stance')}: the requests are in the performance below.")
+
+
+def recording_of(file: Path) -> Path:
+    """Return what to read for a file that was chosen: its folder where it is one of many frames."""
+    if _NUMBERED.search(file.name) and sum(1 for other in file.parent.iterdir() if _NUMBERED.search(other.name)) > 1:
+        return file.parent
+    return file
+
+
+def open_keypoints(window: Window, path: str | Path | None = None) -> None:
+    """Ask for keypoints (or take `path`), read them on a thread and open the dialog."""
+    if not path:
+        start = str(QSettings().value("mimic/folder") or window.document.folder or Path.home())
+        path, _ = QFileDialog.getOpenFileName(window, "Mimic keypoints", start, FILTER)
+        if not path:
+            return
+        QSettings().setValue("mimic/folder", str(Path(path).parent))
+    file = recording_of(Path(path))
+
+    def show(keypoints: Keypoints) -> None:
+        MimicDialog(window, keypoints, file.name).open()
+
+    def failed(error: Exception) -> None:
+        QMessageBox.warning(window, "Not read", str(error))
+
+    window.jobs.start(f"Reading {file.name}", lambda _: read_keypoints(file), show, failed)

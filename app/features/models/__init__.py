@@ -1,0 +1,1 @@
+"""What follows what: models learned from annotations."""

@@ -1,0 +1,341 @@
+"""Importing an annotation: what each tier stands for, what each label means, a look at what comes of it, and what to make of it."""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Callable, Mapping
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from PySide6.QtCore import QSettings, Qt, Signal
+from PySide6.QtGui import QIcon
+from PySide6.QtWidgets import (
+    QCheckBox,
+    QDialog,
+    QDialogButtonBox,
+    QFileDialog,
+    QFormLayout,
+    QHBoxLayout,
+    QInputDialog,
+    QLabel,
+    QLineEdit,
+    QMessageBox,
+    QPushButton,
+    QRadioButton,
+    QVBoxLayout,
+    QWidget,
+)
+
+from app.features.models.annotation_reading import Reading, begin, into, told
+from app.features.models.meaning_choices import ChoiceTable, Entries, Row
+from app.look.plural import many
+from app.look.theme import KIND_MARKS, strengthen, theme
+from app.project.document import Document
+from app.stage.session import Session
+from app.widgets.act_strip import Strip, clock
+from app.widgets.form_fields import Seconds
+from metagraph.formats.elan import read_elan
+from metagraph.graph.model import LAYERS
+from metagraph.playback.annotation import IGNORE, PHASES, ROLES, Annotation, Label, parted
+
+if TYPE_CHECKING:
+    from app.shell.window import Window
+
+SAMPLE = Path(__file__).resolve().parents[3] / "sample_clips" / "annotation" / "conversation.eaf"
+FILTER = "ELAN annotations (*.eaf);;All files (*)"
+MOST = 1000  # labels that can be said otherwise; those beyond are rare
+REMEMBERED = 400  # tiers and labels that are kept for the next project
+WORTH = 10  # acts from which a model is learned unless said otherwise
+OTHER = "other"
+LEGEND = (("gesture", "gesture"), ("fidget", "fidget"), ("transition", "change of stance"))
+ROLE_TIPS = {
+    "left arm": "What the left arm does: gestures, fidgets, changes of stance",
+    "right arm": "What the right arm does: gestures, fidgets, changes of stance",
+    "arms": "Gestures of one or both arms that the annotation does not tell apart",
+    "head action": "Nods, shakes and the like",
+    "head stance": "How the head is held, or changes between that",
+    "body": "How body, legs and spine stand, or changes between that",
+}
+ROLE_ENTRIES: Entries = [(role.capitalize(), role, ROLE_TIPS.get(role, "")) for role in (*ROLES, IGNORE)]
+MEANING_TIPS = {
+    "stance": "The label names the stance that is held: where another begins, the stance changes",
+    **dict.fromkeys(PHASES, "A phase of a gesture: phases that follow each other are one gesture"),
+}
+
+
+def meaning_entries(meaning: str) -> list[tuple[str, object, str]]:
+    """Return what a label can mean: words, meaning, tip; what it means now is among them."""
+    known = ["gesture", "gesture positive", "gesture negative", "fidget", "transition", "stance", *PHASES, IGNORE]
+    if meaning not in known:
+        known.insert(3, meaning)
+    out: list[tuple[str, object, str]] = [(meaning_words(m), m, MEANING_TIPS.get(parted(m)[0], "")) for m in known]
+    out.insert(-1, ("With other tags…", OTHER, "A gesture with tags of your own; actions of the graph need the same tags"))
+    return out
+
+
+def meaning_words(meaning: str) -> str:
+    first, tags = parted(meaning)
+    if first == IGNORE:
+        return "Ignore"
+    mark = KIND_MARKS["gesture" if first in PHASES else first]
+    words = {"transition": "change of stance", "stance": "stance held"}.get(first, first)
+    return f"{mark} {', '.join((words, *tags))}"
+
+
+class AnnotateDialog(QDialog):
+    """imported: (layer -> acts, id of the performance or None) when the annotation was taken over."""
+
+    imported = Signal(object, object)
+
+    def __init__(self, document: Document, session: Session, reading: Reading, name: str, parent: QWidget | None = None) -> None:
+        super().__init__(parent)
+        self.document, self.session, self.name, self.reading = document, session, name, reading
+        annotation = reading.annotation
+        self.order = sorted(annotation.tiers, key=lambda t: reading.roles[t.name] == IGNORE)  # those that are read first
+        self.setAttribute(Qt.WidgetAttribute.WA_DeleteOnClose)
+        self.setWindowTitle("Import annotation")
+        self.resize(1040, 780)
+        self._build(annotation)
+        self._show_tiers()
+        self._changed(first=True)
+
+    # --- building
+
+    def _build(self, annotation: Annotation) -> None:
+        layout = QVBoxLayout(self)
+        layout.setContentsMargins(18, 16, 18, 14)
+        layout.setSpacing(10)
+        people = sorted({t.whose for t in annotation.tiers if t.whose})
+        read = sorted({t.whose for t in annotation.tiers if t.whose and self.reading.roles[t.name] != IGNORE})
+        count = sum(len(t.intervals) for t in annotation.tiers)
+        facts = [clock(round(annotation.end, 1)), many(len(annotation.tiers), "tier"), many(count, "interval")]
+        if len(people) > 1:
+            facts.append(f"{len(people)} people, {' and '.join(read) or 'none'} of them read: another's tiers can be chosen instead")
+        title = QLabel(self.name, self)
+        title.setProperty("title", True)
+        layout.addWidget(title)
+        self.facts = QLabel(" · ".join(facts), self, wordWrap=True)
+        self.facts.setProperty("dim", True)
+        layout.addWidget(self.facts)
+        tables = QHBoxLayout()
+        tables.setSpacing(18)
+        self.tiers = self._table(tables, "What the tiers stand for", ("Tier", "Intervals", "Read as"), 138, 5, lambda _: ROLE_ENTRIES)
+        self.labels = self._table(
+            tables, "What the labels mean", ("Label", "Layer", "Times", "Means"), 188, 6,
+            lambda row: meaning_entries(self.reading.labels[row].meaning),
+        )  # fmt: skip
+        self.tiers.chosen.connect(lambda row, role: self._set_role(self.order[row].name, role))
+        self.labels.chosen.connect(lambda row, meaning: self._set_meaning(self.reading.labels[row], meaning))
+        layout.addLayout(tables, 3)
+        row = QHBoxLayout()
+        row.setSpacing(12)
+        caption = QLabel("What is seen", self)
+        caption.setProperty("title", True)
+        row.addWidget(caption)
+        marks = "    ".join(f"{KIND_MARKS[kind]} {words}" for kind, words in LEGEND)
+        legend = QLabel(f"{marks}    the left arm above, the right below, both across", self)
+        legend.setProperty("dim", True)
+        row.addWidget(legend)
+        row.addStretch(1)
+        layout.addLayout(row)
+        self.strip = Strip(self.session, self)
+        self.strip.setToolTipDuration(20000)
+        layout.addWidget(self.strip, 1)
+        self.doubts = QLabel(self, wordWrap=True)
+        layout.addWidget(self.doubts)
+        layout.addLayout(self._options())
+        self.buttons = QDialogButtonBox(QDialogButtonBox.StandardButton.Cancel, self)
+        self.buttons.button(QDialogButtonBox.StandardButton.Cancel).setIcon(QIcon())
+        self.go = QPushButton("Import", self)
+        strengthen(self.go)
+        self.buttons.addButton(self.go, QDialogButtonBox.ButtonRole.AcceptRole)
+        self.go.setDefault(True)
+        self.buttons.accepted.connect(self.accept)
+        self.buttons.rejected.connect(self.reject)
+        layout.addWidget(self.buttons)
+
+    def _table(
+        self, row: QHBoxLayout, title: str, heads: tuple[str, ...], wide: int, stretch: int, entries: Callable[[int], Entries]
+    ) -> ChoiceTable:
+        box = QVBoxLayout()
+        box.setSpacing(4)
+        caption = QLabel(title, self)
+        caption.setProperty("title", True)
+        box.addWidget(caption)
+        table = ChoiceTable(self.session, title, heads, wide, entries, self)
+        box.addWidget(table, 1)
+        row.addLayout(box, stretch)
+        return table
+
+    def _options(self) -> QFormLayout:
+        form = QFormLayout()
+        form.setHorizontalSpacing(18)
+        form.setVerticalSpacing(8)
+        row = QHBoxLayout()
+        row.setSpacing(16)
+        self.learn = {layer: QCheckBox(layer.capitalize(), self) for layer in LAYERS}
+        for box in self.learn.values():
+            box.toggled.connect(self._enable)
+            row.addWidget(box)
+        self.smoothing = Seconds(self, "Added to every count, so that what was not seen can happen; 0 as in the paper", 10, "", 0.1, 1)
+        self.smoothing.show_value(0.0)
+        row.addSpacing(12)
+        row.addWidget(QLabel("Smoothing", self))
+        row.addWidget(self.smoothing)
+        row.addStretch(1)
+        form.addRow("Learn a model of", row)
+        row = QHBoxLayout()
+        row.setSpacing(16)
+        self.as_shares = QRadioButton("shares of all gestures", self, toolTip="So many of the gestures are positive, whatever came before")
+        self.as_states = QRadioButton(
+            "states of their own", self, toolTip="What follows a positive gesture differs from what follows others"
+        )
+        self.as_shares.setChecked(True)
+        row.addWidget(self.as_shares)
+        row.addWidget(self.as_states)
+        row.addStretch(1)
+        form.addRow("Positive and negative are", row)
+        row = QHBoxLayout()
+        row.setSpacing(10)
+        self.keep = QCheckBox("as a performance called", self, toolTip="Played as it was seen; another seed plays it with other actions")
+        self.keep.setChecked(True)
+        self.keep.toggled.connect(self._enable)
+        self.called = QLineEdit(Path(self.name).stem, self)
+        self.called.setAccessibleName("Name of the performance")
+        self.called.setMaximumWidth(280)
+        self.called.textChanged.connect(self._enable)
+        row.addWidget(self.keep)
+        row.addWidget(self.called, 1)
+        row.addStretch(1)
+        form.addRow("Keep it", row)
+        return form
+
+    # --- showing
+
+    def _show_tiers(self) -> None:
+        rows = []
+        for tier in self.order:
+            of = f"{tier.name} of {tier.whose}" if tier.whose else tier.name
+            some = ", ".join(x or "(empty)" for x in list(tier.labels)[:6])
+            role = self.reading.roles[tier.name]
+            tip = f"{of}: {some}" if some else f"{of}: nothing in it"
+            rows.append(Row((tier.name, f"{len(tier.intervals):,}"), role.capitalize(), role == IGNORE, tip))
+        self.tiers.show_rows(rows, "There is no tier in this annotation.")
+
+    def _show_labels(self) -> None:
+        rows = [
+            Row((x.text or "(empty)", x.layer, f"{x.count:,}"), meaning_words(x.meaning), x.meaning == IGNORE, x.text)
+            for x in self.reading.labels[:MOST]
+        ]
+        self.labels.show_rows(rows, "Say what the tiers stand for, then their labels come here.")
+
+    def _changed(self, first: bool = False) -> None:
+        """Show what comes of the tiers and labels as they are read now."""
+        seen = self.reading.observed
+        self._show_labels()
+        self.strip.show_acts(seen or {"arms": ()}, max(1.0, self.reading.annotation.end))
+        for layer, box in self.learn.items():
+            count = len(seen.get(layer, ()))
+            fresh = first or not box.isEnabled()
+            box.setEnabled(count > 0)
+            box.setText(f"{layer.capitalize()} ({many(count, 'action')})" if count else layer.capitalize())
+            if fresh or not count:
+                box.setChecked(count >= WORTH)
+        tagged = any(act.tags for acts in seen.values() for act in acts)
+        for button in (self.as_shares, self.as_states):
+            button.setEnabled(tagged)
+        doubts = told(self.reading)
+        self.doubts.setText("\n".join(doubts[:4]))
+        self.doubts.setVisible(bool(doubts))
+        self.doubts.setStyleSheet(f"color: {theme(self.session.theme).warning}")
+        self._enable()
+
+    def _enable(self) -> None:
+        some = any(self.reading.observed.values())
+        self.called.setEnabled(self.keep.isChecked())
+        kept = self.keep.isChecked() and bool(self.called.text().strip())
+        wanted = any(box.isChecked() for box in self.learn.values())
+        self.go.setEnabled(some and (wanted or kept) and not (self.keep.isChecked() and not kept))
+
+    # --- choosing
+
+    def _set_role(self, tier: str, role: str) -> None:
+        self.reading = self.reading.with_role(tier, role)
+        self._show_tiers()
+        self._changed()
+
+    def _set_meaning(self, label: Label, meaning: str) -> None:
+        if meaning == OTHER:
+            words, ok = QInputDialog.getText(self, "Tags", f"'{label.text}' is a gesture that is", text=" ".join(parted(label.meaning)[1]))
+            meaning = f"gesture {' '.join(words.replace(',', ' ').casefold().split())}".strip() if ok else label.meaning
+        self.reading = self.reading.with_meaning(label, meaning)
+        self._changed()
+
+    def accept(self) -> None:
+        """Take it over as one undo step; what is played is the performance, where it is kept."""
+        learned = [layer for layer, box in self.learn.items() if box.isChecked()]
+        name = " ".join(self.called.text().split()) if self.keep.isChecked() else None
+        tagged = self.as_states.isChecked() and self.as_states.isEnabled()
+        made = into(self.document.project, self.reading, learned, tagged, name, max(0.0, self.smoothing.value()))
+        self.document.edit("Import annotation", lambda _: made.project)
+        keep("tiers", self.reading.roles)
+        keep("labels", made.project.labels)
+        if made.performance is not None:
+            self.session.set_performance(made.performance)
+            self.session.show_plan()
+            self.session.seek(0.0)
+        self.imported.emit(self.reading.observed, made.performance)
+        super().accept()
+
+
+def recall(what: str) -> dict[str, str]:
+    """Return what tiers (or labels) were taken for when last an annotation was imported, in any project."""
+    try:
+        found = json.loads(str(QSettings().value(f"annotation/{what}") or "{}"))
+    except ValueError:
+        return {}
+    return {str(k): str(v) for k, v in found.items()} if isinstance(found, dict) else {}
+
+
+def keep(what: str, said: Mapping[str, str]) -> None:
+    """Remember that for the next project; the latest first to stay."""
+    both = {k: v for k, v in recall(what).items() if k not in said} | dict(said)
+    QSettings().setValue(f"annotation/{what}", json.dumps(dict(list(both.items())[-REMEMBERED:])))
+
+
+def open_annotation(window: Window, path: str | Path | None = None, done: Callable[[AnnotateDialog], object] | None = None) -> None:
+    """Ask for an annotation (or take `path`, "sample" for our own), read it on a thread and open the dialog."""
+    if not path:
+        start = str(window.document.folder or Path.home())
+        path, _ = QFileDialog.getOpenFileName(window, "Import annotation", start, FILTER)
+        if not path:
+            return
+    file = SAMPLE if str(path) == "sample" else Path(path)
+
+    project = window.document.project
+    tiers, labels = (project.tiers, recall("tiers")), (project.labels, recall("labels"))
+
+    def work(_: object) -> Reading:
+        reading = begin(read_elan(file), *tiers, labels=labels)
+        _ = reading.observed  # worked out here, not on the window's thread
+        return reading
+
+    def show(reading: Reading) -> None:
+        dialog = AnnotateDialog(window.document, window.session, reading, file.name, window)
+        dialog.imported.connect(lambda observed, kept: _taken(window, observed, kept))
+        dialog.open()
+        if done is not None:
+            done(dialog)
+
+    def failed(error: Exception) -> None:
+        QMessageBox.warning(window, "Not imported", str(error))
+
+    window.jobs.start(f"Reading {file.name}", work, show, failed)
+
+
+def _taken(window: Window, observed: object, performance: str | None) -> None:
+    count = sum(len(acts) for acts in observed.values())  # type: ignore[attr-defined]
+    window.tell(f"Read {many(count, 'action')} from the annotation.")
+    if window.ready:
+        window.models.show_imported(observed, performance)  # type: ignore[arg-type]
+        window.show_dock("models")

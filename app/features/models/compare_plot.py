@@ -1,0 +1,177 @@
+"""What was seen beside what a model makes: how often each state comes, and how long it lasts. Outlined is seen, filled is made."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+import pyqtgraph as pg
+from PySide6.QtCore import QPointF, Qt
+from PySide6.QtGui import QColor
+from PySide6.QtWidgets import QHBoxLayout, QLabel, QVBoxLayout, QWidget
+
+from app.features.models.heatmap import SIDES
+from app.look.theme import KIND_MARKS, theme
+from app.stage.session import Session
+from metagraph.playback.compare import SURE, Comparison, quantiles
+from metagraph.playback.learn import State, state_words
+
+WIDTH = 0.34  # of a bar; two stand side by side
+
+
+def short(state: State, layer: str) -> str:
+    """Return a state as it stands under a bar: "▲L", "◆LR", "▲+"."""
+    limb, kind, tags = state
+    return KIND_MARKS[kind] + (SIDES[limb] if layer == "arms" else "") + {"": "", "positive": "+", "negative": "−"}.get(tags, " …")
+
+
+def verdict(found: Comparison) -> str:
+    """Say in a sentence how well a model makes what was seen."""
+    layer = found.model.layer
+    if found.observed is None:
+        return "Nothing to compare with yet: outlined is what the matrix comes to in the long run."
+    apart = found.apart()
+    worst = int(np.argmax(np.abs(np.nan_to_num(apart, posinf=1e9, neginf=-1e9))))
+    if abs(apart[worst]) <= SURE:
+        return "Each comes as often as was seen, give or take what chance explains."
+    name, seen, made = state_words(found.observed.states[worst], layer), found.observed.shares()[worst], found.expected[worst]
+    return f"Not as seen: {name} came in {seen:.0%} of actions, the model makes {made:.0%}.".replace("%", " %")
+
+
+class ComparePlot(QWidget):
+    def __init__(self, session: Session, parent: QWidget | None = None) -> None:
+        super().__init__(parent)
+        self.session = session
+        self.found: Comparison | None = None
+        self.often, self.long = self._plot(), self._plot()
+        self.words = QLabel(self, wordWrap=True)
+        self.words.setProperty("dim", True)
+        layout = QVBoxLayout(self)
+        layout.setContentsMargins(0, 0, 0, 0)
+        layout.setSpacing(2)
+        row = QHBoxLayout()
+        row.setSpacing(12)
+        for title, plot in (("How often, % of actions", self.often), ("How long, seconds", self.long)):
+            box = QVBoxLayout()
+            box.setSpacing(0)
+            label = QLabel(title, self)
+            label.setProperty("title", True)
+            box.addWidget(label)
+            box.addWidget(plot, 1)
+            row.addLayout(box, 1)
+        layout.addLayout(row, 1)
+        layout.addWidget(self.words)
+        session.theme_changed.connect(self._draw)
+
+    def _plot(self) -> Any:
+        plot = pg.PlotWidget(self)
+        plot.setMenuEnabled(False)
+        plot.setMouseEnabled(False, False)
+        plot.hideButtons()
+        plot.setFocusPolicy(Qt.FocusPolicy.NoFocus)
+        plot.getAxis("left").setWidth(34)
+        plot.setMinimumHeight(96)
+        plot.scene().sigMouseMoved.connect(lambda at, p=plot: self._hover(p, at))
+        return plot
+
+    def show_comparison(self, found: Comparison) -> None:
+        self.found = found
+        self._draw()
+
+    def _draw(self) -> None:
+        t = theme(self.session.theme)
+        for plot in (self.often, self.long):
+            plot.clear()
+            plot.setBackground(t.panel)
+            for name in ("left", "bottom"):
+                plot.getAxis(name).setPen(t.line)
+                plot.getAxis(name).setTextPen(t.dim)
+        if self.found is None:
+            return
+        found, layer = self.found, self.found.model.layer
+        seen = found.expected if found.observed is None else found.observed.shares()
+        made = found.generated.shares()
+        chance = 2 * found.deviation
+        for n, state in enumerate(found.generated.states):
+            color = t.fill(state[1])
+            self._bar(self.often, n - WIDTH / 2, 100 * seen[n], color, False)
+            self._bar(self.often, n + WIDTH / 2, 100 * made[n], color, True)
+            whisker = pg.PlotDataItem([n + WIDTH / 2] * 2, [100 * max(0.0, made[n] - chance[n]), 100 * (made[n] + chance[n])])
+            whisker.setPen(pg.mkPen(t.text, width=1.3))
+            self.often.addItem(whisker)
+            if found.observed is not None:
+                self._box(self.long, n - WIDTH / 2, found.observed.lengths[n], color, False)
+            self._box(self.long, n + WIDTH / 2, found.generated.lengths[n], color, True)
+        count = len(found.generated.states)
+        if found.observed is not None:
+            self._box(self.long, count - WIDTH / 2, found.observed.rests, QColor(t.dim), False)
+        self._box(self.long, count + WIDTH / 2, found.generated.rests, QColor(t.dim), True)
+        ticks = [(n, short(state, layer)) for n, state in enumerate(found.generated.states)]
+        self.often.getAxis("bottom").setTicks([ticks])
+        self.long.getAxis("bottom").setTicks([[*ticks, (count, "rest")]])
+        self.often.setXRange(-0.5, count - 0.5, padding=0.02)
+        self.often.setYRange(0, 108 * float(max(np.max(seen), np.max(made + chance), 0.05)), padding=0)
+        self.long.setXRange(-0.5, count + 0.5, padding=0.02)
+        tallies = [x for x in (found.observed, found.generated) if x is not None]
+        tops = [quantiles(x)[-1] for tally in tallies for x in (*tally.lengths, tally.rests) if len(x)]
+        self.long.setYRange(0, 1.08 * max(tops, default=1.0), padding=0)
+        self.words.setText(verdict(found))
+
+    def _bar(self, plot: Any, x: float, height: float, color: QColor, filled: bool) -> None:
+        pale = QColor(color)
+        pale.setAlpha(36)
+        bar = pg.BarGraphItem(x=[x], width=WIDTH - 0.05, height=[height])
+        bar.setOpts(pen=pg.mkPen(color, width=1.4), brush=color if filled else pale)
+        plot.addItem(bar)
+
+    def _box(self, plot: Any, x: float, lengths: np.ndarray, color: QColor, filled: bool) -> None:
+        """Draw the middle half of lengths as a box, the middle 80 % as a line, the median across."""
+        if not len(lengths):
+            return
+        low, quarter, middle, three, high = quantiles(lengths)
+        line = pg.PlotDataItem([x, x], [low, high])
+        line.setPen(pg.mkPen(color, width=1.4))
+        plot.addItem(line)
+        pale = QColor(theme(self.session.theme).panel)
+        box = pg.BarGraphItem(x=[x], width=WIDTH - 0.05, y0=[quarter], height=[three - quarter])
+        box.setOpts(pen=pg.mkPen(color, width=1.4), brush=color if filled else pale)
+        plot.addItem(box)
+        median = pg.PlotDataItem([x - WIDTH / 2 + 0.03, x + WIDTH / 2 - 0.03], [middle, middle])
+        median.setPen(pg.mkPen("#17181b" if filled else color, width=2))
+        plot.addItem(median)
+
+    def _hover(self, plot: Any, at: QPointF) -> None:
+        if self.found is None:
+            return
+        n = round(plot.plotItem.vb.mapSceneToView(at).x())
+        states = self.found.generated.states
+        if plot is self.often and 0 <= n < len(states):
+            self.words.setText(often_words(self.found, n))
+        elif plot is self.long and 0 <= n <= len(states):
+            self.words.setText(long_words(self.found, n))
+
+    def leaveEvent(self, event: object) -> None:
+        if self.found is not None:
+            self.words.setText(verdict(self.found))
+
+
+def often_words(found: Comparison, n: int) -> str:
+    """Say how often a state was seen and made."""
+    name = state_words(found.generated.states[n], found.model.layer)
+    made = f"made {found.generated.shares()[n]:.1%}, give or take {2 * found.deviation[n]:.1%} by chance"
+    if found.observed is None:
+        return f"{name}: {made}; in the long run {found.expected[n]:.1%}".replace("%", " %")
+    return f"{name}: seen {found.observed.shares()[n]:.1%}, {made}".replace("%", " %")
+
+
+def long_words(found: Comparison, n: int) -> str:
+    """Say how long a state, or the rest between, lasts: the median, and what four of five lie between."""
+    states = found.generated.states
+    name = state_words(states[n], found.model.layer) if n < len(states) else "rest between actions"
+    parts = []
+    for word, tally in (("seen", found.observed), ("made", found.generated)):
+        lengths = None if tally is None else tally.lengths[n] if n < len(states) else tally.rests
+        if lengths is not None and len(lengths):
+            low, _, middle, _, high = quantiles(lengths)
+            parts.append(f"{word} {middle:.1f} s (mostly {low:.1f} to {high:.1f})")
+    return f"{name}: {', '.join(parts) or 'never'}"

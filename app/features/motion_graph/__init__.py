@@ -1,0 +1,1 @@
+"""New motion from takes."""

@@ -1,0 +1,114 @@
+"""How often people of the chosen takes moved when something was said, and letting a conversation's characters do as they did."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import Any
+
+from PySide6.QtCore import Qt
+from PySide6.QtWidgets import (
+    QComboBox,
+    QDialog,
+    QHBoxLayout,
+    QHeaderView,
+    QLabel,
+    QPushButton,
+    QTableWidget,
+    QTableWidgetItem,
+    QVBoxLayout,
+    QWidget,
+)
+
+from app.look.theme import strengthen
+from app.project.document import Document
+from metagraph.graph.conversation import Rates
+from metagraph.graph.conversing import set_rates
+
+HEADS = ("What goes together", "Matched", "Of", "Rate", "95 % interval", "By chance")
+FIELDS = {"clause with either hand": "clause", "response with a nod": "response", "partner's hesitation with a nod": "hesitation"}
+
+
+def rates_of(rows: Sequence[Any], before: Rates) -> dict[str, float]:
+    """Return what rows of `cooccurrence.table` say of a side's rates; what nothing was seen of stays as before."""
+    found = {FIELDS[row.hypothesis]: row for row in rows if row.hypothesis in FIELDS}
+    return {name: round(found[name].rate, 4) if name in found and found[name].total else getattr(before, name) for name in FIELDS.values()}
+
+
+class RatesDialog(QDialog):
+    """Shows what was counted, and sets it as the rates of a side of a conversation."""
+
+    def __init__(self, document: Document, rows: Sequence[Any], parent: QWidget | None = None) -> None:
+        super().__init__(parent)
+        self.document, self.rows = document, tuple(rows)
+        self.setAttribute(Qt.WidgetAttribute.WA_DeleteOnClose)
+        self.setWindowTitle("Speech and movement")
+        self.resize(720, 320)
+        box = QVBoxLayout(self)
+        box.setContentsMargins(14, 12, 14, 12)
+        box.setSpacing(8)
+        words = QLabel(
+            "A segment is matched where a hand, or the head up and down, moves near it. By chance: the same speech laid elsewhere over the "
+            "same motion; only a rate well above that says that they go together.",
+            self,
+            wordWrap=True,
+        )
+        words.setProperty("dim", True)
+        box.addWidget(words)
+        self.table = QTableWidget(len(self.rows), len(HEADS), self)
+        self.table.setHorizontalHeaderLabels(list(HEADS))
+        self.table.setAccessibleName("How often people move when something is said")
+        self.table.verticalHeader().hide()
+        self.table.setShowGrid(False)
+        self.table.setSelectionMode(QTableWidget.SelectionMode.NoSelection)
+        self.table.setFocusPolicy(Qt.FocusPolicy.NoFocus)
+        self.table.setEditTriggers(QTableWidget.EditTrigger.NoEditTriggers)
+        self.table.horizontalHeader().setSectionResizeMode(QHeaderView.ResizeMode.ResizeToContents)
+        self.table.horizontalHeader().setSectionResizeMode(0, QHeaderView.ResizeMode.Stretch)
+        self.table.horizontalHeader().setHighlightSections(False)
+        for n, row in enumerate(self.rows):
+            seen = row.total > 0
+            texts = (
+                row.hypothesis[:1].upper() + row.hypothesis[1:], f"{row.matched:,}", f"{row.total:,}", _share(row.rate) if seen else "–",
+                f"{_share(row.low)} – {_share(row.high)}" if seen else "–", _share(row.chance) if seen else "–",
+            )  # fmt: skip
+            for column, text in enumerate(texts):
+                item = QTableWidgetItem(text)
+                if column:
+                    item.setTextAlignment(Qt.AlignmentFlag.AlignRight | Qt.AlignmentFlag.AlignVCenter)
+                self.table.setItem(n, column, item)
+        box.addWidget(self.table, 1)
+        row_box = QHBoxLayout()
+        row_box.addWidget(QLabel("Move so", self))
+        self.who = QComboBox(self)
+        self.who.setAccessibleName("Whose rates")
+        for ident, talk in document.project.conversations.items():
+            self.who.addItem(f"{talk.name}: both", (ident, (0, 1)))
+            for side, one in enumerate(talk.sides):
+                self.who.addItem(f"{talk.name}: {one.name or f'side {side + 1}'}", (ident, (side,)))
+        row_box.addWidget(self.who)
+        row_box.addStretch(1)
+        self.go = QPushButton("Use these rates", self, autoDefault=False)
+        self.go.setEnabled(self.who.count() > 0 and any(row.total for row in self.rows))
+        self.go.clicked.connect(self.use)
+        strengthen(self.go)
+        close = QPushButton("Close", self, autoDefault=False)
+        close.clicked.connect(self.close)
+        row_box.addWidget(self.go)
+        row_box.addWidget(close)
+        box.addLayout(row_box)
+
+    def use(self) -> None:
+        """Set the rates, one undo step."""
+        ident, sides = self.who.currentData()
+
+        def edit(project: Any) -> Any:
+            for side in sides:
+                project = set_rates(project, ident, side, **rates_of(self.rows, project.conversations[ident].sides[side].rates))
+            return project
+
+        self.document.edit("Use observed rates", edit)
+        self.close()
+
+
+def _share(value: float) -> str:
+    return f"{value:.0%}".replace("%", " %")

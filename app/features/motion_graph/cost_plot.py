@@ -1,0 +1,69 @@
+"""What a jump costs: the histogram of costs between frames a few apart, the distribution fitted to it, and the threshold."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+import pyqtgraph as pg
+from PySide6.QtCore import Qt
+from PySide6.QtWidgets import QVBoxLayout, QWidget
+
+from app.look.theme import theme
+from app.stage.session import Session
+
+BINS = 80
+BEYOND = 0.995  # share of all costs that the plot shows
+
+
+class CostPlot(QWidget):
+    """Shows a `synthesis.graph.Threshold`."""
+
+    def __init__(self, session: Session, parent: QWidget | None = None) -> None:
+        super().__init__(parent)
+        self.session = session
+        self.shown: Any = None
+        self.plot = pg.PlotWidget(self)
+        self.plot.setMenuEnabled(False)
+        self.plot.setMouseEnabled(False, False)
+        self.plot.hideButtons()
+        self.plot.setFocusPolicy(Qt.FocusPolicy.NoFocus)
+        self.plot.getAxis("left").setStyle(showValues=False)
+        self.plot.getAxis("left").setWidth(12)
+        self.plot.getAxis("bottom").enableAutoSIPrefix(False)
+        layout = QVBoxLayout(self)
+        layout.setContentsMargins(0, 0, 0, 0)
+        layout.addWidget(self.plot)
+        self.setMinimumHeight(170)
+        session.theme_changed.connect(self._draw)
+        self._draw()
+
+    def show_threshold(self, found: Any) -> None:
+        self.shown = found
+        self._draw()
+
+    def _draw(self) -> None:
+        look = theme(self.session.theme)
+        self.plot.clear()
+        self.plot.setBackground(look.panel)
+        for name in ("left", "bottom"):
+            self.plot.getAxis(name).setPen(look.line)
+            self.plot.getAxis(name).setTextPen(look.dim)
+        self.plot.setLabel("bottom", "cost, m", color=look.dim)
+        found = self.shown
+        if found is None:
+            return
+        end = max(float(np.quantile(found.costs, BEYOND)), 1.15 * found.limit, 1.15 * found.observed, 1e-6)
+        counts, edges = np.histogram(found.costs, BINS, (0.0, end))
+        density = counts / max(1, len(found.costs)) / (edges[1] - edges[0])
+        bars = pg.PlotDataItem(edges, density, stepMode="center", fillLevel=0, brush=look.hover, pen=pg.mkPen(look.dim, width=1))
+        self.plot.addItem(bars)
+        if found.distribution is not None:
+            x = np.linspace(0, end, 400)
+            fitted = np.diff(found.distribution.cdf(x)) / np.diff(x)
+            self.plot.addItem(pg.PlotDataItem(x[:-1] + (x[1] - x[0]) / 2, fitted, pen=pg.mkPen(look.text, width=2)))
+        top = 1.08 * max(float(density.max()), 1e-9)
+        for at, style in ((found.limit, Qt.PenStyle.SolidLine), (found.observed, Qt.PenStyle.DotLine)):
+            self.plot.addItem(pg.PlotDataItem([at, at], [0, top], pen=pg.mkPen(look.warning, width=2, style=style)))
+        self.plot.setXRange(0, end, padding=0)
+        self.plot.setYRange(0, top, padding=0)

@@ -1,0 +1,402 @@
+"""The motion graph's window: choose takes, see what counts as a jump, let new motion be found, cut long takes into clips."""
+
+from __future__ import annotations
+
+from typing import Any
+
+from PySide6.QtCore import Qt, QTimer
+from PySide6.QtWidgets import (
+    QDialog,
+    QDoubleSpinBox,
+    QHBoxLayout,
+    QHeaderView,
+    QLabel,
+    QProgressBar,
+    QPushButton,
+    QSpinBox,
+    QTableWidget,
+    QTableWidgetItem,
+    QVBoxLayout,
+    QWidget,
+)
+
+from app.features.motion_graph.cooccurrence_rates import RatesDialog
+from app.features.motion_graph.cost_plot import CostPlot
+from app.features.motion_graph.search_options import Wishes
+from app.features.motion_graph.synthesis_jobs import FOLDER, LEAST, MOST, Found, Takes, pieces, save, synthesise, table, takes_of
+from app.features.motion_graph.takes_list import TakesList
+from app.look.plural import many
+from app.project.document import Document
+from app.project.jobs import Job, Jobs
+from app.stage.session import Session
+from metagraph.graph import edits
+from metagraph.graph.conversing import change_side
+from metagraph.graph.model import Project
+
+KS = (2, 3, 4)  # of the table
+LONG = 4000  # ms after which a wait is explained
+WAIT = "Working… The first time after installing, the search is compiled for this machine: up to a minute."
+
+
+class MotionGraphDialog(QDialog):
+    """Stays open beside the window."""
+
+    def __init__(self, document: Document, session: Session, jobs: Jobs, parent: QWidget | None = None) -> None:
+        super().__init__(parent)
+        self.document, self.session, self.jobs = document, session, jobs
+        self.setAttribute(Qt.WidgetAttribute.WA_DeleteOnClose)
+        self.setWindowTitle("Motion graph")
+        self.resize(1080, 720)
+        self.states: Any = None  # synthesis.states.States of the chosen takes
+        self.limit: Any = None  # synthesis.graph.Threshold
+        self.graph: Any = None  # synthesis.graph.MotionGraph, None until it is built for what is chosen now
+        self.takes = Takes((), (), ())
+        self._job: Job | None = None
+        self._for: tuple[str, int] | None = None  # the side that is to move with what is found
+        self._counted: Any = None  # the takes and the level that the table is of
+        self._long = QTimer(self, singleShot=True, interval=LONG)
+        self._long.timeout.connect(self._explain)
+        self._soon = QTimer(self, singleShot=True, interval=200)
+        self._soon.timeout.connect(self._compare)
+        self.picked = TakesList(document, self)
+        self.picked.changed.connect(self._changed)
+        self.picked.cut_wanted.connect(self.cut)
+        self.picked.rates_wanted.connect(self.count_rates)
+        self._build_right()
+        self.wishes = Wishes(document, self)
+        self.wishes.wanted.connect(self.find)
+        box = QVBoxLayout(self)
+        box.setContentsMargins(14, 12, 14, 12)
+        box.setSpacing(10)
+        columns = QHBoxLayout()
+        columns.setSpacing(18)
+        columns.addWidget(self.picked, 4)
+        columns.addLayout(self.right, 5)
+        box.addLayout(columns, 1)
+        box.addWidget(self.wishes)
+        box.addLayout(self._foot())
+        document.loaded.connect(self._leave)
+        document.changed.connect(self._follow)
+        self.picked.fill()
+
+    # --- building
+
+    def _heading(self, words: str) -> QLabel:
+        out = QLabel(words, self)
+        out.setProperty("heading", True)
+        return out
+
+    def _build_right(self) -> None:
+        self.right = QVBoxLayout()
+        self.right.setSpacing(6)
+        self.right.addWidget(self._heading("What counts as a jump"))
+        row = QHBoxLayout()
+        self.k = QSpinBox(self, minimum=2, maximum=10, value=3)
+        self.k.setToolTip("Costs are those of a frame and one so many frames later: the larger, the more transitions, and the rougher")
+        self.k.setAccessibleName("Frames apart")
+        self.level = QDoubleSpinBox(self, minimum=50, maximum=99.9, value=95, suffix=" %", decimals=1)
+        self.level.setToolTip("Transitions may cost as much as so many of these costs")
+        self.level.setAccessibleName("Level")
+        for words, field in (("Frames apart (k)", self.k), ("Level", self.level)):
+            row.addWidget(QLabel(words, self))
+            row.addWidget(field)
+            row.addSpacing(10)
+            field.lineEdit().setTextMargins(6, 0, 0, 0)
+            field.valueChanged.connect(self._changed)
+        row.addStretch(1)
+        self.right.addLayout(row)
+        self.plot = CostPlot(self.session, self)
+        self.right.addWidget(self.plot, 1)
+        self.words = QLabel(self, wordWrap=True)
+        self.words.setProperty("dim", True)
+        self.right.addWidget(self.words)
+        self.table = QTableWidget(len(KS), 5, self)
+        self.table.setHorizontalHeaderLabels(["k", "Frames", "Transitions", "Frames kept", "Trans. kept"])
+        self.table.horizontalHeader().setDefaultAlignment(Qt.AlignmentFlag.AlignRight | Qt.AlignmentFlag.AlignVCenter)
+        self.table.setAccessibleName("Frames and transitions for each k")
+        self.table.verticalHeader().hide()
+        self.table.setShowGrid(False)
+        self.table.setSelectionMode(QTableWidget.SelectionMode.NoSelection)
+        self.table.setFocusPolicy(Qt.FocusPolicy.NoFocus)
+        self.table.setEditTriggers(QTableWidget.EditTrigger.NoEditTriggers)
+        self.table.horizontalHeader().setSectionResizeMode(QHeaderView.ResizeMode.Stretch)
+        self.table.horizontalHeader().setHighlightSections(False)
+        self.table.setFixedHeight(self.table.horizontalHeader().sizeHint().height() + len(KS) * self.table.rowHeight(0) + 4)
+        self.right.addWidget(self.table)
+        self.count_button = QPushButton("Compare k = 2, 3, 4", self, autoDefault=False)
+        self.count_button.setToolTip("Kept is what leads on: the largest part in which every frame can be reached from every other")
+        self.count_button.clicked.connect(self.count)
+        self.right.addWidget(self.count_button, 0, Qt.AlignmentFlag.AlignLeft)
+        self._show_table({})
+
+    def _foot(self) -> QHBoxLayout:
+        row = QHBoxLayout()
+        self.said = QLabel(self, wordWrap=True)
+        self.said.setTextInteractionFlags(Qt.TextInteractionFlag.TextSelectableByMouse)
+        self.progress = QProgressBar(self, maximumWidth=180, textVisible=False)
+        self.progress.hide()
+        self.stop = QPushButton("Cancel", self, autoDefault=False)
+        self.stop.clicked.connect(self.cancel)
+        self.stop.hide()
+        close = QPushButton("Close", self, autoDefault=False)
+        close.clicked.connect(self.close)
+        row.addWidget(self.said, 1)
+        for widget in (self.progress, self.stop, close):
+            row.addWidget(widget)
+        return row
+
+    def _leave(self) -> None:
+        """Another project comes: what is being made for the one before is not for it."""
+        if self._job is not None:
+            self._job.cancel()
+        self.states = self.graph = None
+        self.said.setText("")
+
+    def _follow(self, before: Project, after: Project) -> None:
+        if before.clips is not after.clips or before.conversations is not after.conversations or before.skeleton is not after.skeleton:
+            self.picked.fill()
+            self.wishes.fill()
+
+    # --- what counts as a jump
+
+    def _changed(self) -> None:
+        """Something was chosen: compare frames anew, soon."""
+        self.graph = None
+        self.takes = takes_of(self.document.project, self.picked.chosen())
+        if self._counted != (self.takes.clips, self.level.value()):
+            self._show_table({})
+        seconds = sum(clip.duration for clip in self.takes.clips)
+        self.picked.title.setText(f"Takes · {len(self.takes.ids)} chosen, {seconds / 60:.1f} min" if self.takes.ids else "Takes")
+        self._soon.start()
+
+    def _compare(self) -> None:
+        takes, k, level = self.takes, self.k.value(), self.level.value() / 100
+        known = self.states if self.states is not None and self.states[0] == takes.clips else None
+        if not takes.ids:
+            self._show_limit(None)
+            return
+
+        def work(_: Job) -> Any:
+            from metagraph.synthesis.graph import threshold
+            from metagraph.synthesis.states import states_of
+
+            states = known[1] if known is not None else states_of(takes.clips)
+            return takes.clips, states, threshold(states, k, level)
+
+        self.jobs.start("Comparing frames", work, self._compared, self._incomparable, quick=True)
+
+    def _incomparable(self, error: Exception) -> None:
+        """What takes before could do is not what these can."""
+        self.states = None
+        self._show_limit(None)
+        self._failed(error)
+
+    def _compared(self, made: Any) -> None:
+        clips, states, limit = made
+        if clips != self.takes.clips:
+            return
+        self.states = (clips, states)
+        self._show_limit(limit)
+
+    def _show_limit(self, limit: Any) -> None:
+        self.limit = limit
+        self.plot.show_threshold(limit)
+        if limit is None:
+            none = not self.picked.list.rowCount()
+            first = "There are no clips yet. Import long recordings:" if none else "Choose takes, long recordings:"
+            self.words.setText(f"{first} of frames that are alike, transitions are made.")
+            return
+        fitted = "A transition may cost" if limit.distribution is None else "Johnson's S_B, fitted: a transition may cost"
+        off = abs(limit.limit - limit.observed) / max(limit.observed, 1e-9)
+        beside = f" ({off:.0%} off)".replace("%", " %") if off > 0.05 else ""
+        self.words.setText(
+            f"{fitted} {limit.limit:.3g} m, summed over joints. Dotted: the costs themselves say {limit.observed:.3g} m{beside}."
+        )
+
+    # --- jobs
+
+    def _start(self, title: str, work: Any, done: Any) -> None:
+        if self._job is not None:
+            return
+        self.said.setText("")
+        self._long.start()
+        job = self.jobs.start(title, work, done, self._failed)
+        self._job = job
+        self.progress.setRange(0, 0)
+        self.progress.show()
+        self.stop.show()
+        self._enable()
+        job.progress.connect(self._tell)
+        job.ended.connect(self._ended)
+
+    def _tell(self, done: int, total: int, _: str) -> None:
+        self.progress.setRange(0, total)
+        self.progress.setValue(done)
+
+    def _explain(self) -> None:
+        """Say why it takes so long, if it does."""
+        if self._job is not None and not self.said.text():
+            self.said.setText(WAIT)
+
+    def _ended(self) -> None:
+        self._job = None
+        self._long.stop()
+        if self.said.text() == WAIT:
+            self.said.setText("")
+        self.progress.hide()
+        self.stop.hide()
+        self._enable()
+
+    def _enable(self) -> None:
+        free = self._job is None
+        for button in (self.count_button, self.picked.cut_button, self.picked.rates_button, self.wishes.go):
+            button.setEnabled(free)
+
+    def cancel(self) -> None:
+        if self._job is not None:
+            self._job.cancel()
+            self.said.setText("Cancelled; nothing was changed.")
+
+    def _failed(self, error: Exception) -> None:
+        text = str(error)
+        self.said.setText(f"{text[:1].upper()}{text[1:].rstrip('.')}.")
+
+    def count(self) -> None:
+        """Fill the table: how much is kept for each k."""
+        takes, level = self.takes, self.level.value() / 100
+        if not takes.ids:
+            self._failed(ValueError("choose takes first"))
+            return
+        self._counted = (takes.clips, self.level.value())
+        self._start("Motion graphs", lambda job: table(takes, KS, level, job.tell, lambda: job.cancelled), self._show_table)
+
+    def _show_table(self, rows: Any) -> None:
+        for row, k in enumerate(KS):
+            found = rows.get(k)
+            texts = [str(k), *(("–",) * 4 if found is None else (f"{x:,}" for x in found))]
+            if found is not None and found[0]:
+                texts[3] += f"  ({found[2] / found[0]:.0%})".replace("%", " %")
+            for column, text in enumerate(texts):
+                item = QTableWidgetItem(text)
+                item.setTextAlignment(Qt.AlignmentFlag.AlignRight | Qt.AlignmentFlag.AlignVCenter)
+                self.table.setItem(row, column, item)
+
+    def count_rates(self) -> None:
+        """Count how often people moved when something was said, over the chosen takes that know it."""
+        takes = self.takes
+        if not takes.told:
+            self._failed(ValueError("choose takes and say beside each what was heard during it: a conversation's side"))
+            return
+
+        def work(_: Job) -> Any:
+            from metagraph.synthesis.cooccurrence import table as counted
+
+            told = [n for n, speech in enumerate(takes.speech) if speech]
+            return counted([takes.clips[n] for n in told], [takes.speech[n] for n in told])
+
+        self._start("Counting movements", work, self._show_rates)
+
+    def _show_rates(self, rows: Any) -> None:
+        RatesDialog(self.document, rows, self).open()
+
+    # --- new motion
+
+    def find(self) -> None:
+        """Find new motion as wished, and add it to the library."""
+        takes, wish, graph, limit = self.takes, self.wishes.wish(), self.graph, self.limit
+        if not takes.ids or limit is None or self.states is None or self.states[0] != takes.clips:
+            why = "these takes cannot be compared: choose others" if takes.ids else "choose takes first"
+            self._failed(ValueError(f"{why}; their frames are compared before anything can be found"))
+            return
+        folder = self._folder()
+        if folder is None:
+            return
+        self._for = self.wishes.moves
+        states, name, taken = self.states[1], self.wishes.name(), {e.name for e in self.document.project.clips.values()}
+
+        def work(job: Job) -> Any:
+            from metagraph.synthesis.constraints import changes
+            from metagraph.synthesis.graph import build
+            from metagraph.synthesis.states import key_states
+
+            made = graph
+            if made is None:
+                keys = key_states(states, changes=changes(states, takes.speech))
+                made = build(states, limit, keys, progress=job.tell, cancelled=lambda: job.cancelled)
+            found = synthesise(made, takes, wish, name, lambda: job.cancelled)
+            return made, found, () if job.cancelled else save([found.clip], folder, FOLDER, taken)
+
+        self._start("New motion", work, self._found)
+
+    def _found(self, made: Any) -> None:
+        self.graph, found, loaded = made[0], made[1], made[2]
+        graph, takes_told = self.graph, self.takes.told
+        assert isinstance(found, Found)
+        self._keep(loaded, "Add new motion", self._for)
+        self.graph = graph  # the takes are the same
+        deaf = "" if takes_told or not self.wishes.talks else " What was heard during the takes is not known, so speech did not guide it."
+        self.said.setText(found.words() + deaf)
+
+    def _keep(self, loaded: Any, words: str, side: tuple[str, int] | None = None) -> None:
+        """Add kept clips to the library, choose them and play the first; or let it move a side of a conversation, and play that."""
+        paths = {path for path, *_ in loaded}
+
+        def edit(project: Project) -> Project:
+            project = edits.add_clips(project, loaded)
+            made = next((e.id for e in project.clips.values() if e.path in paths), None)
+            return project if side is None or made is None else change_side(project, *side, motion=made)
+
+        self.document.edit(words, edit)
+        new = [e.id for e in self.document.project.clips.values() if e.path in paths]
+        if new and side is not None:
+            self.session.set_conversation(side[0])
+            self.session.set_side(side[1])
+            self.session.show_plan()
+            self.session.seek(0.0)
+            self.session.set_playing(True)
+        elif new:
+            self.session.select_clips(tuple(new))
+            self.session.show_clip(new[0])
+            self.session.set_playing(True)
+
+    def _folder(self) -> Any:
+        folder = self.document.folder
+        if folder is None:
+            self._failed(ValueError("save the project first: new clips are kept as files beside it"))
+        return folder
+
+    # --- clips from takes
+
+    def cut(self) -> None:
+        """Cut the selected takes, or all that are chosen, into clips that wait to be labelled."""
+        ids = self.picked.selected()
+        project, k, level = self.document.project, self.k.value(), self.level.value() / 100
+        clips = takes_of(project, ids).clips
+        if not clips:
+            self._failed(ValueError("choose takes first"))
+            return
+        folder = self._folder()
+        if folder is None:
+            return
+        taken = {e.name for e in project.clips.values()}
+
+        def work(job: Job) -> Any:
+            from metagraph.synthesis.cut import candidates
+            from metagraph.synthesis.graph import threshold
+            from metagraph.synthesis.states import states_of
+
+            limit = threshold(states_of(clips), k, level).limit
+            cuts = []
+            for n, clip in enumerate(clips):
+                job.tell(n, len(clips))
+                cuts += pieces(clip, [(start, end) for start, end, _ in candidates(clip, limit, LEAST, MOST)])
+            return save(cuts, folder, FOLDER, taken) if cuts and not job.cancelled else ()
+
+        self._start("Cutting takes", work, self._cut)
+
+    def _cut(self, loaded: Any) -> None:
+        if not loaded:
+            self.said.setText("No still moments were found that these takes leave and come back to: raise k or the level, or cut by hand.")
+            return
+        self._keep(loaded, "Cut takes into clips")
+        self.said.setText(f"{many(len(loaded), 'clip')} in the library, not labelled yet: Graph > Label clips… proposes what each is.")

@@ -1,0 +1,148 @@
+"""What new motion is asked for: for whose speech, how it is searched, and what of the speech constrains it."""
+
+from __future__ import annotations
+
+from PySide6.QtCore import Signal
+from PySide6.QtWidgets import QCheckBox, QComboBox, QDoubleSpinBox, QFrame, QHBoxLayout, QLabel, QPushButton, QVBoxLayout, QWidget
+
+from app.features.motion_graph.synthesis_jobs import Wish
+from app.features.motion_graph.takes_list import side_words
+from app.look.theme import strengthen
+from app.project.document import Document
+from metagraph.graph.conversation import SOUNDS, Sound, heard_by
+
+WINDOW = 15.0  # seconds, as in the paper's evaluation
+KINDS: tuple[tuple[Sound, str], ...] = (
+    ("clause", "Clauses"), ("response", "Responses"), ("hesitation", "Partner's hesitations"), ("idle", "Idle"),
+)  # fmt: skip
+
+
+class Wishes(QFrame):
+    """wanted: Find was pressed."""
+
+    wanted = Signal()
+
+    def __init__(self, document: Document, parent: QWidget | None = None) -> None:
+        super().__init__(parent)
+        self.document = document
+        box = QVBoxLayout(self)
+        box.setContentsMargins(0, 4, 0, 0)
+        box.setSpacing(6)
+        title = QLabel("New motion", self)
+        title.setProperty("heading", True)
+        box.addWidget(title)
+        row = QHBoxLayout()
+        self.speech = QComboBox(self)
+        self.speech.setAccessibleName("Goes with")
+        self.speech.setMinimumWidth(200)
+        self.speech.activated.connect(self._limits)
+        self.start = self._seconds("From", 0.0, 0.0)
+        self.length = self._seconds("Seconds", 1.0, WINDOW)
+        self.search = QComboBox(self)
+        self.search.setAccessibleName("Search")
+        self.search.addItem("the best there is", True)
+        self.search.addItem("quick, by chance", False)
+        self.search.setItemData(0, "Dynamic programming over all frames: finds a motion whenever there is one, none costs less", 3)
+        self.search.setItemData(1, "Stochastic greedy search, as in the paper: other results with other seeds; may find nothing", 3)
+        self.search.activated.connect(self._limits)
+        self.seed = QDoubleSpinBox(self, minimum=1, maximum=9999, decimals=0, value=1)
+        self.seed.setAccessibleName("Seed")
+        for words, field in (
+            ("Goes with", self.speech), ("from", self.start), ("for", self.length), ("Search", self.search), ("seed", self.seed),
+        ):  # fmt: skip
+            row.addWidget(QLabel(words, self))
+            row.addWidget(field)
+            row.addSpacing(6)
+        row.addStretch(1)
+        box.addLayout(row)
+        row = QHBoxLayout()
+        row.addWidget(QLabel("Meets", self))
+        self.kinds: dict[Sound, QCheckBox] = {}
+        for kind, words in KINDS:
+            self.kinds[kind] = QCheckBox(words, self, checked=True)
+            row.addWidget(self.kinds[kind])
+        self.peaks = QCheckBox("Stresses", self, checked=True)
+        self.peaks.setToolTip("A clause's stress lies where the stress lay that the motion was made with")
+        row.addWidget(self.peaks)
+        self.tolerance = QDoubleSpinBox(self, minimum=0.0, maximum=1.0, singleStep=0.05, decimals=2, value=0.1, suffix=" s")
+        self.tolerance.setAccessibleName("Tolerance")
+        row.addSpacing(8)
+        row.addWidget(QLabel("give or take", self))
+        row.addWidget(self.tolerance)
+        self.whole = QCheckBox("Move the speaker with it", self)
+        self.whole.setToolTip("Motion for the whole conversation, which then moves this speaker instead of the graph")
+        self.whole.toggled.connect(self._limits)
+        row.addSpacing(8)
+        row.addWidget(self.whole)
+        row.addStretch(1)
+        self.go = QPushButton("Find", self, autoDefault=False)
+        self.go.clicked.connect(self.wanted)
+        strengthen(self.go)
+        row.addWidget(self.go)
+        box.addLayout(row)
+        for field in (self.start, self.length, self.seed, self.tolerance):
+            field.lineEdit().setTextMargins(6, 0, 0, 0)
+        self.fill()
+
+    def _seconds(self, name: str, least: float, value: float) -> QDoubleSpinBox:
+        out = QDoubleSpinBox(self, minimum=least, maximum=3600, decimals=1, value=value, suffix=" s")
+        out.setAccessibleName(name)
+        return out
+
+    def fill(self) -> None:
+        """List whose speech there is."""
+        chosen, first = self.speech.currentData(), not self.speech.count()
+        self.speech.clear()
+        self.speech.addItem("no speech", None)
+        for ident, talk in self.document.project.conversations.items():
+            for n in range(2):
+                self.speech.addItem(side_words(talk, n), (ident, n))
+                if chosen == (ident, n) or (first and self.speech.count() == 2):
+                    self.speech.setCurrentIndex(self.speech.count() - 1)
+        self._limits()
+
+    def _limits(self) -> None:
+        talks = self.speech.currentData() is not None
+        for box in (*self.kinds.values(), self.peaks, self.tolerance, self.start):
+            box.setEnabled(talks)
+        self.seed.setEnabled(not self.search.currentData())
+        self.whole.setEnabled(talks)
+        self.start.setEnabled(talks and self.moves is None)
+        self.length.setEnabled(self.moves is None)
+
+    @property
+    def talks(self) -> bool:
+        """Whether it is to go with speech."""
+        return self.speech.currentData() is not None
+
+    @property
+    def moves(self) -> tuple[str, int] | None:
+        """Which side of which conversation is to move with it; None for neither."""
+        chosen: tuple[str, int] | None = self.speech.currentData()
+        return chosen if self.whole.isChecked() else None
+
+    def wish(self) -> Wish:
+        """Return what is asked for now."""
+        chosen, seconds, start = self.speech.currentData(), self.length.value(), self.start.value()
+        if self.moves is not None:
+            seconds, start = self.document.project.conversations[self.moves[0]].length, 0.0
+        use = tuple(kind for kind in SOUNDS if self.kinds[kind].isChecked()) if chosen is not None else ()
+        segments = ()
+        if chosen is not None:
+            talk = self.document.project.conversations[chosen[0]]
+            seconds = min(seconds, max(1.0, talk.length - start))
+            from metagraph.synthesis.evaluate import cut
+
+            segments = tuple(cut(heard_by(talk, chosen[1]), start, seconds))
+        return Wish(
+            seconds, segments, bool(self.search.currentData()), use, self.peaks.isChecked(), self.tolerance.value(), int(self.seed.value())
+        )
+
+    def name(self) -> str:
+        """Return what the new clip is called."""
+        chosen = self.speech.currentData()
+        if chosen is None:
+            return "new motion"
+        talk = self.document.project.conversations[chosen[0]]
+        part = "" if self.moves is not None else f" {self.start.value():g}s"
+        return f"{talk.name} {talk.sides[chosen[1]].name or chosen[1] + 1}{part}"

@@ -1,0 +1,205 @@
+"""What the motion graph's window works with: takes of a project with what was heard during them, new motion, clips kept as files.
+
+Pure functions and values; whoever calls them does so on a job's thread.
+"""
+
+from __future__ import annotations
+
+import re
+import time
+from collections.abc import Callable, Collection, Mapping, Sequence
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+import msgspec
+
+from app.look.plural import many
+from metagraph.graph.conversation import SOUNDS, Segment, Sound, heard_by
+from metagraph.graph.edits import free_name
+from metagraph.graph.model import Project
+from metagraph.motion.clip import Clip
+
+FOLDER = "motion-graph"  # beside the project file, where new clips are kept
+LONG = 6.0  # seconds from which a clip is a take; shorter ones are chosen by hand
+LEAST, MOST = 1.0, 8.0  # seconds of clips cut from takes
+Loaded = tuple[str, int, str, Clip]  # what `add_clips` takes
+
+
+@dataclass(frozen=True, eq=False)
+class Takes:
+    """clips: those with motion, of one skeleton. ids: theirs. speech: what was heard during each, none where nobody knows."""
+
+    ids: tuple[str, ...]
+    clips: tuple[Clip, ...]
+    speech: tuple[tuple[Segment, ...], ...]
+
+    @property
+    def frames(self) -> int:
+        return sum(clip.frames for clip in self.clips)
+
+    @property
+    def told(self) -> bool:
+        """Whether anything was heard during any of them."""
+        return any(self.speech)
+
+
+def usable(project: Project) -> list[str]:
+    """Return the clips that can be takes: with motion, of the project's skeleton, more than one frame; the longest first."""
+    fitting = [e for e in project.clips.values() if e.motion is not None and e.motion.skeleton == project.skeleton and e.frames > 1]
+    return [e.id for e in sorted(fitting, key=lambda e: (-e.duration, e.name))]
+
+
+def speech_of(project: Project, clip: str) -> tuple[str, int] | None:
+    """Return the conversation and side that were recorded along with a clip."""
+    return next(((i, n) for i, c in project.conversations.items() for n, s in enumerate(c.sides) if s.take == clip), None)
+
+
+def left_out(project: Project) -> str:
+    """Return which clips cannot be takes, and why, in words; "" where all can."""
+    moving = [e for e in project.clips.values() if e.motion is not None]
+    alike = [e for e in moving if e.motion is not None and e.motion.skeleton == project.skeleton]
+    still = sum(e.frames <= 1 for e in alike)
+    reasons = (
+        (still, "of one frame"),
+        (len(moving) - len(alike), "of another skeleton"),
+        (len(project.clips) - len(moving), "whose file is missing"),
+    )
+    told = [f"{many(count, 'clip')} {why}" for count, why in reasons if count]
+    return f"Left out: {', '.join(told)}." if told else ""
+
+
+def during(heard: Sequence[Segment], seconds: float) -> tuple[Segment, ...]:
+    """Return what was heard while a take lasted: what goes on after its end is cut there."""
+    out = []
+    for s in heard:
+        if s.start < seconds:
+            peak = s.peak if s.peak is not None and s.peak < seconds else None
+            out.append(s if s.end <= seconds else msgspec.structs.replace(s, end=seconds, peak=peak))
+    return tuple(out)
+
+
+def takes_of(project: Project, ids: Collection[str]) -> Takes:
+    """Return the chosen clips as takes; those without motion are left out."""
+    found = [i for i in usable(project) if i in ids]
+    speech = []
+    for ident in found:
+        recorded = speech_of(project, ident)
+        heard = heard_by(project.conversations[recorded[0]], recorded[1]) if recorded is not None else ()
+        speech.append(during(heard, project.clips[ident].duration))
+    return Takes(tuple(found), tuple(m for i in found if (m := project.clips[i].motion) is not None), tuple(speech))
+
+
+@dataclass(frozen=True, slots=True)
+class Wish:
+    """What new motion is to go with. segments: what is heard. exact: the best path there is, else the paper's greedy search. use: the
+    kinds of segment that constrain; peaks: whether stresses have to be met; tolerance: seconds. seed: of the greedy search."""
+
+    seconds: float
+    segments: tuple[Segment, ...] = ()
+    exact: bool = True
+    use: tuple[Sound, ...] = SOUNDS
+    peaks: bool = True
+    tolerance: float = 0.1
+    seed: int = 1
+
+
+@dataclass(frozen=True, eq=False)
+class Found:
+    """A new motion. took: seconds of search."""
+
+    clip: Clip
+    cost: float
+    jumps: int
+    took: float
+
+    def words(self) -> str:
+        rate = self.jumps / max(self.clip.duration, 1e-9)
+        jumps = (
+            "no transition" if not self.jumps else f"{self.jumps} transitions, {rate:.2f} a second" if self.jumps > 1 else "1 transition"
+        )
+        return f"{self.clip.duration:.1f} s with {jumps}, cost {self.cost:.3g} m, found in {self.took:.2f} s."
+
+
+def synthesise(graph: Any, takes: Takes, wish: Wish, name: str, cancelled: Callable[[], bool] | None = None) -> Found:
+    """Return motion of the takes that goes with what is wished. Raises SynthesisError when there is none, saying what would help, or
+    when it was cancelled."""
+    from metagraph.synthesis.assemble import assemble
+    from metagraph.synthesis.constraints import heard, wanted
+    from metagraph.synthesis.search import best, greedy
+    from metagraph.synthesis.states import SynthesisError
+
+    said = heard(graph.states, takes.speech)
+    # Takes nobody annotated went with anything.
+    use = wish.use if takes.told else ()
+    asked = wanted(wish.segments, wish.seconds, wish.tolerance, use, wish.peaks and takes.told)
+    began = time.perf_counter()
+    try:
+        path = best(graph, said, asked, cancelled) if wish.exact else greedy(graph, said, asked, seed=wish.seed, cancelled=cancelled)
+    except SynthesisError as error:
+        if (use and wish.segments) or (cancelled is not None and cancelled()):
+            raise
+        raise SynthesisError(
+            f"these takes cannot go on for {wish.seconds:g} s without a jump: choose more takes, raise k or the level, or ask for less"
+        ) from error
+    took = time.perf_counter() - began
+    return Found(assemble(graph.states, takes.clips, path, name), path.cost, len(path.jumps), took)
+
+
+def table(
+    takes: Takes, ks: Sequence[int], level: float, progress: Callable[[int, int], None], cancelled: Callable[[], bool]
+) -> Mapping[int, tuple[int, int, int, int]]:
+    """Return for each k: states, transitions, then both after the states were removed that lead nowhere (the paper's table 2)."""
+    from metagraph.synthesis.graph import build, threshold
+    from metagraph.synthesis.states import key_states, states_of
+
+    states = states_of(takes.clips)
+    keys = key_states(states)
+    out = {}
+    for n, k in enumerate(ks):
+        progress(n, len(ks))
+        limit = threshold(states, k, level)
+        whole = build(states, limit, keys, connected=False, cancelled=cancelled)
+        try:
+            kept = build(states, limit, keys, cancelled=cancelled).size
+        except ValueError:  # nothing is left of it
+            kept = (0, 0)
+        out[k] = (*whole.size, *kept)
+    return out
+
+
+def pieces(clip: Clip, spans: Sequence[tuple[float, float]]) -> list[Clip]:
+    """Return a clip cut into stretches from start to end, seconds, numbered."""
+    out = []
+    for n, (start, end) in enumerate(spans, 1):
+        first, last = round(start * clip.fps), round(end * clip.fps) + 1
+        out.append(clip.trimmed(first, last).renamed(f"{clip.name}_{n:02d}"))
+    return out
+
+
+def save(clips: Sequence[Clip], folder: Path, inside: str, taken: Collection[str] = ()) -> list[Loaded]:
+    """Write each clip as a GLB of its own in a folder of the project's; return what `add_clips` takes. taken: names of clips there are.
+
+    Raises FileError.
+    """
+    from metagraph.formats.clips import digest
+    from metagraph.formats.gltf_writer import write_glb
+
+    out: list[Loaded] = []
+    names = set(taken)
+    place = folder / inside
+    place.mkdir(parents=True, exist_ok=True)
+    for clip in clips:
+        name = free_name(clip.name, names)
+        while (place / f"{_file(name)}.glb").exists():
+            names.add(name)
+            name = free_name(clip.name, names)
+        names.add(name)
+        path = place / f"{_file(name)}.glb"
+        write_glb(path, [clip.renamed(name)])
+        out.append((f"{inside}/{path.name}", 0, digest(path), clip.renamed(name)))
+    return out
+
+
+def _file(name: str) -> str:
+    return re.sub(r"[^\w .()-]", "_", name).strip(" .") or "clip"

@@ -1,0 +1,202 @@
+"""The problems panel: what is wrong, where, and what to do; a click goes there, and what can be mended is mended with a press."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+
+from PySide6.QtCore import QAbstractItemModel, QEvent, QModelIndex, QPersistentModelIndex, QPoint, QRect, QSize, Qt, Signal
+from PySide6.QtGui import QColor, QContextMenuEvent, QMouseEvent, QPainter, QPen
+from PySide6.QtWidgets import (
+    QHBoxLayout,
+    QHeaderView,
+    QLabel,
+    QMenu,
+    QPushButton,
+    QStackedLayout,
+    QStyle,
+    QStyledItemDelegate,
+    QStyleOptionViewItem,
+    QTreeWidget,
+    QTreeWidgetItem,
+    QVBoxLayout,
+    QWidget,
+)
+
+from app.look import icons
+from app.look.plural import many
+from app.look.theme import theme
+from app.stage.compatibility_state import Fix
+from app.stage.session import Session
+from metagraph.graph.check import Problem
+
+MOST = 500  # rows; a project with more has one cause, seen long before
+FIX = 3  # the column of buttons
+ROLE = Qt.ItemDataRole.UserRole
+
+
+class FixButtons(QStyledItemDelegate):
+    """Draws a button where a problem can be mended: five hundred real ones would take their time."""
+
+    def __init__(self, panel: ProblemsPanel) -> None:
+        super().__init__(panel)
+        self.panel = panel
+        self._down: QPersistentModelIndex | None = None
+
+    def place(self, option: QStyleOptionViewItem, words: str) -> QRect:
+        """Return where the button is in its cell."""
+        rect, wide = option.rect, option.fontMetrics.horizontalAdvance(words) + 20  # type: ignore[attr-defined]
+        return QRect(rect.left() + 2, rect.top() + 2, min(wide, rect.width() - 4), rect.height() - 4)
+
+    def sizeHint(self, option: QStyleOptionViewItem, index: QModelIndex | QPersistentModelIndex) -> QSize:
+        found = super().sizeHint(option, index)
+        return QSize(found.width() + 20, max(found.height(), 24))
+
+    def paint(self, painter: QPainter, option: QStyleOptionViewItem, index: QModelIndex | QPersistentModelIndex) -> None:
+        words, look = str(index.data() or ""), theme(self.panel.session.theme)
+        if option.state & QStyle.StateFlag.State_Selected:  # type: ignore[attr-defined]
+            painter.fillRect(option.rect, QColor(look.hover))  # type: ignore[attr-defined]
+        if not words:
+            return
+        rect = self.place(option, words)
+        over = bool(option.state & QStyle.StateFlag.State_MouseOver)  # type: ignore[attr-defined]
+        painter.save()
+        painter.setRenderHint(QPainter.RenderHint.Antialiasing)
+        painter.setPen(QPen(QColor(look.text if over else look.line), 1))
+        painter.setBrush(QColor(look.card))
+        painter.drawRoundedRect(rect.adjusted(0, 0, -1, -1), 4, 4)
+        painter.setPen(QColor(look.text))
+        painter.drawText(rect, Qt.AlignmentFlag.AlignCenter, words)
+        painter.restore()
+
+    def editorEvent(
+        self, event: QEvent, model: QAbstractItemModel, option: QStyleOptionViewItem, index: QModelIndex | QPersistentModelIndex
+    ) -> bool:
+        words = str(index.data() or "")
+        if words and isinstance(event, QMouseEvent) and event.button() == Qt.MouseButton.LeftButton:
+            inside = self.place(option, words).contains(event.position().toPoint())
+            if event.type() == QEvent.Type.MouseButtonPress:
+                self._down = QPersistentModelIndex(index) if inside else None
+            elif event.type() == QEvent.Type.MouseButtonRelease and inside and self._down == QPersistentModelIndex(index):
+                self._down = None
+                self.panel.mend(self.panel.tree.itemFromIndex(index))  # type: ignore[arg-type]
+                return True
+        return super().editorEvent(event, model, option, index)
+
+
+class ProblemsPanel(QWidget):
+    """mend_wanted: some `Fix`es were asked for."""
+
+    mend_wanted = Signal(object)
+
+    def __init__(self, session: Session, parent: QWidget | None = None) -> None:
+        super().__init__(parent)
+        self.session = session
+        self.problems: tuple[Problem, ...] = ()
+        self.fixes: Mapping[Problem, Fix | None] = {}
+        self._shown: object = None
+        self.tree = QTreeWidget(self)
+        self.tree.setColumnCount(4)
+        self.tree.setHeaderLabels(["Problem", "Where", "What to do", ""])
+        self.tree.setRootIsDecorated(False)
+        self.tree.setUniformRowHeights(True)
+        self.tree.setAccessibleName("Problems")
+        self.tree.header().setSectionResizeMode(QHeaderView.ResizeMode.Interactive)
+        self.tree.setItemDelegateForColumn(FIX, FixButtons(self))
+        self.tree.setMouseTracking(True)
+        self.tree.itemActivated.connect(self._go)
+        self.tree.itemClicked.connect(self._go)
+        self.tree.setContextMenuPolicy(Qt.ContextMenuPolicy.CustomContextMenu)
+        self.tree.customContextMenuRequested.connect(self._menu)
+        self.none = QLabel(self)
+        self.none.setProperty("dim", True)
+        self.none.setAlignment(Qt.AlignmentFlag.AlignCenter)
+        self.all = QPushButton(self)
+        self.all.setToolTip("In one step that can be undone")
+        self.all.clicked.connect(lambda: self.mend_wanted.emit(self.fixable()))
+        self.foot = QWidget(self)
+        foot = QHBoxLayout(self.foot)
+        foot.setContentsMargins(8, 4, 8, 6)
+        foot.addStretch(1)
+        foot.addWidget(self.all)
+        some = QWidget(self)
+        box = QVBoxLayout(some)
+        box.setContentsMargins(0, 0, 0, 0)
+        box.setSpacing(0)
+        box.addWidget(self.tree, 1)
+        box.addWidget(self.foot)
+        self.stack = QStackedLayout(self)
+        self.stack.addWidget(self.none)
+        self.stack.addWidget(some)
+        session.theme_changed.connect(lambda: self.show_problems(self.problems, self.fixes))
+
+    def show_problems(self, problems: Sequence[Problem], fixes: Mapping[Problem, Fix | None] | None = None) -> None:
+        """Show problems. fixes: what mends some of them."""
+        look = theme(self.session.theme)
+        fixes = fixes or {}
+        state = tuple(problems), tuple(fixes.items()), look.name, self.session.document.project.graphs, self.session.mode
+        if state == self._shown:
+            return
+        self.problems, self.fixes, self._shown = tuple(problems), fixes, state
+        self.tree.clear()
+        colors = {"error": look.error, "warning": look.warning, "hint": look.dim}
+        project = self.session.document.project
+        for problem in self.problems[:MOST]:
+            stance = project.stance(problem.stance)
+            drawn = project.state(problem.state)
+            inside = stance.name if stance else drawn.name if drawn else ""
+            place = ", ".join(x for x in (problem.layer or "", inside) if x) or "project"
+            fix = fixes.get(problem)
+            item = QTreeWidgetItem([problem.message, place, problem.remedy, fix.words if fix is not None else ""])
+            item.setIcon(0, icons.icon("warning", colors[problem.severity]))
+            item.setForeground(0, QColor(look.text if problem.severity != "hint" else look.dim))
+            item.setToolTip(0, f"{problem.severity}: {problem.message}. {problem.remedy}")
+            if fix is not None:
+                item.setToolTip(FIX, "One step that can be undone")
+            item.setData(0, ROLE, problem)
+            self.tree.addTopLevelItem(item)
+        for column, width in enumerate((560, 170, 380)):
+            self.tree.setColumnWidth(column, width)
+        each = "state can be reached and left" if self.session.mode == "manual" else "stance rests, leads somewhere and comes back"
+        self.none.setText(f"No problems. Every {each}.")
+        self.stack.setCurrentIndex(1 if self.problems else 0)
+        count = len(self.fixable())
+        self.foot.setVisible(count > 1)
+        self.all.setText(f"Mend {many(count, 'problem')}")
+
+    def fixable(self) -> list[Fix]:
+        """Return everything that can be mended with a press."""
+        return [fix for p in self.problems if (fix := self.fixes.get(p)) is not None]
+
+    def mend(self, item: QTreeWidgetItem) -> None:
+        """Mend the problem of a row, if that can be done with a press."""
+        problem = item.data(0, ROLE)
+        fix = self.fixes.get(problem) if isinstance(problem, Problem) else None
+        if fix is not None:
+            self.session.jump(action=fix.action)
+            self.mend_wanted.emit([fix])
+
+    def contextMenuEvent(self, event: QContextMenuEvent) -> None:
+        event.accept()  # the list's own
+
+    def menu(self, item: QTreeWidgetItem) -> QMenu:
+        """Return what can be done about a row."""
+        menu = QMenu(self)
+        menu.addAction("Go there", lambda: self._go(item))
+        problem = item.data(0, ROLE)
+        fix = self.fixes.get(problem) if isinstance(problem, Problem) else None
+        if fix is not None:
+            menu.addAction(fix.words, lambda: self.mend(item))
+        if len(self.fixable()) > 1:
+            menu.addSeparator()
+            menu.addAction(self.all.text(), self.all.click)
+        return menu
+
+    def _menu(self, at: QPoint) -> None:
+        item = self.tree.itemAt(at)
+        if item is not None:
+            self.menu(item).exec(self.tree.viewport().mapToGlobal(at))
+
+    def _go(self, item: QTreeWidgetItem, column: int = 0) -> None:
+        problem = item.data(0, ROLE)
+        if isinstance(problem, Problem) and column != FIX:
+            self.session.jump(problem.layer, problem.stance, problem.action or problem.state or problem.link, problem.clip)

@@ -1,0 +1,1 @@
+"""The properties and the timing of actions."""

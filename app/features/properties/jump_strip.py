@@ -1,0 +1,177 @@
+"""Beneath the timing: when a clip can be entered and left without a visible jump, and how far off it is elsewhere."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+import pyqtgraph as pg
+from PySide6.QtCore import QEvent, QPointF, Qt
+from PySide6.QtGui import QColor, QHelpEvent
+from PySide6.QtWidgets import QToolTip, QWidget
+
+from app.look.theme import Theme
+from metagraph.graph.model import Action, Project
+
+if TYPE_CHECKING:
+    from metagraph.suggest.jumps import Curves
+
+HEIGHT = 58
+TOP = 2.4  # of what shows as a jump; more is cut off
+BAR = 0.22  # height of the allowed spans
+
+
+class Seen:
+    """An action's curves as its blends are now. times, enter, leave `[F]`; pivot: the frame from which on leaving is shown."""
+
+    def __init__(self, action: Action, curves: Curves) -> None:
+        from metagraph.suggest.compatibility import shown
+
+        t = action.timing
+        self.loops, self.times, self.proposed = action.kind == "stance", curves.times, curves.proposed
+        self.enter = np.asarray(shown(curves.enter, t.blend_in))
+        self.leave = np.asarray(shown(curves.leave, t.blend_in if self.loops else t.blend_out))
+        if self.loops:
+            self.pivot = 0
+        elif action.kind == "transition":
+            self.pivot = int(np.argmax(curves.leave <= curves.enter)) or len(self.times) // 2
+        else:
+            self.pivot = int(np.argmax(curves.enter))
+
+    def at(self, seconds: float) -> int:
+        return int(np.argmin(np.abs(self.times - seconds)))
+
+    def cost(self, edge: str, seconds: float) -> float:
+        """Return what beginning ("start") or ending ("end") at a moment would cost; up to 1 does not show."""
+        return float((self.enter if edge == "start" else self.leave)[self.at(seconds)])
+
+    def curve(self) -> np.ndarray:
+        """Return `[F]` what is drawn: entering before the pivot, leaving from there on."""
+        return np.where(np.arange(len(self.times)) < self.pivot, self.enter, self.leave)
+
+    def spans(self) -> list[tuple[float, float]]:
+        """Return where nothing shows, seconds; from the first such frame to the last."""
+        good = self.curve() <= 1
+        good_in, good_out = good & (np.arange(len(good)) < self.pivot), good & (np.arange(len(good)) >= self.pivot)
+        out = []
+        for some in (good_in, good_out):
+            edges = np.flatnonzero(np.diff(np.concatenate(([0], some.astype(int), [0]))))
+            out += [(float(self.times[a]), float(self.times[b - 1])) for a, b in edges.reshape(-1, 2)]
+        return out
+
+    def snaps(self, handle: str) -> list[float]:
+        """Return the moments a handle comes to rest at: the proposed one, and where nothing begins to show."""
+        if handle == "start":
+            if self.loops:
+                return []
+            ends = [b for a, b in self.spans() if b <= self.times[self.pivot]]
+            return [self.proposed.start, *ends]
+        if handle == "end":
+            starts = [a for a, b in self.spans() if a >= self.times[self.pivot] and a > self.times[0] + 0.1]
+            return [self.proposed.end, *starts]
+        return []
+
+
+def words_at(project: Project, action: Action, seen: Seen, seconds: float) -> str:
+    """Say what a moment would be like to begin or end at."""
+    entering = seen.at(seconds) < seen.pivot
+    cost = seen.cost("start" if entering else "end", seconds)
+    blend = action.timing.blend_in if entering or seen.loops else action.timing.blend_out
+    stance = project.stance(action.stance if entering or action.end_stance is None else action.end_stance)
+    name = f"'{stance.name}'" if stance is not None else "its stance"
+    what = "repeats from" if seen.loops else "enters from" if entering else "leaves to"
+    to = "" if seen.loops else f" {name}"
+    how = f", blended over {blend:.2f} s" if blend > 0 else ""
+    verdict = f"{cost:.1f} of what shows as a jump" if cost <= 1 else f"{cost:.1f} times what shows as a jump"
+    return f"At {seconds:.2f} s it {what}{to}{' here' if seen.loops else ''}: {verdict}{how}"
+
+
+class JumpStrip(pg.PlotWidget):
+    """A thin plot under the timing's, in step with it."""
+
+    def __init__(self, parent: QWidget, above: pg.PlotWidget) -> None:
+        super().__init__(parent)
+        self.seen: Seen | None = None
+        self.subject: tuple[Project, Action] | None = None
+        self.setMenuEnabled(False)
+        self.setMouseEnabled(False, False)
+        self.hideButtons()
+        self.setFixedHeight(HEIGHT)
+        self.setXLink(above)
+        self.setYRange(0, TOP, padding=0)
+        left = self.getAxis("left")
+        left.setWidth(above.getAxis("left").width())
+        left.setTicks([])
+        self.hideAxis("bottom")
+        self.setAccessibleName("Where it can begin and end without a jump")
+        self.bars = pg.BarGraphItem(x0=[], x1=[], y0=0, height=BAR)
+        self.bad = pg.PlotDataItem(connect="finite", antialias=True)
+        self.good = pg.PlotDataItem(connect="finite", antialias=True)
+        self.limit = pg.InfiniteLine(pos=1.0, angle=0, movable=False)
+        self.words = pg.TextItem("shows as a jump", anchor=(1.0, 1.0))
+        self.marks = pg.ScatterPlotItem(size=12)
+        self.edges = [pg.InfiniteLine(movable=False) for _ in range(2)]
+        for item in (self.bars, self.limit, *self.edges, self.bad, self.good, self.marks):
+            self.addItem(item)
+        self.addItem(self.words, ignoreBounds=True)
+
+    def restyle(self, t: Theme, color: QColor) -> None:
+        self.setBackground(t.panel)
+        axis = self.getAxis("left")
+        axis.setPen(pg.mkPen(None))
+        fill = QColor(color)
+        fill.setAlpha(120)
+        self.bars.setOpts(brush=fill, pen=pg.mkPen(None))
+        self.good.setPen(pg.mkPen(t.text, width=1.6))
+        self.bad.setPen(pg.mkPen(t.warning, width=1.6, style=Qt.PenStyle.DotLine))
+        self.limit.setPen(pg.mkPen(t.dim, width=1, style=Qt.PenStyle.DashLine))
+        self.words.setColor(t.dim)
+        self.marks.setPen(pg.mkPen(t.panel, width=1))
+        self.marks.setBrush(pg.mkBrush(t.text))
+        for edge in self.edges:
+            edge.setPen(pg.mkPen(t.text, width=1.4))
+
+    def show_seen(self, project: Project, action: Action, seen: Seen | None) -> None:
+        """Show an action's curves, or nothing."""
+        self.seen, self.subject = seen, (project, action)
+        if seen is None:
+            for item in (self.bad, self.good):
+                item.setData([], [])
+            self.marks.setData([], [])
+            self.bars.setOpts(x0=[], x1=[])
+            for edge in self.edges:
+                edge.hide()
+            return
+        curve = np.minimum(seen.curve(), TOP)
+        above = curve > 1
+        self.good.setData(seen.times, np.where(above, np.nan, curve))
+        wide = above.copy()  # the dotted part touches the plain one
+        wide[:-1] |= above[1:]
+        wide[1:] |= above[:-1]
+        self.bad.setData(seen.times, np.where(wide, curve, np.nan))
+        spans = seen.spans()
+        self.bars.setOpts(x0=[a for a, _ in spans], x1=[b for _, b in spans])
+        p = seen.proposed
+        spots: list[dict[str, Any]] = [{"pos": (p.end, BAR * 2), "symbol": "t3"}]
+        if not seen.loops:
+            spots.append({"pos": (p.start, BAR * 2), "symbol": "t2"})
+        self.marks.setData(spots)
+        for edge, value in zip(self.edges, project.span(action), strict=True):
+            edge.setVisible(True)
+            edge.setValue(value)
+        self.words.setPos(float(self.viewRange()[0][1]), 1.0)
+
+    def tip(self, at: QPointF) -> str:
+        """Say what a point of the strip means."""
+        if self.seen is None or self.subject is None:
+            return ""
+        seconds = float(self.plotItem.vb.mapSceneToView(at).x())
+        seconds = min(max(0.0, seconds), float(self.seen.times[-1]))
+        more = "\nThe marks are the proposed times. Hold Alt while dragging to leave them out."
+        return words_at(*self.subject, self.seen, seconds) + more
+
+    def viewportEvent(self, event: QEvent) -> bool:
+        if event.type() == QEvent.Type.ToolTip and isinstance(event, QHelpEvent):
+            QToolTip.showText(event.globalPos(), self.tip(self.mapToScene(event.pos())), self)
+            return True
+        return bool(super().viewportEvent(event))

@@ -1,0 +1,110 @@
+"""Fields for how often things play: an action's cooldown and spacing, the phases of a gesture, and the planner's own numbers."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from typing import Any
+
+from PySide6.QtCore import Signal
+from PySide6.QtWidgets import QCheckBox, QFormLayout, QHBoxLayout, QSpinBox, QToolButton, QWidget
+
+from app.widgets.form_fields import MIXED, Mixed, Seconds, common
+from metagraph.graph import edits
+from metagraph.graph.model import Action, Project, Settings
+from metagraph.playback.phases import phases
+
+PHASE_FIELDS = ("ready", "stroke_end", "relax")
+PHASE_WORDS = {"ready": "The preparation ends", "stroke_end": "The hold begins", "relax": "The hold ends, the retraction begins"}
+AS_THE_GRAPH = -1
+
+
+class ActionRows(QWidget):
+    """Rows of an action's form. changed: words for the undo step, and Action fields to set."""
+
+    changed = Signal(str, object)
+
+    def __init__(self, form: QFormLayout, parent: QWidget) -> None:
+        super().__init__(parent)
+        self.hide()  # it only holds its rows together
+        self.form = form
+        self.ready, self.stroke_end, self.relax = (Seconds(parent, PHASE_WORDS[f]) for f in PHASE_FIELDS)
+        self.found = QToolButton(parent, text="As found", toolTip="Take the phases from the motion again")
+        self.found.setAccessibleName("Phases as found")
+        self.phase_rows = (self._row("Ready", self.ready, self.found), self._row("Hold", self.stroke_end, self.relax))
+        for field, box in zip(PHASE_FIELDS, (self.ready, self.stroke_end, self.relax), strict=True):
+            box.valueChanged.connect(lambda v, f=field: v >= 0 and self.changed.emit("Change phases", {"timing": {f: round(v, 3)}}))
+        self.found.clicked.connect(lambda: self.changed.emit("Take phases as found", {"timing": dict.fromkeys(PHASE_FIELDS)}))
+        self.cooldown = Seconds(parent, "Seconds after it has ended in which it is not drawn again", 3600, " s", 0.5, 1)
+        self.cooldown.valueChanged.connect(lambda v: v >= 0 and self.changed.emit("Change cooldown", {"cooldown": round(v, 2)}))
+        self.spacing = QSpinBox(parent, toolTip="How many others of its kind and stance play before it may be drawn again")
+        self.spacing.setAccessibleName("Others between")
+        self.spacing.setRange(-2, 31)
+        self.spacing.setKeyboardTracking(False)
+        self.spacing.valueChanged.connect(self._spaced)
+        self.rest_row = self._row("Cooldown", self.cooldown, self.spacing)
+
+    def _row(self, title: str, *fields: QWidget) -> QWidget:
+        row = QWidget(self.parentWidget())
+        line = QHBoxLayout(row)
+        line.setContentsMargins(0, 0, 0, 0)
+        for field in fields:
+            field.setMinimumWidth(60)  # long special words must not widen the whole panel
+            line.addWidget(field, 0 if isinstance(field, QToolButton) else 1)
+        self.form.addRow(title, row)
+        return row
+
+    def show_actions(self, project: Project, actions: Sequence[Action]) -> None:
+        gestures = all(a.kind == "gesture" for a in actions)
+        for row in self.phase_rows:
+            self.form.setRowVisible(row, gestures)
+        self.form.setRowVisible(self.rest_row, all(a.kind in ("gesture", "fidget") for a in actions))
+        if gestures:
+            found = [phases(project, a) for a in actions]
+            self.ready.show_value(common([p.ready for p in found]))
+            self.stroke_end.show_value(common([p.stroke_end for p in found]))
+            self.relax.show_value(common([p.relax for p in found]))
+            self.found.setEnabled(any(getattr(a.timing, f) is not None for a in actions for f in PHASE_FIELDS))
+        self.cooldown.show_value(common([a.cooldown for a in actions]))
+        spacing = common([a.spacing for a in actions])
+        self.spacing.blockSignals(True)
+        self.spacing.setMinimum(-2 if spacing is Mixed else AS_THE_GRAPH)
+        self.spacing.setSpecialValueText(MIXED if spacing is Mixed else "as usual")
+        self.spacing.setValue(-2 if spacing is Mixed else AS_THE_GRAPH if spacing is None else spacing)
+        self.spacing.blockSignals(False)
+
+    def _spaced(self, value: int) -> None:
+        if value >= AS_THE_GRAPH:
+            self.changed.emit("Change spacing", {"spacing": None if value == AS_THE_GRAPH else value})
+
+
+class PlannerRows(QWidget):
+    """Rows of the planner's numbers, the same for every layer. edit: as `Document.edit` takes them."""
+
+    def __init__(self, form: QFormLayout, parent: QWidget, edit: Callable[[str, Callable[[Project], Project]], object]) -> None:
+        super().__init__(parent)
+        self.hide()
+        self._edit = edit
+        self.never_twice = QCheckBox("never twice in a row", parent)
+        self.never_twice.setToolTip("Where there is another; an action's own number of others between wins")
+        self.never_twice.clicked.connect(lambda on: self._set("Change repetition", never_twice=on))
+        form.addRow("Repetition", self.never_twice)
+        self.fields: dict[str, Seconds] = {}
+        for name, title, tip, most, suffix, step in (
+            ("alpha", "Avoid repeats", "How quickly what was used becomes unlikely; the paper has 4", 100, "", 0.5),
+            ("memory", "Remembered for", "How long a use counts against an action; 0 for ever", 600, " s", 5),
+            ("rest", "Least rest", "Seconds in the stance between two actions, at the least", 60, " s", 0.1),
+            ("wait", "Waits at most", "How late something asked for may begin", 60, " s", 0.5),
+            ("lookahead", "Looks ahead", "What begins this soon is not changed any more while performing live", 10, " s", 0.05),
+        ):
+            field = Seconds(parent, tip, most, suffix, step)
+            field.valueChanged.connect(lambda v, n=name, t=title: v >= 0 and self._set(f"Change {t.lower()}", **{n: round(v, 3)}))
+            self.fields[name] = field
+            form.addRow(title, field)
+
+    def show_settings(self, settings: Settings) -> None:
+        self.never_twice.setChecked(settings.never_twice)
+        for name, field in self.fields.items():
+            field.show_value(getattr(settings, name))
+
+    def _set(self, text: str, **changes: Any) -> None:
+        self._edit(text, lambda p: edits.set_settings(p, **changes))

@@ -1,0 +1,1 @@
+"""Writing a performance as video, contact sheet or motion."""

@@ -1,0 +1,150 @@
+"""The dialog that writes a performance: as a video with sound, a contact sheet, or plain motion."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+from PySide6.QtCore import QSettings, Qt, QUrl, Signal
+from PySide6.QtGui import QDesktopServices
+from PySide6.QtWidgets import (
+    QComboBox,
+    QDialog,
+    QDialogButtonBox,
+    QDoubleSpinBox,
+    QFileDialog,
+    QFormLayout,
+    QHBoxLayout,
+    QLabel,
+    QLineEdit,
+    QProgressBar,
+    QPushButton,
+    QVBoxLayout,
+    QWidget,
+)
+
+from app.look.theme import strengthen
+from app.project.jobs import Job, Jobs
+from app.stage.performance import Performance
+from app.stage.render_process import SUFFIXES, Wanted, write
+from app.stage.session import Session
+
+SIZES = ((640, 360), (960, 540), (1280, 720), (1920, 1080))
+
+
+class RenderDialog(QDialog):
+    """written: the file is there."""
+
+    written = Signal(str)
+
+    def __init__(self, performance: Performance, session: Session, jobs: Jobs, parent: QWidget | None = None) -> None:
+        super().__init__(parent)
+        self.performance, self.session, self.jobs = performance, session, jobs
+        self.setAttribute(Qt.WidgetAttribute.WA_DeleteOnClose)  # what runs goes on; the status bar shows it
+        kept = performance.kept
+        if performance.conversation is not None:
+            kept = performance.document.project.conversations[performance.conversation]
+        self.setWindowTitle(f"Write '{kept.name}'" if kept is not None else "Write the performance")
+        self.setMinimumWidth(520)
+        layout = QVBoxLayout(self)
+        form = QFormLayout()
+        layout.addLayout(form)
+        self.kind = QComboBox(self)
+        for suffix, words in SUFFIXES.items():
+            self.kind.addItem(words, suffix)
+        self.kind.activated.connect(lambda _: self._suffixed())
+        form.addRow("As", self.kind)
+        row = QHBoxLayout()
+        folder = performance.document.folder or Path.home()
+        name = kept.name if kept is not None else performance.document.project.name
+        self.file = QLineEdit(str(folder / f"{name}.mp4"), self)
+        self.file.setAccessibleName("File")
+        browse = QPushButton("Choose…", self, autoDefault=False)
+        browse.clicked.connect(self._browse)
+        row.addWidget(self.file, 1)
+        row.addWidget(browse)
+        form.addRow("File", row)
+        self.seconds = QDoubleSpinBox(self, minimum=0.1, maximum=3600, decimals=1, suffix=" s")
+        self.seconds.setValue(kept.length if kept is not None else min(30.0, performance.length))
+        form.addRow("Length", self.seconds)
+        self.size_box = QComboBox(self)
+        for width, height in SIZES:
+            self.size_box.addItem(f"{width} × {height}", (width, height))
+        self.size_box.setCurrentIndex(int(QSettings().value("render/size", 2)))
+        form.addRow("Size", self.size_box)
+        self.fps = QComboBox(self)
+        for fps in (24.0, 25.0, 30.0, 60.0):
+            self.fps.addItem(f"{fps:g} a second", fps)
+        self.fps.setCurrentIndex(2)
+        form.addRow("Pictures", self.fps)
+        self.form = form
+        self.words = QLabel(self, wordWrap=True)
+        self.words.setProperty("dim", True)
+        layout.addWidget(self.words)
+        self.progress = QProgressBar(self)
+        self.progress.hide()
+        layout.addWidget(self.progress)
+        self.buttons = QDialogButtonBox(QDialogButtonBox.StandardButton.Close, self)
+        self.show_button = self.buttons.addButton("Open folder", QDialogButtonBox.ButtonRole.ActionRole)
+        self.show_button.setEnabled(False)
+        self.show_button.clicked.connect(lambda: QDesktopServices.openUrl(QUrl.fromLocalFile(str(Path(self.file.text()).parent))))
+        self.go = self.buttons.addButton("Write", QDialogButtonBox.ButtonRole.AcceptRole)
+        strengthen(self.go)
+        self.buttons.accepted.connect(self._write)
+        self.buttons.rejected.connect(self.reject)
+        layout.addWidget(self.buttons)
+        self._suffixed()
+
+    def _suffixed(self) -> None:
+        """Show what belongs to the chosen kind of file."""
+        suffix = self.kind.currentData()
+        self.file.setText(str(Path(self.file.text()).with_suffix(suffix)))
+        drawn = suffix in (".mp4", ".png")
+        self.form.setRowVisible(self.size_box, drawn)
+        self.form.setRowVisible(self.fps, suffix != ".png")
+        self.words.setText({
+            ".mp4": "H.264, with the sound of what is said.",
+            ".png": "24 pictures over the performance, on one sheet.",
+            ".glb": "The motion of every joint, with the character, for any 3-D program.",
+            ".bvh": "The motion of every joint, without a mesh.",
+        }[suffix])  # fmt: skip
+
+    def _browse(self) -> None:
+        suffix = self.kind.currentData()
+        name, _ = QFileDialog.getSaveFileName(self, "Write the performance", self.file.text(), f"{SUFFIXES[suffix]} (*{suffix})")
+        if name:
+            self.file.setText(str(Path(name).with_suffix(suffix)))
+
+    def _write(self) -> None:
+        document = self.performance.document
+        wanted = Wanted(
+            Path(self.file.text()), self.session.performance, self.seconds.value(), self.size_box.currentData(), self.fps.currentData(),
+            self.session.theme, self.performance.conversation,
+        )  # fmt: skip
+        QSettings().setValue("render/size", self.size_box.currentIndex())
+        project, folder = document.project, document.folder or Path()
+        self.go.setEnabled(False)
+        self.progress.setRange(0, 0)
+        self.progress.show()
+
+        def work(job: Job) -> Path:
+            return write(project, folder, wanted, job)
+
+        job = self.jobs.start("Writing the performance", work, self._done, self._failed)
+        job.progress.connect(self._tell)
+        job.ended.connect(self._ended)
+
+    def _tell(self, done: int, total: int, words: str) -> None:
+        self.progress.setRange(0, total)
+        self.progress.setValue(done)
+
+    def _ended(self) -> None:
+        self.progress.hide()
+        self.go.setEnabled(True)
+
+    def _done(self, path: Path) -> None:
+        self.show_button.setEnabled(True)
+        self.words.setText(f"Written: {path.name} ({path.stat().st_size / 1e6:.1f} MB).")
+        self.written.emit(str(path))
+
+    def _failed(self, error: Exception) -> None:
+        self.words.setText(str(error))

@@ -1,0 +1,147 @@
+"""What reading clips repaired: seen clip by clip, and left out one by one."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Sequence
+
+from PySide6.QtCore import Qt
+from PySide6.QtWidgets import QDialog, QDialogButtonBox, QLabel, QPlainTextEdit, QTreeWidget, QTreeWidgetItem, QVBoxLayout, QWidget
+
+from app.look.theme import strengthen
+from app.project.document import Document
+from app.project.jobs import Job, Jobs
+from metagraph.formats.repairs import Repaired, Reread, repairs_of, reread
+from metagraph.formats.takes import BIND_POSE, NAME, ONE_FRAME, UNIT, UP
+from metagraph.graph.edits import EditError
+
+PLACE = Qt.ItemDataRole.UserRole
+TITLES = {
+    BIND_POSE: "Drop a bind pose on the first frame",
+    UNIT: "Find the unit of length",
+    UP: "Turn from Z up to Y up",
+    ONE_FRAME: "Skip takes of one frame",
+    NAME: "Clean names",
+}
+TICKED, OPEN = Qt.CheckState.Checked, Qt.CheckState.Unchecked
+
+
+class RepairsDialog(QDialog):
+    """title: what happened. clips: whose repairs are shown. lines: what else there is to read."""
+
+    def __init__(
+        self, document: Document, jobs: Jobs, title: str, clips: Iterable[str], lines: Sequence[str] = (), parent: QWidget | None = None
+    ) -> None:
+        super().__init__(parent)
+        self.document, self.jobs, self.clips = document, jobs, tuple(clips)
+        self.found: list[Repaired] = []
+        self.setAttribute(Qt.WidgetAttribute.WA_DeleteOnClose)
+        self.setWindowTitle("Repairs")
+        self.resize(760, 520)
+        layout = QVBoxLayout(self)
+        layout.setContentsMargins(16, 14, 16, 14)
+        layout.setSpacing(8)
+        self.headline = QLabel(title, self, wordWrap=True)
+        self.headline.setProperty("heading", True)
+        self.words = QLabel(self, wordWrap=True)
+        self.words.setProperty("dim", True)
+        self.tree = QTreeWidget(self, uniformRowHeights=True)
+        self.tree.setHeaderLabels(["Clip", "What was done"])
+        self.tree.setColumnWidth(0, 320)
+        self.tree.setAccessibleName("Repairs")
+        self.tree.itemChanged.connect(self._count)
+        self.lines = QPlainTextEdit("\n".join(lines), self, readOnly=True)
+        self.lines.setAccessibleName("Also noted")
+        self.lines.setMaximumHeight(110)
+        self.lines.setVisible(bool(lines))
+        self.trouble = QLabel(self, wordWrap=True)
+        self.trouble.hide()
+        self.buttons = QDialogButtonBox(QDialogButtonBox.StandardButton.Close, self)
+        self.go = self.buttons.addButton("Apply", QDialogButtonBox.ButtonRole.ApplyRole)
+        self.go.clicked.connect(self.apply)
+        strengthen(self.go)
+        self.buttons.rejected.connect(self.reject)
+        for part in (self.headline, self.words, self.tree, self.lines, self.trouble, self.buttons):
+            layout.addWidget(part, 1 if part is self.tree else 0)
+        document.changed.connect(self._fill)
+        document.loaded.connect(self.reject)
+        self._fill()
+
+    def _fill(self, *_: object) -> None:
+        project = self.document.project
+        found = repairs_of(project, self.clips)
+        if found == self.found and self.tree.topLevelItemCount():
+            return
+        self.found = found
+        self.tree.blockSignals(True)
+        self.tree.clear()
+        for name, title in TITLES.items():
+            mine = [n for n, r in enumerate(found) if r.repair.name == name]
+            if not mine:
+                continue
+            top = QTreeWidgetItem(self.tree, [f"{title} ({len(mine)})"])
+            top.setFlags(top.flags() | Qt.ItemFlag.ItemIsAutoTristate | Qt.ItemFlag.ItemIsUserCheckable)
+            font = top.font(0)
+            font.setBold(True)
+            top.setFont(0, font)
+            for n in mine:
+                item = QTreeWidgetItem(top, [project.clips[found[n].clip].name, found[n].repair.words])
+                item.setData(0, PLACE, n)
+                item.setToolTip(0, project.clips[found[n].clip].path)
+                item.setCheckState(0, TICKED if found[n].repair.made else OPEN)
+            top.setExpanded(len(mine) <= 12)
+        self.tree.blockSignals(False)
+        self.tree.setVisible(bool(found))
+        self.words.setText(
+            "Reading the files put this right. Untick what should be left as it is in the file; it can be ticked again at any time."
+            if found
+            else "Nothing had to be put right in these clips."
+        )
+        self._count()
+
+    def _items(self) -> list[QTreeWidgetItem]:
+        tops = [self.tree.topLevelItem(n) for n in range(self.tree.topLevelItemCount())]
+        return [top.child(n) for top in tops if top is not None for n in range(top.childCount())]
+
+    def changes(self) -> list[tuple[Repaired, bool]]:
+        """Return the repairs whose tick was changed, with whether they are to be made."""
+        now = [(self.found[item.data(0, PLACE)], item.checkState(0) == TICKED) for item in self._items()]
+        return [(found, made) for found, made in now if found.repair.made != made]
+
+    def _count(self, *_: object) -> None:
+        count = len(self.changes())
+        self.go.setEnabled(count > 0)
+        self.go.setText(f"Apply {count} change{'s' if count != 1 else ''}" if count else "Apply")
+
+    def apply(self) -> None:
+        """Read the clips again with and without those repairs, on a thread; one undo step."""
+        changes = self.changes()
+        project, folder = self.document.project, self.document.folder
+        self.go.setEnabled(False)
+        self.trouble.hide()
+
+        def work(job: Job) -> Reread:
+            return reread(project, folder, changes, job.tell)
+
+        def done(result: Reread) -> None:
+            if self.document.project is not project:
+                self._fail("The project was changed meanwhile; apply it again.")
+                return
+            failures = list(result.failures)
+            try:
+                if result.count:
+                    left = sum(not made for _, made in changes)
+                    verb = "Leave out" if left == len(changes) else "Make" if not left else "Change"
+                    self.document.edit(f"{verb} {len(changes)} repair{'s' if len(changes) != 1 else ''}", result.into)
+            except EditError as error:
+                failures.append(str(error))
+            self.found = []
+            self._fill()
+            if failures:
+                self._fail("\n".join(failures[:4]))
+
+        self.jobs.start("Reading clips again", work, done, lambda error: self._fail(str(error)))
+
+    def _fail(self, words: str) -> None:
+        self.trouble.setText(words)
+        self.trouble.show()
+        self._count()

@@ -1,0 +1,1 @@
+"""Clips of other skeletons: joint maps."""

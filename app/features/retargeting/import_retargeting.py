@@ -1,0 +1,114 @@
+"""Clips of other skeletons after an import: asked about once a skeleton, then retargeted on a thread, one step to undo."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterable
+from dataclasses import replace
+
+from PySide6.QtCore import QObject, Signal
+from PySide6.QtWidgets import QWidget
+
+from app.project.document import Document
+from app.project.jobs import Job, Jobs
+from app.project.kept_maps import keep_map
+from metagraph.formats.imports import Imported, Strangers, bring_over, strangers_of
+from metagraph.graph.bring import Bringing
+from metagraph.motion.joint_map import JointMap
+
+Then = Callable[[Imported], None]
+
+
+def clips_words(count: int) -> str:
+    return f"{count} clip{'s' if count != 1 else ''}"
+
+
+class Retargeting(QObject):
+    """told: words for the status bar. failed: an exception."""
+
+    told = Signal(str)
+    failed = Signal(object)
+
+    def __init__(self, document: Document, jobs: Jobs, window: QWidget) -> None:
+        super().__init__(window)
+        self.document, self.jobs, self.window = document, jobs, window
+        self._waiting: list[tuple[Strangers, Then]] = []
+        document.loaded.connect(self._forget)
+        self._asking = False
+
+    def _forget(self) -> None:
+        self._waiting.clear()  # they were of another project
+
+    def ask(self, groups: Iterable[Strangers], then: Then) -> None:
+        """Ask about each group; `then` is called with what came of each, an empty import for those left out."""
+        self._waiting += [(group, then) for group in groups]
+        if not self._asking:
+            self._next()
+
+    def change_maps(self, clips: Iterable[str]) -> None:
+        """Let the joint maps be corrected by which clips of the project were retargeted, those of `clips` or all."""
+        project, folder, chosen = self.document.project, self.document.folder, tuple(clips)
+
+        def then(result: Imported) -> None:
+            if result.loaded:
+                self.document.edit("Change joint map", result.into)
+                self.told.emit(f"Retargeted {clips_words(len(result.loaded))} again.")
+
+        def done(groups: tuple[Strangers, ...]) -> None:
+            if not groups:
+                self.told.emit("No clip of this project was retargeted.")
+            elif self.document.project is project:
+                self.ask(groups, then)
+
+        self.jobs.start("Reading retargeted clips", lambda _: strangers_of(project, folder, chosen), done, self.failed.emit)
+
+    def _next(self) -> None:
+        if not self._waiting:
+            return
+        from app.features.retargeting.joint_map_dialog import JointMapDialog
+
+        group, then = self._waiting.pop(0)
+        if self.document.project.skeleton is None:
+            self._end(lambda: then(Imported((), group.failures)))
+            return
+        self._asking = True
+        dialog = JointMapDialog(group, Bringing(self.document.project), self.jobs, self.window)
+        dialog.accepted.connect(lambda: self._bring(group, dialog.map, then))
+        dialog.rejected.connect(lambda: self._leave(group, then))
+        dialog.open()
+
+    def _leave(self, group: Strangers, then: Then) -> None:
+        self._end(lambda: then(Imported((), left=len(group.clips))))
+
+    def _bring(self, group: Strangers, joint_map: JointMap, then: Then) -> None:
+        bringing = Bringing(self.document.project)
+        source = self.document.path
+        try:
+            keep_map(joint_map)
+        except OSError as error:
+            self.told.emit(f"The joint map is kept in this project only ({error.strerror or error}).")
+
+        def done(result: Imported) -> None:
+            if self.document.path != source or self.document.project.skeleton is not bringing.project.skeleton:
+                result = replace(result, loaded=(), joint_maps={}, retargeted=0)
+                self.told.emit("The clips were not retargeted, since another project was opened.")
+            self._end(lambda: then(result))
+
+        def failed(error: Exception) -> None:
+            self.failed.emit(error)
+            self._end(lambda: then(Imported(())))
+
+        self.jobs.start(
+            f"Retargeting {clips_words(len(group.clips))}",
+            lambda job: self._work(job, bringing, group, joint_map),
+            done,
+            failed,
+        )
+
+    @staticmethod
+    def _work(job: Job, bringing: Bringing, group: Strangers, joint_map: JointMap) -> Imported:
+        return bring_over(bringing, group, joint_map, job.tell, lambda: job.cancelled)
+
+    def _end(self, then: Callable[[], None]) -> None:
+        self._asking = False
+        then()
+        self._next()

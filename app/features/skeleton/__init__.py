@@ -1,0 +1,1 @@
+"""Roles and body parts of the joints."""

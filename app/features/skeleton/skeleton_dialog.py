@@ -1,0 +1,206 @@
+"""The skeleton: which joint plays which role and belongs to which body part, and which joints an action moves."""
+
+from __future__ import annotations
+
+from PySide6.QtCore import Qt
+from PySide6.QtWidgets import (
+    QComboBox,
+    QDialog,
+    QDialogButtonBox,
+    QHBoxLayout,
+    QHeaderView,
+    QLabel,
+    QPushButton,
+    QTreeWidget,
+    QTreeWidgetItem,
+    QVBoxLayout,
+    QWidget,
+)
+
+from app.project.document import Document
+from app.stage.session import Session
+from metagraph.graph import anatomy, edits
+from metagraph.graph.model import PARTS, Part, Project
+from metagraph.motion.roles import ROLES, missing_roles
+
+JOINT = Qt.ItemDataRole.UserRole
+
+
+def joint_tree(tree: QTreeWidget, project: Project) -> dict[str, QTreeWidgetItem]:
+    """Fill a tree with the skeleton's joints; return joint name -> item."""
+    items: dict[str, QTreeWidgetItem] = {}
+    skeleton = project.skeleton
+    for i, name in enumerate(skeleton.names if skeleton is not None else ()):
+        assert skeleton is not None
+        parent = skeleton.parents[i]
+        item = QTreeWidgetItem([name])
+        item.setData(0, JOINT, name)
+        if parent >= 0:
+            items[skeleton.names[parent]].addChild(item)
+        else:
+            tree.addTopLevelItem(item)
+        items[name] = item
+    tree.expandAll()
+    return items
+
+
+class SkeletonDialog(QDialog):
+    """Shows what was found and corrects it; each choice is an edit that can be undone."""
+
+    def __init__(self, document: Document, session: Session, parent: QWidget | None = None) -> None:
+        super().__init__(parent)
+        self.document, self.session = document, session
+        self.setAttribute(Qt.WidgetAttribute.WA_DeleteOnClose)
+        self.setWindowTitle("Skeleton")
+        self.resize(720, 680)
+        layout = QVBoxLayout(self)
+        self.words = QLabel(self, wordWrap=True)
+        layout.addWidget(self.words)
+        self.tree = QTreeWidget(self)
+        self.tree.setHeaderLabels(["Joint", "Role", "Body part"])
+        self.tree.header().setSectionResizeMode(0, QHeaderView.ResizeMode.Stretch)
+        self.tree.setSelectionMode(QTreeWidget.SelectionMode.ExtendedSelection)
+        layout.addWidget(self.tree, 1)
+        self.items = joint_tree(self.tree, document.project)
+        self.roles: dict[str, QComboBox] = {}
+        self.parts: dict[str, QComboBox] = {}
+        for name, item in self.items.items():
+            role = QComboBox(self.tree, toolTip="What this joint is in a human body")
+            role.addItem("-", None)
+            for r in ROLES:
+                role.addItem(r.replace("_", " "), r)
+            role.activated.connect(lambda _, j=name, box=role: self._set_role(j, box.currentData()))
+            part = QComboBox(self.tree, toolTip="Which layers move it follows from its body part")
+            part.addItems(PARTS)
+            part.activated.connect(lambda _, j=name, box=part: self._set_part(j, box.currentText()))
+            for box in (role, part):
+                box.setFocusPolicy(Qt.FocusPolicy.StrongFocus)
+                box.wheelEvent = lambda event: event.ignore()  # type: ignore[method-assign]
+            self.tree.setItemWidget(item, 1, role)
+            self.tree.setItemWidget(item, 2, part)
+            self.roles[name], self.parts[name] = role, part
+        row = QHBoxLayout()
+        back = QPushButton("Back to what was found", self)
+        back.clicked.connect(self._reset)
+        row.addWidget(back)
+        row.addStretch(1)
+        close = QDialogButtonBox(QDialogButtonBox.StandardButton.Close, self)
+        close.rejected.connect(self.reject)
+        row.addWidget(close)
+        layout.addLayout(row)
+        document.changed.connect(self._show)
+        self._show()
+
+    def _show(self, *_: object) -> None:
+        project = self.document.project
+        if project.skeleton is None:
+            self.reject()
+            return
+        found = anatomy.roles(project)
+        by_joint = {project.skeleton.names[j]: role for role, j in found.items()}
+        parts = dict(zip(project.skeleton.names, anatomy.parts(project), strict=True))
+        for name in self.items:
+            if name not in parts:
+                continue
+            self.roles[name].setCurrentIndex(max(0, self.roles[name].findData(by_joint.get(name))))
+            self.parts[name].setCurrentText(parts[name])
+            font = self.items[name].font(0)
+            font.setBold(name in project.parts or name in project.roles.values())
+            self.items[name].setFont(0, font)
+        missing = missing_roles(found)
+        words = f"{len(found)} roles were found from the names and the hierarchy. Corrections are shown in bold."
+        if missing:
+            words += f" Not found: {', '.join(m.replace('_', ' ') for m in missing)}."
+        self.words.setText(words)
+
+    def _chosen(self, joint: str) -> tuple[str, ...]:
+        """The joint, or all selected ones when it is among them."""
+        selected = tuple(i.data(0, JOINT) for i in self.tree.selectedItems())
+        return selected if joint in selected else (joint,)
+
+    def _set_role(self, joint: str, role: str | None) -> None:
+        def change(project: Project) -> Project:
+            for old, named in list(project.roles.items()):
+                if named == joint:
+                    project = edits.set_role(project, old, None)
+            return edits.set_role(project, role, joint) if role else project
+
+        self.document.edit("Change role", change)
+        self._show()
+
+    def _set_part(self, joint: str, part: str) -> None:
+        chosen = self._chosen(joint)
+        wanted: Part = next(p for p in PARTS if p == part)
+        self.document.edit("Change body part", lambda p: edits.set_part(p, chosen, wanted))
+
+    def _reset(self) -> None:
+        def change(project: Project) -> Project:
+            for role in list(project.roles):
+                project = edits.set_role(project, role, None)
+            return edits.set_part(project, tuple(project.parts), None)
+
+        self.document.edit("Reset roles and parts", change)
+
+
+class MaskDialog(QDialog):
+    """Chooses the only joints the selected actions move; all ticked means no mask."""
+
+    def __init__(self, document: Document, session: Session, parent: QWidget | None = None) -> None:
+        super().__init__(parent)
+        self.document, self.session = document, session
+        self.setAttribute(Qt.WidgetAttribute.WA_DeleteOnClose)
+        self.setWindowTitle("Joints the action moves")
+        self.resize(440, 620)
+        layout = QVBoxLayout(self)
+        words = QLabel(
+            "Only ticked joints move; the others keep to the stance. Ticking a joint ticks what hangs on it.", self, wordWrap=True
+        )
+        layout.addWidget(words)
+        self.tree = QTreeWidget(self)
+        self.tree.setHeaderHidden(True)
+        layout.addWidget(self.tree, 1)
+        self.items = joint_tree(self.tree, document.project)
+        actions = session.selected_actions()
+        masked = set(actions[0].joints) if actions else set()
+        for name, item in self.items.items():
+            item.setCheckState(0, Qt.CheckState.Checked if not masked or name in masked else Qt.CheckState.Unchecked)
+        self.tree.itemChanged.connect(self._ticked)
+        row = QHBoxLayout()
+        for text, on in (("All", True), ("None", False)):
+            button = QPushButton(text, self)
+            button.clicked.connect(lambda _=False, o=on: self._all(o))
+            row.addWidget(button)
+        row.addStretch(1)
+        box = QDialogButtonBox(QDialogButtonBox.StandardButton.Ok | QDialogButtonBox.StandardButton.Cancel, self)
+        box.accepted.connect(self.accept)
+        box.rejected.connect(self.reject)
+        row.addWidget(box)
+        layout.addLayout(row)
+
+    def _ticked(self, item: QTreeWidgetItem, column: int) -> None:
+        self.tree.blockSignals(True)
+        below = [item]
+        while below:
+            one = below.pop()
+            one.setCheckState(0, item.checkState(0))
+            below += [one.child(n) for n in range(one.childCount())]
+        self.tree.blockSignals(False)
+
+    def _all(self, on: bool) -> None:
+        self.tree.blockSignals(True)
+        for item in self.items.values():
+            item.setCheckState(0, Qt.CheckState.Checked if on else Qt.CheckState.Unchecked)
+        self.tree.blockSignals(False)
+
+    def joints(self) -> tuple[str, ...]:
+        """Return the ticked joints; () for all."""
+        ticked = tuple(n for n, i in self.items.items() if i.checkState(0) == Qt.CheckState.Checked)
+        return () if len(ticked) == len(self.items) else ticked
+
+    def accept(self) -> None:
+        joints, chosen = self.joints(), self.session.actions
+        if not joints and any(i.checkState(0) == Qt.CheckState.Unchecked for i in self.items.values()):
+            self.document.failed.emit("An action must move at least one joint.")
+            return
+        self.document.edit("Change joints", lambda p: edits.update_actions(p, chosen, joints=joints))
+        super().accept()

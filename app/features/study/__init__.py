@@ -1,0 +1,1 @@
+"""Timing studies with people."""

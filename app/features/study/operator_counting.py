@@ -1,0 +1,48 @@
+"""Operators counted outside a study: to see what a way of working costs, and what an expert would take for it."""
+
+from __future__ import annotations
+
+from collections import Counter
+from time import monotonic
+from typing import TYPE_CHECKING
+
+from PySide6.QtCore import QObject, QTimer
+from PySide6.QtWidgets import QLabel
+
+from app.features.study.operator_events import Hands
+from metagraph.study.klm import predicted
+
+if TYPE_CHECKING:
+    from app.shell.window import Window
+
+
+class Counting(QObject):
+    """Shows the counts in the status bar until `stop`."""
+
+    def __init__(self, window: Window) -> None:
+        super().__init__(window)
+        self.label = QLabel(window)
+        self.label.setToolTip(
+            "Keys, pointings, buttons pressed or released, drags, and hands changing over since this was turned on.\n"
+            "The seconds are what an expert would take who need not think (Card, Moran and Newell 1980)."
+        )
+        window.statusBar().addPermanentWidget(self.label)
+        self.total: Counter[str] = Counter()
+        self.hands = Hands(lambda _: None, lambda _, __: None, lambda: None, self)
+        self._timer = QTimer(self, interval=500)
+        self._timer.timeout.connect(self.show)
+        self._timer.start()
+        self.show()
+
+    def show(self) -> None:
+        """Show what there was so far."""
+        self.total.update(self.hands.operators.take(monotonic()).operators)
+        seconds = predicted({k: self.total[k] for k in "KPBH"})
+        counts = "   ".join(f"{k} {self.total[k]}" for k in "KPBDH")
+        self.label.setText(f"{counts}   {seconds:.1f} s")
+
+    def stop(self) -> None:
+        self._timer.stop()
+        self.hands.stop()
+        self.label.deleteLater()
+        self.deleteLater()

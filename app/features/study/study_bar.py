@@ -1,0 +1,81 @@
+"""The bar above the work: what the task is, how much time is left, and the way to pause, to note something, to finish."""
+
+from __future__ import annotations
+
+from PySide6.QtCore import Qt
+from PySide6.QtWidgets import QHBoxLayout, QLabel, QPushButton, QSizePolicy, QToolBar, QToolButton, QVBoxLayout, QWidget
+
+from app.features.study.study_screen import clock, rich
+from app.look.theme import strengthen, theme
+from app.stage.session import Session
+
+WARNINGS = (120.0, 30.0)  # seconds before the end at which it is said
+
+
+class StudyBar(QToolBar):
+    """Above the window's own bar. Instructions unfold below the title."""
+
+    def __init__(self, session: Session, parent: QWidget) -> None:
+        super().__init__("Study", parent)
+        self.session = session
+        self.setObjectName("study")
+        self.setMovable(False)
+        inner = QWidget(self)
+        column = QVBoxLayout(inner)
+        column.setContentsMargins(6, 2, 6, 2)
+        column.setSpacing(4)
+        row = QHBoxLayout()
+        row.setSpacing(8)
+        column.addLayout(row)
+        self.title = QLabel(inner)
+        self.title.setProperty("heading", True)
+        self.more = QToolButton(inner, text="Instructions", checkable=True)
+        self.more.toggled.connect(self._unfold)
+        self.told = QLabel(inner)
+        self.time = QLabel(inner)
+        self.time.setMinimumWidth(110)
+        self.time.setAlignment(Qt.AlignmentFlag.AlignRight | Qt.AlignmentFlag.AlignVCenter)
+        self.note, self.pause, self.done = (QPushButton(text, inner) for text in ("Note…", "Pause", "Done"))
+        strengthen(self.done)
+        self.done.setMinimumWidth(84)
+        for widget in (self.title, self.more):
+            row.addWidget(widget)
+        row.addStretch(1)
+        for widget in (self.told, self.time, self.note, self.pause, self.done):
+            row.addWidget(widget)
+        self.text = QLabel(inner)
+        self.text.setTextFormat(Qt.TextFormat.RichText)
+        self.text.setWordWrap(True)
+        self.text.setProperty("dim", True)
+        self.text.setMaximumWidth(1100)
+        self.text.hide()
+        column.addWidget(self.text)
+        inner.setSizePolicy(QSizePolicy.Policy.Expanding, QSizePolicy.Policy.Preferred)
+        self.addWidget(inner)
+        self._left: float | None = None
+
+    def begin(self, title: str, text: str) -> None:
+        """Show a task."""
+        self.title.setText(title)
+        self.text.setText(rich(text, 13))
+        self.more.setVisible(bool(text))
+        self.more.setChecked(bool(text))
+        self._unfold(bool(text))
+        self.told.clear()
+
+    def _unfold(self, on: bool) -> None:
+        self.text.setVisible(on)
+
+    def show_time(self, elapsed: float, minutes: float | None) -> None:
+        """Show seconds so far, or left of the minutes there are; near the end it is said plainly."""
+        look = theme(self.session.theme)
+        if minutes is None:
+            self.time.setText(clock(elapsed))
+            self.time.setStyleSheet("")
+            return
+        left = 60 * minutes - elapsed
+        near = left <= WARNINGS[0]
+        self.time.setText(f"{clock(left)} left")
+        self.time.setStyleSheet(f"color: {look.warning}; font-weight: 600" if near else "")
+        self.told.setStyleSheet(f"color: {look.warning}")
+        self.told.setText("Half a minute left" if left <= WARNINGS[1] else "Two minutes left" if near else "")

@@ -1,0 +1,115 @@
+"""Begins a sitting: asks which study and who takes part, where that was not told."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from PySide6.QtCore import Qt, Signal
+from PySide6.QtWidgets import (
+    QDialog,
+    QFileDialog,
+    QHBoxLayout,
+    QLabel,
+    QListWidget,
+    QListWidgetItem,
+    QMessageBox,
+    QPushButton,
+    QVBoxLayout,
+    QWidget,
+)
+
+from app.features.study.study_guide import Guide
+from app.look.theme import strengthen
+from metagraph.errors import FileError
+from metagraph.study.plan import Study, read_study
+from metagraph.study.sitting import standing
+
+if TYPE_CHECKING:
+    from app.shell.window import Window
+
+
+def run_study(window: Window, path: Path | None = None, participant: str | None = None, experimenter: bool = False) -> None:
+    """Begin or resume a sitting in the window; what is not given is asked for."""
+    if path is None:
+        name, _ = QFileDialog.getOpenFileName(window, "Run a study", str(Path.home()), "Studies (*.yaml *.yml)")
+        if not name:
+            return
+        path = Path(name)
+    try:
+        study = read_study(path)
+    except FileError as error:
+        QMessageBox.warning(window, "This study cannot be run", str(error))
+        return
+    if participant is not None:
+        begin(window, study, participant, experimenter)
+        return
+    chooser = Chooser(study, window)
+    chooser.chosen.connect(lambda who: begin(window, study, who, experimenter))
+    chooser.open()
+
+
+def begin(window: Window, study: Study, participant: str, experimenter: bool = False) -> Guide | None:
+    """Lead a participant through; None, with words, when that cannot be."""
+    if not window.files.may_leave():
+        return None
+    window.make_late_panels()
+    window.document.undo_stack.setClean()  # what was there is saved or was declined
+    try:
+        guide = Guide(window, study, participant, experimenter)
+    except (FileError, ValueError) as error:
+        QMessageBox.warning(window, "This sitting cannot begin", str(error))
+        return None
+    guide.show()
+    return guide
+
+
+class Chooser(QDialog):
+    """Participants with how far each is; chosen: who takes part."""
+
+    chosen = Signal(str)
+
+    def __init__(self, study: Study, parent: QWidget) -> None:
+        super().__init__(parent)
+        self.setAttribute(Qt.WidgetAttribute.WA_DeleteOnClose)
+        self.setWindowTitle("Run a study")
+        self.resize(460, 420)
+        title = QLabel(study.plan.title, self)
+        title.setProperty("heading", True)
+        title.setWordWrap(True)
+        self.list = QListWidget(self)
+        self.list.setAccessibleName("Participants")
+        first: QListWidgetItem | None = None
+        for who in study.plan.ids:
+            words = standing(study, who)
+            item = QListWidgetItem(f"{who}    {words}", self.list)
+            item.setData(Qt.ItemDataRole.UserRole, who)
+            if words == "done":
+                item.setFlags(item.flags() & ~Qt.ItemFlag.ItemIsEnabled)
+            elif first is None:
+                first = item
+        if first is not None:
+            self.list.setCurrentItem(first)
+        self.list.itemActivated.connect(lambda _: self._go())
+        cancel, self.go = QPushButton("Cancel", self), QPushButton("Start", self)
+        cancel.clicked.connect(self.reject)
+        strengthen(self.go)
+        self.go.clicked.connect(self._go)
+        self.go.setEnabled(first is not None)
+        buttons = QHBoxLayout()
+        buttons.addStretch(1)
+        buttons.addWidget(cancel)
+        buttons.addWidget(self.go)
+        column = QVBoxLayout(self)
+        column.setContentsMargins(18, 16, 18, 16)
+        column.setSpacing(10)
+        column.addWidget(title)
+        column.addWidget(QLabel("Who takes part?", self))
+        column.addWidget(self.list, 1)
+        column.addLayout(buttons)
+
+    def _go(self) -> None:
+        item = self.list.currentItem()
+        if item is not None:
+            self.accept()
+            self.chosen.emit(item.data(Qt.ItemDataRole.UserRole))

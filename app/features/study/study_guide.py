@@ -1,0 +1,325 @@
+"""Leads a participant through a sitting in the window: screens, work, time, and what the window offers meanwhile."""
+
+from __future__ import annotations
+
+import platform
+from time import monotonic
+from typing import TYPE_CHECKING, Any, Literal
+
+from PySide6.QtCore import QEvent, QLockFile, QObject, QTimer, Signal
+from PySide6.QtWidgets import QApplication, QDialog
+
+from app.features.study.study_bar import StudyBar
+from app.features.study.study_offer import offered
+from app.features.study.study_recorder import Recorder
+from app.features.study.study_screen import BreakPage, ConsentPage, Page, QuestionsPage, Screen, question_page, text_page
+from app.project.jobs import Job
+from metagraph import __version__
+from metagraph.errors import FileError
+from metagraph.graph.model import Project
+from metagraph.study.plan import CONDITION_TITLES, Study
+from metagraph.study.sitting import Phase, Sitting
+from metagraph.study.work import make, reopen, write
+
+if TYPE_CHECKING:
+    from app.shell.window import Window
+
+CLOSED = "Not during a study: everybody works on the same clips."
+HIDDEN = ("models", "lines", "conversation")  # docks that no task needs
+
+
+class Guide(QObject):
+    """over: the sitting has ended or was left; the window is as before. Raises FileError and SittingError when it cannot begin."""
+
+    over = Signal()
+
+    def __init__(self, window: Window, study: Study, participant: str, experimenter: bool = False) -> None:
+        super().__init__(window)
+        self.window, self.study, self.participant, self.experimenter = window, study, participant, experimenter
+        folder = study.data(participant)
+        try:
+            folder.mkdir(parents=True, exist_ok=True)
+        except OSError as error:
+            raise FileError(folder, f"cannot be made ({error.strerror or error})", "on beginning", "Check your rights there.") from None
+        self._lock = QLockFile(str(folder / "sitting.lock"))
+        self._lock.setStaleLockTime(0)
+        if not self._lock.tryLock(0):
+            raise FileError(folder, "another window has this sitting open", participant, "Go on there, or close it.")
+        try:
+            self.sitting = Sitting(study, participant, machine(), __version__)
+        except (FileError, ValueError):
+            self._lock.unlock()
+            raise
+        self.recorder = Recorder(window, self.sitting.writer)
+        self.screen = Screen(window, window.session)
+        self.bar = StudyBar(window.session, window)
+        self.bar.hide()
+        self._resumed = self.sitting.resumed
+        self._working = False  # a task is on and not paused
+        self._elapsed, self._from = 0.0, 0.0  # seconds before the last start of the clock; when that was
+        self._second = QTimer(self, interval=500)
+        self._second.timeout.connect(self._tick)
+        self.bar.done.clicked.connect(self.ask_done)
+        self.bar.pause.clicked.connect(lambda: self.pause())
+        self.bar.note.clicked.connect(self.write_note)
+        self._enter()
+
+    # --- the window
+
+    def _enter(self) -> None:
+        w = self.window
+        w.session.set_playing(False)
+        if w.counting is not None:
+            w.count_operators()
+        w.files.closed = CLOSED
+        w.actions.allowed = lambda ident: False
+        w.recent_menu.menuAction().setEnabled(False)
+        w.learned.paused = True
+        if "labels" not in self.study.plan.allow:  # jumps found, and times proposed, for one condition alone would not be fair
+            w.compatibility.stop()
+            w.compatibility.judged, w.compatibility.flags = None, {}
+            w.compatibility.changed.emit()
+        w.docks.arrange()
+        for key in HIDDEN:
+            w.docks[key].hide()
+        w.insertToolBar(w.header, self.bar)
+        w.insertToolBarBreak(w.header)
+        w.installEventFilter(self)
+        w.refresh()
+
+    def _leave(self) -> None:
+        """Give the window back."""
+        w = self.window
+        self._second.stop()
+        w.removeEventFilter(self)
+        self.recorder.stop()
+        self.sitting.close()
+        self._lock.unlock()
+        w.files.closed = ""
+        w.actions.allowed = None
+        w.recent_menu.menuAction().setEnabled(True)
+        w.learned.paused = False
+        w.compatibility.start()
+        self._reach(True)
+        for key in HIDDEN:
+            w.docks[key].show()
+        w.removeToolBarBreak(w.header)
+        w.removeToolBar(self.bar)
+        w.session.set_mode("meta")
+        w.refresh()
+        self.over.emit()
+
+    def eventFilter(self, watched: QObject, event: QEvent) -> bool:
+        if event.type() == QEvent.Type.Close:
+            self.leave()
+        return False
+
+    def leave(self) -> None:
+        """Break the sitting off where it is; it goes on there next time."""
+        phase = self.sitting.phase
+        try:
+            if phase is not None and phase.works and self.sitting.now.begun and self.window.document.path == self.sitting.file:
+                self.window.document.finish_merging()
+                self.recorder.boundary()
+                self.window.document.save()
+        except FileError as error:  # the window asks what is to become of the edits
+            self.window.tell(str(error))
+        self._leave()
+
+    # --- going through
+
+    def show(self) -> None:
+        """Show where the sitting stands."""
+        phase = self.sitting.phase
+        if phase is None:
+            self._show(text_page("This sitting is over", "All of it was gone through before.", "Close", self._finish))
+        elif phase.works:
+            self._load(phase)
+        else:
+            self.sitting.begin()
+            self._show(self._page(phase))
+            self._resumed = False
+
+    def _page(self, phase: Phase) -> Page:
+        if phase.name == "consent":
+            return ConsentPage(phase.title, phase.text, self.go_on, self.window.close)
+        if phase.name == "break":
+            return BreakPage(phase.minutes or 0, self.go_on)
+        if phase.questionnaire is not None:
+            return QuestionsPage(phase.questionnaire, self._about(phase), self.sitting.now.answers, self.sitting.answer, self.go_on)
+        if phase.name == "end":
+            return text_page(phase.title, phase.text or "That was all. You have helped a great deal.", "Close", self.go_on)
+        limit = f"\n\nYou have {phase.minutes:g} minutes." if phase.minutes else ""
+        return text_page(phase.title, phase.text + (limit if phase.condition else ""), "Start" if phase.condition else "Go on", self.go_on)
+
+    def _about(self, phase: Phase) -> str:
+        names = [self.study.plan.task(phase.task).name] if phase.task is not None else []
+        names += [f"the editor “{CONDITION_TITLES[phase.condition]}”"] if phase.condition is not None else []
+        return f"About {', with '.join(names)}" if names else ""
+
+    def _show(self, page: Page) -> None:
+        """Lay a page over the window, whose commands rest."""
+        phase = self.sitting.phase
+        self.window.actions.allowed = lambda ident: ident in ("quit", "theme")
+        self.window.actions.refresh()
+        self.window.session.set_playing(False)
+        self._reach(False)
+        step = f"   {phase.index + 1} of {len(self.sitting.course)}" if phase is not None else ""
+        self.screen.show_page(page, f"{self.study.plan.title}   {self.participant}{step}")
+
+    def _reach(self, on: bool) -> None:
+        """Let what lies below the screen be reached by the keyboard, or not; nothing lies above it."""
+        w = self.window
+        for widget in (w.menuBar(), w.header, self.bar, w.centre, *w.docks.values()):
+            widget.setEnabled(on)
+        if not on:
+            for dock in w.docks.values():
+                dock.setFloating(False)
+            for dialog in w.findChildren(QDialog):
+                if dialog.isVisible():
+                    dialog.reject()
+
+    def go_on(self) -> None:
+        """End what is shown, and show what comes next."""
+        self.recorder.boundary()
+        self.sitting.end()
+        if self.sitting.phase is None:
+            self._finish()
+        else:
+            self.show()
+
+    def _finish(self) -> None:
+        self.screen.hide()
+        self._leave()
+        self.window.document.load(Project(), None)
+        self.window.files.opened.emit()
+
+    # --- work
+
+    def _load(self, phase: Phase) -> None:
+        """Make or open the project of a task on a thread; its time begins when it is there."""
+        self._show(Page(phase.title, "One moment: the clips are loaded.").finish())
+        study, path, again = self.study, self.sitting.file, self.sitting.now.begun
+        name = study.plan.task(phase.task).name if phase.task is not None else "Practice"
+        reference = study.reference(phase.task) if phase.task is not None else None
+
+        def work(job: Job) -> Project:
+            if again:
+                return reopen(path, job.tell)[0].project
+            return write(make(study, phase.clips, name, reference), path)
+
+        self.window.jobs.start("Loading the clips", work, lambda project: self._begin(phase, project), self._cannot)
+
+    def _cannot(self, error: Exception) -> None:
+        self.recorder.tell("error", what="failed", words=str(error))
+        self._show(question_page("This cannot go on", str(error), "Try again", self.show, "Close the window", self.window.close))
+
+    def _begin(self, phase: Phase, project: Project) -> None:
+        w = self.window
+        if self.sitting.phase is not phase:
+            return  # it was left meanwhile
+        again = self.sitting.now.begun
+        w.document.load(project, self.sitting.file)
+        w.session.set_mode("manual" if phase.condition == "manual" else "meta")
+        w.files.opened.emit()
+        self._elapsed = self.sitting.now.elapsed if again else 0.0
+        self.bar.begin(phase.title, phase.text)
+        self.bar.show()
+        if again and self._resumed:
+            self._resumed = False
+            self.sitting.writer.add("pause", state="begin", why="resumed")
+            page = text_page("Welcome back", "Your work is as you left it. The clock goes on when you do.", "Go on", self.unpause)
+            self._show(page)
+            return
+        self._resumed = False
+        self.sitting.begin()
+        self._start()
+
+    def _start(self) -> None:
+        """Let the work be seen, and the clock run."""
+        w, phase = self.window, self.sitting.phase
+        assert phase is not None
+        self.screen.hide()
+        self._reach(True)
+        plan, mode = self.study.plan, w.session.mode
+        w.actions.allowed = lambda ident: offered(ident, mode, "labels" in plan.allow)
+        w.refresh()
+        self._working, self._from = True, monotonic()
+        self._second.start()
+        self._tick()
+        w.session.set_playing(True)
+
+    def _stop(self) -> None:
+        self._elapsed, self._working = self.elapsed, False
+        self._second.stop()
+
+    @property
+    def elapsed(self) -> float:
+        """Return how long the task has been on, without pauses; seconds."""
+        return self._elapsed + (monotonic() - self._from if self._working else 0.0)
+
+    def _tick(self) -> None:
+        phase = self.sitting.phase
+        if phase is None or not self._working:
+            return
+        self.bar.show_time(self.elapsed, phase.minutes)
+        if phase.minutes is not None and self.elapsed >= 60 * phase.minutes:
+            self.finish_task("time")
+
+    def pause(self) -> None:
+        """Stop the clock and hide the work."""
+        if self._working:
+            self._stop()
+            self.recorder.tell("pause", state="begin")
+            self._show(text_page("Paused", "The clock stands still.", "Go on", self.unpause))
+
+    def unpause(self) -> None:
+        self.sitting.writer.add("pause", state="end")
+        self._start()
+
+    def ask_done(self) -> None:
+        """Ask whether the task is done; the clock runs on meanwhile."""
+        self._show(question_page("Are you done?", "You cannot come back to it.", "Yes, done", lambda: self.finish_task("done"),
+                                 "No, go on", self._back_to_work))  # fmt: skip
+
+    def _back_to_work(self) -> None:
+        self._elapsed = self.elapsed
+        self._start()
+
+    def finish_task(self, why: Literal["done", "time"]) -> None:
+        """Keep what was made, and go on."""
+        w = self.window
+        self._stop()
+        try:
+            w.document.finish_merging()
+            self.recorder.boundary()
+            w.document.save()
+            self.sitting.keep(why)
+        except FileError as error:
+            self._show(question_page("This could not be saved", str(error), "Try again", lambda: self.finish_task(why), "Close the window",
+                                     w.close))  # fmt: skip
+            return
+        self.bar.hide()
+        if why == "time":
+            self._show(text_page("Time is up", "What you have made is kept.", "Go on", self.show))
+        else:
+            self.show()
+
+    def write_note(self) -> None:
+        """Let something be written down."""
+        from app.features.study.study_note import NoteDialog
+
+        dialog = NoteDialog(self.experimenter, self.window)
+        dialog.noted.connect(lambda words, by: self.recorder.tell("note", words=words, by=by))
+        dialog.open()
+
+
+def machine() -> dict[str, Any]:
+    """Return what the log says about the computer; nothing that names it or its user."""
+    screen = QApplication.primaryScreen()
+    size, ratio = screen.size(), screen.devicePixelRatio()
+    return {
+        "os": f"{platform.system()} {platform.release()}",
+        "python": platform.python_version(),
+        "screen": {"width": size.width(), "height": size.height(), "ratio": ratio},
+    }

@@ -1,0 +1,223 @@
+"""Writes down what is done in the window: edits, looks, dialogs, errors, and operators by their class alone."""
+
+from __future__ import annotations
+
+from time import monotonic
+from typing import TYPE_CHECKING, Any, Protocol
+
+from PySide6.QtCore import QObject, QTimer
+from PySide6.QtWidgets import QDialog
+
+from app.features.study.operator_events import Hands
+from app.features.study.study_changes import described
+from metagraph.errors import FileError
+from metagraph.formats.imports import Imported
+
+if TYPE_CHECKING:
+    from app.shell.window import Window
+
+IDLE = 10.0  # seconds without input that are told
+MERGING = 300  # milliseconds after which a run of merged edits, as a drag makes them, is taken to be over
+
+
+class Log(Protocol):
+    def add(self, kind: str, **fields: Any) -> Any: ...
+
+
+class Recorder(QObject):
+    """Follows a window from its making until `stop`. What the log cannot take is shown to the user once."""
+
+    def __init__(self, window: Window, log: Log) -> None:
+        super().__init__(window)
+        self.window, self.log = window, log
+        self._failed = False
+        self._warned = self._grave()
+        d, s = window.document, window.session
+        self._stack = d.undo_stack
+        self._undone: object = None  # what a redo would do again
+        self._edit: dict[str, Any] | None = None  # one that may still be merged with the next
+        self._edited: tuple[Any, Any] = (d.project, d.project)
+        self._input_at = monotonic()
+        self._sought = self._scroll = 0.0
+        self._shown: set[int] = set()
+        self._merging = QTimer(self, singleShot=True, interval=MERGING)
+        self._merging.timeout.connect(self._tell_edit)
+        self._second = QTimer(self, interval=1000)
+        self._second.timeout.connect(self._tick)
+        self._links = [
+            (d.loaded, self._loaded), (d.saved, self._saved), (d.failed, self._document_failed), (self._stack.indexChanged, self._moved),
+            (s.layer_changed, lambda: self._view("layer", layer=s.layer)), (s.stance_changed, lambda: self._view("stance")),
+            (s.selection_changed, lambda: self._view("select")), (s.theme_changed, lambda: self._view("theme", theme=s.theme)),
+            (s.mode_changed, self._other_editor), (s.show_changed, lambda: self.tell("playback", what=s.show)),
+            (s.playing_changed, lambda: self.tell("playback", what="play" if s.playing else "pause")), (s.moved, self._seek),
+            (window.canvas.refused, self._refused), (window.files.imported, self._imported),
+        ]  # fmt: skip
+        for signal, slot in self._links:
+            signal.connect(slot)
+        self._watch_manual()
+        self.hands = Hands(self._input, self._dialog, self._scrolled, self)
+        self._position()
+        self._second.start()
+
+    def stop(self) -> None:
+        """Tell what is left, and follow no more."""
+        self._tell_edit()
+        self._tell_operators()
+        self._second.stop()
+        self.hands.stop()
+        for signal, slot in self._links:
+            signal.disconnect(slot)
+        self._links = []
+
+    def tell(self, kind: str, **fields: Any) -> None:
+        """Write an event, after what came before it."""
+        self._tell_edit()
+        self._write(kind, fields)
+
+    def boundary(self) -> None:
+        """Tell what is still held back: a phase begins or ends."""
+        self._tell_edit()
+        self._tell_operators()
+
+    def _write(self, kind: str, fields: dict[str, Any]) -> None:
+        try:
+            self.log.add(kind, **fields)
+            self._failed = False
+        except FileError as error:
+            if not self._failed:
+                self._failed = True
+                self.window.tell(str(error))
+
+    # --- edits
+
+    def _position(self) -> None:
+        stack = self._stack
+        self._index, self._count = stack.index(), stack.count()
+        self._undone = stack.command(self._index) if self._index < self._count else None
+
+    def _moved(self, index: int) -> None:
+        """Tell an edit, an undo or a redo from how the stack of steps has moved."""
+        stack = self._stack
+        last, count = self._index, stack.count()
+        if index > last and self._undone is not None and stack.command(last) is self._undone:
+            self._back_or_again("redo", stack.text(index - 1))
+        elif index < last:
+            if count == self._count:
+                self._back_or_again("undo", stack.text(index))
+            else:  # a drag that was cancelled leaves no step
+                self._edit = None
+                self._merging.stop()
+        elif index > 0 and (index > last or count != self._count or self._edit is not None):
+            self._edit_made(index)
+        self._position()
+
+    def _back_or_again(self, kind: str, words: str) -> None:
+        self._tell_edit()
+        self._tell_operators()
+        self._write(kind, {"words": words})
+
+    def _edit_made(self, index: int) -> None:
+        command: Any = self._stack.command(index - 1)
+        if self._edit is not None and self._edit["command"] is not command:
+            self._tell_edit()
+        if self._edit is None:
+            self._edit = {"command": command}
+        if command.merge is None:
+            self._tell_edit()
+        else:
+            self._merging.start()
+
+    def _tell_edit(self) -> None:
+        """Write the last edit, unless that is done; before it the operators it took."""
+        self._merging.stop()
+        if self._edit is None:
+            return
+        command, self._edit = self._edit["command"], None
+        self._tell_operators()
+        self._write("edit", {**described(command.before, command.after), "words": command.text()})
+
+    def _loaded(self) -> None:
+        self._edit = None
+        self._position()
+
+    # --- what is looked at
+
+    def _watch_manual(self) -> None:
+        """Follow the editor of state machines, which is made when it is first shown."""
+        editor = self.window.manual.editor
+        if editor is not None and not self._manual:
+            self._manual = True
+            for signal, slot in ((editor.canvas.refused, self._refused), (editor.canvas.viewed, self._scrolled)):
+                signal.connect(slot)
+                self._links.append((signal, slot))
+
+    _manual = False
+
+    def _other_editor(self) -> None:
+        self._watch_manual()
+        self._view("panel", mode=self.window.session.mode)
+
+    def _view(self, what: str, **more: Any) -> None:
+        self.tell("view", what=what, **more)
+
+    def _seek(self, seconds: float) -> None:
+        now = monotonic()
+        if not self.window.session.playing and now - self._sought > 1.0:
+            self._sought = now
+            self.tell("playback", what="seek")
+
+    def _scrolled(self) -> None:
+        now = monotonic()
+        if now - self._scroll > 1.0:
+            self._scroll = now
+            self._view("scroll")
+
+    def _dialog(self, dialog: QDialog, shown: bool) -> None:
+        if shown is (id(dialog) in self._shown):
+            return
+        name = type(dialog).__name__
+        if shown:
+            self._shown.add(id(dialog))
+            self.tell("dialog", name=name, state="open")
+        else:
+            self._shown.discard(id(dialog))
+            self.tell("dialog", name=name, state="close", result=dialog.result())
+
+    # --- the rest
+
+    def _refused(self, words: str) -> None:
+        self.tell("error", what="refused", words=words)
+
+    def _document_failed(self, words: str) -> None:
+        self.tell("error", what="failed", words=words)
+
+    def _saved(self) -> None:
+        path = self.window.document.path
+        self.tell("save", path=path.name if path is not None else "")
+
+    def _imported(self, result: Imported, drop: object) -> None:
+        self.tell("import", clips=len(result.loaded))
+
+    def _input(self, now: float) -> None:
+        if now - self._input_at > IDLE:
+            self.tell("idle", seconds=round(now - self._input_at, 3))
+        self._input_at = now
+
+    def _tick(self) -> None:
+        if self._edit is None:
+            self._tell_operators()
+        for words in self._grave() - self._warned:
+            self.tell("error", what="warning", words=words)
+        self._warned = self._grave()
+
+    def _grave(self) -> frozenset[str]:
+        return frozenset(p.message for p in self.window.problems if p.severity != "hint")
+
+    def _tell_operators(self) -> None:
+        found = self.hands.operators.take(monotonic())
+        if not found.operators:
+            return
+        fields: dict[str, Any] = {name: found.operators[name] for name in "KPBDH"} | {"seconds": round(found.seconds, 3)}
+        if found.drag_s:
+            fields["drag_s"] = round(found.drag_s, 3)
+        self._write("ops", fields)

@@ -1,0 +1,63 @@
+"""`metagraph study run` and `metagraph study check`."""
+
+from __future__ import annotations
+
+import json
+from argparse import ArgumentParser, Namespace
+from pathlib import Path
+
+PROBLEMS = 3
+
+
+def run_arguments(parser: ArgumentParser) -> None:
+    """Add the options of `run`."""
+    parser.add_argument("study", type=Path, help="a study file, or the folder it is in")
+    parser.add_argument("--participant", metavar="ID", help="who takes part (default: it is asked)")
+    parser.add_argument("--experimenter", action="store_true", help="notes are the experimenter's, not the participant's")
+
+
+def run(options: Namespace) -> int:
+    """Open the window and lead a participant through. Raises FileError, ValueError."""
+    from metagraph.study.plan import read_study
+
+    study = read_study(options.study)
+    if options.participant is not None:
+        study.plan.blocks(options.participant)  # a stranger is told before a window is opened
+    from PySide6.QtCore import QTimer
+
+    from app.main import prepare
+
+    app = prepare()
+    from app.features.study.study_chooser import run_study
+    from app.shell.window import Window
+
+    window = Window()
+    window.show()
+    QTimer.singleShot(0, lambda: run_study(window, study.path, options.participant, options.experimenter))
+    return app.exec()
+
+
+def check_arguments(parser: ArgumentParser) -> None:
+    """Add the options of `check`."""
+    parser.add_argument("study", type=Path, help="a study file, or the folder it is in")
+
+
+def check(options: Namespace) -> int:
+    """Print who does what in which order, and what would hamper the study. Raises FileError."""
+    from metagraph.study.plan import read_study
+    from metagraph.study.sitting import standing
+
+    study = read_study(options.study)
+    problems = study.problems()
+    rows = [(who, study.plan.blocks(who), standing(study, who)) for who in study.plan.ids]
+    if options.json:
+        orders = {who: [{"condition": c, "tasks": list(tasks)} for c, tasks in blocks] for who, blocks, _ in rows}
+        print(json.dumps({"title": study.plan.title, "orders": orders, "standing": {r[0]: r[2] for r in rows}, "problems": problems}))
+    else:
+        print(study.plan.title)
+        for who, blocks, stands in rows:
+            order = "; ".join(f"{condition}: {', '.join(tasks)}" for condition, tasks in blocks)
+            print(f"  {who}  {order}  ({stands})")
+        for problem in problems:
+            print(f"problem: {problem}")
+    return PROBLEMS if problems else 0

@@ -1,0 +1,1 @@
+"""The performance: requests and what plays."""

@@ -1,0 +1,345 @@
+"""The performance panel: which performance is on stage and with what chance, and the lanes of what was asked and what plays."""
+
+from __future__ import annotations
+
+from PySide6.QtCore import Qt, QTimer
+from PySide6.QtGui import QResizeEvent
+from PySide6.QtWidgets import (
+    QComboBox,
+    QHBoxLayout,
+    QInputDialog,
+    QLabel,
+    QMenu,
+    QMessageBox,
+    QSizePolicy,
+    QSpinBox,
+    QToolButton,
+    QVBoxLayout,
+    QWidget,
+)
+
+from app.features.conversation.segment_lanes import side_name
+from app.features.timeline.lane_view import Lanes
+from app.look.plural import many
+from app.project.document import Document
+from app.stage.performance import Performance
+from app.stage.session import Session
+from app.widgets.lane_geometry import outcome, wanted
+from app.widgets.request_menu import ask_menu
+from metagraph.graph import edits, staging
+from metagraph.graph.asks import Performance as KeptPerformance
+from metagraph.graph.conversing import change_conversation
+from metagraph.graph.edits import EditError
+from metagraph.graph.model import LAYERS
+
+IMPROVISED = "Improvised"
+
+
+class TimelinePanel(QWidget):
+    """The lanes, with what can be asked for, the seed and the zoom above them."""
+
+    def __init__(self, document: Document, session: Session, performance: Performance, parent: QWidget | None = None) -> None:
+        super().__init__(parent)
+        self.document, self.session, self.performance = document, session, performance
+        self.lanes = Lanes(session, performance, self)
+        layout = QVBoxLayout(self)
+        layout.setContentsMargins(0, 4, 0, 0)
+        layout.setSpacing(0)
+        row = QHBoxLayout()
+        row.setContentsMargins(12, 0, 12, 2)
+        row.setSpacing(8)
+        self.stage = QComboBox(self, toolTip="Which performance is on stage; improvised, the models fill the time on their own")
+        self.stage.setAccessibleName("Performance")
+        self.stage.setMinimumWidth(150)
+        self.stage.activated.connect(self._put_on)
+        row.addWidget(self.stage)
+        self.more = QToolButton(self, text="…", toolTip="New, rename, length, remove")
+        self.more.setAccessibleName("Performances")
+        self.more.setPopupMode(QToolButton.ToolButtonPopupMode.InstantPopup)
+        self.more_menu = QMenu(self)
+        self.more.setMenu(self.more_menu)
+        self.more_menu.aboutToShow.connect(self._fill)
+        row.addWidget(self.more)
+        self.title = Sentence(self)
+        self.title.setMinimumHeight(2 * self.title.fontMetrics().height())
+        row.addWidget(self.title, 1)
+        self.lost = QToolButton(self, toolTip="Select the next of them; its reason then stands beside")
+        self.lost.clicked.connect(self.show_lost)
+        row.addWidget(self.lost)
+        self.now = QToolButton(self, text="Back to now", toolTip="Follow what is played live again")
+        self.now.clicked.connect(performance.follow)
+        row.addWidget(self.now)
+        self.live = QToolButton(self, text="Live", checkable=True)
+        self.live.setToolTip("Let programs on this machine drive the character, over WebSocket and OSC (Ctrl+L)")
+        self.live.clicked.connect(self.toggle_live)
+        row.addWidget(self.live)
+        self.ask = QToolButton(self, text="Ask for…", toolTip="Ask the character for something now")
+        self.ask.clicked.connect(self._ask)
+        row.addWidget(self.ask)
+        row.addWidget(QLabel("Seed", self))
+        self.seed = QSpinBox(self, toolTip="Another seed gives another performance of the same graph")
+        self.seed.setFixedWidth(84)
+        self.seed.lineEdit().setTextMargins(6, 0, 0, 0)
+        self.seed.setRange(0, 999999)
+        self.seed.setAccessibleName("Seed")
+        self.seed.valueChanged.connect(self._seeded)
+        row.addWidget(self.seed)
+        layout.addLayout(row)
+        layout.addWidget(self.lanes, 1)
+        performance.changed.connect(self._words)
+        session.show_changed.connect(self._words)
+        performance.live_changed.connect(self._live)
+        session.moved.connect(self._moved)
+        session.playing_changed.connect(self._moved)
+        self._spoken = QTimer(self, interval=500)  # the words about clients, while live
+        self._spoken.timeout.connect(self._words)
+        self._live()
+        session.performance_changed.connect(self._restage)
+        session.performance_changed.connect(self._words)
+        session.conversation_changed.connect(self._restage)
+        session.mode_changed.connect(self._switched)
+        document.changed.connect(lambda before, after: self._restage())
+        self._restage()
+        self._switched()
+
+    def _switched(self) -> None:
+        """Requests and kept performances are the meta-graph's."""
+        for part in (self.stage, self.more, self.ask, self.live):
+            part.setEnabled(self.session.mode == "meta")
+        self._words()
+
+    def _put_on(self, _: int) -> None:
+        """Put on stage what was chosen: a performance, improvising, or the other of two who talk."""
+        chosen = self.stage.currentData()
+        if isinstance(chosen, int):
+            self.session.set_side(chosen)
+        else:
+            self.session.set_conversation(None)
+            self.session.set_performance(chosen)
+
+    def _restage(self) -> None:
+        """Show which performance is on stage, and its seed."""
+        wanted: list[tuple[str, str | int | None]] = [(IMPROVISED, None)]
+        wanted += [(p.name, i) for i, p in self.document.project.performances.items()]
+        talk = self.document.project.conversations.get(self.session.conversation or "")
+        if talk is not None:  # then it is one of the two whose plan is seen
+            wanted += [(f"{talk.name}: {side_name(talk, side)}", side) for side in (0, 1)]
+        shown = self.session.performance if talk is None else self.session.side
+        if wanted != [(self.stage.itemText(n), self.stage.itemData(n)) for n in range(self.stage.count())]:
+            self.stage.clear()
+            for name, ident in wanted:
+                self.stage.addItem(name, ident)
+        self.stage.setCurrentIndex(next((n for n, (_, i) in enumerate(wanted) if i == shown), 0))
+        self._show_seed()
+
+    # --- performances
+
+    def _fill(self) -> None:
+        menu, kept = self.more_menu, self.performance.kept
+        menu.clear()
+        menu.addAction("New performance", self.new)
+        played = self.performance.last_live
+        if played is not None:
+            menu.addAction("Keep what was played live", lambda: self._keep("Keep live session", played))
+        if kept is None:
+            return
+        menu.addAction("Rename…", self.rename)
+        menu.addAction("Duplicate", self.duplicate)
+        menu.addAction("Length…", self.set_length)
+        fill = menu.addAction("The models fill the rest", lambda: self._change("Change who fills the rest", idle=not kept.idle))
+        fill.setCheckable(True)
+        fill.setChecked(kept.idle)
+        own = menu.addAction("A seed of its own", self._own_seed)
+        own.setCheckable(True)
+        own.setChecked(kept.seed is not None)
+        menu.addSeparator()
+        menu.addAction("Remove…", self.remove)
+
+    def _keep(self, text: str, performance: KeptPerformance) -> None:
+        made = ""
+
+        def edit(project: object) -> object:
+            nonlocal made
+            project, made = staging.add_performance(project, performance)  # type: ignore[arg-type]
+            return project
+
+        self.document.edit(text, edit)  # type: ignore[arg-type]
+        self.session.set_performance(made)
+        self.session.show_plan()
+
+    def new(self) -> None:
+        self._keep("New performance", KeptPerformance(name="Performance"))
+
+    def duplicate(self) -> None:
+        if self.performance.kept is not None:
+            self._keep("Duplicate performance", self.performance.kept)
+
+    def rename(self) -> None:
+        kept = self.performance.kept
+        if kept is not None:
+            name, ok = QInputDialog.getText(self, "Rename performance", "Name", text=kept.name)
+            if ok and name.strip():
+                self._change("Rename performance", name=name)
+
+    def set_length(self) -> None:
+        kept = self.performance.kept
+        if kept is not None:
+            seconds, ok = QInputDialog.getDouble(self, "Length of the performance", "Seconds", kept.length, 0.1, 36000, 1)
+            if ok:
+                self._change("Change length", length=round(seconds, 3))
+
+    def _own_seed(self) -> None:
+        kept = self.performance.kept
+        if kept is not None:
+            self._change("Change seed", seed=self.document.project.settings.seed if kept.seed is None else None)
+
+    def remove(self) -> None:
+        kept, ident = self.performance.kept, self.session.performance
+        if kept is None or ident is None:
+            return
+        if kept.asks:
+            question = f"Remove '{kept.name}' and its {many(len(kept.asks), 'request')}? It can be undone."
+            if QMessageBox.question(self, "Remove performance", question) != QMessageBox.StandardButton.Yes:
+                return
+        self.document.edit("Remove performance", lambda p: staging.remove_performance(p, ident))
+
+    def _change(self, text: str, **changes: object) -> None:
+        ident = self.session.performance
+        if ident is not None:
+            try:
+                self.document.edit(text, lambda p: staging.change_performance(p, ident, **changes), merge=text)
+            except EditError as error:
+                self.document.failed.emit(str(error))
+
+    # --- live
+
+    def toggle_live(self) -> None:
+        if self.performance.live is None:
+            self.performance.go_live()
+        else:
+            self.performance.stop_live()
+        self._live()
+
+    def _live(self) -> None:
+        on = self.performance.live is not None
+        self.live.setChecked(on)
+        self.live.setText("● Live" if on else "Live")
+        self.stage.setEnabled(not on)
+        self.more.setEnabled(not on)
+        self.seed.setEnabled(not on)
+        (self._spoken.start if on else self._spoken.stop)()
+        self._moved()
+        self._words()
+
+    def _moved(self) -> None:
+        here = self.performance.following and self.session.playing
+        self.now.setVisible(self.performance.live is not None and not here)
+
+    # --- asking, seed
+
+    def _ask(self) -> None:
+        ask_menu(self, self.performance, None).exec(self.ask.mapToGlobal(self.ask.rect().bottomLeft()))
+
+    def _seeded(self, seed: int) -> None:
+        kept, talk = self.performance.kept, self.performance.conversation
+        if talk is not None:
+            if seed != self.document.project.conversations[talk].seed:
+                self.document.edit("Change seed", lambda p: change_conversation(p, talk, seed=seed), merge="seed")
+        elif kept is not None and kept.seed is not None:
+            if seed != kept.seed:
+                self._change("Change seed", seed=seed)
+        elif seed != self.document.project.settings.seed:
+            self.document.edit("Change seed", lambda p: edits.set_settings(p, seed=seed), merge="seed")
+
+    def _show_seed(self) -> None:
+        kept, talk = self.performance.kept, self.performance.conversation
+        seed = kept.seed if kept is not None and kept.seed is not None else self.document.project.settings.seed
+        if talk is not None:
+            seed = self.document.project.conversations[talk].seed
+        if self.seed.value() != seed:
+            self.seed.blockSignals(True)
+            self.seed.setValue(seed)
+            self.seed.blockSignals(False)
+
+    def show_lost(self) -> None:
+        """Select the first request that does not play, or the one after the selected."""
+        lost = [m.ask.id for m in sorted(self.lanes.marks(), key=lambda m: m.at) if m.lost]
+        chosen = self.session.asks
+        if lost:
+            place = lost.index(chosen[0]) + 1 if chosen and chosen[0] in lost else 0
+            self.lanes.reveal(lost[place % len(lost)])
+
+    def _words(self) -> None:
+        shown, plan = self.performance.shown, self.session.show == "plan"
+        answers = self.performance.answers() if plan else {}
+        lost = sum(1 for a in answers.values() if a.state == "refused")
+        self.lost.setVisible(lost > 0)
+        self.lost.setText(f"⚠ {lost:,} not met")
+        self.lost.setAccessibleName(f"{many(lost, 'request')} could not be met")
+        chosen = self.session.asks if plan else ()
+        marks = [m for m in self.lanes.marks() if m.ask.id in chosen] if chosen else []
+        if len(marks) == 1:
+            self.title.say(f"{outcome(marks[0].ask, marks[0].answer)} Asked for: {wanted(marks[0])}.".strip(), True)
+            return
+        if marks:
+            unmet = sum(1 for m in marks if m.lost)
+            self.title.say(f"{many(len(marks), 'request')} selected" + (f", {unmet:,} of them could not be met" if unmet else ""), True)
+        elif self.performance.live is not None and plan:
+            self.title.say(self.performance.live.words())
+        elif shown.clip is not None:
+            self.title.say("A clip alone. Click it again to play it in context, Esc for the performance.")
+        elif self.session.mode == "manual":
+            count = sum(len(shown.plan.layers[layer].cues) for layer in LAYERS)
+            lost_words = "".join(f" {r.message[:1].upper()}{r.message[1:]}." for r in shown.plan.reports[-1:])
+            words = f"{many(count, 'state')} in {shown.length:g} s." if count else "Nothing plays yet: drop clips and draw links."
+            self.title.say("Alone. Esc for the whole machine." if self.session.show == "context" else words + lost_words)
+        elif shown.partner is not None and self.session.show == "plan":
+            talk = self.performance.document.project.conversations.get(self.session.conversation or "")
+            who = side_name(talk, shown.side) if talk is not None else "One of the two"
+            gestures = sum(1 for cue in shown.plan.layers["arms"].cues if cue.action.kind == "gesture")
+            nods = len(shown.plan.layers["head"].cues)
+            if shown.motion is not None:
+                self.title.say(f"{who} moves with '{shown.project.clips[shown.motion].name}'; its graph would do this.")
+                return
+            self.title.say(f"{who} in conversation: {many(gestures, 'gesture')} of the hands, {many(nods, 'nod')}.")
+        elif self.session.show == "context":
+            self.title.say("In context: stance, action, back to the stance. Esc for the performance.")
+        else:
+            count = sum(len(shown.plan.layers[layer].cues) for layer in LAYERS)
+            words = f"{many(count, 'action')} in {shown.length:g} s"
+            empty = "Nothing plays yet: drop a clip on a stance and some around it."
+            self.title.say((words if count else empty) + (f", {many(lost, 'request')} could not be met" if lost else ""))
+
+
+class Sentence(QLabel):
+    """A line, or two where it is narrow, that gives way where there is no room for it, and then tells all of it in a tooltip."""
+
+    def __init__(self, parent: QWidget) -> None:
+        super().__init__(parent)
+        self.words = ""
+        self.setTextFormat(Qt.TextFormat.PlainText)
+        self.setWordWrap(True)
+        self.setSizePolicy(QSizePolicy.Policy.Ignored, QSizePolicy.Policy.Ignored)
+        self.setMinimumWidth(40)
+
+    def say(self, words: str, strong: bool = False) -> None:
+        """Show words; strong: they are about what is selected."""
+        if strong == bool(self.property("dim")):
+            self.setProperty("dim", not strong)
+            self.style().polish(self)
+        self.words = " ".join(words.split())
+        self._fit()
+
+    def resizeEvent(self, event: QResizeEvent) -> None:
+        super().resizeEvent(event)
+        self._fit()
+
+    def _fit(self) -> None:
+        measure, width = self.fontMetrics(), max(20, self.width() - 2)
+        two = self.height() >= 2 * measure.height() - 2 and measure.horizontalAdvance(self.words) > width
+        room = 2 * width - 60 if two else width  # the first line ends with a whole word
+        shown = measure.elidedText(self.words, Qt.TextElideMode.ElideRight, max(20, room))
+        if shown != self.text():
+            self.setText(shown)
+            self.setToolTip(self.words if shown != self.words else "")
+            self.setAccessibleName(self.words)

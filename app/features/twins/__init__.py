@@ -1,0 +1,1 @@
+"""Mirrored twins of clips and actions."""

@@ -1,0 +1,92 @@
+"""Left/right twins of what is selected: mirrored on a thread, written beside the project, added and placed in one step."""
+
+from __future__ import annotations
+
+import re
+from dataclasses import replace
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from app.features.retargeting.import_retargeting import clips_words
+from app.project.jobs import Job
+from metagraph.formats.clips import digest, read_clips
+from metagraph.formats.gltf_writer import write_glb
+from metagraph.formats.imports import Loaded
+from metagraph.formats.store import relative
+from metagraph.formats.takes import REPAIRS
+from metagraph.graph.edits import EditError, add_clips
+from metagraph.graph.model import Project
+from metagraph.graph.twins import TwinClip, mirrored_clips, place_twins, twin_clips
+from metagraph.motion.adopt import adopt
+
+if TYPE_CHECKING:
+    from app.shell.window import Window
+
+FOLDER = "mirrored"
+
+
+def make_twins(window: Window) -> None:
+    """Make twins of the selected actions, or of the selected clips; select them when they are there."""
+    document, session = window.document, window.session
+    actions, clips, folder = session.actions, session.clips, document.folder
+    project = document.project
+    if folder is None:
+        window.tell(f"Save the project first: mirrored clips are written beside it, in a folder '{FOLDER}'.")
+        return
+
+    def work(job: Job) -> list[tuple[TwinClip, Loaded]]:
+        made = twin_clips(project, actions) if actions else mirrored_clips(project, clips)
+        out = []
+        for n, twin in enumerate(made):
+            job.tell(n, len(made), twin.name)
+            if job.cancelled:
+                return []
+            out.append((twin, write_twin(twin, folder)))
+        return out
+
+    def done(made: list[tuple[TwinClip, Loaded]]) -> None:
+        if not made:
+            return
+        if document.folder != folder or any(project.clips[c].id not in document.project.clips for c in clips):
+            window.tell("The project was changed meanwhile; make the twins again.")
+            return
+        before = document.project
+        try:
+            count = sum(len(twin.actions) for twin, _ in made) or len(made)
+            document.edit(f"Make {count} mirrored twin{'s' if count != 1 else ''}", lambda p: with_twins(p, made))
+        except EditError as error:
+            window.tell(str(error))
+            return
+        after = document.project
+        if actions:
+            session.select_actions(tuple(a.id for a in after.actions() if before.action(a.id) is None))
+        else:
+            session.select_clips(tuple(c for c in after.clips if c not in before.clips))
+        words = f"{count} mirrored twin{'s' if count != 1 else ''}" if actions else f"{clips_words(count)} mirrored"
+        names = ", ".join(twin.name for twin, _ in made[:3]) + (" …" if len(made) > 3 else "")
+        window.tell(f"{words}: {names}. Written to {folder / FOLDER}.")
+
+    window.jobs.start("Making mirrored twins", work, done, lambda error: window.tell(str(error)))
+
+
+def write_twin(twin: TwinClip, folder: Path) -> Loaded:
+    """Write a mirrored clip below the project's folder, under a name no other file has; return it as it is read back."""
+    place = folder / FOLDER
+    place.mkdir(exist_ok=True)
+    stem = re.sub(r'[<>:"/\\|?*\x00-\x1f]+', "_", twin.name).strip(" .")[:100] or "clip"
+    path, n = place / f"{stem}.glb", 2
+    while path.exists():
+        path, n = place / f"{stem}_{n}.glb", n + 1
+    write_glb(path, [twin.motion])
+    (read,) = read_clips(path, REPAIRS)  # it is what it should be, so nothing of it is repaired
+    return relative(path, folder), 0, digest(path), adopt(read.renamed(twin.name), twin.motion.skeleton)
+
+
+def with_twins(project: Project, made: list[tuple[TwinClip, Loaded]]) -> Project:
+    """Return the project with mirrored clips added and the twins of their actions placed. Raises EditError."""
+    project = add_clips(project, [loaded for _, loaded in made])
+    idents = {(e.path, e.take): e.id for e in project.clips.values()}
+    new = {idents[path, take] for _, (path, take, _, _) in made}
+    project = replace(project, clips={i: replace(e, as_is=REPAIRS) if i in new else e for i, e in project.clips.items()})
+    pairs = {action: idents[loaded[0], loaded[1]] for twin, loaded in made for action in twin.actions}
+    return place_twins(project, pairs) if pairs else project

@@ -1,0 +1,39 @@
+"""The user's joint maps, remembered between projects: one JSON file beside the recent projects."""
+
+from __future__ import annotations
+
+import json
+from pathlib import Path
+
+from app.project.document import state_folder
+from metagraph.motion.joint_map import JointMap, RetargetError
+
+MOST = 100  # the oldest go first
+
+
+def _place() -> Path:
+    return state_folder() / "joint_maps.json"
+
+
+def kept_maps() -> dict[tuple[str, str], JointMap]:
+    """Return the maps by the fingerprints of source and target, the latest last; what is damaged is passed over."""
+    try:
+        rows = json.loads(_place().read_text(encoding="utf-8"))
+    except (OSError, ValueError):
+        return {}
+    out: dict[tuple[str, str], JointMap] = {}
+    for row in rows if isinstance(rows, list) else []:
+        try:
+            found = JointMap.from_json(row)
+        except RetargetError:
+            continue  # one of another version spoils no other
+        out[found.source, found.target] = found
+    return out
+
+
+def keep_map(joint_map: JointMap) -> None:
+    """Remember a map. Raises OSError."""
+    maps = kept_maps()
+    maps.pop((joint_map.source, joint_map.target), None)
+    rows = [found.to_json() for found in [*maps.values(), joint_map][-MOST:]]
+    _place().write_text(json.dumps(rows), encoding="utf-8")

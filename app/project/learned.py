@@ -1,0 +1,185 @@
+"""What was learned from the user, kept between projects in the program's data folder; one for all windows of all programs at work.
+
+Two files of one format, `metagraph.suggest.memory`: words and corrections, small and written at once; labelled clips of projects, large and
+written by a job. Every change reads the file anew under a lock, applies itself, and writes it whole, so that nothing another window
+learned is lost. A file that cannot be read is set aside, never overwritten.
+"""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Callable, Sequence
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from PySide6.QtCore import QLockFile, QObject, QSettings, Signal
+
+from app.project.document import Document, state_folder
+from metagraph.errors import FileError
+from metagraph.formats.atomic import write_atomically
+
+if TYPE_CHECKING:  # arrays and word lists are read when something is first learned or asked
+    from app.project.jobs import Jobs
+    from metagraph.graph.model import Project
+    from metagraph.suggest.alike import Example
+    from metagraph.suggest.memory import Memory
+    from metagraph.suggest.words_patterns import Patterns
+
+WORDS = "learned-words.json"
+CLIPS = "learned-clips.json"
+LOCK_WAIT = 2000  # milliseconds another window may take to write
+
+
+class Learned(QObject):
+    """What the user taught. changed: something was learned, forgotten or edited here. failed: words, when it could not be kept."""
+
+    changed = Signal()
+    failed = Signal(str)
+
+    def __init__(self, parent: QObject | None = None) -> None:
+        super().__init__(parent)
+        self._read: dict[str, tuple[tuple[int, int], Memory]] = {}  # file -> its state when it was read, what it held
+        self.paused = False  # nothing is learned from the participants of a study, nor used for them
+        self._due = 0  # saved projects that a job is not done with
+
+    # --- whether
+
+    @property
+    def on(self) -> bool:
+        """Whether corrections and labelled clips are remembered and used. Patterns the user wrote are used either way."""
+        return not self.paused and str(QSettings().value("learn", "true")) == "true"
+
+    def set_on(self, on: bool) -> None:
+        QSettings().setValue("learn", "true" if on else "false")
+        self.changed.emit()
+
+    # --- what is known
+
+    @property
+    def patterns(self) -> Patterns:
+        """What words in names mean; without what was learned from corrections while learning is off."""
+        from metagraph.suggest.words_patterns import forget
+
+        return self.every_pattern if self.on else forget(self.every_pattern)
+
+    @property
+    def every_pattern(self) -> Patterns:
+        """All that is known of words, whether it is used or not."""
+        return self._memory(WORDS).patterns
+
+    def examples_for(self, document: Document) -> list[Example]:
+        """Return labelled clips of the user's other projects; may read a file of some MB, so ask on a job."""
+        return self.examples_beside(document.path)
+
+    def examples_beside(self, path: Path | None) -> list[Example]:
+        """Return labelled clips of all projects but the one that is saved there."""
+        return self._memory(CLIPS).others(_key(path)) if self.on else []
+
+    @property
+    def clips(self) -> int:
+        """How many labelled clips are remembered."""
+        return sum(map(len, self._memory(CLIPS).examples.values()))
+
+    # --- learning
+
+    def correct(self, name: str, field: str, value: str | Sequence[str], names: Sequence[str] = ()) -> None:
+        """Remember that a clip of this name was corrected; see `Memory.corrected`. Nothing happens while learning is off."""
+        if self.on:
+            self._change(WORDS, lambda m: m.corrected(name, field, value, names))
+
+    def keep(self, document: Document, jobs: Jobs | None = None) -> None:
+        """Remember a saved project's labelled clips, on a job. Without jobs, at closing: what a job was not done with, at once, then only
+        with the motion that was looked at before. One with unsaved changes is not remembered, nor one without a file."""
+        if not self.on or document.path is None or document.dirty:
+            return
+        project, key = document.project, key_of(document)
+        if jobs is not None:
+            self._due += 1
+            jobs.start("learning", lambda _: self._keep(project, key), self._kept, lambda _: self._kept(), quick=True)
+        elif self._due:
+            self._keep(project, key, wait=False)
+
+    def _kept(self, _: object = None) -> None:
+        self._due -= 1
+
+    def _keep(self, project: Project, key: str, wait: bool = True) -> None:
+        from metagraph.suggest.propose import examples_of
+        from metagraph.suggest.traits import traits_known, traits_of
+
+        examples = examples_of(project, traits_of(project) if wait else traits_known(project))
+        self._change(CLIPS, lambda m: m.with_project(key, examples))
+
+    def edit(self, change: Callable[[Patterns], Patterns]) -> None:
+        """Change the patterns by a pure function."""
+        from dataclasses import replace
+
+        self._change(WORDS, lambda m: replace(m, patterns=change(m.patterns)))
+
+    def forget(self) -> None:
+        """Forget every correction and every project; the patterns the user wrote stay."""
+        self._change(WORDS, lambda m: m.forgotten())
+        self._change(CLIPS, lambda m: m.forgotten())
+
+    # --- files
+
+    def _memory(self, file: str) -> Memory:
+        """Return what a file holds now; nothing where it cannot be read, which is told once."""
+        from metagraph.suggest.memory import Memory, MemoryFormatError
+
+        path = state_folder() / file
+        try:
+            state = path.stat()
+        except OSError:
+            return Memory()
+        stamp = (state.st_mtime_ns, state.st_size)
+        if file not in self._read or self._read[file][0] != stamp:
+            try:
+                memory = Memory.from_json(json.loads(path.read_text(encoding="utf-8")))
+            except OSError as error:
+                self.failed.emit(f"What was learned cannot be read: {path}: {error.strerror or error}.")
+                return Memory()
+            except (MemoryFormatError, ValueError, RecursionError) as error:
+                aside = _set_aside(path)
+                self.failed.emit(f"What was learned cannot be read: {path.name}: {error}. It was set aside as {aside}.")
+                return Memory()
+            self._read[file] = stamp, memory
+        return self._read[file][1]
+
+    def _change(self, file: str, change: Callable[[Memory], Memory]) -> None:
+        """Read a file, change what it holds, and write it, while no other window does."""
+        path = state_folder() / file
+        lock = QLockFile(str(path.with_suffix(".lock")))
+        if not lock.tryLock(LOCK_WAIT):
+            self.failed.emit(f"Nothing was learned: another window holds {path.name}. It will be tried again with the next correction.")
+            return
+        try:
+            before = self._memory(file)
+            after = change(before)
+            if after is not before:
+                write_atomically(path, json.dumps(after.to_json(), ensure_ascii=False, separators=(",", ":")).encode())
+                state = path.stat()
+                self._read[file] = (state.st_mtime_ns, state.st_size), after
+        except FileError as error:
+            self.failed.emit(f"Nothing was learned: {error}")
+            return
+        finally:
+            lock.unlock()
+        self.changed.emit()
+
+
+def key_of(document: Document) -> str:
+    """Return what a project is remembered by: its file, "" for one without."""
+    return _key(document.path)
+
+
+def _key(path: Path | None) -> str:
+    return str(path.resolve()) if path is not None else ""
+
+
+def _set_aside(path: Path) -> str:
+    kept = path.with_suffix(".broken")
+    try:
+        path.replace(kept)
+    except OSError:
+        return path.name
+    return kept.name

@@ -1,0 +1,47 @@
+"""The running job in the status bar: what it does, how far it is, and a way to stop it."""
+
+from __future__ import annotations
+
+from PySide6.QtCore import Qt, Signal
+from PySide6.QtWidgets import QHBoxLayout, QLabel, QProgressBar, QToolButton, QWidget
+
+from app.project.jobs import Jobs
+
+
+class JobLine(QWidget):
+    """Hidden while nothing runs. told: words for the status bar."""
+
+    told = Signal(str)
+
+    def __init__(self, jobs: Jobs, parent: QWidget | None = None) -> None:
+        super().__init__(parent)
+        self.jobs = jobs
+        row = QHBoxLayout(self)
+        row.setContentsMargins(0, 0, 0, 0)
+        self.label, self.bar = QLabel(self), QProgressBar(self)
+        self.bar.setFixedWidth(180)
+        self.cancel = QToolButton(self, text="Cancel", toolTip="Cancel this job")
+        self.cancel.clicked.connect(self._cancel)
+        for widget in (self.label, self.bar, self.cancel):
+            row.addWidget(widget)
+        jobs.changed.connect(self._show)
+        self.hide()
+
+    def _show(self) -> None:
+        job = self.jobs.running[-1] if self.jobs.running else None
+        self.setVisible(job is not None)
+        if job is not None:
+            self.label.setText(job.title)
+            self.bar.setRange(0, 0)
+            job.progress.connect(self._progress, Qt.ConnectionType.UniqueConnection)
+
+    def _progress(self, done: int, total: int, words: str = "") -> None:
+        self.bar.setRange(0, max(1, total))
+        self.bar.setValue(done)
+        if self.jobs.running and words:
+            self.label.setText(f"{self.jobs.running[-1].title}: {words}")
+
+    def _cancel(self) -> None:
+        if self.jobs.running:
+            self.jobs.running[-1].cancel()
+            self.told.emit("Cancelled.")

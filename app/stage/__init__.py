@@ -1,0 +1,1 @@
+"""What is looked at and what plays: selection, transport, performance, pictures, sound."""

@@ -1,0 +1,336 @@
+"""Keeps the statistics of visible jumps up to date with the project: on a thread, and only what an edit made stale.
+
+What is said about an action comes out as problems that can be mended with one press; curves and matrices are made when asked for.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterable, Mapping
+from dataclasses import dataclass, field
+from typing import TYPE_CHECKING, Any
+
+from PySide6.QtCore import QObject, QTimer, Signal
+
+from app.look.plural import many
+from app.project.document import Document
+from app.project.jobs import Job, Jobs
+from metagraph.graph import edits
+from metagraph.graph.check import Problem
+from metagraph.graph.model import LAYERS, Action, Layer, Project
+
+if TYPE_CHECKING:  # their imports wait for the first job
+    from metagraph.suggest.compatibility import Matrix, Times
+    from metagraph.suggest.jumps import Curves, Jump, Measured
+
+AFTER = 400  # milliseconds of quiet after an edit
+EDGES = {"far-start": "begins", "far-end": "ends", "open-loop": "loops"}  # what `check` says of the same places, in rougher words
+REASONS = {"begins": "jump-start", "ends": "jump-end", "loops": "jump-loop"}
+
+
+@dataclass(frozen=True)
+class Fix:
+    """One press that mends a problem. words: on the button. changes: fields of the action, as `edits.update_actions` takes them."""
+
+    words: str
+    action: str
+    changes: Mapping[str, Any] = field(default_factory=dict, hash=False)
+    end: str | None = None  # the stance a transition should end in
+
+    def __call__(self, project: Project) -> Project:
+        """Return the project mended."""
+        if self.end is not None:
+            return edits.set_ends(project, [self.action], self.end)
+        return edits.update_actions(project, [self.action], **self.changes)
+
+
+@dataclass(frozen=True, eq=False)
+class Judged:
+    """What was found of a project. measured: its layers' statistics. known: what was found of each action. jumps: all of it."""
+
+    measured: Mapping[Layer, Measured]
+    known: Mapping[Layer, dict[Any, tuple[Jump, ...]]]
+    jumps: tuple[Jump, ...]
+
+
+def judge(project: Project, before: Judged | None = None, cancelled: Callable[[], bool] | None = None) -> Judged:
+    """Return all jumps of a project, taking what still holds from an earlier judgement."""
+    from metagraph.suggest.jumps import Measured, jumps
+
+    measured: dict[Layer, Measured] = {}
+    known: dict[Layer, dict[Any, tuple[Jump, ...]]] = {}
+    found: list[Jump] = []
+    for layer in LAYERS:
+        old = before.measured[layer] if before is not None else None
+        new = Measured(project, layer, old)
+        kept: dict[Any, tuple[Jump, ...]] = {}
+        if before is not None and old is not None and new.same_as(old):
+            new = old
+            kept = {a: before.known[layer][a] for a in project.graphs[layer].actions.values() if a in before.known[layer]}
+        measured[layer], known[layer] = new, kept
+        found += jumps(project, new, kept, cancelled)
+    return Judged(measured, known, tuple(found))
+
+
+def told(project: Project, judged: Judged) -> dict[Problem, Fix | None]:
+    """Return jumps as problems, each with what mends it; layers of which too little is known say so."""
+    out: dict[Problem, Fix | None] = {}
+    for jump in judged.jumps:
+        action, stance = project.action(jump.action), project.stance(jump.stance)
+        if action is None or stance is None:
+            continue  # it went meanwhile
+        if jump.edge == "loops":
+            words = f"'{action.name}' jumps where it repeats, {jump.cost:.1f} times what shows as a jump"
+        else:
+            words = f"'{action.name}' {jump.edge} {jump.cost:.1f} times what shows as a jump from '{stance.name}'"
+        remedy, fix = _remedy(project, action, jump)
+        problem = Problem("warning", REASONS[jump.edge], words, remedy, action.layer, action.stance, action.id, action.clip)
+        out[problem] = fix
+    for layer, measured in judged.measured.items():
+        graph = project.graphs[layer]
+        if not measured.reliable and any(a.kind != "stance" for a in graph.actions.values()):
+            out[_few(layer, measured)] = None
+    return out
+
+
+def _few(layer: Layer, measured: Measured) -> Problem:
+    from metagraph.suggest.jumps import FEWEST_CLIPS
+    from metagraph.suggest.tracks import RATE
+
+    much = many(measured.labelled, "clip")
+    if measured.labelled >= FEWEST_CLIPS:
+        much += f" of together {measured.stats.count / RATE:.0f} s"
+    words = f"jumps of the {layer} layer are not looked for: {much} cannot tell what is usual motion"
+    return Problem("hint", "few-clips", words, f"Place at least {FEWEST_CLIPS} clips, ten seconds in all, on this layer.", layer)
+
+
+def _remedy(project: Project, action: Action, jump: Jump) -> tuple[str, Fix | None]:
+    fits = project.stance(jump.fits)
+    if jump.better is not None:
+        return f"At {jump.better:.2f} s it would not.", Fix(f"Use {jump.better:.2f} s", action.id, {"timing": dict(jump.change)})
+    if fits is not None and action.kind == "transition" and jump.edge == "ends" and fits.id != action.stance:
+        return f"It looks like '{fits.name}' there: end it in that stance.", Fix(f"End in '{fits.name}'", action.id, end=fits.id)
+    if jump.change:
+        seconds = next(iter(jump.change.values()))
+        return f"Blended over {seconds:.2f} s it would not.", Fix(f"Blend {seconds:.2f} s", action.id, {"timing": dict(jump.change)})
+    if fits is not None:
+        return f"It looks like '{fits.name}' there: place it on that stance.", None
+    return "Trim it, blend it longer, or place it on a stance it fits.", None
+
+
+def merged(problems: Iterable[Problem], flags: Iterable[Problem]) -> tuple[Problem, ...]:
+    """Return both, errors first; a place of an action is told of once, in the statistics' words."""
+    flags = tuple(flags)
+    told_of = {(p.action, p.code) for p in flags}
+    rest = [p for p in problems if p.code not in EDGES or (p.action, REASONS[EDGES[p.code]]) not in told_of]
+    order = {"error": 0, "warning": 1, "hint": 2}
+    return tuple(sorted([*rest, *flags], key=lambda p: order[p.severity]))
+
+
+def proposed_fields(action: Action, times: Times, duration: float) -> dict[str, Any]:
+    """Return the Timing fields that proposed times change. duration: of the clip, seconds."""
+    end = None if times.end >= duration - 1e-3 else round(times.end, 3)
+    out: dict[str, Any] = {"start": round(times.start, 3), "end": end, "blend_in": round(times.blend_in, 3)}
+    if action.kind != "stance":
+        leave = times.earliest_exit
+        out |= {"blend_out": round(times.blend_out, 3), "earliest_exit": None if leave is None else round(leave, 3)}
+    return out
+
+
+class Compatibility(QObject):
+    """changed: the project was judged anew. seen: curves of an action (id) are there. compared: a layer's matrix is there."""
+
+    changed = Signal()
+    seen = Signal(str)
+    compared = Signal(str)
+    failed = Signal(str)
+
+    def __init__(self, document: Document, jobs: Jobs, parent: QObject | None = None) -> None:
+        super().__init__(parent)
+        self.document, self.jobs = document, jobs
+        self.judged: Judged | None = None
+        self.flags: dict[Problem, Fix | None] = {}
+        self.on = False  # until the window has come up
+        self._judging = self._looking = False
+        self._wanted: Action | None = None
+        self._curves: dict[str, tuple[Action, Measured, Curves | None]] = {}
+        self._matrices: dict[Layer, tuple[Measured, Matrix]] = {}
+        self._comparing: set[Layer] = set()
+        self._timer = QTimer(self, singleShot=True, interval=AFTER)
+        self._timer.timeout.connect(self._judge)
+        document.changed.connect(self._follow)
+
+    def start(self) -> None:
+        """Judge from now on."""
+        if not self.on:
+            self.on = True
+            self._timer.start()
+
+    def stop(self) -> None:
+        self.on = False
+        self._timer.stop()
+
+    def _follow(self, before: Project, after: Project) -> None:
+        same = ("graphs", "clips", "roles", "parts", "skeleton")
+        if self.on and any(getattr(before, name) is not getattr(after, name) for name in same):
+            self._timer.start()
+
+    # --- judging
+
+    def _judge(self) -> None:
+        if self._judging:
+            self._timer.start()
+            return
+        self._judging = True
+        project, before = self.document.project, self.judged
+
+        def work(job: Job) -> tuple[Judged, dict[Problem, Fix | None]]:
+            found = judge(project, before, lambda: job.cancelled)
+            return found, told(project, found)
+
+        self.jobs.start("jumps", work, self._done, self._gave_up, quick=True)
+
+    def _gave_up(self, error: Exception) -> None:
+        self._judging = False
+        self.failed.emit(f"Jumps could not be looked for: {error}")
+
+    def _done(self, result: tuple[Judged, dict[Problem, Fix | None]]) -> None:
+        self._judging = False
+        before, (self.judged, self.flags) = self.judged, result
+        self._curves = {i: (a, m, c) for i, (a, m, c) in self._curves.items() if self.judged.measured[a.layer] is m}
+        if before is None or before.measured != self.judged.measured or before.jumps != self.judged.jumps:
+            self.changed.emit()
+
+    # --- one action's curves
+
+    def curves(self, action: Action) -> Curves | None:
+        """Return what is known of an action's clip beside its stances; what is not known yet is looked for, and `seen` told."""
+        if self.judged is None:
+            return None
+        known = self._curves.get(action.id)
+        if known is None or known[0] != action or known[1] is not self.judged.measured[action.layer]:
+            self._wanted = action
+            self._look()
+        return known[2] if known is not None and _alike(known[0], action) else None
+
+    def _look(self) -> None:
+        if self._looking or self._wanted is None or self.judged is None:
+            return
+        action, self._wanted, self._looking = self._wanted, None, True
+        project, measured = self.document.project, self.judged.measured[action.layer]
+
+        def work(_: Job) -> Curves | None:
+            from metagraph.suggest.jumps import curves
+
+            return curves(project, measured, action)
+
+        def done(found: Curves | None) -> None:
+            self._looking = False
+            self._curves[action.id] = action, measured, found
+            self.seen.emit(action.id)
+            self._look()
+
+        def gave_up(_: Exception) -> None:
+            done(None)
+
+        self.jobs.start("curves", work, done, gave_up, quick=True)
+
+    def use_proposed(self, actions: Iterable[str]) -> None:
+        """Give actions the times that are proposed for them, in one step."""
+        project, judged = self.document.project, self.judged
+        chosen = [a for i in actions if (a := project.action(i)) is not None]
+        if judged is None:
+            return
+
+        def work(job: Job) -> dict[str, dict[str, Any]]:
+            from metagraph.suggest.jumps import curves
+
+            out = {}
+            for n, action in enumerate(chosen):
+                if job.cancelled:
+                    break
+                job.tell(n, len(chosen))
+                found = curves(project, judged.measured[action.layer], action)
+                if found is not None:
+                    fields = proposed_fields(action, found.proposed, project.clips[action.clip].duration)
+                    out[action.id] = {"timing": fields}
+            return out
+
+        def done(changes: dict[str, dict[str, Any]]) -> None:
+            if changes:
+                self.document.edit("Use proposed times", lambda p: edits.update_each(p, changes))
+
+        self.jobs.start("Proposing times", work, done, lambda e: self.failed.emit(str(e)), quick=len(chosen) < 20)
+
+    def mend(self, fixes: Iterable[Fix]) -> None:
+        """Mend problems, in one step."""
+        todo = list(fixes)
+
+        def all_of(project: Project) -> Project:
+            for fix in todo:
+                project = fix(project)
+            return project
+
+        if todo:
+            text = todo[0].words if len(todo) == 1 else f"Mend {len(todo)} problems"
+            self.document.edit(text, all_of)
+
+    # --- matrices
+
+    def matrix(self, layer: Layer) -> Matrix | None:
+        """Return clips against stances of a layer as last compared; what changed is compared anew, and `compared` told."""
+        known = self._matrices.get(layer)
+        if self.judged is not None and layer not in self._comparing:
+            project, measured = self.document.project, self.judged.measured[layer]
+            whole = known is not None and known[0] is measured and known[1].clips == tuple(project.clips)
+            if not whole:
+                self._compare(project, layer, measured, known[1] if known is not None and known[0] is measured else None)
+        return known[1] if known is not None else None
+
+    def _compare(self, project: Project, layer: Layer, measured: Measured, before: Matrix | None) -> None:
+        self._comparing.add(layer)
+
+        def work(job: Job) -> Matrix:
+            return extended(project, layer, before, lambda: job.cancelled, job.tell)
+
+        def done(found: Matrix) -> None:
+            self._matrices[layer] = measured, found
+            self._comparing.discard(layer)
+            self.compared.emit(layer)
+
+        def gave_up(error: Exception) -> None:
+            self._comparing.discard(layer)
+            self.failed.emit(f"Clips could not be compared: {error}")
+
+        job = self.jobs.start("Comparing clips with stances", work, done, gave_up)
+        job.ended.connect(lambda: self._comparing.discard(layer))
+
+
+def extended(
+    project: Project,
+    layer: Layer,
+    before: Matrix | None,
+    cancelled: Callable[[], bool] | None = None,
+    progress: Callable[[int, int], None] | None = None,
+) -> Matrix:
+    """Return a layer's matrix; rows of clips that stand in an earlier one, of the same stances, are taken from there."""
+    import numpy as np
+
+    from metagraph.suggest.compatibility import Matrix, matrix
+
+    clips = tuple(project.clips)
+    old = {} if before is None or before.stances != tuple(project.graphs[layer].stances) else {c: n for n, c in enumerate(before.clips)}
+    fresh = [c for c in clips if c not in old]
+    new = matrix(project, layer, clips=fresh, cancelled=cancelled, progress=progress)
+    if before is None or not old:
+        return new
+    place = {c: len(before.clips) + n for n, c in enumerate(fresh)}
+    rows = [old[c] if c in old else place[c] for c in clips]
+    parts = [np.concatenate([getattr(before, n), getattr(new, n)])[rows] for n in ("enter_cost", "leave_cost", "enter_at", "leave_at")]
+    return Matrix(layer, clips, new.stances, *parts)
+
+
+def _alike(a: Action, b: Action) -> bool:
+    """Whether curves of one hold for the other: all that its timing moves is where it is blended."""
+    return (a.clip, a.stance, a.end_stance, a.limb, a.joints, a.kind) == (b.clip, b.stance, b.end_stance, b.limb, b.joints, b.kind) and (
+        a.kind != "stance" or a.timing.start == b.timing.start
+    )

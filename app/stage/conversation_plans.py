@@ -1,0 +1,105 @@
+"""A conversation on stage: both characters' plans, made on a job's thread, with what was read for them kept at hand."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from pathlib import Path
+from typing import Any
+
+from app.project.opening import open_whole
+from app.stage.playback_source import Shown
+from metagraph.errors import FileError
+from metagraph.graph import staging
+from metagraph.graph.asks import Performance
+from metagraph.graph.conversation import Side
+from metagraph.graph.model import Project
+
+Key = tuple[Any, ...]
+
+
+class Stage:
+    """Reads voices and other projects once. Used by one thread at a time: the performance plans one thing after another."""
+
+    def __init__(self) -> None:
+        self._voices: dict[Key, Any] = {}
+        self._projects: dict[Key, Project] = {}
+
+    def show(self, project: Project, ident: str, folder: Path, side: int = 0) -> Shown:
+        """Return what both play, a side first, the other as its partner. folder: what paths begin at."""
+        from metagraph.speech.duet import duet, voices
+
+        conversation = project.conversations[ident]
+        notes: list[str] = []
+        wanted = {(str(folder / s.project), _written(folder / s.project)) for s in conversation.sides if s.project is not None}
+        self._projects = {key: found for key, found in self._projects.items() if key in wanted}
+        projects = [self._project(project, s.project, folder, notes) for s in conversation.sides]
+        key = tuple((s.audio, s.channel, s.words, _written(folder / s.audio) if s.audio else None) for s in conversation.sides)
+        if key not in self._voices:
+            self._voices = {key: voices(conversation, folder)}
+        heard, told = self._voices[key]
+        made = duet(conversation, ident, projects, heard)
+        moved = [_motion(p.project, s, notes) for p, s in zip(made.parts, conversation.sides, strict=True)]
+        both = tuple(
+            Shown(
+                p.project, p.plan, made.length, side=n, stand=p.stand, motion=moved[n], asks=p.performance.asks, notes=(*notes, *told),
+                folder=folder if s.project is None else (folder / s.project).parent,
+            )
+            for n, (p, s) in enumerate(zip(made.parts, conversation.sides, strict=True))
+        )  # fmt: skip
+        return replace(both[side], partner=both[1 - side])
+
+    def _project(self, project: Project, path: str | None, folder: Path, notes: list[str]) -> Project:
+        """Return the project whose graph moves a side: another one's, or the one at hand where that cannot be read."""
+        if path is None:
+            return project
+        whole = folder / path
+        key = (str(whole), _written(whole))
+        if key not in self._projects:
+            try:
+                found = open_whole(whole)
+            except (FileError, OSError) as error:
+                notes.append(f"{error} This side moves with the graph at hand.")
+                return project
+            if found.project.skeleton is None:
+                notes.append(f"{whole.name} has no clips: this side moves with the graph at hand.")
+                return project
+            self._projects[key] = found.project
+        return self._projects[key]
+
+
+def _motion(project: Project, side: Side, notes: list[str]) -> str | None:
+    """Return the clip a side moves with instead of a graph, if it is there and fits."""
+    if side.motion is None:
+        return None
+    entry = project.clips.get(side.motion)
+    if entry is None or entry.motion is None or entry.motion.skeleton != project.skeleton:
+        notes.append(f"The new motion of {side.name or 'a side'} is missing: it moves with its graph.")
+        return None
+    return side.motion
+
+
+def _written(path: Path) -> int:
+    try:
+        return path.stat().st_mtime_ns
+    except OSError:
+        return 0
+
+
+def keep(project: Project, ident: str, shown: Shown) -> tuple[Project, tuple[str, ...]]:
+    """Keep what both sides of a conversation do as performances, each with the line it says; return the performances' ids.
+
+    A side that another project moves is left out: its asks would mean nothing to this one's graph.
+    """
+    conversation = project.conversations[ident]
+    kept: list[str] = []
+    for side, part in zip(conversation.sides, shown.both, strict=True):
+        if side.project is not None:
+            continue
+        for line in {s.line for s in part.plan.track.speeches if s.line is not None} - set(project.lines):
+            project = staging.set_line(project, line, part.project.lines[line])
+            project = replace(project, voices={**project.voices, line: part.project.voices[line]})
+        name = f"{conversation.name}: {side.name}" if side.name else conversation.name
+        made = Performance(name=name[:200], asks=part.asks, seed=conversation.seed, length=conversation.length, idle=False)
+        project, new = staging.add_performance(project, made)
+        kept.append(new)
+    return project, tuple(kept)

@@ -1,0 +1,131 @@
+"""Which figure draws the character: the project's own GLB, or a stick figure for any skeleton without one."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+from PySide6.QtCore import QObject, Signal
+
+from app.project.document import Document
+from app.project.jobs import Jobs
+from app.stage.playback_source import Shown
+from metagraph.errors import FileError
+from metagraph.graph.model import Project
+from metagraph.motion.skeleton import Skeleton
+from preview.figure import Figure, SkinnedFigure, StickFigure
+
+Key = tuple[str, str]  # the character's file, the skeleton it is bound to
+
+
+class Figures(QObject):
+    """changed: another figure is to be drawn. Figures are read and built on a thread."""
+
+    changed = Signal()
+
+    def __init__(self, document: Document, jobs: Jobs, parent: QObject | None = None) -> None:
+        super().__init__(parent)
+        self.document, self.jobs = document, jobs
+        self._sticks: dict[str, Figure | None] = {}  # None while it is being built
+        self._skinned: tuple[Key, Figure] | None = None
+        self._guests: dict[Key, Figure | None] = {}  # characters of other projects, who talk with this one's
+        self._wanted: Key | None = None
+        self._unreadable: Key | None = None
+        document.changed.connect(self._follow)
+
+    def _key(self, project: Project) -> Key | None:
+        if project.character is None or project.skeleton is None:
+            return None
+        path = (self.document.folder or Path()) / project.character
+        return str(path), project.skeleton.fingerprint
+
+    def _follow(self, before: Project, after: Project) -> None:
+        key = self._key(after)
+        if key == self._wanted:
+            return
+        self._wanted, self._unreadable = key, None
+        if key is None or after.skeleton is None:
+            self.changed.emit()
+            return
+        skeleton = after.skeleton
+        self.jobs.start(
+            "character",
+            lambda _: (key, load_figure(Path(key[0]), skeleton)),
+            self._read,
+            lambda error: self._refused(key, error),
+            quick=True,
+        )
+
+    def _read(self, result: tuple[Key, Figure]) -> None:
+        if result[0] == self._wanted:
+            self._skinned = result
+            self.changed.emit()
+
+    def _refused(self, key: Key, error: Exception) -> None:
+        if key == self._wanted:
+            self._unreadable = key
+            self.document.failed.emit(f"The character cannot be drawn: {error}")
+            self.changed.emit()
+
+    def figure(self, skeleton: Skeleton) -> Figure | None:
+        """Return the figure for a skeleton: the project's character on the project's skeleton, else a stick figure.
+
+        None while it is being made; `changed` tells when it is there.
+        """
+        project = self.document.project
+        key = self._key(project)
+        if key is not None and key != self._unreadable and skeleton == project.skeleton:
+            return self._skinned[1] if self._skinned is not None and self._skinned[0] == key else None
+        if skeleton.fingerprint not in self._sticks:
+            self._sticks[skeleton.fingerprint] = None
+            self.jobs.start("figure", lambda _: _ready(StickFigure(skeleton)), self._built, quick=True)
+        return self._sticks[skeleton.fingerprint]
+
+    def of(self, shown: Shown) -> Figure | None:
+        """Return the figure of who is shown: of another project's character that one's own. None while it is being made."""
+        skeleton, character = shown.skeleton, shown.project.character
+        if skeleton is None:
+            return None
+        if shown.folder is None or character is None or shown.clip is not None:
+            return self.figure(skeleton)
+        key = (str(shown.folder / character), skeleton.fingerprint)
+        if key == self._key(self.document.project):
+            return self.figure(skeleton)
+        if key not in self._guests:
+            self._guests[key] = None
+
+            def work(_: object) -> tuple[Key, Figure]:
+                try:
+                    return key, load_figure(Path(key[0]), skeleton)
+                except FileError:  # it moves all the same
+                    return key, _ready(StickFigure(skeleton))
+
+            self.jobs.start("character", work, self._came, quick=True)
+        return self._guests[key]
+
+    def _came(self, result: tuple[Key, Figure]) -> None:
+        self._guests[result[0]] = result[1]
+        self.changed.emit()
+
+    def _built(self, figure: Figure) -> None:
+        self._sticks[figure.skeleton.fingerprint] = figure
+        self.changed.emit()
+
+
+def load_figure(path: Path, skeleton: Skeleton) -> Figure:
+    """Return a character's figure bound to a skeleton. Raises FileError."""
+    from metagraph.formats.gltf import read_character
+
+    return _ready(SkinnedFigure(read_character(path), skeleton))
+
+
+def _ready(figure: Figure) -> Figure:
+    """Work out on this thread what would otherwise be worked out while the first picture is drawn."""
+    from preview.gpu import decoded
+
+    for batch in figure.mesh.batches:
+        if batch.image is not None:
+            decoded(batch.image)
+    _, rest = figure.skeleton.globals(figure.skeleton.rest)
+    figure.bounds(rest)
+    _ = figure.coarse
+    return figure

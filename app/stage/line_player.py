@@ -1,0 +1,153 @@
+"""What is said, heard in step with the picture.
+
+A thread of the sound library asks for samples; what it gets is mixed from the lines that the plan says. Without a sound
+device, or without the library, everything else works and the status bar says why it is silent.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+from PySide6.QtCore import QObject, Signal
+
+from app.project.document import Document
+from app.project.jobs import Jobs
+from app.stage.performance import Performance
+from app.stage.session import Session
+from metagraph.graph.asks import Line
+from metagraph.graph.model import Project
+
+RATE = 44100  # as speech.soundtrack's, which is not imported before something is said
+LATENCY = 0.08  # seconds of sound on its way to the ear: enough that a busy machine does not tear it
+DRIFT = 0.08  # seconds the sound may be apart from the picture before it is set right
+EMPTY: list[tuple[float, np.ndarray]] = []
+
+
+class Sound(QObject):
+    """Plays the lines of what is on stage while the playhead runs at its own speed. told: why it is silent."""
+
+    told = Signal(str)
+
+    def __init__(self, document: Document, session: Session, performance: Performance, jobs: Jobs, parent: QObject | None = None) -> None:
+        super().__init__(parent)
+        self.document, self.session, self.performance, self.jobs = document, session, performance, jobs
+        self.muted = False
+        self.sounds: dict[str, np.ndarray] = {}
+        self.parts = EMPTY  # what sounds when; replaced, never changed, since another thread reads it
+        self.place = 0  # the next sample that is asked for
+        self._stream: Any = None
+        self._silent = False  # there is no way to be heard; that was told
+        self._files: dict[str, tuple[str, int | None]] = {}
+        document.changed.connect(self._edited)
+        document.state_changed.connect(lambda: self._edited(document.project, document.project))
+        performance.changed.connect(self._planned)
+        session.moved.connect(self._moved)
+        session.playing_changed.connect(self._moved)
+        session.show_changed.connect(self._moved)
+
+    # --- the lines' files
+
+    def _edited(self, before: Project, after: Project) -> None:
+        self._want({**after.lines, **self._said()})
+
+    def _said(self) -> dict[str, Line]:
+        """Return the lines of a conversation on stage: they are in no project."""
+        both = self.performance.shown.both if self.performance.shown.partner is not None else ()
+        return {s.line: one.project.lines[s.line] for one in both for s in one.plan.track.speeches if s.line in one.project.lines}
+
+    def _want(self, lines: Mapping[str, Line]) -> None:
+        files = {i: (x.audio, x.channel) for i, x in lines.items() if x.audio}
+        if files == self._files:
+            return
+        self._files = files
+        if not files:
+            self.sounds = {}
+            self._planned()
+            return
+        folder = self.document.folder or Path()
+
+        def work(_: object) -> Any:
+            from metagraph.speech.soundtrack import line_sounds
+
+            return line_sounds(lines, folder)
+
+        self.jobs.start("Reading sounds", work, self._read, lambda error: self.told.emit(str(error)), quick=True)
+
+    def _read(self, made: tuple[dict[str, np.ndarray], tuple[str, ...]]) -> None:
+        self.sounds, notes = made
+        for note in notes[:1]:
+            self.told.emit(note)
+        self._planned()
+
+    # --- what sounds when
+
+    def _planned(self) -> None:
+        shown = self.performance.shown
+        if not set(said := self._said()) <= set(self._files):
+            self._want({**self.document.project.lines, **said})
+        if not self.sounds or shown.clip is not None or not any(one.plan.track.speeches for one in shown.both):
+            self.parts = EMPTY
+            return
+        from metagraph.speech.soundtrack import placed
+
+        self.parts = [part for one in shown.both for part in placed(one.plan, self.sounds)]
+        self._moved()
+
+    @property
+    def audible(self) -> bool:
+        """Whether there is anything to be heard now."""
+        s = self.session
+        return bool(self.parts) and s.playing and s.speed == 1.0 and s.show == "plan" and not self.muted
+
+    def _moved(self, *_: object) -> None:
+        """Follow the playhead: begin, go on, jump or fall silent with it."""
+        if not self.audible:
+            if self._stream is not None and self._stream.active:
+                self._stream.stop()
+            return
+        if self._stream is None and not self._open():
+            return
+        at = round((self.session.seconds + self._stream.latency) * RATE)  # what is mixed now is heard that much later
+        if not self._stream.active:
+            self.place = at
+            self._stream.start()
+        elif abs(self.place - at) > DRIFT * RATE:
+            self.place = at
+
+    def _open(self) -> bool:
+        if self._silent:
+            return False
+        try:
+            import sounddevice
+
+            self._stream = sounddevice.OutputStream(samplerate=RATE, channels=1, dtype="float32", callback=self.fill, latency=LATENCY)
+        except Exception as error:  # the library has errors of its own, and OSError where PortAudio is missing
+            self._silent = True
+            cause = str(error).splitlines()[0].rstrip(".")
+            missing = isinstance(error, OSError) and "PortAudio" in cause  # the library itself; an own kind of error otherwise
+            self.told.emit(
+                f"No sound: {cause}. " + ("On Debian and Ubuntu: apt install libportaudio2" if missing else "Is a sound device there?")
+            )
+            return False
+        return True
+
+    def fill(self, out: np.ndarray, frames: int, time: object, status: object) -> None:
+        """Give the next samples `[frames, 1]`; called on the sound library's thread."""
+        from metagraph.speech.soundtrack import mixed
+
+        out[:, 0] = mixed(self.parts, self.place, frames)
+        self.place += frames
+
+    def set_muted(self, muted: bool) -> None:
+        self.muted = muted
+        self._moved()
+
+    def stop(self) -> None:
+        """Fall silent for good: the window closes."""
+        self.parts = EMPTY
+        if self._stream is not None:
+            self._stream.close()
+            self._stream = None

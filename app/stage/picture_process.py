@@ -1,0 +1,103 @@
+"""Draws thumbnails in a process of its own: compiling shaders and reading pixels back would hold up the window's thread."""
+
+from __future__ import annotations
+
+import math
+import pickle
+import queue
+import sys
+import threading
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any, BinaryIO
+
+import numpy as np
+
+from metagraph.motion.clip import Clip
+from metagraph.motion.skeleton import Skeleton
+
+SIZE, SCALE = 112, 2
+MOVING_SIZE, MOVING_RATE, MOVING_MOST = 180, 12, 72  # the loop in the stance card: pixels, pictures a second, at most
+
+
+@dataclass(frozen=True)
+class Order:
+    """what: "card", "bare" or "moving". paper: sRGB 0..1 behind the figure, None for transparent. character: its file."""
+
+    number: int
+    clip: Clip
+    what: str
+    theme: str
+    paper: tuple[float, float, float] | None
+    character: Path | None
+
+
+_Waiting = queue.PriorityQueue[tuple[bool, float, Order | None]]
+
+
+def draw(offscreen: Any, figure: Any, order: Order) -> list[np.ndarray]:
+    """Return a clip's pictures `[H, W, 4]`: one telling pose, or its whole loop."""
+    from preview.scene import THEMES
+    from preview.thumbnail import telling_frame, thumbnail
+
+    motion = order.clip
+    if order.what == "moving":
+        count = max(1, min(MOVING_MOST, round(motion.duration * MOVING_RATE)))
+        frames = np.linspace(0, motion.frames - 1, count, endpoint=False).round().astype(int)
+    else:
+        frames = np.array([telling_frame(motion)])
+    size = MOVING_SIZE if order.what == "moving" else SIZE
+    rotations, positions = motion.skeleton.globals(motion.poses()[frames])
+    return [
+        thumbnail(offscreen, figure, r, p, size=size, scale=SCALE, paper=order.paper, theme=THEMES[order.theme])
+        for r, p in zip(rotations, positions, strict=True)
+    ]
+
+
+def serve(orders: BinaryIO, results: BinaryIO) -> None:
+    """Answer pickled orders with pickled (number, pictures) until the other side is gone: stills before loops, the latest first."""
+    from preview.offscreen import Offscreen, OpenGLError
+
+    waiting: _Waiting = queue.PriorityQueue()
+    threading.Thread(target=_read, args=(orders, waiting), daemon=True).start()
+    try:
+        offscreen = Offscreen(SIZE * SCALE, SIZE * SCALE)
+    except OpenGLError:
+        return
+    figures: dict[tuple[str, Path | None], Any] = {}
+    with offscreen:
+        while (order := waiting.get()[2]) is not None:
+            key = (order.clip.skeleton.fingerprint, order.character)
+            if key not in figures:
+                figures[key] = _figure(order.clip.skeleton, order.character)
+            pickle.dump((order.number, draw(offscreen, figures[key], order)), results)
+            results.flush()
+
+
+def _read(orders: BinaryIO, waiting: _Waiting) -> None:
+    try:
+        while True:
+            order = pickle.load(orders)
+            waiting.put((order.what == "moving", -order.number, order))
+    except (EOFError, OSError, pickle.UnpicklingError):
+        waiting.put((False, -math.inf, None))
+
+
+def _figure(skeleton: Skeleton, character: Path | None) -> Any:
+    from metagraph.errors import FileError
+    from metagraph.formats.gltf import read_character
+    from preview.figure import SkinnedFigure, StickFigure
+
+    if character is not None:
+        try:
+            return SkinnedFigure(read_character(character), skeleton)
+        except FileError:
+            pass  # the preview says so
+    return StickFigure(skeleton)
+
+
+if __name__ == "__main__":
+    from app.stage import picture_process  # orders name their class by its module
+
+    with sys.stdout.buffer as out:
+        picture_process.serve(sys.stdin.buffer, out)

@@ -1,0 +1,73 @@
+"""A performance written as a video, a contact sheet or plain motion, by a process of its own: it draws without disturbing the window."""
+
+from __future__ import annotations
+
+import subprocess
+import sys
+import tempfile
+import threading
+from dataclasses import dataclass
+from pathlib import Path
+
+from app.project.jobs import Job
+from metagraph.formats.store import absolute, save_project
+from metagraph.graph.model import Project
+
+SUFFIXES = {".mp4": "Video with sound", ".png": "Contact sheet", ".glb": "Motion (GLB)", ".bvh": "Motion (BVH)"}
+
+
+@dataclass(frozen=True)
+class Wanted:
+    """What to write. performance: id of a kept one, None to improvise. conversation: id of one, then of both. size: width and height in
+    pixels."""
+
+    out: Path
+    performance: str | None
+    seconds: float
+    size: tuple[int, int] = (1280, 720)
+    fps: float = 30.0
+    theme: str = "dark"
+    conversation: str | None = None
+
+
+def write(project: Project, folder: Path, wanted: Wanted, job: Job) -> Path:
+    """Write it; runs on a job's thread. Raises RuntimeError with the reason; a cancelled job leaves nothing behind."""
+    with tempfile.TemporaryDirectory() as scratch:
+        copy = Path(scratch) / "project.metagraph.yaml"
+        save_project(absolute(project, folder), copy)
+        words = [
+            sys.executable, "-m", "app.cli", "render", str(copy), "-o", str(wanted.out), "-s", f"{wanted.seconds:.6f}",
+            "--size", f"{wanted.size[0]}x{wanted.size[1]}", "--fps", f"{wanted.fps:g}", "--theme", wanted.theme, "--progress",
+        ]  # fmt: skip
+        if wanted.performance is not None:
+            words += ["--performance", wanted.performance]
+        if wanted.conversation is not None:
+            words += ["--conversation", wanted.conversation]
+        process = subprocess.Popen(words, stdout=subprocess.DEVNULL, stderr=subprocess.PIPE, text=True, cwd=Path(__file__).parents[2])
+        said: list[str] = []
+        reader = threading.Thread(target=_listen, args=(process, job, said), daemon=True)
+        reader.start()
+        while process.poll() is None:
+            if job.cancelled:
+                process.terminate()
+                process.wait()
+                wanted.out.with_name(f".{wanted.out.name}.part.mp4").unlink(missing_ok=True)
+                break
+            reader.join(0.1)
+        reader.join(5)
+        if process.stderr is not None:
+            process.stderr.close()
+        if not job.cancelled and process.returncode != 0:
+            raise RuntimeError(said[-1].removeprefix("metagraph: ") if said else "the drawing process ended without a word")
+    return wanted.out
+
+
+def _listen(process: subprocess.Popen[str], job: Job, said: list[str]) -> None:
+    """Pass progress on, and keep what else is said."""
+    assert process.stderr is not None
+    for line in process.stderr:
+        done, _, total = line.strip().partition("/")
+        if done.isdigit() and total.isdigit():
+            job.tell(int(done), int(total), f"picture {done} of {total}")
+        elif line.strip():
+            said.append(line.strip())

@@ -1,1 +1,0 @@
-"""Timing studies in the window: participants are led through their sittings, and what their hands do is counted."""

@@ -1,0 +1,207 @@
+"""The timeline's lanes: for each layer what was asked for above and what plays below, and a lane for speech and gaze.
+
+Geometry and hit-testing are functions of values; the widget paints, and turns the mouse into edits.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, replace
+from functools import lru_cache
+
+from PySide6.QtCore import QPointF, QRectF, Qt
+from PySide6.QtGui import QFont, QFontMetricsF
+
+from app.stage.playback_source import Shown
+from app.widgets.request_menu import STAGE, ask_words, kind_of, lane_of
+from metagraph.graph.asks import AnyAsk
+from metagraph.graph.model import LAYERS, Layer, Project
+from metagraph.playback.hear import Answer
+from metagraph.playback.plan import Cue
+
+LEFT, RULER, LANE = 84, 22, 104
+PLAYS = 34.0  # pixels at most for what plays in a lane; the rest is for what was asked
+ROW, TALLEST = 19.0, 22.0  # pixels of a row of requests, at least and at most
+STEPS = (0.1, 0.2, 0.5, 1.0, 2.0, 5.0, 10.0, 30.0, 60.0, 300.0)
+NAMES = (STAGE, *LAYERS)
+TITLES = {STAGE: "Speech", "body": "Body", "arms": "Arms", "head": "Head"}
+NARROWEST = 6.0  # pixels of a mark that others leave no room
+
+
+@dataclass(frozen=True)
+class Scale:
+    """Seconds to pixels: `first` seconds stand at the left of the lanes, `each` pixels a second."""
+
+    first: float
+    each: float
+
+    def x(self, seconds: float) -> float:
+        return LEFT + (seconds - self.first) * self.each
+
+    def seconds(self, x: float) -> float:
+        return self.first + (x - LEFT) / self.each
+
+    def step(self) -> float:
+        """Seconds between marks of the ruler, at least 64 pixels apart."""
+        return next((s for s in STEPS if s * self.each >= 64), STEPS[-1])
+
+
+def lanes(height: float) -> dict[str, QRectF]:
+    """Return where each lane is, from the top: the stage, then the layers."""
+    each = min(LANE, max(32.0, (height - RULER) / len(NAMES)))
+    return {name: QRectF(0, RULER + n * each, 1e6, each) for n, name in enumerate(NAMES)}
+
+
+def rows(lane: QRectF) -> tuple[QRectF, QRectF]:
+    """Return a lane's upper row, what was asked, and its lower, what plays."""
+    lower = min(PLAYS, lane.height() * 0.55)
+    upper = lane.height() - lower
+    return QRectF(lane.left(), lane.top() + 2, lane.width(), upper - 3), QRectF(lane.left(), lane.top() + upper, lane.width(), lower - 3)
+
+
+def lane_at(height: float, at: QPointF) -> str | None:
+    """Return the lane under a point."""
+    return next((name for name, lane in lanes(height).items() if at.x() >= LEFT and lane.contains(at)), None)
+
+
+def cue_at(shown: Shown, scale: Scale, height: float, at: QPointF) -> tuple[Layer, Cue] | None:
+    """Return the cue under a point."""
+    seconds = scale.seconds(at.x())
+    for layer in LAYERS:
+        if at.x() >= LEFT and rows(lanes(height)[layer])[1].contains(at):
+            cue = shown.plan.layers[layer].cue_at(seconds)
+            return (layer, cue) if cue is not None else None
+    return None
+
+
+@dataclass(frozen=True)
+class Mark:
+    """An ask as it is drawn. at: the seconds it asks for. lost: it will not play. late: by how many seconds."""
+
+    ask: AnyAsk
+    rect: QRectF
+    words: str
+    kind: str | None
+    at: float
+    answer: Answer | None
+
+    @property
+    def lost(self) -> bool:
+        return is_lost(self.answer)
+
+    @property
+    def late(self) -> float:
+        if self.answer is None or self.answer.at is None or getattr(self.ask, "stroke", None) is not None:
+            return 0.0
+        return max(0.0, self.answer.at - self.at)
+
+
+def is_lost(answer: Answer | None) -> bool:
+    """Whether an ask will not play."""
+    return answer is not None and answer.state == "refused"
+
+
+def time_of(ask: AnyAsk, answer: Answer | None) -> float:
+    """Return when an ask stands in the timeline: when it was wanted, else when it plays."""
+    stroke = getattr(ask, "stroke", None)
+    if stroke is not None:
+        return float(stroke)
+    if ask.at is not None:
+        return float(ask.at)
+    if ask.told is not None:
+        return float(ask.told)
+    return answer.at if answer is not None and answer.at is not None else 0.0
+
+
+def marks(
+    asks: Sequence[AnyAsk],
+    answers: Mapping[str, Answer],
+    project: Project,
+    scale: Scale,
+    height: float,
+    font: QFont,
+    shift: Mapping[str, float] | None = None,
+) -> list[Mark]:
+    """Return what stands in the upper rows, the later on top. shift: seconds by which some are being dragged."""
+    places, key = lanes(height), font.toString()
+    areas = {name: rows(lane)[0] for name, lane in places.items()}
+    count = max(1, int((next(iter(areas.values())).height() + 1) // ROW))
+    lasts: dict[tuple[str, int], int] = {}  # of each row its last mark, by its place in `out`
+    out: list[Mark] = []
+    timed = sorted(((time_of(x, answers.get(x.id)) + (shift or {}).get(x.id, 0.0), n, x) for n, x in enumerate(asks)), key=lambda t: t[:2])
+    for at, _, ask in timed:
+        lane, words, left = lane_of(ask, project), ask_words(ask, project), scale.x(at)
+        area = areas[lane]
+        tall = min(TALLEST, (area.height() + 1) / count - 1)
+        ends = [out[lasts[lane, n]].rect.right() if (lane, n) in lasts else -1e9 for n in range(count)]
+        row = next((n for n, end in enumerate(ends) if end + 3 <= left), None)
+        if row is None:  # no row is free: the one whose last began first makes room
+            row = min(range(count), key=lambda n: out[lasts[lane, n]].rect.left())
+            before = out[lasts[lane, row]]
+            rect = QRectF(before.rect)
+            rect.setWidth(max(NARROWEST, left - 3 - rect.left()))
+            out[lasts[lane, row]] = replace(before, rect=rect)
+        rect = QRectF(
+            left,
+            area.top() + row * (tall + 1),
+            max(NARROWEST, min(260.0, advance(f"⚠ {words}" if is_lost(answers.get(ask.id)) else words, key) + 16)),
+            tall,
+        )
+        lasts[lane, row] = len(out)
+        out.append(Mark(ask, rect, words, kind_of(ask), at, answers.get(ask.id)))
+    return out
+
+
+def mark_at(found: Sequence[Mark], at: QPointF) -> Mark | None:
+    """Return the mark under a point, the topmost of several."""
+    return next((m for m in reversed(found) if m.rect.contains(at) and at.x() >= LEFT), None)
+
+
+VERBS = {"say": "Said", "look": "Looks", "mode": "Changes", "place": "Moves", "blink": "Blinks"}
+
+
+def outcome(ask: AnyAsk, answer: Answer | None) -> str:
+    """Return in one sentence what becomes of an ask; nothing while it is not known."""
+    if answer is None:
+        return ""
+    why = answer.why.rstrip(".")
+    if answer.state == "refused":
+        return f"Does not play: {why}."
+    if answer.at is None:
+        return f"{why[:1].upper()}{why[1:]}." if why else ""
+    until = f" to {answer.until:.2f}" if answer.until is not None and answer.at < answer.until < 1e5 else ""
+    what = ", ".join(w for w in answer.what if w not in ("look", "speech", "mode", "place", "blink"))
+    verb = f"Plays {what}" if what else VERBS.get(str(ask.__struct_config__.tag), "Plays")
+    return f"{verb} {'from' if until else 'at'} {answer.at:.2f}{until} s{f': {why}' if why else ''}."
+
+
+def wanted(mark: Mark) -> str:
+    """Return what was asked for, and when."""
+    when = f"at {mark.at:.2f} s" if getattr(mark.ask, "stroke", None) is None else f"its stroke at {mark.at:.2f} s"
+    return f"{mark.words}, {when}" + (f", priority {mark.ask.priority}" if mark.ask.priority != 1 else "")
+
+
+def told(mark: Mark, editable: bool = True) -> str:
+    """Return what to say about a mark: what was asked, what came of it, or why nothing did."""
+    lines = [wanted(mark), outcome(mark.ask, mark.answer)]
+    if editable:
+        lines.append("Drag it in time, with Ctrl a copy; double-click changes it; Delete takes it back")
+    return "\n".join(x for x in lines if x)
+
+
+@lru_cache(maxsize=8192)
+def advance(words: str, font: str) -> float:
+    """Return how wide words are in a font, given as `QFont.toString` does."""
+    return _measure(font).horizontalAdvance(words)
+
+
+@lru_cache(maxsize=8192)
+def elided(text: str, font: str, width: int) -> str:
+    return _measure(font).elidedText(text, Qt.TextElideMode.ElideRight, width)
+
+
+@lru_cache(maxsize=8)
+def _measure(font: str) -> QFontMetricsF:
+    made = QFont()
+    made.fromString(font)
+    return QFontMetricsF(made)

@@ -1,0 +1,193 @@
+"""Paints the timeline: ruler, lanes, what plays, what was asked for, the playhead. Only what is in sight is gone through."""
+
+from __future__ import annotations
+
+from bisect import bisect_left
+from collections.abc import Collection, Sequence
+from dataclasses import dataclass
+
+from PySide6.QtCore import QPointF, QRectF, Qt
+from PySide6.QtGui import QColor, QPainter, QPen
+
+from app.look.theme import KIND_MARKS, Theme
+from app.stage.playback_source import Shown
+from app.widgets.lane_geometry import LEFT, RULER, TITLES, Mark, Scale, elided, lanes, rows
+from app.widgets.request_menu import STAGE
+from metagraph.graph.model import LAYERS, Layer
+
+INK = "#17181b"  # on the kinds' fills
+PLAIN = 5.0  # pixels up to which a bar is a plain stroke without words
+NARROW = 12.0  # the same of a request
+MIDDLE = Qt.AlignmentFlag.AlignVCenter
+
+
+@dataclass(frozen=True)
+class Scene:
+    """All that is painted. ends: seconds at which a kept performance ends. actions, asks: ids of what is selected."""
+
+    shown: Shown
+    marks: Sequence[Mark]
+    scale: Scale
+    width: float
+    height: float
+    layer: str
+    ends: float | None
+    actions: Collection[str]
+    asks: Collection[str]
+
+
+def paint(painter: QPainter, t: Theme, scene: Scene) -> None:
+    """Paint everything but the playhead."""
+    painter.fillRect(QRectF(0, 0, scene.width, scene.height), QColor(t.panel))
+    painter.setRenderHint(QPainter.RenderHint.Antialiasing)
+    _ruler(painter, t, scene)
+    for name, lane in lanes(scene.height).items():
+        painter.setPen(QColor(t.line))
+        painter.drawLine(QPointF(0, lane.bottom()), QPointF(scene.width, lane.bottom()))
+        painter.setPen(QColor(t.text if name == scene.layer else t.dim))
+        painter.drawText(QRectF(14, lane.top(), LEFT - 16, lane.height()), MIDDLE, TITLES[name])
+    painter.setClipRect(QRectF(LEFT, 0, scene.width - LEFT, scene.height))
+    if scene.shown.clip is None:
+        _stage(painter, t, scene)
+        for layer in LAYERS:
+            _layer(painter, t, scene, layer)
+        _ties(painter, t, scene)
+        for mark in scene.marks:
+            if mark.rect.right() >= LEFT and mark.rect.left() <= scene.width:
+                _mark(painter, t, mark, mark.ask.id in scene.asks)
+    else:
+        entry = scene.shown.project.clips[scene.shown.clip]
+        area = rows(lanes(scene.height)["body"])[1]
+        rect = QRectF(scene.scale.x(0), area.top(), max(2.0, entry.duration * scene.scale.each), area.height())
+        _bar(painter, t, rect, QColor(t.line), entry.name, t.text, False)
+    if scene.ends is not None and (x := scene.scale.x(scene.ends)) < scene.width:
+        veil = QColor(t.ground)
+        veil.setAlpha(150)
+        painter.fillRect(QRectF(max(x, LEFT), RULER, scene.width, scene.height), veil)
+    painter.setClipping(False)
+
+
+def playhead(painter: QPainter, t: Theme, x: float, height: float) -> None:
+    painter.setRenderHint(QPainter.RenderHint.Antialiasing)
+    painter.setPen(QPen(QColor(t.text), 1.6))
+    painter.drawLine(QPointF(x, 4), QPointF(x, height))
+    painter.setPen(Qt.PenStyle.NoPen)
+    painter.setBrush(QColor(t.text))
+    painter.drawPolygon([QPointF(x - 5, 4), QPointF(x + 5, 4), QPointF(x, 11)])
+
+
+def badge(painter: QPainter, t: Theme, at: QPointF, words: str, width: float) -> None:
+    """Paint words at the ruler while something is dragged, its middle at `at`, always in sight."""
+    painter.setRenderHint(QPainter.RenderHint.Antialiasing)
+    wide = painter.fontMetrics().horizontalAdvance(words) + 14
+    rect = QRectF(min(max(LEFT, at.x() - wide / 2), width - wide - 2), 1, wide, RULER - 2)
+    painter.setPen(Qt.PenStyle.NoPen)
+    painter.setBrush(QColor(t.strong))
+    painter.drawRoundedRect(rect, 4, 4)
+    painter.setPen(QColor(t.on_strong))
+    painter.drawText(rect, Qt.AlignmentFlag.AlignCenter, words)
+
+
+def _ruler(painter: QPainter, t: Theme, scene: Scene) -> None:
+    scale = scene.scale
+    step = scale.step()
+    mark = max(0.0, (scale.first // step) * step)
+    painter.setPen(QColor(t.dim))
+    while scale.x(mark) < scene.width:
+        x = scale.x(mark)
+        if x >= LEFT - 1:
+            words = f"{mark:g} s" if step < 60 else f"{mark / 60:g} min"
+            painter.drawText(QRectF(x - 40, 0, 80, RULER), Qt.AlignmentFlag.AlignCenter, words)
+        mark = round(mark + step, 3)
+
+
+def _stage(painter: QPainter, t: Theme, scene: Scene) -> None:
+    """Speech as bars with its words, looks as lines under them."""
+    scale, shown = scene.scale, scene.shown
+    area, track = rows(lanes(scene.height)[STAGE])[1], shown.plan.track
+    for look, following in zip(track.looks, (*track.looks[1:], None), strict=False):
+        until = min(look.end, following.start if following else look.end, max(shown.length, look.start))
+        left, right = scale.x(look.start), scale.x(until)
+        if right > LEFT and left < scene.width:
+            painter.setPen(QPen(QColor(t.dim), 1.4, Qt.PenStyle.DotLine))
+            painter.drawLine(QPointF(max(left, LEFT), area.bottom()), QPointF(min(right, scene.width), area.bottom()))
+    for speech in track.speeches:
+        left, right = scale.x(speech.start), scale.x(speech.end)
+        if right > LEFT and left < scene.width:
+            rect = QRectF(left, area.top(), max(3.0, right - left - 1), area.height() - 3)
+            _bar(painter, t, rect, QColor(t.hover), speech.text, t.text, False)
+
+
+def _layer(painter: QPainter, t: Theme, scene: Scene, layer: Layer) -> None:
+    """Stances as a quiet band, cues on it in their kind's colour."""
+    scale, shown = scene.scale, scene.shown
+    plan, area = shown.plan.layers[layer], rows(lanes(scene.height)[layer])[1]
+    begin, end = scale.first, scale.seconds(scene.width)
+    edges = [plan.past.free, *(cue.end for cue in plan.cues if cue.then != cue.stance), max(shown.length, end)]
+    first = plan.stance_at(-1.0) if plan.rests else None
+    stances = [first or "", *(cue.then for cue in plan.cues if cue.then != cue.stance)] if plan.rests else []
+    fill = t.fill("stance")
+    fill.setAlpha(70 if t.name == "dark" else 90)
+    for stance, a, b in zip(stances, edges, edges[1:], strict=False):
+        if b < begin or a > end:
+            continue
+        found = shown.project.stance(stance)
+        left, right = max(scale.x(a), LEFT - 8.0), min(scale.x(b), scene.width + 8.0)
+        rect = QRectF(left, area.top(), right - left - 1, area.height())
+        _bar(painter, t, rect, fill, found.name if found else "", t.text, False)
+    for n in range(bisect_left(plan.cues, begin, key=lambda c: c.end), len(plan.cues)):
+        cue = plan.cues[n]
+        if cue.start > end:
+            break
+        left = scale.x(cue.start)
+        rect = QRectF(left, area.top(), max(3.0, scale.x(cue.end) - left - 1), area.height())
+        words = f"{KIND_MARKS[cue.action.kind]} {cue.action.name}"
+        _bar(painter, t, rect, t.fill(cue.action.kind), words, INK, cue.action.id in scene.actions)
+
+
+def _bar(painter: QPainter, t: Theme, rect: QRectF, fill: QColor, words: str, ink: str, selected: bool) -> None:
+    if rect.width() <= PLAIN and not selected:
+        painter.fillRect(rect, fill)
+        return
+    painter.setPen(QPen(QColor(t.text), 2) if selected else Qt.PenStyle.NoPen)
+    painter.setBrush(fill)
+    painter.drawRoundedRect(rect, 4, 4)
+    left = max(rect.left(), LEFT)
+    inner = QRectF(left + 7, rect.top(), rect.right() - left - 10, rect.height())
+    if inner.width() > 10 and words:
+        painter.setPen(QColor(ink))
+        painter.drawText(inner, MIDDLE, _fitting(painter, words, inner.width()))
+
+
+def _fitting(painter: QPainter, words: str, width: float) -> str:
+    """Return as much of the words as there is room for; where there is none to speak of, the sign in front of them alone."""
+    out = elided(words, painter.font().toString(), int(width))
+    return out if len(out) > 3 or out == words else words[:1]
+
+
+def _ties(painter: QPainter, t: Theme, scene: Scene) -> None:
+    """Lead from each request down to what plays for it."""
+    painter.setPen(QPen(QColor(t.dim), 1.2))
+    places = lanes(scene.height)
+    for mark in scene.marks:
+        if mark.answer is None or mark.answer.at is None or mark.kind is None or mark.late <= 0.02:
+            continue
+        x, to = mark.rect.left() + 1, scene.scale.x(mark.answer.at)
+        if to < LEFT or x > scene.width:
+            continue
+        lane = next(r for r in places.values() if r.contains(QPointF(1, mark.rect.center().y())))
+        painter.drawLine(QPointF(x, mark.rect.bottom()), QPointF(to, rows(lane)[1].top()))
+
+
+def _mark(painter: QPainter, t: Theme, mark: Mark, selected: bool) -> None:
+    color = QColor(t.warning) if mark.lost else t.kind(mark.kind) if mark.kind else QColor(t.dim)
+    if mark.rect.width() <= NARROW and not selected:
+        painter.fillRect(mark.rect.adjusted(0, 1, -1, -1), color)
+        return
+    painter.setPen(QPen(color, 2.0 if selected else 1.2, Qt.PenStyle.DashLine if mark.lost else Qt.PenStyle.SolidLine))
+    painter.setBrush(QColor(t.hover if selected else t.card))
+    painter.drawRoundedRect(mark.rect.adjusted(0, 0.5, 0, -0.5), 4, 4)
+    inner = mark.rect.adjusted(6, 0, -4, 0)
+    painter.setPen(QColor(t.warning if mark.lost else t.text))
+    words = f"⚠ {mark.words}" if mark.lost else mark.words
+    painter.drawText(inner, MIDDLE, _fitting(painter, words, inner.width()))

@@ -1,0 +1,171 @@
+"""Asks in words, and the menus they are chosen from."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import Any
+
+from PySide6.QtWidgets import QInputDialog, QMenu, QWidget
+
+from app.look.theme import KIND_MARKS
+from app.project.document import Document
+from app.stage.performance import Performance
+from metagraph.graph import asks as a
+from metagraph.graph.model import LAYERS, MODES, Layer, Project
+
+STAGE = "stage"  # the lane of what no layer plays: speech, gaze, modes
+DIRECTIONS = {"Left": (0.9, 1.6, 0.9), "Right": (-0.9, 1.6, 0.9), "Up": (0.0, 2.4, 1.0), "Down": (0.0, 0.6, 1.0)}
+MODE_WORDS = {"idle": "Idle", "listening": "Listen", "talking": "Talk"}
+
+
+def lane_of(ask: a.AnyAsk, project: Project) -> str:
+    """Return the lane an ask stands in: its layer, or the stage."""
+    match ask:
+        case a.Gesture() | a.Fidget() | a.Change():
+            return ask.layer
+        case a.Nod() | a.Shake():
+            return "head"
+        case a.Play():
+            found = project.action(ask.action) or next((x for x in project.actions() if x.name == ask.action), None)
+            return ask.layer or (found.layer if found else "arms")
+        case a.Go():
+            stances = ((layer, s) for layer in LAYERS for s in project.graphs[layer].stances.values())
+            return ask.layer or next((layer for layer, s in stances if ask.stance in (s.id, s.name)), "arms")
+    return STAGE
+
+
+def kind_of(ask: a.AnyAsk) -> str | None:
+    """Return the kind an ask is coloured as, None for what no layer plays."""
+    if isinstance(ask, a.Go | a.Change):
+        return "transition"
+    if isinstance(ask, a.Fidget):
+        return "fidget"
+    return "gesture" if isinstance(ask, a.Gesture | a.Play | a.Nod | a.Shake) else None
+
+
+def ask_words(ask: a.AnyAsk, project: Project) -> str:
+    """Return an ask in a few words: "▲ positive", "➜ on hips", "look at user"."""
+    match ask:
+        case a.Gesture() | a.Fidget():
+            kind = "gesture" if isinstance(ask, a.Gesture) else "fidget"
+            limb = {"left": "left", "right": "right"}.get(ask.limb or "", "")
+            return f"{KIND_MARKS[kind]} {', '.join(x for x in (limb, *ask.tags) if x) or kind}"
+        case a.Play():
+            found = project.action(ask.action)
+            return f"{KIND_MARKS[found.kind if found else 'gesture']} {found.name if found else ask.action}"
+        case a.Go():
+            stance = project.stance(ask.stance)
+            return f"{KIND_MARKS['transition']} {stance.name if stance else ask.stance}"
+        case a.Change():
+            return f"{KIND_MARKS['transition']} another stance"
+        case a.Nod() | a.Shake():
+            return f"{KIND_MARKS['gesture']} {'nod' if isinstance(ask, a.Nod) else 'shake'}"
+        case a.Look():
+            return f"look at {ask.to if isinstance(ask.to, str) else 'a point'}"
+        case a.Say():
+            line = project.lines.get(str(ask.line)) if ask.line is not None else None
+            text = ask.text or (line.text if line else "")
+            return f"{ask.line}: {text}" if ask.line is not None and text else text or f"line {ask.line}"
+        case a.Behave():
+            return MODE_WORDS[ask.mode].lower() if ask.mode else "as it comes"
+        case a.Place():
+            return f"{ask.name} moves"
+        case a.Blink():
+            return "blink"
+        case a.Bml():
+            return "BML"
+    return "withdraw"
+
+
+Ask = Callable[[a.AnyAsk, str], object]
+
+
+def ask_menu(parent: QWidget, performance: Performance, seconds: float | None, lane: str | None = None) -> QMenu:
+    """Return a menu of everything that can be asked for at a time (None: now), of one lane or all."""
+    menu = QMenu(parent)
+    project = performance.document.project
+
+    def ask(made: a.AnyAsk, text: str) -> None:
+        performance.ask(made, text)
+
+    for layer in LAYERS:
+        if lane not in (None, layer) or not project.graphs[layer].stances:
+            continue
+        inner = menu if lane == layer else menu.addMenu(layer.capitalize())
+        _layer_items(inner, project, layer, seconds, ask)
+    if lane in (None, STAGE) and project.skeleton is not None:
+        if lane is None:
+            menu.addSeparator()
+        _stage_items(menu, parent, performance.document, seconds, ask)
+    if lane is None and performance.asks:
+        menu.addSeparator()
+        menu.addAction("Withdraw all requests", lambda: performance.withdraw())
+    if menu.isEmpty():
+        menu.addAction("Make a stance first").setEnabled(False)
+    return menu
+
+
+def _layer_items(menu: QMenu, project: Project, layer: Layer, at: float | None, ask: Ask) -> None:
+    graph = project.graphs[layer]
+    kinds: tuple[tuple[str, Any], ...] = (("gesture", a.Gesture), ("fidget", a.Fidget))
+    for kind, made in kinds:
+        if any(x.kind == kind for x in graph.actions.values()):
+            menu.addAction(f"A {kind}", lambda m=made, k=kind: ask(m(layer=layer, at=at), f"Ask for a {k}"))
+    tags = sorted({tag for x in graph.actions.values() if x.kind == "gesture" for tag in x.tags})
+    if tags:
+        tagged = menu.addMenu("A gesture that is …")
+        for tag in tags:
+            tagged.addAction(tag, lambda tag=tag: ask(a.Gesture(layer=layer, at=at, tags=(tag,)), "Ask for a gesture"))
+    certain = menu.addMenu("A certain one …")
+    for stance in graph.stances.values():
+        some = [x for k in ("gesture", "fidget") for x in graph.of(stance.id, k)]  # type: ignore[arg-type]
+        inner = certain.addMenu(stance.name) if some else None
+        for x in some:
+            inner.addAction(f"{KIND_MARKS[x.kind]} {x.name}", lambda x=x: ask(a.Play(action=x.id, at=at), f"Ask for {x.name}"))  # type: ignore[union-attr]
+    certain.menuAction().setVisible(not certain.isEmpty())
+    if layer == "head":
+        menu.addSeparator()
+        menu.addAction("Nod", lambda: ask(a.Nod(at=at), "Ask for a nod"))
+        menu.addAction("Shake the head", lambda: ask(a.Shake(at=at), "Ask for a shake of the head"))
+    menu.addSeparator()
+    for stance in graph.stances.values():
+        menu.addAction(f"Go to {stance.name}", lambda s=stance: ask(a.Go(stance=s.id, at=at), f"Ask for {s.name}"))
+    if graph.into:
+        menu.addAction("Change to another stance", lambda: ask(a.Change(layer=layer, at=at), "Ask for another stance"))
+
+
+def _stage_items(menu: QMenu, parent: QWidget, document: Document, at: float | None, ask: Ask) -> None:
+    project = document.project
+    said = menu.addMenu("Say")
+    for ident, line in project.lines.items():
+        words = line.text if len(line.text) < 48 else line.text[:46] + "…"
+        said.addAction(f"{ident}: {words}", lambda i=ident: ask(a.Say(line=i, at=at), "Ask for a line"))
+    if project.lines:
+        said.addSeparator()
+    said.addAction("Other words…", lambda: _say(parent, at, ask))
+    looks = menu.addMenu("Look at")
+    for name in dict.fromkeys(("user", *project.points)):
+        looks.addAction(name.capitalize() if name == "user" else name, lambda n=name: ask(a.Look(to=n, at=at), "Ask for a look"))
+    looks.addAction("Ahead", lambda: ask(a.Look(to="ahead", at=at), "Ask for a look"))
+    looks.addSeparator()
+    for word, point in DIRECTIONS.items():
+        looks.addAction(word, lambda p=point: ask(a.Look(to=p, at=at, duration=2.0), "Ask for a look"))
+    looks.addSeparator()
+    looks.addAction("Another point…", lambda: _point(parent, document, at, ask))
+    menu.addAction("Blink", lambda: ask(a.Blink(at=at), "Ask for a blink"))
+    modes = menu.addMenu("Mode")
+    for mode in MODES:
+        modes.addAction(MODE_WORDS[mode], lambda m=mode: ask(a.Behave(mode=m, at=at), "Ask for a mode"))
+    modes.addAction("As it comes", lambda: ask(a.Behave(mode=None, at=at), "Ask for a mode"))
+
+
+def _point(parent: QWidget, document: Document, at: float | None, ask: Ask) -> None:
+    from app.widgets.point_editor import PointEditor
+
+    PointEditor(document, lambda name: ask(a.Look(to=name, at=at), "Ask for a look"), parent).open()
+
+
+def _say(parent: QWidget, at: float | None, ask: Ask) -> None:
+    text, ok = QInputDialog.getText(parent, "Say", "Words")
+    if ok and text.strip():
+        ask(a.Say(text=text.strip(), at=at), "Ask for words")

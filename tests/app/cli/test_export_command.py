@@ -1,0 +1,103 @@
+"""`metagraph export`: targets by name, vectors, and writing again whenever the project is saved."""
+
+from __future__ import annotations
+
+import json
+import os
+import signal
+import subprocess
+import sys
+import time
+from pathlib import Path
+
+import pytest
+
+from app.cli.parser import main
+from metagraph.engines.vectors import check_vectors
+
+ROOT = Path(__file__).resolve().parents[3]
+SAMPLE = ROOT / "sample_clips" / "sample.metagraph.yaml"
+
+
+def test_the_targets_are_listed(capsys):
+    assert main(["export", "--targets"]) == 0
+    out = capsys.readouterr().out
+    assert "playcanvas" in out and "(experimental)" in out
+
+
+def test_a_target_is_written_and_its_losses_are_told(tmp_path, capsys):
+    assert main(["export", str(SAMPLE), "--target", "xstate", "--out", str(tmp_path), "--no-mesh", "--json"]) == 0
+    shown = capsys.readouterr()
+    data = json.loads(shown.out)
+    assert data["target"] == "xstate" and all(Path(path).is_file() for path in data["files"])
+    assert data["losses"] and f"loses: {data['losses'][0]}" in shown.err
+
+
+def test_vectors_are_written_beside_the_graph_they_are_of(tmp_path, capsys):
+    assert main(["export", str(SAMPLE), "-o", str(tmp_path), "--vectors", "--no-mesh"]) == 0
+    assert check_vectors(tmp_path).failures == []
+    assert main(["export", str(SAMPLE), "-o", str(tmp_path / "x"), "--vectors", "-t", "bml"]) == 0
+    assert "there are no vectors for it" in capsys.readouterr().err
+
+
+@pytest.mark.parametrize(
+    ("arguments", "code", "words"),
+    [
+        (["export"], 2, "which project"),
+        (["export", str(SAMPLE)], 2, "where to"),
+        (["export", str(SAMPLE), "-o", "x", "-t", "godott"], 1, "did you mean 'godot'"),
+        (["export", str(SAMPLE), "-o", "x", "--serve"], 2, "--target web --serve"),
+    ],
+)
+def test_what_is_missing_or_misspelt_is_told(arguments, code, words, capsys):
+    assert main(arguments) == code
+    assert words in capsys.readouterr().err
+
+
+@pytest.mark.skipif(os.name == "nt", reason="is stopped by a signal")
+def test_watching_writes_again_after_each_saving_and_survives_a_broken_project(tmp_path):
+    project = tmp_path / "sample.metagraph.yaml"
+    for name in ("clips", "lines", "mannequin.glb"):
+        (tmp_path / name).symlink_to(ROOT / "sample_clips" / name)
+    text = SAMPLE.read_text()
+    project.write_text(text)
+    command = [sys.executable, "-m", "app.cli", "export", str(project), "-t", "bml", "-o", str(tmp_path / "out"), "--watch"]
+    with subprocess.Popen(command, cwd=ROOT, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True) as running:
+        try:
+            written = tmp_path / "out" / "sample.vocabulary.json"
+
+            def until(sure) -> None:
+                end = time.monotonic() + 30
+                while not sure() and time.monotonic() < end:
+                    time.sleep(0.05)
+                assert sure()
+
+            until(written.exists)
+            project.write_text("metagraph: [broken")
+            time.sleep(0.8)
+            assert running.poll() is None
+            project.write_text(text.replace("name: hands at sides", "name: hands down"))
+            until(lambda: "hands down" in written.read_text())
+        finally:
+            running.send_signal(signal.SIGINT)
+            _, told = running.communicate(timeout=20)
+    assert running.returncode == 0
+    assert "error:" in told and "stopped" in told
+
+
+@pytest.mark.skipif(os.name == "nt", reason="is stopped by a signal")
+def test_the_web_page_is_served_until_it_is_stopped(tmp_path):
+    import urllib.request
+
+    command = [sys.executable, "-m", "app.cli", "export", str(SAMPLE), "-t", "web", "-o", str(tmp_path / "page"), "--serve", "--no-mesh"]
+    environ = {**os.environ, "PATH": "", "XDG_CACHE_HOME": str(tmp_path)}  # without npm nothing is fetched
+    with subprocess.Popen(command, cwd=ROOT, stdout=subprocess.DEVNULL, stderr=subprocess.PIPE, text=True, env=environ) as running:
+        try:
+            line = next(line for line in running.stderr if "the page is at" in line)
+            url = line.split("the page is at ")[1].split()[0]
+            with urllib.request.urlopen(url + "sample.json", timeout=10) as answer:
+                assert json.loads(answer.read())["glb"] == "sample.glb"
+        finally:
+            running.send_signal(signal.SIGINT)
+            running.communicate(timeout=20)
+    assert running.returncode == 0

@@ -1,0 +1,119 @@
+"""`metagraph label`: a folder of clips becomes a project and a report that says why."""
+
+from __future__ import annotations
+
+import json
+import re
+import shutil
+from pathlib import Path
+
+import pytest
+
+from app.cli.parser import main
+from metagraph.formats.store import open_project
+from metagraph.graph.check import check
+
+ROOT = Path(__file__).resolve().parents[3]
+CLIPS = ROOT / "sample_clips" / "clips"
+
+
+@pytest.fixture
+def folder(tmp_path: Path) -> Path:
+    """Clips of two stances of the arms, and what leads from one to the other."""
+    place = tmp_path / "talk"
+    place.mkdir()
+    ours = ("hands_at_sides__", "on_hips__")
+    for path in CLIPS.glob("*.glb"):
+        if path.name.startswith(ours) and not any(other in path.name for other in ("crossed", "chin", "clasped")):
+            shutil.copy(path, place)
+    return place
+
+
+@pytest.mark.gl
+def test_a_folder_becomes_a_project_and_a_report(folder: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    assert main(["label", str(folder), "--json"]) == 0
+    data = json.loads(capsys.readouterr().out)
+    project = open_project(Path(data["project"])).project
+    assert data["labelled"] == len(project.clips) == len(list(folder.glob("*.glb"))) and not data["left"] and not data["errors"]
+    assert {s.name for s in project.graphs["arms"].stances.values()} == {"hands at sides", "on hips"}
+    assert not [p for p in check(project) if p.severity == "error"]
+    page = Path(data["report"]).read_text()
+    assert page.count("data:image/jpeg") == len(project.clips)
+    assert "http" not in re.sub(r"data:[^'\"]*", "", page)  # nothing is fetched from anywhere
+    assert "name begins with" in page and "hands at sides" in page
+
+
+def test_what_is_not_sure_enough_is_left_with_its_reason(folder: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    out = tmp_path / "sure.metagraph.yaml"
+    assert main(["label", str(folder), "-o", str(out), "--above", "0.9", "--from", "motion", "--no-pictures", "--json"]) == 3
+    shown = capsys.readouterr()
+    data = json.loads(shown.out)
+    assert data["left"] and 0 < data["labelled"] < len(list(folder.glob("*.glb")))
+    assert "sure" in shown.err
+    assert "<img" not in Path(data["report"]).read_text()
+
+
+def test_a_project_is_labelled_on_from_where_it_is(folder: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    out = tmp_path / "part.metagraph.yaml"
+    main(["label", str(folder), "-o", str(out), "--above", "0.9", "--from", "motion", "--no-pictures", "--json"])
+    first = json.loads(capsys.readouterr().out)["labelled"]
+    main(["label", str(out), "--no-pictures", "--json"])
+    second = json.loads(capsys.readouterr().out)
+    assert first + second["labelled"] == len(list(folder.glob("*.glb")))
+
+
+@pytest.mark.parametrize("given", ["nothing", "empty"])
+def test_a_folder_that_is_not_there_or_empty_is_told(tmp_path: Path, given: str, capsys: pytest.CaptureFixture[str]) -> None:
+    (tmp_path / "empty").mkdir()
+    assert main(["label", str(tmp_path / given)]) == 1
+    assert "on labelling it" in (told := capsys.readouterr().err) or "on importing it" in told
+
+
+def test_names_are_escaped_in_the_report(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    place = tmp_path / "odd"
+    place.mkdir()
+    shutil.copy(next(CLIPS.glob("hands_at_sides__stance.glb")), place / "a & b 'x' idle.glb")
+    main(["label", str(place), "--no-pictures", "--json"])
+    page = Path(json.loads(capsys.readouterr().out)["report"]).read_text()
+    assert "a & b" not in page
+
+
+def kinds(path: Path) -> dict[str, str]:
+    project = open_project(path).project
+    return {project.clips[a.clip].name: a.kind for a in project.actions()}
+
+
+def test_patterns_of_a_file_are_read_with_and_a_broken_one_is_told(
+    folder: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    out, team = tmp_path / "team.metagraph.yaml", tmp_path / "team.json"
+    team.write_text('{"patterns": 1, "kinds": {"shrug": "fidget"}}')
+    main(["label", str(folder), "-o", str(out), "--from", "name", "--patterns", str(team), "--no-pictures"])
+    assert {kind for name, kind in kinds(out).items() if "shrug" in name} == {"fidget"}
+    team.write_text('{"patterns": 1,\n "kinds": }')
+    capsys.readouterr()
+    assert main(["label", str(folder), "-o", str(out), "--patterns", str(team)]) != 0
+    assert "team.json, line 2: it is not JSON" in capsys.readouterr().err
+
+
+def test_what_was_taught_is_used_only_when_asked_for(
+    folder: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str], qapp: object
+) -> None:
+    from app.project.learned import Learned
+
+    Learned().edit(lambda p: p.with_pattern("kinds", "shrug", "fidget"))
+    out = tmp_path / "taught.metagraph.yaml"
+    for options, kind in (([], "gesture"), (["--learned"], "fidget")):
+        main(["label", str(folder), "-o", str(out), "--from", "name", "--no-pictures", *options])
+        assert {k for name, k in kinds(out).items() if "shrug" in name} == {kind}
+
+
+def test_a_stance_that_no_clip_rests_in_is_held_and_told(folder: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    for path in folder.glob("on_hips__stance*"):
+        path.unlink()
+    out = tmp_path / "held.metagraph.yaml"
+    main(["label", str(folder), "-o", str(out), "--no-pictures", "--json"])
+    shown = capsys.readouterr()
+    assert "still for its" in json.loads(shown.out)["held"]["on hips"] and "held: on hips: no clip rests there" in shown.err
+    page = out.with_name("held.labels.html").read_text()
+    assert "Stances that no clip rests in" in page and "likelihood 1 80%" in page and "timing, joints, likelihood" in page

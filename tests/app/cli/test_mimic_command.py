@@ -1,0 +1,134 @@
+"""`metagraph mimic`: what is seen in keypoints, and the character doing as they do."""
+
+from __future__ import annotations
+
+import json
+import shutil
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+from app.cli.parser import main
+from metagraph.formats.store import open_project
+from metagraph.graph.asks import Performance
+
+ROOT = Path(__file__).resolve().parents[3]
+KEYPOINTS = ROOT / "sample_clips" / "keypoints"
+FLAT, DEEP = KEYPOINTS / "conversation.openpose.json", KEYPOINTS / "conversation.mediapipe.jsonl"
+
+
+@pytest.fixture
+def project(tmp_path: Path) -> Path:
+    path = tmp_path / "talk.metagraph.yaml"
+    shutil.copy(ROOT / "sample_clips" / "sample.metagraph.yaml", path)
+    for folder in ("clips", "lines"):
+        (tmp_path / folder).symlink_to(ROOT / "sample_clips" / folder)
+    shutil.copy(ROOT / "sample_clips" / "mannequin.glb", tmp_path)
+    return path
+
+
+def run(capsys: pytest.CaptureFixture[str], *words: object) -> tuple[int, Any, str]:
+    code = main(["mimic", *map(str, words), "--json"])
+    said = capsys.readouterr()
+    return code, json.loads(said.out), said.err
+
+
+def test_what_is_seen_is_listed_with_when_the_character_goes_there(project: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    code, data, _ = run(capsys, project, DEEP, "--no-mirror")
+    assert code == 0 and data["frames"] == 200 and data["dimensions"] == 3 and data["mirrored"] is False
+    rows = [(row["layer"], row["name"]) for row in data["seen"]]
+    assert rows.index(("arms", "on hips")) < rows.index(("arms", "arms crossed"))
+    assert ("body", "weight left") in rows and ("body", "weight right") in rows
+    row = next(row for row in data["seen"] if row["name"] == "on hips")
+    assert 6.5 < row["at"] < 8.0 and row["at"] < row["goes"] < row["there"]
+
+
+def test_it_mirrors_unless_told_not_to(project: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    sides = [
+        [row["name"] for row in run(capsys, project, DEEP, *words)[1]["seen"] if row["layer"] == "body"] for words in ((), ("--no-mirror",))
+    ]
+    swapped = [name.replace("left", "*").replace("right", "left").replace("*", "right") for name in sides[1]]
+    assert sides[0] == swapped and "weight left" in sides[0]
+
+
+def test_in_words_it_says_the_same(project: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    assert main(["mimic", str(project), str(DEEP)]) == 0
+    text = capsys.readouterr().out
+    assert "200 frames, 19.9 s, 3 dimensions, as in a mirror" in text
+    assert "hands at sides       is there already" in text and "on hips              goes there" in text
+
+
+def test_only_layers_that_are_wanted_mimic(project: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    _, data, _ = run(capsys, project, DEEP, "--layer", "arms")
+    assert {row["layer"] for row in data["seen"]} == {"arms"}
+
+
+def test_it_is_kept_as_a_performance_of_the_project(project: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    code, data, _ = run(capsys, project, DEEP, "--keep", "as filmed", "--seed", "9")
+    assert code == 0 and data["written"] == [str(project)]
+    kept = next(p for p in open_project(project).project.performances.values() if p.name == "as filmed")
+    assert len(kept.asks) == len(data["seen"]) and kept.seed == 9 and kept.idle and kept.length == pytest.approx(21.9)
+    assert all(ask.at is not None and ask.told is not None for ask in kept.asks)
+
+
+def test_the_requests_are_written_as_a_performance(project: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    import msgspec
+
+    out = tmp_path / "out" / "asks.json"
+    assert run(capsys, project, DEEP, "--gaze", "-o", out)[0] == 0
+    kept = msgspec.json.decode(out.read_bytes(), type=Performance)
+    assert {ask.__struct_config__.tag for ask in kept.asks} == {"stance", "look"}
+
+
+def test_plain_motion_is_written(project: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    from metagraph.formats.bvh import read_bvh
+
+    out = tmp_path / "show.bvh"
+    assert run(capsys, project, DEEP, "-o", out)[1]["written"] == [str(out)]
+    assert read_bvh(out).duration == pytest.approx(21.9, abs=0.1)
+
+
+@pytest.mark.gl
+def test_a_contact_sheet_is_drawn(project: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    out = tmp_path / "sheet.png"
+    assert run(capsys, project, DEEP, "-o", out, "--size", "96x64")[0] == 0
+    assert out.read_bytes().startswith(b"\x89PNG")
+
+
+@pytest.mark.parametrize(
+    ("words", "message"),
+    [
+        (["-o", "show.gif"], "it is written as .mp4, .png, .glb, .bvh, .json, not as '.gif'"),
+        (["--fps", "0"], "frames a second"),
+        (["--picture", "wide"], "a size is given as 960x540"),
+    ],
+)
+def test_what_cannot_be_is_refused(project: Path, words: list[str], message: str, capsys: pytest.CaptureFixture[str]) -> None:
+    code, data, _ = run(capsys, project, DEEP, *words)
+    assert code == 1 and message in data["error"]
+
+
+def test_a_file_that_holds_no_keypoints_says_so(project: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    path = tmp_path / "none.json"
+    path.write_text('{"cats": 2}')
+    code, data, _ = run(capsys, project, path)
+    assert code == 1 and "none.json, frame 0: it holds no keypoints; it has cats." in data["error"]
+
+
+def test_whoever_is_in_no_stance_is_told_of_by_the_exit_code(project: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    path = tmp_path / "lying.json"
+    lying = [[n * 20.0 + 1, 300.0, 0.9] for n in range(17)]
+    path.write_text(json.dumps([{"keypoints": lying}] * 40))
+    code, data, err = run(capsys, project, path)
+    assert code == 3 and data["seen"] == [] and "30 were taken" in err
+
+
+def test_nobody_is_recorded_in_a_project_without_clips(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    path = tmp_path / "empty.metagraph.yaml"
+    from metagraph.formats.store import save_project
+    from metagraph.graph.model import Project
+
+    save_project(Project("empty"), path, None)
+    code, data, _ = run(capsys, path, FLAT)
+    assert code == 1 and "no clips" in data["error"]

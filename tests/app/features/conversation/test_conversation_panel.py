@@ -1,0 +1,121 @@
+"""Which conversation is on stage, what the panel says, and how its sounds are read."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import pytest
+from PySide6.QtCore import QPoint, Qt
+from PySide6.QtTest import QTest
+
+from metagraph.graph import conversing, staging
+from metagraph.graph.asks import Performance
+
+pytestmark = [pytest.mark.window, pytest.mark.gl]
+
+
+def test_a_conversation_and_a_kept_performance_are_never_on_stage_together(talk: Any) -> None:
+    drive, session = talk.drive, talk.drive.session
+    ident = session.conversation
+    drive.document.edit("Keep", lambda p: staging.add_performance(p, Performance(name="One"))[0])
+    session.set_performance(next(iter(drive.document.project.performances)))
+    assert session.conversation is None
+    session.set_conversation(ident)
+    assert session.performance is None
+    drive.document.edit("Remove", lambda p: conversing.remove_conversation(p, ident))
+    assert session.conversation is None
+
+
+def test_the_chooser_follows_names_and_an_empty_panel_says_what_to_drop(talk: Any) -> None:
+    panel, ident = talk.drive.window.conversation, talk.drive.session.conversation
+    talk.drive.document.edit("Rename", lambda p: conversing.change_conversation(p, ident, name="Station"))
+    assert panel.stage.currentText() == "Station"
+    talk.drive.wait(lambda: "clause" in panel.legend.text())
+    panel.stage.setCurrentIndex(0)
+    panel.stage.activated.emit(0)
+    assert talk.drive.session.conversation is None
+    talk.drive.document.edit("Remove", lambda p: conversing.remove_conversation(p, ident))
+    image = panel.view.grab().toImage()
+    colours = {image.pixelColor(x, image.height() // 2 - 45).name() for x in range(image.width() // 2 - 70, image.width() // 2 + 70)}
+    assert len(colours) > 2, "a picture of two who talk"
+
+
+def test_selected_segments_stay_selected_while_they_are_there(talk: Any) -> None:
+    talk.editing.select({(0, 2)})
+    ident = talk.drive.session.conversation
+    begins = talk.segments()[2].start
+    talk.drive.document.edit("Merge", lambda p: conversing.merge_segments(p, ident, 0, 0, 1))
+    assert [talk.editing.segment(p).start for p in talk.editing.chosen] == [begins]
+    talk.drive.document.undo()
+    assert [talk.editing.segment(p).start for p in talk.editing.chosen] == [begins]
+    talk.drive.document.edit("Remove", lambda p: conversing.remove_segments(p, ident, {(0, 2)}))
+    assert not talk.editing.chosen
+
+
+def test_reading_that_was_cancelled_is_told_and_begun_anew_when_it_is_chosen_again(talk: Any) -> None:
+    drive, sounds = talk.drive, talk.drive.window.conversation.sounds
+    assert all(h.told for h in sounds.heard.values())
+    QTest.mouseClick(drive.window.job_line.cancel, Qt.MouseButton.LeftButton)
+    drive.wait(lambda: not drive.jobs.running, 60)
+    drive.wait(lambda: all(h.missing or not h.told for h in sounds.heard.values()))
+    ident = drive.session.conversation
+    drive.session.set_conversation(None)
+    drive.session.set_conversation(ident)
+    talk.read()
+    assert not any(h.missing for h in sounds.heard.values())
+
+
+def test_while_a_machine_is_drawn_the_panel_says_that_it_moves_the_character(talk: Any) -> None:
+    panel, drive = talk.drive.window.conversation, talk.drive
+    drive.actions["manual"].trigger()
+    drive.wait(lambda: "the machine you draw" in panel.title.words)
+    drive.actions["manual"].trigger()
+    drive.wait(lambda: "the machine you draw" not in panel.title.words)
+
+
+def test_sound_dropped_on_the_panel_opens_the_dialog(talk: Any) -> None:
+    from app.features.conversation.conversation_dialog import ImportDialog
+
+    panel = talk.drive.window.conversation
+    assert talk.drive.drop_files((panel, QPoint(300, 100)), talk.audio)
+    dialog = talk.drive.window.findChild(ImportDialog)
+    assert dialog.isVisible()
+    assert not talk.drive.drop_files((panel, QPoint(300, 100)), talk.words), "words without sound are nothing"
+    dialog.reject()
+
+
+def test_a_click_on_a_name_shows_that_ones_plan_and_marks_it_and_leaves_the_rest_as_it_is(talk: Any) -> None:
+    from app.features.conversation.segment_lanes import lanes
+
+    drive, view = talk.drive, talk.view
+    talk.editing.select({(0, 2)})
+    view.zoom(0.5, 300)
+    view.look_at(3.0)
+
+    def mark(side: int) -> str:
+        lane = lanes(view.width(), view.height())[side]
+        return view.grab().toImage().pixelColor(4, round(lane.wave.center().y())).name()
+
+    marked, plain = mark(0), mark(1)
+    assert marked != plain
+    name = QPoint(30, round(lanes(view.width(), view.height())[1].wave.top()) + 10)
+    assert "Click to see" in view.tip(name.toPointF())
+    drive.click((view, name))
+    assert drive.session.side == 1
+    assert drive.timeline.stage.currentText() == "talk: Ben"
+    QTest.mouseMove(view, QPoint(300, 3))
+    assert (mark(0), mark(1)) == (plain, marked)
+    assert talk.editing.chosen == {(0, 2)}
+    assert (view.first, view.each) == (3.0, 50.0)
+    assert "Performance shows" in view.tip(name.toPointF())
+
+
+def test_a_playhead_that_is_moved_out_of_sight_is_followed_and_one_in_sight_is_not(talk: Any) -> None:
+    view, session = talk.view, talk.drive.session
+    session.seek(29.0)
+    far = view.first
+    assert view.scale().x(29.0) < view.width()
+    session.seek(0.0)
+    assert view.first == 0.0 < far
+    session.seek(view.scale().seconds(view.width() - 5))
+    assert view.first == 0.0

@@ -1,0 +1,122 @@
+"""The export dialog through the real window: a target is chosen, its losses are read, it is written, and remembered for the project."""
+
+from __future__ import annotations
+
+import json
+
+import pytest
+from PySide6.QtCore import QPoint, Qt
+from PySide6.QtTest import QTest
+
+from metagraph.engines.targets import registry
+
+pytestmark = [pytest.mark.window, pytest.mark.gl]
+
+
+def opened(drive):
+    from app.features.export.export_dialog import ExportDialog
+
+    drive.actions["export"].trigger()
+    dialog = drive.window.findChildren(ExportDialog)[-1]
+    drive.pause(50)
+    return dialog
+
+
+def pick(drive, dialog, name: str) -> None:
+    """Click a target in the list."""
+    from app.features.export.export_dialog import NAME
+
+    items = [group.child(n) for group in dialog._groups() for n in range(group.childCount())]
+    item = next(i for i in items if i.data(0, NAME) == name)
+    spot = dialog.targets.visualItemRect(item).center()
+    QTest.mouseClick(dialog.targets.viewport(), Qt.MouseButton.LeftButton, pos=QPoint(spot.x(), spot.y()))
+    drive.pause(30)
+
+
+def test_every_target_is_offered_and_says_what_it_writes_and_loses(toys):
+    drive = toys
+    dialog = opened(drive)
+    for name, target in registry.targets().items():
+        pick(drive, dialog, name)
+        assert dialog.target.name == name
+        assert target.files[:20] in dialog.words.text()
+        for words in registry.losses(drive.document.project, name):
+            assert words[:25] in dialog.losses.text().replace("&#x27;", "'")
+        assert ("Experimental" in dialog.losses.text()) == bool(target.untried)
+        assert dialog.vectors.isHidden() == (target.group != "Played as the preview does")
+    dialog.reject()
+
+
+def test_a_group_cannot_be_chosen(toys):
+    drive = toys
+    dialog = opened(drive)
+    before = dialog.target
+    spot = dialog.targets.visualItemRect(dialog._groups()[-1]).center()
+    QTest.mouseClick(dialog.targets.viewport(), Qt.MouseButton.LeftButton, pos=spot)
+    assert dialog.target is before
+    dialog.reject()
+
+
+def test_a_target_is_written_and_remembered_with_its_options(toys, tmp_path):
+    drive = toys
+    dialog = opened(drive)
+    pick(drive, dialog, "xstate")
+    dialog.folder.setText(str(tmp_path / "chart"))
+    QTest.mouseClick(dialog.go, Qt.MouseButton.LeftButton)
+    drive.wait(lambda: dialog.open_button.isEnabled(), 60)
+    chart = next((tmp_path / "chart").glob("*.xstate.json"))
+    assert json.loads(chart.read_bytes())["type"] == "parallel"
+    assert chart.name in dialog.words.text()
+    dialog.reject()
+    again = opened(drive)
+    assert again.target.name == "xstate"
+    assert again.folder.text() == str(tmp_path / "chart")
+    again.reject()
+
+
+def test_vectors_are_written_where_they_are_asked_for(toys, tmp_path):
+    drive = toys
+    dialog = opened(drive)
+    pick(drive, dialog, "metagraph")
+    dialog.folder.setText(str(tmp_path / "game"))
+    QTest.mouseClick(dialog.vectors, Qt.MouseButton.LeftButton, pos=QPoint(8, dialog.vectors.height() // 2))
+    assert dialog.vectors.isChecked()
+    QTest.mouseClick(dialog.go, Qt.MouseButton.LeftButton)
+    drive.wait(lambda: dialog.open_button.isEnabled(), 60)
+    assert (tmp_path / "game" / "vectors.json").is_file()
+    dialog.reject()
+
+
+@pytest.mark.parametrize("kept", ["nonsense", "[1]", '{"target": "no such", "folder": "/x"}', '{"colour": 1}'])
+def test_a_memory_that_cannot_be_read_is_as_none(toys, kept):
+    from PySide6.QtCore import QSettings
+
+    drive = toys
+    first = opened(drive)
+    QSettings().setValue(first._key(), kept)
+    first.reject()
+    assert opened(drive).target.name == registry.DEFAULT
+
+
+def test_a_web_page_is_opened_in_the_browser_and_all_else_as_a_folder(toys, tmp_path, monkeypatch):
+    import urllib.request
+
+    from app.features.export import export_dialog as panel
+    from metagraph.engines.targets import web
+
+    opened_urls = []
+    monkeypatch.setattr(panel.QDesktopServices, "openUrl", opened_urls.append)
+    monkeypatch.setattr(web, "three_js", lambda folder: None)
+    drive = toys
+    dialog = opened(drive)
+    for name, words in (("web", "Open in browser"), ("bml", "Open folder")):
+        pick(drive, dialog, name)
+        dialog.folder.setText(str(tmp_path / name))
+        QTest.mouseClick(dialog.go, Qt.MouseButton.LeftButton)
+        drive.wait(lambda words=words: dialog.open_button.isEnabled() and dialog.open_button.text() == words and dialog.go.isEnabled(), 60)
+        QTest.mouseClick(dialog.open_button, Qt.MouseButton.LeftButton)
+    page, folder = opened_urls
+    with urllib.request.urlopen(page.toString(), timeout=10) as answer:
+        assert b"player/main.js" in answer.read()
+    assert folder.toLocalFile() == str(tmp_path / "bml")
+    dialog.reject()

@@ -1,0 +1,159 @@
+"""What a drop says before it happens, and that it then does what it said."""
+
+from __future__ import annotations
+
+import pytest
+from PySide6.QtCore import QMimeData, QUrl
+
+from app.features.graph.graph_drops import Load, drop_at, load_of, mime, perform
+from app.features.graph.graph_layout import Hit
+from metagraph.graph import edits
+from metagraph.graph.model import Project
+
+
+@pytest.fixture(scope="module")
+def project(toy):
+    return toy.project()
+
+
+def at(area: str, ident: str | None = None, kind: str | None = None) -> Hit:
+    return Hit(area, ident, kind)
+
+
+NODE = {kind: Hit("node", None, kind) for kind in ("gesture", "fidget", "transition")}
+
+
+@pytest.mark.parametrize(
+    ("hit", "count", "words", "kind", "stance", "end"),
+    [
+        (at("card"), 1, "drop this clip as a new stance", "stance", None, None),
+        (at("add"), 2, "drop 2 clips as a new stance", "stance", None, None),
+        (at("loop", "rest"), 1, "drop this clip as another loop of *rest*", "stance", "rest", None),
+        (at("chip", "up"), 3, "drop 3 clips as more loops of *up*", "stance", "up", None),
+        (NODE["gesture"], 1, "drop this clip as a gesture of *rest*", "gesture", "rest", None),
+        (NODE["fidget"], 3, "drop 3 clips as fidgets of *rest*", "fidget", "rest", None),
+        (at("row", "x", "gesture"), 2, "drop 2 clips as gestures of *rest*", "gesture", "rest", None),
+        (at("bar", "x", "fidget"), 1, "drop this clip as a fidget of *rest*", "fidget", "rest", None),
+        (NODE["transition"], 1, "drop this clip as a transition from *rest* to *up*", "transition", "rest", "up"),
+        (at("other", None, "transition"), 2, "drop 2 clips as transitions from *rest* to *up*", "transition", "rest", "up"),
+    ],
+)
+def test_a_drop_of_clips_says_what_it_will_do_and_does_it(toy, project, hit, count, words, kind, stance, end):
+    rest, up = toy.id(project, "rest"), toy.id(project, "up")
+    ids = {"rest": rest, "up": up, None: None}
+    if hit.area in ("loop", "chip"):
+        hit = Hit(hit.area, ids[hit.ident], "stance")
+    load = Load(clips=tuple(project.clips)[:count])
+    drop = drop_at(project, "arms", rest, up, hit, load)
+    assert drop.possible
+    assert drop.words == words
+    assert (drop.kind, drop.stance, drop.end) == (kind, ids[stance], ids[end])
+    after = perform(project, "arms", drop, load)
+    made = [a for a in after.actions() if project.action(a.id) is None]
+    assert [a.clip for a in made] == list(load.clips)
+    assert {(a.kind, a.end_stance) for a in made} == {(kind, ids[end])}
+    assert len(after.graphs["arms"].stances) == len(project.graphs["arms"].stances) + (stance is None)
+
+
+@pytest.mark.parametrize("area", ["nothing", "start"])
+def test_beside_the_nodes_nothing_can_be_dropped(toy, project, area):
+    drop = drop_at(project, "arms", toy.id(project, "rest"), None, Hit(area), Load(clips=tuple(project.clips)[:1]))
+    assert not drop.possible
+    assert drop.words == "drop on one of the nodes"
+
+
+def test_something_else_than_clips_is_refused_with_what_can_be_dropped(project):
+    assert "only clips" in drop_at(project, "arms", None, None, Hit("card"), Load()).words
+
+
+@pytest.mark.parametrize("kind", ["gesture", "fidget", "transition"])
+def test_without_a_stance_the_nodes_say_to_make_one(project, kind):
+    drop = drop_at(project, "head", None, None, NODE[kind], Load(clips=tuple(project.clips)[:1]))
+    assert not drop.possible
+    assert "make a stance first" in drop.words
+    assert "head" in drop.words
+
+
+def test_a_transition_needs_a_second_stance(toy):
+    project = edits.add_clips(Project(), [("a.glb", 0, "", toy.clip("a"))])
+    clip = next(iter(project.clips))
+    project = edits.add_stance(project, "arms", "only", [clip])
+    drop = drop_at(project, "arms", toy.id(project, "only"), None, NODE["transition"], Load(clips=(clip,)))
+    assert not drop.possible
+    assert "choose the stance" in drop.words
+
+
+def test_a_clip_of_another_skeleton_is_refused_by_name(toy, project):
+    from metagraph.motion.clip import Clip
+    from metagraph.motion.skeleton import Skeleton
+
+    s = toy.skeleton
+    other = Skeleton(("Root", *s.names[1:]), s.parents, s.rest_rotations, s.rest_translations)
+    clip = toy.clip("alien")
+    mixed = edits.add_clips(project, [("alien.glb", 0, "", Clip("alien", other, clip.fps, clip.rotations, clip.translations))])
+    drop = drop_at(mixed, "arms", toy.id(mixed, "rest"), None, NODE["gesture"], Load(clips=(toy.id(mixed, "alien"),)))
+    assert not drop.possible
+    assert "'alien' has another skeleton" in drop.words
+
+
+def test_files_can_be_dropped_before_there_is_any_clip():
+    empty, files = Project(), Load(files=("/a/b.bvh", "/a/c.glb"))
+    drop = drop_at(empty, "arms", None, None, Hit("card"), files)
+    assert drop.possible
+    assert drop.words == "drop 2 files as a new stance"
+    drop = drop_at(empty, "arms", None, None, NODE["gesture"], files)
+    assert not drop.possible
+    assert "make a stance first" in drop.words
+
+
+def test_actions_move_between_nodes_and_keep_what_was_set(toy, project):
+    rest, up, beat = toy.id(project, "rest"), toy.id(project, "up"), toy.id(project, "rest beat lf")
+    project = edits.update_actions(project, [beat], tags=("positive",), likelihood=2.0)
+    load = Load(actions=(beat,))
+    drop = drop_at(project, "arms", rest, up, NODE["fidget"], load)
+    assert drop.words == "drop this action as a fidget of *rest*"
+    after = perform(project, "arms", drop, load).action(beat)
+    assert (after.kind, after.tags, after.likelihood) == ("fidget", ("positive",), 2.0)
+
+
+def test_actions_dropped_on_a_chip_move_there_and_stay_what_they_are(toy, project):
+    up = toy.id(project, "up")
+    beat, cough = toy.id(project, "rest beat lf"), toy.id(project, "rest cough")
+    load = Load(actions=(beat, cough))
+    drop = drop_at(project, "arms", toy.id(project, "rest"), up, Hit("chip", up), load)
+    assert drop.possible
+    assert drop.words == "move 2 actions to *up*"
+    after = perform(project, "arms", drop, load)
+    assert [(after.action(i).kind, after.action(i).stance) for i in load.actions] == [("gesture", up), ("fidget", up)]
+
+
+def test_actions_dropped_where_they_are_say_so(toy, project):
+    rest = toy.id(project, "rest")
+    drop = drop_at(project, "arms", rest, None, Hit("chip", rest), Load(actions=(toy.id(project, "rest cough"),)))
+    assert not drop.possible
+    assert drop.words == "already in *rest*"
+
+
+def test_a_transition_cannot_move_to_where_it_ends(toy, project):
+    up = toy.id(project, "up")
+    drop = drop_at(project, "arms", toy.id(project, "rest"), up, Hit("chip", up), Load(actions=(toy.id(project, "rest to up"),)))
+    assert not drop.possible
+    assert "must end in another stance" in drop.words
+
+
+def test_an_action_makes_no_new_stance_but_its_clip_can(toy, project):
+    drop = drop_at(project, "arms", toy.id(project, "rest"), None, Hit("card"), Load(actions=(toy.id(project, "rest cough"),)))
+    assert not drop.possible
+    assert "from the library" in drop.words
+
+
+def test_what_is_dragged_survives_the_clipboards_bytes():
+    assert load_of(mime(clips=["c1", "c2"])) == Load(clips=("c1", "c2"))
+    assert load_of(mime(actions=["a1"])) == Load(actions=("a1",))
+    assert not load_of(QMimeData())
+
+
+def test_only_files_that_can_be_clips_and_folders_are_taken():
+    data = QMimeData()
+    data.setUrls([QUrl(u) for u in ("file:///x/a.BVH", "file:///x/notes.txt", "file:///x/folder", "https://example.org/b.glb")])
+    assert load_of(data).files == ("/x/a.BVH", "/x/folder")

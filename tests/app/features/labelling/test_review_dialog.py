@@ -1,0 +1,297 @@
+"""Going through proposals in the real window: a clip plays out of its stance and back, a key corrects, Enter accepts, all can be undone."""
+
+from __future__ import annotations
+
+import subprocess
+from collections import Counter
+from pathlib import Path
+
+import pytest
+from PySide6.QtCore import QPoint, Qt
+from PySide6.QtTest import QTest
+from PySide6.QtWidgets import QInputDialog
+
+from metagraph.formats.store import open_project
+from metagraph.study.klm import predicted
+from metagraph.suggest.review import DECIDING
+
+pytestmark = [pytest.mark.window, pytest.mark.gl]
+K = Qt.Key
+
+
+@pytest.fixture
+def practice(drive):
+    """The practice project, its clips loaded, none placed."""
+    from app.project.files import PRACTICE
+
+    drive.files.open(PRACTICE, template=True)
+    drive.wait(lambda: len(drive.document.project.clips) == 152 and drive.performance.skeleton() is not None, 60)
+    return drive
+
+
+@pytest.fixture
+def truth(practice):
+    """Clip -> what it is in the finished project, field by field; stances by name."""
+    from app.project.files import SAMPLE
+
+    sample = open_project(SAMPLE).project
+    by_path = {Path(sample.clips[a.clip].path).name: a for a in sample.actions()}
+    out = {}
+    for clip, entry in practice.document.project.clips.items():
+        action = by_path[Path(entry.path).name]
+        out[clip] = {
+            "kind": action.kind, "layer": action.layer, "stance": sample.stance(action.stance).name,
+            "end_stance": sample.stance(action.end_stance).name if action.end_stance else None, "limb": action.limb,
+        }  # fmt: skip
+    return out
+
+
+def begun(drive):
+    """The review, once proposals are there."""
+    from app.features.labelling.review_dialog import ReviewDialog
+
+    drive.actions["propose"].trigger()
+    dialog = drive.window.findChildren(ReviewDialog)[-1]
+    drive.wait(lambda: dialog.current is not None, 60)
+    given_the_keyboard(drive, dialog)
+    return dialog
+
+
+def given_the_keyboard(drive, dialog) -> None:
+    """What a window manager does when a window opens; without one a click does it."""
+    corner = dialog.legend.mapToGlobal(QPoint(2, 2))
+    subprocess.run(["xdotool", "mousemove", str(corner.x()), str(corner.y()), "click", "1"], check=True, timeout=10)
+    drive.wait(dialog.isActiveWindow)
+
+
+def press(dialog, *keys) -> None:
+    for key in keys:
+        QTest.keyClick(dialog, key)
+
+
+def playing(drive, dialog) -> None:
+    drive.wait(lambda: dialog.stage.shown is not None)
+
+
+def to_gesture(drive, dialog, name: str = "hands_at_sides__point_you_rt_01") -> str:
+    """Look at one gesture."""
+    clip = next(c for c, e in drive.document.project.clips.items() if e.name == name)
+    dialog.go_to(clip)
+    drive.wait(lambda: dialog.stage.shown is not None and clip in dialog.stage.shown.project.uses)
+    return clip
+
+
+def test_the_practice_project_is_labelled_with_the_keyboard_alone(practice, truth, record_property):
+    """Stances and whatever is not sure are looked at one by one and corrected where they are wrong; the sure ones are accepted at once."""
+    drive, hands = practice, Counter()
+    drive.key(K.Key_P, Qt.KeyboardModifier.ControlModifier)
+    hands.update(["M", "K", "K"])
+    from app.features.labelling.review_dialog import ReviewDialog
+
+    drive.wait(lambda: bool(drive.window.findChildren(ReviewDialog)))
+    dialog = drive.window.findChildren(ReviewDialog)[-1]
+    drive.wait(lambda: dialog.current is not None, 60)
+    given_the_keyboard(drive, dialog)
+    looked = corrected = 0
+    while dialog.current is not None:
+        clip = dialog.current
+        p = dialog.review.found.proposals[clip]
+        if p.kind.value != "stance" and p.confidence >= dialog.queue.least and not p.conflicts:
+            press(dialog, K.Key_A)
+            hands.update(["M", "K"])
+            continue
+        playing(drive, dialog)
+        looked += 1
+        hands["R"] += dialog.stage.shown.length  # it is watched once, whole
+        for name in DECIDING:
+            choices = [v for v, _ in dialog.review.choices(clip, name)]
+            wanted = truth[clip][name]
+            if choices and dialog.review.value(clip, name) != wanted:
+                rows = [row.name for row in dialog.fields.rows]
+                steps = (rows.index(name) - rows.index(dialog.row)) % len(rows)
+                press(dialog, *[K.Key_Down] * steps, Qt.Key(K.Key_1 + choices.index(wanted)))
+                assert dialog.review.value(clip, name) == wanted
+                hands.update(("M K" + " K" * steps).split())
+                corrected += 1
+        press(dialog, K.Key_Return)
+        hands.update(["M", "K"])
+        drive.pause(1)
+    assert not dialog.work.waiting()
+    press(dialog, K.Key_Return)  # done
+    drive.wait(lambda: not dialog.isVisible())
+    assert hands["P"] == hands["B"] == hands["H"] == 0
+    project = drive.document.project
+    for clip, wanted in truth.items():
+        (action,) = project.uses[clip]
+        assert action.kind == wanted["kind"] and action.layer == wanted["layer"]
+        assert project.stance(action.stance).name == wanted["stance"]
+        assert (project.stance(action.end_stance).name if action.end_stance else None) == wanted["end_stance"]
+    drive.pause(400)
+    assert not [p for p in drive.window.problems if p.severity == "error"]
+    seconds = predicted(hands)
+    record_property("operators", dict(hands))
+    record_property("seconds_a_clip", seconds / len(truth))
+    every = predicted({"M": 152, "K": 152, "R": watched(project)})
+    print(f"\n{looked} looked at, {corrected} corrected; {dict(hands)}; predicted {seconds:.0f} s, {seconds / len(truth):.2f} s a clip;")
+    print(f"each of 152 watched whole and accepted by a key: {every:.0f} s, {every / len(truth):.2f} s a clip")
+    assert seconds < 600
+
+
+def watched(project) -> float:
+    """Seconds it takes to watch every action once, out of its stance and back."""
+    from app.stage.playback_source import LEAD
+
+    return sum((e - s) + (0 if a.kind == "stance" else 2 * LEAD) for a in project.actions() for s, e in [project.span(a)])
+
+
+def test_the_least_certain_stand_first_after_the_stances(practice):
+    dialog = begun(practice)
+    found = [dialog.review.found.proposals[c] for c in dialog.queue.clips]
+    rest = [p.confidence for p in found if p.kind.value != "stance"]
+    assert rest == sorted(rest) and len(found) == 152
+    assert "0 of 152 placed" in dialog.queue.words.text() and "min left" in dialog.queue.words.text()
+    dialog.close()
+
+
+def test_a_clip_plays_out_of_its_stance_and_back_and_alone_when_wanted(practice):
+    drive, dialog = practice, begun(practice)
+    clip = to_gesture(drive, dialog)
+    span, length = dialog.stage.strip.span, dialog.stage.shown.length
+    assert span.words[0] == span.words[2] == "hands at sides" and 0 < span.start < span.end < length
+    assert "Gesture" in dialog.stage.words.text() and "hands at sides" in dialog.stage.words.text()
+    before = dialog.stage.seconds
+    drive.wait(lambda: dialog.stage.seconds != before)  # it plays by itself
+    press(dialog, K.Key_C)
+    drive.wait(lambda: dialog.stage.shown.clip == clip)
+    press(dialog, K.Key_Space)
+    assert not dialog.stage.playing
+    dialog.close()
+
+
+def test_number_keys_and_arrows_correct_and_the_mouse_does_too(practice):
+    drive, dialog = practice, begun(practice)
+    clip = to_gesture(drive, dialog)
+    dialog._pick("kind")
+    press(dialog, K.Key_3)
+    assert dialog.review.value(clip, "kind") == "fidget"
+    press(dialog, K.Key_Left)
+    assert dialog.review.value(clip, "kind") == "gesture"
+    press(dialog, K.Key_Down, K.Key_Down)
+    assert dialog.row == "stance"
+    at = dialog.fields.chip("limb", "left")
+    QTest.mouseClick(dialog.fields, Qt.MouseButton.LeftButton, pos=QPoint(round(at.x()), round(at.y())))
+    assert dialog.review.value(clip, "limb") == "left" and dialog.row == "limb"
+    press(dialog, K.Key_Return)
+    (action,) = drive.document.project.uses[clip]
+    assert (action.kind, action.limb) == ("gesture", "left")
+    dialog.close()
+
+
+def test_every_step_is_taken_back_by_a_key_and_the_clip_is_looked_at_again(practice):
+    drive, dialog = practice, begun(practice)
+    first = dialog.current
+    press(dialog, K.Key_Return)
+    second = dialog.current
+    press(dialog, K.Key_A)
+    assert len(dialog.work.waiting()) < 20
+    press(dialog, K.Key_Backspace)
+    assert len(dialog.work.waiting()) == 151
+    press(dialog, K.Key_Backspace)
+    assert dialog.current == first and second in dialog.work.waiting() and not list(drive.document.project.actions())
+    press(dialog, K.Key_Backspace)  # nothing is left to take back
+    dialog.close()
+
+
+def test_a_clip_may_wait_and_one_gone_by_is_placed_anew(practice):
+    drive, dialog = practice, begun(practice)
+    first = dialog.current
+    press(dialog, K.Key_Tab)
+    assert dialog.current != first and first in dialog.work.waiting()
+    press(dialog, K.Key_Backtab)
+    press(dialog, K.Key_Return, K.Key_Backtab)
+    assert dialog.current == first and first not in dialog.work.waiting()
+    clip = to_gesture(drive, dialog)
+    press(dialog, K.Key_Return)
+    dialog.go_to(clip)
+    dialog._pick("kind")
+    press(dialog, K.Key_3, K.Key_Return)
+    assert [a.kind for a in drive.document.project.uses[clip]] == ["fidget"]
+    dialog.close()
+
+
+def test_a_stance_there_is_not_is_named(practice, monkeypatch):
+    drive, dialog = practice, begun(practice)
+    rest = next(c for c, e in drive.document.project.clips.items() if e.name == "on_hips__stance")
+    dialog.go_to(rest)
+    monkeypatch.setattr(QInputDialog, "getText", lambda *a, **k: (" akimbo ", True))
+    press(dialog, K.Key_N)
+    assert dialog.review.value(rest, "stance") == "akimbo"
+    press(dialog, K.Key_Return)
+    assert "akimbo" in {s.name for s in drive.document.project.graphs["arms"].stances.values()}
+    dialog.close()
+
+
+def test_what_cannot_be_placed_stays_with_its_reason(practice):
+    drive, dialog = practice, begun(practice)
+    clip = to_gesture(drive, dialog)
+    dialog._pick("kind")
+    press(dialog, K.Key_4, K.Key_Return)
+    assert dialog.current == clip and "nothing says where it ends" in dialog.stage.words.text()
+    assert not list(drive.document.project.actions())
+    dialog.close()
+
+
+def test_tags_and_times_are_given_where_the_clip_is_seen(practice):
+    drive, dialog = practice, begun(practice)
+    clip = to_gesture(drive, dialog)
+    press(dialog, K.Key_T)
+    assert dialog.focusWidget() is dialog.tags
+    dialog.tags.clear()
+    QTest.keyClicks(dialog.tags, "hello, you")
+    QTest.keyClick(dialog.tags, K.Key_Return)
+    assert dialog.review.found.proposals[clip].tags.value == ("hello", "you") and dialog.current == clip
+    drive.wait(lambda: dialog.stage.shown is not None)
+    drive.pause(60)
+    span = dialog.stage.strip.span
+    dialog.stage._sought(span.start + 0.4)
+    press(dialog, K.Key_BracketLeft)
+    start = dialog.review.found.proposals[clip].timing["start"]
+    drive.pause(80)
+    press(dialog, K.Key_Return)
+    action = drive.document.project.uses[clip][0]
+    assert action.tags == ("hello", "you") and action.timing.start == start > 0.3
+    dialog.close()
+
+
+def test_a_correction_is_learned_and_the_rest_looked_at_anew(practice, monkeypatch):
+    drive, dialog = practice, begun(practice)
+    told = []
+    monkeypatch.setattr(type(dialog.work.learned), "correct", lambda self, *a: told.append(a[:3]))
+    clip = to_gesture(drive, dialog)
+    dialog._pick("kind")
+    press(dialog, K.Key_3, K.Key_Return)
+    assert told == [("hands_at_sides__point_you_rt_01", "kind", "fidget")]
+    before = dialog.review.found
+    drive.wait(lambda: dialog.review.found is not before)
+    assert dialog.review.value(clip, "kind") == "fidget"
+    dialog.close()
+
+
+def test_with_everything_placed_there_is_nothing_to_label(practice):
+    drive, dialog = practice, begun(practice)
+    dialog.queue.limit.setValue(0)
+    QTest.mouseClick(dialog.queue.sure, Qt.MouseButton.LeftButton)
+    while dialog.current is not None:
+        press(dialog, K.Key_Return)
+    assert "Every clip is placed" in dialog.stage.words.text() and dialog.go.text() == "Done"
+    assert not drive.actions["propose"].isEnabled()
+    dialog.close()
+
+
+def test_closing_lets_the_character_play_on(practice):
+    drive = practice
+    assert drive.session.playing
+    dialog = begun(drive)
+    assert not drive.session.playing
+    press(dialog, K.Key_Escape)
+    drive.wait(lambda: drive.session.playing)

@@ -1,0 +1,137 @@
+"""Takes, what was heard during them, and clips kept as files."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from pathlib import Path
+
+import pytest
+
+from app.features.motion_graph.synthesis_jobs import Wish, during, left_out, pieces, save, speech_of, synthesise, table, takes_of, usable
+from metagraph.formats.clips import read_clips
+from metagraph.graph.conversation import Conversation, Segment, Side
+from metagraph.graph.model import Project
+from metagraph.synthesis.graph import build
+from metagraph.synthesis.states import SynthesisError, states_of
+
+
+def stances(project: Project) -> list[str]:
+    return [i for i in usable(project) if project.clips[i].name.endswith("__stance")]
+
+
+def told(project: Project, clip: str) -> Project:
+    """The project with a conversation whose second side was recorded along with a clip; the partner hesitates."""
+    ada = Side(name="Ada", segments=(Segment("hesitation", 3.0, 3.5),))
+    ben = Side(name="Ben", take=clip, segments=(Segment("clause", 1.0, 2.0, 1.5), Segment("hesitation", 5.0, 5.4)))
+    return replace(project, conversations={"v1": Conversation(name="talk", length=6.0, sides=(ada, ben))})
+
+
+def test_takes_are_clips_that_move_on_the_projects_skeleton_the_longest_first(sample: Project) -> None:
+    found = usable(sample)
+    lengths = [sample.clips[i].duration for i in found]
+    assert len(found) == len(sample.clips) and lengths == sorted(lengths, reverse=True)
+    lost = replace(sample, clips={**sample.clips, found[0]: replace(sample.clips[found[0]], motion=None)})
+    assert usable(lost) == found[1:]
+    assert usable(Project()) == []
+
+
+def test_a_take_knows_what_was_heard_during_it_the_partners_hesitations_and_not_its_own(sample: Project) -> None:
+    clip, other = stances(sample)[:2]
+    project = told(sample, clip)
+    takes = takes_of(project, [other, clip])
+    assert speech_of(project, clip) == ("v1", 1) and speech_of(project, other) is None
+    assert [[s.kind for s in speech] for speech in takes.speech] == [["clause", "hesitation"], []]
+    assert takes.told and not takes_of(project, [other]).told
+
+
+def test_what_goes_on_after_a_takes_end_was_not_heard_during_it(sample: Project) -> None:
+    said = (Segment("clause", 1.0, 2.0, 1.5), Segment("clause", 3.0, 5.0, 4.5, "so on"), Segment("response", 6.0, 7.0))
+    assert during(said, 10.0) == said
+    assert during(said, 4.0) == (said[0], Segment("clause", 3.0, 4.0, None, "so on"))
+    assert during(said, 3.0) == said[:1]
+    clip = stances(sample)[0]
+    end = sample.clips[clip].duration
+    ben = Side(take=clip, segments=tuple(Segment("clause", n + 0.1, n + 0.9) for n in range(60)))
+    project = replace(sample, conversations={"v1": Conversation(name="long", length=60.0, sides=(Side(), ben))})
+    assert takes_of(project, [clip]).speech[0][-1].end <= end
+
+
+def test_clips_that_cannot_be_takes_are_told_with_the_reason(sample: Project) -> None:
+    from metagraph.motion.skeleton import Skeleton
+
+    a, b, c = stances(sample)[:3]
+    still = replace(sample.clips[a], motion=sample.clips[a].motion.trimmed(0, 1), frames=1)
+    lost = replace(sample.clips[b], motion=None)
+    own = sample.clips[c].motion
+    longer = Skeleton(own.skeleton.names, own.skeleton.parents, own.skeleton.rest_rotations, 2 * own.skeleton.rest_translations)
+    odd = replace(sample.clips[c], motion=replace(own, skeleton=longer))
+    project = replace(sample, clips={**sample.clips, a: still, b: lost, c: odd})
+    assert left_out(sample) == ""
+    assert left_out(project) == "Left out: 1 clip of one frame, 1 clip of another skeleton, 1 clip whose file is missing."
+    assert not {a, b, c} & set(usable(project))
+
+
+def test_new_motion_goes_with_speech_where_the_takes_know_theirs(sample: Project) -> None:
+    ids = stances(sample)
+    takes = takes_of(told(sample, ids[0]), ids)
+    from metagraph.synthesis.constraints import changes
+    from metagraph.synthesis.states import key_states
+
+    states = states_of(takes.clips)
+    graph = build(states, keys=key_states(states, changes=changes(states, takes.speech)))
+    found = synthesise(graph, takes, Wish(2.0, (Segment("clause", 0.5, 1.5, 1.0),)), "new")
+    assert found.clip.duration == pytest.approx(2.0, abs=0.05) and found.clip.name == "new" and "cost" in found.words()
+    with pytest.raises(SynthesisError, match="allow more tolerance"):
+        synthesise(graph, takes, Wish(4.0, (Segment("response", 0.0, 4.0),), tolerance=0.0), "new")
+
+
+@pytest.mark.parametrize(("exact", "search"), [(True, "best"), (False, "greedy")])
+def test_where_speech_does_not_constrain_nothing_is_said_of_it(
+    sample: Project, monkeypatch: pytest.MonkeyPatch, exact: bool, search: str
+) -> None:
+    from metagraph.synthesis import search as searches
+
+    def stuck(*_: object, **__: object) -> None:
+        raise SynthesisError("no motion goes with this speech beyond 0.0 s: allow more tolerance")
+
+    takes = takes_of(sample, stances(sample)[:2])
+    monkeypatch.setattr(searches, search, stuck)
+    with pytest.raises(SynthesisError, match="cannot go on for 9 s without a jump: choose more takes"):
+        synthesise(build(states_of(takes.clips)), takes, Wish(9.0, (Segment("clause", 0.5, 1.5, 1.0),), exact), "new")
+
+
+def test_speech_nobody_told_the_takes_about_constrains_nothing(sample: Project) -> None:
+    takes = takes_of(sample, stances(sample))
+    from metagraph.synthesis.states import states_of
+
+    found = synthesise(build(states_of(takes.clips)), takes, Wish(4.0, (Segment("response", 0.0, 4.0),)), "new")
+    assert found.clip.duration == pytest.approx(4.0, abs=0.05)
+
+
+def test_the_table_counts_frames_and_transitions_before_and_after_for_each_k(sample: Project) -> None:
+    rows = table(takes_of(sample, stances(sample)), (2, 3, 4), 0.95, lambda *_: None, lambda: False)
+    assert [rows[k][0] for k in (2, 3, 4)] == [rows[2][0]] * 3
+    assert rows[2][1] < rows[3][1] < rows[4][1]
+    assert all(after <= before for *_, before, after in [(r[0], r[2]) for r in rows.values()])
+
+
+def test_pieces_are_kept_as_files_that_read_back_under_names_that_are_free(sample: Project, tmp_path: Path) -> None:
+    clip = sample.clips[stances(sample)[0]].motion
+    assert clip is not None
+    cut = pieces(clip, [(0.0, 1.0), (1.5, 3.0)])
+    assert [round(c.duration, 2) for c in cut] == [1.0, 1.5]
+    loaded = save(cut, tmp_path, "cuts", {f"{clip.name}_01"})
+    again = save(cut, tmp_path, "cuts")
+    assert len({path for path, *_ in (*loaded, *again)}) == 4
+    assert loaded[0][3].name != f"{clip.name}_01"
+    for path, take, digest, motion in loaded:
+        read = read_clips(tmp_path / path)[take]
+        assert read.frames == motion.frames and len(digest) == 64
+        assert read.skeleton == clip.skeleton
+
+
+def test_names_that_cannot_be_files_are_made_such(sample: Project, tmp_path: Path) -> None:
+    clip = sample.clips[stances(sample)[0]].motion
+    assert clip is not None
+    path = save([clip.trimmed(0, 5).renamed("a/b: c?")], tmp_path, "cuts")[0][0]
+    assert path == "cuts/a_b_ c_.glb" and (tmp_path / path).is_file()

@@ -1,0 +1,125 @@
+"""The problems panel: what the statistics flag is told once, goes to its place, and is mended with a press."""
+
+from __future__ import annotations
+
+import pytest
+from PySide6.QtCore import Qt
+from PySide6.QtTest import QTest
+
+from app.features.problems.problems_panel import FIX
+from app.stage.compatibility_state import judge, merged, told
+from metagraph.graph import edits
+from metagraph.graph.check import Problem
+from metagraph.graph.model import Project
+
+
+@pytest.fixture(scope="module")
+def wide(toy):
+    """A wave so wide that it is far from its stance in the middle, cut there."""
+    project = edits.add_clips(toy.project(), [("wide.glb", 0, "", toy.clip("wide", 2.4, swing=2.4))])
+    project = edits.place(project, [toy.id(project, "wide")], "arms", "gesture", toy.id(project, "rest"))
+    return edits.update_actions(project, [toy.id(project, "wide")], timing={"end": 1.5, "blend_out": 0.05})
+
+
+def test_an_empty_project_has_no_flags():
+    assert told(Project(), judge(Project())) == {}
+
+
+def test_a_jump_is_told_in_words_with_what_mends_it(toy, wide):
+    flags = {p: fix for p, fix in told(wide, judge(wide)).items() if p.severity == "warning"}
+    ((problem, fix),) = flags.items()
+    assert problem.message.startswith("'wide' ends ") and problem.message.endswith(" times what shows as a jump from 'rest'")
+    assert problem.remedy.startswith("At ") and problem.remedy.endswith(" s it would not.")
+    assert fix is not None and fix.words.startswith("Use ") and fix.words.removeprefix("Use ") in problem.remedy
+    after = fix(wide)
+    assert not [p for p in told(after, judge(after)) if p.severity == "warning"]
+
+
+def test_statistics_never_make_an_error_and_too_few_clips_are_a_hint(toy, wide):
+    assert {p.severity for p in told(wide, judge(wide))} <= {"warning", "hint"}
+    few = edits.remove_actions(wide, [a.id for a in wide.actions()][4:])
+    gesture = edits.place(few, [toy.id(few, "wide")], "arms", "gesture", toy.id(few, "rest"))
+    (hint,) = told(edits.remove_actions(gesture, [a.id for a in few.actions()][1:]), judge(few))
+    assert (hint.severity, hint.code, hint.layer) == ("hint", "few-clips", "arms") and "cannot tell" in hint.message
+
+
+def test_the_sample_and_its_neighbours_have_no_false_alarms(sample):
+    assert told(sample, judge(sample)) == {}
+
+
+def test_a_judgement_keeps_what_still_holds(toy, wide):
+    first = judge(wide)
+    after = edits.update_actions(wide, [toy.id(wide, "rest wave rt")], timing={"end": 1.0})
+    again = judge(after, first)
+    assert again.measured["arms"] is first.measured["arms"]
+    assert {a.id for a in again.known["arms"]} == {a.id for a in after.graphs["arms"].actions.values()}
+    gone = judge(edits.remove_actions(wide, [toy.id(wide, "wide")]), first)
+    assert gone.measured["arms"] is not first.measured["arms"] and not gone.jumps
+    assert told(edits.remove_actions(wide, [toy.id(wide, "wide")]), first) == {}, "an action that went is not told of"
+
+
+def test_a_place_is_told_of_once_and_errors_come_first():
+    def at(severity, code, action="a1"):
+        return Problem(severity, code, "", "", action=action)
+
+    flag = at("warning", "jump-end")
+    rest = [at("warning", "far-end"), at("warning", "far-start"), at("warning", "far-end", "a2"), at("hint", "no-gestures", None)]
+    assert merged([*rest, at("error", "trim")], [flag]) == (at("error", "trim"), *rest[1:3], flag, rest[3])
+
+
+@pytest.mark.window
+@pytest.mark.gl
+def test_a_flag_marks_the_action_and_a_press_mends_it_in_one_step(toys, toy, wide):
+    drive = toys
+    drive.document.load(wide, None)
+    drive.files.opened.emit()
+    wave = toy.id(wide, "wide")
+    flagged = lambda: [p for p in drive.window.problems if p.code == "jump-end"]  # noqa: E731
+    drive.wait(lambda: bool(flagged()))
+    assert wave in drive.canvas.misfits and "shows as a jump" in drive.canvas.misfits[wave]
+    drive.window.show_dock("problems")
+    drive.pause(200)
+    panel = drive.problems_panel
+    tree = panel.tree
+    item = next(tree.topLevelItem(n) for n in range(tree.topLevelItemCount()) if tree.topLevelItem(n).text(0).startswith("'wide' ends"))
+    assert item.text(FIX).startswith("Use ")
+    tree.scrollToItem(item)
+    # A press beside the button goes there and mends nothing.
+    row = tree.visualItemRect(item)
+    QTest.mouseClick(tree.viewport(), Qt.MouseButton.LeftButton, pos=row.center())
+    assert drive.session.actions == (wave,)
+    assert drive.document.project is wide
+    before = drive.document.undo_stack.count()
+    tree.scrollTo(tree.indexFromItem(item, FIX))
+    cell = tree.visualRect(tree.indexFromItem(item, FIX))
+    QTest.mouseMove(tree.viewport(), cell.topLeft() + tree.viewport().rect().topLeft())
+    spot = cell.topLeft()
+    spot.setX(spot.x() + 20)
+    spot.setY(cell.center().y())
+    QTest.mouseClick(tree.viewport(), Qt.MouseButton.LeftButton, pos=spot)
+    assert drive.document.undo_stack.count() == before + 1
+    assert drive.document.project.action(wave).timing.end != 1.5
+    drive.wait(lambda: not flagged())
+    assert wave not in drive.canvas.misfits
+    drive.document.undo()
+    drive.wait(lambda: bool(flagged()))
+
+
+@pytest.mark.window
+@pytest.mark.gl
+def test_all_timings_are_mended_in_one_step(toys, toy, wide):
+    drive = toys
+    two = edits.update_actions(wide, [toy.id(wide, "wide")], timing={"start": 1.0, "blend_in": 0.05})
+    drive.document.load(two, None)
+    drive.files.opened.emit()
+    panel = drive.problems_panel
+    drive.wait(lambda: len(panel.fixable()) == 2)
+    drive.window.show_dock("problems")
+    drive.pause(100)
+    assert panel.all.text() == "Mend 2 problems"
+    drive.click((panel.all, panel.all.rect().center()))
+    assert drive.document.undo_stack.count() == 1
+    drive.wait(lambda: not panel.fixable())
+    item = panel.tree.topLevelItem(0)
+    if item is not None:
+        assert "Go there" in [a.text() for a in panel.menu(item).actions()]

@@ -1,0 +1,154 @@
+"""The strip under the timing plot: where an action begins and ends without a jump, what snaps there, what is proposed."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+from PySide6.QtCore import QPoint, QPointF, Qt
+from PySide6.QtTest import QTest
+from PySide6.QtWidgets import QApplication
+
+from app.features.properties.jump_strip import Seen, words_at
+from app.features.properties.timing_plot import verdict
+from app.stage.compatibility_state import proposed_fields
+from metagraph.graph import edits
+from metagraph.suggest.jumps import Measured, curves
+
+
+@pytest.fixture(scope="module")
+def wide(toy):
+    """A wave so wide that it is far from its stance in the middle."""
+    project = edits.add_clips(toy.project(), [("wide.glb", 0, "", toy.clip("wide", 2.4, swing=2.4))])
+    project = edits.place(project, [toy.id(project, "wide")], "arms", "gesture", toy.id(project, "rest"))
+    return edits.update_actions(project, [toy.id(project, "wide")], timing={"end": 1.5, "blend_out": 0.05})
+
+
+def seen_of(toy, project, name):
+    action = next(a for a in project.actions() if a.name == name)
+    return action, Seen(action, curves(project, Measured(project, action.layer), action))
+
+
+def test_a_gesture_fits_at_its_ends_and_not_in_its_middle(toy, wide):
+    _, seen = seen_of(toy, wide, "wide")
+    first, *_, last = seen.spans()
+    assert first[0] == 0 and 0.2 < first[1] < 1.2 and 1.4 < last[0] < 2.4 and last[1] == pytest.approx(2.4)
+    assert seen.cost("end", 1.5) > 1 > seen.cost("end", 2.4)
+    assert len(seen.curve()) == len(seen.times) and np.isfinite(seen.curve()).all()
+
+
+def test_a_longer_blend_widens_what_fits(toy, wide):
+    action, seen = seen_of(toy, wide, "wide")
+    longer = edits.update_actions(wide, [action.id], timing={"blend_out": 0.4})
+    _, wider = seen_of(toy, longer, "wide")
+    assert wider.spans()[-1][0] < seen.spans()[-1][0]
+
+
+def test_handles_come_to_rest_at_what_is_proposed_and_where_nothing_begins_to_show(toy, wide):
+    _, seen = seen_of(toy, wide, "wide")
+    assert seen.proposed.end in seen.snaps("end") and seen.proposed.start in seen.snaps("start")
+    assert all(0 <= t <= 2.4 for handle in ("start", "end") for t in seen.snaps(handle))
+    assert seen.snaps("in") == seen.snaps("stroke") == []
+
+
+def test_a_transition_is_beside_the_stance_it_leaves_and_then_the_one_it_enters(toy, wide):
+    action, seen = seen_of(toy, wide, "rest to up")
+    assert 0 < seen.pivot < len(seen.times)
+    assert "enters from 'rest'" in words_at(wide, action, seen, 0.0)
+    assert "leaves to 'up'" in words_at(wide, action, seen, 0.8)
+    far, elsewhere = seen_of(toy, edits.set_ends(wide, [action.id], toy.id(wide, "far")), "rest to up")
+    assert "leaves to 'far'" in words_at(edits.set_ends(wide, [far.id], toy.id(wide, "far")), far, elsewhere, 0.8)
+
+
+def test_words_name_cost_and_blend(toy, wide):
+    action, seen = seen_of(toy, wide, "wide")
+    words = words_at(wide, action, seen, 1.5)
+    assert words.startswith("At 1.50 s it leaves to 'rest': ") and "times what shows as a jump, blended over 0.05 s" in words
+    assert " of what shows as a jump" in words_at(wide, action, seen, 2.4)
+
+
+def test_a_loop_shows_its_seam(toy, wide):
+    action, seen = seen_of(toy, wide, "rest loop")
+    assert seen.loops and seen.pivot == 0 and seen.snaps("start") == []
+    assert words_at(wide, action, seen, 2.0).startswith("At 2.00 s it repeats from here")
+    assert set(proposed_fields(action, seen.proposed, 2.0)) == {"start", "end", "blend_in"}
+
+
+@pytest.mark.parametrize(
+    ("costs", "words"),
+    [
+        ({"Begins": 0.1, "ends": 1.0}, "Begins and ends without a jump"),
+        ({"Begins": 0.1, "ends": 2.71}, "Begins without a jump, ends 2.7 times what shows as one"),
+        ({"Begins": 1.2, "ends": 0.3}, "Begins 1.2 times what shows as a jump, ends without one"),
+        ({"Repeats": 0.0}, "Repeats without a jump"),
+        ({"Repeats": 1.6}, "Repeats 1.6 times what shows as a jump"),
+    ],
+)
+def test_the_verdict_is_one_sentence(costs, words):
+    assert verdict(costs) == words
+
+
+@pytest.fixture
+def timed(toys, toy, wide):
+    drive = toys
+    drive.document.load(wide, None)
+    drive.files.opened.emit()
+    drive.wait(lambda: drive.window.compatibility.judged is not None and drive.window.compatibility.judged.measured["arms"].labelled > 5)
+    drive.session.jump(action=toy.id(wide, "wide"))
+    drive.wait(lambda: drive.properties.plot.strip.seen is not None)
+    drive.pause(150)
+    return drive
+
+
+@pytest.mark.window
+@pytest.mark.gl
+def test_a_dragged_end_comes_to_rest_where_it_does_not_jump_in_one_step(timed, toy, wide):
+    drive = timed
+    timing = drive.properties.plot
+    plot, box = timing.plot, timing.plot.plotItem.vb
+    ident = toy.id(wide, "wide")
+
+    def at(seconds: float) -> tuple:
+        point = plot.mapFromScene(box.mapViewToScene(QPointF(seconds, box.viewRect().center().y())))
+        return plot.viewport(), QPoint(round(point.x()), round(point.y()))
+
+    goal = min(timing.strip.seen.snaps("end"))
+    pixel = box.viewPixelSize()[0]
+    before = drive.document.undo_stack.count()
+    drive.drag(at(1.5), at(goal - 4 * pixel), lambda: (drive.document.project.action(ident).timing.end or 9) > goal - 2 * pixel)
+    drive.pause(300)
+    assert drive.document.project.action(ident).timing.end == pytest.approx(goal, abs=0.002), "4 pixels beside, it rests on it"
+    assert drive.document.undo_stack.count() == before + 1
+    drive.wait(lambda: timing.verdict.text() == "Begins and ends without a jump")
+
+
+@pytest.mark.window
+@pytest.mark.gl
+def test_alt_leaves_the_marks_out(timed, monkeypatch):
+    plot = timed.properties.plot
+    goal = plot.strip.seen.proposed.end
+    near = goal + 3 * plot.plot.plotItem.vb.viewPixelSize()[0]
+    assert plot._snapped("end", near) == goal
+    assert plot._snapped("end", 1.2) == 1.2
+    monkeypatch.setattr(QApplication, "keyboardModifiers", staticmethod(lambda: Qt.KeyboardModifier.AltModifier))
+    assert plot._snapped("end", near) == near
+
+
+@pytest.mark.window
+@pytest.mark.gl
+def test_proposed_times_are_taken_over_with_a_click_in_one_step(timed, toy, wide):
+    drive = timed
+    ident, plot = toy.id(wide, "wide"), drive.properties.plot
+    assert "times what shows as one" in plot.verdict.text()
+    assert plot.strip.tip(QPointF(200, 20)).startswith("At ")
+    proposed = plot.strip.seen.proposed
+    QTest.mouseClick(plot.use, Qt.MouseButton.LeftButton)
+    drive.wait(lambda: drive.document.undo_stack.count() == 1)
+    timing = drive.document.project.action(ident).timing
+    assert timing.start == pytest.approx(proposed.start, abs=1e-3) and timing.blend_out == pytest.approx(proposed.blend_out, abs=1e-3)
+    drive.wait(lambda: plot.verdict.text() == "Begins and ends without a jump" and not plot.use.isEnabled())
+    drive.document.undo()
+    assert drive.document.project.action(ident).timing.end == 1.5
+    # Many at once, from the menu.
+    drive.session.select_actions((ident, toy.id(wide, "rest wave rt")))
+    drive.actions["use_times"].trigger()
+    drive.wait(lambda: drive.document.undo_stack.count() == 1 and drive.document.project.action(ident).timing.end != 1.5)

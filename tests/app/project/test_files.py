@@ -1,0 +1,383 @@
+"""Opening, saving, importing and recovering, with every answer to every question they ask."""
+
+from __future__ import annotations
+
+import json
+import shutil
+from dataclasses import replace
+from pathlib import Path
+
+import pytest
+from PySide6.QtWidgets import QFileDialog, QMessageBox, QWidget
+
+from app.project.document import Document, untitled_journal
+from app.project.files import Files
+from app.project.jobs import Jobs
+from metagraph.formats.bvh import write_bvh
+from metagraph.formats.journal import journal_path
+from metagraph.formats.store import open_project, save_project
+from metagraph.graph import edits
+from metagraph.graph.model import Project
+
+BUTTON = QMessageBox.StandardButton
+
+
+class Answers:
+    """Stands in for the person: answers questions in the order given, and keeps what was asked and told."""
+
+    def __init__(self, monkeypatch):
+        self.next, self.asked, self.warned = [], [], []
+        monkeypatch.setattr(QMessageBox, "question", lambda *a, **k: (self.asked.append(a[2]), self.next.pop(0))[1])
+        monkeypatch.setattr(QMessageBox, "warning", lambda *a, **k: self.warned.append(a[2]))
+        self.patch = monkeypatch
+
+    def save_as(self, path) -> None:
+        self.patch.setattr(QFileDialog, "getSaveFileName", lambda *a, **k: (str(path) if path else "", ""))
+
+    def folder(self, path) -> None:
+        self.patch.setattr(QFileDialog, "getExistingDirectory", lambda *a, **k: str(path) if path else "")
+
+
+@pytest.fixture
+def person(monkeypatch):
+    return Answers(monkeypatch)
+
+
+class Desk(Files):
+    """Files with what they told kept."""
+
+    def __init__(self, window):
+        super().__init__(Document(window), Jobs(window), window)
+        self.words, self.reports, self.drops = [], [], []
+        self.told.connect(self.words.append)
+        self.report.connect(lambda title, lines: self.reports.append((title, lines)))
+        self.imported.connect(lambda result, drop: self.drops.append(drop))
+
+    def idle(self) -> bool:
+        return not self.jobs.running
+
+
+@pytest.fixture
+def desk(qtbot, person):
+    window = QWidget()
+    qtbot.addWidget(window)
+    desk = Desk(window)
+    yield desk
+    desk.jobs.stop()
+    desk.document.close_journal()
+
+
+@pytest.fixture
+def clips(toy, tmp_path) -> Path:
+    """A folder of three clips, one of them in a folder below."""
+    folder = tmp_path / "clips"
+    (folder / "more").mkdir(parents=True)
+    for n, name in enumerate(("idle", "wave", "more/nod")):
+        write_bvh(toy.clip(name.split("/")[-1], 0.5, swing=0.1 * n), folder / f"{name}.bvh")
+    return folder
+
+
+@pytest.fixture
+def saved(desk, clips, tmp_path, qtbot) -> Path:
+    """A project file with those clips."""
+    path = tmp_path / "mine.metagraph.yaml"
+    desk.import_paths([str(clips)])
+    qtbot.waitUntil(lambda: len(desk.document.project.clips) == 3)
+    desk.document.save(path)
+    return path
+
+
+def change_seed(desk, seed=99):
+    desk.document.edit("Change seed", lambda p: edits.set_settings(p, seed=seed))
+
+
+# --- leaving
+
+
+def test_a_project_without_changes_may_be_left_unasked(desk, person):
+    assert desk.may_leave()
+    assert not person.asked
+
+
+@pytest.mark.parametrize(("answer", "leaves"), [(BUTTON.Discard, True), (BUTTON.Cancel, False)])
+def test_changes_may_be_discarded_or_kept(desk, person, answer, leaves):
+    change_seed(desk)
+    person.next = [answer]
+    assert desk.may_leave() is leaves
+    assert "not saved" in person.asked[0]
+
+
+def test_changes_may_be_saved_first(desk, person, tmp_path):
+    change_seed(desk)
+    person.next = [BUTTON.Save]
+    person.save_as(tmp_path / "new")
+    assert desk.may_leave()
+    assert open_project(tmp_path / "new.metagraph.yaml").project.settings.seed == 99
+    assert desk.recent() == [tmp_path / "new.metagraph.yaml"]
+
+
+def test_not_choosing_a_place_is_staying(desk, person):
+    change_seed(desk)
+    person.next = [BUTTON.Save]
+    person.save_as(None)
+    assert not desk.may_leave()
+    assert desk.document.dirty
+
+
+def test_a_place_that_cannot_be_written_is_staying_with_the_reason(desk, person, tmp_path):
+    change_seed(desk)
+    (tmp_path / "file").write_text("in the way")
+    person.next = [BUTTON.Save]
+    person.save_as(tmp_path / "file" / "x.metagraph.yaml")
+    assert not desk.may_leave()
+    assert "cannot be written" in person.warned[0]
+
+
+def test_a_new_project_asks_first(desk, person):
+    change_seed(desk)
+    person.next = [BUTTON.Cancel]
+    desk.new()
+    assert desk.document.project.settings.seed == 99
+    person.next = [BUTTON.Discard]
+    desk.new()
+    assert desk.document.project == Project()
+
+
+# --- opening
+
+
+def test_opening_loads_the_clips_and_is_remembered(desk, saved, qtbot):
+    desk.document.load(Project(), None)
+    seen = []
+    desk.opened.connect(lambda: seen.append(len(desk.document.project.clips)))
+    desk.open(saved)
+    qtbot.waitUntil(lambda: seen == [3])
+    assert all(e.motion is not None for e in desk.document.project.clips.values())
+    assert desk.document.path == saved
+    assert desk.recent() == [saved]
+    assert not desk.document.dirty
+
+
+def test_a_template_is_opened_without_its_file(desk, saved, qtbot):
+    desk.document.load(Project(), None)
+    desk.open(saved, template=True)
+    qtbot.waitUntil(lambda: len(desk.document.project.clips) == 3)
+    assert desk.document.path is None
+    assert all(Path(e.path).is_absolute() for e in desk.document.project.clips.values())
+    assert desk.recent() == []
+
+
+@pytest.mark.parametrize("content", [None, b"", b"\xff\xfe\x00", b"a: [", b"metagraph: 99\n", b"- 1\n"])
+def test_what_is_no_project_is_told_and_nothing_changes(desk, person, tmp_path, qtbot, content):
+    path = tmp_path / "bad.metagraph.yaml"
+    if content is not None:
+        path.write_bytes(content)
+    before = desk.document.project
+    desk.open(path)
+    qtbot.waitUntil(lambda: bool(person.warned) and desk.idle())
+    assert "bad.metagraph.yaml" in person.warned[0]
+    assert desk.document.project is before
+    assert desk.recent() == []
+
+
+def test_a_project_whose_clips_and_character_are_missing_opens_with_notes(desk, saved, clips, qtbot):
+    project = edits.set_character(desk.document.project, "nobody.glb")
+    save_project(project, saved)
+    (clips / "wave.bvh").unlink()
+    desk.document.load(Project(), None)
+    desk.open(saved)
+    qtbot.waitUntil(lambda: len(desk.document.project.clips) == 3)
+    missing = [e.name for e in desk.document.project.clips.values() if e.motion is None]
+    assert missing == ["wave"]
+    title, lines = desk.reports[-1]
+    assert "mine.metagraph.yaml" in title
+    assert any("wave.bvh" in line for line in lines)
+
+
+def test_edits_made_while_another_project_opens_are_not_thrown_away(desk, person, saved, qtbot):
+    desk.document.load(Project(), None)
+    desk.open(saved)
+    change_seed(desk)  # before the clips are there
+    person.next = [BUTTON.Cancel]
+    qtbot.waitUntil(desk.idle)
+    assert desk.document.project.settings.seed == 99
+    assert len(person.asked) == 1
+
+
+# --- recovering
+
+
+def crash(desk) -> None:
+    """Forget the document without closing it, as a killed program does."""
+    desk.document._journal.close()
+    desk.document._journal = None
+    desk.document.undo_stack.setClean()
+
+
+@pytest.mark.parametrize("answer", [BUTTON.Yes, BUTTON.Discard])
+def test_edits_since_the_last_save_are_offered(desk, person, saved, qtbot, answer):
+    change_seed(desk, 7)
+    change_seed(desk, 8)
+    crash(desk)
+    person.next = [answer]
+    desk.document.load(Project(), None)
+    desk.open(saved)
+    qtbot.waitUntil(lambda: len(desk.document.project.clips) == 3)
+    assert "2 edits" in person.asked[0]
+    taken = answer == BUTTON.Yes
+    assert desk.document.project.settings.seed == (8 if taken else 1)
+    assert desk.document.dirty is taken
+    assert all(e.motion is not None for e in desk.document.project.clips.values())
+    change_seed(desk, 5)  # a new journal takes the old one's place
+    assert journal_path(saved).exists()
+    person.next = []
+
+
+@pytest.mark.parametrize("answer", [BUTTON.Yes, BUTTON.Discard])
+def test_a_project_never_saved_is_offered_too(desk, person, clips, qtbot, answer):
+    desk.import_paths([str(clips)])
+    qtbot.waitUntil(lambda: len(desk.document.project.clips) == 3)
+    assert desk.document.dirty
+    crash(desk)
+    assert untitled_journal().exists()
+    person.next = [answer]
+    desk.document.project = Project()
+    assert desk.recover_untitled() is (answer == BUTTON.Yes)
+    qtbot.waitUntil(desk.idle)
+    assert "never saved" in person.asked[0]
+    assert len(desk.document.project.clips) == (3 if answer == BUTTON.Yes else 0)
+    if answer == BUTTON.Yes:
+        assert desk.document.dirty
+        assert desk.document.path is None
+        assert all(e.motion is not None for e in desk.document.project.clips.values())
+
+
+def test_without_a_crash_nothing_is_offered(desk, person):
+    assert not desk.recover_untitled()
+    assert not person.asked
+
+
+def test_a_journal_of_another_state_of_the_file_is_kept_aside(desk, person, saved, qtbot):
+    change_seed(desk, 7)
+    crash(desk)
+    saved.write_text(saved.read_text() + "# edited by hand, or by git\n")
+    desk.document.load(Project(), None)
+    desk.open(saved)
+    qtbot.waitUntil(lambda: len(desk.document.project.clips) == 3)
+    assert not person.asked
+    assert any("another state" in words for words in desk.words)
+    assert list(saved.parent.glob(".*.old")) or list(saved.parent.glob("*.old"))
+
+
+# --- importing
+
+
+def test_a_folder_with_a_bad_file_brings_in_the_rest_and_says_what_failed(desk, clips, qtbot):
+    (clips / "broken.bvh").write_text("HIERARCHY\nROOT Hips\n{\n")
+    desk.import_paths([str(clips)])
+    qtbot.waitUntil(lambda: bool(desk.reports))
+    assert sorted(e.name for e in desk.document.project.clips.values()) == ["idle", "nod", "wave"]
+    title, lines = desk.reports[0]
+    assert title == "Imported 3 clips; 1 file could not be read"
+    assert "broken.bvh" in lines[0]
+    assert desk.document.undo_stack.count() == 1, "one import is one step"
+    desk.document.undo()
+    assert not desk.document.project.clips
+
+
+def test_importing_nothing_says_what_clips_are(desk, tmp_path, qtbot):
+    (tmp_path / "empty").mkdir()
+    desk.import_paths([str(tmp_path / "empty")])
+    qtbot.waitUntil(lambda: bool(desk.reports))
+    assert desk.reports[0][0] == "Nothing was imported"
+    assert "BVH" in desk.reports[0][1][0]
+
+
+def test_importing_again_refreshes_in_place(desk, clips, qtbot):
+    desk.import_paths([str(clips)])
+    qtbot.waitUntil(lambda: len(desk.document.project.clips) == 3)
+    ids = list(desk.document.project.clips)
+    desk.import_paths([str(clips / "idle.bvh"), str(clips / "more")])
+    qtbot.waitUntil(lambda: len(desk.words) == 2)
+    assert list(desk.document.project.clips) == ids
+
+
+def test_an_import_carries_its_drop_and_what_was_loaded(desk, clips, qtbot):
+    from app.features.graph.graph_drops import Drop
+
+    drop = Drop(True, "here", "stance")
+    desk.import_paths([str(clips)], drop)
+    qtbot.waitUntil(lambda: desk.drops == [drop])
+
+
+def test_an_import_for_a_project_that_was_left_is_dropped(desk, clips, qtbot):
+    desk.import_paths([str(clips)])
+    desk.document.load(Project("another"), None)
+    qtbot.waitUntil(desk.idle)
+    qtbot.wait(20)
+    assert not desk.document.project.clips
+
+
+def test_dialogs_left_with_cancel_do_nothing(desk, person, monkeypatch):
+    person.folder(None)
+    monkeypatch.setattr(QFileDialog, "getOpenFileName", lambda *a, **k: ("", ""))
+    monkeypatch.setattr(QFileDialog, "getOpenFileNames", lambda *a, **k: ([], ""))
+    desk.ask_open()
+    desk.ask_import_folder()
+    desk.ask_import_files()
+    assert desk.idle()
+
+
+# --- missing files
+
+
+def test_missing_clips_are_found_where_they_are_now(desk, person, saved, clips, tmp_path, qtbot):
+    elsewhere = tmp_path.parent / f"{tmp_path.name}-elsewhere"
+    shutil.move(clips, elsewhere / "deep" / "clips")
+    desk.document.load(Project(), None)
+    desk.open(saved)
+    qtbot.waitUntil(lambda: len(desk.document.project.clips) == 3)
+    assert all(e.motion is None for e in desk.document.project.clips.values())
+    person.folder(elsewhere)
+    desk.find_missing()
+    qtbot.waitUntil(lambda: desk.words[-1] == "Found 3 of 3 missing clips.")
+    assert all(e.motion is not None for e in desk.document.project.clips.values())
+    assert desk.document.dirty, "the new paths are to be saved"
+    shutil.rmtree(elsewhere)
+
+
+def test_when_nothing_is_missing_nothing_is_asked(desk, saved):
+    desk.find_missing()
+    assert desk.words[-1] == "No clip file is missing."
+
+
+def test_not_finding_them_says_so(desk, person, saved, tmp_path, qtbot):
+    clips = {i: replace(e, motion=None, path="gone.bvh", digest="") for i, e in desk.document.project.clips.items()}
+    desk.document.load(replace(desk.document.project, clips=clips), None)
+    (tmp_path / "nothing").mkdir()
+    person.folder(tmp_path / "nothing")
+    desk.find_missing()
+    qtbot.waitUntil(lambda: desk.words[-1] == "Found 0 of 3 missing clips.")
+
+
+# --- recent projects
+
+
+def test_recent_projects_are_the_latest_first_and_only_those_that_exist(desk, tmp_path):
+    places = [tmp_path / f"{n}.metagraph.yaml" for n in range(13)]
+    for place in places:
+        desk.document.save(place)
+        desk._remember(place)
+    desk._remember(places[5])
+    assert desk.recent()[:2] == [places[5], places[12]]
+    assert len(desk.recent()) == 10
+    places[12].unlink()
+    assert places[12] not in desk.recent()
+
+
+@pytest.mark.parametrize("content", ["", "{", "[1, null]", json.dumps({"a": 1}), json.dumps(None)])
+def test_a_broken_list_of_recent_projects_is_an_empty_one(desk, content):
+    from app.project.document import state_folder
+
+    (state_folder() / "recent.json").write_text(content)
+    assert desk.recent() == []

@@ -1,0 +1,46 @@
+"""Which dropped files are a conversation."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import numpy as np
+import soundfile
+
+from app.project.speech_files import beside, channels_of, converses, facts_of, kinds_of
+
+
+def sound(path: Path, channels: int) -> Path:
+    soundfile.write(str(path), np.zeros((800, channels)), 8000)
+    return path
+
+
+def test_two_channels_two_sounds_or_a_sound_with_words_are_a_conversation(tmp_path: Path) -> None:
+    mono, stereo, words = sound(tmp_path / "a.wav", 1), sound(tmp_path / "b.wav", 2), tmp_path / "a.TextGrid"
+    assert converses([stereo])
+    assert converses([mono, stereo])
+    assert converses([mono, words])
+    assert not converses([mono]), "a line of dialogue"
+    assert not converses([words])
+    assert not converses([mono, stereo, tmp_path / "c.flac"]), "lines of dialogue"
+    assert not converses([stereo, tmp_path / "notes.pdf"])
+
+
+def test_sounds_come_first_by_name_and_what_is_neither_is_left_out() -> None:
+    paths = [Path(n) for n in ("b.JSON", "B.wav", "a.WAV", "x.png", "a.vtt")]
+    assert kinds_of(paths) == ((Path("a.WAV"), Path("B.wav")), (Path("a.vtt"), Path("b.JSON")))
+
+
+def test_words_beside_a_sound_are_found_whatever_the_case(tmp_path: Path) -> None:
+    a, b = sound(tmp_path / "a.wav", 1), sound(tmp_path / "b.wav", 1)
+    (tmp_path / "A.TextGrid").touch()
+    assert beside([a, b]) == (tmp_path / "A.TextGrid",)
+    assert beside([tmp_path / "nowhere" / "c.wav"]) == ()
+
+
+def test_a_file_that_is_no_sound_has_no_channels(tmp_path: Path) -> None:
+    (tmp_path / "no.wav").write_text("no")
+    assert channels_of(tmp_path / "no.wav") == 0
+    assert channels_of(tmp_path / "gone.wav") == 0
+    assert facts_of(tmp_path / "gone.wav") == "gone.wav"
+    assert facts_of(sound(tmp_path / "a.wav", 2)) == "a.wav (2 channels, 0:00)"

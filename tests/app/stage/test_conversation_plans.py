@@ -1,0 +1,199 @@
+"""A conversation on stage: both characters, whose plan is seen, sound, keeping and writing it."""
+
+from __future__ import annotations
+
+import subprocess
+import sys
+from dataclasses import replace
+from pathlib import Path
+
+import msgspec
+import numpy as np
+import pytest
+from PySide6.QtCore import Qt
+from PySide6.QtTest import QTest
+
+from app.stage.conversation_plans import Stage
+from metagraph.formats.store import absolute, open_project, save_project
+from metagraph.graph.asks import Gesture
+from metagraph.graph.conversation import Conversation, Segment, Side
+
+ROOT = Path(__file__).parents[3]
+RATE = 16000
+
+
+def conversation(folder: Path) -> Conversation:
+    """Two who hum in turn, with their sound."""
+    import soundfile
+
+    t = np.arange(8 * RATE) / RATE
+    hum = 0.3 * np.sin(2 * np.pi * 150 * t) + 0.1 * np.sin(2 * np.pi * 700 * t)
+    sound = np.stack([hum * ((t >= a) & (t < b)) for a, b in ((1.0, 3.0), (4.0, 6.0))], 1)
+    soundfile.write(folder / "talk.wav", sound + np.random.default_rng(1).normal(0, 1e-4, sound.shape), RATE)
+    ada = (Segment("clause", 1.0, 3.0, 2.2, "hello to you"), Segment("hesitation", 3.2, 3.6, None, "um"))
+    ben = (Segment("clause", 4.0, 6.0, 5.0, "hello"), Segment("response", 3.0, 3.15, None, "yes"))
+    sides = (
+        Side(name="Ada", audio="talk.wav", channel=0, segments=ada),
+        Side(name="Ben", audio="talk.wav", channel=1, segments=tuple(sorted(ben, key=lambda s: s.start))),
+    )
+    every = tuple(
+        msgspec.structs.replace(s, rates=msgspec.structs.replace(s.rates, clause=1.0, response=1.0, hesitation=1.0)) for s in sides
+    )
+    return Conversation(name="Greeting", length=8.0, sides=every)
+
+
+@pytest.fixture
+def talking(tmp_path: Path) -> Path:
+    """A project file with a conversation of id v9000."""
+    whole = absolute(open_project(ROOT / "sample_clips" / "sample.metagraph.yaml").project, ROOT / "sample_clips")
+    path = tmp_path / "talk.metagraph.yaml"
+    save_project(replace(whole, conversations={"v9000": conversation(tmp_path)}, lines={}, performances={}), path)
+    return path
+
+
+@pytest.fixture
+def staged(drive, talking):
+    """The window with the conversation on stage."""
+    drive.files.open(talking)
+    drive.wait(lambda: drive.document.folder == talking.parent and drive.performance.skeleton() is not None)
+    drive.session.set_conversation("v9000")
+    drive.wait(lambda: drive.performance.shown.partner is not None)
+    return drive
+
+
+def test_both_are_seen_each_on_its_place_and_the_camera_sees_both(staged):
+    staged.wait(lambda: len(staged.preview._scene().actors) == 2)
+    low, high = staged.preview._scene().bounds()
+    assert high[0] - low[0] > 1.3
+    scene = staged.preview._scene()
+    assert scene.actors[0].positions[..., 0].mean() < 0 < scene.actors[1].positions[..., 0].mean()
+
+
+def test_the_timeline_shows_one_sides_plan_and_the_other_when_it_is_chosen(staged):
+    names = [staged.timeline.stage.itemText(n) for n in range(staged.timeline.stage.count())]
+    assert names[-2:] == ["Greeting: Ada", "Greeting: Ben"]
+    assert staged.timeline.stage.currentText() == "Greeting: Ada"
+    assert [a.stroke for a in staged.performance.asks if isinstance(a, Gesture)] == [2.2]
+    staged.timeline.stage.setFocus()
+    QTest.keyClick(staged.timeline.stage, Qt.Key.Key_Down)
+    staged.wait(lambda: staged.performance.shown.side == 1)
+    assert [a.stroke for a in staged.performance.asks if isinstance(a, Gesture)] == [5.0]
+    assert staged.preview._scene().actors[0].positions[..., 0].mean() < 0, "nobody moves to another place"
+
+
+def test_improvised_takes_the_conversation_off_stage(staged):
+    staged.timeline.stage.setFocus()
+    QTest.keyClick(staged.timeline.stage, Qt.Key.Key_Up)
+    assert staged.session.conversation is None
+    staged.wait(lambda: staged.performance.shown.partner is None)
+
+
+def test_both_are_heard_each_where_it_speaks(staged):
+    staged.wait(lambda: len(staged.sound.parts) == 2)
+    heard = [np.flatnonzero(np.abs(samples) > 0.1) / 44100 + at for at, samples in staged.sound.parts]
+    assert [round(float(h.min())) for h in heard] == [1, 4]
+    assert [round(float(h.max())) for h in heard] == [3, 6]
+
+
+def test_it_plays_to_its_end_and_stops_there(staged):
+    staged.session.loop = False
+    staged.session.seek(7.9)
+    staged.session.set_playing(True)
+    staged.performance.advance(0.5)
+    assert staged.session.seconds == 8.0 and not staged.session.playing
+
+
+def test_another_seed_is_the_conversations_own_and_undone(staged):
+    before = staged.document.project.settings.seed
+    staged.timeline.seed.setValue(77)
+    assert staged.document.project.conversations["v9000"].seed == 77
+    assert staged.document.project.settings.seed == before
+    staged.document.undo_stack.undo()
+    assert staged.document.project.conversations["v9000"].seed == 1
+
+
+def test_kept_as_performances_both_can_be_played_and_undone_at_once(staged):
+    before = staged.document.project
+    staged.performance.keep_conversation()
+    kept = staged.document.project.performances
+    assert [p.name for p in kept.values()] == ["Greeting: Ada", "Greeting: Ben"]
+    assert staged.session.conversation is None and staged.session.performance == next(iter(kept))
+    assert {line.channel for line in staged.document.project.lines.values()} == {0, 1}
+    staged.wait(lambda: staged.performance.shown.partner is None and bool(staged.performance.shown.plan.track.speeches))
+    staged.document.undo_stack.undo()
+    assert staged.document.project.performances == before.performances and staged.document.project.lines == before.lines
+
+
+def test_a_side_moved_by_another_project_uses_that_ones_clips_and_one_that_cannot_be_read_is_told(talking):
+    folder = talking.parent
+    project = open_project(talking).project
+    talk = project.conversations["v9000"]
+    other = replace(project, conversations={}, settings=replace(project.settings, alpha=9.0))
+    save_project(absolute(other, folder), folder / "other.metagraph.yaml")
+    for path, alpha, told in (("other.metagraph.yaml", 9.0, False), ("missing.metagraph.yaml", project.settings.alpha, True)):
+        sides = (talk.sides[0], msgspec.structs.replace(talk.sides[1], project=path))
+        shown = Stage().show(replace(project, conversations={"v9000": msgspec.structs.replace(talk, sides=sides)}), "v9000", folder)
+        assert shown.both[1].project.settings.alpha == alpha
+        assert any("missing" in note for note in shown.notes) == told
+
+
+def test_two_other_projects_are_each_read_once(talking, monkeypatch):
+    from app.stage import conversation_plans as stage
+
+    folder, read = talking.parent, []
+    project = open_project(talking).project
+    talk = project.conversations["v9000"]
+    for name in ("one", "two"):
+        save_project(absolute(replace(project, conversations={}), folder), folder / f"{name}.metagraph.yaml")
+    whole = stage.open_whole
+    monkeypatch.setattr(stage, "open_whole", lambda path: (read.append(path.name), whole(path))[1])
+    sides = tuple(msgspec.structs.replace(s, project=f"{n}.metagraph.yaml") for s, n in zip(talk.sides, ("one", "two"), strict=True))
+    both, own = Stage(), replace(project, conversations={"v9000": msgspec.structs.replace(talk, sides=sides)})
+    for _ in range(3):
+        both.show(own, "v9000", folder)
+    assert read == ["one.metagraph.yaml", "two.metagraph.yaml"]
+    both.show(project, "v9000", folder)
+    both.show(own, "v9000", folder)
+    assert len(read) == 4, "what no side needs is not kept"
+
+
+def test_a_side_can_move_with_a_clip_instead_of_its_graph_and_still_speaks_and_a_lost_one_is_told(talking):
+    project = open_project(talking).project
+    talk = project.conversations["v9000"]
+    clip = next(e for e in project.clips.values() if e.name.endswith("wave_hello_rt_01"))
+
+    def shown(motion: str | None):
+        sides = (msgspec.structs.replace(talk.sides[0], motion=motion), talk.sides[1])
+        return Stage().show(replace(project, conversations={"v9000": msgspec.structs.replace(talk, sides=sides)}), "v9000", talking.parent)
+
+    still, moved, lost = shown(None), shown(clip.id), shown("c0")
+    arm = project.skeleton.index("RightUpperArm") if "RightUpperArm" in project.skeleton else 10
+    times = np.linspace(0, clip.duration, 7)
+    assert np.abs(moved.pose(times).rotations[:, arm] - clip.motion.pose_at(times).rotations[:, arm]).max() < 1e-3
+    assert np.array_equal(moved.pose(1.0).rotations, moved.pose(np.array([1.0])).rotations[0])
+    assert moved.pose(100.0) is not None, "beyond its end it holds its last pose"
+    assert moved.plan.track.speeches == still.plan.track.speeches != ()
+    assert moved.partner.motion is None
+    assert lost.motion is None and any("missing" in note for note in lost.notes)
+
+
+def test_it_is_written_from_the_command_line_as_a_video_with_sound_and_as_motion_for_each(talking, tmp_path):
+    def run(*words: str) -> subprocess.CompletedProcess[str]:
+        whole = [sys.executable, "-m", "app.cli", "render", str(talking), "--conversation", "Greeting", *words]
+        return subprocess.run(whole, cwd=ROOT, capture_output=True, text=True, timeout=300)
+
+    made = run("-o", str(tmp_path / "show.mp4"), "-s", "2.5", "--size", "160x90", "--fps", "10")
+    assert made.returncode == 0, made.stderr
+    import av
+
+    with av.open(str(tmp_path / "show.mp4")) as container:
+        assert {s.type for s in container.streams} == {"video", "audio"}
+        loud = np.concatenate([np.abs(f.to_ndarray()[0]) for f in container.decode(audio=0)])
+    assert loud[:40000].max() < 0.05 < loud[60000:].max()
+    assert run("-o", str(tmp_path / "show.bvh"), "-s", "1").returncode == 0
+    assert (tmp_path / "show-1.bvh").is_file() and (tmp_path / "show-2.bvh").is_file()
+    wrong = subprocess.run(
+        [sys.executable, "-m", "app.cli", "render", str(talking), "--conversation", "Nobody", "-o", "x.png"],
+        cwd=ROOT, capture_output=True, text=True, timeout=100,
+    )  # fmt: skip
+    assert wrong.returncode == 1 and "it keeps 'Greeting'" in wrong.stderr

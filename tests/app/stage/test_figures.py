@@ -1,0 +1,96 @@
+"""Which figure draws the character, made on a thread; and thumbnails from the other process."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from pathlib import Path
+
+import pytest
+
+from app.project.document import Document
+from app.project.jobs import Jobs
+from app.stage.figures import Figures
+from app.stage.session import Session
+from app.stage.thumbnails import Thumbnails
+from metagraph.graph import edits
+from preview.figure import SkinnedFigure, StickFigure
+
+MANNEQUIN = Path(__file__).resolve().parents[3] / "sample_clips" / "mannequin.glb"
+
+
+@pytest.fixture
+def document(qapp):
+    document = Document()
+    yield document
+    document.close_journal()
+
+
+@pytest.fixture
+def figures(document):
+    jobs = Jobs()
+    yield Figures(document, jobs)
+    jobs.stop()
+
+
+def test_a_skeleton_without_a_character_is_drawn_as_sticks_once_they_are_built(document, figures, toy, qtbot):
+    document.load(toy.project(), None)
+    told = []
+    figures.changed.connect(lambda: told.append(True))
+    assert figures.figure(toy.skeleton) is None, "the window does not wait"
+    qtbot.waitUntil(lambda: figures.figure(toy.skeleton) is not None)
+    assert isinstance(figures.figure(toy.skeleton), StickFigure)
+    assert len(told) == 1
+
+
+def test_the_projects_character_is_drawn_on_the_projects_skeleton_alone(document, figures, sample, toy, qtbot):
+    document.load(replace(sample, character=str(MANNEQUIN)), None)
+    qtbot.waitUntil(lambda: figures.figure(sample.skeleton) is not None)
+    assert isinstance(figures.figure(sample.skeleton), SkinnedFigure)
+    figures.figure(toy.skeleton)
+    qtbot.waitUntil(lambda: figures.figure(toy.skeleton) is not None)
+    assert isinstance(figures.figure(toy.skeleton), StickFigure)
+    document.edit("Draw a stick figure", lambda p: edits.set_character(p, None))
+    figures.figure(sample.skeleton)
+    qtbot.waitUntil(lambda: isinstance(figures.figure(sample.skeleton), StickFigure))
+    document.undo()
+    qtbot.waitUntil(lambda: isinstance(figures.figure(sample.skeleton), SkinnedFigure))
+
+
+@pytest.mark.parametrize("content", [None, b"", b"glTF\x02\x00\x00\x00"])
+def test_a_character_that_cannot_be_read_is_told_once_and_drawn_as_sticks(document, figures, toy, tmp_path, qtbot, content):
+    path = tmp_path / "broken.glb"
+    if content is not None:
+        path.write_bytes(content)
+    told = []
+    document.failed.connect(told.append)
+    document.load(replace(toy.project(), character=str(path)), None)
+    qtbot.waitUntil(lambda: figures.figure(toy.skeleton) is not None)
+    assert isinstance(figures.figure(toy.skeleton), StickFigure)
+    assert len(told) == 1
+    assert "broken.glb" in told[0]
+
+
+@pytest.mark.gl
+def test_thumbnails_are_drawn_elsewhere_and_a_loop_moves(document, figures, toy, qtbot):
+    document.load(toy.project(), None)
+    thumbnails = Thumbnails(document, Session(document), figures)
+    try:
+        loop = toy.id(document.project, "rest loop")
+        clip = document.project.action(loop).clip
+        assert thumbnails.picture(clip) is None
+        qtbot.waitUntil(lambda: thumbnails.picture(clip) is not None and thumbnails.picture(clip, bare=True) is not None, timeout=20000)
+        card, bare = thumbnails.picture(clip), thumbnails.picture(clip, bare=True)
+        assert card.pixelColor(1, 1).alpha() == 255
+        assert bare.pixelColor(1, 1).alpha() == 0
+        thumbnails.moving(clip, 0)
+        qtbot.waitUntil(lambda: thumbnails.moving(clip, 0) is not bare, timeout=20000)
+        beats = [thumbnails.moving(clip, n) for n in range(24)]
+        assert any(beats[0] != other for other in beats), "the arms swing"
+        assert thumbnails.moving(clip, 24) is beats[0]
+        gone = {i: replace(e, motion=None) for i, e in document.project.clips.items()}
+        document.load(replace(document.project, clips=gone), None)
+        assert thumbnails.picture(clip) is None
+        assert thumbnails.picture("no such clip") is None
+    finally:
+        thumbnails.stop()
+    assert thumbnails.picture(clip) is None, "stopped, it orders nothing"

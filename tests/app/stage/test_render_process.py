@@ -1,0 +1,67 @@
+"""A performance is written by a process of its own, told as it goes, and leaves nothing when it is cancelled."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import pytest
+
+from app.project.jobs import Job
+from app.stage.render_process import Wanted, write
+from metagraph.formats.bvh import read_bvh
+from metagraph.formats.store import open_project
+from metagraph.graph import asks as a
+from metagraph.graph import staging
+
+ROOT = Path(__file__).resolve().parents[3]
+
+
+@pytest.fixture(scope="module")
+def talk():
+    """The sample project with a performance of two seconds kept in it."""
+    project = open_project(ROOT / "sample_clips" / "sample.metagraph.yaml").project
+    kept = a.Performance(name="talk", length=2.0, asks=(a.Play(action="shrug_bt_01", at=0.2, priority=2),))
+    return staging.add_performance(project, kept)
+
+
+@pytest.mark.gl
+def test_a_video_is_written_and_its_progress_told(qapp, talk, tmp_path):
+    project, ident = talk
+    job, told = Job("x", lambda job: None), []
+    job.progress.connect(lambda done, total, words: told.append((done, total)))
+    out = write(project, ROOT / "sample_clips", Wanted(tmp_path / "a.mp4", ident, 0.5, (320, 180), 10), job)
+    assert out.stat().st_size > 1000
+    qapp.processEvents()
+    assert told[-1] == (5, 5)
+    assert [p.name for p in tmp_path.iterdir()] == ["a.mp4"]
+
+
+def test_motion_is_the_performance(qapp, talk, tmp_path):
+    from metagraph.playback.hear import perform
+    from metagraph.playback.player import pose_at
+
+    project, ident = talk
+    write(project, ROOT / "sample_clips", Wanted(tmp_path / "a.bvh", ident, 1.0), Job("x", lambda job: None))
+    clip = read_bvh(tmp_path / "a.bvh")
+    assert clip.frames == 31
+    kept = project.performances[ident]
+    there = pose_at(perform(project, kept.asks, 1.0), project, 0.7)
+    arm = project.skeleton.index("RightUpperArm") if "RightUpperArm" in project.skeleton.names else 10
+    name = project.skeleton.names[arm]
+    mine = clip.rotations[21, clip.skeleton.index(name)]
+    assert abs(float((mine * there.rotations[arm]).sum())) == pytest.approx(1.0, abs=1e-3)
+
+
+def test_a_place_that_cannot_be_written_is_said(qapp, talk, tmp_path):
+    project, ident = talk
+    (tmp_path / "file").write_text("in the way")
+    with pytest.raises(RuntimeError, match="file"):
+        write(project, ROOT / "sample_clips", Wanted(tmp_path / "file" / "a.bvh", ident, 0.5), Job("x", lambda job: None))
+
+
+def test_a_cancelled_job_leaves_nothing(qapp, talk, tmp_path):
+    project, ident = talk
+    job = Job("x", lambda job: None)
+    job.cancel()
+    write(project, ROOT / "sample_clips", Wanted(tmp_path / "a.mp4", ident, 60.0), job)
+    assert list(tmp_path.iterdir()) == []
