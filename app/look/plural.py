@@ -21,3 +21,8 @@ def short(name: str, stance: str) -> str:
                 return name
             place += 1
     return name
+
+
+def clips_words(count: int) -> str:
+    """Return "1 clip", "152 clips"."""
+    return many(count, "clip")

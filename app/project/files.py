@@ -10,11 +10,13 @@ from pathlib import Path
 from PySide6.QtCore import QObject, Signal
 from PySide6.QtWidgets import QFileDialog, QMessageBox, QWidget
 
-from app.features.graph.graph_drops import ANNOTATIONS, Drop, Load
-from app.features.retargeting.import_retargeting import Retargeting, clips_words
+from app.features.graph.graph_drops import Drop
+from app.features.retargeting.import_retargeting import Retargeting
+from app.look.plural import clips_words
 from app.project.document import Document, state_folder, untitled_journal
 from app.project.jobs import Job, Jobs
 from app.project.kept_maps import kept_maps
+from app.project.load import ANNOTATIONS, Load
 from app.project.opening import load_whole, open_whole
 from app.project.speech_files import converses, kinds_of
 from metagraph.errors import FileError

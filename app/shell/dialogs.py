@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 from PySide6.QtGui import QKeySequence
 from PySide6.QtWidgets import QFileDialog, QMessageBox
 
-from app.features.retargeting.import_retargeting import clips_words
+from app.look.plural import clips_words
 from app.look.theme import KIND_MARKS
 from metagraph.graph import edits
 from metagraph.graph.model import KINDS

@@ -18,7 +18,7 @@ from PySide6.QtWidgets import (
 
 from app.features.character.character_panel import PreviewPanel
 from app.features.graph.graph_canvas import Canvas
-from app.features.graph.graph_drops import Drop, load_of, sounds_of
+from app.features.graph.graph_drops import Drop
 from app.features.library.library_panel import LibraryPanel
 from app.features.manual.manual_place import Place
 from app.look import icons
@@ -41,6 +41,7 @@ from app.stage.line_player import Sound
 from app.stage.performance import Performance
 from app.stage.session import Session
 from app.stage.thumbnails import Thumbnails
+from app.widgets.mime import load_of, sounds_of
 from metagraph.formats.imports import Imported
 from metagraph.graph.check import Problem, check
 from metagraph.graph.model import Layer, Project

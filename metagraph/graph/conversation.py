@@ -102,6 +102,11 @@ class Conversation(Struct, frozen=True, kw_only=True, omit_defaults=True, forbid
     seed: Annotated[int, Meta(ge=0, le=0xFFFFFFFF)] = 1
 
 
+def side_name(conversation: Conversation, side: int) -> str:
+    """Return what a side is called: its own name, else its number."""
+    return conversation.sides[side].name or f"Speaker {side + 1}"
+
+
 def heard_by(conversation: Conversation, side: int) -> tuple[Segment, ...]:
     """Return what a side moves with, by start and never overlapping: its own clauses and responses, and what is left of the partner's
     hesitations where it does not speak itself. Its own hesitations are idle. kind "hesitation" here is the partner's."""

@@ -7,17 +7,17 @@ from PySide6.QtGui import QDragEnterEvent, QDragMoveEvent, QDropEvent, QResizeEv
 from PySide6.QtWidgets import QComboBox, QHBoxLayout, QLabel, QMenu, QToolButton, QVBoxLayout, QWidget
 
 from app.features.conversation.segment_editing import Editing
-from app.features.conversation.segment_lanes import segment_words, side_name
+from app.features.conversation.segment_lanes import segment_words
 from app.features.conversation.segment_view import View
 from app.features.conversation.sound_reading import Sounds
-from app.features.graph.graph_drops import sounds_of
-from app.features.timeline.timeline_panel import Sentence
 from app.look.plural import many
 from app.look.theme import SOUND_MARKS, theme
 from app.project.document import Document
 from app.project.jobs import Jobs
 from app.stage.session import Session
-from metagraph.graph.conversation import SPOKEN
+from app.widgets.mime import sounds_of
+from app.widgets.sentence import Sentence
+from metagraph.graph.conversation import SPOKEN, side_name
 
 NONE = "None on stage"
 BRIEF = 1000  # pixels of the panel below which the legend leaves its words out: the sentence beside needs the room

@@ -21,13 +21,12 @@ from PySide6.QtWidgets import (
     QWidget,
 )
 
-from app.features.conversation.segment_lanes import side_name
 from app.look.theme import SOUND_MARKS, strengthen
 from app.project.document import Document
 from app.project.speech_files import SOUNDS, channels_of
 from metagraph.formats.store import SUFFIX, relative
 from metagraph.graph import conversing
-from metagraph.graph.conversation import HESITATIONS, RESPONSES, Conversation, Rates
+from metagraph.graph.conversation import HESITATIONS, RESPONSES, Conversation, Rates, side_name
 from metagraph.graph.edits import EditError
 from metagraph.graph.model import Project
 

@@ -14,7 +14,7 @@ import numpy as np
 from PySide6.QtCore import QRectF
 
 from app.widgets.lane_geometry import LEFT, RULER, Scale
-from metagraph.graph.conversation import Conversation, Segment, Word
+from metagraph.graph.conversation import Segment, Word
 
 GAP = 8.0  # pixels between the two
 WORDS, SEGMENTS, TALLEST = 17.0, 26.0, 190.0  # pixels of the words, of the segments, of a side at most
@@ -88,7 +88,3 @@ def segment_words(segment: Segment) -> str:
     if segment.kind == "clause":
         lines.append(f"Stress at {segment.peak:.2f} s" if segment.peak is not None else "No stress: drag in the waveform above to set it")
     return "\n".join(lines)
-
-
-def side_name(conversation: Conversation, side: int) -> str:
-    return conversation.sides[side].name or f"Speaker {side + 1}"

@@ -10,13 +10,13 @@ from PySide6.QtCore import QPointF, QRectF, Qt
 from PySide6.QtGui import QColor, QFont, QImage, QPainter, QPen
 
 from app.features.conversation.segment_hits import Hit
-from app.features.conversation.segment_lanes import AXIS, Lane, lanes, pitch_y, segment_rect, side_name, visible, words_in
+from app.features.conversation.segment_lanes import AXIS, Lane, lanes, pitch_y, segment_rect, visible, words_in
 from app.features.conversation.sound_reading import Heard
 from app.features.conversation.waveforms import Envelope, joined, painted
 from app.look.theme import SOUND_MARKS, Theme
 from app.widgets.act_strip import STEPS, clock
 from app.widgets.lane_geometry import LEFT, RULER, Scale, advance, elided
-from metagraph.graph.conversation import Conversation, Segment
+from metagraph.graph.conversation import Conversation, Segment, side_name
 
 INK = "#17181b"  # on the fills
 MIDDLE = Qt.AlignmentFlag.AlignVCenter

@@ -25,7 +25,7 @@ from app.features.conversation.segment_editing import Editing
 from app.features.conversation.segment_gestures import MouseGesture, Pan, SegmentDrag, gesture_for
 from app.features.conversation.segment_hits import NOTHING, Hit, hit_at
 from app.features.conversation.segment_keys import DEEDS, deed_of
-from app.features.conversation.segment_lanes import LEAST, NEAREST, farthest, segment_words, side_name, words_in
+from app.features.conversation.segment_lanes import LEAST, NEAREST, farthest, segment_words, words_in
 from app.features.conversation.segment_paint import Scene, empty, paint
 from app.features.conversation.sound_reading import Sounds
 from app.look.theme import theme
@@ -33,7 +33,7 @@ from app.project.document import Edit
 from app.widgets.lane_geometry import LEFT, Scale
 from app.widgets.lane_paint import badge, playhead
 from app.widgets.memo import Once
-from metagraph.graph.conversation import Conversation
+from metagraph.graph.conversation import Conversation, side_name
 from metagraph.graph.edits import EditError
 
 ZOOM, USUAL = 1.2, 100.0  # of a turn of the wheel; pixels a second to begin with: most words have room

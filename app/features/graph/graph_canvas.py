@@ -23,7 +23,7 @@ from PySide6.QtGui import (
 )
 from PySide6.QtWidgets import QInputDialog, QMenu, QToolTip, QWidget
 
-from app.features.graph.graph_drops import Drop, Load, drop_at, load_of, perform
+from app.features.graph.graph_drops import Drop, drop_at, perform
 from app.features.graph.graph_gestures import LikelihoodDrag, MouseGesture, RowDrag
 from app.features.graph.graph_layout import Hit, Layout, arrange
 from app.features.graph.graph_painter import Look, paint
@@ -31,9 +31,11 @@ from app.features.graph.repoint import HeadDrag
 from app.look.plural import many
 from app.look.theme import theme
 from app.project.document import Document
+from app.project.load import Load
 from app.stage.performance import Performance
 from app.stage.session import Session
 from app.stage.thumbnails import Thumbnails
+from app.widgets.mime import load_of
 from metagraph.graph import edits
 from metagraph.graph.expand import size
 from metagraph.graph.model import KINDS, LAYERS, Action, Kind, Project

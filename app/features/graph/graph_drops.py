@@ -2,62 +2,12 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
 from dataclasses import dataclass
-from pathlib import Path
-
-from PySide6.QtCore import QMimeData
 
 from app.features.graph.graph_layout import Hit
-from app.project.speech_files import kinds_of
-from metagraph.formats.clips import SUFFIXES
+from app.project.load import ANNOTATIONS, Load
 from metagraph.graph.edits import EditError, move_actions, place, refusal, to_stance
 from metagraph.graph.model import Kind, Layer, Project
-
-CLIPS = "application/x-metagraph-clips"
-ACTIONS = "application/x-metagraph-actions"
-ANNOTATIONS = ".eaf"
-
-
-@dataclass(frozen=True)
-class Load:
-    """What is being dragged: clips, actions or files."""
-
-    clips: tuple[str, ...] = ()
-    actions: tuple[str, ...] = ()
-    files: tuple[str, ...] = ()
-
-    def __bool__(self) -> bool:
-        return bool(self.clips or self.actions or self.files)
-
-    @property
-    def count(self) -> int:
-        return len(self.clips) or len(self.actions) or len(self.files)
-
-
-def mime(clips: Sequence[str] = (), actions: Sequence[str] = ()) -> QMimeData:
-    """Return what a drag of clips or actions carries."""
-    out = QMimeData()
-    if clips:
-        out.setData(CLIPS, "\n".join(clips).encode())
-    if actions:
-        out.setData(ACTIONS, "\n".join(actions).encode())
-    return out
-
-
-def load_of(data: QMimeData) -> Load:
-    """Return what mime data carries; files that cannot be clips are left out, folders are kept."""
-    clips = tuple(bytes(data.data(CLIPS).data()).decode().split("\n")) if data.hasFormat(CLIPS) else ()
-    actions = tuple(bytes(data.data(ACTIONS).data()).decode().split("\n")) if data.hasFormat(ACTIONS) else ()
-    files = tuple(u.toLocalFile() for u in data.urls() if u.isLocalFile()) if data.hasUrls() else ()
-    ends = (*SUFFIXES, ANNOTATIONS)
-    return Load(clips, actions, tuple(f for f in files if "." not in f.rsplit("/", 1)[-1] or f.lower().endswith(ends)))
-
-
-def sounds_of(data: QMimeData) -> tuple[Path, ...]:
-    """Return the sounds that mime data carries, and their transcripts after them; nothing where no sound is among them."""
-    sounds, transcripts = kinds_of([Path(u.toLocalFile()) for u in data.urls() if u.isLocalFile()])
-    return (*sounds, *transcripts) if sounds else ()
 
 
 @dataclass(frozen=True)

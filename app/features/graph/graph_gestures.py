@@ -5,11 +5,11 @@ from __future__ import annotations
 from typing import TYPE_CHECKING, Protocol
 
 from PySide6.QtCore import QPointF, Qt
-from PySide6.QtGui import QDrag, QFontMetricsF, QPainter, QPixmap
-from PySide6.QtWidgets import QApplication, QWidget
+from PySide6.QtGui import QDrag
+from PySide6.QtWidgets import QApplication
 
-from app.features.graph.graph_drops import mime
 from app.features.graph.graph_layout import likelihood_at
+from app.widgets.mime import drag_picture, mime
 from metagraph.graph import edits
 
 if TYPE_CHECKING:
@@ -76,23 +76,3 @@ class RowDrag:
 
     def cancel(self) -> None:
         pass
-
-
-def drag_picture(text: str, widget: QWidget) -> QPixmap:
-    """Return a small label to carry under the pointer."""
-    metrics = QFontMetricsF(widget.font())
-    ratio = widget.devicePixelRatioF()
-    out = QPixmap(round((metrics.horizontalAdvance(text) + 24) * ratio), round(28 * ratio))
-    out.setDevicePixelRatio(ratio)
-    out.fill(Qt.GlobalColor.transparent)
-    painter = QPainter(out)
-    painter.setRenderHint(QPainter.RenderHint.Antialiasing)
-    painter.setBrush(widget.palette().toolTipBase())
-    painter.setPen(widget.palette().mid().color())
-    rect = out.deviceIndependentSize()
-    painter.drawRoundedRect(0.5, 0.5, rect.width() - 1, rect.height() - 1, 6, 6)
-    painter.setPen(widget.palette().text().color())
-    painter.setFont(widget.font())
-    painter.drawText(0, 0, round(rect.width()), round(rect.height()), Qt.AlignmentFlag.AlignCenter, text)
-    painter.end()
-    return out

@@ -52,13 +52,12 @@ from PySide6.QtWidgets import (
     QWidget,
 )
 
-from app.features.graph.graph_drops import load_of, mime
-from app.features.graph.graph_gestures import drag_picture
 from app.look import icons
 from app.look.theme import KIND_MARKS, theme
 from app.project.document import Document
 from app.stage.session import Session
 from app.stage.thumbnails import Thumbnails
+from app.widgets.mime import drag_picture, load_of, mime
 from metagraph.graph import edits
 from metagraph.graph.model import KINDS, LAYERS, ClipEntry, Kind, Project
 

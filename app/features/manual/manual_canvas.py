@@ -22,7 +22,6 @@ from PySide6.QtGui import (
 )
 from PySide6.QtWidgets import QToolTip, QWidget
 
-from app.features.graph.graph_drops import load_of
 from app.features.manual import manual_commands as commands
 from app.features.manual import manual_painter as painter
 from app.features.manual.manual_gestures import Band, Drag, DrawLink, Move, Pan
@@ -34,6 +33,7 @@ from app.project.document import Document
 from app.stage.performance import Performance
 from app.stage.session import Session
 from app.stage.thumbnails import Thumbnails
+from app.widgets.mime import load_of
 from metagraph.graph import manual_edits
 from metagraph.graph.edits import EditError
 from metagraph.graph.manual import ANY

@@ -9,10 +9,10 @@ from PySide6.QtCore import Qt
 from PySide6.QtGui import QKeyEvent, QKeySequence
 from PySide6.QtWidgets import QMenu
 
-from app.features.graph.graph_drops import Load
 from app.features.manual.arranging import arranged
 from app.features.manual.manual_painter import facts, words_of
 from app.features.manual.manual_scene import Hit
+from app.project.load import Load
 from metagraph.graph import manual_edits
 from metagraph.graph.manual import ANY, Link
 from metagraph.graph.model import Project

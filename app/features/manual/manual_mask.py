@@ -5,9 +5,9 @@ from __future__ import annotations
 from PySide6.QtCore import Qt
 from PySide6.QtWidgets import QWidget
 
-from app.features.skeleton.skeleton_dialog import MaskDialog
 from app.project.document import Document
 from app.stage.session import Session
+from app.widgets.joint_mask import MaskDialog
 from metagraph.graph import manual_edits
 
 

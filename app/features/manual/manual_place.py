@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 from PySide6.QtCore import QPointF
 from PySide6.QtWidgets import QStackedWidget
 
-from app.features.graph.graph_drops import Load
+from app.project.load import Load
 from metagraph.graph.manual import Manual
 from metagraph.graph.model import LAYERS, Project
 

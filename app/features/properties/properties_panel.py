@@ -400,7 +400,7 @@ class PropertiesPanel(QScrollArea):
         self._try("Change end stance", lambda p: edits.set_ends(p, chosen, stance))
 
     def _mask(self) -> None:
-        from app.features.skeleton.skeleton_dialog import MaskDialog
+        from app.widgets.joint_mask import MaskDialog
 
         MaskDialog(self.document, self.session, self).open()
 

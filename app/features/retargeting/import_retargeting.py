@@ -8,6 +8,7 @@ from dataclasses import replace
 from PySide6.QtCore import QObject, Signal
 from PySide6.QtWidgets import QWidget
 
+from app.look.plural import clips_words
 from app.project.document import Document
 from app.project.jobs import Job, Jobs
 from app.project.kept_maps import keep_map
@@ -16,10 +17,6 @@ from metagraph.graph.bring import Bringing
 from metagraph.motion.joint_map import JointMap
 
 Then = Callable[[Imported], None]
-
-
-def clips_words(count: int) -> str:
-    return f"{count} clip{'s' if count != 1 else ''}"
 
 
 class Retargeting(QObject):

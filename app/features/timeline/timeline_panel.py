@@ -2,8 +2,7 @@
 
 from __future__ import annotations
 
-from PySide6.QtCore import Qt, QTimer
-from PySide6.QtGui import QResizeEvent
+from PySide6.QtCore import QTimer
 from PySide6.QtWidgets import (
     QComboBox,
     QHBoxLayout,
@@ -11,14 +10,12 @@ from PySide6.QtWidgets import (
     QLabel,
     QMenu,
     QMessageBox,
-    QSizePolicy,
     QSpinBox,
     QToolButton,
     QVBoxLayout,
     QWidget,
 )
 
-from app.features.conversation.segment_lanes import side_name
 from app.features.timeline.lane_view import Lanes
 from app.look.plural import many
 from app.project.document import Document
@@ -26,8 +23,10 @@ from app.stage.performance import Performance
 from app.stage.session import Session
 from app.widgets.lane_geometry import outcome, wanted
 from app.widgets.request_menu import ask_menu
+from app.widgets.sentence import Sentence
 from metagraph.graph import edits, staging
 from metagraph.graph.asks import Performance as KeptPerformance
+from metagraph.graph.conversation import side_name
 from metagraph.graph.conversing import change_conversation
 from metagraph.graph.edits import EditError
 from metagraph.graph.model import LAYERS
@@ -309,37 +308,3 @@ class TimelinePanel(QWidget):
             words = f"{many(count, 'action')} in {shown.length:g} s"
             empty = "Nothing plays yet: drop a clip on a stance and some around it."
             self.title.say((words if count else empty) + (f", {many(lost, 'request')} could not be met" if lost else ""))
-
-
-class Sentence(QLabel):
-    """A line, or two where it is narrow, that gives way where there is no room for it, and then tells all of it in a tooltip."""
-
-    def __init__(self, parent: QWidget) -> None:
-        super().__init__(parent)
-        self.words = ""
-        self.setTextFormat(Qt.TextFormat.PlainText)
-        self.setWordWrap(True)
-        self.setSizePolicy(QSizePolicy.Policy.Ignored, QSizePolicy.Policy.Ignored)
-        self.setMinimumWidth(40)
-
-    def say(self, words: str, strong: bool = False) -> None:
-        """Show words; strong: they are about what is selected."""
-        if strong == bool(self.property("dim")):
-            self.setProperty("dim", not strong)
-            self.style().polish(self)
-        self.words = " ".join(words.split())
-        self._fit()
-
-    def resizeEvent(self, event: QResizeEvent) -> None:
-        super().resizeEvent(event)
-        self._fit()
-
-    def _fit(self) -> None:
-        measure, width = self.fontMetrics(), max(20, self.width() - 2)
-        two = self.height() >= 2 * measure.height() - 2 and measure.horizontalAdvance(self.words) > width
-        room = 2 * width - 60 if two else width  # the first line ends with a whole word
-        shown = measure.elidedText(self.words, Qt.TextElideMode.ElideRight, max(20, room))
-        if shown != self.text():
-            self.setText(shown)
-            self.setToolTip(self.words if shown != self.words else "")
-            self.setAccessibleName(self.words)

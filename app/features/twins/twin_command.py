@@ -7,7 +7,7 @@ from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from app.features.retargeting.import_retargeting import clips_words
+from app.look.plural import clips_words
 from app.project.jobs import Job
 from metagraph.formats.clips import digest, read_clips
 from metagraph.formats.gltf_writer import write_glb

@@ -542,7 +542,7 @@ def test_a_skeletons_correction_is_an_edit_like_any_other(toys):
 
 
 def test_an_actions_joints_are_ticked_in_a_tree(toys):
-    from app.features.skeleton.skeleton_dialog import MaskDialog
+    from app.widgets.joint_mask import MaskDialog
 
     drive = toys
     drive.session.jump(action=drive.id("rest beat lf"))

@@ -5,8 +5,10 @@ from __future__ import annotations
 import pytest
 from PySide6.QtCore import QMimeData, QUrl
 
-from app.features.graph.graph_drops import Load, drop_at, load_of, mime, perform
+from app.features.graph.graph_drops import drop_at, perform
 from app.features.graph.graph_layout import Hit
+from app.project.load import Load
+from app.widgets.mime import load_of, mime
 from metagraph.graph import edits
 from metagraph.graph.model import Project
 

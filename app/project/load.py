@@ -1,0 +1,23 @@
+"""What is dragged or dropped: clips and actions of the project, or files to read."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+ANNOTATIONS = ".eaf"
+
+
+@dataclass(frozen=True)
+class Load:
+    """What is being dragged: clips, actions or files."""
+
+    clips: tuple[str, ...] = ()
+    actions: tuple[str, ...] = ()
+    files: tuple[str, ...] = ()
+
+    def __bool__(self) -> bool:
+        return bool(self.clips or self.actions or self.files)
+
+    @property
+    def count(self) -> int:
+        return len(self.clips) or len(self.actions) or len(self.files)
