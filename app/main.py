@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import os
 import sys
+from importlib import import_module
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -35,17 +36,25 @@ def prepare() -> QApplication:
     return QApplication(sys.argv[:1])
 
 
+def make_window() -> Window:
+    """Return a window with all features, not shown yet."""
+    from app.features import FEATURES
+    from app.shell.window import Window
+
+    return Window(import_module(f"app.features.{name}").contribute for name in FEATURES)
+
+
 def open_window(path: Path | None, sample: bool = False) -> Window:
     """Show a window on a project, the sample project, or nothing."""
     from app.project.files import SAMPLE
-    from app.shell.window import Window
 
-    window = Window()
+    window = make_window()
     window.show()
+    files = window.shell.files
     if path is not None:
-        window.files.open(path)
-    elif not window.files.recover_untitled() and sample:
-        window.files.open(SAMPLE, template=True)
+        files.open(path)
+    elif not files.recover_untitled() and sample:
+        files.open(SAMPLE, template=True)
     window.load_late_panels_soon()
     return window
 

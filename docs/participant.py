@@ -78,14 +78,14 @@ class Bot:
 
 def done(condition: str, clips: int) -> dict[str, Any]:
     """Do a task; return what it took."""
+    from app.main import make_window
     from app.project.files import SAMPLE
-    from app.shell.window import Window
     from metagraph.formats.store import open_project
     from tests.app.conftest import Driver
     from tests.app.participant import Participant, bare, task
 
     QSettings().clear()
-    window = Window()
+    window = make_window()
     window.resize(1680, 1020)
     window.show()
     window.make_late_panels()
@@ -97,7 +97,7 @@ def done(condition: str, clips: int) -> dict[str, Any]:
     given = task(open_project(SAMPLE).project, clips)
     bare(drive, given, condition)
     result = Participant(drive, given).do(condition)
-    window.document.undo_stack.setClean()
+    window.shell.document.undo_stack.setClean()
     window.close()
     QTest.qWait(50)
     s = result.score

@@ -13,6 +13,7 @@ import sys
 import tempfile
 from collections.abc import Callable
 from pathlib import Path
+from typing import Any
 
 ROOT = Path(__file__).resolve().parents[1]
 sys.path.insert(0, str(ROOT))
@@ -31,27 +32,28 @@ def wait(milliseconds: int, until: Callable[[], bool] | None = None) -> None:
     loop.exec()
 
 
-def window(theme: str = "dark") -> object:
-    from app.shell.window import Window
+def window(theme: str = "dark") -> Any:
+    from app.main import make_window
+    from tests.app.handles import Handles
 
     QSettings().clear()
-    out = Window()
-    out.resize(1680, 1020)
-    out.session.set_theme(theme)  # type: ignore[arg-type]
-    out.show()
+    out = Handles(make_window())
+    out.window.resize(1680, 1020)
+    out.session.look.choose(theme)  # type: ignore[arg-type]
+    out.window.show()
     out.make_late_panels()
     wait(1500)
     return out
 
 
-def shoot(out: object, name: str) -> None:
-    out.grab().save(str(ROOT / "docs" / name))  # type: ignore[attr-defined]
+def shoot(out: Any, name: str) -> None:
+    out.window.grab().save(str(ROOT / "docs" / name))
     print(f"docs/{name}")
 
 
-def close(out: object) -> None:
-    out.document.undo_stack.setClean()  # type: ignore[attr-defined]
-    out.close()  # type: ignore[attr-defined]
+def close(out: Any) -> None:
+    out.document.undo_stack.setClean()
+    out.window.close()
     wait(100)
 
 
@@ -60,19 +62,19 @@ def finished(name: str, theme: str, machine: bool, action: str) -> None:
     from app.project.files import SAMPLE
 
     out = window(theme)
-    out.files.open(SAMPLE, template=True)  # type: ignore[attr-defined]
-    wait(20000, lambda: bool(out.document.project.clips))  # type: ignore[attr-defined]
+    out.files.open(SAMPLE, template=True)
+    wait(20000, lambda: bool(out.document.project.clips))
     wait(5000)
-    found = next(a for a in out.document.project.actions() if a.name == action)  # type: ignore[attr-defined]
-    out.session.jump(action=found.id)  # type: ignore[attr-defined]
-    out.session.show_plan()  # type: ignore[attr-defined]
+    found = next(a for a in out.document.project.actions() if a.name == action)
+    out.session.jump(action=found.id)
+    out.session.transport.show_plan()
     if machine:
-        out.show_machine(True)  # type: ignore[attr-defined]
+        out.show("machine")
     wait(4000)
-    out.session.set_playing(False)  # type: ignore[attr-defined]
-    cues = out.performance.shown.plan.layers[found.layer].cues  # type: ignore[attr-defined]
+    out.session.transport.set_playing(False)
+    cues = out.performance.shown.plan.layers[found.layer].cues
     cue = next((c for c in cues if c.action.kind == "gesture" and c.end - c.start > 2), cues[0])
-    out.session.seek((cue.start + cue.end) / 2)  # type: ignore[attr-defined]
+    out.session.transport.seek((cue.start + cue.end) / 2)
     wait(4000)
     shoot(out, name)
     close(out)
@@ -84,8 +86,8 @@ def half_labelled() -> None:
     from metagraph.graph import edits
 
     out = window()
-    out.files.open(PRACTICE, template=True)  # type: ignore[attr-defined]
-    document, session = out.document, out.session  # type: ignore[attr-defined]
+    out.files.open(PRACTICE, template=True)
+    document, session = out.document, out.session
     wait(20000, lambda: bool(document.project.clips))
     ids = {e.name: e.id for e in document.project.clips.values()}
 
@@ -103,9 +105,9 @@ def half_labelled() -> None:
     put("gesture", crossed, [n for n in ids if n.startswith("arms_crossed__") and "__to__" not in n and "stance" not in n][:3])
     put("transition", crossed, ["arms_crossed__to__hands_at_sides"], sides)
     document.edit("Place", lambda p: edits.place(p, [ids["on_hips__to__hands_at_sides"]], "arms", "gesture", sides))  # a mistake to find
-    session.set_stance(sides)
-    out.library.chips["unlabelled"].click()  # type: ignore[attr-defined]
-    out.show_dock("problems")  # type: ignore[attr-defined]
+    session.place.set_stance(sides)
+    out.library.chips["unlabelled"].click()
+    out.show("problems")
     wait(9000)
     shoot(out, "practice.png")
     close(out)
@@ -117,20 +119,20 @@ def requests() -> None:
     from metagraph.graph import asks as a
 
     out = window()
-    out.files.open(SAMPLE, template=True)  # type: ignore[attr-defined]
-    wait(20000, lambda: bool(out.document.project.clips))  # type: ignore[attr-defined]
-    stage, session = out.performance, out.session  # type: ignore[attr-defined]
-    session.set_playing(False)
+    out.files.open(SAMPLE, template=True)
+    wait(20000, lambda: bool(out.document.project.clips))
+    stage, session = out.performance, out.session
+    session.transport.set_playing(False)
     for ask in (
         a.Say(text="Well, I would not say so. But who knows?", at=1.0), a.Gesture(tags=("negative",), at=1.4, priority=2),
         a.Go(stance="on hips", at=4.0), a.Look(to="user", at=4.5), a.Nod(at=6.0), a.Gesture(tags=("greeting",), at=8.0),
         a.Gesture(tags=("positive",), at=10.0), a.Play(action="shrug_bt_01", at=11.5), a.Go(stance="weight left", at=7.0),
     ):  # fmt: skip
         stage.ask(ask)
-    session.select_asks(())
-    session.seek(2.0)
+    session.onstage.select_requests(())
+    session.transport.seek(2.0)
     wait(4000)
-    out.timeline.grab().save(str(ROOT / "docs" / "requests.png"))  # type: ignore[attr-defined]
+    out.timeline.grab().save(str(ROOT / "docs" / "requests.png"))
     print("docs/requests.png")
     close(out)
 
@@ -141,15 +143,15 @@ def models() -> None:
     from app.project.files import SAMPLE
 
     out = window()
-    out.files.open(SAMPLE, template=True)  # type: ignore[attr-defined]
-    wait(20000, lambda: bool(out.document.project.clips))  # type: ignore[attr-defined]
+    out.files.open(SAMPLE, template=True)
+    wait(20000, lambda: bool(out.document.project.clips))
     open_annotation(out, ROOT / "sample_clips" / "annotation" / "conversation.eaf", lambda dialog: dialog.accept())  # type: ignore[arg-type]
-    wait(8000, lambda: "arms" in out.document.project.markov)  # type: ignore[attr-defined]
-    out.session.set_layer("arms")  # type: ignore[attr-defined]
-    out.show_dock("models")  # type: ignore[attr-defined]
-    out.resizeDocks([out.docks["models"]], [420], Qt.Orientation.Vertical)  # type: ignore[attr-defined]
+    wait(8000, lambda: "arms" in out.document.project.markov)
+    out.session.place.set_layer("arms")
+    out.show("models")
+    out.window.resizeDocks([out.docks["models"]], [420], Qt.Orientation.Vertical)
     wait(3000)
-    out.models.grab().save(str(ROOT / "docs" / "models.png"))  # type: ignore[attr-defined]
+    out.models.grab().save(str(ROOT / "docs" / "models.png"))
     print("docs/models.png")
     close(out)
 
@@ -160,9 +162,9 @@ def exporting() -> None:
     from app.project.files import SAMPLE
 
     out = window()
-    out.files.open(SAMPLE, template=True)  # type: ignore[attr-defined]
-    wait(20000, lambda: bool(out.document.project.clips))  # type: ignore[attr-defined]
-    dialog = ExportDialog(out.document, out.jobs, out)  # type: ignore[attr-defined]
+    out.files.open(SAMPLE, template=True)
+    wait(20000, lambda: bool(out.document.project.clips))
+    dialog = ExportDialog(out.document, out.jobs, out.window)
     dialog.folder.setText("game/playcanvas")
     dialog.open()
     dialog._select("playcanvas")
@@ -178,14 +180,14 @@ def labelling() -> None:
     from app.project.files import PRACTICE
 
     out = window()
-    out.files.open(PRACTICE, template=True)  # type: ignore[attr-defined]
-    wait(20000, lambda: bool(out.document.project.clips))  # type: ignore[attr-defined]
-    out.dialogs.label()  # type: ignore[attr-defined]
-    dialog = out.findChildren(ReviewDialog)[-1]
+    out.files.open(PRACTICE, template=True)
+    wait(20000, lambda: bool(out.document.project.clips))
+    out.do("propose")
+    dialog = out.window.findChildren(ReviewDialog)[-1]
     wait(20000, lambda: dialog.current is not None)
     dialog.accept_sure()
     dialog.undo()
-    clip = next(c for c, e in out.document.project.clips.items() if e.name == "hands_at_sides__to__on_hips")  # type: ignore[attr-defined]
+    clip = next(c for c, e in out.document.project.clips.items() if e.name == "hands_at_sides__to__on_hips")
     for _ in range(6):
         dialog.accept_current()
     dialog.go_to(clip)
@@ -202,14 +204,14 @@ def conversation() -> None:
     from app.project.files import SAMPLE
 
     out = window()
-    out.files.open(SAMPLE, template=True)  # type: ignore[attr-defined]
-    wait(20000, lambda: bool(out.document.project.conversations))  # type: ignore[attr-defined]
-    session = out.session  # type: ignore[attr-defined]
-    session.set_conversation(next(iter(out.document.project.conversations)))  # type: ignore[attr-defined]
-    out.show_dock("conversation")  # type: ignore[attr-defined]
-    wait(20000, lambda: out.performance.shown.partner is not None and not out.jobs.running)  # type: ignore[attr-defined]
-    session.set_playing(False)
-    session.seek(9.7)
+    out.files.open(SAMPLE, template=True)
+    wait(20000, lambda: bool(out.document.project.conversations))
+    session = out.session
+    session.onstage.set_conversation(next(iter(out.document.project.conversations)))
+    out.show("conversation")
+    wait(20000, lambda: out.performance.shown.partner is not None and not out.jobs.running)
+    session.transport.set_playing(False)
+    session.transport.seek(9.7)
     wait(2500)
     shoot(out, "conversation.png")
     close(out)
@@ -225,10 +227,10 @@ def motion_graph() -> None:
     with tempfile.TemporaryDirectory() as place:
         path = Path(place) / "sample.metagraph.yaml"
         save_project(absolute(open_project(samples / "sample.metagraph.yaml").project, samples), path)
-        out.files.open(path)  # type: ignore[attr-defined]
-        wait(20000, lambda: bool(out.document.project.clips) and not out.jobs.running)  # type: ignore[attr-defined]
-        out.dialogs.motion_graph()  # type: ignore[attr-defined]
-        dialog = out.findChild(MotionGraphDialog)  # type: ignore[attr-defined]
+        out.files.open(path)
+        wait(20000, lambda: bool(out.document.project.clips) and not out.jobs.running)
+        out.do("motion_graph")
+        dialog = out.window.findChild(MotionGraphDialog)
         wait(20000, lambda: dialog.limit is not None)
         dialog.count()
         wait(60000, lambda: not dialog.stop.isVisible())

@@ -7,9 +7,9 @@ from argparse import ArgumentParser, Namespace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from app.features.study.study_window import check as check_study
-from app.features.study.study_window import check_arguments, run_arguments
-from app.features.study.study_window import run as run_study
+from app.cli.study_run import check as check_study
+from app.cli.study_run import check_arguments, run_arguments
+from app.cli.study_run import run as run_study
 
 if TYPE_CHECKING:  # reading a command line must not wait for arrays
     from metagraph.study.analysis import Results

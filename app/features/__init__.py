@@ -1,1 +1,33 @@
-"""The features: each a folder that exports `contribute(shell)`, and none knows another."""
+"""The features: each a folder that exports `contribute(shell)`, and none knows another.
+
+A feature is taken out by deleting its folder and its line here. The order is that of panels in a dock and of commands in a group.
+"""
+
+FEATURES = (
+    "files",
+    "library",
+    "graph",
+    "character",
+    "editing",
+    "twins",
+    "repairs",
+    "properties",
+    "manual",
+    "labelling",
+    "motion_graph",
+    "life",
+    "timeline",
+    "mimic",
+    "conversation",
+    "models",
+    "lines",
+    "problems",
+    "machine",
+    "compatibility",
+    "skeleton",
+    "retargeting",
+    "export",
+    "render",
+    "study",
+    "help",
+)

@@ -1,50 +1,95 @@
-"""Every command of the window as data: one table makes the menus, the toolbar, the shortcuts and the shortcut list."""
+"""The commands of all features as data: one table makes the menus, the header, the shortcuts and the list of shortcuts."""
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Iterable
 from dataclasses import dataclass
+from typing import Literal
 
 from PySide6.QtGui import QAction, QKeySequence
 from PySide6.QtWidgets import QMenu, QMenuBar, QWidget
 
 Standard = QKeySequence.StandardKey
+Words = str | Callable[[], str]
+
+# The menus with their groups, in order; a line is drawn between groups. A group that is not named here comes last in its menu.
+MENUS: dict[str, tuple[str, ...]] = {
+    "&File": ("project", "save", "import", "character", "write", "quit"),
+    "&Edit": ("history", "selection", "properties", "find"),
+    "&Graph": ("author", "label", "layers", "stances", "skeleton"),
+    "&Play": ("transport", "live", "show"),
+    "&Conversation": ("read", "settings", "stage", "write", "remove"),
+    "&View": ("character", "graph", "look"),
+    "&Study": (),
+    "&Help": (),
+}
 
 
 @dataclass(frozen=True)
 class Command:
-    """id: stable. menu: which menu, "-" before the text draws a line above. keys: shortcuts. enabled: when it can be used."""
+    """Something a user can do.
+
+    id: stable. menu, group: where it stands, see `MENUS`. keys: shortcuts. tip: a word more than its text. enabled, checked: asked
+    whenever something changed. visible: whether it is in its menu. text may be asked for, too. when: the mode in which it can be used.
+    study: whether it is offered to who works on a study's task; "labels": where the study allows proposals. menus: the context menus it
+    is in, "action" or "clip" or another's. fill: fills a submenu that is shown instead.
+    """
 
     id: str
     menu: str
-    text: str
-    run: Callable[[], object]
+    group: str
+    text: Words
+    run: Callable[[], object] = lambda: None
     keys: tuple[str | QKeySequence.StandardKey, ...] = ()
     tip: str = ""
     icon: str = ""
     enabled: Callable[[], bool] | None = None
     checked: Callable[[], bool] | None = None
-    line: bool = False
+    visible: Callable[[], bool] | None = None
+    when: Literal["any", "meta", "manual"] = "any"
+    study: Literal[False, True, "labels"] = False
+    menus: tuple[str, ...] = ()
+    fill: Callable[[QMenu], object] | None = None
+
+    @property
+    def words(self) -> str:
+        """The text as it is now."""
+        return self.text if isinstance(self.text, str) else self.text()
+
+    @property
+    def plain(self) -> str:
+        """The text without marks, as a tooltip or a list shows it."""
+        return self.words.replace("&", "").rstrip("…")
 
 
 class Actions:
-    """The window's QActions by command id. `refresh` enables and checks them as things are now. allowed: which may be used at all."""
+    """The window's QActions by command id. `refresh` enables and checks them as things are now.
 
-    def __init__(self, parent: QWidget, commands: tuple[Command, ...]) -> None:
-        self.commands = commands
-        self.allowed: Callable[[str], bool] | None = None
+    allowed: which commands may be used at all; None for every one. mode: what is edited now.
+    """
+
+    def __init__(self, parent: QWidget, commands: Iterable[Command], mode: Callable[[], str]) -> None:
+        self.commands = _in_order(tuple(commands))
+        self.allowed: Callable[[Command], bool] | None = None
+        self._mode = mode
         self.by_id: dict[str, QAction] = {}
-        for command in commands:
-            action = QAction(command.text, parent)
+        for command in self.commands:
+            if command.id in self.by_id:
+                raise ValueError(f"two commands are called {command.id!r}")
+            action = QAction(command.words, parent)
             action.setObjectName(command.id)
             if command.keys:
                 # A platform's standard key may be the one that is given beside it; twice, it would be ambiguous.
                 action.setShortcuts(list(dict.fromkeys(QKeySequence(k).toString() for k in command.keys)))
             keys = action.shortcut().toString(QKeySequence.SequenceFormat.NativeText)
-            tip = command.tip or command.text.replace("&", "").rstrip("…")
+            tip = command.tip or command.plain
             action.setToolTip(f"{tip} ({keys})" if keys else tip)
             action.setStatusTip(command.tip)
             action.setCheckable(command.checked is not None)
+            if command.fill is not None:
+                menu = QMenu(parent)
+                menu.aboutToShow.connect(lambda m=menu, fill=command.fill: (m.clear(), fill(m)))
+                action.setMenu(menu)
             action.triggered.connect(lambda _=False, run=command.run: run())
             parent.addAction(action)
             self.by_id[command.id] = action
@@ -52,21 +97,50 @@ class Actions:
     def __getitem__(self, ident: str) -> QAction:
         return self.by_id[ident]
 
+    def __contains__(self, ident: str) -> bool:
+        return ident in self.by_id
+
+    def of_menu(self, name: str) -> list[QAction]:
+        """Return the actions that go into a context menu, in the menus' order."""
+        return [self.by_id[c.id] for c in self.commands if name in c.menus]
+
     def fill(self, bar: QMenuBar) -> dict[str, QMenu]:
-        """Make the menus, in the order in which the table first names them."""
+        """Make the menus."""
         menus: dict[str, QMenu] = {}
+        group = ""
         for command in self.commands:
             if command.menu not in menus:
                 menus[command.menu] = bar.addMenu(command.menu)
-            if command.line:
+            elif command.group != group:
                 menus[command.menu].addSeparator()
+            group = command.group
             menus[command.menu].addAction(self.by_id[command.id])
+        for menu in menus.values():
+            menu.aboutToShow.connect(self.refresh)  # panels have buttons for some of it, too
         return menus
 
     def refresh(self) -> None:
+        """Show every command as it is now."""
+        mode = self._mode()
         for command in self.commands:
             action = self.by_id[command.id]
-            allowed = self.allowed is None or self.allowed(command.id)
+            allowed = (self.allowed is None or self.allowed(command)) and command.when in ("any", mode)
             action.setEnabled(allowed and (command.enabled is None or command.enabled()))
             if command.checked is not None:
                 action.setChecked(command.checked())
+            if not isinstance(command.text, str):
+                action.setText(command.words)
+            if command.visible is not None:
+                action.setVisible(command.visible())
+
+
+def _in_order(commands: tuple[Command, ...]) -> tuple[Command, ...]:
+    """Return commands by menu and group; within a group as they came."""
+    menus = list(MENUS)
+
+    def place(command: Command) -> tuple[int, str, int]:
+        groups = MENUS.get(command.menu, ())
+        menu = menus.index(command.menu) if command.menu in MENUS else len(menus)
+        return menu, command.menu, groups.index(command.group) if command.group in groups else len(groups)
+
+    return tuple(sorted(commands, key=place))

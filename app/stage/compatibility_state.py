@@ -169,6 +169,12 @@ class Compatibility(QObject):
         self.on = False
         self._timer.stop()
 
+    def forget(self) -> None:
+        """Judge no more, and take back what was found."""
+        self.stop()
+        self.judged, self.flags = None, {}
+        self.changed.emit()
+
     def _follow(self, before: Project, after: Project) -> None:
         same = ("graphs", "clips", "roles", "parts", "skeleton")
         if self.on and any(getattr(before, name) is not getattr(after, name) for name in same):

@@ -44,9 +44,9 @@ class Sound(QObject):
         document.changed.connect(self._edited)
         document.state_changed.connect(lambda: self._edited(document.project, document.project))
         performance.changed.connect(self._planned)
-        session.moved.connect(self._moved)
-        session.playing_changed.connect(self._moved)
-        session.show_changed.connect(self._moved)
+        session.transport.moved.connect(self._moved)
+        session.transport.playing_changed.connect(self._moved)
+        session.transport.show_changed.connect(self._moved)
 
     # --- the lines' files
 
@@ -100,7 +100,7 @@ class Sound(QObject):
     def audible(self) -> bool:
         """Whether there is anything to be heard now."""
         s = self.session
-        return bool(self.parts) and s.playing and s.speed == 1.0 and s.show == "plan" and not self.muted
+        return bool(self.parts) and s.transport.playing and s.transport.speed == 1.0 and s.transport.show == "plan" and not self.muted
 
     def _moved(self, *_: object) -> None:
         """Follow the playhead: begin, go on, jump or fall silent with it."""
@@ -110,7 +110,7 @@ class Sound(QObject):
             return
         if self._stream is None and not self._open():
             return
-        at = round((self.session.seconds + self._stream.latency) * RATE)  # what is mixed now is heard that much later
+        at = round((self.session.transport.seconds + self._stream.latency) * RATE)  # what is mixed now is heard that much later
         if not self._stream.active:
             self.place = at
             self._stream.start()

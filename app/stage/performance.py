@@ -52,10 +52,10 @@ class Performance(QObject):
         self._soon.timeout.connect(self._replan)
         document.loaded.connect(self._loaded)
         document.changed.connect(self._edited)
-        session.show_changed.connect(self.replan)
-        session.performance_changed.connect(self._staged)
-        session.mode_changed.connect(self._switched)
-        session.conversation_changed.connect(self._conversed)
+        session.transport.show_changed.connect(self.replan)
+        session.onstage.performance_changed.connect(self._staged)
+        session.onstage.mode_changed.connect(self._switched)
+        session.onstage.conversation_changed.connect(self._conversed)
         self._stage = Stage()
         self._noted: tuple[str, ...] = ()  # about a conversation, said once
         self._fires: tuple[Fire, ...] = ()  # triggers of the manual state machine, fired since it began
@@ -77,24 +77,24 @@ class Performance(QObject):
         self.last_live = None
         self.length = LENGTH
         self._fires = ()
-        self.session.set_performance(None)
+        self.session.onstage.set_performance(None)
 
     def _staged(self) -> None:
-        if self.session.performance != self._on_stage:
-            self._on_stage = self.session.performance
+        if self.session.onstage.performance != self._on_stage:
+            self._on_stage = self.session.onstage.performance
             self.length = self.kept.length if self.kept is not None else LENGTH
             self.replan()
 
     def _conversed(self) -> None:
         self._noted = ()
         self.length = self._own_length or LENGTH
-        self.session.show_plan()
+        self.session.transport.show_plan()
         self.replan()
 
     @property
     def conversation(self) -> str | None:
         """The conversation on stage."""
-        found = self.session.conversation if self.session.mode == "meta" and self.live is None else None
+        found = self.session.onstage.conversation if self.session.onstage.mode == "meta" and self.live is None else None
         return found if found in self.document.project.conversations else None
 
     @property
@@ -122,7 +122,7 @@ class Performance(QObject):
         if ident is not None and shown.partner is not None:
             self.document.edit("Keep as performances", edit)
             if made:
-                self.session.set_performance(made[0])
+                self.session.onstage.set_performance(made[0])
 
     def _switched(self) -> None:
         self.stop_live()
@@ -132,11 +132,11 @@ class Performance(QObject):
 
     def fire(self, trigger: str) -> None:
         """Fire a trigger of the layer's manual state machine, now."""
-        self.session.show_plan()
-        at = round(self.session.seconds + SOON, 3)
+        self.session.transport.show_plan()
+        at = round(self.session.transport.seconds + SOON, 3)
         # What was fired later, before the playhead was set back, never was.
-        self._fires = (*(f for f in self._fires if f.at < at), Fire(self.session.layer, trigger, at))
-        self.session.set_playing(True)
+        self._fires = (*(f for f in self._fires if f.at < at), Fire(self.session.place.layer, trigger, at))
+        self.session.transport.set_playing(True)
         self.replan()
 
     def _edited(self, before: Project, after: Project) -> None:
@@ -151,7 +151,7 @@ class Performance(QObject):
         self.replan()
 
     def _replan(self) -> None:
-        if self.live is not None and self.session.show == "plan":
+        if self.live is not None and self.session.transport.show == "plan":
             self._ticked()
             return
         if self._busy:
@@ -159,11 +159,11 @@ class Performance(QObject):
             return
         self._busy, self._again = True, False
         project, kept, length = self.document.project, self.kept, self.length
-        manual, fires = self.session.mode == "manual", self._fires
-        show, shown, anew = self.session.show, self.session.shown, self.session.tried is not None
-        stances = {layer: s for layer in LAYERS if (s := self.session.stance(layer)) is not None}
-        layer = self.session.layer
-        talk, side, folder = self.conversation, self.session.side, self.document.folder or Path()
+        manual, fires = self.session.onstage.mode == "manual", self._fires
+        show, shown, anew = self.session.transport.show, self.session.transport.shown, self.session.transport.tried is not None
+        stances = {layer: s for layer in LAYERS if (s := self.session.place.stance(layer)) is not None}
+        layer = self.session.place.layer
+        talk, side, folder = self.conversation, self.session.onstage.side, self.document.folder or Path()
 
         def work(_: object) -> Shown:
             if show == "clip" and shown in project.clips:
@@ -183,7 +183,7 @@ class Performance(QObject):
 
     def _planned(self, shown: Shown) -> None:
         self._busy = False
-        if self.live is not None and self.session.show == "plan":
+        if self.live is not None and self.session.transport.show == "plan":
             return
         self.shown = shown
         if shown.notes and shown.notes != self._noted:
@@ -204,7 +204,7 @@ class Performance(QObject):
     @property
     def kept(self) -> KeptPerformance | None:
         """The kept performance on stage, as it is now; None while the models improvise."""
-        stage = self.session.performance if self.session.mode == "meta" else None
+        stage = self.session.onstage.performance if self.session.onstage.mode == "meta" else None
         return self.document.project.performances.get(stage or "")
 
     @property
@@ -219,7 +219,7 @@ class Performance(QObject):
     @property
     def editable(self) -> bool:
         """Whether the asks that are shown can be moved and changed."""
-        return self.live is None and self.kept is not None and self.session.show == "plan"
+        return self.live is None and self.kept is not None and self.session.transport.show == "plan"
 
     def answers(self) -> dict[str, Answer]:
         """Return what the plan that is shown does about each ask."""
@@ -237,8 +237,8 @@ class Performance(QObject):
             self.live.ask(ask)
             return
         if ask.at is None and getattr(ask, "stroke", None) is None:
-            ask = msgspec.structs.replace(ask, at=round(self.session.seconds + SOON, 3))
-        on_stage = self.session.performance
+            ask = msgspec.structs.replace(ask, at=round(self.session.transport.seconds + SOON, 3))
+        on_stage = self.session.onstage.performance
         made = on_stage
 
         def edit(project: Project) -> Project:
@@ -249,26 +249,26 @@ class Performance(QObject):
             return staging.add_ask(project, made, ask)
 
         self.document.edit(text, edit)
-        self.session.set_performance(made)
+        self.session.onstage.set_performance(made)
         if made is not None:
-            self.session.select_asks((self.document.project.performances[made].asks[-1].id,))
-        self.session.show_plan()
+            self.session.onstage.select_requests((self.document.project.performances[made].asks[-1].id,))
+        self.session.transport.show_plan()
 
     def change_ask(self, ident: str, merge: str | None = None, **changes: object) -> None:
         """Set fields of an ask of the performance on stage. Raises EditError."""
-        stage = self.session.performance
+        stage = self.session.onstage.performance
         if stage is not None:
             self.document.edit("Change request", lambda p: staging.change_ask(p, stage, ident, **changes), merge)
 
     def move_asks(self, idents: tuple[str, ...], by: float, merge: str | None = None) -> None:
         """Move asks in time."""
-        stage = self.session.performance
+        stage = self.session.onstage.performance
         if stage is not None:
             self.document.edit("Move request", lambda p: staging.move_asks(p, stage, idents, by), merge)
 
     def copy_asks(self, idents: tuple[str, ...], by: float) -> None:
         """Ask for the same once more, seconds later or earlier, and select the copies."""
-        stage, kept = self.session.performance, self.kept
+        stage, kept = self.session.onstage.performance, self.kept
         if stage is None or kept is None:
             return
         number = len(kept.asks)
@@ -279,11 +279,11 @@ class Performance(QObject):
             return staging.move_asks(project, stage, {x.id for x in project.performances[stage].asks[number:]}, by)
 
         self.document.edit("Copy request" if len(copies) == 1 else f"Copy {len(copies)} requests", edit)
-        self.session.select_asks(tuple(x.id for x in (self.kept or kept).asks[number:]))
+        self.session.onstage.select_requests(tuple(x.id for x in (self.kept or kept).asks[number:]))
 
     def withdraw(self, *idents: str) -> None:
         """Take asks of the performance on stage back; all when none is named."""
-        stage = self.session.performance
+        stage = self.session.onstage.performance
         if stage is not None:
             self.document.edit("Withdraw request", lambda p: staging.remove_asks(p, stage, idents or None))
 
@@ -295,12 +295,12 @@ class Performance(QObject):
 
         if self.live is not None or self.document.project.skeleton is None:
             return
-        self.session.set_performance(None)
-        self.session.show_plan()
+        self.session.onstage.set_performance(None)
+        self.session.transport.show_plan()
         self.live, self.following = LiveStage(self.document.project, options, self), True
         self.live.ticked.connect(self._ticked)
         self.live.told.connect(lambda _: self.live_changed.emit())
-        self.session.set_playing(True)
+        self.session.transport.set_playing(True)
         self.live.start()
         self.live_changed.emit()
 
@@ -320,10 +320,10 @@ class Performance(QObject):
         self.live_changed.emit()
 
     def _ticked(self) -> None:
-        if self.live is None or self.session.show != "plan":
+        if self.live is None or self.session.transport.show != "plan":
             return
         # What lies farther back than the running plan reaches is kept in pieces.
-        plan = self.live.session.plan if self.following else self.live.session.plan_at(self.session.seconds)
+        plan = self.live.session.plan if self.following else self.live.session.plan_at(self.session.transport.seconds)
         if plan is not self.shown.plan:
             self.shown = Shown(self.live.session.project, plan, plan.end)
             self.changed.emit()
@@ -331,42 +331,42 @@ class Performance(QObject):
     def follow(self) -> None:
         """Back to now, after scrubbing through the past of a live session."""
         self.following = True
-        self.session.show_plan()
-        self.session.set_playing(True)
+        self.session.transport.show_plan()
+        self.session.transport.set_playing(True)
 
     # --- the playhead
 
     def advance(self, elapsed: float) -> None:
         """Move the playhead by `elapsed` seconds of wall clock; called before each frame."""
         session = self.session
-        if self.live is not None and session.show == "plan":
+        if self.live is not None and session.transport.show == "plan":
             self._advance_live(elapsed)
             return
-        if not session.playing or elapsed <= 0 or self.skeleton() is None:
+        if not session.transport.playing or elapsed <= 0 or self.skeleton() is None:
             return
-        seconds = session.seconds + elapsed * session.speed
+        seconds = session.transport.seconds + elapsed * session.transport.speed
         length = self.shown.length
-        endless = self._own_length is None and session.show == "plan" and not session.loop
+        endless = self._own_length is None and session.transport.show == "plan" and not session.transport.loop
         if endless and seconds > self.length - AHEAD:
             self.length += LENGTH
             self.replan()
         if seconds >= length > 0 and not endless:
-            if session.loop:
+            if session.transport.loop:
                 seconds %= length
             else:
                 seconds = length
-                session.set_playing(False)
-        session.seek(seconds)
+                session.transport.set_playing(False)
+        session.transport.seek(seconds)
 
     def _advance_live(self, elapsed: float) -> None:
         """The playhead is now; or, once it was moved back, plays on behind until it is followed again."""
         assert self.live is not None
         session, now = self.session, self.live.now
-        self.following = self.following and session.playing
+        self.following = self.following and session.transport.playing
         if self.following:
-            session.seek(now)
-        elif session.playing:
-            session.seek(min(now, session.seconds + elapsed * session.speed))
+            session.transport.seek(now)
+        elif session.transport.playing:
+            session.transport.seek(min(now, session.transport.seconds + elapsed * session.transport.speed))
 
     def skeleton(self) -> Skeleton | None:
         """Return the skeleton of what plays: a clip looked at alone may have its own."""
@@ -374,7 +374,7 @@ class Performance(QObject):
 
     def pose(self, seconds: float | None = None) -> Pose | None:
         """Return the pose at the playhead (or at `seconds`), None when there is nothing to show."""
-        return self.shown.pose(self.session.seconds if seconds is None else seconds)
+        return self.shown.pose(self.session.transport.seconds if seconds is None else seconds)
 
     def morphs(self) -> dict[str, float]:
-        return self.shown.morphs(self.session.seconds)
+        return self.shown.morphs(self.session.transport.seconds)

@@ -61,7 +61,7 @@ class Thumbnails(QObject):
         motion = entry.motion if entry is not None else None
         if motion is None:
             return None
-        key = (clip, what, self.session.theme)
+        key = (clip, what, self.session.look.name)
         found = self._pictures.get(key)
         if found is not None and found[0] is motion:
             return found[1]
@@ -98,7 +98,7 @@ class Thumbnails(QObject):
         character = None
         if project.character is not None and motion.skeleton == project.skeleton:
             character = (self.document.folder or Path()) / project.character
-        card = theme(self.session.theme).field
+        card = theme(self.session.look.name).field
         r, g, b = (int(card[i : i + 2], 16) / 255 for i in (1, 3, 5))
         self._number += 1
         self._orders[self._number] = (key, motion)

@@ -48,7 +48,7 @@ class Strip(QWidget):
         self._grip: float | None = None
         self.setMouseTracking(True)
         self.setAccessibleName("What is done when")
-        session.theme_changed.connect(self.update)
+        session.look.changed.connect(self.update)
 
     def show_acts(self, acts: Mapping[Layer, Sequence[Act]], seconds: float | None = None) -> None:
         """Show acts by layer; seconds: how long the strip is, None for as long as it takes."""
@@ -86,7 +86,7 @@ class Strip(QWidget):
     # --- painting
 
     def paintEvent(self, event: QPaintEvent) -> None:
-        t = theme(self.session.theme)
+        t = theme(self.session.look.name)
         painter = QPainter(self)
         painter.setRenderHint(QPainter.RenderHint.Antialiasing)
         self._ruler(painter, t)

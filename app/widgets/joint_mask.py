@@ -59,7 +59,7 @@ class MaskDialog(QDialog):
         self.tree.setHeaderHidden(True)
         layout.addWidget(self.tree, 1)
         self.items = joint_tree(self.tree, document.project)
-        actions = session.selected_actions()
+        actions = session.selection.selected_actions()
         masked = set(actions[0].joints) if actions else set()
         for name, item in self.items.items():
             item.setCheckState(0, Qt.CheckState.Checked if not masked or name in masked else Qt.CheckState.Unchecked)
@@ -97,7 +97,7 @@ class MaskDialog(QDialog):
         return () if len(ticked) == len(self.items) else ticked
 
     def accept(self) -> None:
-        joints, chosen = self.joints(), self.session.actions
+        joints, chosen = self.joints(), self.session.selection.actions
         if not joints and any(i.checkState(0) == Qt.CheckState.Unchecked for i in self.items.values()):
             self.document.failed.emit("An action must move at least one joint.")
             return

@@ -16,6 +16,7 @@ from PySide6.QtTest import QTest
 from PySide6.QtWidgets import QApplication, QMenu, QMessageBox, QWidget
 
 from app.main import prepare
+from tests.app.handles import Handles
 
 
 def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
@@ -42,17 +43,15 @@ def own_settings(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     QSettings.setPath(QSettings.Format.IniFormat, QSettings.Scope.UserScope, str(tmp_path / "settings"))
 
 
-class Driver:
+class Driver(Handles):
     """The window and a hand. Points are given as (widget, point in it)."""
 
     def __init__(self, window: object, qtbot: object) -> None:
-        self.window, self.bot = window, qtbot
+        super().__init__(window)
+        self.bot = qtbot
         self.told: list[str] = []
-        window.canvas.refused.connect(self.told.append)  # type: ignore[attr-defined]
-        window.document.failed.connect(self.told.append)  # type: ignore[attr-defined]
-
-    def __getattr__(self, name: str) -> object:
-        return getattr(self.window, name)
+        self.shell.stage.refused.connect(self.told.append)
+        self.shell.document.failed.connect(self.told.append)
 
     def wait(self, until: Callable[[], bool], seconds: float = 20) -> None:
         self.bot.waitUntil(until, timeout=int(seconds * 1000))  # type: ignore[attr-defined]
@@ -166,6 +165,7 @@ def drive(qapp: object, qtbot: object, monkeypatch: pytest.MonkeyPatch, request:
         pytest.skip("real drags are driven on X11 only")
     import app.shell.window
     from app.look.theme import Theme, apply, style_sheet
+    from app.main import make_window
     from app.stage.thumbnails import Thumbnails
 
     def styled(app: QApplication, look: Theme) -> None:
@@ -182,7 +182,7 @@ def drive(qapp: object, qtbot: object, monkeypatch: pytest.MonkeyPatch, request:
 
     monkeypatch.setattr(QMessageBox, "question", unexpected)
     monkeypatch.setattr(QMessageBox, "warning", unexpected)
-    window = app.shell.window.Window()
+    window = make_window()
     window.resize(1680, 1020)
     window.show()
     qtbot.waitExposed(window)  # type: ignore[attr-defined]
@@ -194,7 +194,7 @@ def drive(qapp: object, qtbot: object, monkeypatch: pytest.MonkeyPatch, request:
     qtbot.waitUntil(window.isActiveWindow, timeout=5000)  # type: ignore[attr-defined]
     qtbot.wait(100)  # type: ignore[attr-defined]
     yield Driver(window, qtbot)
-    window.document.undo_stack.setClean()
+    window.shell.document.undo_stack.setClean()
     window.close()
     window.deleteLater()
     qtbot.wait(20)  # type: ignore[attr-defined]

@@ -113,11 +113,11 @@ class Participant:
         self.drive.drag(self.drive.card(clip), target, lambda: self.drive.document.project is not before)
 
     def layer(self, layer: Layer) -> None:
-        if self.drive.session.layer != layer:
+        if self.drive.session.place.layer != layer:
             self.think()
             number = LAYERS.index(layer)
             QTest.keyClick(self.drive.window, Qt.Key(Qt.Key.Key_1 + number), Qt.KeyboardModifier.AltModifier)
-            self.drive.wait(lambda: self.drive.session.layer == layer)
+            self.drive.wait(lambda: self.drive.session.place.layer == layer)
 
     # --- the task
 
@@ -150,18 +150,18 @@ class Participant:
         made: dict[str, str] = {}  # the reference's stance -> the one here
 
         def stance(wanted: str) -> None:
-            if d.session.stance() != made[wanted]:
+            if d.session.place.stance() != made[wanted]:
                 self.think()
                 self.click(*d.chip(made[wanted]))
-                d.wait(lambda: d.session.stance() == made[wanted])
+                d.wait(lambda: d.session.place.stance() == made[wanted])
 
         def end(wanted: str) -> None:
-            if d.session.other() != made[wanted]:
+            if d.session.place.other() != made[wanted]:
                 self.think()
-                names = [s for s in d.document.project.graphs[d.session.layer].stances if s != d.session.stance()]
+                names = [s for s in d.document.project.graphs[d.session.place.layer].stances if s != d.session.place.stance()]
                 QTimer.singleShot(60, lambda: self._choose(names.index(made[wanted])))
                 self.click(d.canvas, d.canvas.layout_now().nodes["transition"].other.center().toPoint())
-                d.wait(lambda: d.session.other() == made[wanted])
+                d.wait(lambda: d.session.place.other() == made[wanted])
 
         actions = self._wanted()
         for layer in LAYERS:
@@ -192,7 +192,7 @@ class Participant:
 
     def _manual(self, whole: bool) -> None:
         d, reference = self.drive, self.given.reference
-        canvas = d.window.manual.editor.canvas
+        canvas = d.editor.canvas
         for layer in LAYERS:
             mine = [a for a in self._wanted() if a.layer == layer]
             if not mine:
@@ -252,7 +252,7 @@ class Participant:
 
     def _press(self, widget: Any) -> None:
         """Click a control of the inspector, which may have to be scrolled to."""
-        area = self.drive.window.manual.editor.inspector
+        area = self.drive.editor.inspector
         self.drive.wait(widget.isVisible)
         for parent in area.findChildren(QScrollArea):
             if parent.isAncestorOf(widget):
@@ -262,7 +262,7 @@ class Participant:
 
     def _set_up(self, action: Any) -> None:
         """What a state needs that its clip does not say: that it loops, and which arm it moves."""
-        inspector = self.drive.window.manual.editor.inspector
+        inspector = self.drive.editor.inspector
         if action.kind == "stance":
             self.think()
             self._press(inspector.loop)
@@ -272,7 +272,7 @@ class Participant:
 
     def _on_request(self, at_the_end: bool) -> None:
         """Let the link that was just drawn wait for its trigger, which is named after where it leads, and for the end of what plays."""
-        inspector = self.drive.window.manual.editor.inspector
+        inspector = self.drive.editor.inspector
         self.think()
         self._press(inspector.when)
         self.drive.wait(lambda: inspector.when.view().isVisible())

@@ -44,7 +44,7 @@ def export_and_check(drive, folder: Path) -> None:
 
 def import_folder(drive, *paths: Path) -> None:
     before = len(drive.document.project.clips)
-    drive.files.import_paths([str(p) for p in paths])
+    drive.importing.import_paths([str(p) for p in paths])
     drive.wait(lambda: len(drive.document.project.clips) > before, 60)
     for box in drive.window.findChildren(QMessageBox):
         box.close()
@@ -60,16 +60,16 @@ def test_the_alien_is_imported_dropped_timed_saved_killed_reopened_and_exported(
 
     # The first stance: a drop in the middle of the arms layer.
     drive.drag(drive.card("stand_idle"), drive.middle(), lambda: drive.names("stance") == ["stand_idle"])
-    assert drive.session.stance() is not None
+    assert drive.session.place.stance() is not None
 
     # Three gestures at once.
     drive.library.search.setText("generic")
     drive.pause(100)
     drive.click(drive.card("generic_a"))
     drive.click(drive.card("generic_c"), Qt.KeyboardModifier.ShiftModifier)
-    drive.wait(lambda: len(drive.session.clips) == 3)
+    drive.wait(lambda: len(drive.session.selection.clips) == 3)
     drive.drag(drive.card("generic_b"), drive.node("gesture"), lambda: len(drive.names("gesture")) == 3)
-    assert len(drive.session.actions) == 3, "what was dropped is selected"
+    assert len(drive.session.selection.actions) == 3, "what was dropped is selected"
 
     # A fidget, a second stance, a transition to it.
     drive.library.search.setText("angry")
@@ -80,7 +80,7 @@ def test_the_alien_is_imported_dropped_timed_saved_killed_reopened_and_exported(
     drive.drag(drive.card("stand_talk"), drive.middle(), lambda: drive.names("stance") == ["stand_idle", "stand_talk"])
     first = next(iter(drive.document.project.graphs["arms"].stances))
     QTest.keyClick(drive.window, Qt.Key.Key_1, Qt.KeyboardModifier.ControlModifier)
-    drive.wait(lambda: drive.session.stance() == first)
+    drive.wait(lambda: drive.session.place.stance() == first)
     drive.library.search.setText("wave")
     drive.pause(100)
     drive.drag(drive.card("wave"), drive.node("transition"), lambda: drive.names("transition") == ["wave"])
@@ -91,7 +91,7 @@ def test_the_alien_is_imported_dropped_timed_saved_killed_reopened_and_exported(
     drive.library.search.setText("head_")
     drive.pause(100)
     QTest.keyClick(drive.window, Qt.Key.Key_3, Qt.KeyboardModifier.AltModifier)
-    assert drive.session.layer == "head"
+    assert drive.session.place.layer == "head"
     drive.click(drive.card("head_neutral"))
     QTest.keyClick(drive.library.list, Qt.Key.Key_1)
     drive.wait(lambda: drive.names("stance", "head") == ["head_neutral"])
@@ -128,7 +128,7 @@ def test_the_alien_is_imported_dropped_timed_saved_killed_reopened_and_exported(
     assert drive.document.project.action(gesture.id).timing.end is not None
 
     # The preview runs the plan.
-    drive.session.show_plan()
+    drive.session.transport.show_plan()
     drive.wait(lambda: len(drive.performance.shown.plan.layers["arms"].cues) > 3)
     before = drive.preview.frames
     drive.wait(lambda: drive.preview.frames > before + 3)
@@ -169,17 +169,17 @@ from pathlib import Path
 from PySide6.QtCore import QTimer
 from app.main import prepare
 app = prepare()
-from app.shell.window import Window
+from app.main import make_window
 from metagraph.graph import edits
-window = Window()
+window = make_window()
 window.show()
-window.files.open(Path({str(path)!r}))
+window.shell.files.open(Path({str(path)!r}))
 def edit():
-    action = next((a for a in window.document.project.actions() if a.name == "generic_a"), None)
+    action = next((a for a in window.shell.document.project.actions() if a.name == "generic_a"), None)
     if action is None:
         QTimer.singleShot(50, edit)
         return
-    window.document.edit("Change likelihood", lambda p: edits.update_actions(p, (action.id,), likelihood=2.5))
+    window.shell.document.edit("Change likelihood", lambda p: edits.update_actions(p, (action.id,), likelihood=2.5))
     print(action.id, flush=True)
 QTimer.singleShot(50, edit)
 app.exec()
@@ -197,17 +197,17 @@ app.exec()
 def test_sitting_down_and_standing_up_are_transitions_between_two_stances(drive, shared_data, tmp_path, monkeypatch):
     import_folder(drive, shared_data / "kaykit-rogue")
     QTest.keyClick(drive.window, Qt.Key.Key_1, Qt.KeyboardModifier.AltModifier)
-    assert drive.session.layer == "body"
+    assert drive.session.place.layer == "body"
     drive.library.search.setText("idle")
     drive.pause(100)
     drive.drag(drive.card("Unarmed_Idle"), drive.middle(), lambda: drive.names("stance") == ["Unarmed_Idle"])
     drive.drag(drive.card("Sit_Chair_Idle"), drive.middle(), lambda: drive.names("stance") == ["Unarmed_Idle", "Sit_Chair_Idle"])
-    sitting = drive.session.stance()
+    sitting = drive.session.place.stance()
     drive.library.search.setText("sit_chair")
     drive.pause(100)
     drive.drag(drive.card("Sit_Chair_StandUp"), drive.node("transition"), lambda: drive.names("transition") == ["Sit_Chair_StandUp"])
     QTest.keyClick(drive.window, Qt.Key.Key_1, Qt.KeyboardModifier.ControlModifier)
-    drive.wait(lambda: drive.session.stance() != sitting)
+    drive.wait(lambda: drive.session.place.stance() != sitting)
     drive.drag(drive.card("Sit_Chair_Down"), drive.node("transition"), lambda: len(drive.names("transition")) == 2)
     drive.library.search.setText("cheer")
     drive.pause(100)

@@ -10,7 +10,7 @@ from PySide6.QtCore import QPoint, Qt
 from PySide6.QtTest import QTest
 from PySide6.QtWidgets import QApplication, QFileDialog, QMessageBox
 
-from app.features.models.annotation_dialog import AnnotateDialog
+from app.features.models.annotation_dialog import AnnotateDialog, open_annotation
 from app.project.files import SAMPLE
 from metagraph.formats.store import open_project
 from metagraph.graph import edits
@@ -44,7 +44,7 @@ def test_an_annotation_is_imported_learned_changed_and_performed(drive, tmp_path
     # While its tab lies behind another it works nothing out and leaves the dock as low as it is.
     height = drive.docks["timeline"].height()
     assert drive.models.heat.model is None
-    drive.show_dock("models")
+    drive.show("models")
     drive.wait(lambda: drive.models.heat.model is not None)
     drive.wait(lambda: drive.docks["models"].height() > height)
 
@@ -113,7 +113,7 @@ def test_an_annotation_is_imported_learned_changed_and_performed(drive, tmp_path
     assert drive.document.project.markov["arms"].matrix[0][0] == 0.15
 
     # Without a performance on stage the changed models improvise: rest, then what the matrix says.
-    drive.session.set_performance(None)
+    drive.session.onstage.set_performance(None)
     drive.wait(lambda: drive.performance.kept is None and any(m.written for m in drive.performance.shown.plan.layers["arms"].metas), 30)
     known = set(drive.document.project.markov["arms"].states)
     assert {(m.request.limb, m.request.kind) for m in drive.performance.shown.plan.layers["arms"].metas if m.written} <= known
@@ -128,7 +128,7 @@ def test_an_annotation_is_imported_learned_changed_and_performed(drive, tmp_path
 
 
 def test_an_annotation_that_is_dropped_on_the_window_opens_the_dialog(drive):
-    assert drive.drop_files((drive.window.canvas, QPoint(200, 200)), EAF)
+    assert drive.drop_files((drive.canvas, QPoint(200, 200)), EAF)
     dialog = dialog_of(drive)
     assert dialog.windowTitle() == "Import annotation"
     dialog.reject()
@@ -139,7 +139,7 @@ def test_a_file_that_is_no_annotation_is_told_and_nothing_opens(drive, tmp_path,
     broken, told = tmp_path / "talk.eaf", []
     broken.write_text("<svg/>")
     monkeypatch.setattr(QMessageBox, "warning", lambda *a, **k: told.append(a[2]))
-    drive.window.dialogs.annotate(str(broken))
+    open_annotation(drive.shell, str(broken))
     drive.wait(lambda: bool(told))
     assert "talk.eaf, line 1: its outermost element is 'svg'" in told[0]
     assert drive.window.findChild(AnnotateDialog) is None

@@ -18,18 +18,18 @@ app = prepare()
 window = open_window(None, sample=True)
 heavy = {HEAVY!r}
 
-def first(_):
-    window.preview.view.painted.disconnect(first)
-    assert not window.ready
+def first():
+    window.shell.stage.painted.disconnect(first)
+    assert not window.places.ready
     print("first:", *(m for m in heavy if m in sys.modules), flush=True)
 
 def watch():
-    if window.ready and window.performance.skeleton() is not None:
+    if window.places.ready and window.shell.stage.performance.skeleton() is not None:
         print("ready:", *(m for m in heavy if m in sys.modules), flush=True)
         window.close()
         app.quit()
 
-window.preview.view.painted.connect(first)
+window.shell.stage.painted.connect(first)
 from PySide6.QtCore import QTimer
 timer = QTimer(interval=20)
 timer.timeout.connect(watch)

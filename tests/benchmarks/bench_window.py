@@ -39,13 +39,13 @@ def painted(_):
     now = time.time() - started
     if not seen:
         seen.append(now)
-    if window.performance.skeleton() is not None:
+    if window.shell.stage.performance.skeleton() is not None:
         print(seen[0], now, len(sys.modules), flush=True)
-        window.preview.view.painted.disconnect(painted)
+        window.shell.stage.painted.disconnect(painted)
         QTimer.singleShot(0, window.close)
         QTimer.singleShot(0, app.quit)
 from PySide6.QtCore import QTimer
-window.preview.view.painted.connect(painted)
+window.shell.stage.painted.connect(painted)
 app.exec()
 """
 
@@ -92,12 +92,13 @@ def stalls() -> None:
     from app.main import prepare
 
     prepare()
-    from app.shell.window import Window
+    from app.main import make_window
     from metagraph.graph import edits
+    from tests.app.handles import Handles
 
-    window = Window()
-    window.resize(1680, 1020)
-    window.show()
+    window = Handles(make_window())
+    window.window.resize(1680, 1020)
+    window.window.show()
     gaps: dict[str, list[float]] = {}
     state = {"phase": "start", "last": time.perf_counter()}
 
@@ -120,10 +121,10 @@ def stalls() -> None:
         window.session.jump(action=next(a.id for a in window.document.project.actions() if a.kind == "gesture"))
 
     def timing() -> None:
-        window.document.edit("Change timing", lambda p: edits.update_actions(p, window.session.actions, timing={"blend_in": 0.33}))
+        window.document.edit("Change timing", lambda p: edits.update_actions(p, window.session.selection.actions, timing={"blend_in": 0.33}))
 
     phase("first paint", 1.0)
-    phase("late panels", 2.0, window.load_late_panels)
+    phase("late panels", 2.0, window.window.load_late_panels)
     phase("open the sample", 4.0, lambda: opened(window))
     before, start = window.preview.frames, time.perf_counter()
     phase("playing", 4.0)
@@ -131,11 +132,11 @@ def stalls() -> None:
     phase("select an action", 1.5, select)
     phase("edit its timing", 1.0, timing)
     phase("undo", 1.0, window.document.undo)
-    phase("another layer", 1.0, lambda: window.session.set_layer("head"))
-    phase("another stance", 1.0, lambda: window.choose_stance(1))
-    phase("the machine", 1.5, lambda: window.show_machine(True))
-    phase("light theme", 2.0, window.toggle_theme)
-    phase("import 152 clips", 4.0, lambda: window.files.import_paths([str(ROOT / "sample_clips" / "clips")]))
+    phase("another layer", 1.0, lambda: window.session.place.set_layer("head"))
+    phase("another stance", 1.0, lambda: window.do("stance_2"))
+    phase("the machine", 1.5, lambda: window.show("machine"))
+    phase("light theme", 2.0, lambda: window.do("theme"))
+    phase("import 152 clips", 4.0, lambda: window.importing.import_paths([str(ROOT / "sample_clips" / "clips")]))
     phase("save", 1.0, lambda: window.document.save(Path(tempfile.mkdtemp()) / "saved.metagraph.yaml"))
     timer.stop()
     print(f"{'phase':18} {'longest gap':>12} {'over 50 ms':>11}")
@@ -181,15 +182,16 @@ def edit_latency() -> None:
     from app.main import prepare
 
     prepare()
-    from app.shell.window import Window
+    from app.main import make_window
+    from tests.app.handles import Handles
 
-    window = Window()
-    window.resize(1680, 1020)
-    window.show()
+    window = Handles(make_window())
+    window.window.resize(1680, 1020)
+    window.window.show()
     window.make_late_panels()
     opened(window)
     small = window.document.project
-    window.session.set_playing(False)
+    window.session.transport.set_playing(False)
     for project in (small, large(small, ACTIONS)):
         if project is not small:
             window.document.load(project, None)
@@ -243,15 +245,16 @@ def proposing() -> None:
     from app.main import prepare
 
     prepare()
-    from app.shell.window import Window
+    from app.main import make_window
     from metagraph.suggest.propose import accept, propose
+    from tests.app.handles import Handles
 
-    window = Window()
-    window.resize(1680, 1020)
-    window.show()
+    window = Handles(make_window())
+    window.window.resize(1680, 1020)
+    window.window.show()
     window.make_late_panels()
     opened(window)
-    window.session.set_playing(False)
+    window.session.transport.set_playing(False)
     window.document.load(again(window.document.project, CLIPS), None)
     linger(6)  # the cards in sight have their pictures
     late: dict[str, list[float]] = {}
@@ -286,7 +289,7 @@ def proposing() -> None:
     window.document.edit("Place", lambda _: placing[0])
     judged = window.compatibility
     phase("looking for jumps", 0.5, lambda: judged.judged is not None and judged.judged.measured["arms"].labelled > 0)
-    window.dialogs.compatibility()
+    window.do("compatibility")
     dialog = next(w for w in QApplication.topLevelWidgets() if type(w).__name__ == "MatrixDialog")
     phase("comparing clips", 0.0, lambda: dialog.model.rows is not None and dialog.model.rowCount() == CLIPS)
     bar = dialog.table.verticalScrollBar()
@@ -310,7 +313,7 @@ def proposing() -> None:
 
 def _close(window: object) -> None:
     window.document.undo_stack.setClean()
-    window.close()
+    window.window.close()
 
 
 def main() -> None:
@@ -324,7 +327,11 @@ def main() -> None:
         os.environ.update(XDG_DATA_HOME=folder, XDG_CONFIG_HOME=folder, PYTHONPYCACHEPREFIX=f"{folder}/cache", METAGRAPH_BENCH="1")
         os.environ.pop("PYTHONDONTWRITEBYTECODE", None)  # modules are compiled once, as they are for people
         subprocess.run(
-            [sys.executable, "-c", "import app.shell.window; from app.shell.window import late_modules; late_modules()"],
+            [
+                sys.executable,
+                "-c",
+                "from app.main import *; app = prepare(); w = make_window(); w.make_late_panels(); w.close()",
+            ],
             check=True,
             cwd=ROOT,
         )

@@ -61,11 +61,11 @@ class PreviewPanel(QWidget):
         self._timer.setTimerType(Qt.TimerType.PreciseTimer)
         self._timer.timeout.connect(self._tick)
         self._timer.start()
-        session.moved.connect(lambda _: self.view.update())
-        session.playing_changed.connect(self._show_state)
-        session.show_changed.connect(self._show_state)
-        session.selection_changed.connect(self.view.update)
-        session.theme_changed.connect(self._restyle)
+        session.transport.moved.connect(lambda _: self.view.update())
+        session.transport.playing_changed.connect(self._show_state)
+        session.transport.show_changed.connect(self._show_state)
+        session.selection.changed.connect(self.view.update)
+        session.look.changed.connect(self._restyle)
         performance.changed.connect(self._changed)
         performance.document.changed.connect(self._edited)
         figures.changed.connect(self.view.update)
@@ -87,15 +87,15 @@ class PreviewPanel(QWidget):
             row.addWidget(out)
             return out
 
-        self.start_button = button("Back to the start (Home)", lambda: self.session.seek(0.0))
-        self.play_button = button("Play or pause (Space)", lambda: self.session.set_playing(not self.session.playing))
+        self.start_button = button("Back to the start (Home)", lambda: self.session.transport.seek(0.0))
+        self.play_button = button("Play or pause (Space)", lambda: self.session.transport.set_playing(not self.session.transport.playing))
         self.loop_button = button("Loop (L)", self._set_loop, checkable=True)
-        self.loop_button.setChecked(self.session.loop)
+        self.loop_button.setChecked(self.session.transport.loop)
         self.speed_box = QComboBox(self, toolTip="Speed")
         self.speed_box.setAccessibleName("Speed")
         self.speed_box.addItems([f"{s:g}×" for s in SPEEDS])
         self.speed_box.setCurrentIndex(SPEEDS.index(1.0))
-        self.speed_box.activated.connect(lambda i: setattr(self.session, "speed", SPEEDS[i]))
+        self.speed_box.activated.connect(lambda i: setattr(self.session.transport, "speed", SPEEDS[i]))
         row.addWidget(self.speed_box)
         row.addStretch(1)
         self.time = QLabel("0:00.0", self)
@@ -121,7 +121,7 @@ class PreviewPanel(QWidget):
         return lines
 
     def _restyle(self) -> None:
-        look = theme(self.session.theme)
+        look = theme(self.session.look.name)
         self.view.theme = THEMES[look.name]
         for button, name in (
             (self.start_button, "start"), (self.loop_button, "loop"), (self.frame_button, "frame"),
@@ -135,7 +135,7 @@ class PreviewPanel(QWidget):
 
     def _scene(self) -> Scene:
         """Return what is drawn now; called by the view when it paints."""
-        shown, seconds, actors = self.performance.shown, self.session.seconds, []
+        shown, seconds, actors = self.performance.shown, self.session.transport.seconds, []
         for one in shown.both:
             pose, skeleton = one.pose(seconds), one.skeleton
             figure = self.figures.of(one) if skeleton is not None else None
@@ -160,21 +160,21 @@ class PreviewPanel(QWidget):
     def _marks(self) -> dict[int, tuple[float, float, float]]:
         """Point out the joints of the selected action's mask."""
         project = self.performance.document.project
-        actions = self.session.selected_actions()
+        actions = self.session.selection.selected_actions()
         if len(actions) != 1 or not actions[0].joints or project.skeleton is None:
             return {}
         moved = anatomy.mask(project, actions[0])
-        color = theme(self.session.theme).fill(actions[0].kind)
+        color = theme(self.session.look.name).fill(actions[0].kind)
         return {} if moved is None else {int(j): (color.redF(), color.greenF(), color.blueF()) for j in np.flatnonzero(moved)}
 
     def _tick(self) -> None:
         elapsed = self._clock.restart() / 1000
-        if self.session.playing and self.isVisible():
+        if self.session.transport.playing and self.isVisible():
             self.performance.advance(min(elapsed, 0.25))
 
     def _painted(self, _: float) -> None:
         self.frames += 1
-        seconds = self.session.seconds
+        seconds = self.session.transport.seconds
         self.time.setText(f"{int(seconds // 60)}:{seconds % 60:04.1f}")
         length = max(1e-6, self.performance.shown.length)
         if not self.scrub.isSliderDown():
@@ -186,14 +186,18 @@ class PreviewPanel(QWidget):
         shown = self.performance.shown
         if shown.clip is not None:
             return f"{shown.project.clips[shown.clip].name}, alone"
-        seconds, out = self.session.seconds, []
+        seconds, out = self.session.transport.seconds, []
         for layer in LAYERS:
             cue = shown.plan.layers[layer].cue_at(seconds)
             if cue is not None:
                 out.append(f"{layer}: {cue.action.name}")
-        if self.session.show == "context":
+        if self.session.transport.show == "context":
             out.append("in context")
         return "   ".join(out)
+
+    def stop(self) -> None:
+        """Draw no more by itself; at closing."""
+        self._timer.stop()
 
     # --- commands
 
@@ -213,15 +217,15 @@ class PreviewPanel(QWidget):
         self.view.update()
 
     def _scrubbed(self, value: int) -> None:
-        self.session.set_playing(False)
-        self.session.seek(value / 10000 * self.performance.shown.length)
+        self.session.transport.set_playing(False)
+        self.session.transport.seek(value / 10000 * self.performance.shown.length)
 
     def _set_loop(self, on: bool) -> None:
-        self.session.loop = on
+        self.session.transport.loop = on
         self.loop_button.setChecked(on)
 
     def toggle_loop(self) -> None:
-        self._set_loop(not self.session.loop)
+        self._set_loop(not self.session.transport.loop)
 
     def _set_bones(self, on: bool) -> None:
         self.bones = on
@@ -234,8 +238,8 @@ class PreviewPanel(QWidget):
     # --- following
 
     def _show_state(self) -> None:
-        look = theme(self.session.theme)
-        self.play_button.setIcon(icons.icon("pause" if self.session.playing else "play", look.text))
+        look = theme(self.session.look.name)
+        self.play_button.setIcon(icons.icon("pause" if self.session.transport.playing else "play", look.text))
         self._clock.restart()
 
     def _changed(self) -> None:

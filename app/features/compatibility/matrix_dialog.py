@@ -99,11 +99,11 @@ class MatrixDialog(QDialog):
         self.go.setAutoDefault(False)
         close.setAutoDefault(False)
         self._lay_out(close)
-        for signal in (session.layer_changed, compatibility.changed):
+        for signal in (session.place.layer_changed, compatibility.changed):
             signal.connect(self.refresh)
-        compatibility.compared.connect(lambda layer: self.refresh() if layer == self.session.layer else None)
+        compatibility.compared.connect(lambda layer: self.refresh() if layer == self.session.place.layer else None)
         document.changed.connect(self._follow)
-        session.theme_changed.connect(self.table.viewport().update)
+        session.look.changed.connect(self.table.viewport().update)
         self.refresh()
         self._show_current()
 
@@ -135,7 +135,7 @@ class MatrixDialog(QDialog):
 
     def refresh(self) -> None:
         """Show the current layer as it was last compared; what is stale is compared anew meanwhile."""
-        layer, project = self.session.layer, self.document.project
+        layer, project = self.session.place.layer, self.document.project
         matrix = self.compatibility.matrix(layer)
         stances = tuple(project.graphs[layer].stances)
         if matrix is None or matrix.layer != layer or matrix.stances != stances:
@@ -212,15 +212,15 @@ class MatrixDialog(QDialog):
             return
         clip, stance, _cell = found
         here = [a for a in self.document.project.uses.get(clip, ()) if stance is None or a.stance == stance]
-        here = [a for a in here if a.layer == self.session.layer]
+        here = [a for a in here if a.layer == self.session.place.layer]
         if stance is None:
-            self.session.select_clips((clip,))
-            self.session.show_clip(clip)
+            self.session.selection.select_clips((clip,))
+            self.session.transport.show_clip(clip)
         elif here:
             self.session.jump(action=here[0].id)
             self.session.show_context(here[0].id)
         else:
-            self.session.select_clips((clip,))
+            self.session.selection.select_clips((clip,))
             self.session.show_context(clip, tried=stance)
 
     def _end(self, clip: str, stance: str) -> str | None:
@@ -241,7 +241,7 @@ class MatrixDialog(QDialog):
         found = self.current()
         if found is None or found[1] is None:
             return
-        clip, stance, kind, layer = found[0], found[1], self.kind.currentData(), self.session.layer
+        clip, stance, kind, layer = found[0], found[1], self.kind.currentData(), self.session.place.layer
         project, judged = self.document.project, self.compatibility.judged
         end = self._end(clip, stance) if kind == "transition" else None
         why = edits.refusal(project, [clip], layer, kind, stance, end)

@@ -241,7 +241,7 @@ class Marks(QStyledItemDelegate):
         return QSize(84, ROW)
 
     def paint(self, painter: QPainter, option: QStyleOptionViewItem, index: Index) -> None:
-        t, rect = theme(self.session.theme), QRectF(option.rect)  # type: ignore[attr-defined]
+        t, rect = theme(self.session.look.name), QRectF(option.rect)  # type: ignore[attr-defined]
         painter.save()
         if option.state & QStyle.StateFlag.State_Selected:  # type: ignore[attr-defined]
             painter.fillRect(rect, QColor(t.hover))
@@ -278,10 +278,10 @@ class Legend(QWidget):
         self.session = session
         self.setFixedHeight(24)
         self.setAccessibleName("Left half: entered from the stance. Right half: left to it.")
-        session.theme_changed.connect(self.update)
+        session.look.changed.connect(self.update)
 
     def paintEvent(self, event: object) -> None:
-        t = theme(self.session.theme)
+        t = theme(self.session.look.name)
         painter = QPainter(self)
         painter.setRenderHint(QPainter.RenderHint.Antialiasing)
         x, y = 2.0, self.height() / 2

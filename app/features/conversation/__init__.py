@@ -1,1 +1,85 @@
 """Two who talk: lanes of sound, words and segments."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from pathlib import Path
+
+from PySide6.QtWidgets import QWidget
+
+from app.project.files import Files
+from app.project.importing import FileDrop
+from app.project.speech_files import SOUNDS, TRANSCRIPTS, converses, kinds_of
+from app.shell.actions import Command
+from app.shell.context import Contribution, Panel, Shell
+
+
+def contribute(shell: Shell) -> Contribution:
+    session, performance = shell.stage.session, shell.stage.performance
+
+    def run(name: str) -> Callable[[], None]:
+        """Return what does one of the commands; they are imported when the first of them is wanted."""
+
+        def call() -> None:
+            from app.features.conversation import conversation_commands
+
+            getattr(conversation_commands, name)(shell)
+
+        return call
+
+    def converse(paths: Sequence[Path] = ()) -> None:
+        from app.features.conversation import conversation_commands
+
+        conversation_commands.converse(shell, paths)
+
+    def claim(paths: Sequence[Path]) -> Sequence[Path]:
+        sounds, transcripts = kinds_of(paths)
+        mine = (*sounds, *transcripts)
+        return mine if sounds and converses(mine) else ()
+
+    def take(paths: Sequence[Path]) -> None:
+        if not shell.services[Files].refuse():
+            converse(paths)
+
+    def make() -> QWidget:
+        from app.features.conversation.conversation_panel import ConversationPanel
+
+        panel = ConversationPanel(shell.document, session, shell.jobs, shell.widget)
+        panel.files_dropped.connect(converse)
+        panel.add.clicked.connect(lambda: converse())
+        panel.more_menu.addActions(shell.actions.of_menu("conversation"))
+        panel.more_menu.aboutToShow.connect(shell.actions.refresh)
+        return panel
+
+    def replaced() -> bool:
+        """Whether somebody on stage moves with new motion instead of a graph."""
+        talk = shell.document.project.conversations.get(session.onstage.conversation or "")
+        return talk is not None and any(side.motion is not None for side in talk.sides)
+
+    staged = lambda: session.onstage.conversation is not None  # noqa: E731
+    menu, mine = "&Conversation", ("conversation",)
+    return Contribution(
+        panels=(Panel("conversation", "Conversation", "bottom", make, study=False),),
+        commands=(
+            Command("converse", menu, "read", "Conversation from &sound…", converse, menus=mine,
+                    tip="Read what two say, and let both characters move with it"),
+            Command("rename_conversation", menu, "settings", "Re&name conversation…", run("rename"), enabled=staged, menus=mine),
+            Command("rates", menu, "settings", "&Rates…", run("rates"), enabled=staged, tip="How often each of the two gestures and nods",
+                    menus=mine),
+            Command("word_lists", menu, "settings", "&Word lists…", run("word_lists"), enabled=staged,
+                    tip="Which words are responses, which hesitations", menus=mine),
+            Command("side_sounds", menu, "settings", "S&ounds and names…", run("side_sounds"), enabled=staged,
+                    tip="Who the two are, and which sound is whose", menus=mine),
+            Command("other_side", menu, "stage", "The &other's plan", lambda: session.onstage.set_side(1 - session.onstage.side), enabled=staged,
+                    tip="Whose plan the timeline shows"),
+            Command("graph_again", menu, "stage", "Move with the &graph again", run("graph_again"), enabled=replaced,
+                    tip="Instead of new motion that was found for it"),
+            Command("keep_conversation", menu, "stage", "&Keep as performances", performance.keep_conversation, enabled=staged,
+                    tip="What both do, as requests that can be edited one by one, and exported"),
+            Command("write_segments", menu, "write", "&Export segments…", run("write_segments"), enabled=staged,
+                    tip="As ELAN or Praat TextGrid", menus=mine),
+            Command("remove_conversation", menu, "remove", "Remove conversation", run("remove"), enabled=staged, menus=mine),
+        ),
+        drops=(FileDrop((*SOUNDS, *TRANSCRIPTS), claim, take),),
+        late_imports=("app.features.conversation.conversation_panel",),
+    )  # fmt: skip

@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING
 
 from PySide6.QtWidgets import QFileDialog, QInputDialog
 
+from app.project.files import Files
 from app.project.speech_files import SOUNDS, TRANSCRIPTS, beside, kinds_of
 from metagraph.errors import FileError
 from metagraph.graph import conversing
@@ -15,94 +16,95 @@ from metagraph.graph.conversation import Conversation
 from metagraph.graph.edits import EditError
 
 if TYPE_CHECKING:
-    from app.shell.window import Window
+    from app.shell.context import Shell
 
 FILTER = f"Sounds and transcripts ({' '.join(f'*{s} *{s.upper()}' for s in (*SOUNDS, *TRANSCRIPTS))} *.TextGrid);;All files (*)"
 ELAN, TEXTGRID = "ELAN annotation (*.eaf)", "Praat TextGrid (*.TextGrid)"
 
 
-def on_stage(window: Window) -> tuple[str, Conversation] | None:
+def on_stage(shell: Shell) -> tuple[str, Conversation] | None:
     """Return the conversation on stage with its id."""
-    ident = window.session.conversation or ""
-    found = window.document.project.conversations.get(ident)
+    ident = shell.stage.session.onstage.conversation or ""
+    found = shell.document.project.conversations.get(ident)
     return (ident, found) if found is not None else None
 
 
-def converse(window: Window, paths: Sequence[Path] = ()) -> None:
+def converse(shell: Shell, paths: Sequence[Path] = ()) -> None:
     """Open the dialog on sounds and transcripts; without any they are asked for."""
-    if window.files.closed:
-        window.tell(window.files.closed)
+    if shell.services[Files].refuse():
         return
     if not paths:
-        start = str(window.document.folder or Path.home())
-        names, _ = QFileDialog.getOpenFileNames(window, "Conversation from sound: one file, or one for each of the two", start, FILTER)
+        start = str(shell.document.folder or Path.home())
+        names, _ = QFileDialog.getOpenFileNames(
+            shell.widget, "Conversation from sound: one file, or one for each of the two", start, FILTER
+        )
         paths = [Path(n) for n in names]
     sounds, transcripts = kinds_of(paths)
     if not sounds:
         if paths:
-            window.tell(f"There is no sound among these files. Sounds are {', '.join(SOUNDS)}.")
+            shell.tell(f"There is no sound among these files. Sounds are {', '.join(SOUNDS)}.")
         return
     from app.features.conversation.conversation_dialog import ImportDialog
 
-    dialog = ImportDialog(window.document, window.session, window.jobs, sounds[:2], transcripts or beside(sounds[:2]), window)
-    dialog.imported.connect(lambda: window.show_dock("conversation"))
+    dialog = ImportDialog(shell.document, shell.stage.session, shell.jobs, sounds[:2], transcripts or beside(sounds[:2]), shell.widget)
+    dialog.imported.connect(lambda: shell.show("conversation"))
     dialog.open()
 
 
-def rename(window: Window) -> None:
-    found = on_stage(window)
+def rename(shell: Shell) -> None:
+    found = on_stage(shell)
     if found is not None:
-        name, ok = QInputDialog.getText(window, "Rename conversation", "Name", text=found[1].name)
+        name, ok = QInputDialog.getText(shell.widget, "Rename conversation", "Name", text=found[1].name)
         if ok and name.strip():
-            _edit(window, "Rename conversation", lambda p: conversing.change_conversation(p, found[0], name=name))
+            _edit(shell, "Rename conversation", lambda p: conversing.change_conversation(p, found[0], name=name))
 
 
-def remove(window: Window) -> None:
-    found = on_stage(window)
+def remove(shell: Shell) -> None:
+    found = on_stage(shell)
     if found is not None:
-        _edit(window, "Remove conversation", lambda p: conversing.remove_conversation(p, found[0]))
-        window.tell(f"Removed '{found[1].name}'. Undo brings it back; its sound files stay where they are.")
+        _edit(shell, "Remove conversation", lambda p: conversing.remove_conversation(p, found[0]))
+        shell.tell(f"Removed '{found[1].name}'. Undo brings it back; its sound files stay where they are.")
 
 
-def rates(window: Window) -> None:
-    found = on_stage(window)
+def rates(shell: Shell) -> None:
+    found = on_stage(shell)
     if found is not None:
         from app.features.conversation.conversation_settings import RatesDialog
 
-        RatesDialog(window.document, *found, window).open()
+        RatesDialog(shell.document, *found, shell.widget).open()
 
 
-def graph_again(window: Window) -> None:
+def graph_again(shell: Shell) -> None:
     """Let the graph move both again."""
-    found = on_stage(window)
+    found = on_stage(shell)
     if found is not None:
         both = lambda p: conversing.change_side(conversing.change_side(p, found[0], 0, motion=None), found[0], 1, motion=None)  # noqa: E731
-        _edit(window, "Move with the graph again", both)
+        _edit(shell, "Move with the graph again", both)
 
 
-def word_lists(window: Window) -> None:
-    found = on_stage(window)
+def word_lists(shell: Shell) -> None:
+    found = on_stage(shell)
     if found is not None:
         from app.features.conversation.conversation_settings import WordsDialog
 
-        WordsDialog(window.document, *found, window).open()
+        WordsDialog(shell.document, *found, shell.widget).open()
 
 
-def side_sounds(window: Window) -> None:
-    found = on_stage(window)
+def side_sounds(shell: Shell) -> None:
+    found = on_stage(shell)
     if found is not None:
         from app.features.conversation.conversation_settings import SidesDialog
 
-        SidesDialog(window.document, *found, window).open()
+        SidesDialog(shell.document, *found, shell.widget).open()
 
 
-def write_segments(window: Window) -> None:
+def write_segments(shell: Shell) -> None:
     """Ask where to, and write the segments of the conversation on stage."""
-    found = on_stage(window)
+    found = on_stage(shell)
     if found is None:
         return
-    start = (window.document.folder or Path.home()) / f"{found[1].name}.eaf"
-    name, kind = QFileDialog.getSaveFileName(window, "Export segments", str(start), f"{ELAN};;{TEXTGRID}")
+    start = (shell.document.folder or Path.home()) / f"{found[1].name}.eaf"
+    name, kind = QFileDialog.getSaveFileName(shell.widget, "Export segments", str(start), f"{ELAN};;{TEXTGRID}")
     if not name:
         return
     path = Path(name)
@@ -114,15 +116,15 @@ def write_segments(window: Window) -> None:
         if path.suffix.lower() == ".textgrid":
             write_textgrid(found[1], path)
         else:
-            write_elan(found[1], path, window.document.folder)
+            write_elan(found[1], path, shell.document.folder)
     except (FileError, OSError) as error:
-        window.tell(str(error))
+        shell.tell(str(error))
         return
-    window.tell(f"Wrote {path.name}")
+    shell.tell(f"Wrote {path.name}")
 
 
-def _edit(window: Window, text: str, function: object) -> None:
+def _edit(shell: Shell, text: str, function: object) -> None:
     try:
-        window.document.edit(text, function)  # type: ignore[arg-type]
+        shell.document.edit(text, function)  # type: ignore[arg-type]
     except EditError as error:
-        window.tell(str(error))
+        shell.tell(str(error))

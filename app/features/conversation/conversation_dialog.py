@@ -141,11 +141,11 @@ class ImportDialog(QDialog):
         self.notes.hide()
         layout.addWidget(self.notes)
         layout.addLayout(self._foot())
-        self.session.theme_changed.connect(self._restyle)
+        self.session.look.changed.connect(self._restyle)
         self._restyle()
 
     def _restyle(self) -> None:
-        t = theme(self.session.theme)
+        t = theme(self.session.look.name)
         self.setStyleSheet(f"QFrame#card {{ background: {t.card}; border: 1px solid {t.line}; border-radius: 8px; }}")
 
     def _found(self) -> QHBoxLayout:
@@ -249,7 +249,7 @@ class ImportDialog(QDialog):
             card.show_side(self.sides()[n] if self.read is not None else None)
         notes = list(self.read.notes) if self.read is not None else [failure] if failure else []
         more = [f"… and {len(notes) - MOST} more"] if len(notes) > MOST else []
-        t = theme(self.session.theme)
+        t = theme(self.session.look.name)
         self.notes.setStyleSheet(f"color: {t.error if failure else t.warning}")
         self.notes.setText("\n".join(f"⚠  {n}" for n in notes[:MOST]) + "".join(f"\n{m}" for m in more))
         self.notes.setVisible(bool(notes))
@@ -313,9 +313,9 @@ class ImportDialog(QDialog):
             return project
 
         self.document.edit("Add conversation", edit)
-        self.session.set_conversation(ident)
-        self.session.show_plan()
-        self.session.seek(0.0)
+        self.session.onstage.set_conversation(ident)
+        self.session.transport.show_plan()
+        self.session.transport.seek(0.0)
         self.imported.emit(ident)
         super().accept()
 

@@ -44,9 +44,9 @@ class ConversationPanel(QWidget):
         self._soon = QTimer(self, singleShot=True, interval=0)  # many changes in a row are counted once
         self._soon.timeout.connect(self._words)
         document.changed.connect(lambda before, after: self._restage())
-        session.conversation_changed.connect(self._restage)
-        session.theme_changed.connect(self._soon.start)
-        session.mode_changed.connect(self._soon.start)
+        session.onstage.conversation_changed.connect(self._restage)
+        session.look.changed.connect(self._soon.start)
+        session.onstage.mode_changed.connect(self._soon.start)
         self.editing.changed.connect(self._soon.start)
         self._restage()
 
@@ -57,7 +57,7 @@ class ConversationPanel(QWidget):
         self.stage = QComboBox(self, toolTip="Which conversation is on stage: it moves both characters")
         self.stage.setAccessibleName("Conversation on stage")
         self.stage.setMinimumWidth(150)
-        self.stage.activated.connect(lambda _: self.session.set_conversation(self.stage.currentData()))
+        self.stage.activated.connect(lambda _: self.session.onstage.set_conversation(self.stage.currentData()))
         row.addWidget(self.stage)
         self.more = QToolButton(self, text="…", toolTip="Rename, rates, word lists, export, remove")
         self.more.setAccessibleName("Conversations")
@@ -84,12 +84,12 @@ class ConversationPanel(QWidget):
             self.stage.clear()
             for name, ident in wanted:
                 self.stage.addItem(name, ident)
-        self.stage.setCurrentIndex(next((n for n, (_, i) in enumerate(wanted) if i == self.session.conversation), 0))
+        self.stage.setCurrentIndex(next((n for n, (_, i) in enumerate(wanted) if i == self.session.onstage.conversation), 0))
         self.stage.setEnabled(len(wanted) > 1)
         self._soon.start()
 
     def _words(self) -> None:
-        of, t = self.editing.conversation, theme(self.session.theme)
+        of, t = self.editing.conversation, theme(self.session.look.name)
         self.legend.setVisible(of is not None)
         if of is None:
             self.title.say("")
@@ -103,7 +103,7 @@ class ConversationPanel(QWidget):
                 for k in SPOKEN
             )
         )
-        if self.session.mode == "manual":
+        if self.session.onstage.mode == "manual":
             self.title.say("Now the machine you draw moves one character. Back in the meta-graph, both move with what is said.")
             return
         chosen, found = self.editing.chosen, self.editing.segment(self.editing.last)

@@ -33,12 +33,12 @@ class Editing(QObject):
         self.last: Place | None = None  # the one selected last: where keys go on from
         self._ident: str | None = None  # of the conversation on stage
         document.changed.connect(self._follow)
-        session.conversation_changed.connect(self._staged)
+        session.onstage.conversation_changed.connect(self._staged)
 
     @property
     def conversation(self) -> Conversation | None:
         """The conversation on stage."""
-        return self.document.project.conversations.get(self.session.conversation or "")
+        return self.document.project.conversations.get(self.session.onstage.conversation or "")
 
     def segment(self, place: Place | None) -> Segment | None:
         of = self.conversation
@@ -67,7 +67,7 @@ class Editing(QObject):
             return False
         if self.last is None:
             side = 0 if of.sides[0].segments else 1
-            return self._select_near(side, self.session.seconds)
+            return self._select_near(side, self.session.transport.seconds)
         side, at = self.last
         if not 0 <= at + by < len(of.sides[side].segments):
             return False
@@ -77,11 +77,11 @@ class Editing(QObject):
     def cross(self, side: int) -> None:
         """Select what the other of the two says at that time."""
         found = self.segment(self.last)
-        self._select_near(side, found.start if found is not None else self.session.seconds)
+        self._select_near(side, found.start if found is not None else self.session.transport.seconds)
 
     def _staged(self) -> None:
-        if self.session.conversation != self._ident:  # else it is the other of the two that the timeline shows
-            self._ident = self.session.conversation
+        if self.session.onstage.conversation != self._ident:  # else it is the other of the two that the timeline shows
+            self._ident = self.session.onstage.conversation
             self.select(())
 
     def _select_near(self, side: int, seconds: float) -> bool:
@@ -95,7 +95,7 @@ class Editing(QObject):
 
     def _follow(self, before: Project, after: Project) -> None:
         """Keep what is selected while it is there: by its place, or where there are more or fewer now by when it begins."""
-        ident = self.session.conversation or ""
+        ident = self.session.onstage.conversation or ""
         was, now = before.conversations.get(ident), after.conversations.get(ident)
         if was is now or not self.chosen:
             return
@@ -121,7 +121,7 @@ class Editing(QObject):
 
     def change(self, text: str, function: Callable[..., Project], *more: Any, **fields: Any) -> bool:
         """Do one of the edits of `conversing` to the conversation on stage."""
-        ident = self.session.conversation
+        ident = self.session.onstage.conversation
         return ident is not None and self.edit(text, lambda p: function(p, ident, *more, **fields))
 
     def relabel(self, kind: Sound) -> None:
@@ -179,9 +179,9 @@ class Editing(QObject):
 
         def edit(project: Project) -> Project:
             nonlocal made
-            assert self.session.conversation is not None
+            assert self.session.onstage.conversation is not None
             peak = self.highest(side, start, end)
-            project, made = conversing.add_segment(project, self.session.conversation, side, kind, start, end, peak)
+            project, made = conversing.add_segment(project, self.session.onstage.conversation, side, kind, start, end, peak)
             return project
 
         if self.conversation is not None and self.edit("Add segment", edit):
@@ -189,7 +189,7 @@ class Editing(QObject):
 
     def add_here(self) -> None:
         """Add a segment at the playhead, on the side of the selected one, as long as there is room."""
-        self.add(self.last[0] if self.last is not None else 0, "clause", self.session.seconds, self.session.seconds + NEW)
+        self.add(self.last[0] if self.last is not None else 0, "clause", self.session.transport.seconds, self.session.transport.seconds + NEW)
 
     def nudge(self, by: float, what: str) -> None:
         """Move the selected segment ("body"), or one of its ends ("start", "end")."""

@@ -69,7 +69,7 @@ class EdgeDrag(SegmentDrag):
     text = "Change segment"
 
     def edit(self, at: QPointF, free: bool) -> Edit | None:
-        view, hit, ident = self.view, self.hit, self.view.session.conversation
+        view, hit, ident = self.view, self.hit, self.view.session.onstage.conversation
         segment = view.editing.segment((hit.side, hit.at))
         if segment is None or ident is None:
             return None
@@ -85,7 +85,7 @@ class BodyDrag(SegmentDrag):
     text = "Move segment"
 
     def edit(self, at: QPointF, free: bool) -> Edit | None:
-        view, hit, ident = self.view, self.hit, self.view.session.conversation
+        view, hit, ident = self.view, self.hit, self.view.session.onstage.conversation
         segment = view.editing.segment((hit.side, hit.at))
         if segment is None or ident is None:
             return None
@@ -103,7 +103,7 @@ class PeakDrag(SegmentDrag):
 
     def edit(self, at: QPointF, free: bool) -> Edit | None:
         view, hit, of = self.view, self.hit, self.view.editing.conversation
-        segment, ident = view.editing.segment((hit.side, hit.at)), self.view.session.conversation
+        segment, ident = view.editing.segment((hit.side, hit.at)), self.view.session.onstage.conversation
         if segment is None or segment.peak is None or of is None or ident is None:
             return None
         heard = view.sounds.of(of, hit.side)
@@ -120,7 +120,7 @@ class NewDrag(SegmentDrag):
     text = "Add segment"
 
     def edit(self, at: QPointF, free: bool) -> Edit | None:
-        view, side, ident = self.view, self.hit.side, self.view.session.conversation
+        view, side, ident = self.view, self.hit.side, self.view.session.onstage.conversation
         scale = view.scale()
         start, end = (self.caught(scale.seconds(x), free) for x in (self.origin.x(), at.x()))
         self.words, self.seconds = f"New: {abs(end - start):.2f} s", end
@@ -141,18 +141,18 @@ class Scrub:
     """Moves the playhead with the mouse."""
 
     def __init__(self, view: View, at: QPointF) -> None:
-        self.view, self.before = view, view.session.seconds
-        view.session.set_playing(False)
+        self.view, self.before = view, view.session.transport.seconds
+        view.session.transport.set_playing(False)
         self.update(at, False)
 
     def update(self, at: QPointF, free: bool) -> None:
-        self.view.session.seek(self.view.scale().seconds(max(at.x(), self.view.scale().x(self.view.first))))
+        self.view.session.transport.seek(self.view.scale().seconds(max(at.x(), self.view.scale().x(self.view.first))))
 
     def finish(self) -> None:
         """The playhead is where it is."""
 
     def cancel(self) -> None:
-        self.view.session.seek(self.before)
+        self.view.session.transport.seek(self.before)
 
 
 class Pan:

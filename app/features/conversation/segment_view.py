@@ -74,9 +74,9 @@ class View(QWidget):
         sounds.changed.connect(self._read)
         editing.changed.connect(self._chosen)
         self.document.changed.connect(lambda before, after: self.update())
-        self.session.moved.connect(self._playhead)
-        self.session.theme_changed.connect(self.update)
-        self.session.conversation_changed.connect(self._staged)
+        self.session.transport.moved.connect(self._playhead)
+        self.session.look.changed.connect(self.update)
+        self.session.onstage.conversation_changed.connect(self._staged)
 
     # --- what is in sight
 
@@ -104,7 +104,7 @@ class View(QWidget):
     def hold(self, edit: Edit | None) -> None:
         """Show what an edit would make, without making it; None shows what is."""
         self.held = None
-        ident = self.session.conversation
+        ident = self.session.onstage.conversation
         if edit is not None and ident is not None:
             try:
                 self.held = edit(self.document.project).conversations[ident]
@@ -126,8 +126,8 @@ class View(QWidget):
 
     def _staged(self) -> None:
         self._stop_dragging()
-        if self.session.conversation != self._ident:  # else it is the other of the two that the timeline shows
-            self._ident = self.session.conversation
+        if self.session.onstage.conversation != self._ident:  # else it is the other of the two that the timeline shows
+            self._ident = self.session.onstage.conversation
             self.first, self.each = 0.0, USUAL
         self.update()
 
@@ -139,21 +139,21 @@ class View(QWidget):
         width = self.width() - LEFT
         if width > 40 and self.gesture is None and self.editing.conversation is not None:
             x = (seconds - self.first) * self.each
-            if not 0 <= x <= width * (0.85 if self.session.playing else 1.0):
+            if not 0 <= x <= width * (0.85 if self.session.transport.playing else 1.0):
                 self.look_at(seconds - 0.15 * width / self.each)
         self.update()
 
     # --- painting
 
     def paintEvent(self, event: QPaintEvent) -> None:
-        t, painter, of = theme(self.session.theme), QPainter(self), self.conversation()
+        t, painter, of = theme(self.session.look.name), QPainter(self), self.conversation()
         if of is None:
             painter.fillRect(self.rect(), QColor(t.panel))
             empty(painter, t, QRectF(self.rect()), UNCHOSEN if self.document.project.conversations else EMPTY)
             painter.end()
             return
         painter.drawPixmap(0, 0, self._picture(of))
-        x = self.scale().x(self.session.seconds)
+        x = self.scale().x(self.session.transport.seconds)
         if x >= LEFT - 1:
             playhead(painter, t, x, self.height())
         drag = self.gesture
@@ -178,13 +178,13 @@ class View(QWidget):
             picture.setDevicePixelRatio(ratio)
             painter = QPainter(picture)
             painter.setFont(self.font())
-            scene = Scene(of, heard, self.scale(), self.width(), self.height(), ratio, chosen, self.over, s.side)
-            paint(painter, theme(s.theme), scene)
+            scene = Scene(of, heard, self.scale(), self.width(), self.height(), ratio, chosen, self.over, s.onstage.side)
+            paint(painter, theme(s.look.name), scene)
             painter.end()
             self.painted += 1
             return picture
 
-        values = (self.scale(), self.size(), ratio, s.theme, s.side, chosen, self.over, self._came, self.font().toString())
+        values = (self.scale(), self.size(), ratio, s.look.name, s.onstage.side, chosen, self.over, self._came, self.font().toString())
         return self._still.of(values, (of, *heard), make)
 
     # --- the mouse
@@ -201,7 +201,7 @@ class View(QWidget):
         if event.button() == Qt.MouseButton.MiddleButton:
             self.gesture = Pan(self, at)
         elif event.button() == Qt.MouseButton.LeftButton and hit.part == "title":
-            self.session.set_side(hit.side)
+            self.session.onstage.set_side(hit.side)
         elif event.button() == Qt.MouseButton.LeftButton:
             if hit.at >= 0:
                 self._select(hit, event.modifiers())
@@ -285,8 +285,8 @@ class View(QWidget):
         if self.editing.conversation is None or self.gesture is not None:
             return
         if event.reason() == QContextMenuEvent.Reason.Keyboard:
-            x = min(max(LEFT, self.scale().x(self.session.seconds)), self.width())
-            self.menu(self.session.seconds).popup(self.mapToGlobal(QPointF(x, 40).toPoint()))
+            x = min(max(LEFT, self.scale().x(self.session.transport.seconds)), self.width())
+            self.menu(self.session.transport.seconds).popup(self.mapToGlobal(QPointF(x, 40).toPoint()))
             return
         hit = self._hit(QPointF(event.pos()))
         if hit.at >= 0 and (hit.side, hit.at) not in self.editing.chosen:
@@ -310,7 +310,7 @@ class View(QWidget):
     def _seconds(self) -> float:
         """Return the time keys are about: under the pointer where that is on a segment, else the playhead."""
         hit = self._hit(self.pointer)
-        return self.scale().seconds(self.pointer.x()) if hit.at >= 0 and hit.part != "peak" else self.session.seconds
+        return self.scale().seconds(self.pointer.x()) if hit.at >= 0 and hit.part != "peak" else self.session.transport.seconds
 
     def keyPressEvent(self, event: QKeyEvent) -> None:
         deed, key = deed_of(event.key(), event.modifiers()), event.key()
@@ -322,7 +322,7 @@ class View(QWidget):
         elif deed is not None and (self.editing.chosen or not deed.needs):
             deed.run(self.editing, self._seconds())
         elif key in (Qt.Key.Key_Plus, Qt.Key.Key_Equal, Qt.Key.Key_Minus):
-            self.zoom(1 / ZOOM if key == Qt.Key.Key_Minus else ZOOM, min(max(LEFT, self.scale().x(self.session.seconds)), self.width()))
+            self.zoom(1 / ZOOM if key == Qt.Key.Key_Minus else ZOOM, min(max(LEFT, self.scale().x(self.session.transport.seconds)), self.width()))
         elif key in (Qt.Key.Key_PageUp, Qt.Key.Key_PageDown):
             page = 0.8 * (self.width() - LEFT) / self.each
             self.look_at(self.first + (page if key == Qt.Key.Key_PageDown else -page))
@@ -367,7 +367,7 @@ class View(QWidget):
             said = [w for w in words_in(of.sides[hit.side].words, seconds, seconds) if w.start <= seconds <= w.end]
             return f"{said[0].text}\n{said[0].start:.2f} to {said[0].end:.2f} s" if said else ""
         if hit.part == "title":
-            side, whose = of.sides[hit.side], hit.side == self.session.side
+            side, whose = of.sides[hit.side], hit.side == self.session.onstage.side
             channel = f", channel {side.channel + 1}" if side.channel is not None else ""
             sound = [f"{side.audio}{channel}"] if side.audio else []
             mover = [f"Moved by {side.project}"] if side.project else []

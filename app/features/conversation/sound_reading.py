@@ -52,7 +52,7 @@ class Sounds(QObject):
         self._job: Job | None = None
         document.changed.connect(lambda before, after: self._follow() if before.conversations is not after.conversations else None)
         document.loaded.connect(self.forget)
-        session.conversation_changed.connect(self._staged)
+        session.onstage.conversation_changed.connect(self._staged)
 
     def of(self, conversation: Conversation, side: int) -> Heard | None:
         """Return a side's sound as far as it is read; None where the side has none."""
@@ -82,7 +82,7 @@ class Sounds(QObject):
 
     def _follow(self) -> None:
         """Read what the conversation on stage needs and is not there yet; what others needed is forgotten."""
-        on = self.document.project.conversations.get(self.session.conversation or "")
+        on = self.document.project.conversations.get(self.session.onstage.conversation or "")
         keys = dict.fromkeys(k for side in (0, 1) if on is not None and (k := self._key(on, side)) is not None)
         if set(keys) == set(self.heard) and not self._left():
             return

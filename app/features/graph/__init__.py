@@ -1,1 +1,107 @@
-"""The meta-graph on its canvas."""
+"""The meta-graph on its canvas, its layers and stances."""
+
+from __future__ import annotations
+
+from PySide6.QtWidgets import QButtonGroup, QHBoxLayout, QToolButton, QWidget
+
+from app.features.graph.graph_canvas import Canvas
+from app.features.graph.graph_drops import Drop
+from app.project.importing import Importing
+from app.shell.actions import Command
+from app.shell.context import Contribution, HeaderItem, Panel, Shell
+from app.shell.verbs import Verbs
+from app.stage.problem_watch import ProblemWatch
+from metagraph.formats.imports import Imported
+from metagraph.graph.model import KINDS, LAYERS, Layer
+
+LAYER_KEYS: dict[Layer, str] = {"body": "Alt+1", "arms": "Alt+2", "head": "Alt+3"}
+
+
+def contribute(shell: Shell) -> Contribution:
+    session, document, stage = shell.stage.session, shell.document, shell.stage
+    importing, problems, verbs = shell.services[Importing], shell.services[ProblemWatch], shell.services[Verbs]
+    meta = lambda: session.onstage.mode == "meta"  # noqa: E731
+
+    def make() -> Canvas:
+        canvas = Canvas(document, session, stage.performance, stage.thumbnails, shell.widget)
+        canvas.row_actions = shell.actions.of_menu("action")
+        canvas.files_dropped.connect(lambda paths, drop: importing.import_paths(list(paths), drop))
+        canvas.refused.connect(stage.refused)
+        problems.changed.connect(lambda: canvas.set_misfits(problems.misfits))
+        return canvas
+
+    def canvas() -> Canvas:
+        found: Canvas = shell.panel("graph")
+        return found
+
+    def imported(result: Imported, place: object) -> None:
+        load = importing.load_for(result)
+        if isinstance(place, Drop) and load.clips:
+            canvas().do(place, load)
+
+    importing.imported.connect(imported)
+    verbs.offer("remove", lambda: meta() and bool(session.selection.actions), lambda: canvas().remove_selection())
+    verbs.offer("rename", meta, lambda: canvas().rename_stance(), rank=9)
+    verbs.offer("select_all", meta, lambda: session.selection.select_actions(tuple(a.id for a in canvas().listed())), rank=9)
+    some = lambda: bool(session.selection.clips or session.selection.actions)  # noqa: E731
+    stances = lambda: list(document.project.graphs[session.place.layer].stances.values())  # noqa: E731
+
+    def choose(place: int) -> None:
+        if place < len(stances()):
+            session.place.set_stance(stances()[place].id)
+
+    def name(place: int) -> str:
+        found = stances()
+        return found[place].name if place < len(found) else f"Stance {place + 1}"
+
+    menu = "&Graph"
+    labels = (
+        Command(f"label_{kind}", menu, "label", f"Label as &{number} {kind}", lambda k=kind: canvas().place_selection(k), (str(number),),
+                enabled=some, when="meta", study=True)
+        for number, kind in enumerate(KINDS, 1)
+    )  # fmt: skip
+    layers = (
+        Command(f"layer_{layer}", menu, "layers", f"{layer.capitalize()} layer", lambda x=layer: session.place.set_layer(x), (LAYER_KEYS[layer],),
+                checked=lambda x=layer: session.place.layer == x, study=True)
+        for layer in LAYERS
+    )  # fmt: skip
+    places = (
+        Command(f"stance_{n + 1}", menu, "stances", lambda n=n: name(n), lambda n=n: choose(n), (f"Ctrl+{n + 1}",),
+                enabled=lambda n=n: n < len(stances()), visible=lambda n=n: n < len(stances()), when="meta", study=True)
+        for n in range(9)
+    )  # fmt: skip
+    new = Command("new_stance", menu, "author", "&New stance…", lambda: canvas().new_stance(), ("Ctrl+Shift+N",), when="meta", study=True)
+    return Contribution(
+        panels=(Panel("graph", "Graph", "centre", make, late=False, when="meta"),),
+        commands=(new, *labels, *layers, *places),
+        header=(HeaderItem("middle", lambda parent: LayerTabs(shell, parent)),),
+        close=lambda: canvas().stop(),
+    )
+
+
+class LayerTabs(QWidget):
+    """The layers, each with how many actions it has; the current one is pressed."""
+
+    def __init__(self, shell: Shell, parent: QWidget) -> None:
+        super().__init__(parent)
+        self.document, self.session = shell.document, shell.stage.session
+        self.buttons = QButtonGroup(self)
+        row = QHBoxLayout(self)
+        row.setContentsMargins(0, 0, 0, 0)
+        row.setSpacing(2)
+        for number, layer in enumerate(LAYERS):
+            button = QToolButton(self, text=layer.capitalize(), checkable=True, toolTip=f"The {layer} layer ({LAYER_KEYS[layer]})")
+            button.setMinimumWidth(72)
+            button.clicked.connect(lambda _=False, x=layer: self.session.place.set_layer(x))
+            self.buttons.addButton(button, number)
+            row.addWidget(button)
+        self.session.place.layer_changed.connect(self.refresh)
+        self.document.changed.connect(lambda before, after: self.refresh() if before.graphs is not after.graphs else None)
+        self.refresh()
+
+    def refresh(self) -> None:
+        """Show the layer and the counts as they are now."""
+        for number, layer in enumerate(LAYERS):
+            count = len(self.document.project.graphs[layer].actions)
+            self.buttons.button(number).setText(f"{layer.capitalize()}  {count}" if count else layer.capitalize())
+        self.buttons.button(LAYERS.index(self.session.place.layer)).setChecked(True)

@@ -82,10 +82,10 @@ class Canvas(QWidget):
         self._hero_timer.timeout.connect(self._next_beat)
         self._hero_timer.start()
         document.changed.connect(self._edited)
-        for signal in (session.stance_changed, session.layer_changed):
+        for signal in (session.place.stance_changed, session.place.layer_changed):
             signal.connect(self._moved_on)
-        session.selection_changed.connect(self.update)
-        session.theme_changed.connect(self.update)
+        session.selection.changed.connect(self.update)
+        session.look.changed.connect(self.update)
         thumbnails.ready.connect(lambda _: self.update())
         performance.changed.connect(self.update)
 
@@ -95,7 +95,7 @@ class Canvas(QWidget):
         """Return the layout, made when first asked for after a change."""
         if self._layout is None:
             metrics = QFontMetricsF(self.font())
-            project, layer, stance = self.document.project, self.session.layer, self.session.stance()
+            project, layer, stance = self.document.project, self.session.place.layer, self.session.place.stance()
             names = [s.name for s in project.graphs[layer].stances.values()]
             widths = {text: metrics.horizontalAdvance(text) for text in (*names, "no fidgets", "no gestures", "no way out", "no loop")}
             self._layout = arrange(project, layer, stance, QSizeF(self.size()), self.scroll, widths)
@@ -110,9 +110,9 @@ class Canvas(QWidget):
 
     def paintEvent(self, event: QPaintEvent) -> None:
         begun = time.perf_counter()
-        look = theme(self.session.theme)
-        project, stance = self.document.project, self.session.stance()
-        graph = project.graphs[self.session.layer]
+        look = theme(self.session.look.name)
+        project, stance = self.document.project, self.session.place.stance()
+        graph = project.graphs[self.session.place.layer]
         hero = next(iter(graph.of(stance, "stance")), None) if stance else None
         chips = {}
         for ident in graph.stances:
@@ -127,14 +127,14 @@ class Canvas(QWidget):
             Look(
                 theme=look,
                 project=project,
-                selected=self.session.actions,
+                selected=self.session.selection.actions,
                 hover=self.hover,
                 focus=self.focus if self.hasFocus() else None,
                 playing=self._playing(),
                 misfits=self.misfits,
                 picture=self.thumbnails.moving(hero.clip, self._beat) if hero is not None else None,
                 chip_pictures=chips,
-                other=self.session.other(),
+                other=self.session.place.other(),
                 drop=self._drop,
                 drop_hit=self._drop_hit,
                 arrow=self._arrow,
@@ -158,7 +158,7 @@ class Canvas(QWidget):
 
     def _playing(self) -> frozenset[str]:
         plan = self.performance.shown.plan
-        cue = plan.layers[self.session.layer].cue_at(self.session.seconds)
+        cue = plan.layers[self.session.place.layer].cue_at(self.session.transport.seconds)
         return frozenset({cue.action.id}) if cue is not None else frozenset()
 
     def _next_beat(self) -> None:
@@ -166,7 +166,7 @@ class Canvas(QWidget):
             self._rest -= 1
             return
         self._beat += 1
-        if self.isVisible() and self.session.stance() is not None:
+        if self.isVisible() and self.session.place.stance() is not None:
             self.update(self.layout_now().card.toAlignedRect())
             now = self._playing()
             if now != self._played:
@@ -178,6 +178,10 @@ class Canvas(QWidget):
         """Show an arrow that is being dragged, and what letting it go would do; or none any more."""
         self._drop, self._drop_hit, self._arrow = drop, hit, arrow
         self.update()
+
+    def stop(self) -> None:
+        """Let nothing move any more; at closing."""
+        self._hero_timer.stop()
 
     def set_misfits(self, misfits: dict[str, str]) -> None:
         """Mark actions whose ends do not fit; action id -> words."""
@@ -203,7 +207,7 @@ class Canvas(QWidget):
         if event.button() != Qt.MouseButton.LeftButton:
             return
         if hit.area == "chip" and hit.ident:
-            self.session.set_stance(hit.ident)
+            self.session.place.set_stance(hit.ident)
         elif hit.area == "add":
             self.new_stance()
         elif hit.area == "other":
@@ -215,21 +219,21 @@ class Canvas(QWidget):
             if hit.area == "head":
                 self.gesture = HeadDrag(self, hit.ident, event.position())
         elif hit.area == "card" and hit.ident:
-            self.session.select_actions(tuple(a.id for a in self.document.project.graphs[self.session.layer].of(hit.ident, "stance")))
+            self.session.selection.select_actions(tuple(a.id for a in self.document.project.graphs[self.session.place.layer].of(hit.ident, "stance")))
         else:
-            self.session.select_actions(())
+            self.session.selection.select_actions(())
 
     def _press_row(self, action: str, event: QMouseEvent) -> None:
-        chosen = self.session.actions
+        chosen = self.session.selection.actions
         if event.modifiers() & Qt.KeyboardModifier.ControlModifier:
-            self.session.select_actions(tuple(i for i in chosen if i != action) if action in chosen else (*chosen, action))
+            self.session.selection.select_actions(tuple(i for i in chosen if i != action) if action in chosen else (*chosen, action))
         elif event.modifiers() & Qt.KeyboardModifier.ShiftModifier and self.focus:
-            ids = [a.id for a in self._listed()]
+            ids = [a.id for a in self.listed()]
             if self.focus in ids and action in ids:
                 a, b = sorted((ids.index(self.focus), ids.index(action)))
-                self.session.select_actions(tuple(ids[a : b + 1]))
+                self.session.selection.select_actions(tuple(ids[a : b + 1]))
         elif action not in chosen:
-            self.session.select_actions((action,))
+            self.session.selection.select_actions((action,))
         self.focus = action
         self.gesture = RowDrag(self, action, event.position())
 
@@ -249,7 +253,7 @@ class Canvas(QWidget):
             plain = not event.modifiers() & (Qt.KeyboardModifier.ControlModifier | Qt.KeyboardModifier.ShiftModifier)
             if isinstance(gesture, RowDrag | HeadDrag) and not gesture.dragging and plain and hit.ident == gesture.action:
                 self._hover_shown = False  # asked for: it goes on when the pointer leaves
-                self.session.select_actions((gesture.action,))
+                self.session.selection.select_actions((gesture.action,))
                 self.session.show_context(gesture.action)
 
     def mouseDoubleClickEvent(self, event: QMouseEvent) -> None:
@@ -271,7 +275,7 @@ class Canvas(QWidget):
             self._hover_timer.stop()
             if left and self._hover_shown:
                 self._hover_shown = False
-                self.session.show_plan()
+                self.session.transport.show_plan()
         self.update()
 
     _hover_shown = False
@@ -279,9 +283,9 @@ class Canvas(QWidget):
     def _hovered_long(self) -> None:
         if self._drop is not None:
             if self._drop_hit.area == "chip" and self._drop_hit.ident:
-                self.session.set_stance(self._drop_hit.ident)
-        elif self.hover.area in ("row", "head") and self.hover.ident and self.session.show != "clip":
-            self._hover_shown = self.session.show == "plan" or self._hover_shown
+                self.session.place.set_stance(self._drop_hit.ident)
+        elif self.hover.area in ("row", "head") and self.hover.ident and self.session.transport.show != "clip":
+            self._hover_shown = self.session.transport.show == "plan" or self._hover_shown
             self.session.show_context(self.hover.ident)
 
     def leaveEvent(self, event: QEvent) -> None:
@@ -347,7 +351,7 @@ class Canvas(QWidget):
         self.update()
 
     def _what(self, hit: Hit, load: Load) -> Drop:
-        return drop_at(self.document.project, self.session.layer, self.session.stance(), self.session.other(), hit, load)
+        return drop_at(self.document.project, self.session.place.layer, self.session.place.stance(), self.session.place.other(), hit, load)
 
     def dragLeaveEvent(self, event: QDragLeaveEvent) -> None:
         self._end_drag()
@@ -374,7 +378,7 @@ class Canvas(QWidget):
     def do(self, drop: Drop, load: Load) -> None:
         """Perform a drop and select what it made."""
         before = {a.id for a in self.document.project.actions()}
-        layer = self.session.layer
+        layer = self.session.place.layer
         verb = "Move" if load.actions else "Place"
         noun = f"{load.count} {'action' if load.actions else 'clip'}{'s' if load.count != 1 else ''}"
         try:
@@ -386,17 +390,17 @@ class Canvas(QWidget):
         if drop.kind in ("stance", None) and made:
             action = self.document.project.action(made[0])
             if action is not None:
-                self.session.set_stance(action.stance)
-        self.session.select_actions(made)
-        self.session.show_plan()
+                self.session.place.set_stance(action.stance)
+        self.session.selection.select_actions(made)
+        self.session.transport.show_plan()
 
     def place_selection(self, kind: Kind) -> None:
         """Label the selection, clips or actions, with a kind on the current stance: the keys 1 to 4."""
-        load = Load(clips=self.session.clips, actions=self.session.actions)
+        load = Load(clips=self.session.selection.clips, actions=self.session.selection.actions)
         if not load:
             self.refused.emit("Select clips or actions first.")
             return
-        stance = self.session.stance()
+        stance = self.session.place.stance()
         new = kind == "stance" and bool(load.clips)
         hit = Hit("card", stance, "stance") if new else Hit("loop", stance, "stance") if kind == "stance" else Hit("node", None, kind)
         drop = self._what(hit, load)
@@ -407,16 +411,16 @@ class Canvas(QWidget):
 
     # --- keyboard
 
-    def _listed(self) -> list[Action]:
+    def listed(self) -> list[Action]:
         """The actions of the current stance, in the order of the nodes."""
-        stance = self.session.stance()
-        graph = self.document.project.graphs[self.session.layer]
+        stance = self.session.place.stance()
+        graph = self.document.project.graphs[self.session.place.layer]
         return [a for kind in KINDS[1:] for a in (graph.of(stance, kind) if stance else ())]
 
     def keyPressEvent(self, event: QKeyEvent) -> None:
-        stance = self.session.stance()
-        loops = self.document.project.graphs[self.session.layer].of(stance, "stance") if stance else ()
-        listed = [*loops, *self._listed()]
+        stance = self.session.place.stance()
+        loops = self.document.project.graphs[self.session.place.layer].of(stance, "stance") if stance else ()
+        listed = [*loops, *self.listed()]
         ids = [a.id for a in listed]
         key = event.key()
         step = {Qt.Key.Key_Down: 1, Qt.Key.Key_Up: -1}.get(Qt.Key(key))
@@ -427,7 +431,7 @@ class Canvas(QWidget):
         elif key in (Qt.Key.Key_Left, Qt.Key.Key_Right) and self.focus in ids:
             likelihood = next(a for a in listed if a.id == self.focus).likelihood
             value = round(min(3.0, max(0.1, likelihood + (0.1 if key == Qt.Key.Key_Right else -0.1))), 1)
-            chosen = self.session.actions or (self.focus,)
+            chosen = self.session.selection.actions or (self.focus,)
             self.document.edit("Change likelihood", lambda p: edits.update_actions(p, chosen, likelihood=value), merge="likelihood keys")
         elif key in (Qt.Key.Key_Return, Qt.Key.Key_Enter) and self.focus in ids:
             self.session.show_context(str(self.focus))
@@ -444,8 +448,8 @@ class Canvas(QWidget):
 
     def _focus_on(self, action: str, extend: bool) -> None:
         self.focus = action
-        kept = self.session.actions if extend else ()
-        self.session.select_actions((*(i for i in kept if i != action), action))
+        kept = self.session.selection.actions if extend else ()
+        self.session.selection.select_actions((*(i for i in kept if i != action), action))
         found = self.document.project.action(action)
         node = self.layout_now().nodes.get(found.kind) if found is not None else None
         if node is not None and found is not None and self.layout_now().row(action) is None:
@@ -459,18 +463,18 @@ class Canvas(QWidget):
         hit = self.layout_now().hit(QPointF(event.pos()))
         menu = QMenu(self)
         if hit.area in ("row", "bar", "head") and hit.ident:
-            if hit.ident not in self.session.actions:
-                self.session.select_actions((hit.ident,))
+            if hit.ident not in self.session.selection.actions:
+                self.session.selection.select_actions((hit.ident,))
             menu.addAction("Play in context", lambda: self.session.show_context(str(hit.ident)))
             menu.addSeparator()
             move = menu.addMenu("Move to stance")
-            for stance in self.document.project.graphs[self.session.layer].stances.values():
+            for stance in self.document.project.graphs[self.session.place.layer].stances.values():
                 move.addAction(stance.name, lambda s=stance.id: self._move_to(s))
             if hit.kind == "transition":
                 ends = menu.addMenu("End in stance")
-                for stance in self.document.project.graphs[self.session.layer].stances.values():
-                    if stance.id != self.session.stance():
-                        ends.addAction(stance.name, lambda s=stance.id: self.end_in(self.session.actions, s))
+                for stance in self.document.project.graphs[self.session.place.layer].stances.values():
+                    if stance.id != self.session.place.stance():
+                        ends.addAction(stance.name, lambda s=stance.id: self.end_in(self.session.selection.actions, s))
             menu.addAction("Show clip in the library", self._show_clip)
             menu.addSeparator()
             menu.addActions(self.row_actions)
@@ -489,7 +493,7 @@ class Canvas(QWidget):
         menu.exec(event.globalPos())
 
     def _move_to(self, stance: str) -> None:
-        chosen = self.session.actions
+        chosen = self.session.selection.actions
         try:
             self.document.edit("Move actions", lambda p: edits.to_stance(p, chosen, stance))
         except edits.EditError as error:
@@ -503,15 +507,15 @@ class Canvas(QWidget):
             self.refused.emit(str(error))
 
     def _show_clip(self) -> None:
-        actions = self.session.selected_actions()
-        self.session.select_clips(tuple(dict.fromkeys(a.clip for a in actions)))
+        actions = self.session.selection.selected_actions()
+        self.session.selection.select_clips(tuple(dict.fromkeys(a.clip for a in actions)))
 
     def _choose_other(self, at: QPoint) -> None:
         menu = QMenu(self)
-        current, other = self.session.stance(), self.session.other()
-        for stance in self.document.project.graphs[self.session.layer].stances.values():
+        current, other = self.session.place.stance(), self.session.place.other()
+        for stance in self.document.project.graphs[self.session.place.layer].stances.values():
             if stance.id != current:
-                entry = menu.addAction(stance.name, lambda s=stance.id: self.session.set_other(s))
+                entry = menu.addAction(stance.name, lambda s=stance.id: self.session.place.set_other(s))
                 entry.setCheckable(True)
                 entry.setChecked(stance.id == other)
         if menu.isEmpty():
@@ -519,14 +523,14 @@ class Canvas(QWidget):
         menu.exec(at)
 
     def new_stance(self) -> None:
-        name, accepted = QInputDialog.getText(self, "New stance", f"Name of the new {self.session.layer} stance:")
+        name, accepted = QInputDialog.getText(self, "New stance", f"Name of the new {self.session.place.layer} stance:")
         if accepted and name.strip():
-            layer = self.session.layer
+            layer = self.session.place.layer
             self.document.edit("New stance", lambda p: edits.add_stance(p, layer, name))
-            self.session.set_stance(list(self.document.project.graphs[layer].stances)[-1])
+            self.session.place.set_stance(list(self.document.project.graphs[layer].stances)[-1])
 
     def rename_stance(self, stance: str | None = None) -> None:
-        found = self.document.project.stance(stance or self.session.stance())
+        found = self.document.project.stance(stance or self.session.place.stance())
         if found is None:
             return
         name, accepted = QInputDialog.getText(self, "Rename stance", "Name:", text=found.name)
@@ -535,7 +539,7 @@ class Canvas(QWidget):
 
     def remove_selection(self) -> None:
         """Take the selected actions out of the graph."""
-        gone = self.session.actions
+        gone = self.session.selection.actions
         if gone:
             self.document.edit(f"Remove {len(gone)} action{'s' if len(gone) > 1 else ''}", lambda p: edits.remove_actions(p, gone))
 

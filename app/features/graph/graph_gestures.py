@@ -29,7 +29,7 @@ class LikelihoodDrag:
 
     def __init__(self, canvas: Canvas, action: str) -> None:
         self.canvas, self.action = canvas, action
-        chosen = canvas.session.actions
+        chosen = canvas.session.selection.actions
         self.actions = chosen if action in chosen else (action,)
         self.row = canvas.layout_now().row(action)
 
@@ -59,7 +59,7 @@ class RowDrag:
         if self.dragging or (at - self.origin).manhattanLength() < QApplication.startDragDistance():
             return
         self.dragging = True
-        chosen = self.canvas.session.actions
+        chosen = self.canvas.session.selection.actions
         actions = chosen if self.action in chosen else (self.action,)
         drag = QDrag(self.canvas)
         drag.setMimeData(mime(actions=actions))

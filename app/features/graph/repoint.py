@@ -43,7 +43,7 @@ class HeadDrag:
     def __init__(self, canvas: Canvas, action: str, at: QPointF) -> None:
         self.canvas, self.action, self.origin = canvas, action, at
         self.dragging = False
-        chosen = [a.id for a in canvas.session.selected_actions() if a.kind == "transition"]
+        chosen = [a.id for a in canvas.session.selection.selected_actions() if a.kind == "transition"]
         self.actions = tuple(chosen) if action in chosen else (action,)
 
     def update(self, at: QPointF) -> None:

@@ -1,1 +1,30 @@
 """Proposals for clips, looked through and accepted."""
+
+from __future__ import annotations
+
+from app.project.learned import Learned
+from app.shell.actions import Command
+from app.shell.context import Contribution, Shell
+
+
+def contribute(shell: Shell) -> Contribution:
+    document, session = shell.document, shell.stage.session
+
+    def label() -> None:
+        from app.features.labelling.review_dialog import ReviewDialog
+
+        ReviewDialog(document, session, shell.jobs, shell.stage.figures, shell.services[Learned], shell.widget).show()
+
+    def patterns() -> None:
+        from app.features.labelling.patterns_dialog import PatternsDialog
+
+        PatternsDialog(document, session, shell.services[Learned], shell.widget).open()
+
+    return Contribution(
+        commands=(
+            Command("propose", "&Graph", "author", "&Label clips…", label, ("Ctrl+P",), tip="Propose what each clip is, by name and motion",
+                    enabled=lambda: any(clip not in document.project.uses for clip in document.project.clips), when="meta", study="labels"),
+            Command("patterns", "&Graph", "author", "Name &patterns…", patterns, tip="What words in clip names mean", when="meta",
+                    study="labels"),
+        ),
+    )  # fmt: skip

@@ -208,7 +208,7 @@ class PatternsDialog(QDialog):
         self.read.setText(self._said(read_names([*names, name], self.learned.patterns)[name]))
 
     def _said(self, guess: NameGuess) -> str:
-        look = theme(self.session.theme)
+        look = theme(self.session.look.name)
         rows = []
         for part, title in PARTS:
             belief = getattr(guess, part)

@@ -62,9 +62,9 @@ class ReviewDialog(QDialog):
         self.row: Field = "kind"
         self.context = True  # the clip plays out of its stance and back, not alone
         self._trials = 0
-        if session.playing:
-            session.set_playing(False)  # one character at a time
-            self.finished.connect(lambda _: session.set_playing(True))
+        if session.transport.playing:
+            session.transport.set_playing(False)  # one character at a time
+            self.finished.connect(lambda _: session.transport.set_playing(True))
         self.setAttribute(Qt.WidgetAttribute.WA_DeleteOnClose)
         self.setWindowTitle("Label clips")
         self.resize(1380, 850)
@@ -80,7 +80,7 @@ class ReviewDialog(QDialog):
         self.work.found.connect(self._begin)
         self.work.changed.connect(self._refresh)
         self.work.failed.connect(self._failed)
-        session.theme_changed.connect(self._restyle)
+        session.look.changed.connect(self._restyle)
         self._keys = self._key_table()
         self._restyle()
         self.work.start()
@@ -168,7 +168,7 @@ class ReviewDialog(QDialog):
         return out
 
     def _restyle(self) -> None:
-        self.legend.setText(review_words.legend(theme(self.session.theme)))
+        self.legend.setText(review_words.legend(theme(self.session.look.name)))
         self._refresh()
 
     # --- where it is
@@ -333,7 +333,7 @@ class ReviewDialog(QDialog):
         if self.focusWidget() is not self.tags:
             self.tags.setText(", ".join(p.tags.value) if p.tags is not None else "")
         self.timing.setText(review_words.timing(p, project.clips[clip].duration))
-        self.stage.tell(review_words.headline(self.review, project, clip, theme(self.session.theme)))
+        self.stage.tell(review_words.headline(self.review, project, clip, theme(self.session.look.name)))
 
     def _play(self) -> None:
         """Plan the clip as it would be placed, on a thread, and play it."""

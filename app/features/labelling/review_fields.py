@@ -54,7 +54,7 @@ class ReviewFields(QWidget):
         self.setMouseTracking(True)
         self.setAccessibleName("What the clip is taken for")
         self.setSizePolicy(QSizePolicy.Policy.Expanding, QSizePolicy.Policy.Fixed)
-        session.theme_changed.connect(self.update)
+        session.look.changed.connect(self.update)
 
     def show_rows(self, rows: Sequence[Row], current: str) -> None:
         self.rows, self.current = tuple(rows), current
@@ -123,7 +123,7 @@ class ReviewFields(QWidget):
     # --- drawing
 
     def paintEvent(self, event: QPaintEvent) -> None:
-        look = theme(self.session.theme)
+        look = theme(self.session.look.name)
         painter = QPainter(self)
         painter.setRenderHint(QPainter.RenderHint.Antialiasing)
         for placed in self._placed:

@@ -106,7 +106,7 @@ class ReviewQueue(QWidget):
 
     def refresh(self, review: Review, project: Project) -> None:
         """Show what each clip is taken for now, and whether it is placed."""
-        look, open_ = theme(self.session.theme), set(waiting(project))
+        look, open_ = theme(self.session.look.name), set(waiting(project))
         for clip, item in self._items.items():
             entry, p = project.clips.get(clip), review.found.proposals[clip]
             item.setHidden(entry is None)

@@ -37,7 +37,7 @@ class Strip(QWidget):
         return QSize(300, 30)
 
     def paintEvent(self, event: QPaintEvent) -> None:
-        look = theme(self.session.theme)
+        look = theme(self.session.look.name)
         painter = QPainter(self)
         painter.setRenderHint(QPainter.RenderHint.Antialiasing)
         box = QRectF(self.rect()).adjusted(0, 2, 0, -2)
@@ -109,11 +109,11 @@ class ReviewStage(QWidget):
         self._timer.timeout.connect(self._tick)
         self._timer.start()
         figures.changed.connect(self.view.update)
-        session.theme_changed.connect(self._restyle)
+        session.look.changed.connect(self._restyle)
         self._restyle()
 
     def _restyle(self) -> None:
-        look = theme(self.session.theme)
+        look = theme(self.session.look.name)
         ground = QColor(look.panel)
         self.words.setStyleSheet(
             f"background: rgba({ground.red()}, {ground.green()}, {ground.blue()}, 215); border-radius: 6px; padding: 8px 12px;"
@@ -176,7 +176,7 @@ class ReviewStage(QWidget):
     def _tick(self) -> None:
         elapsed = min(0.25, self._clock.restart() / 1000)
         if self.playing and self.shown is not None and self.isVisible():
-            self._seek((self.seconds + elapsed * self.session.speed) % max(1e-3, self.shown.length))
+            self._seek((self.seconds + elapsed * self.session.transport.speed) % max(1e-3, self.shown.length))
 
     # --- drawing
 

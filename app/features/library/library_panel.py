@@ -175,7 +175,7 @@ class CardDelegate(QStyledItemDelegate):
         entry: ClipEntry = index.data(ENTRY)
         if entry is None:
             return
-        t = theme(self.panel.session.theme)
+        t = theme(self.panel.session.look.name)
         project = self.panel.document.project
         rect = option.rect.adjusted(4, 4, -4, -4)  # type: ignore[attr-defined]
         state = option.state  # type: ignore[attr-defined]
@@ -309,10 +309,10 @@ class ClipList(QListView):
     def play(self, clip: str) -> None:
         """Play a clip alone; when it already does, in context."""
         session = self.panel.session
-        if session.show == "clip" and session.shown == clip:
+        if session.transport.show == "clip" and session.transport.shown == clip:
             session.show_context(clip)
         else:
-            session.show_clip(clip)
+            session.transport.show_clip(clip)
 
     def keyPressEvent(self, event: QKeyEvent) -> None:
         if event.key() in (Qt.Key.Key_Return, Qt.Key.Key_Enter) and self.currentIndex().isValid():
@@ -379,9 +379,10 @@ class LibraryPanel(QWidget):
         layout.addLayout(self.stack, 1)
         self.setAcceptDrops(True)
         document.changed.connect(self._follow)
-        session.selection_changed.connect(self._show_selection)
-        session.theme_changed.connect(self.list.viewport().update)
+        session.selection.changed.connect(self._show_selection)
+        session.look.changed.connect(self.restyle)
         thumbnails.ready.connect(lambda _: self.list.viewport().update())
+        self.restyle()
         self._count()
 
     def _filters(self) -> QHBoxLayout:
@@ -493,7 +494,7 @@ class LibraryPanel(QWidget):
             return
         rows = sorted(self.list.selectedIndexes(), key=lambda i: i.row())
         self._following = True
-        self.session.select_clips(tuple(i.data(ENTRY).id for i in rows))
+        self.session.selection.select_clips(tuple(i.data(ENTRY).id for i in rows))
         self._following = False
 
     def _show_selection(self) -> None:
@@ -501,7 +502,7 @@ class LibraryPanel(QWidget):
         if self._following:
             return
         self._following = True
-        wanted = set(self.session.clips)
+        wanted = set(self.session.selection.clips)
         if not wanted:
             self.list.clearSelection()
             self._following = False
@@ -534,13 +535,13 @@ class LibraryPanel(QWidget):
     def menu(self, entry: ClipEntry) -> QMenu:
         """Return what can be done with a clip, and with all selected ones."""
         out = QMenu(self)
-        chosen = self.session.clips if entry.id in self.session.clips else (entry.id,)
-        out.addAction("Play alone", lambda: self.session.show_clip(entry.id))
+        chosen = self.session.selection.clips if entry.id in self.session.selection.clips else (entry.id,)
+        out.addAction("Play alone", lambda: self.session.transport.show_clip(entry.id))
         out.addAction("Play in context", lambda: self.session.show_context(entry.id))
         out.addSeparator()
         out.addAction("Use its first frame as base pose", lambda: self.use_as_base(entry.id, 0))
-        if self.session.show == "clip" and self.session.shown == entry.id:
-            frame = round(self.session.seconds * entry.fps)
+        if self.session.transport.show == "clip" and self.session.transport.shown == entry.id:
+            frame = round(self.session.transport.seconds * entry.fps)
             out.addAction(f"Use this frame ({frame}) as base pose", lambda: self.use_as_base(entry.id, frame))
         out.addAction("Use the rest pose as base pose", lambda: self.document.edit("Set base pose", lambda p: edits.set_base(p, None)))
         out.addSeparator()
@@ -566,4 +567,5 @@ class LibraryPanel(QWidget):
             self.document.edit(f"Remove {len(gone)} clip{'s' if len(gone) > 1 else ''}", lambda p: edits.remove_clips(p, gone))
 
     def restyle(self) -> None:
-        self.more.setIcon(icons.icon("more", theme(self.session.theme).text))
+        self.more.setIcon(icons.icon("more", theme(self.session.look.name).text))
+        self.list.viewport().update()

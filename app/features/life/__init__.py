@@ -1,1 +1,19 @@
 """Breathing, gaze, blinks and lips."""
+
+from __future__ import annotations
+
+from PySide6.QtWidgets import QWidget
+
+from app.shell.context import Contribution, Panel, Shell
+
+
+def contribute(shell: Shell) -> Contribution:
+    def make() -> QWidget:
+        from app.features.life.life_panel import LifePanel
+
+        return LifePanel(shell.document, shell.stage.session, shell.widget)
+
+    return Contribution(
+        panels=(Panel("life", "Life", "right below", make),),
+        late_imports=("app.features.life.life_panel",),
+    )

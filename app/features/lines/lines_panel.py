@@ -120,7 +120,7 @@ class LinesPanel(QWidget):
         self.empty.setProperty("dim", True)
         layout.addWidget(self.empty, 1)
         document.changed.connect(self._edited)
-        session.theme_changed.connect(self.refresh)
+        session.look.changed.connect(self.refresh)
         self.refresh()
 
     # --- showing
@@ -131,7 +131,7 @@ class LinesPanel(QWidget):
 
     def refresh(self) -> None:
         """Show the lines as they are."""
-        project, chosen, look = self.document.project, set(self.chosen()), theme(self.session.theme)
+        project, chosen, look = self.document.project, set(self.chosen()), theme(self.session.look.name)
         here = self.table.currentItem()
         current = (here.data(Qt.ItemDataRole.UserRole), here.column()) if here is not None else None
         self._filling = True

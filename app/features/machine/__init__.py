@@ -1,1 +1,37 @@
 """The expanded state machine beside the meta-graph."""
+
+from __future__ import annotations
+
+from PySide6.QtWidgets import QToolButton, QWidget
+
+from app.shell.actions import Command
+from app.shell.context import Contribution, HeaderItem, Panel, Shell
+from app.shell.places import Places
+
+
+def contribute(shell: Shell) -> Contribution:
+    def wanted() -> bool:
+        return shell.services[Places].wanted("machine")
+
+    def make() -> QWidget:
+        from app.features.machine.machine_panel import MachinePanel
+
+        return MachinePanel(shell.document, shell.stage.session, shell.widget)
+
+    def button(parent: QWidget) -> QWidget:
+        action = shell.actions["machine"]
+        out = QToolButton(parent, text="Machine", toolTip=action.toolTip(), checkable=True)
+        out.clicked.connect(lambda _: action.trigger())
+        action.toggled.connect(out.setChecked)
+        action.enabledChanged.connect(out.setEnabled)
+        return out
+
+    return Contribution(
+        panels=(Panel("machine", "Machine", "beside", make, when="meta"),),
+        commands=(
+            Command("machine", "&View", "graph", "The &machine beside the graph", lambda: shell.show("machine", not wanted()), ("M",),
+                    tip="The state machine you did not have to draw", checked=wanted, when="meta", study=True),
+        ),
+        header=(HeaderItem("right", button),),
+        late_imports=("app.features.machine.machine_panel",),
+    )  # fmt: skip

@@ -62,7 +62,7 @@ class MachinePanel(QWidget):
         self.setMouseTracking(True)
         self.setAccessibleName("Expanded state machine")
         document.changed.connect(self._edited)
-        for signal in (session.layer_changed, session.theme_changed, session.selection_changed):
+        for signal in (session.place.layer_changed, session.look.changed, session.selection.changed):
             signal.connect(self._stale)
 
     def _edited(self, before: Project, after: Project) -> None:
@@ -84,18 +84,18 @@ class MachinePanel(QWidget):
         painter.end()
 
     def _draw(self) -> QPixmap:
-        t = theme(self.session.theme)
+        t = theme(self.session.look.name)
         ratio = self.devicePixelRatioF()
         out = QPixmap(round(self.width() * ratio), round(self.height() * ratio))
         out.setDevicePixelRatio(ratio)
         out.fill(QColor(t.panel))
         painter = QPainter(out)
         painter.setRenderHint(QPainter.RenderHint.Antialiasing)
-        graph = self.document.project.graphs[self.session.layer]
+        graph = self.document.project.graphs[self.session.place.layer]
         self._places = places(graph, QRectF(self.rect()))
-        chosen = set(self.session.actions)
+        chosen = set(self.session.selection.actions)
         line = QColor(t.text)
-        whole = size(self.document.project, self.session.layer)
+        whole = size(self.document.project, self.session.place.layer)
         line.setAlpha(max(14, min(70, 4200 // max(1, whole.connections))))
         painter.setPen(QPen(line, 0.8))
         strong = []
@@ -126,7 +126,7 @@ class MachinePanel(QWidget):
         return out
 
     def _words(self, painter: QPainter, clips: int, states: int, links: int) -> None:
-        t = theme(self.session.theme)
+        t = theme(self.session.look.name)
         painter.setPen(QColor(t.text))
         font = painter.font()
         font.setPixelSize(22)
@@ -138,7 +138,7 @@ class MachinePanel(QWidget):
         painter.setFont(font)
         painter.setPen(QColor(t.dim))
         painter.drawText(
-            QRectF(20, 44, 420, 20), Qt.AlignmentFlag.AlignVCenter, f"among {states} states, in the {self.session.layer} layer alone."
+            QRectF(20, 44, 420, 20), Qt.AlignmentFlag.AlignVCenter, f"among {states} states, in the {self.session.place.layer} layer alone."
         )
         painter.drawText(QRectF(20, 64, 420, 20), Qt.AlignmentFlag.AlignVCenter, f"You placed {clips} clips.")
         if links > MOST:
@@ -148,7 +148,7 @@ class MachinePanel(QWidget):
         near = min(self._places.items(), key=lambda item: (item[1] - point).manhattanLength(), default=None)
         if near is None or (near[1] - point).manhattanLength() > 12:
             return None
-        return self.document.project.graphs[self.session.layer].actions.get(near[0])
+        return self.document.project.graphs[self.session.place.layer].actions.get(near[0])
 
     def mousePressEvent(self, event: QMouseEvent) -> None:
         action = self._at(event.position())

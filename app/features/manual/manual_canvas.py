@@ -86,8 +86,8 @@ class ManualCanvas(QWidget):
         self.setAccessibleName("State machine")
         document.changed.connect(self._edited)
         document.loaded.connect(self._reload)
-        session.layer_changed.connect(self._relayer)
-        for signal in (session.selection_changed, session.theme_changed):
+        session.place.layer_changed.connect(self._relayer)
+        for signal in (session.selection.changed, session.look.changed):
             signal.connect(self.update)
         thumbnails.ready.connect(self._pictured)
 
@@ -96,14 +96,14 @@ class ManualCanvas(QWidget):
     def scene(self) -> Scene:
         """Return the geometry of the layer's machine as it is, made when first asked for after a change."""
         if self._scene is None:
-            self._scene = Scene(manual_edits.machine(self.document.project, self.session.layer))
+            self._scene = Scene(manual_edits.machine(self.document.project, self.session.place.layer))
         return self._scene
 
     def look_at(self, view: View) -> None:
         """Show another part, drawn roughly until it rests."""
         if view != self.view:
             self.view, self._fast = view, True
-            self._views[self.session.layer] = view
+            self._views[self.session.place.layer] = view
             self._settle.start()
             self.update()
             self.viewed.emit()
@@ -118,7 +118,7 @@ class ManualCanvas(QWidget):
     def fit(self) -> None:
         """Show the selected nodes, or all."""
         scene, rect = self.scene(), QRectF()
-        for ident in self.session.states:
+        for ident in self.session.selection.states:
             rect = rect.united(scene.nodes.get(ident, QRectF()))
         self.look_at(fitted(rect if not rect.isNull() else scene.bounds, QSizeF(self.size())))
         self.settle()
@@ -175,12 +175,12 @@ class ManualCanvas(QWidget):
     def _relayer(self) -> None:
         self._scene = None
         self.cancel()
-        self.view = self._views.get(self.session.layer) or self.scene().first_view(QSizeF(self.size()))
+        self.view = self._views.get(self.session.place.layer) or self.scene().first_view(QSizeF(self.size()))
         self._stale()
         self.viewed.emit()
 
     def resizeEvent(self, event: QResizeEvent) -> None:
-        if self.session.layer not in self._views:
+        if self.session.place.layer not in self._views:
             self.view = self.scene().first_view(QSizeF(self.size()))
         self._still = None
 
@@ -190,13 +190,13 @@ class ManualCanvas(QWidget):
         s = self.session
         pictures = self.pictures.of(scene, self.view, self.devicePixelRatioF())
         return painter.Look(
-            theme(s.theme), self.document.project, scene, self.view, pictures, self.font(), s.states, s.links, self.troubles,
+            theme(s.look.name), self.document.project, scene, self.view, pictures, self.font(), s.selection.states, s.selection.links, self.troubles,
         )  # fmt: skip
 
     def paintEvent(self, event: QPaintEvent) -> None:
         scene, rect = self.scene(), QRectF(self.rect())
         look = self._look(scene)
-        key = (scene, self.view, self.session.theme, self.size(), frozenset(self._dragged), self._fast, self.pictures.count)
+        key = (scene, self.view, self.session.look.name, self.size(), frozenset(self._dragged), self._fast, self.pictures.count)
         if self._still is None or self._still[0] != key:
             ratio = self.devicePixelRatioF()
             picture = QPixmap(self.size() * ratio)
@@ -221,7 +221,7 @@ class ManualCanvas(QWidget):
 
     def _follow_play(self) -> None:
         """Show which state plays and how far it is."""
-        now = plays(self.performance.shown, self.session.layer, self.session.seconds) if self.isVisible() else ("", 0.0)
+        now = plays(self.performance.shown, self.session.place.layer, self.session.transport.seconds) if self.isVisible() else ("", 0.0)
         if now != self._turn:
             for ident in {now[0], self._turn[0]} & set(self.scene().nodes):
                 box = self.scene().nodes[ident]
@@ -261,20 +261,20 @@ class ManualCanvas(QWidget):
         s = self.session
         if hit.area == "edge" and not more:
             self.gesture = DrawLink(self, hit.ident, at)
-            if hit.ident != ANY and hit.ident not in s.states:
-                s.select_states((hit.ident,))
+            if hit.ident != ANY and hit.ident not in s.selection.states:
+                s.selection.select_states((hit.ident,))
         elif hit.area in ("node", "edge"):
             if more and hit.ident != ANY:
-                s.select_states(_toggled(s.states, hit.ident), s.links)
-            elif hit.ident != ANY and hit.ident not in s.states:
-                s.select_states((hit.ident,))
+                s.selection.select_states(_toggled(s.selection.states, hit.ident), s.selection.links)
+            elif hit.ident != ANY and hit.ident not in s.selection.states:
+                s.selection.select_states((hit.ident,))
             self.gesture = Move(self, hit.ident, at)
         elif hit.area == "link":
-            s.select_states(s.states if more else (), _toggled(s.links, hit.ident) if more else (hit.ident,))
+            s.selection.select_states(s.selection.states if more else (), _toggled(s.selection.links, hit.ident) if more else (hit.ident,))
         else:
-            kept = (s.states, s.links) if more else ((), ())
+            kept = (s.selection.states, s.selection.links) if more else ((), ())
             if not more:
-                s.select_states()
+                s.selection.select_states()
             self.gesture = Band(self, at, kept)
 
     def mouseMoveEvent(self, event: QMouseEvent) -> None:
@@ -300,7 +300,7 @@ class ManualCanvas(QWidget):
         hit = self.scene().hit(self.view.back(event.position()), self.view.scale)
         clicked = isinstance(gesture, Move) and not gesture.begun and not event.modifiers()
         if clicked and hit.ident == gesture.node and hit.ident != ANY and event.button() == Qt.MouseButton.LeftButton:  # type: ignore[union-attr]
-            self.session.select_states((hit.ident,))
+            self.session.selection.select_states((hit.ident,))
 
     def mouseDoubleClickEvent(self, event: QMouseEvent) -> None:
         if event.button() != Qt.MouseButton.LeftButton:
@@ -343,20 +343,20 @@ class ManualCanvas(QWidget):
 
     def add_link(self, source: str, target: str) -> None:
         """Draw a link and select it."""
-        layer, before = self.session.layer, set(self.scene().manual.links)
+        layer, before = self.session.place.layer, set(self.scene().manual.links)
         if self.do("Draw link", lambda p: manual_edits.add_link(p, layer, source, target)):
-            self.session.select_states((), tuple(i for i in self.scene().manual.links if i not in before))
+            self.session.selection.select_states((), tuple(i for i in self.scene().manual.links if i not in before))
 
     def place(self, clips: tuple[str, ...], at: QPointF) -> None:
         """Make states of clips, the first under a point of the widget, and select them."""
-        layer, before = self.session.layer, set(self.scene().manual.states)
+        layer, before = self.session.place.layer, set(self.scene().manual.states)
         corner = self.view.back(at) - QPointF(NODE.width() / 2, NODE.height() / 2)
         x, y = round(corner.x() / 8) * 8, round(corner.y() / 8) * 8
         words = f"Place {len(clips)} clip{'s' if len(clips) != 1 else ''}"
         self._views.setdefault(layer, self.view)
         if self.do(words, lambda p: manual_edits.add_states(p, clips, layer, x, y)):
-            self.session.select_states(tuple(i for i in self.scene().manual.states if i not in before))
-            self.session.show_plan()
+            self.session.selection.select_states(tuple(i for i in self.scene().manual.states if i not in before))
+            self.session.transport.show_plan()
 
     # --- drops
 
@@ -403,7 +403,7 @@ class ManualCanvas(QWidget):
         if run is not None:
             run()
         elif event.matches(QKeySequence.StandardKey.Cancel):
-            self.session.show_plan()
+            self.session.transport.show_plan()
         else:
             super().keyPressEvent(event)
 

@@ -37,36 +37,24 @@ kept = Clipboard()
 
 def remove(canvas: ManualCanvas) -> None:
     s = canvas.session
-    count = len(s.states) + len(s.links)
-    what = f"{count} nodes and links" if s.states and s.links else f"{count} states" if s.states else f"{count} links"
-    text = f"Remove {what if count > 1 else 'state' if s.states else 'link'}"
-    canvas.do(text, lambda p: manual_edits.remove(p, s.states, s.links))
-
-
-def rename(canvas: ManualCanvas) -> None:
-    """Go to the field of the selected state's name, or of the clip's in the library."""
-    window, s = canvas.window(), canvas.session
-    if len(s.clips) == 1:
-        window.library.rename(s.clips[0])  # type: ignore[attr-defined]
-    elif len(s.states) == 1:
-        field = window.manual.editor.inspector.name  # type: ignore[attr-defined]
-        window.show_dock("properties")  # type: ignore[attr-defined]
-        field.setFocus()
-        field.selectAll()
+    count = len(s.selection.states) + len(s.selection.links)
+    what = f"{count} nodes and links" if s.selection.states and s.selection.links else f"{count} states" if s.selection.states else f"{count} links"
+    text = f"Remove {what if count > 1 else 'state' if s.selection.states else 'link'}"
+    canvas.do(text, lambda p: manual_edits.remove(p, s.selection.states, s.selection.links))
 
 
 def copy(canvas: ManualCanvas) -> None:
     """Keep the selected states, or the settings of the selected link."""
     s, project = canvas.session, canvas.document.project
-    if s.states:
-        kept.piece, kept.settings = manual_edits.copied(project, s.states), None
-    elif len(s.links) == 1:
-        kept.piece, kept.settings = None, project.link(s.links[0])
+    if s.selection.states:
+        kept.piece, kept.settings = manual_edits.copied(project, s.selection.states), None
+    elif len(s.selection.links) == 1:
+        kept.piece, kept.settings = None, project.link(s.selection.links[0])
 
 
 def paste(canvas: ManualCanvas) -> None:
     """Paste states where the mouse is, or settings onto the selected links."""
-    links, settings = canvas.session.links, kept.settings
+    links, settings = canvas.session.selection.links, kept.settings
     if settings is not None and links:
         canvas.do("Paste link settings", lambda p: manual_edits.paste_settings(p, links, settings))
     elif kept.piece is not None:
@@ -75,14 +63,14 @@ def paste(canvas: ManualCanvas) -> None:
 
 
 def duplicate(canvas: ManualCanvas) -> None:
-    piece = manual_edits.copied(canvas.document.project, canvas.session.states)
+    piece = manual_edits.copied(canvas.document.project, canvas.session.selection.states)
     if piece.states:
         x, y = min(s.x for s in piece.states), min(s.y for s in piece.states)
         _paste(canvas, piece, x + SHIFT, y + SHIFT, "Duplicate")
 
 
 def _paste(canvas: ManualCanvas, piece: manual_edits.Piece, x: float, y: float, verb: str) -> None:
-    layer = canvas.session.layer
+    layer = canvas.session.place.layer
     made: tuple[str, ...] = ()
 
     def edit(project: Project) -> Project:
@@ -91,18 +79,18 @@ def _paste(canvas: ManualCanvas, piece: manual_edits.Piece, x: float, y: float, 
         return after
 
     if canvas.do(f"{verb} {len(piece.states)} state{'s' if len(piece.states) != 1 else ''}", edit):
-        canvas.session.select_states(made)
+        canvas.session.selection.select_states(made)
 
 
 def select_all(canvas: ManualCanvas) -> None:
-    canvas.session.select_states(tuple(canvas.scene().manual.states))
+    canvas.session.selection.select_states(tuple(canvas.scene().manual.states))
 
 
 def arrange(canvas: ManualCanvas) -> None:
     """Put every node where the automatic layout has it, and show all."""
-    layer, places = canvas.session.layer, arranged(canvas.scene().manual)
+    layer, places = canvas.session.place.layer, arranged(canvas.scene().manual)
     canvas.do("Arrange nodes", lambda p: manual_edits.move_nodes(p, layer, places))
-    canvas.session.select_states()
+    canvas.session.selection.select_states()
     canvas.fit()
 
 
@@ -112,14 +100,14 @@ def start_here(canvas: ManualCanvas, state: str) -> None:
 
 def nudge(canvas: ManualCanvas, x: float, y: float) -> None:
     """Move the selected nodes a little."""
-    layer, found = canvas.session.layer, canvas.scene().manual.states
-    places = {i: (found[i].x + x, found[i].y + y) for i in canvas.session.states if i in found}
+    layer, found = canvas.session.place.layer, canvas.scene().manual.states
+    places = {i: (found[i].x + x, found[i].y + y) for i in canvas.session.selection.states if i in found}
     if places:
         canvas.do("Move node" if len(places) == 1 else f"Move {len(places)} nodes", lambda p: manual_edits.move_nodes(p, layer, places))
 
 
 def can_paste(canvas: ManualCanvas) -> bool:
-    return kept.piece is not None or (kept.settings is not None and bool(canvas.session.links))
+    return kept.piece is not None or (kept.settings is not None and bool(canvas.session.selection.links))
 
 
 def for_key(canvas: ManualCanvas, event: QKeyEvent) -> Run | None:
@@ -141,7 +129,7 @@ def for_key(canvas: ManualCanvas, event: QKeyEvent) -> Run | None:
         return lambda: remove(canvas)
     arrow = {Qt.Key.Key_Left: (-1, 0), Qt.Key.Key_Right: (1, 0), Qt.Key.Key_Up: (0, -1), Qt.Key.Key_Down: (0, 1)}
     step = arrow.get(Qt.Key(event.key()))
-    if step is not None and s.states:
+    if step is not None and s.selection.states:
         far = 24 if event.modifiers() & Qt.KeyboardModifier.ShiftModifier else 8
         return lambda: nudge(canvas, step[0] * far, step[1] * far)
     return None
@@ -158,10 +146,10 @@ def menu(canvas: ManualCanvas, hit: Hit) -> QMenu:
         action.setEnabled(enabled)
 
     node = hit.area in ("node", "edge")
-    if node and hit.ident != ANY and hit.ident not in s.states:
-        s.select_states((hit.ident,))
-    if hit.area == "link" and hit.ident not in s.links:
-        s.select_states((), (hit.ident,))
+    if node and hit.ident != ANY and hit.ident not in s.selection.states:
+        s.selection.select_states((hit.ident,))
+    if hit.area == "link" and hit.ident not in s.selection.links:
+        s.selection.select_states((), (hit.ident,))
     if node:
         add("Draw link from here", lambda: canvas.begin_link(hit.ident))
     if node and hit.ident != ANY:
@@ -174,7 +162,7 @@ def menu(canvas: ManualCanvas, hit: Hit) -> QMenu:
     elif hit.area == "link":
         add("Play link", lambda: s.show_context(hit.ident))
         out.addSeparator()
-        add("Copy settings", lambda: copy(canvas), "Ctrl+C", len(s.links) == 1)
+        add("Copy settings", lambda: copy(canvas), "Ctrl+C", len(s.selection.links) == 1)
         add("Paste settings", lambda: paste(canvas), "Ctrl+V", kept.settings is not None)
         add("Remove", lambda: remove(canvas), "Del")
     elif not node:
@@ -187,7 +175,7 @@ def menu(canvas: ManualCanvas, hit: Hit) -> QMenu:
 
 
 def _show_all(canvas: ManualCanvas) -> None:
-    canvas.session.select_states()
+    canvas.session.selection.select_states()
     canvas.fit()
 
 

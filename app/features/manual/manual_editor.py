@@ -44,7 +44,7 @@ class ManualEditor(QWidget):
         layout.addWidget(canvas, 1)
         canvas.document.changed.connect(self._edited)
         canvas.viewed.connect(self.show_words)
-        self.session.layer_changed.connect(self.show_words)
+        self.session.place.layer_changed.connect(self.show_words)
         self.show_words()
 
     def _edited(self, before: Project, after: Project) -> None:

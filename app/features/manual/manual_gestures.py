@@ -51,7 +51,7 @@ class Move:
 
     def __init__(self, canvas: ManualCanvas, node: str, at: QPointF) -> None:
         self.canvas, self.node, self.origin = canvas, node, at
-        chosen = canvas.session.states
+        chosen = canvas.session.selection.states
         self.nodes = chosen if node in chosen else (node,)
         self.begun = False
 
@@ -72,7 +72,7 @@ class Move:
         places = self._places(at) if self.begun else {}
         self.canvas.drag_nodes({})
         if places:
-            layer = self.canvas.session.layer
+            layer = self.canvas.session.place.layer
             text = "Move node" if len(places) == 1 else f"Move {len(places)} nodes"
             self.canvas.document.edit(text, lambda p: manual_edits.move_nodes(p, layer, places))
 
@@ -91,14 +91,14 @@ class Band:
         self.canvas.show_band(band)
         states, links = self.canvas.scene().inside(band)
         both = (dict.fromkeys((*self.kept[0], *states)), dict.fromkeys((*self.kept[1], *links)))
-        self.canvas.session.select_states(tuple(both[0]), tuple(both[1]) if not both[0] else self.kept[1])
+        self.canvas.session.selection.select_states(tuple(both[0]), tuple(both[1]) if not both[0] else self.kept[1])
 
     def finish(self, at: QPointF) -> None:
         self.canvas.show_band(None)
 
     def cancel(self) -> None:
         self.canvas.show_band(None)
-        self.canvas.session.select_states(*self.kept)
+        self.canvas.session.selection.select_states(*self.kept)
 
 
 class DrawLink:
@@ -117,7 +117,7 @@ class DrawLink:
         hit: Hit = self.canvas.scene().hit(self.canvas.view.back(at), self.canvas.view.scale)
         self.target, self.words = "", ""
         if hit.area in ("node", "edge"):
-            why = manual_edits.link_refusal(self.canvas.document.project, self.canvas.session.layer, self.source, hit.ident)
+            why = manual_edits.link_refusal(self.canvas.document.project, self.canvas.session.place.layer, self.source, hit.ident)
             self.target, self.words = (hit.ident, "") if why is None else ("", why)
         self.canvas.setCursor(Qt.CursorShape.ForbiddenCursor if self.words else Qt.CursorShape.CrossCursor)
         self.canvas.show_link(self.source, at, self.target)

@@ -51,7 +51,7 @@ class Inspector(QScrollArea):
             self.pages.addWidget(page)
         self.setWidget(self.pages)
         self.document.changed.connect(self._edited)
-        for signal in (self.session.selection_changed, self.session.layer_changed, self.session.theme_changed):
+        for signal in (self.session.selection.changed, self.session.place.layer_changed, self.session.look.changed):
             signal.connect(self.show_selection)
         self.show_selection()
 
@@ -127,9 +127,9 @@ class Inspector(QScrollArea):
         self.layer = QLabel(page)
         form.addRow("Layer", self.layer)
         self.begin = QPushButton("Start here", page, toolTip="Let the layer begin in this state")
-        self.begin.clicked.connect(lambda: commands.start_here(self.canvas, self.session.states[0]))
+        self.begin.clicked.connect(lambda: commands.start_here(self.canvas, self.session.selection.states[0]))
         self.alone = QPushButton("Play alone", page)
-        self.alone.clicked.connect(lambda: self.session.show_context(self.session.states[0]))
+        self.alone.clicked.connect(lambda: self.session.show_context(self.session.selection.states[0]))
         box.addWidget(_row(page, self.begin, self.alone))
         self.state_trouble = QLabel(page, wordWrap=True)
         box.addWidget(self.state_trouble)
@@ -165,7 +165,7 @@ class Inspector(QScrollArea):
         self.fire = QPushButton("Fire", page, toolTip="Fire its trigger now")
         self.fire.clicked.connect(self._fire)
         self.play = QPushButton("Play link", page, toolTip="Play its source's end, the blend, and its target's beginning")
-        self.play.clicked.connect(lambda: self.session.show_context(self.session.links[0]))
+        self.play.clicked.connect(lambda: self.session.show_context(self.session.selection.links[0]))
         box.addWidget(_row(page, self.fire, self.play))
         self.copy = QPushButton("Copy settings", page)
         self.copy.clicked.connect(lambda: (commands.copy(self.canvas), self.show_selection()))
@@ -186,10 +186,10 @@ class Inspector(QScrollArea):
             self.show_selection()
 
     def states(self) -> list[State]:
-        return [s for i in self.session.states if (s := self.document.project.state(i)) is not None]
+        return [s for i in self.session.selection.states if (s := self.document.project.state(i)) is not None]
 
     def links(self) -> list[Link]:
-        return [x for i in self.session.links if (x := self.document.project.link(i)) is not None]
+        return [x for i in self.session.selection.links if (x := self.document.project.link(i)) is not None]
 
     def show_selection(self) -> None:
         """Show what is selected as it is; links come before states, which are selected with them."""
@@ -205,11 +205,11 @@ class Inspector(QScrollArea):
     def _trouble(self, label: QLabel, idents: list[str]) -> None:
         words = [self.canvas.troubles[i] for i in idents if i in self.canvas.troubles]
         label.setText(words[0] if words else "")
-        label.setStyleSheet(f"color: {theme(self.session.theme).warning}")
+        label.setStyleSheet(f"color: {theme(self.session.look.name).warning}")
 
     def _show_machine(self) -> None:
         manual = self.canvas.scene().manual
-        self.title.setText(f"{self.session.layer.capitalize()} layer")
+        self.title.setText(f"{self.session.place.layer.capitalize()} layer")
         self.words.setText(f"{many(len(manual.states), 'state')}, {many(len(manual.links), 'link')}. Select one to change it.")
         self.start.show_entries([(s.name, s.id) for s in manual.states.values()], manual.start, "no state yet")
         self.start.setEnabled(bool(manual.states))
@@ -286,11 +286,11 @@ class Inspector(QScrollArea):
             self.show_selection()
 
     def _state(self, text: str, **changes: Any) -> None:
-        chosen = self.session.states
+        chosen = self.session.selection.states
         self._try(text, lambda p: manual_edits.update_states(p, chosen, **changes))
 
     def _link(self, text: str, **changes: Any) -> None:
-        chosen = self.session.links
+        chosen = self.session.selection.links
         self._try(text, lambda p: manual_edits.update_links(p, chosen, **changes))
 
     def _number(self, text: str, field: str, value: float) -> None:
@@ -306,7 +306,7 @@ class Inspector(QScrollArea):
             self._state("Rename state", name=name)
 
     def _trim(self, field: str, value: float) -> None:
-        chosen = self.session.states
+        chosen = self.session.selection.states
 
         def edit(project: Project) -> Project:
             for ident in chosen:
@@ -342,7 +342,7 @@ class Inspector(QScrollArea):
 
     def _leave(self) -> None:
         """Give links an exit time, at the end of what their source plays, or none."""
-        on, chosen = self.leaves.checkState() != Qt.CheckState.Unchecked, self.session.links
+        on, chosen = self.leaves.checkState() != Qt.CheckState.Unchecked, self.session.selection.links
 
         def edit(project: Project) -> Project:
             for ident in chosen:

@@ -17,7 +17,7 @@ class StateMask(MaskDialog):
     def __init__(self, document: Document, session: Session, parent: QWidget) -> None:
         super().__init__(document, session, parent)
         self.setWindowTitle("Joints the state moves")
-        first = document.project.state(session.states[0])
+        first = document.project.state(session.selection.states[0])
         masked = set(first.joints) if first is not None else set()
         self.tree.blockSignals(True)
         for name, item in self.items.items():
@@ -25,7 +25,7 @@ class StateMask(MaskDialog):
         self.tree.blockSignals(False)
 
     def accept(self) -> None:
-        joints, chosen = self.joints(), self.session.states
+        joints, chosen = self.joints(), self.session.selection.states
         if not joints and any(i.checkState(0) == Qt.CheckState.Unchecked for i in self.items.values()):
             self.document.failed.emit("A state must move at least one joint.")
             return

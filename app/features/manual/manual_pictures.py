@@ -34,7 +34,7 @@ class Pictures:
         for state in scene.manual.states.values():
             if state.clip in out or not scene.nodes[state.id].intersects(shown):
                 continue
-            key = (state.clip, self.session.theme, pixels)
+            key = (state.clip, self.session.look.name, pixels)
             found = self._kept.get(key)
             if found is None:
                 picture = self.thumbnails.picture(state.clip)

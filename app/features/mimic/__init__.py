@@ -1,1 +1,21 @@
 """Keypoints of a person, mimicked."""
+
+from __future__ import annotations
+
+from app.shell.actions import Command
+from app.shell.context import Contribution, Shell
+
+
+def contribute(shell: Shell) -> Contribution:
+    def mimic() -> None:
+        from app.features.mimic.mimic_dialog import open_keypoints
+
+        open_keypoints(shell)
+
+    can = lambda: shell.document.project.skeleton is not None and shell.stage.performance.live is None  # noqa: E731
+    return Contribution(
+        commands=(
+            Command("mimic", "&Play", "live", "Mimic &keypoints…", mimic, tip="Let the character do as a person before a camera did",
+                    enabled=can, when="meta"),
+        ),
+    )  # fmt: skip

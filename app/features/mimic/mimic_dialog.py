@@ -32,7 +32,7 @@ from metagraph.mimicry.performing import REST, Mimicry, mimic_performance, place
 from metagraph.mimicry.points import Keypoints
 
 if TYPE_CHECKING:
-    from app.shell.window import Window
+    from app.shell.context import Shell
 
 FILTER = "Keypoints of OpenPose or MediaPipe (*.json *.jsonl);;All files (*)"
 SAMPLE = Path(__file__).resolve().parents[3] / "sample_clips" / "keypoints" / "conversation.openpose.json"
@@ -42,9 +42,9 @@ _NUMBERED = re.compile(r"_\d+_keypoints\.json$", re.I)
 class MimicDialog(QDialog):
     """How a recording is mimicked; `accept` makes requests of it, in the performance on stage or a new one."""
 
-    def __init__(self, window: Window, keypoints: Keypoints, name: str) -> None:
-        super().__init__(window)
-        self.window_, self.keypoints, self.name = window, keypoints, name
+    def __init__(self, shell: Shell, keypoints: Keypoints, name: str) -> None:
+        super().__init__(shell.widget)
+        self.shell, self.keypoints, self.name = shell, keypoints, name
         self.setAttribute(Qt.WidgetAttribute.WA_DeleteOnClose)
         self.setWindowTitle("Mimic keypoints")
         self.setMinimumWidth(480)
@@ -63,7 +63,7 @@ class MimicDialog(QDialog):
         form.addRow("Sides", self.mirror)
         row = QHBoxLayout()
         self.layers = {layer: self._box(layer.capitalize(), f"The {layer} goes to the stances the person is in", True) for layer in LAYERS}
-        project = window.document.project
+        project = shell.document.project
         for layer, box in self.layers.items():
             box.setEnabled(bool(project.graphs[layer].stances))
             box.setChecked(box.isEnabled())
@@ -73,7 +73,7 @@ class MimicDialog(QDialog):
         form.addRow("Layers", row)
         self.gaze = self._box("Look where the person looks", "The character looks where the person's head is turned", False)
         form.addRow("Gaze", self.gaze)
-        kept = window.performance.kept
+        kept = shell.stage.performance.kept
         into = f"What is seen is added to '{kept.name}'." if kept is not None else "What is seen becomes a new performance."
         layout.addWidget(self._dim(f"{into} Gestures and fidgets go on as they do."))
         if keypoints.dims == 2:
@@ -104,9 +104,9 @@ class MimicDialog(QDialog):
 
     def accept(self) -> None:
         """Look through the recording on a thread, then make requests of what was seen."""
-        window, keypoints, name = self.window_, self.keypoints, self.name
-        project, stage = window.document.project, window.session.performance
-        kept = window.performance.kept
+        shell, keypoints, name = self.shell, self.keypoints, self.name
+        project, stage = shell.document.project, shell.stage.session.onstage.performance
+        kept = shell.stage.performance.kept
         into = kept or Performance(name=Path(name).stem, length=round(keypoints.seconds + REST, 3))
         mirror, gaze = self.mirror.isChecked(), self.gaze.isChecked()
         layers = [layer for layer, box in self.layers.items() if box.isChecked()]
@@ -120,19 +120,19 @@ class MimicDialog(QDialog):
             return mimic_performance(project, keypoints, mirror, layers, gaze, into, tell)
 
         def failed(error: Exception) -> None:
-            QMessageBox.warning(window, "Not mimicked", str(error))
+            QMessageBox.warning(shell.widget, "Not mimicked", str(error))
 
         def done(found: Mimicry) -> None:
-            if window.document.project.skeleton is project.skeleton:
-                _taken(window, found, stage if kept is not None else None)
+            if shell.document.project.skeleton is project.skeleton:
+                _taken(shell, found, stage if kept is not None else None)
             else:
-                window.tell("What was seen was dropped, since another project was opened.")
+                shell.tell("What was seen was dropped, since another project was opened.")
 
-        window.jobs.start(f"Mimicking {name}", work, done, failed)
+        shell.jobs.start(f"Mimicking {name}", work, done, failed)
         super().accept()
 
 
-def _taken(window: Window, found: Mimicry, stage: str | None) -> None:
+def _taken(shell: Shell, found: Mimicry, stage: str | None) -> None:
     """Add what was asked to the performance it was planned for, or keep it as a new one."""
     made = stage
 
@@ -147,12 +147,12 @@ def _taken(window: Window, found: Mimicry, stage: str | None) -> None:
         return project
 
     if not found.sightings:
-        window.tell("No stance of the project was made out in the keypoints.")
+        shell.tell("No stance of the project was made out in the keypoints.")
         return
-    window.document.edit("Mimic keypoints", edit)
-    window.session.set_performance(made)
-    window.session.show_plan()
-    window.tell(f"Saw {many(len(found.sightings), 'stance')}: the requests are in the performance below.")
+    shell.document.edit("Mimic keypoints", edit)
+    shell.stage.session.onstage.set_performance(made)
+    shell.stage.session.transport.show_plan()
+    shell.tell(f"Saw {many(len(found.sightings), 'stance')}: the requests are in the performance below.")
 
 
 def recording_of(file: Path) -> Path:
@@ -162,20 +162,20 @@ def recording_of(file: Path) -> Path:
     return file
 
 
-def open_keypoints(window: Window, path: str | Path | None = None) -> None:
+def open_keypoints(shell: Shell, path: str | Path | None = None) -> None:
     """Ask for keypoints (or take `path`), read them on a thread and open the dialog."""
     if not path:
-        start = str(QSettings().value("mimic/folder") or window.document.folder or Path.home())
-        path, _ = QFileDialog.getOpenFileName(window, "Mimic keypoints", start, FILTER)
+        start = str(QSettings().value("mimic/folder") or shell.document.folder or Path.home())
+        path, _ = QFileDialog.getOpenFileName(shell.widget, "Mimic keypoints", start, FILTER)
         if not path:
             return
         QSettings().setValue("mimic/folder", str(Path(path).parent))
     file = recording_of(Path(path))
 
     def show(keypoints: Keypoints) -> None:
-        MimicDialog(window, keypoints, file.name).open()
+        MimicDialog(shell, keypoints, file.name).open()
 
     def failed(error: Exception) -> None:
-        QMessageBox.warning(window, "Not read", str(error))
+        QMessageBox.warning(shell.widget, "Not read", str(error))
 
-    window.jobs.start(f"Reading {file.name}", lambda _: read_keypoints(file), show, failed)
+    shell.jobs.start(f"Reading {file.name}", lambda _: read_keypoints(file), show, failed)

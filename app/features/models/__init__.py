@@ -1,1 +1,45 @@
 """What follows what: models learned from annotations."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from pathlib import Path
+
+from PySide6.QtWidgets import QWidget
+
+from app.project.files import Files
+from app.project.importing import FileDrop
+from app.project.load import ANNOTATIONS
+from app.shell.actions import Command
+from app.shell.context import Contribution, Panel, Shell
+
+
+def contribute(shell: Shell) -> Contribution:
+    def annotate(path: str = "") -> None:
+        from app.features.models.annotation_dialog import open_annotation
+
+        open_annotation(shell, path)
+
+    def claim(paths: Sequence[Path]) -> Sequence[Path]:
+        return [p for p in paths if p.suffix.lower() == ANNOTATIONS]
+
+    def take(paths: Sequence[Path]) -> None:
+        if not shell.services[Files].refuse():
+            annotate(str(paths[0]))  # one dialog is enough
+
+    def make() -> QWidget:
+        from app.features.models.models_panel import ModelsPanel
+
+        panel = ModelsPanel(shell.document, shell.stage.session, shell.jobs, shell.widget)
+        panel.learn_wanted.connect(annotate)
+        return panel
+
+    return Contribution(
+        panels=(Panel("models", "Models", "bottom", make, scrolls=True, study=False),),
+        commands=(
+            Command("annotate", "&File", "import", "Import &annotation…", annotate, tip="Learn from an ELAN file what follows what",
+                    when="meta"),
+        ),
+        drops=(FileDrop((ANNOTATIONS,), claim, take),),
+        late_imports=("app.features.models.models_panel", "app.features.models.annotation_dialog"),
+    )  # fmt: skip

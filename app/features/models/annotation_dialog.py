@@ -39,7 +39,7 @@ from metagraph.graph.model import LAYERS
 from metagraph.playback.annotation import IGNORE, PHASES, ROLES, Annotation, Label, parted
 
 if TYPE_CHECKING:
-    from app.shell.window import Window
+    from app.shell.context import Shell
 
 SAMPLE = Path(__file__).resolve().parents[3] / "sample_clips" / "annotation" / "conversation.eaf"
 FILTER = "ELAN annotations (*.eaf);;All files (*)"
@@ -247,7 +247,7 @@ class AnnotateDialog(QDialog):
         doubts = told(self.reading)
         self.doubts.setText("\n".join(doubts[:4]))
         self.doubts.setVisible(bool(doubts))
-        self.doubts.setStyleSheet(f"color: {theme(self.session.theme).warning}")
+        self.doubts.setStyleSheet(f"color: {theme(self.session.look.name).warning}")
         self._enable()
 
     def _enable(self) -> None:
@@ -281,9 +281,9 @@ class AnnotateDialog(QDialog):
         keep("tiers", self.reading.roles)
         keep("labels", made.project.labels)
         if made.performance is not None:
-            self.session.set_performance(made.performance)
-            self.session.show_plan()
-            self.session.seek(0.0)
+            self.session.onstage.set_performance(made.performance)
+            self.session.transport.show_plan()
+            self.session.transport.seek(0.0)
         self.imported.emit(self.reading.observed, made.performance)
         super().accept()
 
@@ -303,16 +303,16 @@ def keep(what: str, said: Mapping[str, str]) -> None:
     QSettings().setValue(f"annotation/{what}", json.dumps(dict(list(both.items())[-REMEMBERED:])))
 
 
-def open_annotation(window: Window, path: str | Path | None = None, done: Callable[[AnnotateDialog], object] | None = None) -> None:
+def open_annotation(shell: Shell, path: str | Path | None = None, done: Callable[[AnnotateDialog], object] | None = None) -> None:
     """Ask for an annotation (or take `path`, "sample" for our own), read it on a thread and open the dialog."""
     if not path:
-        start = str(window.document.folder or Path.home())
-        path, _ = QFileDialog.getOpenFileName(window, "Import annotation", start, FILTER)
+        start = str(shell.document.folder or Path.home())
+        path, _ = QFileDialog.getOpenFileName(shell.widget, "Import annotation", start, FILTER)
         if not path:
             return
     file = SAMPLE if str(path) == "sample" else Path(path)
 
-    project = window.document.project
+    project = shell.document.project
     tiers, labels = (project.tiers, recall("tiers")), (project.labels, recall("labels"))
 
     def work(_: object) -> Reading:
@@ -321,21 +321,20 @@ def open_annotation(window: Window, path: str | Path | None = None, done: Callab
         return reading
 
     def show(reading: Reading) -> None:
-        dialog = AnnotateDialog(window.document, window.session, reading, file.name, window)
-        dialog.imported.connect(lambda observed, kept: _taken(window, observed, kept))
+        dialog = AnnotateDialog(shell.document, shell.stage.session, reading, file.name, shell.widget)
+        dialog.imported.connect(lambda observed, kept: _taken(shell, observed, kept))
         dialog.open()
         if done is not None:
             done(dialog)
 
     def failed(error: Exception) -> None:
-        QMessageBox.warning(window, "Not imported", str(error))
+        QMessageBox.warning(shell.widget, "Not imported", str(error))
 
-    window.jobs.start(f"Reading {file.name}", work, show, failed)
+    shell.jobs.start(f"Reading {file.name}", work, show, failed)
 
 
-def _taken(window: Window, observed: object, performance: str | None) -> None:
+def _taken(shell: Shell, observed: object, performance: str | None) -> None:
     count = sum(len(acts) for acts in observed.values())  # type: ignore[attr-defined]
-    window.tell(f"Read {many(count, 'action')} from the annotation.")
-    if window.ready:
-        window.models.show_imported(observed, performance)  # type: ignore[arg-type]
-        window.show_dock("models")
+    shell.tell(f"Read {many(count, 'action')} from the annotation.")
+    shell.panel("models").show_imported(observed, performance)
+    shell.show("models")

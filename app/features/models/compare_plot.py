@@ -61,7 +61,7 @@ class ComparePlot(QWidget):
             row.addLayout(box, 1)
         layout.addLayout(row, 1)
         layout.addWidget(self.words)
-        session.theme_changed.connect(self._draw)
+        session.look.changed.connect(self._draw)
 
     def _plot(self) -> Any:
         plot = pg.PlotWidget(self)
@@ -79,7 +79,7 @@ class ComparePlot(QWidget):
         self._draw()
 
     def _draw(self) -> None:
-        t = theme(self.session.theme)
+        t = theme(self.session.look.name)
         for plot in (self.often, self.long):
             plot.clear()
             plot.setBackground(t.panel)
@@ -132,7 +132,7 @@ class ComparePlot(QWidget):
         line = pg.PlotDataItem([x, x], [low, high])
         line.setPen(pg.mkPen(color, width=1.4))
         plot.addItem(line)
-        pale = QColor(theme(self.session.theme).panel)
+        pale = QColor(theme(self.session.look.name).panel)
         box = pg.BarGraphItem(x=[x], width=WIDTH - 0.05, y0=[quarter], height=[three - quarter])
         box.setOpts(pen=pg.mkPen(color, width=1.4), brush=color if filled else pale)
         plot.addItem(box)

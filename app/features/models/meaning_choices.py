@@ -35,7 +35,7 @@ class _Field(QStyledItemDelegate):
         self.table = table
 
     def paint(self, painter: QPainter, option: QStyleOptionViewItem, index: QModelIndex | QPersistentModelIndex) -> None:
-        t = theme(self.table.session.theme)
+        t = theme(self.table.session.look.name)
         words = str(index.data(Qt.ItemDataRole.DisplayRole) or "")
         if not words:
             return
@@ -90,7 +90,7 @@ class ChoiceTable(QTreeWidget):
 
     def show_rows(self, rows: Sequence[Row], otherwise: str = "") -> None:
         """Show rows, or the words `otherwise` where there are none. The current row and the scroll stay where they are."""
-        t, place, scroll = theme(self.session.theme), self.currentIndex().row(), self.verticalScrollBar().value()
+        t, place, scroll = theme(self.session.look.name), self.currentIndex().row(), self.verticalScrollBar().value()
         self.rows = tuple(rows)
         self.clear()
         items = []

@@ -67,8 +67,8 @@ class ModelsPanel(QWidget):
         self._soon.timeout.connect(self._compare)
         document.changed.connect(self._edited)
         document.loaded.connect(self._loaded)
-        session.layer_changed.connect(self.refresh)
-        session.theme_changed.connect(self.refresh)
+        session.place.layer_changed.connect(self.refresh)
+        session.look.changed.connect(self.refresh)
 
     # --- building
 
@@ -189,14 +189,14 @@ class ModelsPanel(QWidget):
     # --- showing
 
     def model(self) -> Markov:
-        return model(self.document.project, self.session.layer)
+        return model(self.document.project, self.session.place.layer)
 
     def refresh(self) -> None:
         """Show the model of the current layer."""
         self._stale = self.visibleRegion().isEmpty()
         if self._stale:
             return
-        project, layer, shown = self.document.project, self.session.layer, self.model()
+        project, layer, shown = self.document.project, self.session.place.layer, self.model()
         own = layer in project.markov
         self.title.setText(f"{layer.capitalize()}: what follows what")
         default = "default, from the paper" if layer == "arms" else "default"
@@ -204,7 +204,7 @@ class ModelsPanel(QWidget):
         self.back.setEnabled(own)
         kinds = {kind for _, kind in project.graphs[layer].index}
         closed = frozenset(n for n, (_, kind) in enumerate(shown.states) if kind not in kinds) if kinds else frozenset()
-        self.heat.show_model(shown, layer, self.session.theme, closed)
+        self.heat.show_model(shown, layer, self.session.look.name, closed)
         self.gap.show_value(shown.gap)
         for tag, field in self.shares.items():
             field.show_value(100 * getattr(shown, tag))
@@ -221,7 +221,7 @@ class ModelsPanel(QWidget):
 
     def _sources(self) -> dict[str, tuple[str, tuple[Act, ...]]]:
         """Return what can be compared with: key -> name, acts of this layer."""
-        layer, out = self.session.layer, {}
+        layer, out = self.session.place.layer, {}
         for ident, kept in self.document.project.performances.items():
             acts = acts_of_asks(layer, kept.asks)
             if len(acts) > 1:
@@ -237,9 +237,9 @@ class ModelsPanel(QWidget):
         self.chooser.setVisible(bool(sources))
         self.against.setVisible(bool(sources))
         self.teach.setVisible(not sources)
-        own = self.session.layer in self.document.project.markov
+        own = self.session.place.layer in self.document.project.markov
         origin = "model as it was edited" if own else "default model"
-        self.teach.setText(TEACH.format(origin=f"{origin} of the {self.session.layer}"))
+        self.teach.setText(TEACH.format(origin=f"{origin} of the {self.session.place.layer}"))
 
     def _choose(self, place: int) -> None:
         self.source = self.chooser.itemData(place)
@@ -285,7 +285,7 @@ class ModelsPanel(QWidget):
     # --- editing
 
     def _edit(self, text: str, change: Callable[[Markov], Markov], merge: str | None = None) -> None:
-        layer = self.session.layer
+        layer = self.session.place.layer
         self.document.edit(text, lambda p: edits.set_markov(p, change(model(p, layer))), merge)
 
     def _cell(self, row: int, column: int, probability: float, dragging: bool) -> None:
@@ -324,7 +324,7 @@ class ModelsPanel(QWidget):
         self._edit(f"Change share of {tag}", change)
 
     def _reset(self) -> None:
-        layer = self.session.layer
+        layer = self.session.place.layer
         self.document.edit("Back to the default model", lambda p: edits.reset_markov(p, layer))
 
     def _another(self) -> None:
@@ -335,7 +335,7 @@ class ModelsPanel(QWidget):
 
     def state_menu(self, row: int) -> QMenu:
         """Return the menu of a state: another one, or away with this one. row: -1 for none."""
-        menu, shown, layer = QMenu(self), self.model(), self.session.layer
+        menu, shown, layer = QMenu(self), self.model(), self.session.place.layer
         there = set(states_of(shown))
         tags = dict.fromkeys(("", *(tag for _, _, tag in there), *(("positive", "negative") if shown.tags else ())))
         limbs: tuple[Limb, ...] = LIMBS if layer == "arms" else ("both",)

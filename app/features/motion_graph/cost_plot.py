@@ -35,7 +35,7 @@ class CostPlot(QWidget):
         layout.setContentsMargins(0, 0, 0, 0)
         layout.addWidget(self.plot)
         self.setMinimumHeight(170)
-        session.theme_changed.connect(self._draw)
+        session.look.changed.connect(self._draw)
         self._draw()
 
     def show_threshold(self, found: Any) -> None:
@@ -43,7 +43,7 @@ class CostPlot(QWidget):
         self._draw()
 
     def _draw(self) -> None:
-        look = theme(self.session.theme)
+        look = theme(self.session.look.name)
         self.plot.clear()
         self.plot.setBackground(look.panel)
         for name in ("left", "bottom"):

@@ -349,15 +349,15 @@ class MotionGraphDialog(QDialog):
         self.document.edit(words, edit)
         new = [e.id for e in self.document.project.clips.values() if e.path in paths]
         if new and side is not None:
-            self.session.set_conversation(side[0])
-            self.session.set_side(side[1])
-            self.session.show_plan()
-            self.session.seek(0.0)
-            self.session.set_playing(True)
+            self.session.onstage.set_conversation(side[0])
+            self.session.onstage.set_side(side[1])
+            self.session.transport.show_plan()
+            self.session.transport.seek(0.0)
+            self.session.transport.set_playing(True)
         elif new:
-            self.session.select_clips(tuple(new))
-            self.session.show_clip(new[0])
-            self.session.set_playing(True)
+            self.session.selection.select_clips(tuple(new))
+            self.session.transport.show_clip(new[0])
+            self.session.transport.set_playing(True)
 
     def _folder(self) -> Any:
         folder = self.document.folder

@@ -1,1 +1,56 @@
 """Problems of the project, and their remedies."""
+
+from __future__ import annotations
+
+from PySide6.QtCore import Qt
+from PySide6.QtWidgets import QToolButton, QWidget
+
+from app.look import icons
+from app.look.plural import many
+from app.look.theme import theme
+from app.shell.context import Contribution, HeaderItem, Panel, Shell
+from app.stage.compatibility_state import Compatibility
+from app.stage.problem_watch import ProblemWatch
+
+
+def contribute(shell: Shell) -> Contribution:
+    watch, compatibility = shell.services[ProblemWatch], shell.services[Compatibility]
+
+    def make() -> QWidget:
+        from app.features.problems.problems_panel import ProblemsPanel
+
+        panel = ProblemsPanel(shell.stage.session, shell.widget)
+        panel.mend_wanted.connect(compatibility.mend)
+        panel.show_problems(watch.problems, compatibility.flags)
+        watch.changed.connect(lambda: panel.show_problems(watch.problems, compatibility.flags))
+        return panel
+
+    return Contribution(
+        panels=(Panel("problems", "Problems", "bottom", make),),
+        header=(HeaderItem("right", lambda parent: ProblemButton(shell, watch, parent)),),
+        late_imports=("app.features.problems.problems_panel",),
+    )
+
+
+class ProblemButton(QToolButton):
+    """Counts the problems, and shows them when it is pressed; hints are only counted when there is nothing worse."""
+
+    def __init__(self, shell: Shell, watch: ProblemWatch, parent: QWidget) -> None:
+        super().__init__(parent)
+        self.watch, self.session = watch, shell.stage.session
+        self.setToolTip("Problems of the project")
+        self.setToolButtonStyle(Qt.ToolButtonStyle.ToolButtonTextBesideIcon)
+        self.clicked.connect(lambda: shell.show("problems"))
+        watch.changed.connect(self.refresh)
+        self.session.look.changed.connect(self.refresh)
+        self.refresh()
+
+    def refresh(self) -> None:
+        """Show how many there are now."""
+        problems, look = self.watch.problems, theme(self.session.look.name)
+        grave = [p for p in problems if p.severity != "hint"]
+        hints = len(problems) - len(grave)
+        color = look.error if any(p.severity == "error" for p in grave) else look.warning if grave else look.dim
+        self.setText(many(len(grave), "problem") if grave else many(hints, "hint") if hints else "No problems")
+        self.setIcon(icons.icon("warning", color))
+        self.setStyleSheet(f"color: {color}")

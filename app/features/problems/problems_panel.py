@@ -52,7 +52,7 @@ class FixButtons(QStyledItemDelegate):
         return QSize(found.width() + 20, max(found.height(), 24))
 
     def paint(self, painter: QPainter, option: QStyleOptionViewItem, index: QModelIndex | QPersistentModelIndex) -> None:
-        words, look = str(index.data() or ""), theme(self.panel.session.theme)
+        words, look = str(index.data() or ""), theme(self.panel.session.look.name)
         if option.state & QStyle.StateFlag.State_Selected:  # type: ignore[attr-defined]
             painter.fillRect(option.rect, QColor(look.hover))  # type: ignore[attr-defined]
         if not words:
@@ -127,13 +127,13 @@ class ProblemsPanel(QWidget):
         self.stack = QStackedLayout(self)
         self.stack.addWidget(self.none)
         self.stack.addWidget(some)
-        session.theme_changed.connect(lambda: self.show_problems(self.problems, self.fixes))
+        session.look.changed.connect(lambda: self.show_problems(self.problems, self.fixes))
 
     def show_problems(self, problems: Sequence[Problem], fixes: Mapping[Problem, Fix | None] | None = None) -> None:
         """Show problems. fixes: what mends some of them."""
-        look = theme(self.session.theme)
+        look = theme(self.session.look.name)
         fixes = fixes or {}
-        state = tuple(problems), tuple(fixes.items()), look.name, self.session.document.project.graphs, self.session.mode
+        state = tuple(problems), tuple(fixes.items()), look.name, self.session.document.project.graphs, self.session.onstage.mode
         if state == self._shown:
             return
         self.problems, self.fixes, self._shown = tuple(problems), fixes, state
@@ -156,7 +156,7 @@ class ProblemsPanel(QWidget):
             self.tree.addTopLevelItem(item)
         for column, width in enumerate((560, 170, 380)):
             self.tree.setColumnWidth(column, width)
-        each = "state can be reached and left" if self.session.mode == "manual" else "stance rests, leads somewhere and comes back"
+        each = "state can be reached and left" if self.session.onstage.mode == "manual" else "stance rests, leads somewhere and comes back"
         self.none.setText(f"No problems. Every {each}.")
         self.stack.setCurrentIndex(1 if self.problems else 0)
         count = len(self.fixable())

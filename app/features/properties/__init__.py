@@ -1,1 +1,41 @@
-"""The properties and the timing of actions."""
+"""The properties and the timing of the selected actions."""
+
+from __future__ import annotations
+
+from PySide6.QtWidgets import QWidget
+
+from app.shell.actions import Command
+from app.shell.context import Contribution, Panel, Shell
+from app.shell.verbs import Verbs
+from app.stage.compatibility_state import Compatibility
+from app.stage.problem_watch import ProblemWatch
+
+
+def contribute(shell: Shell) -> Contribution:
+    session, compatibility, problems = shell.stage.session, shell.services[Compatibility], shell.services[ProblemWatch]
+
+    def make() -> QWidget:
+        from app.features.properties.properties_panel import PropertiesPanel
+
+        panel = PropertiesPanel(shell.document, session, shell.stage.performance, shell.widget)
+        problems.changed.connect(lambda: panel.set_misfits(problems.misfits))
+        panel.set_misfits(problems.misfits)
+        panel.plot.set_compatibility(compatibility)
+        return panel
+
+    def rename() -> None:
+        shell.show("properties")
+        field = shell.panel("properties").name
+        field.setFocus()
+        field.selectAll()
+
+    shell.services[Verbs].offer("rename", lambda: session.onstage.mode == "meta" and len(session.selection.actions) == 1, rename)
+    return Contribution(
+        panels=(Panel("properties", "Properties", "right below", make),),
+        commands=(
+            Command("use_times", "&Graph", "author", "Use proposed &times", lambda: compatibility.use_proposed(session.selection.actions),
+                    tip="Begin and end where no jump shows", enabled=lambda: bool(session.selection.actions) and compatibility.judged is not None,
+                    when="meta", study="labels"),
+        ),
+        late_imports=("app.features.properties.properties_panel",),
+    )  # fmt: skip

@@ -48,7 +48,7 @@ class PropertiesPanel(QScrollArea):
         self.pages.addWidget(self._clip_page())
         self.setWidget(self.pages)
         document.changed.connect(self._edited)
-        for signal in (session.selection_changed, session.layer_changed, session.theme_changed, session.stance_changed):
+        for signal in (session.selection.changed, session.place.layer_changed, session.look.changed, session.place.stance_changed):
             signal.connect(self.show_selection)
         self.show_selection()
 
@@ -218,8 +218,8 @@ class PropertiesPanel(QScrollArea):
             self.show_selection()
 
     def show_selection(self) -> None:
-        actions = self.session.selected_actions()
-        clips = self.session.clips
+        actions = self.session.selection.selected_actions()
+        clips = self.session.selection.clips
         self.pages.setCurrentIndex(1 if actions else 2 if clips else 0)
         if actions:
             self._show_actions(actions)
@@ -229,7 +229,7 @@ class PropertiesPanel(QScrollArea):
             self._show_layer()
 
     def _show_actions(self, actions: Sequence[Action]) -> None:
-        project, t = self.document.project, theme(self.session.theme)
+        project, t = self.document.project, theme(self.session.look.name)
         one = len(actions) == 1
         kind, layer = common([a.kind for a in actions]), common([a.layer for a in actions])
         self.name.setReadOnly(not one)
@@ -283,10 +283,10 @@ class PropertiesPanel(QScrollArea):
         self._show_trouble()
 
     def _show_trouble(self) -> None:
-        chosen = self.session.actions
+        chosen = self.session.selection.actions
         wrong = self.misfits.get(chosen[0], "") if len(chosen) == 1 else ""
         self.trouble.setText(wrong)
-        self.trouble.setStyleSheet(f"color: {theme(self.session.theme).warning}")
+        self.trouble.setStyleSheet(f"color: {theme(self.session.look.name).warning}")
         self.trouble.setVisible(bool(wrong))
 
     def _fill_stances(self, actions: Sequence[Action], kind: Any) -> None:
@@ -300,7 +300,7 @@ class PropertiesPanel(QScrollArea):
         self.form.setRowVisible(self.ends, kind == "transition")
 
     def _show_clips(self, clips: Sequence[str]) -> None:
-        project, t = self.document.project, theme(self.session.theme)
+        project, t = self.document.project, theme(self.session.look.name)
         entries = [project.clips[c] for c in clips]
         total = sum(e.duration for e in entries)
         if len(entries) == 1:
@@ -322,7 +322,7 @@ class PropertiesPanel(QScrollArea):
         self.clip_uses.setText("".join(lines) + keys)
 
     def _show_layer(self) -> None:
-        project, layer = self.document.project, self.session.layer
+        project, layer = self.document.project, self.session.place.layer
         graph = project.graphs[layer]
         self.layer_title.setText(f"{layer.capitalize()} layer")
         for part in PARTS:
@@ -349,21 +349,21 @@ class PropertiesPanel(QScrollArea):
         return True
 
     def _set(self, text: str, merge: str | None = None, **changes: Any) -> None:
-        chosen = self.session.actions
+        chosen = self.session.selection.actions
         self._try(text, lambda p: edits.update_actions(p, chosen, **changes), merge)
 
     def _timing(self, field: str, value: float) -> None:
         if value < 0:  # "mixed" was typed over with nothing
             self.show_selection()
             return
-        chosen = self.session.actions
+        chosen = self.session.selection.actions
         self._try("Change timing", lambda p: retimed(p, chosen, field, value))
         self.show_selection()  # what was out of the clip was clamped
 
     def _leave(self) -> None:
         on, project = self.leave.checkState() != Qt.CheckState.Unchecked, self.document.project
         exits: dict[str, dict[str, Any]] = {}
-        for action in self.session.selected_actions():
+        for action in self.session.selection.selected_actions():
             start, end = project.span(action)
             at = action.timing.earliest_exit
             exits[action.id] = {
@@ -372,13 +372,13 @@ class PropertiesPanel(QScrollArea):
         self._try("Change earliest exit", lambda p: edits.update_each(p, exits))
 
     def _rename(self) -> None:
-        actions = self.session.selected_actions()
+        actions = self.session.selection.selected_actions()
         name = " ".join(self.name.text().split())
         if len(actions) == 1 and name and name != actions[0].name:
             self._set("Rename action", name=name)
 
     def _retag(self) -> None:
-        actions = self.session.selected_actions()
+        actions = self.session.selection.selected_actions()
         tags = tuple(dict.fromkeys(w.strip().lower() for w in self.tags.text().split(",") if w.strip()))
         mixed = actions and common([a.tags for a in actions]) is Mixed
         if actions and not (mixed and not tags) and any(a.tags != tags for a in actions):
@@ -391,12 +391,12 @@ class PropertiesPanel(QScrollArea):
             self.show_selection()
 
     def _restance(self, place: int) -> None:
-        stance, chosen = self.stance.itemData(place), self.session.actions
+        stance, chosen = self.stance.itemData(place), self.session.selection.actions
         if self._try("Move to another stance", lambda p: edits.to_stance(p, chosen, stance)):
-            self.session.set_stance(stance)
+            self.session.place.set_stance(stance)
 
     def _reend(self, place: int) -> None:
-        stance, chosen = self.ends.itemData(place), self.session.actions
+        stance, chosen = self.ends.itemData(place), self.session.selection.actions
         self._try("Change end stance", lambda p: edits.set_ends(p, chosen, stance))
 
     def _mask(self) -> None:
@@ -408,7 +408,7 @@ class PropertiesPanel(QScrollArea):
         if value < 0:
             self.show_selection()
         else:
-            layer = self.session.layer
+            layer = self.session.place.layer
             self._try("Change layer weight", lambda p: edits.set_weight(p, layer, part, round(value, 2)))  # type: ignore[arg-type]
 
     def _set_gap(self, value: float) -> None:
@@ -416,7 +416,7 @@ class PropertiesPanel(QScrollArea):
 
         from metagraph.playback.markov import model
 
-        layer = self.session.layer
+        layer = self.session.place.layer
         if value <= 0:
             self.show_selection()
         else:

@@ -184,8 +184,8 @@ class TimingPlot(QWidget):
         row.addWidget(self.verdict, 1)
         row.addWidget(self.use)
         layout.addLayout(row)
-        session.moved.connect(self._playhead)
-        session.theme_changed.connect(self._restyle)
+        session.transport.moved.connect(self._playhead)
+        session.look.changed.connect(self._restyle)
         self._restyle()
 
     def set_compatibility(self, compatibility: Compatibility) -> None:
@@ -199,7 +199,7 @@ class TimingPlot(QWidget):
 
     def _show_seen(self) -> None:
         """Show where the action can begin and end without a jump, as far as that is known by now."""
-        project, action, t = self.document.project, self.action, theme(self.session.theme)
+        project, action, t = self.document.project, self.action, theme(self.session.look.name)
         curves = self.compatibility.curves(action) if self.compatibility is not None and action is not None else None
         if action is None or project.action(action.id) is None:
             return
@@ -230,7 +230,7 @@ class TimingPlot(QWidget):
             self.compatibility.use_proposed([self.action.id])
 
     def _restyle(self) -> None:
-        t = theme(self.session.theme)
+        t = theme(self.session.look.name)
         self.plot.setBackground(t.panel)
         for name in ("left", "bottom"):
             axis = self.plot.getAxis(name)
@@ -242,7 +242,7 @@ class TimingPlot(QWidget):
 
     def show_action(self, action: Action) -> None:
         """Show an action's timing."""
-        t = theme(self.session.theme)
+        t = theme(self.session.look.name)
         project = self.document.project
         fresh = self.action is None or self.action.id != action.id or self.action.clip != action.clip or self.action.limb != action.limb
         self.action = action
@@ -319,9 +319,9 @@ class TimingPlot(QWidget):
         seconds = self._snapped(name, seconds)
         fields = moved(self.document.project, self.action, name, seconds)
         # The character follows the handle.
-        self.session.show_clip(self.action.clip)
-        self.session.set_playing(False)
-        self.session.seek(min(max(0.0, seconds), self.document.project.clips[self.action.clip].duration))
+        self.session.transport.show_clip(self.action.clip)
+        self.session.transport.set_playing(False)
+        self.session.transport.seek(min(max(0.0, seconds), self.document.project.clips[self.action.clip].duration))
         self._moving = True
         self.changed.emit(fields)
 
@@ -347,12 +347,12 @@ class TimingPlot(QWidget):
         if self.action is None or event.button() != Qt.MouseButton.LeftButton or event.isAccepted():
             return
         seconds = self.plot.plotItem.vb.mapSceneToView(event.scenePos()).x()
-        self.session.show_clip(self.action.clip)
-        self.session.set_playing(False)
-        self.session.seek(max(0.0, float(seconds)))
+        self.session.transport.show_clip(self.action.clip)
+        self.session.transport.set_playing(False)
+        self.session.transport.seek(max(0.0, float(seconds)))
 
     def _playhead(self, seconds: float) -> None:
-        mine = self.action is not None and self.session.show == "clip" and self.session.shown == self.action.clip
+        mine = self.action is not None and self.session.transport.show == "clip" and self.session.transport.shown == self.action.clip
         self.playhead.setVisible(mine)
         if mine:
             self.playhead.setValue(seconds)

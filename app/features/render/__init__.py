@@ -1,1 +1,21 @@
 """Writing a performance as video, contact sheet or motion."""
+
+from __future__ import annotations
+
+from app.shell.actions import Command
+from app.shell.context import Contribution, Shell
+
+
+def contribute(shell: Shell) -> Contribution:
+    def render() -> None:
+        from app.features.render.render_dialog import RenderDialog
+
+        RenderDialog(shell.stage.performance, shell.stage.session, shell.jobs, shell.widget).open()
+
+    return Contribution(
+        commands=(
+            Command("render", "&File", "write", "&Write performance…", render, ("Ctrl+R",),
+                    tip="Video with sound, contact sheet, or motion",
+                    enabled=lambda: shell.document.project.skeleton is not None, when="meta"),
+        ),
+    )  # fmt: skip

@@ -117,8 +117,8 @@ class RenderDialog(QDialog):
     def _write(self) -> None:
         document = self.performance.document
         wanted = Wanted(
-            Path(self.file.text()), self.session.performance, self.seconds.value(), self.size_box.currentData(), self.fps.currentData(),
-            self.session.theme, self.performance.conversation,
+            Path(self.file.text()), self.session.onstage.performance, self.seconds.value(), self.size_box.currentData(), self.fps.currentData(),
+            self.session.look.name, self.performance.conversation,
         )  # fmt: skip
         QSettings().setValue("render/size", self.size_box.currentIndex())
         project, folder = document.project, document.folder or Path()

@@ -1,1 +1,20 @@
 """Roles and body parts of the joints."""
+
+from __future__ import annotations
+
+from app.shell.actions import Command
+from app.shell.context import Contribution, Shell
+
+
+def contribute(shell: Shell) -> Contribution:
+    def show() -> None:
+        from app.features.skeleton.skeleton_dialog import SkeletonDialog
+
+        SkeletonDialog(shell.document, shell.stage.session, shell.widget).open()
+
+    return Contribution(
+        commands=(
+            Command("skeleton", "&Graph", "skeleton", "S&keleton…", show, tip="Roles and body parts of the joints",
+                    enabled=lambda: shell.document.project.skeleton is not None),
+        ),
+    )  # fmt: skip

@@ -13,20 +13,20 @@ from app.features.study.operator_events import Hands
 from metagraph.study.klm import predicted
 
 if TYPE_CHECKING:
-    from app.shell.window import Window
+    from app.shell.context import Shell
 
 
 class Counting(QObject):
     """Shows the counts in the status bar until `stop`."""
 
-    def __init__(self, window: Window) -> None:
-        super().__init__(window)
-        self.label = QLabel(window)
+    def __init__(self, shell: Shell) -> None:
+        super().__init__(shell.widget)
+        self.label = QLabel(shell.widget)
         self.label.setToolTip(
             "Keys, pointings, buttons pressed or released, drags, and hands changing over since this was turned on.\n"
             "The seconds are what an expert would take who need not think (Card, Moran and Newell 1980)."
         )
-        window.statusBar().addPermanentWidget(self.label)
+        shell.widget.statusBar().addPermanentWidget(self.label)
         self.total: Counter[str] = Counter()
         self.hands = Hands(lambda _: None, lambda _, __: None, lambda: None, self)
         self._timer = QTimer(self, interval=500)
@@ -46,3 +46,24 @@ class Counting(QObject):
         self.hands.stop()
         self.label.deleteLater()
         self.deleteLater()
+
+
+class OperatorCounting:
+    """Turns the counts in the status bar on and off."""
+
+    def __init__(self, shell: Shell) -> None:
+        self.shell = shell
+        self._shown: Counting | None = None
+
+    @property
+    def on(self) -> bool:
+        return self._shown is not None
+
+    def toggle(self) -> None:
+        """Begin or end counting keys, pointings, buttons and drags."""
+        if self._shown is None:
+            self._shown = Counting(self.shell)
+        else:
+            self._shown.stop()
+            self._shown = None
+        self.shell.actions.refresh()

@@ -68,7 +68,7 @@ class StudyBar(QToolBar):
 
     def show_time(self, elapsed: float, minutes: float | None) -> None:
         """Show seconds so far, or left of the minutes there are; near the end it is said plainly."""
-        look = theme(self.session.theme)
+        look = theme(self.session.look.name)
         if minutes is None:
             self.time.setText(clock(elapsed))
             self.time.setStyleSheet("")

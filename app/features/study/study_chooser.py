@@ -21,44 +21,46 @@ from PySide6.QtWidgets import (
 
 from app.features.study.study_guide import Guide
 from app.look.theme import strengthen
+from app.project.files import Files
+from app.shell.places import Places
 from metagraph.errors import FileError
 from metagraph.study.plan import Study, read_study
 from metagraph.study.sitting import standing
 
 if TYPE_CHECKING:
-    from app.shell.window import Window
+    from app.shell.context import Shell
 
 
-def run_study(window: Window, path: Path | None = None, participant: str | None = None, experimenter: bool = False) -> None:
+def run_study(shell: Shell, path: Path | None = None, participant: str | None = None, experimenter: bool = False) -> None:
     """Begin or resume a sitting in the window; what is not given is asked for."""
     if path is None:
-        name, _ = QFileDialog.getOpenFileName(window, "Run a study", str(Path.home()), "Studies (*.yaml *.yml)")
+        name, _ = QFileDialog.getOpenFileName(shell.widget, "Run a study", str(Path.home()), "Studies (*.yaml *.yml)")
         if not name:
             return
         path = Path(name)
     try:
         study = read_study(path)
     except FileError as error:
-        QMessageBox.warning(window, "This study cannot be run", str(error))
+        QMessageBox.warning(shell.widget, "This study cannot be run", str(error))
         return
     if participant is not None:
-        begin(window, study, participant, experimenter)
+        begin(shell, study, participant, experimenter)
         return
-    chooser = Chooser(study, window)
-    chooser.chosen.connect(lambda who: begin(window, study, who, experimenter))
+    chooser = Chooser(study, shell.widget)
+    chooser.chosen.connect(lambda who: begin(shell, study, who, experimenter))
     chooser.open()
 
 
-def begin(window: Window, study: Study, participant: str, experimenter: bool = False) -> Guide | None:
+def begin(shell: Shell, study: Study, participant: str, experimenter: bool = False) -> Guide | None:
     """Lead a participant through; None, with words, when that cannot be."""
-    if not window.files.may_leave():
+    if not shell.services[Files].may_leave():
         return None
-    window.make_late_panels()
-    window.document.undo_stack.setClean()  # what was there is saved or was declined
+    shell.services[Places].make_late()
+    shell.document.undo_stack.setClean()  # what was there is saved or was declined
     try:
-        guide = Guide(window, study, participant, experimenter)
+        guide = Guide(shell, study, participant, experimenter)
     except (FileError, ValueError) as error:
-        QMessageBox.warning(window, "This sitting cannot begin", str(error))
+        QMessageBox.warning(shell.widget, "This sitting cannot begin", str(error))
         return None
     guide.show()
     return guide

@@ -7,12 +7,14 @@ from time import monotonic
 from typing import TYPE_CHECKING, Any, Literal
 
 from PySide6.QtCore import QEvent, QLockFile, QObject, QTimer, Signal
-from PySide6.QtWidgets import QApplication, QDialog
+from PySide6.QtWidgets import QApplication
 
+from app.features.study.operator_counting import OperatorCounting
+from app.features.study.reserved_window import ReservedWindow
 from app.features.study.study_bar import StudyBar
-from app.features.study.study_offer import offered
 from app.features.study.study_recorder import Recorder
 from app.features.study.study_screen import BreakPage, ConsentPage, Page, QuestionsPage, Screen, question_page, text_page
+from app.project.files import Files
 from app.project.jobs import Job
 from metagraph import __version__
 from metagraph.errors import FileError
@@ -22,10 +24,7 @@ from metagraph.study.sitting import Phase, Sitting
 from metagraph.study.work import make, reopen, write
 
 if TYPE_CHECKING:
-    from app.shell.window import Window
-
-CLOSED = "Not during a study: everybody works on the same clips."
-HIDDEN = ("models", "lines", "conversation")  # docks that no task needs
+    from app.shell.context import Shell
 
 
 class Guide(QObject):
@@ -33,9 +32,9 @@ class Guide(QObject):
 
     over = Signal()
 
-    def __init__(self, window: Window, study: Study, participant: str, experimenter: bool = False) -> None:
-        super().__init__(window)
-        self.window, self.study, self.participant, self.experimenter = window, study, participant, experimenter
+    def __init__(self, shell: Shell, study: Study, participant: str, experimenter: bool = False) -> None:
+        super().__init__(shell.widget)
+        self.shell, self.study, self.participant, self.experimenter = shell, study, participant, experimenter
         folder = study.data(participant)
         try:
             folder.mkdir(parents=True, exist_ok=True)
@@ -50,10 +49,11 @@ class Guide(QObject):
         except (FileError, ValueError):
             self._lock.unlock()
             raise
-        self.recorder = Recorder(window, self.sitting.writer)
-        self.screen = Screen(window, window.session)
-        self.bar = StudyBar(window.session, window)
+        self.recorder = Recorder(shell, self.sitting.writer)
+        self.screen = Screen(shell.widget, shell.stage.session)
+        self.bar = StudyBar(shell.stage.session, shell.widget)
         self.bar.hide()
+        self.reserved = ReservedWindow(shell, self.bar, "labels" in study.plan.allow)
         self._resumed = self.sitting.resumed
         self._working = False  # a task is on and not paused
         self._elapsed, self._from = 0.0, 0.0  # seconds before the last start of the clock; when that was
@@ -67,46 +67,21 @@ class Guide(QObject):
     # --- the window
 
     def _enter(self) -> None:
-        w = self.window
-        w.session.set_playing(False)
-        if w.counting is not None:
-            w.count_operators()
-        w.files.closed = CLOSED
-        w.actions.allowed = lambda ident: False
-        w.recent_menu.menuAction().setEnabled(False)
-        w.learned.paused = True
-        if "labels" not in self.study.plan.allow:  # jumps found, and times proposed, for one condition alone would not be fair
-            w.compatibility.stop()
-            w.compatibility.judged, w.compatibility.flags = None, {}
-            w.compatibility.changed.emit()
-        w.docks.arrange()
-        for key in HIDDEN:
-            w.docks[key].hide()
-        w.insertToolBar(w.header, self.bar)
-        w.insertToolBarBreak(w.header)
-        w.installEventFilter(self)
-        w.refresh()
+        counting = self.shell.services[OperatorCounting]
+        self.shell.stage.session.transport.set_playing(False)
+        if counting.on:
+            counting.toggle()
+        self.reserved.enter()
+        self.shell.widget.installEventFilter(self)
 
     def _leave(self) -> None:
         """Give the window back."""
-        w = self.window
         self._second.stop()
-        w.removeEventFilter(self)
+        self.shell.widget.removeEventFilter(self)
         self.recorder.stop()
         self.sitting.close()
         self._lock.unlock()
-        w.files.closed = ""
-        w.actions.allowed = None
-        w.recent_menu.menuAction().setEnabled(True)
-        w.learned.paused = False
-        w.compatibility.start()
-        self._reach(True)
-        for key in HIDDEN:
-            w.docks[key].show()
-        w.removeToolBarBreak(w.header)
-        w.removeToolBar(self.bar)
-        w.session.set_mode("meta")
-        w.refresh()
+        self.reserved.leave()
         self.over.emit()
 
     def eventFilter(self, watched: QObject, event: QEvent) -> bool:
@@ -118,12 +93,12 @@ class Guide(QObject):
         """Break the sitting off where it is; it goes on there next time."""
         phase = self.sitting.phase
         try:
-            if phase is not None and phase.works and self.sitting.now.begun and self.window.document.path == self.sitting.file:
-                self.window.document.finish_merging()
+            if phase is not None and phase.works and self.sitting.now.begun and self.shell.document.path == self.sitting.file:
+                self.shell.document.finish_merging()
                 self.recorder.boundary()
-                self.window.document.save()
+                self.shell.document.save()
         except FileError as error:  # the window asks what is to become of the edits
-            self.window.tell(str(error))
+            self.shell.tell(str(error))
         self._leave()
 
     # --- going through
@@ -142,7 +117,7 @@ class Guide(QObject):
 
     def _page(self, phase: Phase) -> Page:
         if phase.name == "consent":
-            return ConsentPage(phase.title, phase.text, self.go_on, self.window.close)
+            return ConsentPage(phase.title, phase.text, self.go_on, self.shell.widget.close)
         if phase.name == "break":
             return BreakPage(phase.minutes or 0, self.go_on)
         if phase.questionnaire is not None:
@@ -160,24 +135,11 @@ class Guide(QObject):
     def _show(self, page: Page) -> None:
         """Lay a page over the window, whose commands rest."""
         phase = self.sitting.phase
-        self.window.actions.allowed = lambda ident: ident in ("quit", "theme")
-        self.window.actions.refresh()
-        self.window.session.set_playing(False)
-        self._reach(False)
+        self.reserved.allow_page()
+        self.shell.stage.session.transport.set_playing(False)
+        self.reserved.reach(False)
         step = f"   {phase.index + 1} of {len(self.sitting.course)}" if phase is not None else ""
         self.screen.show_page(page, f"{self.study.plan.title}   {self.participant}{step}")
-
-    def _reach(self, on: bool) -> None:
-        """Let what lies below the screen be reached by the keyboard, or not; nothing lies above it."""
-        w = self.window
-        for widget in (w.menuBar(), w.header, self.bar, w.centre, *w.docks.values()):
-            widget.setEnabled(on)
-        if not on:
-            for dock in w.docks.values():
-                dock.setFloating(False)
-            for dialog in w.findChildren(QDialog):
-                if dialog.isVisible():
-                    dialog.reject()
 
     def go_on(self) -> None:
         """End what is shown, and show what comes next."""
@@ -191,8 +153,8 @@ class Guide(QObject):
     def _finish(self) -> None:
         self.screen.hide()
         self._leave()
-        self.window.document.load(Project(), None)
-        self.window.files.opened.emit()
+        self.shell.document.load(Project(), None)
+        self.windoself.shell.services[Files].opened.emit()
 
     # --- work
 
@@ -208,20 +170,20 @@ class Guide(QObject):
                 return reopen(path, job.tell)[0].project
             return write(make(study, phase.clips, name, reference), path)
 
-        self.window.jobs.start("Loading the clips", work, lambda project: self._begin(phase, project), self._cannot)
+        self.shell.jobs.start("Loading the clips", work, lambda project: self._begin(phase, project), self._cannot)
 
     def _cannot(self, error: Exception) -> None:
         self.recorder.tell("error", what="failed", words=str(error))
-        self._show(question_page("This cannot go on", str(error), "Try again", self.show, "Close the window", self.window.close))
+        self._show(question_page("This cannot go on", str(error), "Try again", self.show, "Close the window", self.shell.widget.close))
 
     def _begin(self, phase: Phase, project: Project) -> None:
-        w = self.window
+        document = self.shell.document
         if self.sitting.phase is not phase:
             return  # it was left meanwhile
         again = self.sitting.now.begun
-        w.document.load(project, self.sitting.file)
-        w.session.set_mode("manual" if phase.condition == "manual" else "meta")
-        w.files.opened.emit()
+        document.load(project, self.sitting.file)
+        self.shell.stage.session.set_mode("manual" if phase.condition == "manual" else "meta")
+        self.shell.services[Files].opened.emit()
         self._elapsed = self.sitting.now.elapsed if again else 0.0
         self.bar.begin(phase.title, phase.text)
         self.bar.show()
@@ -237,17 +199,15 @@ class Guide(QObject):
 
     def _start(self) -> None:
         """Let the work be seen, and the clock run."""
-        w, phase = self.window, self.sitting.phase
+        phase = self.sitting.phase
         assert phase is not None
         self.screen.hide()
-        self._reach(True)
-        plan, mode = self.study.plan, w.session.mode
-        w.actions.allowed = lambda ident: offered(ident, mode, "labels" in plan.allow)
-        w.refresh()
+        self.reserved.reach(True)
+        self.reserved.allow_task()
         self._working, self._from = True, monotonic()
         self._second.start()
         self._tick()
-        w.session.set_playing(True)
+        self.shell.stage.session.transport.set_playing(True)
 
     def _stop(self) -> None:
         self._elapsed, self._working = self.elapsed, False
@@ -288,16 +248,16 @@ class Guide(QObject):
 
     def finish_task(self, why: Literal["done", "time"]) -> None:
         """Keep what was made, and go on."""
-        w = self.window
+        document = self.shell.document
         self._stop()
         try:
-            w.document.finish_merging()
+            document.finish_merging()
             self.recorder.boundary()
-            w.document.save()
+            document.save()
             self.sitting.keep(why)
         except FileError as error:
             self._show(question_page("This could not be saved", str(error), "Try again", lambda: self.finish_task(why), "Close the window",
-                                     w.close))  # fmt: skip
+                                     self.shell.widget.close))  # fmt: skip
             return
         self.bar.hide()
         if why == "time":
@@ -309,7 +269,7 @@ class Guide(QObject):
         """Let something be written down."""
         from app.features.study.study_note import NoteDialog
 
-        dialog = NoteDialog(self.experimenter, self.window)
+        dialog = NoteDialog(self.experimenter, self.shell.widget)
         dialog.noted.connect(lambda words, by: self.recorder.tell("note", words=words, by=by))
         dialog.open()
 

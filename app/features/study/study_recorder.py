@@ -10,11 +10,13 @@ from PySide6.QtWidgets import QDialog
 
 from app.features.study.operator_events import Hands
 from app.features.study.study_changes import described
+from app.project.importing import Importing
+from app.stage.problem_watch import ProblemWatch
 from metagraph.errors import FileError
 from metagraph.formats.imports import Imported
 
 if TYPE_CHECKING:
-    from app.shell.window import Window
+    from app.shell.context import Shell
 
 IDLE = 10.0  # seconds without input that are told
 MERGING = 300  # milliseconds after which a run of merged edits, as a drag makes them, is taken to be over
@@ -27,12 +29,12 @@ class Log(Protocol):
 class Recorder(QObject):
     """Follows a window from its making until `stop`. What the log cannot take is shown to the user once."""
 
-    def __init__(self, window: Window, log: Log) -> None:
-        super().__init__(window)
-        self.window, self.log = window, log
+    def __init__(self, shell: Shell, log: Log) -> None:
+        super().__init__(shell.widget)
+        self.shell, self.log = shell, log
         self._failed = False
         self._warned = self._grave()
-        d, s = window.document, window.session
+        d, s = shell.document, shell.stage.session
         self._stack = d.undo_stack
         self._undone: object = None  # what a redo would do again
         self._edit: dict[str, Any] | None = None  # one that may still be merged with the next
@@ -46,15 +48,15 @@ class Recorder(QObject):
         self._second.timeout.connect(self._tick)
         self._links = [
             (d.loaded, self._loaded), (d.saved, self._saved), (d.failed, self._document_failed), (self._stack.indexChanged, self._moved),
-            (s.layer_changed, lambda: self._view("layer", layer=s.layer)), (s.stance_changed, lambda: self._view("stance")),
-            (s.selection_changed, lambda: self._view("select")), (s.theme_changed, lambda: self._view("theme", theme=s.theme)),
-            (s.mode_changed, self._other_editor), (s.show_changed, lambda: self.tell("playback", what=s.show)),
-            (s.playing_changed, lambda: self.tell("playback", what="play" if s.playing else "pause")), (s.moved, self._seek),
-            (window.canvas.refused, self._refused), (window.files.imported, self._imported),
+            (s.place.layer_changed, lambda: self._view("layer", layer=s.place.layer)), (s.place.stance_changed, lambda: self._view("stance")),
+            (s.selection.changed, lambda: self._view("select")), (s.look.changed, lambda: self._view("theme", theme=s.look.name)),
+            (s.onstage.mode_changed, self._other_editor), (s.transport.show_changed, lambda: self.tell("playback", what=s.transport.show)),
+            (s.transport.playing_changed, lambda: self.tell("playback", what="play" if s.transport.playing else "pause")), (s.transport.moved, self._seek),
+            (shell.stage.refused, self._refused), (shell.stage.scrolled, self._scrolled),
+            (shell.services[Importing].imported, self._imported),
         ]  # fmt: skip
         for signal, slot in self._links:
             signal.connect(slot)
-        self._watch_manual()
         self.hands = Hands(self._input, self._dialog, self._scrolled, self)
         self._position()
         self._second.start()
@@ -86,7 +88,7 @@ class Recorder(QObject):
         except FileError as error:
             if not self._failed:
                 self._failed = True
-                self.window.tell(str(error))
+                self.shell.tell(str(error))
 
     # --- edits
 
@@ -142,27 +144,15 @@ class Recorder(QObject):
 
     # --- what is looked at
 
-    def _watch_manual(self) -> None:
-        """Follow the editor of state machines, which is made when it is first shown."""
-        editor = self.window.manual.editor
-        if editor is not None and not self._manual:
-            self._manual = True
-            for signal, slot in ((editor.canvas.refused, self._refused), (editor.canvas.viewed, self._scrolled)):
-                signal.connect(slot)
-                self._links.append((signal, slot))
-
-    _manual = False
-
     def _other_editor(self) -> None:
-        self._watch_manual()
-        self._view("panel", mode=self.window.session.mode)
+        self._view("panel", mode=self.shell.stage.session.onstage.mode)
 
     def _view(self, what: str, **more: Any) -> None:
         self.tell("view", what=what, **more)
 
     def _seek(self, seconds: float) -> None:
         now = monotonic()
-        if not self.window.session.playing and now - self._sought > 1.0:
+        if not self.shell.stage.session.transport.playing and now - self._sought > 1.0:
             self._sought = now
             self.tell("playback", what="seek")
 
@@ -192,7 +182,7 @@ class Recorder(QObject):
         self.tell("error", what="failed", words=words)
 
     def _saved(self) -> None:
-        path = self.window.document.path
+        path = self.shell.document.path
         self.tell("save", path=path.name if path is not None else "")
 
     def _imported(self, result: Imported, drop: object) -> None:
@@ -211,7 +201,7 @@ class Recorder(QObject):
         self._warned = self._grave()
 
     def _grave(self) -> frozenset[str]:
-        return frozenset(p.message for p in self.window.problems if p.severity != "hint")
+        return frozenset(p.message for p in self.shell.services[ProblemWatch].problems if p.severity != "hint")
 
     def _tell_operators(self) -> None:
         found = self.hands.operators.take(monotonic())

@@ -166,13 +166,13 @@ class Screen(QWidget):
         self.area.setMaximumWidth(WIDE)
         outer.addLayout(row, 1)
         self.page: Page | None = None
-        session.theme_changed.connect(self.restyle)
+        session.look.changed.connect(self.restyle)
         self.restyle()
         window.installEventFilter(self)
         self.hide()
 
     def restyle(self) -> None:
-        look = theme(self.session.theme)
+        look = theme(self.session.look.name)
         self.setStyleSheet(f"""
             Screen, Screen QScrollArea, Screen QScrollArea > QWidget > QWidget {{ background: {look.panel}; }}
             Screen QLabel {{ font-size: 15px; color: {look.text}; }}

@@ -1,1 +1,35 @@
-"""The performance: requests and what plays."""
+"""The performance: what is asked for and what plays, live or kept."""
+
+from __future__ import annotations
+
+from PySide6.QtWidgets import QWidget
+
+from app.shell.actions import Command
+from app.shell.context import Contribution, Panel, Shell
+from app.shell.verbs import Verbs
+
+
+def contribute(shell: Shell) -> Contribution:
+    stage, document = shell.stage, shell.document
+    session, performance = stage.session, stage.performance
+
+    def make() -> QWidget:
+        from app.features.timeline.timeline_panel import TimelinePanel
+
+        return TimelinePanel(document, session, performance, shell.widget)
+
+    def toggle_live() -> None:
+        (performance.go_live if performance.live is None else performance.stop_live)()
+        shell.show("timeline")
+
+    shell.services[Verbs].offer(
+        "remove", lambda: session.onstage.mode == "meta" and bool(session.onstage.requests), lambda: performance.withdraw(*session.onstage.requests), rank=1
+    )
+    return Contribution(
+        panels=(Panel("timeline", "Performance", "bottom", make),),
+        commands=(
+            Command("live", "&Play", "live", "Li&ve", toggle_live, ("Ctrl+L",), tip="Let programs on this machine drive the character",
+                    enabled=lambda: document.project.skeleton is not None, checked=lambda: performance.live is not None, when="meta"),
+        ),
+        late_imports=("app.features.timeline.timeline_panel",),
+    )  # fmt: skip

@@ -74,8 +74,8 @@ class Lanes(QWidget):
         self.setAccessibleName("Timeline")
         self.setAccessibleDescription(TEXT)
         performance.changed.connect(self.update)
-        session.moved.connect(self._playhead)
-        for signal in (session.theme_changed, session.selection_changed, session.performance_changed):
+        session.transport.moved.connect(self._playhead)
+        for signal in (session.look.changed, session.selection.changed, session.onstage.performance_changed):
             signal.connect(self.update)
 
     def scale(self) -> Scale:
@@ -83,7 +83,7 @@ class Lanes(QWidget):
 
     def marks(self) -> list[Mark]:
         """Return the requests as they are drawn now."""
-        if self.session.show != "plan":
+        if self.session.transport.show != "plan":
             return []
         p, drag = self.performance, self.drag if self.drag is not None and self.drag.begun else None
         asks, answers, project, scale = p.asks, p.answers(), p.document.project, self.scale()
@@ -112,7 +112,7 @@ class Lanes(QWidget):
 
     def reveal(self, ident: str) -> None:
         """Select a request and bring it in sight."""
-        self.session.select_asks((ident,))
+        self.session.onstage.select_requests((ident,))
         mark = next((m for m in self.marks() if m.ask.id == ident), None)
         if mark is not None and not LEFT <= mark.rect.left() <= self.width() - 60:
             self.first = max(0.0, mark.at - 0.3 * (self.width() - LEFT) / self.each)
@@ -121,9 +121,9 @@ class Lanes(QWidget):
     # --- painting
 
     def paintEvent(self, event: QPaintEvent) -> None:
-        t, painter = theme(self.session.theme), QPainter(self)
+        t, painter = theme(self.session.look.name), QPainter(self)
         painter.drawPixmap(0, 0, self._picture())
-        playhead(painter, t, self.scale().x(self.session.seconds), self.height())
+        playhead(painter, t, self.scale().x(self.session.transport.seconds), self.height())
         drag = self.drag
         if drag is not None and drag.begun:
             held = next((m for m in reversed(self.marks()) if m.ask.id == drag.ident), None)
@@ -153,13 +153,13 @@ class Lanes(QWidget):
             picture.setDevicePixelRatio(ratio)
             painter = QPainter(picture)
             painter.setFont(font)
-            scene = Scene(p.shown, found, self.scale(), self.width(), self.height(), s.layer, ends, set(s.actions), set(s.asks))
-            paint(painter, theme(s.theme), scene)
+            scene = Scene(p.shown, found, self.scale(), self.width(), self.height(), s.place.layer, ends, set(s.selection.actions), set(s.onstage.requests))
+            paint(painter, theme(s.look.name), scene)
             painter.end()
             self.painted += 1
             return picture
 
-        values = (self.scale(), self.size(), ratio, s.theme, s.layer, ends, s.actions, s.asks, font.toString())
+        values = (self.scale(), self.size(), ratio, s.look.name, s.place.layer, ends, s.selection.actions, s.onstage.requests, font.toString())
         return self._still.of(values, (p.shown, found), make)
 
     def focusInEvent(self, event: QFocusEvent) -> None:
@@ -181,7 +181,7 @@ class Lanes(QWidget):
         if mark is not None:
             self._press(mark, event)
             return
-        self.session.select_asks(())
+        self.session.onstage.select_requests(())
         found = cue_at(self.performance.shown, self.scale(), self.height(), event.position())
         if found is not None:
             self.session.jump(action=found[1].action.id)
@@ -189,15 +189,15 @@ class Lanes(QWidget):
             self._scrub(event.position().x())
 
     def _press(self, mark: Mark, event: QMouseEvent) -> None:
-        ident, chosen = mark.ask.id, self.session.asks
+        ident, chosen = mark.ask.id, self.session.onstage.requests
         more = bool(event.modifiers() & Qt.KeyboardModifier.ControlModifier)
         lone = more and ident in chosen
         if ident not in chosen:
-            self.session.select_asks((*chosen, ident) if more else (ident,))
+            self.session.onstage.select_requests((*chosen, ident) if more else (ident,))
         if self.performance.editable:
-            self.drag = Drag(self.session.asks, ident, event.position().x(), lone=lone)
+            self.drag = Drag(self.session.onstage.requests, ident, event.position().x(), lone=lone)
         elif lone:
-            self.session.select_asks(tuple(i for i in chosen if i != ident))
+            self.session.onstage.select_requests(tuple(i for i in chosen if i != ident))
 
     def mouseMoveEvent(self, event: QMouseEvent) -> None:
         x, drag = event.position().x(), self.drag
@@ -231,7 +231,7 @@ class Lanes(QWidget):
         elif drag is not None and drag.begun and drag.by:
             self.performance.move_asks(drag.idents, drag.by)
         elif drag is not None and drag.lone and not drag.begun:
-            self.session.select_asks(tuple(i for i in self.session.asks if i != drag.ident))
+            self.session.onstage.select_requests(tuple(i for i in self.session.onstage.requests if i != drag.ident))
         self.update()
 
     def mouseDoubleClickEvent(self, event: QMouseEvent) -> None:
@@ -256,9 +256,9 @@ class Lanes(QWidget):
     def _mark_menu(self, mark: Mark) -> QMenu:
         """Return what can be done with a request, or with all that are selected with it."""
         ident = mark.ask.id
-        if ident not in self.session.asks:
-            self.session.select_asks((ident,))
-        menu, chosen = QMenu(self), self.session.asks
+        if ident not in self.session.onstage.requests:
+            self.session.onstage.select_requests((ident,))
+        menu, chosen = QMenu(self), self.session.onstage.requests
         menu.setAttribute(Qt.WidgetAttribute.WA_DeleteOnClose)
         menu.addAction("Change…\tReturn", lambda: self.edit(ident))
         menu.addAction("Copy\tCtrl+D", lambda: self.performance.copy_asks(chosen, FAR))
@@ -280,13 +280,13 @@ class Lanes(QWidget):
 
     def _ask_here(self) -> None:
         """Ask for something at the playhead."""
-        x = min(max(LEFT, self.scale().x(self.session.seconds)), self.width())
-        seconds = round(self.session.seconds, 2) if self.performance.live is None else None
+        x = min(max(LEFT, self.scale().x(self.session.transport.seconds)), self.width())
+        seconds = round(self.session.transport.seconds, 2) if self.performance.live is None else None
         ask_menu(self, self.performance, seconds).popup(self.mapToGlobal(QPointF(x, RULER).toPoint()))
 
     def _scrub(self, x: float) -> None:
-        self.session.set_playing(False)
-        self.session.seek(max(0.0, self.scale().seconds(max(x, LEFT))))
+        self.session.transport.set_playing(False)
+        self.session.transport.seek(max(0.0, self.scale().seconds(max(x, LEFT))))
 
     def wheelEvent(self, event: QWheelEvent) -> None:
         delta = event.angleDelta()
@@ -308,29 +308,29 @@ class Lanes(QWidget):
 
     def _nudge(self, key: Qt.Key, modifiers: Qt.KeyboardModifier) -> None:
         by = FAR if modifiers & Qt.KeyboardModifier.ShiftModifier else NUDGE
-        self.performance.move_asks(self.session.asks, by if key == Qt.Key.Key_Right else -by, merge="nudge")
+        self.performance.move_asks(self.session.onstage.requests, by if key == Qt.Key.Key_Right else -by, merge="nudge")
 
     def _choose(self, step: int) -> None:
         """Select the request before or after the selected one, in time; without one, the first from the playhead on."""
         order = sorted(self.marks(), key=lambda m: m.at)
         if not order:
             return
-        chosen = self.session.asks
+        chosen = self.session.onstage.requests
         place = next((n for n, m in enumerate(order) if chosen and m.ask.id == chosen[-1]), None)
         if place is None:
-            place = next((n for n, m in enumerate(order) if m.at >= self.session.seconds), len(order) - 1)
+            place = next((n for n, m in enumerate(order) if m.at >= self.session.transport.seconds), len(order) - 1)
         else:
             place = min(max(0, place + step), len(order) - 1)
         self.reveal(order[place].ask.id)
 
     def keyPressEvent(self, event: QKeyEvent) -> None:
-        chosen, key, can = self.session.asks, event.key(), self.performance.editable
+        chosen, key, can = self.session.onstage.requests, event.key(), self.performance.editable
         if key == Qt.Key.Key_Escape and self.drag is not None:
             self.drag = None
             self.setCursor(Qt.CursorShape.ArrowCursor)
             self.update()
         elif key == Qt.Key.Key_Escape and chosen:
-            self.session.select_asks(())
+            self.session.onstage.select_requests(())
         elif self.drag is not None:
             return  # what is held is not edited by keys as well
         elif chosen and can and key in (Qt.Key.Key_Left, Qt.Key.Key_Right):
@@ -344,7 +344,7 @@ class Lanes(QWidget):
         elif key == Qt.Key.Key_Insert:
             self._ask_here()
         elif key in (Qt.Key.Key_Plus, Qt.Key.Key_Equal, Qt.Key.Key_Minus):
-            self._zoom(1 / ZOOM if key == Qt.Key.Key_Minus else ZOOM, min(max(LEFT, self.scale().x(self.session.seconds)), self.width()))
+            self._zoom(1 / ZOOM if key == Qt.Key.Key_Minus else ZOOM, min(max(LEFT, self.scale().x(self.session.transport.seconds)), self.width()))
         elif key in (Qt.Key.Key_PageUp, Qt.Key.Key_PageDown):
             page = 0.8 * (self.width() - LEFT) / self.each
             self.first = max(0.0, self.first + (page if key == Qt.Key.Key_PageDown else -page))
@@ -358,7 +358,7 @@ class Lanes(QWidget):
             return True
         if isinstance(event, QKeyEvent) and event.type() == QKeyEvent.Type.ShortcutOverride:
             mine = (Qt.Key.Key_Left, Qt.Key.Key_Right, Qt.Key.Key_Return, Qt.Key.Key_Escape)
-            if (self.drag is not None and event.key() == Qt.Key.Key_Escape) or (self.session.asks and event.key() in mine):
+            if (self.drag is not None and event.key() == Qt.Key.Key_Escape) or (self.session.onstage.requests and event.key() in mine):
                 event.accept()
                 return True
         return super().event(event)  # type: ignore[arg-type]

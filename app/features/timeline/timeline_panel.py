@@ -86,17 +86,17 @@ class TimelinePanel(QWidget):
         layout.addLayout(row)
         layout.addWidget(self.lanes, 1)
         performance.changed.connect(self._words)
-        session.show_changed.connect(self._words)
+        session.transport.show_changed.connect(self._words)
         performance.live_changed.connect(self._live)
-        session.moved.connect(self._moved)
-        session.playing_changed.connect(self._moved)
+        session.transport.moved.connect(self._moved)
+        session.transport.playing_changed.connect(self._moved)
         self._spoken = QTimer(self, interval=500)  # the words about clients, while live
         self._spoken.timeout.connect(self._words)
         self._live()
-        session.performance_changed.connect(self._restage)
-        session.performance_changed.connect(self._words)
-        session.conversation_changed.connect(self._restage)
-        session.mode_changed.connect(self._switched)
+        session.onstage.performance_changed.connect(self._restage)
+        session.onstage.performance_changed.connect(self._words)
+        session.onstage.conversation_changed.connect(self._restage)
+        session.onstage.mode_changed.connect(self._switched)
         document.changed.connect(lambda before, after: self._restage())
         self._restage()
         self._switched()
@@ -104,26 +104,26 @@ class TimelinePanel(QWidget):
     def _switched(self) -> None:
         """Requests and kept performances are the meta-graph's."""
         for part in (self.stage, self.more, self.ask, self.live):
-            part.setEnabled(self.session.mode == "meta")
+            part.setEnabled(self.session.onstage.mode == "meta")
         self._words()
 
     def _put_on(self, _: int) -> None:
         """Put on stage what was chosen: a performance, improvising, or the other of two who talk."""
         chosen = self.stage.currentData()
         if isinstance(chosen, int):
-            self.session.set_side(chosen)
+            self.session.onstage.set_side(chosen)
         else:
-            self.session.set_conversation(None)
-            self.session.set_performance(chosen)
+            self.session.onstage.set_conversation(None)
+            self.session.onstage.set_performance(chosen)
 
     def _restage(self) -> None:
         """Show which performance is on stage, and its seed."""
         wanted: list[tuple[str, str | int | None]] = [(IMPROVISED, None)]
         wanted += [(p.name, i) for i, p in self.document.project.performances.items()]
-        talk = self.document.project.conversations.get(self.session.conversation or "")
+        talk = self.document.project.conversations.get(self.session.onstage.conversation or "")
         if talk is not None:  # then it is one of the two whose plan is seen
             wanted += [(f"{talk.name}: {side_name(talk, side)}", side) for side in (0, 1)]
-        shown = self.session.performance if talk is None else self.session.side
+        shown = self.session.onstage.performance if talk is None else self.session.onstage.side
         if wanted != [(self.stage.itemText(n), self.stage.itemData(n)) for n in range(self.stage.count())]:
             self.stage.clear()
             for name, ident in wanted:
@@ -163,8 +163,8 @@ class TimelinePanel(QWidget):
             return project
 
         self.document.edit(text, edit)  # type: ignore[arg-type]
-        self.session.set_performance(made)
-        self.session.show_plan()
+        self.session.onstage.set_performance(made)
+        self.session.transport.show_plan()
 
     def new(self) -> None:
         self._keep("New performance", KeptPerformance(name="Performance"))
@@ -193,7 +193,7 @@ class TimelinePanel(QWidget):
             self._change("Change seed", seed=self.document.project.settings.seed if kept.seed is None else None)
 
     def remove(self) -> None:
-        kept, ident = self.performance.kept, self.session.performance
+        kept, ident = self.performance.kept, self.session.onstage.performance
         if kept is None or ident is None:
             return
         if kept.asks:
@@ -203,7 +203,7 @@ class TimelinePanel(QWidget):
         self.document.edit("Remove performance", lambda p: staging.remove_performance(p, ident))
 
     def _change(self, text: str, **changes: object) -> None:
-        ident = self.session.performance
+        ident = self.session.onstage.performance
         if ident is not None:
             try:
                 self.document.edit(text, lambda p: staging.change_performance(p, ident, **changes), merge=text)
@@ -231,7 +231,7 @@ class TimelinePanel(QWidget):
         self._words()
 
     def _moved(self) -> None:
-        here = self.performance.following and self.session.playing
+        here = self.performance.following and self.session.transport.playing
         self.now.setVisible(self.performance.live is not None and not here)
 
     # --- asking, seed
@@ -263,19 +263,19 @@ class TimelinePanel(QWidget):
     def show_lost(self) -> None:
         """Select the first request that does not play, or the one after the selected."""
         lost = [m.ask.id for m in sorted(self.lanes.marks(), key=lambda m: m.at) if m.lost]
-        chosen = self.session.asks
+        chosen = self.session.onstage.requests
         if lost:
             place = lost.index(chosen[0]) + 1 if chosen and chosen[0] in lost else 0
             self.lanes.reveal(lost[place % len(lost)])
 
     def _words(self) -> None:
-        shown, plan = self.performance.shown, self.session.show == "plan"
+        shown, plan = self.performance.shown, self.session.transport.show == "plan"
         answers = self.performance.answers() if plan else {}
         lost = sum(1 for a in answers.values() if a.state == "refused")
         self.lost.setVisible(lost > 0)
         self.lost.setText(f"⚠ {lost:,} not met")
         self.lost.setAccessibleName(f"{many(lost, 'request')} could not be met")
-        chosen = self.session.asks if plan else ()
+        chosen = self.session.onstage.requests if plan else ()
         marks = [m for m in self.lanes.marks() if m.ask.id in chosen] if chosen else []
         if len(marks) == 1:
             self.title.say(f"{outcome(marks[0].ask, marks[0].answer)} Asked for: {wanted(marks[0])}.".strip(), True)
@@ -287,13 +287,13 @@ class TimelinePanel(QWidget):
             self.title.say(self.performance.live.words())
         elif shown.clip is not None:
             self.title.say("A clip alone. Click it again to play it in context, Esc for the performance.")
-        elif self.session.mode == "manual":
+        elif self.session.onstage.mode == "manual":
             count = sum(len(shown.plan.layers[layer].cues) for layer in LAYERS)
             lost_words = "".join(f" {r.message[:1].upper()}{r.message[1:]}." for r in shown.plan.reports[-1:])
             words = f"{many(count, 'state')} in {shown.length:g} s." if count else "Nothing plays yet: drop clips and draw links."
-            self.title.say("Alone. Esc for the whole machine." if self.session.show == "context" else words + lost_words)
-        elif shown.partner is not None and self.session.show == "plan":
-            talk = self.performance.document.project.conversations.get(self.session.conversation or "")
+            self.title.say("Alone. Esc for the whole machine." if self.session.transport.show == "context" else words + lost_words)
+        elif shown.partner is not None and self.session.transport.show == "plan":
+            talk = self.performance.document.project.conversations.get(self.session.onstage.conversation or "")
             who = side_name(talk, shown.side) if talk is not None else "One of the two"
             gestures = sum(1 for cue in shown.plan.layers["arms"].cues if cue.action.kind == "gesture")
             nods = len(shown.plan.layers["head"].cues)
@@ -301,7 +301,7 @@ class TimelinePanel(QWidget):
                 self.title.say(f"{who} moves with '{shown.project.clips[shown.motion].name}'; its graph would do this.")
                 return
             self.title.say(f"{who} in conversation: {many(gestures, 'gesture')} of the hands, {many(nods, 'nod')}.")
-        elif self.session.show == "context":
+        elif self.session.transport.show == "context":
             self.title.say("In context: stance, action, back to the stance. Esc for the performance.")
         else:
             count = sum(len(shown.plan.layers[layer].cues) for layer in LAYERS)

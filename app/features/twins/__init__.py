@@ -1,1 +1,22 @@
 """Mirrored twins of clips and actions."""
+
+from __future__ import annotations
+
+from app.shell.actions import Command
+from app.shell.context import Contribution, Shell
+
+
+def contribute(shell: Shell) -> Contribution:
+    session = shell.stage.session
+
+    def make() -> None:
+        from app.features.twins.twin_command import make_twins
+
+        make_twins(shell)
+
+    return Contribution(
+        commands=(
+            Command("twins", "&Edit", "properties", "Make &mirrored twin", make, tip="The same to the other side, as new clips and actions",
+                    enabled=lambda: bool(session.selection.clips or session.selection.actions), when="meta", menus=("action", "clip")),
+        ),
+    )  # fmt: skip

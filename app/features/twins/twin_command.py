@@ -20,18 +20,18 @@ from metagraph.graph.twins import TwinClip, mirrored_clips, place_twins, twin_cl
 from metagraph.motion.adopt import adopt
 
 if TYPE_CHECKING:
-    from app.shell.window import Window
+    from app.shell.context import Shell
 
 FOLDER = "mirrored"
 
 
-def make_twins(window: Window) -> None:
+def make_twins(shell: Shell) -> None:
     """Make twins of the selected actions, or of the selected clips; select them when they are there."""
-    document, session = window.document, window.session
-    actions, clips, folder = session.actions, session.clips, document.folder
+    document, session = shell.document, shell.stage.session
+    actions, clips, folder = session.selection.actions, session.selection.clips, document.folder
     project = document.project
     if folder is None:
-        window.tell(f"Save the project first: mirrored clips are written beside it, in a folder '{FOLDER}'.")
+        shell.tell(f"Save the project first: mirrored clips are written beside it, in a folder '{FOLDER}'.")
         return
 
     def work(job: Job) -> list[tuple[TwinClip, Loaded]]:
@@ -48,25 +48,25 @@ def make_twins(window: Window) -> None:
         if not made:
             return
         if document.folder != folder or any(project.clips[c].id not in document.project.clips for c in clips):
-            window.tell("The project was changed meanwhile; make the twins again.")
+            shell.tell("The project was changed meanwhile; make the twins again.")
             return
         before = document.project
         try:
             count = sum(len(twin.actions) for twin, _ in made) or len(made)
             document.edit(f"Make {count} mirrored twin{'s' if count != 1 else ''}", lambda p: with_twins(p, made))
         except EditError as error:
-            window.tell(str(error))
+            shell.tell(str(error))
             return
         after = document.project
         if actions:
-            session.select_actions(tuple(a.id for a in after.actions() if before.action(a.id) is None))
+            session.selection.select_actions(tuple(a.id for a in after.actions() if before.action(a.id) is None))
         else:
-            session.select_clips(tuple(c for c in after.clips if c not in before.clips))
+            session.selection.select_clips(tuple(c for c in after.clips if c not in before.clips))
         words = f"{count} mirrored twin{'s' if count != 1 else ''}" if actions else f"{clips_words(count)} mirrored"
         names = ", ".join(twin.name for twin, _ in made[:3]) + (" …" if len(made) > 3 else "")
-        window.tell(f"{words}: {names}. Written to {folder / FOLDER}.")
+        shell.tell(f"{words}: {names}. Written to {folder / FOLDER}.")
 
-    window.jobs.start("Making mirrored twins", work, done, lambda error: window.tell(str(error)))
+    shell.jobs.start("Making mirrored twins", work, done, lambda error: shell.tell(str(error)))
 
 
 def write_twin(twin: TwinClip, folder: Path) -> Loaded:

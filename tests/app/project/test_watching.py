@@ -19,10 +19,10 @@ def opened(drive, toy, tmp_path, monkeypatch):
     from metagraph.graph import edits
 
     monkeypatch.setattr(watching, "EVERY", 100)
-    drive.window.watcher._timer.setInterval(100)
+    drive.watcher._timer.setInterval(100)
     for name, swing in (("rest", 0.05), ("wave", 0.6)):
         write_glb(tmp_path / f"{name}.glb", [toy.clip(name, 1.0, swing=swing)])
-    drive.files.import_paths([str(tmp_path)])
+    drive.importing.import_paths([str(tmp_path)])
     drive.wait(lambda: len(drive.document.project.clips) == 2)
     ids = {clip.name: clip.id for clip in drive.document.project.clips.values()}
     drive.document.edit("Stance", lambda p: edits.add_stance(p, "arms", "rest", [ids["rest"]]))
@@ -64,7 +64,7 @@ def test_a_file_touched_but_not_changed_is_no_edit(opened):
 def test_a_broken_file_is_told_and_nothing_is_lost(opened):
     drive = opened
     said = []
-    drive.window.watcher.told.connect(said.append)
+    drive.watcher.told.connect(said.append)
     project = drive.document.project
     (drive.place / "wave.glb").write_bytes(b"not a glb at all, and longer than nothing")
     drive.wait(lambda: bool(said))
@@ -84,10 +84,10 @@ def test_a_file_that_is_gone_for_a_moment_is_waited_for(opened):
 def test_nothing_is_followed_when_it_is_switched_off(opened):
     drive = opened
     drive.actions["watch"].trigger()
-    assert not drive.window.watcher.on and not drive.actions["watch"].isChecked()
+    assert not drive.watcher.on and not drive.actions["watch"].isChecked()
     project = drive.document.project
     write(drive, "wave", 1.5)
     drive.pause(700)
     assert drive.document.project is project
     drive.actions["watch"].trigger()
-    assert drive.window.watcher.on
+    assert drive.watcher.on

@@ -18,8 +18,10 @@ from PySide6.QtWidgets import (
     QMessageBox,
     QSlider,
     QSpinBox,
+    QToolButton,
 )
 
+from app.features.problems import ProblemButton
 from metagraph.formats.bvh import write_bvh
 from metagraph.formats.store import save_project
 from metagraph.graph import edits
@@ -69,12 +71,12 @@ def test_the_whole_job_by_keyboard_alone(drive, folder, tmp_path, monkeypatch):
     drive.library.search.setText("up")
     drive.key(KEY.Key_Return, widget=drive.library.search)
     drive.key(KEY.Key_Home, CTRL, widget=listed)
-    drive.wait(lambda: len(drive.session.clips) == 1)
+    drive.wait(lambda: len(drive.session.selection.clips) == 1)
     drive.key(KEY.Key_1, widget=listed)
     drive.wait(lambda: drive.names("stance") == ["idle", "up idle"])
     drive.key(KEY.Key_1, CTRL)
     first = next(iter(drive.document.project.graphs["arms"].stances))
-    assert drive.session.stance() == first
+    assert drive.session.place.stance() == first
     drive.library.search.setText("")
     for name, key, kind in (("beat", KEY.Key_2, "gesture"), ("cough", KEY.Key_3, "fidget"), ("raise", KEY.Key_4, "transition")):
         row = next(r for r in range(5) if drive.library.proxy.index(r, 0).data() == name)
@@ -92,13 +94,13 @@ def test_the_whole_job_by_keyboard_alone(drive, folder, tmp_path, monkeypatch):
     seen = []
     for _ in range(3):
         drive.key(KEY.Key_Down, widget=drive.canvas)
-        seen.append(drive.session.actions)
+        seen.append(drive.session.selection.actions)
     assert {*seen} >= {(fidget.id,), (transition.id,)}
     for _ in range(3):
         drive.key(KEY.Key_Up, widget=drive.canvas)
-    assert drive.session.selected_actions()[0].kind == "stance", "above the rows are the stance's loops"
+    assert drive.session.selection.selected_actions()[0].kind == "stance", "above the rows are the stance's loops"
     drive.key(KEY.Key_Down, widget=drive.canvas)
-    assert drive.session.actions == (gesture.id,)
+    assert drive.session.selection.actions == (gesture.id,)
     steps = count(drive)
     drive.key(KEY.Key_Right, widget=drive.canvas)
     drive.key(KEY.Key_Right, widget=drive.canvas)
@@ -107,26 +109,26 @@ def test_the_whole_job_by_keyboard_alone(drive, folder, tmp_path, monkeypatch):
     assert drive.document.project.action(gesture.id).likelihood == 1.1
     assert count(drive) == steps + 3
     drive.key(KEY.Key_Return, widget=drive.canvas)
-    assert (drive.session.show, drive.session.shown) == ("context", gesture.id)
+    assert (drive.session.transport.show, drive.session.transport.shown) == ("context", gesture.id)
     drive.key(KEY.Key_Escape)
-    assert drive.session.show == "plan"
+    assert drive.session.transport.show == "plan"
 
     # Layers and stances.
     for key, layer in ((KEY.Key_1, "body"), (KEY.Key_3, "head"), (KEY.Key_2, "arms")):
         drive.key(key, ALT)
-        assert drive.session.layer == layer
+        assert drive.session.place.layer == layer
     drive.key(KEY.Key_2, CTRL)
-    assert drive.session.stance() != first
+    assert drive.session.place.stance() != first
     drive.key(KEY.Key_9, CTRL)
-    assert drive.session.stance() != first, "there is no ninth stance"
+    assert drive.session.place.stance() != first, "there is no ninth stance"
     drive.key(KEY.Key_1, CTRL)
 
     # Rename: the clip, the action, the stance, each when it is what is selected.
     monkeypatch.setattr(QInputDialog, "getText", lambda *a, **k: ("  hands   at sides ", True))
-    drive.session.select_actions(())
+    drive.session.selection.select_actions(())
     drive.key(KEY.Key_F2)
     assert drive.document.project.stance(first).name == "hands at sides"
-    drive.session.select_actions((gesture.id,))
+    drive.session.selection.select_actions((gesture.id,))
     drive.key(KEY.Key_F2)
     field = drive.properties.name
     assert QApplication.focusWidget() is field
@@ -154,15 +156,15 @@ def test_the_whole_job_by_keyboard_alone(drive, folder, tmp_path, monkeypatch):
 def test_single_keys_yield_to_typing_and_to_focused_buttons(toys):
     drive = toys
     drive.session.jump(action=drive.id("rest beat lf"))
-    drive.session.set_playing(False)
+    drive.session.transport.set_playing(False)
     drive.key(KEY.Key_Space)
-    assert drive.session.playing
+    assert drive.session.transport.playing
     before = drive.document.project
     tags, start, seed = drive.properties.tags, drive.properties.start, drive.timeline.seed
     tags.setFocus()
     QTest.keyClicks(tags, "1 2,3.4 fblm")
     assert tags.text() == "1 2,3.4 fblm"
-    assert (drive.session.playing, drive.document.project) == (True, before)
+    assert (drive.session.transport.playing, drive.document.project) == (True, before)
     drive.key(KEY.Key_Escape, widget=tags)
     assert tags.text() == "", "Esc takes back what was typed"
     for box, typed in ((start, "0.25"), (seed, "123")):
@@ -172,23 +174,23 @@ def test_single_keys_yield_to_typing_and_to_focused_buttons(toys):
         drive.key(KEY.Key_Return, widget=box)
     assert drive.action("rest beat lf").timing.start == 0.25
     assert drive.document.project.settings.seed == 123
-    assert drive.session.playing
-    assert not drive._machine_wanted
+    assert drive.session.transport.playing
+    assert not drive.places.wanted("machine")
     # The space bar presses the button that Tab came to.
     drive.library.chips["labelled"].setFocus(Qt.FocusReason.TabFocusReason)
     drive.key(KEY.Key_Space, widget=drive.library.chips["labelled"])
     assert drive.library.chips["labelled"].isChecked()
-    assert drive.session.playing
+    assert drive.session.transport.playing
     drive.canvas.setFocus()
     drive.key(KEY.Key_Space, widget=drive.canvas)
-    assert not drive.session.playing
-    seconds = drive.session.seconds
+    assert not drive.session.transport.playing
+    seconds = drive.session.transport.seconds
     drive.key(KEY.Key_Period)
-    assert drive.session.seconds == pytest.approx(seconds + 1 / 30)
+    assert drive.session.transport.seconds == pytest.approx(seconds + 1 / 30)
     drive.key(KEY.Key_Home)
-    assert drive.session.seconds == 0.0
+    assert drive.session.transport.seconds == 0.0
     for key, state in (
-        (KEY.Key_L, lambda: drive.session.loop),
+        (KEY.Key_L, lambda: drive.session.transport.loop),
         (KEY.Key_B, lambda: drive.preview.bones),
         (KEY.Key_M, lambda: drive.machine.isVisible()),
     ):
@@ -223,7 +225,7 @@ def test_tab_goes_round_and_gets_stuck_nowhere(toys):
 
 def test_every_control_says_what_it_is(toys):
     drive = toys
-    for page, select in ((1, lambda: drive.session.jump(action=drive.id("rest to up"))), (0, lambda: drive.session.select_actions(()))):
+    for page, select in ((1, lambda: drive.session.jump(action=drive.id("rest to up"))), (0, lambda: drive.session.selection.select_actions(()))):
         select()
         assert drive.properties.pages.currentIndex() == page
         for widget in drive.window.findChildren(QAbstractButton):
@@ -248,11 +250,11 @@ def test_twenty_clips_are_dropped_at_once(drive, toy):
     drive.library.search.setText("many")
     drive.library.list.setFocus()
     drive.key(KEY.Key_A, CTRL, widget=drive.library.list)
-    drive.wait(lambda: len(drive.session.clips) == 20)
+    drive.wait(lambda: len(drive.session.selection.clips) == 20)
     steps, fidgets = count(drive), len(drive.names("fidget"))
     drive.drag(drive.card("many 00"), drive.node("fidget"), lambda: len(drive.names("fidget")) == fidgets + 20)
     assert count(drive) == steps + 1
-    assert len(drive.session.actions) == 20
+    assert len(drive.session.selection.actions) == 20
     drive.key(KEY.Key_Z, CTRL)
     assert len(drive.names("fidget")) == fidgets
 
@@ -261,18 +263,18 @@ def test_rows_are_dragged_to_another_node_and_to_another_stance(toys):
     drive = toys
     beat, cough, up = drive.id("rest beat lf"), drive.id("rest cough"), drive.id("up")
     drive.drag(drive.row(beat), drive.node("fidget"), lambda: drive.action("rest beat lf").kind == "fidget")
-    assert drive.session.actions == (beat,)
+    assert drive.session.selection.actions == (beat,)
     drive.click(drive.row(cough), CTRL)
-    assert set(drive.session.actions) == {beat, cough}
+    assert set(drive.session.selection.actions) == {beat, cough}
     steps = count(drive)
     drive.drag(drive.row(beat), drive.chip(up), lambda: drive.action("rest cough").stance == up)
     assert [(drive.document.project.action(i).stance, drive.document.project.action(i).kind) for i in (beat, cough)] == [(up, "fidget")] * 2
     assert count(drive) == steps + 1
-    assert drive.session.stance() == up, "the window goes where they went"
+    assert drive.session.place.stance() == up, "the window goes where they went"
 
 
 def test_a_refused_drop_says_why_and_changes_nothing(drive, folder, monkeypatch):
-    drive.files.import_paths([str(folder)])
+    drive.importing.import_paths([str(folder)])
     drive.wait(lambda: len(drive.document.project.clips) == 5)
     drive.pause(50)
     drive.drag(drive.card("idle"), drive.middle(), lambda: drive.names("stance") == ["idle"])
@@ -290,7 +292,7 @@ def test_a_refused_drop_says_why_and_changes_nothing(drive, folder, monkeypatch)
     assert drive.document.project is before
     assert count(drive) == steps
     # The same by key, in the status bar.
-    drive.session.select_clips((next(iter(before.clips)),))
+    drive.session.selection.select_clips((next(iter(before.clips)),))
     drive.key(KEY.Key_4)
     assert drive.told[-1].startswith("choose the stance")
     assert drive.window.statusBar().currentMessage() == drive.told[-1]
@@ -299,7 +301,7 @@ def test_a_refused_drop_says_why_and_changes_nothing(drive, folder, monkeypatch)
 def test_a_likelihood_bar_is_dragged_in_one_step_and_escape_takes_it_back(toys):
     drive = toys
     beat = drive.id("rest beat lf")
-    drive.session.select_actions((beat, drive.id("rest short")))
+    drive.session.selection.select_actions((beat, drive.id("rest short")))
     steps = count(drive)
     canvas, at = drive.bar(beat, 0.5)
 
@@ -322,14 +324,14 @@ def test_a_likelihood_bar_is_dragged_in_one_step_and_escape_takes_it_back(toys):
     QTest.mouseRelease(canvas, Qt.MouseButton.LeftButton, pos=at)
     assert drive.action("rest beat lf").likelihood == 1.0
     assert count(drive) == steps
-    assert drive.session.show == "plan"
+    assert drive.session.transport.show == "plan"
 
 
 def test_many_actions_are_edited_at_once_and_show_what_differs(toys):
     drive, p = toys, toys.properties
     beat, wave, short = drive.id("rest beat lf"), drive.id("rest wave rt"), drive.id("rest short")
     drive.document.edit("Tag", lambda q: edits.update_actions(q, (beat,), tags=("positive",), timing={"earliest_exit": 0.4}))
-    drive.session.select_actions((beat, wave))
+    drive.session.selection.select_actions((beat, wave))
     assert p.name.text() == "2 actions"
     assert p.name.isReadOnly()
     assert p.end.text() == "mixed"
@@ -361,7 +363,7 @@ def test_many_actions_are_edited_at_once_and_show_what_differs(toys):
     assert both(lambda a: a.likelihood) == [0.9, 0.9]
     p._restance(p.stance.findText("up"))
     assert both(lambda a: a.stance) == [drive.id("up")] * 2
-    assert drive.session.stance() == drive.id("up")
+    assert drive.session.place.stance() == drive.id("up")
     # One alone: numbers out of the clip are kept in it, and said.
     drive.session.jump(action=short)
     p.start.setValue(50.0)
@@ -381,7 +383,7 @@ def test_many_actions_are_edited_at_once_and_show_what_differs(toys):
 
 def test_the_layer_page_sets_weights_rest_and_base_pose(toys):
     drive, p = toys, toys.properties
-    drive.session.select_actions(())
+    drive.session.selection.select_actions(())
     assert p.pages.currentIndex() == 0
     p.weights["head"].setValue(0.5)
     assert drive.document.project.graphs["arms"].weight("head") == 0.5
@@ -394,9 +396,9 @@ def test_the_layer_page_sets_weights_rest_and_base_pose(toys):
     assert not p.base_frame.isEnabled()
     # From the clip being looked at, this frame.
     wave = next(c.id for c in drive.document.project.clips.values() if c.name == "rest wave rt")
-    drive.session.show_clip(wave)
-    drive.session.set_playing(False)
-    drive.session.seek(0.5)
+    drive.session.transport.show_clip(wave)
+    drive.session.transport.set_playing(False)
+    drive.session.transport.seek(0.5)
     drive.pick(drive.library.menu(drive.document.project.clips[wave]), "Use this frame (15) as base pose")
     assert (drive.document.project.base.clip, drive.document.project.base.frame) == (wave, 15)
     assert drive.preview.base.text() == "Base pose: rest wave rt, frame 15"
@@ -411,15 +413,15 @@ def test_problems_are_found_shown_and_jumped_to(toys):
     drive.document.edit("Break", lambda q: edits.update_actions(q, (drive.id("up point"),), timing={"start": 5.0, "end": 6.0}))
     panel = drive.problems_panel
     drive.wait(lambda: any(q.action == drive.id("up point") for q in panel.problems))
-    assert "No problems" not in drive.header.problem_button.text()
-    drive.click((drive.header.problem_button, drive.header.problem_button.rect().center()))
+    assert "No problems" not in drive.window.findChild(ProblemButton).text()
+    drive.click((drive.window.findChild(ProblemButton), drive.window.findChild(ProblemButton).rect().center()))
     drive.wait(panel.tree.isVisible)
     row = next(n for n, q in enumerate(panel.problems) if q.action == drive.id("up point"))
     item = panel.tree.topLevelItem(row)
     panel.tree.scrollToItem(item)
     QTest.mouseClick(panel.tree.viewport(), Qt.MouseButton.LeftButton, pos=panel.tree.visualItemRect(item).center())
-    assert drive.session.actions == (drive.id("up point"),)
-    assert drive.session.stance() == drive.id("up")
+    assert drive.session.selection.actions == (drive.id("up point"),)
+    assert drive.session.place.stance() == drive.id("up")
     assert drive.properties.trouble.text()
     drive.document.undo()
     drive.wait(lambda: not any(q.action == drive.id("up point") for q in panel.problems))
@@ -430,22 +432,27 @@ def test_machine_theme_and_the_character_alone_come_and_go(toys):
     drive = toys
     drive.key(KEY.Key_M)
     assert drive.machine.isVisible()
-    assert drive.header.machine_button.isChecked()
+    assert next(b for b in drive.header.findChildren(QToolButton) if b.text() == "Machine").isChecked()
     drive.wait(lambda: bool(drive.machine._places))
     at = drive.machine._places[drive.id("rest beat lf")].toPoint()
     drive.click((drive.machine, at))
-    assert drive.session.actions == (drive.id("rest beat lf"),)
-    drive.click((drive.header.machine_button, drive.header.machine_button.rect().center()))
+    assert drive.session.selection.actions == (drive.id("rest beat lf"),)
+    drive.click(
+        (
+            next(b for b in drive.header.findChildren(QToolButton) if b.text() == "Machine"),
+            next(b for b in drive.header.findChildren(QToolButton) if b.text() == "Machine").rect().center(),
+        )
+    )
     assert not drive.machine.isVisible()
     drive.actions["theme"].trigger()
-    assert drive.session.theme == "light"
+    assert drive.session.look.name == "light"
     drive.pause(50)
     drive.actions["theme"].trigger()
-    assert drive.session.theme == "dark"
+    assert drive.session.look.name == "dark"
     shown = {k: d.isVisible() for k, d in drive.docks.items()}
     drive.key(KEY.Key_F11)
     drive.wait(lambda: not drive.centre.isVisible())
-    assert [k for k, d in drive.docks.items() if d.isVisible()] == ["preview"]
+    assert [k for k, d in drive.docks.items() if d.isVisible()] == ["character"]
     drive.key(KEY.Key_F11)
     drive.wait(drive.centre.isVisible)
     assert {k: d.isVisible() for k, d in drive.docks.items()} == shown
@@ -471,13 +478,14 @@ def test_menus_say_how_things_are(toys):
     assert not drive.actions["stance_4"].isVisible()
     assert drive.actions["stance_2"].text() == "up"
     drive.menus["&File"].aboutToShow.emit()
-    drive.recent_menu.aboutToShow.emit()
-    assert drive.recent_menu.actions()
+    recent = drive.actions["recent"].menu()
+    recent.aboutToShow.emit()
+    assert recent.actions()
     drive.preview.scrub.setFocus()
-    drive.session.seek(0.0)
+    drive.session.transport.seek(0.0)
     drive.pause(50)
     QTest.keyClick(drive.preview.scrub, KEY.Key_PageUp)
-    assert drive.session.seconds > 1.0, "the slider's keys move the playhead"
+    assert drive.session.transport.seconds > 1.0, "the slider's keys move the playhead"
 
 
 def test_files_are_dropped_on_the_library_and_on_a_node(drive, folder, tmp_path):
@@ -496,7 +504,7 @@ def test_files_are_dropped_on_the_library_and_on_a_node(drive, folder, tmp_path)
 
 
 def test_closing_asks_about_changes_and_windows_follow_each_other(toys, qtbot, monkeypatch):
-    from app.shell.window import Window
+    from app.main import make_window
 
     drive, asked = toys, []
     answers = [QMessageBox.StandardButton.Cancel, QMessageBox.StandardButton.Discard]
@@ -506,7 +514,7 @@ def test_closing_asks_about_changes_and_windows_follow_each_other(toys, qtbot, m
     assert drive.window.isVisible()
     assert drive.window.close()
     assert len(asked) == 2
-    second = Window()
+    second = make_window()
     second.show()
     second.load_late_panels_soon()
     qtbot.waitUntil(lambda: second.ready, timeout=15000)
@@ -579,7 +587,7 @@ def test_an_export_that_fails_says_why(toys, tmp_path):
 
 
 def test_a_project_whose_character_is_missing_opens_as_a_stick_figure(drive, toy, folder, tmp_path):
-    drive.files.import_paths([str(folder)])
+    drive.importing.import_paths([str(folder)])
     drive.wait(lambda: len(drive.document.project.clips) == 5)
     clips = list(drive.document.project.clips)
     project = edits.add_stance(edits.set_character(drive.document.project, "nobody.glb"), "arms", "idle", clips[:1])
@@ -615,15 +623,15 @@ def test_requests_and_another_seed_change_the_performance(toys):
     from app.widgets.lane_geometry import lanes, rows
 
     board = drive.timeline.lanes
-    drive.session.set_playing(False)
-    drive.session.seek(0.0)
+    drive.session.transport.set_playing(False)
+    drive.session.transport.seek(0.0)
     cue = next(c for c in arms() if board.scale().x(c.end) < board.width())
     at = rows(lanes(board.height())["arms"])[1].center().toPoint()
     at.setX(round(board.scale().x((cue.start + cue.end) / 2)))
     drive.click((board, at))
-    assert drive.session.actions == (cue.action.id,)
+    assert drive.session.selection.actions == (cue.action.id,)
     QTest.mouseDClick(board, Qt.MouseButton.LeftButton, pos=at)
-    assert drive.session.shown == cue.action.id
+    assert drive.session.transport.shown == cue.action.id
 
 
 def test_a_missing_clip_can_be_looked_at_without_harm(toys):
@@ -631,7 +639,7 @@ def test_a_missing_clip_can_be_looked_at_without_harm(toys):
     action = drive.action("rest beat lf")
     clips = {**drive.document.project.clips, action.clip: replace(drive.document.project.clips[action.clip], motion=None)}
     drive.document.load(replace(drive.document.project, clips=clips), None)
-    for show in (lambda: drive.session.show_clip(action.clip), lambda: drive.session.show_context(action.id), drive.session.show_plan):
+    for show in (lambda: drive.session.transport.show_clip(action.clip), lambda: drive.session.show_context(action.id), drive.session.transport.show_plan):
         show()
         drive.pause(60)
     drive.session.jump(action=action.id)

@@ -56,7 +56,7 @@ def staged(drive, talking):
     """The window with the conversation on stage."""
     drive.files.open(talking)
     drive.wait(lambda: drive.document.folder == talking.parent and drive.performance.skeleton() is not None)
-    drive.session.set_conversation("v9000")
+    drive.session.onstage.set_conversation("v9000")
     drive.wait(lambda: drive.performance.shown.partner is not None)
     return drive
 
@@ -84,7 +84,7 @@ def test_the_timeline_shows_one_sides_plan_and_the_other_when_it_is_chosen(stage
 def test_improvised_takes_the_conversation_off_stage(staged):
     staged.timeline.stage.setFocus()
     QTest.keyClick(staged.timeline.stage, Qt.Key.Key_Up)
-    assert staged.session.conversation is None
+    assert staged.session.onstage.conversation is None
     staged.wait(lambda: staged.performance.shown.partner is None)
 
 
@@ -96,11 +96,11 @@ def test_both_are_heard_each_where_it_speaks(staged):
 
 
 def test_it_plays_to_its_end_and_stops_there(staged):
-    staged.session.loop = False
-    staged.session.seek(7.9)
-    staged.session.set_playing(True)
+    staged.session.transport.loop = False
+    staged.session.transport.seek(7.9)
+    staged.session.transport.set_playing(True)
     staged.performance.advance(0.5)
-    assert staged.session.seconds == 8.0 and not staged.session.playing
+    assert staged.session.transport.seconds == 8.0 and not staged.session.transport.playing
 
 
 def test_another_seed_is_the_conversations_own_and_undone(staged):
@@ -117,7 +117,7 @@ def test_kept_as_performances_both_can_be_played_and_undone_at_once(staged):
     staged.performance.keep_conversation()
     kept = staged.document.project.performances
     assert [p.name for p in kept.values()] == ["Greeting: Ada", "Greeting: Ben"]
-    assert staged.session.conversation is None and staged.session.performance == next(iter(kept))
+    assert staged.session.onstage.conversation is None and staged.session.onstage.performance == next(iter(kept))
     assert {line.channel for line in staged.document.project.lines.values()} == {0, 1}
     staged.wait(lambda: staged.performance.shown.partner is None and bool(staged.performance.shown.plan.track.speeches))
     staged.document.undo_stack.undo()

@@ -45,7 +45,7 @@ def stage(qapp, qtbot, toy, tmp_path):
     session = Session(document)
     performance = Performance(document, session, jobs)
     sound = Sound(document, session, performance, jobs)
-    session.set_playing(False)
+    session.transport.set_playing(False)
     project = replace(toy.project(), lines={"1": a.Line(audio="one.wav", duration=1.0)})
     document.load(project, tmp_path / "talk.metagraph.yaml")
     performance.ask(a.Say(line="1", at=2.0))
@@ -63,9 +63,9 @@ def connected(sound: Sound) -> Stream:
 
 def test_a_line_is_heard_where_it_is_said(stage):
     stream = connected(stage)
-    stage.session.seek(1.9)
+    stage.session.transport.seek(1.9)
     assert not stream.active
-    stage.session.set_playing(True)
+    stage.session.transport.set_playing(True)
     assert stream.active
     samples = stream.ask(round(0.3 * RATE))
     loud = np.flatnonzero(np.abs(samples) > 0.1) / RATE
@@ -74,30 +74,30 @@ def test_a_line_is_heard_where_it_is_said(stage):
 
 def test_it_goes_on_by_itself_and_is_set_right_only_when_it_is_off(stage):
     stream = connected(stage)
-    stage.session.seek(1.0)
-    stage.session.set_playing(True)
+    stage.session.transport.seek(1.0)
+    stage.session.transport.set_playing(True)
     stream.ask(1024)
-    stage.session.seek(1.0 + 1024 / RATE + 0.03)
+    stage.session.transport.seek(1.0 + 1024 / RATE + 0.03)
     assert stage.place == RATE + 1024, "a little apart is not heard"
-    stage.session.seek(5.0)
+    stage.session.transport.seek(5.0)
     assert stage.place == 5 * RATE
 
 
 @pytest.mark.parametrize("change", ["pause", "slow", "mute", "clip"])
 def test_it_falls_silent_with_the_picture(stage, change):
     stream = connected(stage)
-    stage.session.set_playing(True)
-    stage.session.seek(2.0)
+    stage.session.transport.set_playing(True)
+    stage.session.transport.seek(2.0)
     assert stream.active
     if change == "pause":
-        stage.session.set_playing(False)
+        stage.session.transport.set_playing(False)
     elif change == "mute":
         stage.set_muted(True)
     elif change == "slow":
-        stage.session.speed = 0.5
-        stage.session.seek(2.1)
+        stage.session.transport.speed = 0.5
+        stage.session.transport.seek(2.1)
     else:
-        stage.session.show_clip(next(iter(stage.document.project.clips)))
+        stage.session.transport.show_clip(next(iter(stage.document.project.clips)))
     assert not stream.active
 
 
@@ -110,9 +110,9 @@ def test_without_a_device_it_says_so_once(stage, monkeypatch):
     told = []
     stage.told.connect(told.append)
     monkeypatch.setattr(sounddevice, "OutputStream", nothing)
-    stage.session.set_playing(True)
+    stage.session.transport.set_playing(True)
     for seconds in (1.0, 2.0, 3.0):
-        stage.session.seek(seconds)
+        stage.session.transport.seek(seconds)
     assert len(told) == 1 and "No sound: no device" in told[0]
 
 
@@ -126,6 +126,6 @@ def test_lines_that_go_are_not_heard_any_more(stage, qtbot):
 def test_what_is_still_on_its_way_to_the_ear_is_mixed_that_much_earlier(stage):
     stream = connected(stage)
     stream.latency = 0.1
-    stage.session.seek(1.0)
-    stage.session.set_playing(True)
+    stage.session.transport.seek(1.0)
+    stage.session.transport.set_playing(True)
     assert stage.place == round(1.1 * RATE)

@@ -166,14 +166,14 @@ def test_asks_are_kept_with_the_project_and_undone_like_any_edit(stage, qtbot):
     assert stage.asks[0].priority == 5
     for _ in range(4):
         stage.document.undo()
-    assert stage.kept is None and stage.asks == () and stage.session.performance is None
+    assert stage.kept is None and stage.asks == () and stage.session.onstage.performance is None
 
 
 def test_an_ask_for_now_gets_a_time_just_after_the_playhead(stage, qtbot):
-    stage.session.seek(7.0)
+    stage.session.transport.seek(7.0)
     stage.ask(a.Gesture())
     assert stage.asks[0].at == pytest.approx(7.15)
-    assert stage.session.asks == (stage.asks[0].id,)
+    assert stage.session.onstage.requests == (stage.asks[0].id,)
 
 
 def test_a_kept_performance_has_its_own_length_and_seed(stage, qtbot):
@@ -187,11 +187,11 @@ def test_a_kept_performance_has_its_own_length_and_seed(stage, qtbot):
         return project
 
     stage.document.edit("Keep", edit)
-    stage.session.set_performance(made[-1])
+    stage.session.onstage.set_performance(made[-1])
     qtbot.waitUntil(lambda: stage.shown.length == 12.0)
     assert stage.shown.plan.layers["arms"].cues != tuple(c for c in other if c.start < 12)
     assert stage.shown.plan.seed == 99
-    stage.session.set_performance(None)
+    stage.session.onstage.set_performance(None)
     qtbot.waitUntil(lambda: stage.shown.length == 60.0 and stage.shown.plan.layers["arms"].cues == other)
 
 
@@ -205,7 +205,7 @@ def test_another_project_forgets_requests_and_length(stage, qtbot, toy):
     stage.length = 600.0
     stage.document.load(toy.project(), None)
     qtbot.waitUntil(lambda: planned(stage))
-    assert stage.asks == () and stage.session.performance is None
+    assert stage.asks == () and stage.session.onstage.performance is None
     assert stage.shown.length == 60.0
 
 
@@ -229,20 +229,20 @@ def test_a_plan_that_cannot_be_made_is_told_and_the_next_edit_plans_again(stage,
 def test_playing_loops_or_goes_on_for_ever(stage, qtbot):
     qtbot.waitUntil(lambda: planned(stage))
     session = stage.session
-    session.seek(59.9)
+    session.transport.seek(59.9)
     stage.advance(0.2)
-    assert session.seconds == pytest.approx(0.1, abs=1e-6)
-    session.loop = False
-    session.seek(50.0)
+    assert session.transport.seconds == pytest.approx(0.1, abs=1e-6)
+    session.transport.loop = False
+    session.transport.seek(50.0)
     stage.advance(0.1)
     qtbot.waitUntil(lambda: stage.shown.length == 120.0)
-    assert session.playing
-    session.show_clip(next(iter(session.document.project.clips)))
+    assert session.transport.playing
+    session.transport.show_clip(next(iter(session.document.project.clips)))
     qtbot.waitUntil(lambda: stage.shown.clip is not None)
-    session.seek(1.99)
+    session.transport.seek(1.99)
     stage.advance(0.2)
-    assert not session.playing, "a clip alone ends"
-    assert session.seconds == pytest.approx(2.0)
-    session.set_playing(False)
+    assert not session.transport.playing, "a clip alone ends"
+    assert session.transport.seconds == pytest.approx(2.0)
+    session.transport.set_playing(False)
     stage.advance(1.0)
-    assert session.seconds == pytest.approx(2.0)
+    assert session.transport.seconds == pytest.approx(2.0)

@@ -25,11 +25,11 @@ LEFT_BUTTON = Qt.MouseButton.LeftButton
 def stage(drive, toy):
     """The toy project, its performance stopped at the beginning."""
     drive.document.load(toy.project(), None)
-    drive.session.set_layer("arms")
-    drive.session.set_playing(False)
+    drive.session.place.set_layer("arms")
+    drive.session.transport.set_playing(False)
     drive.wait(lambda: len(drive.performance.shown.plan.layers["arms"].cues) > 3)
-    drive.session.seek(0.0)
-    drive.show_dock("timeline")
+    drive.session.transport.seek(0.0)
+    drive.show("timeline")
     drive.pause(50)
     return drive
 
@@ -76,7 +76,7 @@ def test_a_double_click_asks_for_something_there_and_a_drag_moves_it(stage):
     drive.document.undo()
     assert drive.performance.asks[0].at == ask.at
     # The arrow keys move it finely, Delete takes it back, undo brings it again.
-    drive.session.select_asks((ask.id,))
+    drive.session.onstage.select_requests((ask.id,))
     board(drive).setFocus()
     QTest.keyClick(board(drive), Qt.Key.Key_Right)
     assert drive.performance.asks[0].at == pytest.approx(ask.at + 0.1)
@@ -118,15 +118,15 @@ def test_the_lost_requests_are_found_by_a_click_and_say_why_without_hovering(sta
     for at, tags in ((2.0, ()), (9.0, ("nonsense",)), (50.0, ("gibberish",))):
         drive.performance.ask(a.Gesture(at=at, tags=tags))
     drive.wait(lambda: sum(m.lost for m in board(drive).marks()) == 2)
-    drive.session.select_asks(())
+    drive.session.onstage.select_requests(())
     assert "2 requests could not be met" in panel.title.words
     for seconds, word in ((9.0, "nonsense"), (50.0, "gibberish"), (9.0, "nonsense")):
         QTest.mouseClick(panel.lost, LEFT_BUTTON)
-        (chosen,) = drive.session.asks
+        (chosen,) = drive.session.onstage.requests
         assert mark(drive, chosen).at == seconds
         assert "Does not play" in panel.title.words and word in panel.title.words
         assert LEFT <= mark(drive, chosen).rect.left() < board(drive).width()
-    drive.session.select_asks((drive.performance.asks[0].id,))
+    drive.session.onstage.select_requests((drive.performance.asks[0].id,))
     assert "Plays rest" in panel.title.words and "from 2.0" in panel.title.words
     drive.performance.withdraw()
     drive.wait(lambda: not panel.lost.isVisible())
@@ -164,12 +164,12 @@ def test_a_dragged_request_is_given_up_with_escape_and_copied_with_ctrl(stage):
     QTest.mouseRelease(board(drive), LEFT_BUTTON, pos=to)
     assert drive.performance.asks == (ask,) and mark(drive, ask.id).at == 2.0
     ctrl = Qt.KeyboardModifier.ControlModifier
-    drive.session.select_asks(())
+    drive.session.onstage.select_requests(())
     to = held(drive, ask.id, ctrl)
     assert [round(m.at) for m in board(drive).marks()] == [2, 5]
     QTest.mouseRelease(board(drive), LEFT_BUTTON, ctrl, to)
     first, copy = drive.performance.asks
-    assert first == ask and copy.at == pytest.approx(5.0, abs=0.05) and drive.session.asks == (copy.id,)
+    assert first == ask and copy.at == pytest.approx(5.0, abs=0.05) and drive.session.onstage.requests == (copy.id,)
     assert drive.document.undo_stack.undoText() == "Copy request"
     drive.document.undo()
     assert drive.performance.asks == (ask,)
@@ -178,15 +178,15 @@ def test_a_dragged_request_is_given_up_with_escape_and_copied_with_ctrl(stage):
     assert drive.performance.asks[0].at == 0.0
     place = mark(drive, ask.id).rect.center().toPoint()
     QTest.mouseClick(board(drive), LEFT_BUTTON, ctrl, place)
-    assert drive.session.asks == ()
+    assert drive.session.onstage.requests == ()
     QTest.mouseClick(board(drive), LEFT_BUTTON, ctrl, place)
-    assert drive.session.asks == (ask.id,)
+    assert drive.session.onstage.requests == (ask.id,)
 
 
 def test_all_of_it_works_from_the_keyboard(stage):
     drive = stage
     key = lambda k, m=Qt.KeyboardModifier.NoModifier: QTest.keyClick(board(drive), k, m)  # noqa: E731
-    drive.session.seek(4.0)
+    drive.session.transport.seek(4.0)
     board(drive).setFocus(Qt.FocusReason.TabFocusReason)
     key(Qt.Key.Key_Insert)
     menu = popup(drive)
@@ -200,9 +200,9 @@ def test_all_of_it_works_from_the_keyboard(stage):
     one, two = (x.id for x in drive.performance.asks)
     for press, chosen in ((Qt.Key.Key_Up, one), (Qt.Key.Key_Up, one), (Qt.Key.Key_Down, two), (Qt.Key.Key_Down, two)):
         key(press)
-        assert drive.session.asks == (chosen,)
+        assert drive.session.onstage.requests == (chosen,)
     key(Qt.Key.Key_Escape)
-    assert drive.session.asks == ()
+    assert drive.session.onstage.requests == ()
     before = board(drive).each
     key(Qt.Key.Key_Plus)
     assert board(drive).each > before
@@ -218,10 +218,10 @@ def test_while_it_plays_only_the_playhead_is_painted_anew(stage):
     drive.pause(300)
     before = board(drive).painted
     for n in range(20):
-        drive.session.seek(0.1 * n)
+        drive.session.transport.seek(0.1 * n)
         board(drive).repaint()
     assert board(drive).painted == before
-    drive.session.select_asks(())
+    drive.session.onstage.select_requests(())
     board(drive).repaint()
     assert board(drive).painted == before + 1
 
@@ -334,7 +334,7 @@ def test_a_client_drives_a_gesture_that_is_seen_in_the_preview(live):
         arm = drive.document.project.skeleton.index("LeftUpperArm")
         turned = lambda: np.abs(drive.performance.pose().rotations[arm] - before.rotations[arm]).max()  # noqa: E731
         # The arm is up in the picture. Between two looks more than half of it may pass, where the machine is busy.
-        drive.wait(lambda: bool(cue.start < drive.session.seconds < cue.end and turned() > 0.1))
+        drive.wait(lambda: bool(cue.start < drive.session.transport.seconds < cue.end and turned() > 0.1))
         painted = drive.preview.frames
         drive.wait(lambda: drive.preview.frames > painted + 2)
         drive.wait(lambda: any(m.ask.id.endswith("/w") for m in board(drive).marks()))
@@ -351,16 +351,16 @@ def test_a_client_drives_a_gesture_that_is_seen_in_the_preview(live):
 def test_the_past_of_a_live_session_can_be_scrubbed_and_now_is_found_again(live):
     drive = live
     drive.wait(lambda: drive.performance.live.now > 1.5)
-    assert drive.session.seconds == pytest.approx(drive.performance.live.now, abs=0.3)
+    assert drive.session.transport.seconds == pytest.approx(drive.performance.live.now, abs=0.3)
     assert not drive.timeline.now.isVisible()
     QTest.mouseClick(board(drive), LEFT_BUTTON, pos=QPoint(LEFT + 30, 8))
-    past = drive.session.seconds
+    past = drive.session.transport.seconds
     assert past < 1.2
     drive.pause(300)
-    assert drive.session.seconds == past and drive.timeline.now.isVisible()
+    assert drive.session.transport.seconds == past and drive.timeline.now.isVisible()
     QTest.mouseClick(drive.timeline.now, LEFT_BUTTON)
     drive.pause(100)
-    assert drive.session.seconds == pytest.approx(drive.performance.live.now, abs=0.3)
+    assert drive.session.transport.seconds == pytest.approx(drive.performance.live.now, abs=0.3)
 
 
 def test_what_was_played_live_is_kept_and_plays_again_as_it_was(live):

@@ -115,8 +115,8 @@ def opened(toys, toy):
     drive = toys
     project = edits.add_clips(drive.document.project, [("free.glb", 0, "", toy.clip("free wave", 1.0, 0.8))])
     drive.document.load(project, None)
-    drive.session.set_stance(drive.id("rest"))
-    drive.wait(lambda: drive.window.compatibility.judged is not None)
+    drive.session.place.set_stance(drive.id("rest"))
+    drive.wait(lambda: drive.compatibility.judged is not None)
     drive.actions["compatibility"].trigger()
     dialog = drive.window.findChild(MatrixDialog)
     drive.wait(lambda: dialog.model.rows is not None and dialog.model.rowCount() == len(project.clips))
@@ -141,7 +141,7 @@ def test_a_click_plays_a_clip_in_the_context_of_that_stance(opened):
     clip = next(i for i, e in project.clips.items() if e.name == "free wave")
     widget, at = spot(dialog, project, "free wave", "up")
     QTest.mouseClick(widget, Qt.MouseButton.LeftButton, pos=at)
-    assert (drive.session.show, drive.session.shown, drive.session.stance()) == ("context", clip, drive.id("up"))
+    assert (drive.session.transport.show, drive.session.transport.shown, drive.session.place.stance()) == ("context", clip, drive.id("up"))
     assert "free wave  ·  up" in dialog.words.text() and "enters at" in dialog.words.text()
     drive.wait(lambda: any(c.action.clip == clip for c in drive.performance.shown.plan.layers["arms"].cues))
     # A clip that is placed elsewhere is tried here as well; where it is placed, its action plays.
@@ -151,7 +151,7 @@ def test_a_click_plays_a_clip_in_the_context_of_that_stance(opened):
     drive.wait(lambda: any(c.action.stance == far for c in drive.performance.shown.plan.layers["arms"].cues))
     widget, at = spot(dialog, project, "rest wave rt", "rest")
     QTest.mouseClick(widget, Qt.MouseButton.LeftButton, pos=at)
-    assert drive.session.actions == (drive.id("rest wave rt"),) == (drive.session.shown,)
+    assert drive.session.selection.actions == (drive.id("rest wave rt"),) == (drive.session.transport.shown,)
     assert drive.document.undo_stack.count() == 0, "looking changes nothing"
 
 
@@ -165,7 +165,7 @@ def test_a_double_click_places_with_proposed_times_in_one_step(opened):
     drive.wait(lambda: "free wave" in drive.names("gesture"))
     assert drive.document.undo_stack.count() == 1
     action = drive.action("free wave")
-    assert action.stance == drive.id("up") and drive.session.actions == (action.id,)
+    assert action.stance == drive.id("up") and drive.session.selection.actions == (action.id,)
     drive.wait(lambda: dialog.model.rows.kinds.get((action.clip, action.stance)) == ("gesture",))
     drive.document.undo()
     assert "free wave" not in drive.names()
@@ -186,9 +186,9 @@ def test_another_layer_and_no_stance_say_so_and_searching_narrows(opened):
     QTest.keyClicks(dialog.search, "wave")
     assert dialog.model.rowCount() == 2
     dialog.search.clear()
-    drive.session.set_layer("head")
+    drive.session.place.set_layer("head")
     assert dialog.model.rows is None and "Make a stance first" in dialog.words.text() and not dialog.go.isEnabled()
-    drive.session.set_layer("arms")
+    drive.session.place.set_layer("arms")
     drive.wait(lambda: dialog.model.rows is not None)
     assert dialog.model.index(0, USES).data(CELL) == ("stance",), "what is placed comes first"
     # A click on a stance sorts by fit, and what was chosen stays chosen.
@@ -200,7 +200,7 @@ def test_another_layer_and_no_stance_say_so_and_searching_narrows(opened):
     assert dialog.model.by == FIRST + 2 and dialog.current()[0] == next(
         i for i, e in drive.document.project.clips.items() if e.name == "free wave"
     )
-    drive.session.set_theme("light")
+    drive.session.look.choose("light")
     drive.pause(30)
     drive.actions["compatibility"].trigger()
     assert len(drive.window.findChildren(MatrixDialog)) == 1

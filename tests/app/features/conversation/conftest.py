@@ -21,11 +21,11 @@ class Talk:
 
     @property
     def view(self) -> Any:
-        return self.drive.window.conversation.view
+        return self.drive.conversation.view
 
     @property
     def editing(self) -> Any:
-        return self.drive.window.conversation.editing
+        return self.drive.conversation.editing
 
     @property
     def conversation(self) -> Conversation:
@@ -45,7 +45,7 @@ class Talk:
 
     def read(self) -> None:
         """Wait until the sound is read."""
-        sounds = self.drive.window.conversation.sounds
+        sounds = self.drive.conversation.sounds
         self.drive.wait(lambda: bool(sounds.heard) and not any(h.told for h in sounds.heard.values()), 90)
 
 
@@ -68,8 +68,8 @@ def talk(drive: Any, tmp_path: Path) -> Talk:
     ]
     made = Conversation(name="talk", length=spoken.samples.shape[1] / spoken.rate, sides=tuple(sides))
     drive.document.edit("Add conversation", lambda p: conversing.add_conversation(p, made)[0])
-    drive.window.show_dock("conversation")
-    drive.session.set_conversation(next(iter(drive.document.project.conversations)))
-    drive.session.set_playing(False)
+    drive.show("conversation")
+    drive.session.onstage.set_conversation(next(iter(drive.document.project.conversations)))
+    drive.session.transport.set_playing(False)
     drive.pause(50)
     return Talk(drive, audio, words)

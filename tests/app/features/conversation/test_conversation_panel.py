@@ -16,24 +16,24 @@ pytestmark = [pytest.mark.window, pytest.mark.gl]
 
 def test_a_conversation_and_a_kept_performance_are_never_on_stage_together(talk: Any) -> None:
     drive, session = talk.drive, talk.drive.session
-    ident = session.conversation
+    ident = session.onstage.conversation
     drive.document.edit("Keep", lambda p: staging.add_performance(p, Performance(name="One"))[0])
-    session.set_performance(next(iter(drive.document.project.performances)))
-    assert session.conversation is None
-    session.set_conversation(ident)
-    assert session.performance is None
+    session.onstage.set_performance(next(iter(drive.document.project.performances)))
+    assert session.onstage.conversation is None
+    session.onstage.set_conversation(ident)
+    assert session.onstage.performance is None
     drive.document.edit("Remove", lambda p: conversing.remove_conversation(p, ident))
-    assert session.conversation is None
+    assert session.onstage.conversation is None
 
 
 def test_the_chooser_follows_names_and_an_empty_panel_says_what_to_drop(talk: Any) -> None:
-    panel, ident = talk.drive.window.conversation, talk.drive.session.conversation
+    panel, ident = talk.drive.conversation, talk.drive.session.onstage.conversation
     talk.drive.document.edit("Rename", lambda p: conversing.change_conversation(p, ident, name="Station"))
     assert panel.stage.currentText() == "Station"
     talk.drive.wait(lambda: "clause" in panel.legend.text())
     panel.stage.setCurrentIndex(0)
     panel.stage.activated.emit(0)
-    assert talk.drive.session.conversation is None
+    assert talk.drive.session.onstage.conversation is None
     talk.drive.document.edit("Remove", lambda p: conversing.remove_conversation(p, ident))
     image = panel.view.grab().toImage()
     colours = {image.pixelColor(x, image.height() // 2 - 45).name() for x in range(image.width() // 2 - 70, image.width() // 2 + 70)}
@@ -42,7 +42,7 @@ def test_the_chooser_follows_names_and_an_empty_panel_says_what_to_drop(talk: An
 
 def test_selected_segments_stay_selected_while_they_are_there(talk: Any) -> None:
     talk.editing.select({(0, 2)})
-    ident = talk.drive.session.conversation
+    ident = talk.drive.session.onstage.conversation
     begins = talk.segments()[2].start
     talk.drive.document.edit("Merge", lambda p: conversing.merge_segments(p, ident, 0, 0, 1))
     assert [talk.editing.segment(p).start for p in talk.editing.chosen] == [begins]
@@ -53,20 +53,20 @@ def test_selected_segments_stay_selected_while_they_are_there(talk: Any) -> None
 
 
 def test_reading_that_was_cancelled_is_told_and_begun_anew_when_it_is_chosen_again(talk: Any) -> None:
-    drive, sounds = talk.drive, talk.drive.window.conversation.sounds
+    drive, sounds = talk.drive, talk.drive.conversation.sounds
     assert all(h.told for h in sounds.heard.values())
     QTest.mouseClick(drive.window.job_line.cancel, Qt.MouseButton.LeftButton)
     drive.wait(lambda: not drive.jobs.running, 60)
     drive.wait(lambda: all(h.missing or not h.told for h in sounds.heard.values()))
-    ident = drive.session.conversation
-    drive.session.set_conversation(None)
-    drive.session.set_conversation(ident)
+    ident = drive.session.onstage.conversation
+    drive.session.onstage.set_conversation(None)
+    drive.session.onstage.set_conversation(ident)
     talk.read()
     assert not any(h.missing for h in sounds.heard.values())
 
 
 def test_while_a_machine_is_drawn_the_panel_says_that_it_moves_the_character(talk: Any) -> None:
-    panel, drive = talk.drive.window.conversation, talk.drive
+    panel, drive = talk.drive.conversation, talk.drive
     drive.actions["manual"].trigger()
     drive.wait(lambda: "the machine you draw" in panel.title.words)
     drive.actions["manual"].trigger()
@@ -76,7 +76,7 @@ def test_while_a_machine_is_drawn_the_panel_says_that_it_moves_the_character(tal
 def test_sound_dropped_on_the_panel_opens_the_dialog(talk: Any) -> None:
     from app.features.conversation.conversation_dialog import ImportDialog
 
-    panel = talk.drive.window.conversation
+    panel = talk.drive.conversation
     assert talk.drive.drop_files((panel, QPoint(300, 100)), talk.audio)
     dialog = talk.drive.window.findChild(ImportDialog)
     assert dialog.isVisible()
@@ -101,7 +101,7 @@ def test_a_click_on_a_name_shows_that_ones_plan_and_marks_it_and_leaves_the_rest
     name = QPoint(30, round(lanes(view.width(), view.height())[1].wave.top()) + 10)
     assert "Click to see" in view.tip(name.toPointF())
     drive.click((view, name))
-    assert drive.session.side == 1
+    assert drive.session.onstage.side == 1
     assert drive.timeline.stage.currentText() == "talk: Ben"
     QTest.mouseMove(view, QPoint(300, 3))
     assert (mark(0), mark(1)) == (plain, marked)
@@ -112,10 +112,10 @@ def test_a_click_on_a_name_shows_that_ones_plan_and_marks_it_and_leaves_the_rest
 
 def test_a_playhead_that_is_moved_out_of_sight_is_followed_and_one_in_sight_is_not(talk: Any) -> None:
     view, session = talk.view, talk.drive.session
-    session.seek(29.0)
+    session.transport.seek(29.0)
     far = view.first
     assert view.scale().x(29.0) < view.width()
-    session.seek(0.0)
+    session.transport.seek(0.0)
     assert view.first == 0.0 < far
-    session.seek(view.scale().seconds(view.width() - 5))
+    session.transport.seek(view.scale().seconds(view.width() - 5))
     assert view.first == 0.0

@@ -10,6 +10,7 @@ from PySide6.QtCore import Qt
 from PySide6.QtTest import QTest
 from PySide6.QtWidgets import QFileDialog, QToolButton
 
+from app.features.conversation.conversation_commands import converse
 from app.features.conversation.conversation_dialog import ImportDialog
 from app.features.conversation.conversation_settings import SidesDialog
 from metagraph.formats.store import save_project
@@ -66,7 +67,7 @@ def test_a_project_that_moves_its_own_side_is_this_project(talk: Any, tmp_path: 
 
 def test_a_dialog_goes_with_the_project_it_is_about(talk: Any) -> None:
     dialog = opened(talk)
-    talk.drive.window.dialogs.converse((talk.audio, talk.words))
+    converse(talk.drive.shell, (talk.audio, talk.words))
     reading = next(d for d in talk.drive.window.findChildren(ImportDialog) if d.isVisible())
     talk.drive.document.load(Project("other"), None)
     assert not dialog.isVisible()
@@ -90,7 +91,7 @@ def test_how_far_apart_they_stand_is_set_with_all_the_rest_in_one_step(talk: Any
 
 
 def test_a_distance_that_is_finer_than_shown_is_kept(talk: Any) -> None:
-    ident = talk.drive.session.conversation
+    ident = talk.drive.session.onstage.conversation
     talk.drive.document.edit("Stand", lambda p: conversing.change_conversation(p, ident, distance=1.2345))
     QTest.mouseClick(opened(talk).go, Qt.MouseButton.LeftButton)
     assert talk.conversation.distance == 1.2345

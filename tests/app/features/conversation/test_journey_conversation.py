@@ -12,6 +12,7 @@ from PySide6.QtCore import QPoint, Qt
 from PySide6.QtTest import QTest
 from PySide6.QtWidgets import QFileDialog
 
+from app.features.conversation.conversation_commands import converse
 from app.features.conversation.conversation_dialog import ImportDialog
 from app.features.conversation.conversation_settings import RatesDialog, SidesDialog, WordsDialog
 from metagraph.formats.conversations import read_conversation
@@ -49,7 +50,7 @@ def test_two_who_talk_are_dropped_edited_saved_reopened_and_exported(drive: Any,
     QTest.mouseClick(dialog.go, Qt.MouseButton.LeftButton)
     document, session = drive.document, drive.session
     assert document.undo_stack.index() == 1
-    ident = session.conversation
+    ident = session.onstage.conversation
     assert ident in document.project.conversations
 
     def now() -> Any:
@@ -58,9 +59,9 @@ def test_two_who_talk_are_dropped_edited_saved_reopened_and_exported(drive: Any,
     imported = now()
     assert [s.name for s in imported.sides] == ["Ann", ""]
     assert imported.responses == ("yeah",)
-    view, editing = drive.window.conversation.view, drive.window.conversation.editing
+    view, editing = drive.conversation.view, drive.conversation.editing
     assert view.isVisible()
-    session.set_playing(False)
+    session.transport.set_playing(False)
     drive.pause(100)
 
     from app.features.conversation.segment_lanes import lanes
@@ -89,14 +90,14 @@ def test_two_who_talk_are_dropped_edited_saved_reopened_and_exported(drive: Any,
     document.save(place)
     kept = now()
     assert kept.sides[0].segments == edited.sides[0].segments
-    session.set_conversation(None)
+    session.onstage.set_conversation(None)
     drive.files.open(place)
     drive.wait(lambda: not drive.jobs.running)
     assert document.project.conversations[ident] == kept
-    drive.window.conversation.stage.setCurrentIndex(1)
-    drive.window.conversation.stage.activated.emit(1)
-    assert session.conversation == ident
-    sounds = drive.window.conversation.sounds
+    drive.conversation.stage.setCurrentIndex(1)
+    drive.conversation.stage.activated.emit(1)
+    assert session.onstage.conversation == ident
+    sounds = drive.conversation.sounds
     drive.wait(lambda: bool(sounds.heard) and not any(h.told for h in sounds.heard.values()), 90)
     assert not any(h.missing for h in sounds.heard.values()), "the sound is found from where the project is now"
 
@@ -114,7 +115,7 @@ def test_two_who_talk_are_dropped_edited_saved_reopened_and_exported(drive: Any,
             )
     drive.actions["remove_conversation"].trigger()
     assert not document.project.conversations
-    assert session.conversation is None
+    assert session.onstage.conversation is None
     editing.select({(0, 0)})
     drive.actions["undo"].trigger()
     assert document.project.conversations[ident] == kept
@@ -123,7 +124,7 @@ def test_two_who_talk_are_dropped_edited_saved_reopened_and_exported(drive: Any,
 def test_a_failed_read_says_why_and_keeps_the_dialog(drive: Any, tmp_path: Path) -> None:
     loud = np.random.default_rng(1).standard_normal((16000, 3)) * 0.1
     soundfile.write(str(tmp_path / "three.wav"), loud, 16000)
-    drive.window.dialogs.converse((tmp_path / "three.wav",))
+    converse(drive.shell, (tmp_path / "three.wav",))
     dialog = dialog_of(drive)
     wait_read(drive, dialog)
     assert "3 channels" in dialog.notes.text()
@@ -138,7 +139,7 @@ def test_many_notes_leave_the_names_as_high_as_they_are(drive: Any, tmp_path: Pa
     audio, _ = make_conversation(tmp_path)
     words = tmp_path / "over.srt"
     words.write_text("1\n00:00:01,000 --> 00:00:05,000\nhello there you\n\n2\n00:00:03,000 --> 00:00:06,000\nand over it\n")
-    drive.window.dialogs.converse((audio, words))
+    converse(drive.shell, (audio, words))
     dialog = dialog_of(drive)
     wait_read(drive, dialog)
     assert dialog.notes.text().count("⚠") >= 4
@@ -150,7 +151,7 @@ def test_many_notes_leave_the_names_as_high_as_they_are(drive: Any, tmp_path: Pa
 
 def test_reading_can_be_stopped_and_taken_up_again(drive: Any, tmp_path: Path) -> None:
     audio, words = make_conversation(tmp_path)
-    drive.window.dialogs.converse((audio,))
+    converse(drive.shell, (audio,))
     dialog = dialog_of(drive)
     assert dialog.transcripts == (words,), "words that lie beside a sound are found"
     QTest.mouseClick(dialog.stop, Qt.MouseButton.LeftButton)
@@ -197,7 +198,7 @@ def test_rates_lists_names_and_the_stage(talk: Any) -> None:
     assert talk.conversation.sides[1].channel == 1
     assert drive.document.undo_stack.index() == 4
     drive.actions["render"]  # the window's other commands are as they were
-    assert not drive.window.conversation.view.editing.chosen
-    drive.session.set_conversation(None)
+    assert not drive.conversation.view.editing.chosen
+    drive.session.onstage.set_conversation(None)
     drive.actions.refresh()
     assert not drive.actions["rates"].isEnabled()

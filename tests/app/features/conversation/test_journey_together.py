@@ -29,9 +29,9 @@ def test_dropped_seen_heard_and_written(drive: Any, tmp_path: Path) -> None:
     drive.wait(dialog.go.isEnabled, 240)  # the first of all has the reader compiled
     QTest.mouseClick(dialog.go, Qt.MouseButton.LeftButton)
     drive.wait(lambda: drive.performance.shown.partner is not None, 120)
-    drive.session.set_playing(False)
+    drive.session.transport.set_playing(False)
 
-    talk = drive.document.project.conversations[drive.session.conversation]
+    talk = drive.document.project.conversations[drive.session.onstage.conversation]
     nods = 0
     for one in drive.performance.shown.both:
         peaks = [s.peak for s in talk.sides[one.side].segments if s.kind == "clause"]
@@ -44,10 +44,10 @@ def test_dropped_seen_heard_and_written(drive: Any, tmp_path: Path) -> None:
 
     drive.wait(lambda: len(drive.sound.parts) == 2, 60)
     frames = drive.preview.frames
-    drive.session.seek(1.0)
-    drive.session.set_playing(True)
-    drive.wait(lambda: drive.preview.frames > frames + 5 and drive.session.seconds > 1.3)
-    drive.session.set_playing(False)
+    drive.session.transport.seek(1.0)
+    drive.session.transport.set_playing(True)
+    drive.wait(lambda: drive.preview.frames > frames + 5 and drive.session.transport.seconds > 1.3)
+    drive.session.transport.set_playing(False)
     assert len(drive.preview._scene().actors) == 2
 
     drive.actions["render"].trigger()

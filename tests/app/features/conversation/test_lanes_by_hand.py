@@ -53,7 +53,7 @@ def test_a_body_is_dragged_up_to_its_neighbour_and_takes_its_stress_along(talk: 
 def test_the_stress_is_dragged_to_a_top_of_the_pitch(talk: Any) -> None:
     talk.read()
     first = talk.segments()[0]
-    heard = talk.drive.window.conversation.sounds.of(talk.conversation, 0)
+    heard = talk.drive.conversation.sounds.of(talk.conversation, 0)
     tops = [m for m in heard.maxima if first.start < m < first.end and abs(m - first.peak) > 0.15]
     top = float(tops[0])
     talk.drive.drag(talk.at(first.peak, row="wave"), talk.at(top + 0.02, row="wave"), lambda: talk.segments()[0].peak != first.peak)
@@ -107,7 +107,7 @@ def test_keys_label_split_merge_and_remove_several_at_once(talk: Any) -> None:
     assert len(talk.segments()) == len(whole) - 1
     assert talk.segments()[0].text == f"{whole[0].text} {whole[1].text}"
     talk.view.pointer = QPoint(-1, -1).toPointF()
-    talk.drive.session.seek(whole[1].start)
+    talk.drive.session.transport.seek(whole[1].start)
     press(talk, Key.Key_S)
     assert [s.text for s in talk.segments()[:2]] == [whole[0].text, whole[1].text]
     before = steps(talk)
@@ -150,7 +150,7 @@ def test_tab_and_arrows_go_from_segment_to_segment_and_bring_it_in_sight(talk: A
 def test_what_cannot_be_done_is_told_and_leaves_no_step(talk: Any) -> None:
     before = steps(talk)
     talk.view.pointer = QPoint(-1, -1).toPointF()
-    talk.drive.session.seek(0.01)
+    talk.drive.session.transport.seek(0.01)
     press(talk, Key.Key_S)
     talk.editing.select({(0, len(talk.segments()) - 1)})
     press(talk, Key.Key_M)
@@ -186,7 +186,7 @@ def test_waves_pitch_and_segments_are_painted_and_the_playhead_alone_paints_noth
     assert any(near(c, theme("dark").sounds["clause"]) for c in colours(loud.end - 0.05, "segments"))
     painted = talk.view.painted
     for n in range(5):
-        talk.drive.session.seek(0.3 + 0.1 * n)
+        talk.drive.session.transport.seek(0.3 + 0.1 * n)
         talk.view.grab()
     assert talk.view.painted == painted
 
@@ -195,7 +195,7 @@ def test_panning_half_an_hour_looks_only_at_what_is_in_sight(talk: Any) -> None:
     from app.features.conversation.sound_reading import Heard
     from app.features.conversation.waveforms import RATE, Envelope
 
-    sounds = talk.drive.window.conversation.sounds
+    sounds = talk.drive.conversation.sounds
     long = Envelope(1800)
     long.fill(0, np.random.default_rng(1).standard_normal(round(1800 * RATE)))
     for key in sounds.heard:
@@ -216,13 +216,13 @@ def near(a: str, b: str) -> bool:
 
 def test_a_missing_sound_is_told_in_its_lane_and_the_rest_works(talk: Any, tmp_path: Path) -> None:
     talk.read()
-    ident = talk.drive.session.conversation
+    ident = talk.drive.session.onstage.conversation
     talk.drive.document.edit("Change", lambda p: conversing.change_side(p, ident, 1, audio=str(tmp_path / "gone.wav")))
     talk.read()
-    heard = talk.drive.window.conversation.sounds.of(talk.conversation, 1)
+    heard = talk.drive.conversation.sounds.of(talk.conversation, 1)
     assert "gone.wav" in heard.missing
     assert "choose" in heard.missing.lower()
-    assert talk.drive.window.conversation.sounds.of(talk.conversation, 0).wave is not None
+    assert talk.drive.conversation.sounds.of(talk.conversation, 0).wave is not None
     talk.editing.select({(1, 0)})
     press(talk, Key.Key_1)
     assert talk.segments(1)[0].kind == "clause"

@@ -53,7 +53,7 @@ def head(drive, action: str) -> tuple:
 @pytest.mark.gl
 def test_an_arrow_dragged_onto_a_stance_ends_there_in_one_step(toys):
     drive = toys
-    drive.session.set_stance(drive.id("rest"))
+    drive.session.place.set_stance(drive.id("rest"))
     way, far = drive.id("rest to up"), drive.id("far")
     drive.pause(100)
     steps = drive.document.undo_stack.count()
@@ -71,13 +71,13 @@ def test_all_selected_transitions_follow_and_a_stance_that_cannot_be_the_end_is_
     drive = toys
     project = edits.place(drive.document.project, [drive.action("up to far").clip], "arms", "transition", drive.id("up"), drive.id("far"))
     drive.document.load(project, None)
-    drive.session.set_stance(drive.id("up"))
+    drive.session.place.set_stance(drive.id("up"))
     ways = [a.id for a in project.graphs["arms"].of(drive.id("up"), "transition")]
     assert len(ways) == 3
     drive.pause(100)
     for way in ways:
         drive.click(drive.row(way), Qt.KeyboardModifier.ControlModifier)
-    assert set(drive.session.actions) == set(ways)
+    assert set(drive.session.selection.actions) == set(ways)
     rest = drive.id("rest")
     ends = lambda: {drive.document.project.action(w).end_stance for w in ways}  # noqa: E731
     widget, start = head(drive, ways[0])
@@ -90,7 +90,7 @@ def test_all_selected_transitions_follow_and_a_stance_that_cannot_be_the_end_is_
     assert drive.told == ["a transition must end in another stance"]
     assert drive.document.undo_stack.count() == 0
     for way in ways:
-        if way not in drive.session.actions:
+        if way not in drive.session.selection.actions:
             drive.click(drive.row(way), Qt.KeyboardModifier.ControlModifier)
     drive.drag(head(drive, ways[0]), drive.chip(rest), lambda: ends() == {rest})
     assert drive.document.undo_stack.count() == 1
@@ -100,7 +100,7 @@ def test_all_selected_transitions_follow_and_a_stance_that_cannot_be_the_end_is_
 @pytest.mark.gl
 def test_escape_gives_a_drag_up_and_a_click_on_the_arrow_plays(toys):
     drive = toys
-    drive.session.set_stance(drive.id("rest"))
+    drive.session.place.set_stance(drive.id("rest"))
     way = drive.id("rest to up")
     drive.pause(100)
     widget, start = head(drive, way)
@@ -113,7 +113,7 @@ def test_escape_gives_a_drag_up_and_a_click_on_the_arrow_plays(toys):
     QTest.mouseRelease(widget, Qt.MouseButton.LeftButton, pos=drive.chip(drive.id("far"))[1])
     assert drive.document.project.action(way).end_stance == drive.id("up")
     drive.click(head(drive, way))
-    assert drive.session.show == "context" and drive.session.shown == way
+    assert drive.session.transport.show == "context" and drive.session.transport.shown == way
 
 
 @pytest.mark.window
@@ -121,7 +121,7 @@ def test_escape_gives_a_drag_up_and_a_click_on_the_arrow_plays(toys):
 def test_the_properties_repoint_several_transitions_at_once(toys):
     drive = toys
     ways = tuple(a.id for a in drive.document.project.graphs["arms"].of(drive.id("up"), "transition"))
-    drive.session.select_actions(ways)
+    drive.session.selection.select_actions(ways)
     box = drive.properties.ends
     assert box.isVisibleTo(drive.properties)
     place = next(n for n in range(box.count()) if box.itemData(n) == drive.id("far"))

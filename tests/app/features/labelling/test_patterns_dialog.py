@@ -148,7 +148,7 @@ def test_while_learning_is_off_what_was_learned_is_shown_but_not_used(dialog: Pa
 
 @pytest.mark.window
 def test_the_command_opens_it(drive: object) -> None:
-    drive.window.actions["patterns"].trigger()  # type: ignore[attr-defined]
+    drive.actions["patterns"].trigger()  # type: ignore[attr-defined]
     (made,) = drive.window.findChildren(PatternsDialog)  # type: ignore[attr-defined]
     assert made.isVisible()
     QTest.keyClick(made, Qt.Key.Key_Escape)

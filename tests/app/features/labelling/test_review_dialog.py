@@ -127,7 +127,7 @@ def test_the_practice_project_is_labelled_with_the_keyboard_alone(practice, trut
         assert project.stance(action.stance).name == wanted["stance"]
         assert (project.stance(action.end_stance).name if action.end_stance else None) == wanted["end_stance"]
     drive.pause(400)
-    assert not [p for p in drive.window.problems if p.severity == "error"]
+    assert not [p for p in drive.problems.problems if p.severity == "error"]
     seconds = predicted(hands)
     record_property("operators", dict(hands))
     record_property("seconds_a_clip", seconds / len(truth))
@@ -290,8 +290,8 @@ def test_with_everything_placed_there_is_nothing_to_label(practice):
 
 def test_closing_lets_the_character_play_on(practice):
     drive = practice
-    assert drive.session.playing
+    assert drive.session.transport.playing
     dialog = begun(drive)
-    assert not drive.session.playing
+    assert not drive.session.transport.playing
     press(dialog, K.Key_Escape)
-    drive.wait(lambda: drive.session.playing)
+    drive.wait(lambda: drive.session.transport.playing)

@@ -86,7 +86,7 @@ def test_a_line_read_again_keeps_what_is_asked_with_it():
 
 def test_sounds_dropped_on_the_panel_can_be_edited_said_and_removed(drive, toy, tmp_path):
     drive.document.load(toy.project(), None)
-    drive.show_dock("lines")
+    drive.show("lines")
     panel = drive.lines
     drive.wait(panel.empty.isVisible)
     assert drive.drop_files((panel, panel.rect().center()), sound(tmp_path / "one.wav"), sound(tmp_path / "two.wav", 1.2))
@@ -107,8 +107,8 @@ def test_sounds_dropped_on_the_panel_can_be_edited_said_and_removed(drive, toy, 
     panel.table.item(1, 0).setText("279")
     assert list(drive.document.project.lines) == ["one", "279"] and "279" in drive.document.project.voices
     # Said now: the character speaks it.
-    drive.session.set_playing(False)
-    drive.session.seek(1.0)
+    drive.session.transport.set_playing(False)
+    drive.session.transport.seek(1.0)
     panel.table.selectRow(1)
     panel.say()
     drive.wait(lambda: bool(drive.performance.shown.plan.track.speeches))
@@ -127,7 +127,7 @@ def test_sounds_dropped_on_the_panel_can_be_edited_said_and_removed(drive, toy, 
 
 def test_words_without_sound_are_a_line_too(drive, toy):
     drive.document.load(toy.project(), None)
-    drive.show_dock("lines")
+    drive.show("lines")
     drive.lines.add_words()
     assert drive.document.project.lines["1"].text == "Hello"
     drive.wait(lambda: drive.lines.table.findChild(QLineEdit) is not None)
@@ -142,7 +142,7 @@ def test_an_edit_of_one_line_among_many_writes_one_row_and_keeps_the_selection(d
         return project
 
     drive.document.load(toy.project(), None)
-    drive.show_dock("lines")
+    drive.show("lines")
     panel = drive.lines
     assert not panel.say_button.isEnabled()
     drive.document.edit("Add lines", many)
@@ -170,7 +170,7 @@ def test_a_line_that_is_removed_while_it_is_asked_for_says_so_and_comes_back_wit
     drive.wait(lambda: ask.id in drive.performance.answers() and drive.performance.answers()[ask.id].at is not None)
     drive.document.edit("Remove line", lambda p: staging.set_line(p, "hi", None))
     drive.wait(lambda: drive.performance.answers()[ask.id].state == "refused")
-    drive.session.select_asks((ask.id,))
+    drive.session.onstage.select_requests((ask.id,))
     assert "hi" in drive.timeline.title.words and "Does not play" in drive.timeline.title.words
     drive.document.undo()
     drive.wait(lambda: drive.performance.answers()[ask.id].at is not None)

@@ -25,9 +25,9 @@ class Hand:
     def __init__(self, drive) -> None:
         self.drive = drive
         drive.actions["manual"].trigger()
-        drive.wait(lambda: drive.window.manual.editor is not None and drive.window.manual.editor.isVisible())
+        drive.wait(lambda: drive.editor is not None and drive.editor.isVisible())
         drive.pause(60)
-        self.editor = drive.window.manual.editor
+        self.editor = drive.editor
         self.canvas, self.inspector = self.editor.canvas, self.editor.inspector
         self.told: list[str] = []
         self.canvas.refused.connect(self.told.append)
@@ -104,7 +104,7 @@ def test_the_editor_takes_the_meta_graphs_place_and_gives_it_back(hand: Hand) ->
     drive = hand.drive
     assert not drive.canvas.isVisible()
     assert hand.inspector.isVisible()
-    assert drive.session.mode == "manual"
+    assert drive.session.onstage.mode == "manual"
     assert not drive.actions["label_gesture"].isEnabled()
     drive.actions["manual"].trigger()
     assert drive.canvas.isVisible()
@@ -122,13 +122,13 @@ def test_clips_are_dropped_links_are_dragged_and_all_of_it_plays_is_undone_saved
     hand.drop("rest wave rt", 420, 60)
     drive.click(drive.card("rest long"))
     drive.click(drive.card("rest short"), CONTROL)
-    drive.wait(lambda: len(drive.session.clips) == 2)
+    drive.wait(lambda: len(drive.session.selection.clips) == 2)
     drive.drag(drive.card("rest short"), hand.at(240, 300), lambda: len(hand.machine.states) == 4)
-    assert len(drive.session.states) == 2, "what was dropped is selected"
+    assert len(drive.session.selection.states) == 2, "what was dropped is selected"
 
     # The idle loops; links there and back, the way there on request.
     drive.click(hand.middle("rest loop"))
-    drive.wait(lambda: drive.session.states == (hand.id("rest loop"),))
+    drive.wait(lambda: drive.session.selection.states == (hand.id("rest loop"),))
     QTest.mouseClick(hand.inspector.loop, Qt.MouseButton.LeftButton, pos=QPoint(8, hand.inspector.loop.height() // 2))
     assert hand.state("rest loop").loop
     hand.link("rest loop", "rest wave rt")
@@ -137,14 +137,14 @@ def test_clips_are_dropped_links_are_dragged_and_all_of_it_plays_is_undone_saved
     hand.link(ANY, "rest short")
     assert hand.pairs() == ["rest loop>rest wave rt", "rest wave rt>rest loop", "rest loop>rest long", f"{ANY}>rest short"]
     first = next(iter(hand.machine.links))
-    drive.session.select_states((), (first,))
+    drive.session.selection.select_states((), (first,))
     hand.inspector.when.setCurrentIndex(1)
     hand.inspector.when.activated.emit(1)
     assert hand.machine.links[first].condition.trigger == "rest wave rt"
 
     # An exit time, typed; one step back, and again.
     back = [*hand.machine.links][1]
-    drive.session.select_states((), (back,))
+    drive.session.selection.select_states((), (back,))
     QTest.mouseClick(hand.inspector.leaves, Qt.MouseButton.LeftButton, pos=QPoint(8, hand.inspector.leaves.height() // 2))
     hand.inspector.exit.setFocus()
     hand.inspector.exit.selectAll()
@@ -163,8 +163,8 @@ def test_clips_are_dropped_links_are_dragged_and_all_of_it_plays_is_undone_saved
 
     # Fired, it plays.
     drive.wait(lambda: drive.performance.shown.manual is not None)
-    drive.session.seek(1.0)
-    drive.session.set_playing(False)
+    drive.session.transport.seek(1.0)
+    drive.session.transport.set_playing(False)
     drive.performance.fire("rest wave rt")
 
     def played() -> list[str]:
@@ -212,31 +212,31 @@ def test_nodes_are_moved_by_their_middle_in_one_step(drawn: Hand) -> None:
 def test_selection_by_click_key_and_rubber_band_and_several_moved_at_once(drawn: Hand) -> None:
     drive, ids = drawn.drive, [drawn.id(n) for n in ("rest loop", "rest wave rt", "rest long")]
     drive.click(drawn.middle("rest loop"))
-    assert drive.session.states == (ids[0],)
+    assert drive.session.selection.states == (ids[0],)
     drive.click(drawn.middle("rest long"), SHIFT)
-    assert drive.session.states == (ids[0], ids[2])
+    assert drive.session.selection.states == (ids[0], ids[2])
     drive.click(drawn.middle("rest loop"), CONTROL)
-    assert drive.session.states == (ids[2],)
-    drive.drag(drawn.at(-50, -50), drawn.at(300, 240), lambda: len(drive.session.states) == 2)
-    assert set(drive.session.states) == set(ids[:2])
+    assert drive.session.selection.states == (ids[2],)
+    drive.drag(drawn.at(-50, -50), drawn.at(300, 240), lambda: len(drive.session.selection.states) == 2)
+    assert set(drive.session.selection.states) == set(ids[:2])
     drawn.key(Qt.Key.Key_A, CONTROL)
-    assert set(drive.session.states) == set(ids)
+    assert set(drive.session.selection.states) == set(ids)
     before = {i: s.x for i, s in drawn.machine.states.items()}
     drawn.key(Qt.Key.Key_Right)
     assert {i: s.x - 8 for i, s in drawn.machine.states.items()} == before
     drive.click(drawn.at(-40, 300))
-    assert drive.session.states == ()
+    assert drive.session.selection.states == ()
 
 
 def test_states_are_copied_with_their_links_duplicated_and_removed(drawn: Hand) -> None:
     drive = drawn.drive
-    drive.session.select_states((drawn.id("rest loop"), drawn.id("rest wave rt")))
+    drive.session.selection.select_states((drawn.id("rest loop"), drawn.id("rest wave rt")))
     drawn.key(Qt.Key.Key_C, CONTROL)
     QTest.mouseMove(drawn.canvas, drawn.at(200, 330)[1])
     drawn.key(Qt.Key.Key_V, CONTROL)
     assert len(drawn.machine.states) == 5
     assert drawn.pairs()[2:] == ["rest loop 2>rest wave rt 2", "rest wave rt 2>rest loop 2"]
-    assert len(drive.session.states) == 2
+    assert len(drive.session.selection.states) == 2
     drawn.key(Qt.Key.Key_D, CONTROL)
     assert len(drawn.machine.states) == 7
     assert len(drawn.machine.links) == 6
@@ -250,14 +250,14 @@ def test_states_are_copied_with_their_links_duplicated_and_removed(drawn: Hand) 
 
 def test_a_links_settings_are_pasted_onto_others_and_several_are_edited_at_once(drawn: Hand) -> None:
     drive, (first, second) = drawn.drive, drawn.machine.links
-    drive.session.select_states((), (first,))
+    drive.session.selection.select_states((), (first,))
     drawn.inspector.blend.setValue(0.6)
     QTest.mouseClick(drawn.inspector.copy, Qt.MouseButton.LeftButton)
-    drive.session.select_states((), (second,))
+    drive.session.selection.select_states((), (second,))
     QTest.mouseClick(drawn.inspector.paste, Qt.MouseButton.LeftButton)
     assert drawn.machine.links[second].blend == 0.6
     drive.document.edit("x", lambda p: manual_edits.update_links(p, [second], blend=0.1))
-    drive.session.select_states((), (first, second))
+    drive.session.selection.select_states((), (first, second))
     assert drawn.inspector.blend.text() == "mixed"
     drawn.inspector.blend.setValue(0.4)
     assert {x.blend for x in drawn.machine.links.values()} == {0.4}
@@ -268,7 +268,7 @@ def test_a_link_is_clicked_and_removed(drawn: Hand) -> None:
     drive, first = drawn.drive, next(iter(drawn.machine.links))
     at = drawn.canvas.scene().middle(first)
     drive.click(drawn.at(at.x(), at.y()))
-    assert drive.session.links == (first,)
+    assert drive.session.selection.links == (first,)
     drive.actions["delete"].trigger()
     assert drawn.pairs() == ["rest wave rt>rest loop"]
 
@@ -277,7 +277,7 @@ def test_double_click_plays_a_state_alone_and_escape_goes_back(drawn: Hand) -> N
     drive, (canvas, at) = drawn.drive, drawn.middle("rest long")
     QTest.mouseDClick(canvas, Qt.MouseButton.LeftButton, Qt.KeyboardModifier.NoModifier, at)
     drive.wait(lambda: abs(drive.performance.shown.length - 2.4) < 1e-6)
-    assert drive.session.show == "context"
+    assert drive.session.transport.show == "context"
     drive.actions["show_plan"].trigger()
     drive.wait(lambda: drive.performance.shown.length > 10)
 
@@ -322,23 +322,23 @@ def test_problems_are_marked_and_a_click_on_one_goes_to_its_state(drawn: Hand) -
     row = next(n for n in range(drive.problems_panel.tree.topLevelItemCount())
                if "rest long" in drive.problems_panel.tree.topLevelItem(n).text(0))  # fmt: skip
     drive.problems_panel._go(drive.problems_panel.tree.topLevelItem(row))
-    assert drive.session.states == (ident,)
+    assert drive.session.selection.states == (ident,)
     assert "cannot be reached" in drawn.inspector.state_trouble.text() or "cannot be left" in drawn.inspector.state_trouble.text()
 
 
 def test_each_layer_has_a_machine_of_its_own(drawn: Hand) -> None:
     drive = drawn.drive
-    drive.session.set_layer("head")
+    drive.session.place.set_layer("head")
     assert drawn.machine.states == {}
     drawn.canvas.place((next(iter(drive.document.project.clips)),), QPointF(200, 200))
     assert [s.layer for s in drawn.machine.states.values()] == ["head"]
-    drive.session.set_layer("arms")
+    drive.session.place.set_layer("arms")
     assert len(drawn.machine.states) == 3
 
 
 def test_the_meta_graph_is_not_changed_unseen(drawn: Hand) -> None:
     drive, graphs = drawn.drive, drawn.drive.document.project.graphs
-    drive.session.select_clips(tuple([*drive.document.project.clips][:2]))
+    drive.session.selection.select_clips(tuple([*drive.document.project.clips][:2]))
     for command in ("label_stance", "label_gesture", "new_stance", "propose", "twins"):
         drive.actions[command].trigger()
     drive.pause(50)
@@ -358,7 +358,7 @@ def test_files_dropped_on_the_editor_are_imported_and_become_states(drawn: Hand,
 
 def test_trimming_stays_inside_the_clip(drawn: Hand) -> None:
     drive = drawn.drive
-    drive.session.select_states((drawn.id("rest wave rt"),))
+    drive.session.selection.select_states((drawn.id("rest wave rt"),))
     drawn.inspector.last.setValue(50.0)
     assert drawn.state("rest wave rt").end is None
     drawn.inspector.last.setValue(0.9)
@@ -371,14 +371,14 @@ def test_a_project_that_was_only_drawn_opens_in_the_editor_and_a_meta_graph_with
     drive.document.edit("Clear", lambda p: edits.remove_actions(p, [a.id for a in p.actions()]))
     only = drive.document.project
     drive.actions["manual"].trigger()
-    assert drive.session.mode == "meta"
+    assert drive.session.onstage.mode == "meta"
     drive.document.load(only, None)
     drive.files.opened.emit()
-    assert drive.session.mode == "manual"
+    assert drive.session.onstage.mode == "manual"
     assert drawn.canvas.view.rect(drawn.canvas.size().toSizeF()).contains(drawn.canvas.scene().bounds)
     drive.document.load(toy.project(), None)
     drive.files.opened.emit()
-    assert drive.session.mode == "meta"
+    assert drive.session.onstage.mode == "meta"
 
 
 def test_what_was_only_drawn_is_exported_by_the_command_too(drawn: Hand, tmp_path, capsys) -> None:

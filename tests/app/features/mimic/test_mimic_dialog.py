@@ -54,7 +54,7 @@ def told(drive: Any) -> str:
 def test_a_recording_becomes_a_performance_that_plays_and_can_be_undone(opened: Any, monkeypatch: pytest.MonkeyPatch) -> None:
     drive = opened
     before = dict(drive.document.project.performances)
-    drive.session.set_performance(None)
+    drive.session.onstage.set_performance(None)
     dialog = dialog_of(drive, monkeypatch, DEEP)
     assert dialog.mirror.isChecked() and not dialog.gaze.isChecked() and all(box.isChecked() for box in dialog.layers.values())
     dialog.mirror.setChecked(False)
@@ -62,7 +62,7 @@ def test_a_recording_becomes_a_performance_that_plays_and_can_be_undone(opened: 
     drive.wait(lambda: len(drive.document.project.performances) == len(before) + 1, 60)
     (made,) = [i for i in drive.document.project.performances if i not in before]
     kept = drive.document.project.performances[made]
-    assert drive.session.performance == made and kept.name == "conversation.mediapipe" and kept.idle
+    assert drive.session.onstage.performance == made and kept.name == "conversation.mediapipe" and kept.idle
     stances = [drive.document.project.stance(ask.stance).name for ask in kept.asks if isinstance(ask, a.Go)]
     assert {"on hips", "arms crossed", "weight left", "head tilt left"} <= set(stances)
     drive.wait(lambda: drive.performance.shown.length == kept.length and bool(drive.performance.answers()))
@@ -78,7 +78,7 @@ def test_a_recording_becomes_a_performance_that_plays_and_can_be_undone(opened: 
 def test_what_is_seen_is_added_to_the_performance_on_stage(opened: Any, monkeypatch: pytest.MonkeyPatch) -> None:
     drive = opened
     drive.performance.ask(a.Nod(at=2.0))
-    stage = drive.session.performance
+    stage = drive.session.onstage.performance
     dialog = dialog_of(drive, monkeypatch, DEEP)
     dialog.layers["head"].setChecked(False)
     dialog.layers["body"].setChecked(False)
@@ -90,7 +90,7 @@ def test_what_is_seen_is_added_to_the_performance_on_stage(opened: Any, monkeypa
     drive.wait(lambda: len(drive.document.project.performances[stage].asks) > 1, 60)
     asks = drive.document.project.performances[stage].asks
     assert isinstance(asks[0], a.Nod) and {ask.layer for ask in asks[1:]} == {"arms"}
-    assert drive.session.performance == stage
+    assert drive.session.onstage.performance == stage
 
 
 @pytest.mark.window

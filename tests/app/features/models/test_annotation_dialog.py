@@ -72,7 +72,7 @@ def test_the_sample_is_read_without_a_word(open_dialog, document):
     assert set(project.markov) == {"body", "arms", "head"} and project.markov["head"].tags
     assert [p.name for p in project.performances.values()] == ["talk"]
     assert told == [(dialog.reading.observed, next(iter(project.performances)))]
-    assert dialog.session.performance == told[0][1], "it is on stage"
+    assert dialog.session.onstage.performance == told[0][1], "it is on stage"
     document.undo()
     assert document.project.markov == {} and document.project.tiers == {}
 

@@ -58,7 +58,7 @@ def test_the_default_is_shown_and_an_empty_comparison_teaches(panel):
     assert panel.origin.text() == "default, from the paper · 9 states"
     assert not panel.back.isEnabled() and not panel.chooser.isVisible()
     assert panel.teach.isVisible() and "default model of the arms" in panel.teach.text()
-    panel.session.set_layer("head")
+    panel.session.place.set_layer("head")
     assert panel.heat.model is DEFAULTS["head"] and panel.title.text() == "Head: what follows what"
 
 
@@ -115,13 +115,13 @@ def test_back_to_default_is_a_step_that_can_be_undone(panel):
 
 
 def test_states_are_added_and_removed_from_the_menu(panel):
-    panel.session.set_layer("head")
+    panel.session.place.set_layer("head")
     pick(panel.state_menu(1), "Remove fidget")
     assert [kind for _, kind in panel.heat.model.states] == ["gesture", "transition"]
     pick(panel.state_menu(-1), "Add a state", "◆ fidget")
     assert [kind for _, kind in panel.heat.model.states] == ["gesture", "fidget", "transition"]
     assert not any(a.text() == "Add a state" and a.isEnabled() for a in panel.state_menu(0).actions()), "all are there"
-    panel.session.set_layer("arms")
+    panel.session.place.set_layer("arms")
     pick(panel.state_menu(8), "Remove both transition")
     assert len(panel.heat.model.states) == 8
 
@@ -133,7 +133,7 @@ def test_states_the_graph_has_no_action_for_are_dimmed_and_not_sampled(panel, to
     panel.document.edit("Remove", lambda p: edits.remove_actions(p, fidgets))
     assert panel.heat.closed == {n for n, (_, kind) in enumerate(ARMS.states) if kind == "fidget"}
     assert {a.kind for a in panel.strip.acts["arms"]} <= {"gesture", "transition"}
-    panel.session.set_layer("body")
+    panel.session.place.set_layer("body")
     assert panel.heat.closed == frozenset(), "a layer without anything passes over nothing in particular"
 
 
@@ -153,7 +153,7 @@ def test_what_was_learned_is_compared_with_what_was_seen(panel, reading, qtbot):
     qtbot.waitUntil(lambda: panel.plot.found is not None and panel.plot.found.observed is not None)
     assert panel.plot.found.observed.count == 52
     assert panel.plot.words.text().startswith("Each comes as often as was seen")
-    panel.session.set_layer("head")
+    panel.session.place.set_layer("head")
     assert panel.heat.model.tags == ("positive", "negative", "")
     assert panel.share_words.isVisible() and not panel.shares["positive"].isVisible()
     qtbot.waitUntil(lambda: panel.plot.found.model.layer == "head")
@@ -182,7 +182,7 @@ def test_both_themes_are_drawn(panel, qtbot):
     qtbot.waitUntil(lambda: panel.plot.found is not None)
     pictures = []
     for look in ("light", "dark"):
-        panel.session.set_theme(look)
+        panel.session.look.choose(look)
         pictures.append(panel.grab().toImage())
     assert pictures[0] != pictures[1]
 

@@ -33,7 +33,7 @@ def shown(drive, tmp_path):
     save_project(project, tmp_path / "copy.metagraph.yaml")
     drive.files.open(tmp_path / "copy.metagraph.yaml")
     drive.wait(lambda: drive.document.folder == tmp_path and drive.document.project.skeleton is not None)
-    drive.window.dialogs.motion_graph()
+    drive.do("motion_graph")
     dialog = drive.window.findChild(MotionGraphDialog)
     drive.wait(lambda: dialog.limit is not None)
     yield drive, dialog
@@ -97,9 +97,9 @@ def test_new_motion_is_found_kept_as_a_file_and_played_and_one_undo_takes_it_bac
     press(dialog.wishes.go)
     drive.wait(lambda: len(drive.document.project.clips) == count + 1, 180)
     assert "cost" in dialog.said.text()
-    made = drive.document.project.clips[drive.session.clips[0]]
+    made = drive.document.project.clips[drive.session.selection.clips[0]]
     assert (tmp_path / made.path).parent.name == FOLDER and (tmp_path / made.path).is_file()
-    assert drive.session.show == "clip" and drive.session.shown == made.id
+    assert drive.session.transport.show == "clip" and drive.session.transport.shown == made.id
     drive.wait(lambda: drive.performance.shown.clip == made.id)
     drive.document.undo_stack.undo()
     assert len(drive.document.project.clips) == count
@@ -115,7 +115,7 @@ def test_new_motion_can_move_the_speaker_of_a_conversation_until_the_graph_does_
     press(dialog.wishes.go)
     drive.wait(lambda: drive.document.project.conversations["v9000"].sides[0].motion is not None, 180)
     made = drive.document.project.clips[drive.document.project.conversations["v9000"].sides[0].motion]
-    assert made.duration == pytest.approx(7.0, abs=0.1) and drive.session.conversation == "v9000"
+    assert made.duration == pytest.approx(7.0, abs=0.1) and drive.session.onstage.conversation == "v9000"
     drive.wait(lambda: drive.performance.shown.motion == made.id, 60)
     assert made.name in drive.timeline.title.words
     drive.actions["graph_again"].trigger()
@@ -202,7 +202,7 @@ def test_takes_are_cut_into_clips_that_wait_to_be_labelled(shown):
     assert all(e.id not in drive.document.project.uses for e in new)
     assert all(LEAST <= e.duration <= MOST for e in new)
     assert all((drive.document.folder / e.path).is_file() for e in new)
-    assert drive.session.clips == tuple(e.id for e in new), "they are selected, to be labelled"
+    assert drive.session.selection.clips == tuple(e.id for e in new), "they are selected, to be labelled"
     drive.document.undo_stack.undo()
     assert len(drive.document.project.clips) == count
 
@@ -271,7 +271,7 @@ def test_takes_too_short_to_compare_are_told_and_what_was_known_of_others_is_not
 
 
 def test_an_unsaved_project_is_asked_to_be_saved_first(toys):
-    toys.window.dialogs.motion_graph()
+    toys.do("motion_graph")
     dialog = toys.window.findChild(MotionGraphDialog)
     toys.wait(lambda: dialog.limit is not None or bool(dialog.words.text()))
     press(dialog.wishes.go)

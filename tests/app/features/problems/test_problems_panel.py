@@ -74,10 +74,10 @@ def test_a_flag_marks_the_action_and_a_press_mends_it_in_one_step(toys, toy, wid
     drive.document.load(wide, None)
     drive.files.opened.emit()
     wave = toy.id(wide, "wide")
-    flagged = lambda: [p for p in drive.window.problems if p.code == "jump-end"]  # noqa: E731
+    flagged = lambda: [p for p in drive.problems.problems if p.code == "jump-end"]  # noqa: E731
     drive.wait(lambda: bool(flagged()))
     assert wave in drive.canvas.misfits and "shows as a jump" in drive.canvas.misfits[wave]
-    drive.window.show_dock("problems")
+    drive.show("problems")
     drive.pause(200)
     panel = drive.problems_panel
     tree = panel.tree
@@ -87,7 +87,7 @@ def test_a_flag_marks_the_action_and_a_press_mends_it_in_one_step(toys, toy, wid
     # A press beside the button goes there and mends nothing.
     row = tree.visualItemRect(item)
     QTest.mouseClick(tree.viewport(), Qt.MouseButton.LeftButton, pos=row.center())
-    assert drive.session.actions == (wave,)
+    assert drive.session.selection.actions == (wave,)
     assert drive.document.project is wide
     before = drive.document.undo_stack.count()
     tree.scrollTo(tree.indexFromItem(item, FIX))
@@ -114,7 +114,7 @@ def test_all_timings_are_mended_in_one_step(toys, toy, wide):
     drive.files.opened.emit()
     panel = drive.problems_panel
     drive.wait(lambda: len(panel.fixable()) == 2)
-    drive.window.show_dock("problems")
+    drive.show("problems")
     drive.pause(100)
     assert panel.all.text() == "Mend 2 problems"
     drive.click((panel.all, panel.all.rect().center()))

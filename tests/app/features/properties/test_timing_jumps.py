@@ -92,7 +92,7 @@ def timed(toys, toy, wide):
     drive = toys
     drive.document.load(wide, None)
     drive.files.opened.emit()
-    drive.wait(lambda: drive.window.compatibility.judged is not None and drive.window.compatibility.judged.measured["arms"].labelled > 5)
+    drive.wait(lambda: drive.compatibility.judged is not None and drive.compatibility.judged.measured["arms"].labelled > 5)
     drive.session.jump(action=toy.id(wide, "wide"))
     drive.wait(lambda: drive.properties.plot.strip.seen is not None)
     drive.pause(150)
@@ -149,6 +149,6 @@ def test_proposed_times_are_taken_over_with_a_click_in_one_step(timed, toy, wide
     drive.document.undo()
     assert drive.document.project.action(ident).timing.end == 1.5
     # Many at once, from the menu.
-    drive.session.select_actions((ident, toy.id(wide, "rest wave rt")))
+    drive.session.selection.select_actions((ident, toy.id(wide, "rest wave rt")))
     drive.actions["use_times"].trigger()
     drive.wait(lambda: drive.document.undo_stack.count() == 1 and drive.document.project.action(ident).timing.end != 1.5)

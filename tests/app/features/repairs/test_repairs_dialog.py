@@ -34,8 +34,8 @@ def shown(drive):
 
 @pytest.fixture
 def dialog(drive, folder):
-    drive.files.import_paths([str(folder)])
-    notice = drive.window.notice
+    drive.importing.import_paths([str(folder)])
+    notice = drive.notice
     drive.wait(notice.isVisible)
     assert not shown(drive), "nothing may stand in the way of who goes on working"
     assert notice.text() == "Some clips were repaired: look…"
@@ -97,11 +97,11 @@ def test_a_click_on_a_group_is_a_click_on_all_of_it(drive, dialog):
 def test_the_dialog_opens_again_for_what_is_selected(drive, dialog):
     QTest.mouseClick(dialog.buttons.button(dialog.buttons.StandardButton.Close), Qt.MouseButton.LeftButton)
     drive.wait(lambda: not shown(drive))
-    drive.window.session.select_clips(("c2",))
+    drive.session.selection.select_clips(("c2",))
     drive.actions["repairs"].trigger()
     (again,) = shown(drive)
     assert again.headline.text() == "Repairs of 1 clip" and len(again.found) == 1
-    drive.window.session.select_clips(("c3",))
+    drive.session.selection.select_clips(("c3",))
     again.close()
 
 
@@ -116,7 +116,7 @@ def test_a_file_that_went_away_is_told_in_the_dialog(drive, folder, dialog):
 
 def test_a_file_that_could_not_be_read_is_told_in_the_same_dialog(drive, folder):
     (folder / "bad.bvh").write_text("noise")
-    drive.files.import_paths([str(folder)])
+    drive.importing.import_paths([str(folder)])
     drive.wait(lambda: bool(shown(drive)))
     (dialog,) = shown(drive)
     assert "bad.bvh" in dialog.lines.toPlainText()
@@ -125,19 +125,19 @@ def test_a_file_that_could_not_be_read_is_told_in_the_same_dialog(drive, folder)
 def test_the_notice_goes_with_the_project_it_was_about(drive, folder):
     from metagraph.graph.model import Project
 
-    drive.files.import_paths([str(folder)])
-    drive.wait(drive.window.notice.isVisible)
+    drive.importing.import_paths([str(folder)])
+    drive.wait(drive.notice.isVisible)
     drive.document.load(Project(), None)
-    assert not drive.window.notice.isVisible()
+    assert not drive.notice.isVisible()
 
 
 def test_clips_without_repairs_say_so(drive, toy, tmp_path):
     from metagraph.formats.gltf_writer import write_glb
 
     write_glb(tmp_path / "n.glb", [toy.clip("n", 0.5)])
-    drive.files.import_paths([str(tmp_path)])
+    drive.importing.import_paths([str(tmp_path)])
     drive.wait(lambda: len(drive.document.project.clips) == 1)
-    assert not shown(drive) and not drive.window.notice.isVisible()
+    assert not shown(drive) and not drive.notice.isVisible()
     drive.actions["repairs"].trigger()
     (dialog,) = shown(drive)
     assert "Nothing had to be put right" in dialog.words.text()

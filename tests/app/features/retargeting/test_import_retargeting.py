@@ -30,7 +30,7 @@ def folder(toy, sample, tmp_path):
 @pytest.fixture
 def own(drive, folder):
     """A window with the toy's clips."""
-    drive.files.import_paths([str(folder / "rest.glb"), str(folder / "wave.glb")])
+    drive.importing.import_paths([str(folder / "rest.glb"), str(folder / "wave.glb")])
     drive.wait(lambda: len(drive.document.project.clips) == 2)
     drive.said = []
     drive.files.told.connect(drive.said.append)
@@ -40,7 +40,7 @@ def own(drive, folder):
 def bring(drive, folder, *names):
     from app.features.retargeting.joint_map_dialog import JointMapDialog
 
-    drive.files.import_paths([str(folder / f"{name}.glb") for name in names])
+    drive.importing.import_paths([str(folder / f"{name}.glb") for name in names])
     drive.wait(lambda: any(d.isVisible() for d in drive.window.findChildren(JointMapDialog)))
     dialog = next(d for d in drive.window.findChildren(JointMapDialog) if d.isVisible())
     drive.wait(lambda: dialog.figures.right is not None)
@@ -119,7 +119,7 @@ def test_the_next_clips_of_that_skeleton_are_retargeted_unasked_and_that_is_told
     drive = own
     press(bring(drive, folder, "other0").go)
     drive.wait(lambda: len(drive.document.project.clips) == 3)
-    drive.files.import_paths([str(folder / "other1.glb")])
+    drive.importing.import_paths([str(folder / "other1.glb")])
     drive.wait(lambda: len(drive.document.project.clips) == 4)
     assert any("its clip was retargeted as before" in words for words in drive.said)
 
@@ -135,7 +135,7 @@ def test_a_map_of_the_user_is_offered_in_another_project(own, folder):
     from metagraph.graph.model import Project
 
     drive.document.load(Project(), None)
-    drive.files.import_paths([str(folder / "rest.glb"), str(folder / "wave.glb")])
+    drive.importing.import_paths([str(folder / "rest.glb"), str(folder / "wave.glb")])
     drive.wait(lambda: len(drive.document.project.clips) == 2)
     again = bring(drive, folder, "other0")
     assert again.map == mine and "as you did it before" in again.details.text()
@@ -153,7 +153,7 @@ def test_saved_and_opened_again_they_are_retargeted_and_followed_when_exported_a
     drive.wait(lambda: not drive.jobs.running)
     entry = list(drive.document.project.clips.values())[2]
     assert entry.motion.skeleton == drive.document.project.skeleton and entry.motion.brought_from == entry.brought_from
-    drive.window.watcher._timer.setInterval(100)
+    drive.watcher._timer.setInterval(100)
     drive.pause(500)
     motion = next(iter(sample.clips.values())).motion
     write_glb(folder / "other0.glb", [motion.trimmed(0, 31).renamed("other0")])

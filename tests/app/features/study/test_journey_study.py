@@ -12,8 +12,10 @@ from pathlib import Path
 import pytest
 from PySide6.QtCore import Qt
 from PySide6.QtTest import QTest
-from PySide6.QtWidgets import QMessageBox
+from PySide6.QtWidgets import QMessageBox, QToolBar
 
+from app.features.study.reserved_window import ReservedWindow
+from app.shell.actions import Command
 from metagraph.formats.store import open_project, read_project
 from metagraph.graph import edits, manual_edits
 from metagraph.study.log import read
@@ -56,7 +58,7 @@ def test_a_whole_sitting(drive, takes_part, tiny, tmp_path):
     assert "You have 5 minutes." in p.page.text.text()
     p.go()
     p.working()
-    assert d.session.mode == "meta"
+    assert d.session.onstage.mode == "meta"
     assert not d.learned.on and not d.compatibility.on, "no help that the other condition does not have"
     assert len(d.document.project.clips) == 3 and not d.names()
     assert all(c.motion is not None for c in d.document.project.clips.values())
@@ -64,13 +66,13 @@ def test_a_whole_sitting(drive, takes_part, tiny, tmp_path):
         assert not d.actions[ident].isEnabled(), ident
     for ident in ("new_stance", "play", "theme", "quit"):
         assert d.actions[ident].isEnabled(), ident
-    d.files.import_paths([str(ROOT / "sample_clips" / "clips")])
+    d.importing.import_paths([str(ROOT / "sample_clips" / "clips")])
     d.pause(100)
     assert len(d.document.project.clips) == 3, "no other clips are brought in"
-    d.session.set_layer("head")
+    d.session.place.set_layer("head")
     d.drag(d.card("head_straight__stance"), d.middle(), lambda: d.names("stance") == ["head_straight__stance"])
     d.drag(d.card("head_straight__nod_single_01"), d.node("gesture"), lambda: len(d.names("gesture")) == 1)
-    d.show_machine(True)
+    d.show("machine")
     d.docks["properties"].setFloating(True)
     QTest.mouseClick(p.guide.bar.pause, LEFT)
     p.titled("Paused")
@@ -102,7 +104,7 @@ def test_a_whole_sitting(drive, takes_part, tiny, tmp_path):
     p.titled("Two nods: State machine")
     p.go()
     p.working()
-    assert d.session.mode == "manual"
+    assert d.session.onstage.mode == "manual"
     assert not d.names(), "everybody begins with nothing"
     clips = list(d.document.project.clips)
     d.document.edit("Add states", lambda q: manual_edits.add_states(q, clips[:2], "head"))
@@ -125,7 +127,7 @@ def test_a_whole_sitting(drive, takes_part, tiny, tmp_path):
     assert "That was all." in p.page.text.text()
     p.go()
     d.wait(lambda: not p.guide.bar.isVisible())
-    assert d.actions["open"].isEnabled() and not d.files.closed and d.session.mode == "meta"
+    assert d.actions["open"].isEnabled() and not d.files.closed and d.session.onstage.mode == "meta"
     assert d.learned.on and d.compatibility.on and d.library.search.isEnabled()
 
     # The log, event by event.
@@ -237,24 +239,31 @@ def test_who_takes_part_is_chosen_from_a_list_that_tells_how_far_each_is(drive, 
     chooser.reject()
 
 
-def test_proposals_are_offered_where_the_study_allows_them():
-    from app.features.study.study_offer import offered
+def offered(drive, mode: str, labels: bool) -> set[str]:
+    """Return what a task offers, of what could be done at all."""
+    drive.session.set_mode(mode)
+    reserved = ReservedWindow(drive.shell, QToolBar(drive.window), labels)
+    reserved.allow_task()
+    out = {c.id for c in drive.actions.commands if drive.actions.allowed(c) and c.when in ("any", mode)}
+    reserved.allow(None)
+    return out
 
-    assert not offered("propose", "meta", False) and offered("propose", "meta", True)
-    assert not offered("propose", "manual", True)
-    assert offered("undo", "manual", False) and not offered("label_gesture", "manual", False) and not offered("open", "meta", True)
+
+def test_proposals_are_offered_where_the_study_allows_them(drive):
+    proposals = {"propose", "use_times", "patterns", "compatibility"}
+    assert not offered(drive, "meta", False) & proposals
+    assert offered(drive, "meta", True) - offered(drive, "meta", False) == proposals
+    assert not offered(drive, "manual", True) & proposals
+    assert "undo" in offered(drive, "manual", False) and "label_gesture" not in offered(drive, "manual", False)
 
 
-def test_no_command_that_brings_other_material_is_offered_while_a_task_is_worked_on(drive):
-    from app.features.study.study_offer import offered
-    from app.shell.commands import commands
-
-    table = commands(drive.window)
-    conversations = [c.id for c in table if c.menu == "&Conversation"]
-    assert len(conversations) == 10
-    for ident in (*conversations, "motion_graph"):
-        assert any(c.id == ident for c in table)
-        assert not any(offered(ident, mode, labels) for mode in ("meta", "manual") for labels in (True, False)), ident
+def test_a_command_that_says_nothing_of_studies_is_not_offered_while_a_task_is_worked_on(drive):
+    assert Command("x", "&Help", "", "X").study is False
+    meta = offered(drive, "meta", True)
+    menus, groups = ("&Conversation", "&Study"), ("project", "save", "import", "write")
+    materials = {c.id for c in drive.actions.commands if c.menu in menus or c.group in groups}
+    assert not meta & (materials | {"motion_graph", "twins", "repairs", "character", "live", "mimic", "skeleton", "joint_maps", "manual"})
+    assert meta >= {"undo", "redo", "delete", "rename", "label_stance", "new_stance", "play", "in_context", "machine", "theme", "quit"}
 
 
 KILLED = """
@@ -263,17 +272,17 @@ from pathlib import Path
 from PySide6.QtCore import QTimer
 from app.main import prepare
 app = prepare()
-from app.shell.window import Window
+from app.main import make_window
 from app.features.study.study_chooser import begin
 from metagraph.graph import edits
 from metagraph.study.plan import read_study
-window = Window()
+window = make_window()
 window.show()
 guide = begin(window, read_study(Path(sys.argv[1])), "P01")
 def step():
     if guide._working:
-        count = len(window.document.project.graphs["head"].stances)
-        window.document.edit("New stance", lambda p: edits.add_stance(p, "head", f"stance {count}"))
+        count = len(window.shell.document.project.graphs["head"].stances)
+        window.shell.document.edit("New stance", lambda p: edits.add_stance(p, "head", f"stance {count}"))
         print(count + 1, flush=True)
     elif guide.screen.page.go is not None:
         if hasattr(guide.screen.page, "tick"):

@@ -9,6 +9,7 @@ import pytest
 from PySide6.QtCore import QPoint, Qt
 from PySide6.QtTest import QTest
 
+from app.features.study.operator_counting import Counting
 from app.features.study.study_changes import described
 from metagraph.graph import edits, manual_edits
 
@@ -97,7 +98,7 @@ def test_edits_undos_and_redos_are_told_apart(recorded):
     d = recorded
     d.document.edit("Place one", lambda p: edits.add_stance(p, "arms", "none"))
     d.log.events.clear()
-    stance = d.session.stance()
+    stance = d.session.place.stance()
     d.document.edit("New stance", lambda p: edits.add_stance(p, "arms", "one"))
     d.document.undo()
     d.document.redo()
@@ -134,11 +135,11 @@ def test_a_drag_of_a_time_is_one_edit_and_a_cancelled_one_none(recorded):
 
 def test_looks_playing_refusals_and_dialogs_are_told(recorded):
     d = recorded
-    d.session.set_playing(False)
-    d.session.seek(1.0)
-    d.session.seek(1.1)
-    d.session.set_layer("head")
-    d.session.select_actions((d.id("rest wave rt"),))
+    d.session.transport.set_playing(False)
+    d.session.transport.seek(1.0)
+    d.session.transport.seek(1.1)
+    d.session.place.set_layer("head")
+    d.session.selection.select_actions((d.id("rest wave rt"),))
     d.session.show_context(d.id("rest wave rt"))
     d.canvas.refused.emit("not there")
     d.document.failed.emit("not at all")
@@ -165,7 +166,7 @@ def test_a_problem_that_comes_up_is_told_once(recorded):
     d.document.edit(
         "Trim", lambda p: edits.update_actions(p, [d.id("rest wave rt")], timing=replace(d.action("rest wave rt").timing, end=0.0))
     )
-    d.wait(lambda: any(p.severity != "hint" for p in d.window.problems))
+    d.wait(lambda: any(p.severity != "hint" for p in d.problems.problems))
     d.wait(lambda: bool(d.log.of("error")))
     d.pause(1200)
     words = [e["words"] for e in d.log.of("error")]
@@ -191,8 +192,8 @@ def test_a_log_that_cannot_be_written_is_told_once(recorded, monkeypatch):
     told = []
     monkeypatch.setattr(recorded.log, "add", full)
     monkeypatch.setattr(recorded.window, "tell", told.append)
-    recorded.session.set_layer("head")
-    recorded.session.set_layer("body")
+    recorded.session.place.set_layer("head")
+    recorded.session.place.set_layer("body")
     assert len([t for t in told if "No space left" in t]) == 1
 
 
@@ -219,7 +220,7 @@ def test_operators_are_counted_outside_a_study_while_that_is_wanted(toys):
     assert d.actions["count_operators"].isChecked()
     QTest.keyClick(d.canvas, Qt.Key.Key_Comma)
     QTest.mouseClick(d.canvas, LEFT, pos=QPoint(5, 5))
-    d.window.counting.show()
-    assert d.window.counting.label.text().startswith("K 1   P 0   B 2   D 0   H 1   0.")
+    d.window.findChild(Counting).show()
+    assert d.window.findChild(Counting).label.text().startswith("K 1   P 0   B 2   D 0   H 1   0.")
     d.actions["count_operators"].trigger()
-    assert d.window.counting is None and not d.actions["count_operators"].isChecked()
+    assert d.window.findChild(Counting) is None and not d.actions["count_operators"].isChecked()

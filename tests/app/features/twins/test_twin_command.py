@@ -19,7 +19,7 @@ def saved(drive, toy, tmp_path):
     for name, swing in (("rest", 0.0), ("wave rt", 0.6), ("beat lf", 0.4)):
         clip = toy.clip(name, 1.0, swing=swing)
         write_glb(tmp_path / f"{name}.glb", [clip])
-    drive.files.import_paths([str(tmp_path)])
+    drive.importing.import_paths([str(tmp_path)])
     drive.wait(lambda: len(drive.document.project.clips) == 3)
     ids = {clip.name: clip.id for clip in drive.document.project.clips.values()}
     drive.document.edit("Stance", lambda p: edits.add_stance(p, "arms", "rest", [ids["rest"]]))
@@ -33,7 +33,7 @@ def saved(drive, toy, tmp_path):
 
 
 def make(drive, *names):
-    drive.window.session.select_actions(tuple(drive.action(name).id for name in names))
+    drive.session.selection.select_actions(tuple(drive.action(name).id for name in names))
     drive.pause(30)
     before = len(drive.document.project.clips)
     drive.actions["twins"].trigger()
@@ -45,7 +45,7 @@ def test_an_action_gets_a_twin_of_the_other_side_that_is_selected_and_told(saved
     make(drive, "wave rt")
     twin = drive.action("wave lf")
     assert (twin.limb, twin.kind, twin.tags) == ("left", "gesture", ("left", "hello"))
-    assert drive.window.session.actions == (twin.id,)
+    assert drive.session.selection.actions == (twin.id,)
     entry = drive.document.project.clips[twin.clip]
     assert entry.path == f"{FOLDER}/wave lf.glb" and (drive.place / entry.path).is_file()
     assert entry.name == "wave lf" and len(entry.digest) == 64
@@ -95,11 +95,11 @@ def test_saved_and_opened_the_twin_is_what_it_was(saved):
 def test_a_clip_of_the_library_is_mirrored_alone(saved):
     drive = saved
     clip = drive.action("beat lf").clip
-    drive.window.session.select_clips((clip,))
+    drive.session.selection.select_clips((clip,))
     drive.pause(30)
     drive.actions["twins"].trigger()
     drive.wait(lambda: len(drive.document.project.clips) == 4)
-    (new,) = drive.window.session.clips
+    (new,) = drive.session.selection.clips
     assert drive.document.project.clips[new].name == "beat rt" and new not in drive.document.project.uses
     assert drive.window.statusBar().currentMessage().startswith("1 clip mirrored: beat rt.")
 
@@ -115,7 +115,7 @@ def test_what_has_no_side_is_told_and_nothing_is_written(saved, toy):
     project = drive.document.project
     changed = replace(entry, motion=straight, digest="0" * 64)
     drive.document.edit("Still", lambda p: replace(project, clips={**project.clips, ident: changed}))
-    drive.window.session.select_clips((ident,))
+    drive.session.selection.select_clips((ident,))
     drive.actions["twins"].trigger()
     drive.wait(lambda: "has no side" in drive.window.statusBar().currentMessage())
     assert not (drive.place / FOLDER).exists()
@@ -123,7 +123,7 @@ def test_what_has_no_side_is_told_and_nothing_is_written(saved, toy):
 
 def test_before_the_project_is_saved_it_says_that_it_must_be(toys):
     drive = toys
-    drive.window.session.select_actions((drive.id("rest wave rt"),))
+    drive.session.selection.select_actions((drive.id("rest wave rt"),))
     drive.pause(30)
     project = drive.document.project
     drive.actions["twins"].trigger()
@@ -133,7 +133,7 @@ def test_before_the_project_is_saved_it_says_that_it_must_be(toys):
 
 def test_it_stands_in_the_menus_of_actions_and_clips(saved):
     drive = saved
-    assert drive.actions["twins"] in drive.window.canvas.row_actions
+    assert drive.actions["twins"] in drive.canvas.row_actions
     entry = next(iter(drive.document.project.clips.values()))
-    texts = [a.text().replace("&", "") for a in drive.window.library.menu(entry).actions()]
+    texts = [a.text().replace("&", "") for a in drive.library.menu(entry).actions()]
     assert "Make mirrored twin" in texts and "Repairs…" in texts

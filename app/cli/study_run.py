@@ -25,15 +25,14 @@ def run(options: Namespace) -> int:
         study.plan.blocks(options.participant)  # a stranger is told before a window is opened
     from PySide6.QtCore import QTimer
 
-    from app.main import prepare
+    from app.main import make_window, prepare
 
     app = prepare()
     from app.features.study.study_chooser import run_study
-    from app.shell.window import Window
 
-    window = Window()
+    window = make_window()
     window.show()
-    QTimer.singleShot(0, lambda: run_study(window, study.path, options.participant, options.experimenter))
+    QTimer.singleShot(0, lambda: run_study(window.shell, study.path, options.participant, options.experimenter))
     return app.exec()
 
 

@@ -20,13 +20,13 @@ def click(drive, box):
 
 def select(drive, *names: str) -> tuple[str, ...]:
     ids = tuple(drive.id(name) for name in names)
-    drive.window.session.select_actions(ids)
+    drive.session.selection.select_actions(ids)
     drive.pause(30)
     return ids
 
 
 def test_f2_on_many_renames_by_a_pattern_that_is_seen_before(toys):
-    from app.features.batch.batch_dialogs import RenameDialog
+    from app.features.editing.batch_dialogs import RenameDialog
 
     drive = toys
     ids = select(drive, "rest short", "rest long")
@@ -42,7 +42,7 @@ def test_f2_on_many_renames_by_a_pattern_that_is_seen_before(toys):
 
 
 def test_a_pattern_that_cannot_be_read_is_told_and_not_done(toys):
-    from app.features.batch.batch_dialogs import RenameDialog
+    from app.features.editing.batch_dialogs import RenameDialog
 
     drive = toys
     select(drive, "rest short", "rest long")
@@ -59,7 +59,7 @@ def test_a_pattern_that_cannot_be_read_is_told_and_not_done(toys):
 
 
 def test_copied_properties_are_pasted_in_the_chosen_groups(toys):
-    from app.features.batch.batch_dialogs import PasteDialog
+    from app.features.editing.batch_dialogs import PasteDialog
     from metagraph.graph import edits
 
     drive = toys
@@ -82,7 +82,7 @@ def test_copied_properties_are_pasted_in_the_chosen_groups(toys):
 
 
 def test_a_clip_is_replaced_and_settings_stay(toys):
-    from app.features.batch.batch_dialogs import ReplaceDialog
+    from app.features.editing.batch_dialogs import ReplaceDialog
 
     drive = toys
     (ident,) = select(drive, "rest long")
@@ -99,4 +99,4 @@ def test_a_clip_is_replaced_and_settings_stay(toys):
 
 def test_the_menu_of_an_action_offers_them(toys):
     drive = toys
-    assert [a.objectName() for a in drive.window.canvas.row_actions] == ["rename", "copy", "paste", "replace_clip", "twins"]
+    assert [a.objectName() for a in drive.canvas.row_actions] == ["rename", "copy", "paste", "replace_clip", "twins"]

@@ -1,1 +1,0 @@
-"""Renaming, pasting and replacing of several actions at once."""

@@ -1,0 +1,57 @@
+"""Remove, rename, copy, paste, select all: each means what is selected, wherever that is; several actions are renamed at once."""
+
+from __future__ import annotations
+
+from app.shell.actions import Command, Standard
+from app.shell.context import Contribution, Shell
+from app.shell.verbs import Verbs
+
+
+def contribute(shell: Shell) -> Contribution:
+    verbs, session, document = shell.services[Verbs], shell.stage.session, shell.document
+    meta = lambda: session.onstage.mode == "meta"  # noqa: E731
+
+    def rename_several() -> None:
+        from app.features.editing.batch_dialogs import RenameDialog
+
+        RenameDialog(document, session.selection.actions, shell.widget).open()
+
+    def replace() -> None:
+        from app.features.editing.batch_dialogs import ReplaceDialog
+
+        ReplaceDialog(document, session.selection.actions, shell.widget).open()
+
+    def copy() -> None:
+        session.selection.copied = session.selection.actions[0]
+
+    def can_paste() -> bool:
+        return meta() and bool(session.selection.actions) and session.selection.copied is not None and document.project.action(session.selection.copied) is not None
+
+    def paste() -> None:
+        from app.features.editing.batch_dialogs import PasteDialog
+
+        PasteDialog(document, str(session.selection.copied), session.selection.actions, shell.widget).open()
+
+    verbs.offer("rename", lambda: meta() and len(session.selection.actions) > 1, rename_several)
+    verbs.offer("copy", lambda: meta() and len(session.selection.actions) == 1, copy)
+    verbs.offer("paste", can_paste, paste)
+
+    def do_copy() -> None:
+        verbs.do("copy")
+        shell.actions.refresh()
+
+    return Contribution(
+        commands=(
+            Command("delete", "&Edit", "selection", "&Remove", lambda: verbs.do("remove"), (Standard.Delete,),
+                    enabled=lambda: verbs.can("remove"), study=True),
+            Command("rename", "&Edit", "selection", "Re&name…", lambda: verbs.do("rename"), ("F2",), study=True, menus=("action",)),
+            Command("copy", "&Edit", "properties", "&Copy properties", do_copy, (Standard.Copy,), enabled=lambda: verbs.can("copy"),
+                    study=True, menus=("action",)),
+            Command("paste", "&Edit", "properties", "&Paste properties…", lambda: verbs.do("paste"), (Standard.Paste,),
+                    tip="Give the selected actions what another one has", enabled=lambda: verbs.can("paste"), study=True,
+                    menus=("action",)),
+            Command("replace_clip", "&Edit", "properties", "Replace c&lip…", replace, tip="Another clip, the same settings",
+                    enabled=lambda: bool(session.selection.actions), when="meta", study=True, menus=("action",)),
+            Command("select_all", "&Edit", "find", "Select &all", lambda: verbs.do("select_all"), (Standard.SelectAll,), study=True),
+        ),
+    )  # fmt: skip

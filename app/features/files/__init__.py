@@ -1,0 +1,77 @@
+"""New, open, save, import: the document's files as commands, and what is told of an import."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+from PySide6.QtCore import Qt
+from PySide6.QtWidgets import QMenu, QMessageBox
+
+from app.project.files import PRACTICE, SAMPLE, Files
+from app.project.importing import Importing
+from app.project.watching import Watcher
+from app.shell.actions import Command, Standard
+from app.shell.context import Contribution, HeaderItem, Shell
+from metagraph.formats.imports import Imported
+
+LINES = 6  # of a report that are shown at once
+
+
+def contribute(shell: Shell) -> Contribution:
+    files, importing, watcher = shell.services[Files], shell.services[Importing], shell.services[Watcher]
+    session, stack = shell.stage.session, shell.document.undo_stack
+    watcher.set_on(str(shell.settings.value("watch", "true")) == "true")
+
+    def watch() -> None:
+        watcher.set_on(not watcher.on)
+        shell.settings.setValue("watch", "true" if watcher.on else "false")
+        shell.actions.refresh()
+
+    def fill_recent(menu: QMenu) -> None:
+        for path in files.recent():
+            menu.addAction(f"{path.name.split('.')[0]}   {path.parent}", lambda p=path: files.open(p))
+        if menu.isEmpty():
+            menu.addAction("None yet").setEnabled(False)
+
+    def imported(result: Imported, place: object) -> None:
+        load = importing.load_for(result)
+        if place is None and load.clips:
+            session.selection.select_clips(load.clips if len(load.clips) < 2 else ())
+
+    files.opened.connect(session.open_project)
+    files.report.connect(lambda title, lines: _report(shell, title, lines))
+    importing.report.connect(lambda title, lines: _report(shell, title, lines))
+    importing.imported.connect(imported)
+    menu = "&File"
+    return Contribution(
+        commands=(
+            Command("new", menu, "project", "&New project", files.new, (Standard.New,)),
+            Command("open", menu, "project", "&Open…", files.ask_open, (Standard.Open,)),
+            Command("recent", menu, "project", "Open &recent", fill=fill_recent),
+            Command("sample", menu, "project", "Open the &sample project", lambda: files.open(SAMPLE, template=True)),
+            Command("practice", menu, "project", "Open the &practice project", lambda: files.open(PRACTICE, template=True),
+                    tip="152 clips to label"),
+            Command("save", menu, "save", "&Save", files.save, (Standard.Save,)),
+            Command("save_as", menu, "save", "Save &as…", files.save_as, (Standard.SaveAs,)),
+            Command("import", menu, "import", "&Import folder…", importing.ask_import_folder, ("Ctrl+I",), icon="folder"),
+            Command("import_files", menu, "import", "Import &files…", importing.ask_import_files, ("Ctrl+Shift+I",)),
+            Command("watch", menu, "import", "Follow changed &files", watch, checked=lambda: watcher.on,
+                    tip="Clips that are exported again are read again, in place"),
+            Command("find_missing", menu, "import", "Find missing files…", importing.find_missing),
+            Command("undo", "&Edit", "history", lambda: f"&Undo {stack.undoText()}".strip(), shell.document.undo, (Standard.Undo,),
+                    tip="Undo", icon="undo", enabled=stack.canUndo, study=True),
+            Command("redo", "&Edit", "history", lambda: f"&Redo {stack.redoText()}".strip(), shell.document.redo,
+                    (Standard.Redo, "Ctrl+Y"), tip="Redo", icon="redo", enabled=stack.canRedo, study=True),
+        ),
+        header=(HeaderItem("left", "import"), HeaderItem("left", "undo"), HeaderItem("left", "redo")),
+    )  # fmt: skip
+
+
+def _report(shell: Shell, title: str, lines: Sequence[str]) -> None:
+    box = QMessageBox(QMessageBox.Icon.Information, "Metagraph", title, QMessageBox.StandardButton.Ok, shell.widget)
+    more = f"\n… and {len(lines) - LINES} more" if len(lines) > LINES else ""
+    box.setInformativeText("\n".join(lines[:LINES]) + more)
+    if more:
+        box.setDetailedText("\n".join(lines))
+    box.setAttribute(Qt.WidgetAttribute.WA_DeleteOnClose)
+    box.open()

@@ -1,0 +1,203 @@
+"""Bringing clips in: files and folders that are imported or dropped, and clip files that were lost and found."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass, replace
+from pathlib import Path
+
+from PySide6.QtCore import QObject, Signal
+from PySide6.QtWidgets import QFileDialog, QWidget
+
+from app.look.plural import clips_words
+from app.project.document import Document
+from app.project.files import Files
+from app.project.jobs import Job, Jobs
+from app.project.kept_maps import kept_maps
+from app.project.load import Load
+from metagraph.formats.clips import SUFFIXES
+from metagraph.formats.imports import Imported, Strangers, import_files
+from metagraph.formats.repairs import repairs_of
+from metagraph.formats.takes import NAME
+from metagraph.graph.model import Project
+
+CLIPS = "Clips (*.bvh *.glb *.gltf *.vrm *.vrma *.fbx);;All files (*)"
+Retarget = Callable[[Sequence[Strangers], Callable[[Imported], None]], None]
+
+
+@dataclass(frozen=True)
+class FileDrop:
+    """Files that are no clips, and who takes them when they are dropped or imported. suffixes: what they may end in, lower case.
+    claim: those that are really its own. take: what it does with them."""
+
+    suffixes: tuple[str, ...]
+    claim: Callable[[Sequence[Path]], Sequence[Path]]
+    take: Callable[[Sequence[Path]], object]
+
+
+class Importing(QObject):
+    """told: words for the status bar. report: (title, lines) to read. imported: (Imported, what was given with it to place them).
+    repaired: (title, ids of clips, lines) to look through; the lines say what else is to be read. noticed: the same, with nothing that
+    has to be read. drops: who takes what is no clip. retarget: asks about clips of other skeletons; without it they are left out."""
+
+    told = Signal(str)
+    report = Signal(str, object)
+    imported = Signal(object, object)
+    repaired = Signal(str, object, object)
+    noticed = Signal(str, object, object)
+
+    def __init__(self, document: Document, jobs: Jobs, files: Files, widget: QWidget) -> None:
+        super().__init__(widget)
+        self.document, self.jobs, self.files, self.widget = document, jobs, files, widget
+        self.drops: tuple[FileDrop, ...] = ()
+        self.retarget: Retarget | None = None
+        self._era = 0  # counts the projects that were shown
+        document.loaded.connect(self._next_era)
+
+    def _next_era(self) -> None:
+        self._era += 1
+
+    def takes(self, paths: Sequence[Path]) -> bool:
+        """Return whether there may be anything among files that is of use, by their names."""
+        ends = (*SUFFIXES, *(suffix for drop in self.drops for suffix in drop.suffixes))
+        return any(not path.suffix or path.suffix.lower() in ends for path in paths)
+
+    def ask_import_folder(self) -> None:
+        if self.files.refuse():
+            return
+        name = QFileDialog.getExistingDirectory(self.widget, "Import a folder of clips", str(self.document.folder or Path.home()))
+        if name:
+            self.import_paths([name])
+
+    def ask_import_files(self) -> None:
+        if self.files.refuse():
+            return
+        names, _ = QFileDialog.getOpenFileNames(self.widget, "Import clips", str(self.document.folder or Path.home()), CLIPS)
+        if names:
+            self.import_paths(names)
+
+    def import_paths(self, paths: list[str], drop: object = None) -> None:
+        """Import files and folders on a thread; one undo step when it is done. drop: where to place them then."""
+        if self.files.refuse():
+            return
+        for taker in self.drops:
+            claimed = taker.claim([Path(p) for p in paths])
+            if claimed:
+                taker.take(claimed)
+                paths = [p for p in paths if Path(p) not in claimed]
+        if not paths:
+            return
+        project, folder, era = self.document.project, self.document.folder, self._era
+
+        def done(result: Imported) -> None:
+            if era == self._era:
+                self._imported(result, drop)
+            else:
+                self.told.emit("The import was dropped, since another project was opened.")
+
+        maps = kept_maps()
+
+        def work(job: Job) -> Imported:
+            tell = lambda n, total, path: job.tell(n, total, path.name)  # noqa: E731
+            remembered = lambda source, target: maps.get((source, target))  # noqa: E731
+            return import_files(project, folder, paths, tell, lambda: job.cancelled, "ask", remembered)
+
+        self.jobs.start("Importing clips", work, done, self.files.show_failure)
+
+    def _imported(self, result: Imported, drop: object) -> None:
+        count = len(result.loaded)
+        if count:
+            self.document.edit(f"Import {clips_words(count)}", result.into)
+        self.imported.emit(result, drop)
+        if not result.strangers or self.retarget is None:
+            self._tell_imported(result)
+            return
+        parts, groups = [replace(result, strangers=())], len(result.strangers)
+
+        def then(brought: Imported) -> None:
+            if brought.loaded:
+                self.document.edit(f"Retarget {clips_words(len(brought.loaded))}", brought.into)
+                self.imported.emit(brought, drop)
+            parts.append(brought)
+            if len(parts) > groups:
+                self._tell_imported(_together(parts))
+
+        self.retarget(result.strangers, then)
+
+    def _tell_imported(self, result: Imported) -> None:
+        """Say what came of an import: in the status bar, or to read where something was left out or repaired."""
+        count, files = len(result.loaded), len(result.failures)
+        words = f"Imported {clips_words(count)}"
+        if result.retargeted:
+            words += f", {result.retargeted} of them retargeted"
+        if result.left:
+            out = f"left out {clips_words(result.left)} of another skeleton"
+            words = f"{words}, {out}" if count else out.capitalize()
+        clips = self.load_for(result).clips
+        repairs = repairs_of(self.document.project, clips)
+        if any(found.repair.name != NAME for found in repairs):  # a name is plain to see, and no reason to interrupt
+            told = {found.repair.words for found in repairs}
+            notes = [note for note in result.notes if note.split(": ", 1)[-1] not in told]
+            (self.repaired if files else self.noticed).emit(words, clips, [*result.failures, *notes])
+            self.told.emit(words)
+        elif files:
+            self.report.emit(f"{words}; {files} file{'s' if files != 1 else ''} could not be read", [*result.failures, *result.notes])
+        elif not count and not result.left:
+            self.report.emit("Nothing was imported", ["No clip was found there. Clips are BVH, GLB, glTF, VRM animation or FBX files."])
+        else:
+            before = [note for note in result.notes if note.endswith("retargeted as before")]
+            more = [note for note in result.notes if note not in before]
+            words = ". ".join([words, *before])
+            self.told.emit(words + (f" ({len(more)} note{'s' if len(more) != 1 else ''}, see the tooltips)" if more else ""))
+
+    def load_for(self, result: Imported) -> Load:
+        """Return the imported clips as something that can be dropped."""
+        known = {(e.path, e.take): e.id for e in self.document.project.clips.values()}
+        return Load(clips=tuple(known[(path, take)] for path, take, _, _ in result.loaded if (path, take) in known))
+
+    def find_missing(self) -> None:
+        """Ask where missing clip files are now, and load them from there."""
+        project, era = self.document.project, self._era
+        missing = [e for e in project.clips.values() if e.motion is None]
+        if not missing:
+            self.told.emit("No clip file is missing.")
+            return
+        name = QFileDialog.getExistingDirectory(
+            self.widget, f"Where are the {len(missing)} missing clips?", str(self.document.folder or Path.home())
+        )
+        if not name:
+            return
+        folder = Path(name)
+
+        def work(job: Job) -> Project:
+            from metagraph.formats.store import relocate
+
+            return relocate(project, self.document.folder, folder, job.tell)
+
+        def done(found: Project) -> None:
+            if era != self._era:
+                return
+            before = {i for i, e in self.document.project.clips.items() if e.motion is None}
+            self.document.edit("Find missing clips", lambda p: _take_over(p, found))
+            left = sum(1 for i in before if self.document.project.clips[i].motion is None)
+            self.told.emit(f"Found {len(before) - left} of {len(before)} missing clips.")
+
+        self.jobs.start("Looking for clips", work, done, self.files.show_failure)
+
+
+def _together(parts: Sequence[Imported]) -> Imported:
+    """Return several imports as one."""
+    return replace(
+        parts[0],
+        loaded=tuple(x for part in parts for x in part.loaded),
+        failures=tuple(x for part in parts for x in part.failures),
+        notes=tuple(x for part in parts for x in part.notes),
+        retargeted=sum(part.retargeted for part in parts),
+        left=sum(part.left for part in parts),
+    )
+
+
+def _take_over(project: Project, found: Project) -> Project:
+    """Return `project` with the clips that have motion in `found` and none here."""
+    clips = {i: found.clips[i] if e.motion is None and i in found.clips else e for i, e in project.clips.items()}
+    return replace(project, clips=clips)

@@ -1,0 +1,72 @@
+"""Who is on stage: the models that improvise, a kept performance or a conversation; and which of the two editors' graphs moves them."""
+
+from __future__ import annotations
+
+from typing import Literal
+
+from PySide6.QtCore import QObject, Signal
+
+from metagraph.graph.model import Project
+
+Mode = Literal["meta", "manual"]
+
+
+class OnStage(QObject):
+    """performance_changed: another kept performance is on stage, or other requests of it are selected. mode_changed: the meta-graph or
+    the manual state machine is edited and played. conversation_changed: another conversation is on stage, or another side of it shown.
+    """
+
+    performance_changed = Signal()
+    mode_changed = Signal()
+    conversation_changed = Signal()
+
+    def __init__(self, parent: QObject | None = None) -> None:
+        super().__init__(parent)
+        self.mode: Mode = "meta"
+        self.performance: str | None = None  # the kept performance on stage, None while the models improvise
+        self.requests: tuple[str, ...] = ()  # selected in the timeline
+        self.conversation: str | None = None  # the conversation on stage, None for none; never while a kept performance is
+        self.side = 0  # of its two, whose plan the timeline shows
+
+    def set_mode(self, mode: Mode) -> None:
+        """Edit and play the meta-graph, or the manual state machine."""
+        if mode != self.mode:
+            self.mode = mode
+            self.mode_changed.emit()
+
+    def set_performance(self, ident: str | None) -> None:
+        """Put a kept performance on stage, or none; a conversation leaves it for one."""
+        if ident is not None:
+            self.set_conversation(None)
+        if ident != self.performance:
+            self.performance, self.requests = ident, ()
+            self.performance_changed.emit()
+
+    def select_requests(self, requests: tuple[str, ...]) -> None:
+        if requests != self.requests:
+            self.requests = requests
+            self.performance_changed.emit()
+
+    def set_conversation(self, ident: str | None) -> None:
+        """Put a conversation on stage, or none; a kept performance leaves it for one."""
+        if ident is not None:
+            self.set_performance(None)
+        if ident != self.conversation:
+            self.conversation = ident
+            self.conversation_changed.emit()
+
+    def set_side(self, side: int) -> None:
+        """Let the timeline show the plan of one side of the conversation, 0 or 1."""
+        if side != self.side:
+            self.side = side
+            self.conversation_changed.emit()
+
+    def follow(self, before: Project, after: Project) -> None:
+        """Let go of what an edit took away."""
+        if self.performance is not None and self.performance not in after.performances:
+            self.set_performance(None)
+        elif self.performance is not None and before.performances is not after.performances:
+            there = {ask.id for ask in after.performances[self.performance].asks}
+            self.select_requests(tuple(i for i in self.requests if i in there))
+        if self.conversation is not None and self.conversation not in after.conversations:
+            self.set_conversation(None)

@@ -1,0 +1,58 @@
+"""The problems of the project as it is now: found on a thread after each edit, merged with what the statistics of jumps flag."""
+
+from __future__ import annotations
+
+from PySide6.QtCore import QObject, QTimer, Signal
+
+from app.project.document import Document
+from app.project.jobs import Jobs
+from app.stage.compatibility_state import Compatibility, merged
+from app.stage.session import Session
+from metagraph.graph.check import Problem, check
+
+AFTER = 250  # milliseconds of quiet after an edit before problems are looked for
+
+
+class ProblemWatch(QObject):
+    """changed: `problems` and `misfits` are of the project as it is now. misfits: action id -> words, of the actions with problems."""
+
+    changed = Signal()
+
+    def __init__(
+        self, document: Document, session: Session, jobs: Jobs, compatibility: Compatibility, parent: QObject | None = None
+    ) -> None:
+        super().__init__(parent)
+        self.document, self.session, self.jobs, self.compatibility = document, session, jobs, compatibility
+        self.problems: tuple[Problem, ...] = ()
+        self.misfits: dict[str, str] = {}
+        self._found: tuple[Problem, ...] = ()  # by `check`, without what the statistics flag
+        self._busy = False
+        self._soon = QTimer(self, singleShot=True, interval=AFTER)
+        self._soon.timeout.connect(self._check)
+        document.changed.connect(lambda before, after: self._soon.start())
+        session.onstage.mode_changed.connect(self._merge)
+        compatibility.changed.connect(self._merge)
+
+    def stop(self) -> None:
+        self._soon.stop()
+
+    def _check(self) -> None:
+        if self._busy:
+            self._soon.start()
+            return
+        self._busy = True
+        project = self.document.project
+        self.jobs.start("check", lambda _: check(project), self._checked, lambda e: self._checked([]), quick=True)
+
+    def _checked(self, problems: list[Problem]) -> None:
+        self._busy = False
+        self._found = tuple(problems)
+        self._merge()
+
+    def _merge(self) -> None:
+        """Problems of what is not edited now are not shown."""
+        meta = self.session.onstage.mode == "meta"
+        found = tuple(p for p in self._found if not (p.state or p.link if meta else p.stance or p.action))
+        self.problems = merged(found, self.compatibility.flags if meta else {})
+        self.misfits = {p.action: f"{p.message}. {p.remedy}" for p in self.problems if p.action and p.severity != "hint"}
+        self.changed.emit()

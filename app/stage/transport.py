@@ -1,0 +1,75 @@
+"""The playhead and what moves it: playing, speed, loop; and what it runs through, the whole performance or a clip looked at."""
+
+from __future__ import annotations
+
+from typing import Literal
+
+from PySide6.QtCore import QObject, Signal
+
+from metagraph.graph.model import Project
+
+Show = Literal["plan", "clip", "context"]
+
+
+class Transport(QObject):
+    """playing_changed, moved: the playhead; seconds. show_changed: the preview shows something else (see `show`)."""
+
+    playing_changed = Signal()
+    moved = Signal(float)
+    show_changed = Signal()
+
+    def __init__(self, parent: QObject | None = None) -> None:
+        super().__init__(parent)
+        self.playing = True
+        self.speed = 1.0
+        self.loop = True
+        self.seconds = 0.0
+        self.show: Show = "plan"
+        self.shown: str | None = None  # the clip (or action) shown alone or in context
+        self.tried: str | None = None  # the stance a clip is shown on as if it were placed there
+        self._plan_seconds = 0.0  # where the performance was left
+
+    def set_playing(self, playing: bool) -> None:
+        if playing != self.playing:
+            self.playing = playing
+            self.playing_changed.emit()
+
+    def seek(self, seconds: float) -> None:
+        """Move the playhead; `moved` is emitted."""
+        self.seconds = max(0.0, seconds)
+        self.moved.emit(self.seconds)
+
+    def show_plan(self) -> None:
+        """Play the whole performance, from where it was left."""
+        self._show("plan", None)
+
+    def show_clip(self, clip: str) -> None:
+        """Play a clip alone."""
+        self._show("clip", clip)
+
+    def show_context(self, ident: str, tried: str | None = None) -> None:
+        """Play a clip or an action in context: stance, clip, back to the stance, the other layers on. tried: the stance that a clip is
+        shown on as if it were placed there."""
+        self._show("context", ident, tried)
+
+    def _show(self, show: Show, shown: str | None, tried: str | None = None) -> None:
+        if (show, shown, tried) != (self.show, self.shown, self.tried):
+            self.tried = tried
+            if show == "plan":
+                self.seconds = self._plan_seconds
+            elif self.show == "plan":
+                self._plan_seconds = self.seconds
+            if show != "plan":
+                self.seconds = 0.0
+            self.show, self.shown = show, shown
+            self.show_changed.emit()
+        if show != "plan":
+            self.seek(0.0)
+            self.set_playing(True)
+
+    def follow(self, after: Project) -> None:
+        """Play the performance where an edit took away what was looked at."""
+        if self.shown is None or self.shown in after.clips:
+            return
+        if all(find(self.shown) is None for find in (after.action, after.state, after.link)):
+            self.show_plan()
