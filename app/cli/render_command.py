@@ -102,13 +102,13 @@ def render(options: Namespace) -> int:
 
 def _talking(project: Project, options: Namespace, folder: Path) -> Shown:
     """Return both sides of a conversation of the project, named by id or name."""
-    from app.stage.conversation_plans import Stage
+    from app.stage.conversation_plans import ConversationPlans
 
     found = next((i for i, c in project.conversations.items() if options.conversation in (i, c.name)), None)
     if found is None:
         names = ", ".join(f"'{c.name}'" for c in project.conversations.values()) or "none"
         raise ValueError(f"there is no conversation '{options.conversation}' in the project; it keeps {names}")
-    shown = Stage().show(project, found, folder)
+    shown = ConversationPlans().show(project, found, folder)
     for note in shown.notes:
         print(f"note: {note}", file=sys.stderr)
     options.seconds = shown.length if options.seconds is None else options.seconds

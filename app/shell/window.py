@@ -128,7 +128,7 @@ class Window(QMainWindow):
         d.saved.connect(lambda: shell.learned.keep(d, shell.jobs))
         for signal in (
             s.place.layer_changed, s.selection.changed, s.transport.show_changed, s.transport.playing_changed, s.place.stance_changed, s.onstage.performance_changed,
-            s.onstage.conversation_changed, s.onstage.mode_changed, shell.stage.performance.live_changed, shell.compatibility.changed,
+            s.onstage.conversation_changed, s.onstage.mode_changed, shell.stage.performance.live.changed, shell.compatibility.changed,
         ):  # fmt: skip
             signal.connect(self.refresh)
         s.look.changed.connect(self.restyle)

@@ -17,7 +17,7 @@ from metagraph.graph.model import Project
 Key = tuple[Any, ...]
 
 
-class Stage:
+class ConversationPlans:
     """Reads voices and other projects once. Used by one thread at a time: the performance plans one thing after another."""
 
     def __init__(self) -> None:

@@ -9,6 +9,7 @@ from app.project.jobs import Jobs
 from app.stage.figures import Figures
 from app.stage.line_player import Sound
 from app.stage.performance import Performance
+from app.stage.playhead import Playhead
 from app.stage.session import Session
 from app.stage.thumbnails import Thumbnails
 
@@ -25,11 +26,12 @@ class Stage(QObject):
         self.session = Session(document, self)
         self.figures = Figures(document, jobs, self)
         self.performance = Performance(document, self.session, jobs, self)
+        self.playhead = Playhead(self.session, self.performance)
         self.thumbnails = Thumbnails(document, self.session, self.figures, self)
         self.sound = Sound(document, self.session, self.performance, jobs, self)
 
     def stop(self) -> None:
         """End what goes on by itself; at closing."""
-        self.performance.stop_live()
+        self.performance.live.end()
         self.sound.stop()
         self.thumbnails.stop()

@@ -86,7 +86,7 @@ def ask_menu(parent: QWidget, performance: Performance, seconds: float | None, l
     project = performance.document.project
 
     def ask(made: a.AnyAsk, text: str) -> None:
-        performance.ask(made, text)
+        performance.requests.ask(made, text)
 
     for layer in LAYERS:
         if lane not in (None, layer) or not project.graphs[layer].stances:
@@ -99,7 +99,7 @@ def ask_menu(parent: QWidget, performance: Performance, seconds: float | None, l
         _stage_items(menu, parent, performance.document, seconds, ask)
     if lane is None and performance.asks:
         menu.addSeparator()
-        menu.addAction("Withdraw all requests", lambda: performance.withdraw())
+        menu.addAction("Withdraw all requests", lambda: performance.requests.withdraw())
     if menu.isEmpty():
         menu.addAction("Make a stance first").setEnabled(False)
     return menu

@@ -217,7 +217,7 @@ def test_sitting_down_and_standing_up_are_transitions_between_two_stances(drive,
     drive.drag(drive.card("Interact"), drive.node("fidget"), lambda: drive.names("fidget") == ["Interact"])
 
     # Asked to sit, the character sits.
-    drive.performance.ask(a.Go(stance=sitting, at=1.0))
+    drive.performance.requests.ask(a.Go(stance=sitting, at=1.0))
     drive.wait(lambda: any(c.action.name == "Sit_Chair_Down" for c in drive.performance.shown.plan.layers["body"].cues))
 
     drive.document.save(tmp_path / "rogue.metagraph.yaml")

@@ -80,7 +80,7 @@ def test_an_annotation_is_imported_learned_changed_and_performed(drive, tmp_path
     drive.wait(lambda: panel.plot.found is not None and panel.plot.found.observed is not None)
 
     # It is performed as it was seen: the same kinds at the same times, other actions with another seed.
-    kept = drive.performance.kept
+    kept = drive.performance.requests.kept
     assert kept is not None and kept.name == "casual talk"
     drive.wait(lambda: drive.performance.shown.length == kept.length and bool(drive.performance.shown.plan.layers["head"].cues), 30)
     cues = drive.performance.shown.plan.layers["head"].cues
@@ -114,7 +114,9 @@ def test_an_annotation_is_imported_learned_changed_and_performed(drive, tmp_path
 
     # Without a performance on stage the changed models improvise: rest, then what the matrix says.
     drive.session.onstage.set_performance(None)
-    drive.wait(lambda: drive.performance.kept is None and any(m.written for m in drive.performance.shown.plan.layers["arms"].metas), 30)
+    drive.wait(
+        lambda: drive.performance.requests.kept is None and any(m.written for m in drive.performance.shown.plan.layers["arms"].metas), 30
+    )
     known = set(drive.document.project.markov["arms"].states)
     assert {(m.request.limb, m.request.kind) for m in drive.performance.shown.plan.layers["arms"].metas if m.written} <= known
 

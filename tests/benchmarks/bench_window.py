@@ -121,7 +121,9 @@ def stalls() -> None:
         window.session.jump(action=next(a.id for a in window.document.project.actions() if a.kind == "gesture"))
 
     def timing() -> None:
-        window.document.edit("Change timing", lambda p: edits.update_actions(p, window.session.selection.actions, timing={"blend_in": 0.33}))
+        window.document.edit(
+            "Change timing", lambda p: edits.update_actions(p, window.session.selection.actions, timing={"blend_in": 0.33})
+        )
 
     phase("first paint", 1.0)
     phase("late panels", 2.0, window.window.load_late_panels)

@@ -20,7 +20,7 @@ def contribute(shell: Shell) -> Contribution:
     session, document, stage = shell.stage.session, shell.document, shell.stage
 
     def make() -> PreviewPanel:
-        panel = PreviewPanel(session, stage.performance, stage.figures, shell.widget)
+        panel = PreviewPanel(session, stage.performance, stage.playhead, stage.figures, shell.widget)
         panel.view.failed.connect(shell.tell)
         panel.view.painted.connect(lambda _: stage.painted.emit())
         return panel
@@ -39,7 +39,9 @@ def contribute(shell: Shell) -> Contribution:
             session.transport.show_clip(clip)
 
     def play_in_context() -> None:
-        ident = session.selection.actions[0] if session.selection.actions else session.selection.clips[0] if session.selection.clips else None
+        ident = (
+            session.selection.actions[0] if session.selection.actions else session.selection.clips[0] if session.selection.clips else None
+        )
         if ident is not None:
             session.show_context(ident)
 

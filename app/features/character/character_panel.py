@@ -12,6 +12,7 @@ from app.stage.figures import Figures
 from app.stage.gl_view import make_view
 from app.stage.performance import Performance
 from app.stage.playback_source import ASIDE
+from app.stage.playhead import Playhead
 from app.stage.session import Session
 from metagraph.graph import anatomy
 from metagraph.graph.model import LAYERS, Project
@@ -27,9 +28,11 @@ FRAME = 16  # milliseconds between frames
 class PreviewPanel(QWidget):
     """Shows what the performance plays at the playhead. Drives the playhead while playing."""
 
-    def __init__(self, session: Session, performance: Performance, figures: Figures, parent: QWidget | None = None) -> None:
+    def __init__(
+        self, session: Session, performance: Performance, playhead: Playhead, figures: Figures, parent: QWidget | None = None
+    ) -> None:
         super().__init__(parent)
-        self.session, self.performance, self.figures = session, performance, figures
+        self.session, self.performance, self.playhead, self.figures = session, performance, playhead, figures
         self.bones = False
         self._framed: tuple[object, ...] = ()  # whom the camera was last framed on
         self._last: tuple[Figure, np.ndarray, np.ndarray] | None = None
@@ -170,7 +173,7 @@ class PreviewPanel(QWidget):
     def _tick(self) -> None:
         elapsed = self._clock.restart() / 1000
         if self.session.transport.playing and self.isVisible():
-            self.performance.advance(min(elapsed, 0.25))
+            self.playhead.advance(min(elapsed, 0.25))
 
     def _painted(self, _: float) -> None:
         self.frames += 1

@@ -189,7 +189,9 @@ class Editing(QObject):
 
     def add_here(self) -> None:
         """Add a segment at the playhead, on the side of the selected one, as long as there is room."""
-        self.add(self.last[0] if self.last is not None else 0, "clause", self.session.transport.seconds, self.session.transport.seconds + NEW)
+        self.add(
+            self.last[0] if self.last is not None else 0, "clause", self.session.transport.seconds, self.session.transport.seconds + NEW
+        )
 
     def nudge(self, by: float, what: str) -> None:
         """Move the selected segment ("body"), or one of its ends ("start", "end")."""

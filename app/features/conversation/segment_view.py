@@ -322,7 +322,9 @@ class View(QWidget):
         elif deed is not None and (self.editing.chosen or not deed.needs):
             deed.run(self.editing, self._seconds())
         elif key in (Qt.Key.Key_Plus, Qt.Key.Key_Equal, Qt.Key.Key_Minus):
-            self.zoom(1 / ZOOM if key == Qt.Key.Key_Minus else ZOOM, min(max(LEFT, self.scale().x(self.session.transport.seconds)), self.width()))
+            self.zoom(
+                1 / ZOOM if key == Qt.Key.Key_Minus else ZOOM, min(max(LEFT, self.scale().x(self.session.transport.seconds)), self.width())
+            )
         elif key in (Qt.Key.Key_PageUp, Qt.Key.Key_PageDown):
             page = 0.8 * (self.width() - LEFT) / self.each
             self.look_at(self.first + (page if key == Qt.Key.Key_PageDown else -page))

@@ -25,7 +25,12 @@ def contribute(shell: Shell) -> Contribution:
         session.selection.copied = session.selection.actions[0]
 
     def can_paste() -> bool:
-        return meta() and bool(session.selection.actions) and session.selection.copied is not None and document.project.action(session.selection.copied) is not None
+        return (
+            meta()
+            and bool(session.selection.actions)
+            and session.selection.copied is not None
+            and document.project.action(session.selection.copied) is not None
+        )
 
     def paste() -> None:
         from app.features.editing.batch_dialogs import PasteDialog

@@ -219,7 +219,9 @@ class Canvas(QWidget):
             if hit.area == "head":
                 self.gesture = HeadDrag(self, hit.ident, event.position())
         elif hit.area == "card" and hit.ident:
-            self.session.selection.select_actions(tuple(a.id for a in self.document.project.graphs[self.session.place.layer].of(hit.ident, "stance")))
+            self.session.selection.select_actions(
+                tuple(a.id for a in self.document.project.graphs[self.session.place.layer].of(hit.ident, "stance"))
+            )
         else:
             self.session.selection.select_actions(())
 

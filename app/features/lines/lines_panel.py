@@ -261,7 +261,7 @@ class LinesPanel(QWidget):
     def say(self) -> None:
         """Ask for the selected line at the playhead."""
         for ident in self.chosen()[:1]:
-            self.performance.ask(Say(line=ident), "Ask for a line")
+            self.performance.requests.ask(Say(line=ident), "Ask for a line")
 
     # --- files dropped
 

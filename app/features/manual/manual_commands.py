@@ -38,7 +38,13 @@ kept = Clipboard()
 def remove(canvas: ManualCanvas) -> None:
     s = canvas.session
     count = len(s.selection.states) + len(s.selection.links)
-    what = f"{count} nodes and links" if s.selection.states and s.selection.links else f"{count} states" if s.selection.states else f"{count} links"
+    what = (
+        f"{count} nodes and links"
+        if s.selection.states and s.selection.links
+        else f"{count} states"
+        if s.selection.states
+        else f"{count} links"
+    )
     text = f"Remove {what if count > 1 else 'state' if s.selection.states else 'link'}"
     canvas.do(text, lambda p: manual_edits.remove(p, s.selection.states, s.selection.links))
 

@@ -12,7 +12,7 @@ def contribute(shell: Shell) -> Contribution:
 
         open_keypoints(shell)
 
-    can = lambda: shell.document.project.skeleton is not None and shell.stage.performance.live is None  # noqa: E731
+    can = lambda: shell.document.project.skeleton is not None and shell.stage.performance.live.stage is None  # noqa: E731
     return Contribution(
         commands=(
             Command("mimic", "&Play", "live", "Mimic &keypoints…", mimic, tip="Let the character do as a person before a camera did",

@@ -73,7 +73,7 @@ class MimicDialog(QDialog):
         form.addRow("Layers", row)
         self.gaze = self._box("Look where the person looks", "The character looks where the person's head is turned", False)
         form.addRow("Gaze", self.gaze)
-        kept = shell.stage.performance.kept
+        kept = shell.stage.performance.requests.kept
         into = f"What is seen is added to '{kept.name}'." if kept is not None else "What is seen becomes a new performance."
         layout.addWidget(self._dim(f"{into} Gestures and fidgets go on as they do."))
         if keypoints.dims == 2:
@@ -106,7 +106,7 @@ class MimicDialog(QDialog):
         """Look through the recording on a thread, then make requests of what was seen."""
         shell, keypoints, name = self.shell, self.keypoints, self.name
         project, stage = shell.document.project, shell.stage.session.onstage.performance
-        kept = shell.stage.performance.kept
+        kept = shell.stage.performance.requests.kept
         into = kept or Performance(name=Path(name).stem, length=round(keypoints.seconds + REST, 3))
         mirror, gaze = self.mirror.isChecked(), self.gaze.isChecked()
         layers = [layer for layer, box in self.layers.items() if box.isChecked()]

@@ -40,7 +40,7 @@ class RenderDialog(QDialog):
         super().__init__(parent)
         self.performance, self.session, self.jobs = performance, session, jobs
         self.setAttribute(Qt.WidgetAttribute.WA_DeleteOnClose)  # what runs goes on; the status bar shows it
-        kept = performance.kept
+        kept = performance.requests.kept
         if performance.conversation is not None:
             kept = performance.document.project.conversations[performance.conversation]
         self.setWindowTitle(f"Write '{kept.name}'" if kept is not None else "Write the performance")

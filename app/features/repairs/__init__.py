@@ -18,7 +18,9 @@ def contribute(shell: Shell) -> Contribution:
         """Show the repairs of the clips given, else of the selected ones, else of all."""
         from app.features.repairs.repairs_dialog import RepairsDialog
 
-        chosen = clips or session.selection.clips or tuple(a.clip for a in session.selection.selected_actions()) or tuple(document.project.clips)
+        chosen = (
+            clips or session.selection.clips or tuple(a.clip for a in session.selection.selected_actions()) or tuple(document.project.clips)
+        )
         words = title or f"Repairs of {clips_words(len(set(chosen)))}"
         RepairsDialog(document, shell.jobs, words, dict.fromkeys(chosen), lines, shell.widget).show()
 

@@ -154,7 +154,7 @@ class Guide(QObject):
         self.screen.hide()
         self._leave()
         self.shell.document.load(Project(), None)
-        self.windoself.shell.services[Files].opened.emit()
+        self.shell.services[Files].opened.emit()
 
     # --- work
 

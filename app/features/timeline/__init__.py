@@ -19,17 +19,20 @@ def contribute(shell: Shell) -> Contribution:
         return TimelinePanel(document, session, performance, shell.widget)
 
     def toggle_live() -> None:
-        (performance.go_live if performance.live is None else performance.stop_live)()
+        (performance.live.begin if performance.live.stage is None else performance.live.end)()
         shell.show("timeline")
 
     shell.services[Verbs].offer(
-        "remove", lambda: session.onstage.mode == "meta" and bool(session.onstage.requests), lambda: performance.withdraw(*session.onstage.requests), rank=1
+        "remove",
+        lambda: session.onstage.mode == "meta" and bool(session.onstage.requests),
+        lambda: performance.requests.withdraw(*session.onstage.requests),
+        rank=1,
     )
     return Contribution(
         panels=(Panel("timeline", "Performance", "bottom", make),),
         commands=(
             Command("live", "&Play", "live", "Li&ve", toggle_live, ("Ctrl+L",), tip="Let programs on this machine drive the character",
-                    enabled=lambda: document.project.skeleton is not None, checked=lambda: performance.live is not None, when="meta"),
+                    enabled=lambda: document.project.skeleton is not None, checked=lambda: performance.live.stage is not None, when="meta"),
         ),
         late_imports=("app.features.timeline.timeline_panel",),
     )  # fmt: skip

@@ -153,13 +153,33 @@ class Lanes(QWidget):
             picture.setDevicePixelRatio(ratio)
             painter = QPainter(picture)
             painter.setFont(font)
-            scene = Scene(p.shown, found, self.scale(), self.width(), self.height(), s.place.layer, ends, set(s.selection.actions), set(s.onstage.requests))
+            scene = Scene(
+                p.shown,
+                found,
+                self.scale(),
+                self.width(),
+                self.height(),
+                s.place.layer,
+                ends,
+                set(s.selection.actions),
+                set(s.onstage.requests),
+            )
             paint(painter, theme(s.look.name), scene)
             painter.end()
             self.painted += 1
             return picture
 
-        values = (self.scale(), self.size(), ratio, s.look.name, s.place.layer, ends, s.selection.actions, s.onstage.requests, font.toString())
+        values = (
+            self.scale(),
+            self.size(),
+            ratio,
+            s.look.name,
+            s.place.layer,
+            ends,
+            s.selection.actions,
+            s.onstage.requests,
+            font.toString(),
+        )
         return self._still.of(values, (p.shown, found), make)
 
     def focusInEvent(self, event: QFocusEvent) -> None:
@@ -194,7 +214,7 @@ class Lanes(QWidget):
         lone = more and ident in chosen
         if ident not in chosen:
             self.session.onstage.select_requests((*chosen, ident) if more else (ident,))
-        if self.performance.editable:
+        if self.performance.requests.editable:
             self.drag = Drag(self.session.onstage.requests, ident, event.position().x(), lone=lone)
         elif lone:
             self.session.onstage.select_requests(tuple(i for i in chosen if i != ident))
@@ -213,7 +233,7 @@ class Lanes(QWidget):
             self.first = max(0.0, self.first - (x - self._grip) / self.each)
             self.update()
         else:
-            over = mark_at(self.marks(), event.position()) is not None and self.performance.editable
+            over = mark_at(self.marks(), event.position()) is not None and self.performance.requests.editable
             self.setCursor(Qt.CursorShape.SizeHorCursor if over else Qt.CursorShape.ArrowCursor)
         self._grip = x
 
@@ -227,9 +247,9 @@ class Lanes(QWidget):
     def mouseReleaseEvent(self, event: QMouseEvent) -> None:
         drag, self.drag = self.drag, None
         if drag is not None and drag.begun and drag.by and drag.copy:
-            self.performance.copy_asks(drag.idents, drag.by)
+            self.performance.requests.copy(drag.idents, drag.by)
         elif drag is not None and drag.begun and drag.by:
-            self.performance.move_asks(drag.idents, drag.by)
+            self.performance.requests.move(drag.idents, drag.by)
         elif drag is not None and drag.lone and not drag.begun:
             self.session.onstage.select_requests(tuple(i for i in self.session.onstage.requests if i != drag.ident))
         self.update()
@@ -248,7 +268,7 @@ class Lanes(QWidget):
     def _menu(self, at: QPointF, on_screen: QPointF) -> None:
         seconds = round(max(0.0, self.scale().seconds(at.x())), 2)
         mark = mark_at(self.marks(), at)
-        if mark is not None and self.performance.editable:
+        if mark is not None and self.performance.requests.editable:
             self._mark_menu(mark).popup(on_screen.toPoint())
         else:
             ask_menu(self, self.performance, seconds, lane_at(self.height(), at)).popup(on_screen.toPoint())
@@ -261,15 +281,17 @@ class Lanes(QWidget):
         menu, chosen = QMenu(self), self.session.onstage.requests
         menu.setAttribute(Qt.WidgetAttribute.WA_DeleteOnClose)
         menu.addAction("Change…\tReturn", lambda: self.edit(ident))
-        menu.addAction("Copy\tCtrl+D", lambda: self.performance.copy_asks(chosen, FAR))
-        menu.addAction("Take it back\tDel" if len(chosen) == 1 else "Take them back\tDel", lambda: self.performance.withdraw(*chosen))
+        menu.addAction("Copy\tCtrl+D", lambda: self.performance.requests.copy(chosen, FAR))
+        menu.addAction(
+            "Take it back\tDel" if len(chosen) == 1 else "Take them back\tDel", lambda: self.performance.requests.withdraw(*chosen)
+        )
         return menu
 
     def edit(self, ident: str) -> None:
         """Show the fields of a request."""
         from app.features.timeline.request_editor import AskEditor
 
-        if self.performance.editable:
+        if self.performance.requests.editable:
             AskEditor(self.performance, ident, self).open()
 
     def contextMenuEvent(self, event: QContextMenuEvent) -> None:
@@ -281,7 +303,7 @@ class Lanes(QWidget):
     def _ask_here(self) -> None:
         """Ask for something at the playhead."""
         x = min(max(LEFT, self.scale().x(self.session.transport.seconds)), self.width())
-        seconds = round(self.session.transport.seconds, 2) if self.performance.live is None else None
+        seconds = round(self.session.transport.seconds, 2) if self.performance.live.stage is None else None
         ask_menu(self, self.performance, seconds).popup(self.mapToGlobal(QPointF(x, RULER).toPoint()))
 
     def _scrub(self, x: float) -> None:
@@ -308,7 +330,7 @@ class Lanes(QWidget):
 
     def _nudge(self, key: Qt.Key, modifiers: Qt.KeyboardModifier) -> None:
         by = FAR if modifiers & Qt.KeyboardModifier.ShiftModifier else NUDGE
-        self.performance.move_asks(self.session.onstage.requests, by if key == Qt.Key.Key_Right else -by, merge="nudge")
+        self.performance.requests.move(self.session.onstage.requests, by if key == Qt.Key.Key_Right else -by, merge="nudge")
 
     def _choose(self, step: int) -> None:
         """Select the request before or after the selected one, in time; without one, the first from the playhead on."""
@@ -324,7 +346,7 @@ class Lanes(QWidget):
         self.reveal(order[place].ask.id)
 
     def keyPressEvent(self, event: QKeyEvent) -> None:
-        chosen, key, can = self.session.onstage.requests, event.key(), self.performance.editable
+        chosen, key, can = self.session.onstage.requests, event.key(), self.performance.requests.editable
         if key == Qt.Key.Key_Escape and self.drag is not None:
             self.drag = None
             self.setCursor(Qt.CursorShape.ArrowCursor)
@@ -336,7 +358,7 @@ class Lanes(QWidget):
         elif chosen and can and key in (Qt.Key.Key_Left, Qt.Key.Key_Right):
             self._nudge(Qt.Key(key), event.modifiers())
         elif chosen and can and key == Qt.Key.Key_D and event.modifiers() & Qt.KeyboardModifier.ControlModifier:
-            self.performance.copy_asks(chosen, FAR)
+            self.performance.requests.copy(chosen, FAR)
         elif chosen and key in (Qt.Key.Key_Return, Qt.Key.Key_Enter):
             self.edit(chosen[0])
         elif key in (Qt.Key.Key_Up, Qt.Key.Key_Down):
@@ -344,7 +366,9 @@ class Lanes(QWidget):
         elif key == Qt.Key.Key_Insert:
             self._ask_here()
         elif key in (Qt.Key.Key_Plus, Qt.Key.Key_Equal, Qt.Key.Key_Minus):
-            self._zoom(1 / ZOOM if key == Qt.Key.Key_Minus else ZOOM, min(max(LEFT, self.scale().x(self.session.transport.seconds)), self.width()))
+            self._zoom(
+                1 / ZOOM if key == Qt.Key.Key_Minus else ZOOM, min(max(LEFT, self.scale().x(self.session.transport.seconds)), self.width())
+            )
         elif key in (Qt.Key.Key_PageUp, Qt.Key.Key_PageDown):
             page = 0.8 * (self.width() - LEFT) / self.each
             self.first = max(0.0, self.first + (page if key == Qt.Key.Key_PageDown else -page))
@@ -366,7 +390,7 @@ class Lanes(QWidget):
     def _tip(self, at: QPointF) -> str:
         mark = mark_at(self.marks(), at)
         if mark is not None:
-            return told(mark, self.performance.editable)
+            return told(mark, self.performance.requests.editable)
         found = cue_at(self.performance.shown, self.scale(), self.height(), at)
         if found is not None:
             cue = found[1]

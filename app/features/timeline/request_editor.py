@@ -98,12 +98,12 @@ class AskEditor(QDialog):
         if self._ask() is None:
             return
         try:
-            self.performance.change_ask(self.ident, **{name: value})
+            self.performance.requests.change(self.ident, **{name: value})
         except EditError as error:
             self.words.setText(str(error))
 
     def _remove(self) -> None:
-        self.performance.withdraw(self.ident)
+        self.performance.requests.withdraw(self.ident)
         self.accept()
 
     # --- one widget a field

@@ -66,7 +66,7 @@ class TimelinePanel(QWidget):
         self.lost.clicked.connect(self.show_lost)
         row.addWidget(self.lost)
         self.now = QToolButton(self, text="Back to now", toolTip="Follow what is played live again")
-        self.now.clicked.connect(performance.follow)
+        self.now.clicked.connect(performance.live.follow)
         row.addWidget(self.now)
         self.live = QToolButton(self, text="Live", checkable=True)
         self.live.setToolTip("Let programs on this machine drive the character, over WebSocket and OSC (Ctrl+L)")
@@ -87,7 +87,7 @@ class TimelinePanel(QWidget):
         layout.addWidget(self.lanes, 1)
         performance.changed.connect(self._words)
         session.transport.show_changed.connect(self._words)
-        performance.live_changed.connect(self._live)
+        performance.live.changed.connect(self._live)
         session.transport.moved.connect(self._moved)
         session.transport.playing_changed.connect(self._moved)
         self._spoken = QTimer(self, interval=500)  # the words about clients, while live
@@ -134,10 +134,10 @@ class TimelinePanel(QWidget):
     # --- performances
 
     def _fill(self) -> None:
-        menu, kept = self.more_menu, self.performance.kept
+        menu, kept = self.more_menu, self.performance.requests.kept
         menu.clear()
         menu.addAction("New performance", self.new)
-        played = self.performance.last_live
+        played = self.performance.live.last
         if played is not None:
             menu.addAction("Keep what was played live", lambda: self._keep("Keep live session", played))
         if kept is None:
@@ -170,30 +170,30 @@ class TimelinePanel(QWidget):
         self._keep("New performance", KeptPerformance(name="Performance"))
 
     def duplicate(self) -> None:
-        if self.performance.kept is not None:
-            self._keep("Duplicate performance", self.performance.kept)
+        if self.performance.requests.kept is not None:
+            self._keep("Duplicate performance", self.performance.requests.kept)
 
     def rename(self) -> None:
-        kept = self.performance.kept
+        kept = self.performance.requests.kept
         if kept is not None:
             name, ok = QInputDialog.getText(self, "Rename performance", "Name", text=kept.name)
             if ok and name.strip():
                 self._change("Rename performance", name=name)
 
     def set_length(self) -> None:
-        kept = self.performance.kept
+        kept = self.performance.requests.kept
         if kept is not None:
             seconds, ok = QInputDialog.getDouble(self, "Length of the performance", "Seconds", kept.length, 0.1, 36000, 1)
             if ok:
                 self._change("Change length", length=round(seconds, 3))
 
     def _own_seed(self) -> None:
-        kept = self.performance.kept
+        kept = self.performance.requests.kept
         if kept is not None:
             self._change("Change seed", seed=self.document.project.settings.seed if kept.seed is None else None)
 
     def remove(self) -> None:
-        kept, ident = self.performance.kept, self.session.onstage.performance
+        kept, ident = self.performance.requests.kept, self.session.onstage.performance
         if kept is None or ident is None:
             return
         if kept.asks:
@@ -213,14 +213,14 @@ class TimelinePanel(QWidget):
     # --- live
 
     def toggle_live(self) -> None:
-        if self.performance.live is None:
-            self.performance.go_live()
+        if self.performance.live.stage is None:
+            self.performance.live.begin()
         else:
-            self.performance.stop_live()
+            self.performance.live.end()
         self._live()
 
     def _live(self) -> None:
-        on = self.performance.live is not None
+        on = self.performance.live.stage is not None
         self.live.setChecked(on)
         self.live.setText("● Live" if on else "Live")
         self.stage.setEnabled(not on)
@@ -231,8 +231,8 @@ class TimelinePanel(QWidget):
         self._words()
 
     def _moved(self) -> None:
-        here = self.performance.following and self.session.transport.playing
-        self.now.setVisible(self.performance.live is not None and not here)
+        here = self.performance.live.following and self.session.transport.playing
+        self.now.setVisible(self.performance.live.stage is not None and not here)
 
     # --- asking, seed
 
@@ -240,7 +240,7 @@ class TimelinePanel(QWidget):
         ask_menu(self, self.performance, None).exec(self.ask.mapToGlobal(self.ask.rect().bottomLeft()))
 
     def _seeded(self, seed: int) -> None:
-        kept, talk = self.performance.kept, self.performance.conversation
+        kept, talk = self.performance.requests.kept, self.performance.conversation
         if talk is not None:
             if seed != self.document.project.conversations[talk].seed:
                 self.document.edit("Change seed", lambda p: change_conversation(p, talk, seed=seed), merge="seed")
@@ -251,7 +251,7 @@ class TimelinePanel(QWidget):
             self.document.edit("Change seed", lambda p: edits.set_settings(p, seed=seed), merge="seed")
 
     def _show_seed(self) -> None:
-        kept, talk = self.performance.kept, self.performance.conversation
+        kept, talk = self.performance.requests.kept, self.performance.conversation
         seed = kept.seed if kept is not None and kept.seed is not None else self.document.project.settings.seed
         if talk is not None:
             seed = self.document.project.conversations[talk].seed
@@ -283,8 +283,8 @@ class TimelinePanel(QWidget):
         if marks:
             unmet = sum(1 for m in marks if m.lost)
             self.title.say(f"{many(len(marks), 'request')} selected" + (f", {unmet:,} of them could not be met" if unmet else ""), True)
-        elif self.performance.live is not None and plan:
-            self.title.say(self.performance.live.words())
+        elif self.performance.live.stage is not None and plan:
+            self.title.say(self.performance.live.stage.words())
         elif shown.clip is not None:
             self.title.say("A clip alone. Click it again to play it in context, Esc for the performance.")
         elif self.session.onstage.mode == "manual":

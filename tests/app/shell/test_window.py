@@ -225,7 +225,10 @@ def test_tab_goes_round_and_gets_stuck_nowhere(toys):
 
 def test_every_control_says_what_it_is(toys):
     drive = toys
-    for page, select in ((1, lambda: drive.session.jump(action=drive.id("rest to up"))), (0, lambda: drive.session.selection.select_actions(()))):
+    for page, select in (
+        (1, lambda: drive.session.jump(action=drive.id("rest to up"))),
+        (0, lambda: drive.session.selection.select_actions(())),
+    ):
         select()
         assert drive.properties.pages.currentIndex() == page
         for widget in drive.window.findChildren(QAbstractButton):
@@ -639,7 +642,11 @@ def test_a_missing_clip_can_be_looked_at_without_harm(toys):
     action = drive.action("rest beat lf")
     clips = {**drive.document.project.clips, action.clip: replace(drive.document.project.clips[action.clip], motion=None)}
     drive.document.load(replace(drive.document.project, clips=clips), None)
-    for show in (lambda: drive.session.transport.show_clip(action.clip), lambda: drive.session.show_context(action.id), drive.session.transport.show_plan):
+    for show in (
+        lambda: drive.session.transport.show_clip(action.clip),
+        lambda: drive.session.show_context(action.id),
+        drive.session.transport.show_plan,
+    ):
         show()
         drive.pause(60)
     drive.session.jump(action=action.id)

@@ -13,7 +13,7 @@ import pytest
 from PySide6.QtCore import Qt
 from PySide6.QtTest import QTest
 
-from app.stage.conversation_plans import Stage
+from app.stage.conversation_plans import ConversationPlans
 from metagraph.formats.store import absolute, open_project, save_project
 from metagraph.graph.asks import Gesture
 from metagraph.graph.conversation import Conversation, Segment, Side
@@ -99,7 +99,7 @@ def test_it_plays_to_its_end_and_stops_there(staged):
     staged.session.transport.loop = False
     staged.session.transport.seek(7.9)
     staged.session.transport.set_playing(True)
-    staged.performance.advance(0.5)
+    staged.shell.stage.playhead.advance(0.5)
     assert staged.session.transport.seconds == 8.0 and not staged.session.transport.playing
 
 
@@ -132,7 +132,7 @@ def test_a_side_moved_by_another_project_uses_that_ones_clips_and_one_that_canno
     save_project(absolute(other, folder), folder / "other.metagraph.yaml")
     for path, alpha, told in (("other.metagraph.yaml", 9.0, False), ("missing.metagraph.yaml", project.settings.alpha, True)):
         sides = (talk.sides[0], msgspec.structs.replace(talk.sides[1], project=path))
-        shown = Stage().show(replace(project, conversations={"v9000": msgspec.structs.replace(talk, sides=sides)}), "v9000", folder)
+        shown = ConversationPlans().show(replace(project, conversations={"v9000": msgspec.structs.replace(talk, sides=sides)}), "v9000", folder)
         assert shown.both[1].project.settings.alpha == alpha
         assert any("missing" in note for note in shown.notes) == told
 
@@ -148,7 +148,7 @@ def test_two_other_projects_are_each_read_once(talking, monkeypatch):
     whole = stage.open_whole
     monkeypatch.setattr(stage, "open_whole", lambda path: (read.append(path.name), whole(path))[1])
     sides = tuple(msgspec.structs.replace(s, project=f"{n}.metagraph.yaml") for s, n in zip(talk.sides, ("one", "two"), strict=True))
-    both, own = Stage(), replace(project, conversations={"v9000": msgspec.structs.replace(talk, sides=sides)})
+    both, own = ConversationPlans(), replace(project, conversations={"v9000": msgspec.structs.replace(talk, sides=sides)})
     for _ in range(3):
         both.show(own, "v9000", folder)
     assert read == ["one.metagraph.yaml", "two.metagraph.yaml"]
@@ -164,7 +164,7 @@ def test_a_side_can_move_with_a_clip_instead_of_its_graph_and_still_speaks_and_a
 
     def shown(motion: str | None):
         sides = (msgspec.structs.replace(talk.sides[0], motion=motion), talk.sides[1])
-        return Stage().show(replace(project, conversations={"v9000": msgspec.structs.replace(talk, sides=sides)}), "v9000", talking.parent)
+        return ConversationPlans().show(replace(project, conversations={"v9000": msgspec.structs.replace(talk, sides=sides)}), "v9000", talking.parent)
 
     still, moved, lost = shown(None), shown(clip.id), shown("c0")
     arm = project.skeleton.index("RightUpperArm") if "RightUpperArm" in project.skeleton else 10

@@ -48,7 +48,7 @@ def stage(qapp, qtbot, toy, tmp_path):
     session.transport.set_playing(False)
     project = replace(toy.project(), lines={"1": a.Line(audio="one.wav", duration=1.0)})
     document.load(project, tmp_path / "talk.metagraph.yaml")
-    performance.ask(a.Say(line="1", at=2.0))
+    performance.requests.ask(a.Say(line="1", at=2.0))
     qtbot.waitUntil(lambda: bool(sound.parts))
     yield sound
     sound.stop()

@@ -88,7 +88,7 @@ def test_a_double_click_asks_for_something_there_and_a_drag_moves_it(stage):
 
 def test_a_request_is_changed_in_its_fields_and_says_why_it_does_not_play(stage):
     drive = stage
-    drive.performance.ask(a.Gesture(at=3.0))
+    drive.performance.requests.ask(a.Gesture(at=3.0))
     (ask,) = drive.performance.asks
     drive.wait(lambda: ask.id in drive.performance.answers())
     QTest.mouseDClick(board(drive), LEFT_BUTTON, pos=mark(drive, ask.id).rect.center().toPoint())
@@ -116,7 +116,7 @@ def test_the_lost_requests_are_found_by_a_click_and_say_why_without_hovering(sta
     drive = stage
     panel = drive.timeline
     for at, tags in ((2.0, ()), (9.0, ("nonsense",)), (50.0, ("gibberish",))):
-        drive.performance.ask(a.Gesture(at=at, tags=tags))
+        drive.performance.requests.ask(a.Gesture(at=at, tags=tags))
     drive.wait(lambda: sum(m.lost for m in board(drive).marks()) == 2)
     drive.session.onstage.select_requests(())
     assert "2 requests could not be met" in panel.title.words
@@ -128,7 +128,7 @@ def test_the_lost_requests_are_found_by_a_click_and_say_why_without_hovering(sta
         assert LEFT <= mark(drive, chosen).rect.left() < board(drive).width()
     drive.session.onstage.select_requests((drive.performance.asks[0].id,))
     assert "Plays rest" in panel.title.words and "from 2.0" in panel.title.words
-    drive.performance.withdraw()
+    drive.performance.requests.withdraw()
     drive.wait(lambda: not panel.lost.isVisible())
 
 
@@ -154,7 +154,7 @@ def held(drive, ident: str, modifier=Qt.KeyboardModifier.NoModifier, seconds: fl
 
 def test_a_dragged_request_is_given_up_with_escape_and_copied_with_ctrl(stage):
     drive = stage
-    drive.performance.ask(a.Gesture(at=2.0))
+    drive.performance.requests.ask(a.Gesture(at=2.0))
     (ask,) = drive.performance.asks
     drive.wait(lambda: ask.id in drive.performance.answers())
     board(drive).setFocus()
@@ -213,7 +213,7 @@ def test_all_of_it_works_from_the_keyboard(stage):
 
 def test_while_it_plays_only_the_playhead_is_painted_anew(stage):
     drive = stage
-    drive.performance.ask(a.Gesture(at=2.0))
+    drive.performance.requests.ask(a.Gesture(at=2.0))
     drive.wait(lambda: len(drive.performance.answers()) == 1)
     drive.pause(300)
     before = board(drive).painted
@@ -228,12 +228,12 @@ def test_while_it_plays_only_the_playhead_is_painted_anew(stage):
 
 def test_a_request_that_vanishes_while_its_fields_are_open_says_so(stage):
     drive = stage
-    drive.performance.ask(a.Gesture(at=3.0))
+    drive.performance.requests.ask(a.Gesture(at=3.0))
     (ask,) = drive.performance.asks
     drive.wait(lambda: ask.id in drive.performance.answers())
     board(drive).edit(ask.id)
     editor = QApplication.activeModalWidget()
-    drive.performance.withdraw(ask.id)
+    drive.performance.requests.withdraw(ask.id)
     drive.wait(lambda: "not there any more" in editor.words.text())
     assert not editor.fields["at"].isEnabled() and not editor.remove.isEnabled()
     drive.document.undo()
@@ -247,7 +247,7 @@ def test_performances_are_made_renamed_and_removed_from_the_panel(stage, monkeyp
     drive = stage
     panel = drive.timeline
     panel.new()
-    drive.performance.ask(a.Gesture(at=3.0))
+    drive.performance.requests.ask(a.Gesture(at=3.0))
     monkeypatch.setattr(QInputDialog, "getText", lambda *args, **kwargs: ("greeting", True))
     panel.rename()
     assert panel.stage.currentText() == "greeting"
@@ -297,7 +297,7 @@ with connect(sys.argv[1]) as line:
 
 def client(drive, *messages: dict) -> tuple[subprocess.Popen, threading.Thread, list[dict]]:
     """Send messages from another process; its replies fill the list, read by a thread since the window must not wait."""
-    address = drive.performance.live.relay.ready.websocket
+    address = drive.performance.live.stage.relay.ready.websocket
     words = [sys.executable, "-c", CLIENT, address, json.dumps(messages)]
     process = subprocess.Popen(words, stdin=subprocess.PIPE, stdout=subprocess.PIPE, text=True)
     replies: list[dict] = []
@@ -309,17 +309,17 @@ def client(drive, *messages: dict) -> tuple[subprocess.Popen, threading.Thread, 
 @pytest.fixture
 def live(stage):
     drive = stage
-    drive.performance.go_live(Options(port=0, osc=None))
-    drive.wait(lambda: drive.performance.live is not None and drive.performance.live.relay.ready is not None)
+    drive.performance.live.begin(Options(port=0, osc=None))
+    drive.wait(lambda: drive.performance.live.stage is not None and drive.performance.live.stage.relay.ready is not None)
     yield drive
-    drive.performance.stop_live()
+    drive.performance.live.end()
 
 
 def test_a_client_drives_a_gesture_that_is_seen_in_the_preview(live):
     """An agent in another process asks for an action by its name; the character in the window makes it."""
     drive = live
-    assert drive.timeline.live.isChecked() and "ws://127.0.0.1:" in drive.performance.live.words()
-    drive.wait(lambda: drive.performance.live.now > 1.0)
+    assert drive.timeline.live.isChecked() and "ws://127.0.0.1:" in drive.performance.live.stage.words()
+    drive.wait(lambda: drive.performance.live.stage.now > 1.0)
     before = drive.performance.pose()
     long = {"do": "action", "action": "rest long", "id": "w", "priority": 5}
     process, reader, replies = client(drive, long, {"do": "gesture", "tags": ["none"]})
@@ -339,19 +339,19 @@ def test_a_client_drives_a_gesture_that_is_seen_in_the_preview(live):
         drive.wait(lambda: drive.preview.frames > painted + 2)
         drive.wait(lambda: any(m.ask.id.endswith("/w") for m in board(drive).marks()))
         assert next(m for m in board(drive).marks() if m.ask.id.endswith("/w")).answer.state != "refused"
-        assert "1 client" in drive.performance.live.words()
+        assert "1 client" in drive.performance.live.stage.words()
     finally:
         process.stdin.close()
         process.wait(20)
         reader.join(5)
         process.stdout.close()
-    drive.wait(lambda: "nobody" in drive.performance.live.words())
+    drive.wait(lambda: "nobody" in drive.performance.live.stage.words())
 
 
 def test_the_past_of_a_live_session_can_be_scrubbed_and_now_is_found_again(live):
     drive = live
-    drive.wait(lambda: drive.performance.live.now > 1.5)
-    assert drive.session.transport.seconds == pytest.approx(drive.performance.live.now, abs=0.3)
+    drive.wait(lambda: drive.performance.live.stage.now > 1.5)
+    assert drive.session.transport.seconds == pytest.approx(drive.performance.live.stage.now, abs=0.3)
     assert not drive.timeline.now.isVisible()
     QTest.mouseClick(board(drive), LEFT_BUTTON, pos=QPoint(LEFT + 30, 8))
     past = drive.session.transport.seconds
@@ -360,26 +360,28 @@ def test_the_past_of_a_live_session_can_be_scrubbed_and_now_is_found_again(live)
     assert drive.session.transport.seconds == past and drive.timeline.now.isVisible()
     QTest.mouseClick(drive.timeline.now, LEFT_BUTTON)
     drive.pause(100)
-    assert drive.session.transport.seconds == pytest.approx(drive.performance.live.now, abs=0.3)
+    assert drive.session.transport.seconds == pytest.approx(drive.performance.live.stage.now, abs=0.3)
 
 
 def test_what_was_played_live_is_kept_and_plays_again_as_it_was(live):
     drive = live
-    drive.wait(lambda: drive.performance.live.now > 0.5)
-    drive.performance.ask(a.Gesture())
+    drive.wait(lambda: drive.performance.live.stage.now > 0.5)
+    drive.performance.requests.ask(a.Gesture())
     arms = lambda: drive.performance.shown.plan.layers["arms"].cues  # noqa: E731
     drive.wait(lambda: any(not c.meta.startswith("auto") for c in arms()))
-    drive.wait(lambda: drive.performance.live.now > 3.0)
-    now, played = drive.performance.live.now, drive.performance.shown.plan.layers["arms"].cues
-    drive.performance.stop_live()
-    assert drive.performance.last_live is not None
+    drive.wait(lambda: drive.performance.live.stage.now > 3.0)
+    now, played = drive.performance.live.stage.now, drive.performance.shown.plan.layers["arms"].cues
+    drive.performance.live.end()
+    assert drive.performance.live.last is not None
     drive.timeline._fill()
     drive.pick(drive.timeline.more_menu, "Keep what was played live")
     assert drive.timeline.stage.currentText() == "Live session"
-    drive.wait(lambda: drive.performance.kept is not None and drive.performance.shown.length == drive.performance.kept.length)
+    drive.wait(
+        lambda: drive.performance.requests.kept is not None and drive.performance.shown.length == drive.performance.requests.kept.length
+    )
     again = drive.performance.shown.plan.layers["arms"].cues
     assert [c for c in again if c.start < now] == [c for c in played if c.start < now]
-    assert not drive.performance.live
+    assert not drive.performance.live.stage
 
 
 def test_an_edit_while_live_changes_what_comes(live, toy):
@@ -389,5 +391,5 @@ def test_an_edit_while_live_changes_what_comes(live, toy):
     gone = toy.id(drive.document.project, "rest long")
     drive.document.edit("Remove", lambda p: edits.remove_actions(p, [gone]))
     drive.wait(lambda: drive.performance.shown.project.action(gone) is None)
-    now = drive.performance.live.now + 1
+    now = drive.performance.live.stage.now + 1
     assert all(c.action.id != gone for c in drive.performance.shown.plan.layers["arms"].cues if c.start > now)

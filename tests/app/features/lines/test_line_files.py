@@ -165,7 +165,7 @@ def test_a_line_that_is_removed_while_it_is_asked_for_says_so_and_comes_back_wit
     from metagraph.graph import staging
 
     drive.document.load(staging.set_line(toy.project(), "hi", a.Line(text="Hello there")), None)
-    drive.performance.ask(a.Say(line="hi", at=1.0))
+    drive.performance.requests.ask(a.Say(line="hi", at=1.0))
     (ask,) = drive.performance.asks
     drive.wait(lambda: ask.id in drive.performance.answers() and drive.performance.answers()[ask.id].at is not None)
     drive.document.edit("Remove line", lambda p: staging.set_line(p, "hi", None))

@@ -77,7 +77,7 @@ def test_a_recording_becomes_a_performance_that_plays_and_can_be_undone(opened: 
 @pytest.mark.gl
 def test_what_is_seen_is_added_to_the_performance_on_stage(opened: Any, monkeypatch: pytest.MonkeyPatch) -> None:
     drive = opened
-    drive.performance.ask(a.Nod(at=2.0))
+    drive.performance.requests.ask(a.Nod(at=2.0))
     stage = drive.session.onstage.performance
     dialog = dialog_of(drive, monkeypatch, DEEP)
     dialog.layers["head"].setChecked(False)

@@ -1,0 +1,45 @@
+"""The playhead as time goes by: through what is planned, round a loop, or with a live session."""
+
+from __future__ import annotations
+
+from app.stage.performance import Performance
+from app.stage.session import Session
+
+
+class Playhead:
+    """Moves the session's playhead; what it runs through is the performance's."""
+
+    def __init__(self, session: Session, performance: Performance) -> None:
+        self.session, self.performance = session, performance
+
+    def advance(self, elapsed: float) -> None:
+        """Move the playhead by `elapsed` seconds of wall clock; called before each frame."""
+        transport = self.session.transport
+        if self.performance.live.stage is not None and transport.show == "plan":
+            self._advance_live(elapsed)
+            return
+        if not transport.playing or elapsed <= 0 or self.performance.skeleton() is None:
+            return
+        seconds = transport.seconds + elapsed * transport.speed
+        length = self.performance.shown.length
+        endless = not self.performance.ends and transport.show == "plan" and not transport.loop
+        if endless:
+            self.performance.plan_beyond(seconds)
+        if seconds >= length > 0 and not endless:
+            if transport.loop:
+                seconds %= length
+            else:
+                seconds = length
+                transport.set_playing(False)
+        transport.seek(seconds)
+
+    def _advance_live(self, elapsed: float) -> None:
+        """The playhead is now; or, once it was moved back, plays on behind until it is followed again."""
+        transport, live = self.session.transport, self.performance.live
+        assert live.stage is not None
+        now = live.stage.now
+        live.following = live.following and transport.playing
+        if live.following:
+            transport.seek(now)
+        elif transport.playing:
+            transport.seek(min(now, transport.seconds + elapsed * transport.speed))

@@ -1,0 +1,93 @@
+"""What is asked for, edited: in the performance on stage, in a new one, or live."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+
+import msgspec
+
+from app.project.document import Document
+from app.stage.live_control import LiveControl
+from app.stage.session import Session
+from metagraph.graph import staging
+from metagraph.graph.asks import AnyAsk
+from metagraph.graph.asks import Performance as KeptPerformance
+from metagraph.graph.model import Project
+
+SOON = 0.15  # seconds from now at which "now" is: the plan needs a moment
+
+
+class RequestEdits:
+    """Edits the requests of what is on stage; each is one step to undo. length: seconds that are planned, which a new performance gets."""
+
+    def __init__(self, document: Document, session: Session, live: LiveControl, length: Callable[[], float]) -> None:
+        self.document, self.session, self.live, self._length = document, session, live, length
+
+    @property
+    def kept(self) -> KeptPerformance | None:
+        """The kept performance on stage, as it is now; None while the models improvise."""
+        stage = self.session.onstage.performance if self.session.onstage.mode == "meta" else None
+        return self.document.project.performances.get(stage or "")
+
+    @property
+    def editable(self) -> bool:
+        """Whether the asks that are shown can be moved and changed."""
+        return self.live.stage is None and self.kept is not None and self.session.transport.show == "plan"
+
+    def ask(self, ask: AnyAsk, text: str = "Ask for something") -> None:
+        """Ask for one thing more, in the performance on stage or a new one; without a time it is wanted as soon as can be."""
+        if self.live.stage is not None:
+            if ask.at is not None and ask.at <= self.live.stage.now:
+                ask = msgspec.structs.replace(ask, at=None)
+            self.live.stage.ask(ask)
+            return
+        if ask.at is None and getattr(ask, "stroke", None) is None:
+            ask = msgspec.structs.replace(ask, at=round(self.session.transport.seconds + SOON, 3))
+        on_stage = self.session.onstage.performance
+        made = on_stage
+
+        def edit(project: Project) -> Project:
+            nonlocal made
+            if made is None or made not in project.performances:
+                kept = KeptPerformance(name="Performance", length=self._length())
+                project, made = staging.add_performance(project, kept)
+            return staging.add_ask(project, made, ask)
+
+        self.document.edit(text, edit)
+        self.session.onstage.set_performance(made)
+        if made is not None:
+            self.session.onstage.select_requests((self.document.project.performances[made].asks[-1].id,))
+        self.session.transport.show_plan()
+
+    def change(self, ident: str, merge: str | None = None, **changes: object) -> None:
+        """Set fields of an ask of the performance on stage. Raises EditError."""
+        stage = self.session.onstage.performance
+        if stage is not None:
+            self.document.edit("Change request", lambda p: staging.change_ask(p, stage, ident, **changes), merge)
+
+    def move(self, idents: tuple[str, ...], by: float, merge: str | None = None) -> None:
+        """Move asks in time."""
+        stage = self.session.onstage.performance
+        if stage is not None:
+            self.document.edit("Move request", lambda p: staging.move_asks(p, stage, idents, by), merge)
+
+    def copy(self, idents: tuple[str, ...], by: float) -> None:
+        """Ask for the same once more, seconds later or earlier, and select the copies."""
+        stage, kept = self.session.onstage.performance, self.kept
+        if stage is None or kept is None:
+            return
+        number = len(kept.asks)
+        copies = tuple(msgspec.structs.replace(x, id="", told=None) for x in kept.asks if x.id in idents)
+
+        def edit(project: Project) -> Project:
+            project = staging.change_performance(project, stage, asks=(*project.performances[stage].asks, *copies))
+            return staging.move_asks(project, stage, {x.id for x in project.performances[stage].asks[number:]}, by)
+
+        self.document.edit("Copy request" if len(copies) == 1 else f"Copy {len(copies)} requests", edit)
+        self.session.onstage.select_requests(tuple(x.id for x in (self.kept or kept).asks[number:]))
+
+    def withdraw(self, *idents: str) -> None:
+        """Take asks of the performance on stage back; all when none is named."""
+        stage = self.session.onstage.performance
+        if stage is not None:
+            self.document.edit("Withdraw request", lambda p: staging.remove_asks(p, stage, idents or None))
