@@ -9,7 +9,7 @@ from PySide6.QtWidgets import QWidget
 
 from app.project.files import Files
 from app.project.importing import FileDrop
-from app.project.speech_files import SOUNDS, TRANSCRIPTS, converses, kinds_of
+from app.project.speech_files import SOUNDS, converses, kinds_of
 from app.shell.actions import Command
 from app.shell.context import Contribution, Panel, Shell
 
@@ -80,6 +80,6 @@ def contribute(shell: Shell) -> Contribution:
                     tip="As ELAN or Praat TextGrid", menus=mine),
             Command("remove_conversation", menu, "remove", "Remove conversation", run("remove"), enabled=staged, menus=mine),
         ),
-        drops=(FileDrop((*SOUNDS, *TRANSCRIPTS), claim, take),),
+        drops=(FileDrop(SOUNDS, claim, take),),
         late_imports=("app.features.conversation.conversation_panel",),
     )  # fmt: skip

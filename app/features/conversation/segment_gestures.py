@@ -2,61 +2,51 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Protocol
-
 from PySide6.QtCore import QPointF
 
 from app.features.conversation.segment_hits import Hit, snapped, word_edges
+from app.features.conversation.segment_host import SegmentHost
 from app.project.document import Edit
+from app.widgets.gesture import Gesture, PressDrag, Reason
 from metagraph.graph import conversing
 from metagraph.graph.edits import EditError
-
-if TYPE_CHECKING:
-    from app.features.conversation.segment_view import View
 
 CATCH = 3.0  # pixels the mouse must move for a press to become a drag
 
 
-class MouseGesture(Protocol):
-    """One drag, from press to release. free: nothing is to snap."""
-
-    def update(self, at: QPointF, free: bool) -> None: ...
-    def finish(self) -> None: ...
-    def cancel(self) -> None: ...
-
-
-class SegmentDrag:
+class SegmentDrag(PressDrag):
     """What drags of segments share: what it would make is shown while it lasts, and made at its end. words: beside the pointer."""
 
     text = ""
 
-    def __init__(self, view: View, hit: Hit, at: QPointF) -> None:
-        self.view, self.hit, self.origin = view, hit, at
-        self.begun = False
+    catch = CATCH
+
+    def __init__(self, view: SegmentHost, hit: Hit) -> None:
+        super().__init__()
+        self.view, self.hit = view, hit
         self.words = ""
         self.seconds = 0.0  # where the words stand
         self.made: Edit | None = None
 
-    def update(self, at: QPointF, free: bool) -> None:
-        self.begun = self.begun or abs(at.x() - self.origin.x()) >= CATCH
-        if not self.begun:
+    def update(self, at: QPointF, free: bool = False) -> None:
+        if not self.caught(QPointF(at.x(), self.origin.y())):
             return
         self.made = self.edit(at, free)
         self.view.hold(self.made)
 
-    def finish(self) -> None:
+    def finish(self, at: QPointF) -> None:
         self.view.hold(None)
         if self.begun and self.made is not None:
             self.view.editing.edit(self.text, self.made)
 
-    def cancel(self) -> None:
+    def cancel(self, reason: Reason) -> None:
         self.view.hold(None)
 
     def edit(self, at: QPointF, free: bool) -> Edit | None:
         """Return what releasing the button now would do."""
         raise NotImplementedError
 
-    def caught(self, seconds: float, free: bool) -> float:
+    def snapped(self, seconds: float, free: bool) -> float:
         """Return a time, caught by where a word begins or ends."""
         of = self.view.editing.conversation
         words = of.sides[self.hit.side].words if of is not None else ()
@@ -74,7 +64,7 @@ class EdgeDrag(SegmentDrag):
         if segment is None or ident is None:
             return None
         before = segment.start if hit.part == "start" else segment.end
-        to = self.caught(before + (at.x() - self.origin.x()) / view.each, free)
+        to = self.snapped(before + (at.x() - self.origin.x()) / view.each, free)
         self.words, self.seconds = f"{max(0.0, to):.2f} s  ({to - before:+.2f})", to
         return lambda p: conversing.resize_segment(p, ident, hit.side, hit.at, **{hit.part: to})
 
@@ -90,7 +80,7 @@ class BodyDrag(SegmentDrag):
         if segment is None or ident is None:
             return None
         by = (at.x() - self.origin.x()) / view.each
-        caught = [to - edge for edge in (segment.start, segment.end) if (to := self.caught(edge + by, free)) != edge + by]
+        caught = [to - edge for edge in (segment.start, segment.end) if (to := self.snapped(edge + by, free)) != edge + by]
         by = min(caught, key=lambda c: abs(c - by), default=by)
         self.words, self.seconds = f"{max(0.0, segment.start + by):.2f} s  ({by:+.2f})", segment.start + by
         return lambda p: conversing.move_segment(p, ident, hit.side, hit.at, by)
@@ -122,14 +112,14 @@ class NewDrag(SegmentDrag):
     def edit(self, at: QPointF, free: bool) -> Edit | None:
         view, side, ident = self.view, self.hit.side, self.view.session.onstage.conversation
         scale = view.scale()
-        start, end = (self.caught(scale.seconds(x), free) for x in (self.origin.x(), at.x()))
+        start, end = (self.snapped(scale.seconds(x), free) for x in (self.origin.x(), at.x()))
         self.words, self.seconds = f"New: {abs(end - start):.2f} s", end
         self._span = start, end
         if ident is None or not _can(view, lambda p: conversing.add_segment(p, ident, side, "clause", start, end)[0]):
             return None
         return lambda p: conversing.add_segment(p, ident, side, "clause", start, end)[0]
 
-    def finish(self) -> None:
+    def finish(self, at: QPointF) -> None:
         self.view.hold(None)
         if self.begun and self.made is not None:
             self.view.editing.add(self.hit.side, "clause", *self._span)
@@ -137,41 +127,46 @@ class NewDrag(SegmentDrag):
     _span = (0.0, 0.0)
 
 
-class Scrub:
+class Scrub(PressDrag):
     """Moves the playhead with the mouse."""
 
-    def __init__(self, view: View, at: QPointF) -> None:
+    def __init__(self, view: SegmentHost) -> None:
+        super().__init__()
         self.view, self.before = view, view.session.transport.seconds
-        view.session.transport.set_playing(False)
-        self.update(at, False)
 
-    def update(self, at: QPointF, free: bool) -> None:
+    def begin(self, at: QPointF) -> None:
+        super().begin(at)
+        self.view.session.transport.set_playing(False)
+        self.update(at)
+
+    def update(self, at: QPointF, free: bool = False) -> None:
         self.view.session.transport.seek(self.view.scale().seconds(max(at.x(), self.view.scale().x(self.view.first))))
 
-    def finish(self) -> None:
+    def finish(self, at: QPointF) -> None:
         """The playhead is where it is."""
 
-    def cancel(self) -> None:
+    def cancel(self, reason: Reason) -> None:
         self.view.session.transport.seek(self.before)
 
 
-class Pan:
+class Pan(PressDrag):
     """Moves along in time with the mouse."""
 
-    def __init__(self, view: View, at: QPointF) -> None:
-        self.view, self.origin, self.before = view, at.x(), view.first
+    def __init__(self, view: SegmentHost) -> None:
+        super().__init__()
+        self.view, self.before = view, view.first
 
-    def update(self, at: QPointF, free: bool) -> None:
-        self.view.look_at(self.before - (at.x() - self.origin) / self.view.each)
+    def update(self, at: QPointF, free: bool = False) -> None:
+        self.view.look_at(self.before - (at.x() - self.origin.x()) / self.view.each)
 
-    def finish(self) -> None:
+    def finish(self, at: QPointF) -> None:
         """What is in sight is."""
 
-    def cancel(self) -> None:
+    def cancel(self, reason: Reason) -> None:
         self.view.look_at(self.before)
 
 
-def _can(view: View, edit: Edit) -> bool:
+def _can(view: SegmentHost, edit: Edit) -> bool:
     try:
         edit(view.document.project)
     except EditError:
@@ -179,12 +174,12 @@ def _can(view: View, edit: Edit) -> bool:
     return True
 
 
-def gesture_for(view: View, hit: Hit, at: QPointF) -> MouseGesture:
+def gesture_for(view: SegmentHost, hit: Hit) -> Gesture:
     """Return what a press on something begins."""
     if hit.part in ("start", "end"):
-        return EdgeDrag(view, hit, at)
+        return EdgeDrag(view, hit)
     if hit.part == "body":
-        return BodyDrag(view, hit, at)
+        return BodyDrag(view, hit)
     if hit.part == "peak":
-        return PeakDrag(view, hit, at)
-    return NewDrag(view, hit, at) if hit.part == "gap" else Scrub(view, at)
+        return PeakDrag(view, hit)
+    return NewDrag(view, hit) if hit.part == "gap" else Scrub(view)

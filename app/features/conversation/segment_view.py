@@ -22,7 +22,7 @@ from PySide6.QtGui import (
 from PySide6.QtWidgets import QMenu, QToolTip, QWidget
 
 from app.features.conversation.segment_editing import Editing
-from app.features.conversation.segment_gestures import MouseGesture, Pan, SegmentDrag, gesture_for
+from app.features.conversation.segment_gestures import Pan, SegmentDrag, gesture_for
 from app.features.conversation.segment_hits import NOTHING, Hit, hit_at
 from app.features.conversation.segment_keys import DEEDS, deed_of
 from app.features.conversation.segment_lanes import LEAST, NEAREST, farthest, segment_words, words_in
@@ -30,6 +30,7 @@ from app.features.conversation.segment_paint import Scene, empty, paint
 from app.features.conversation.sound_reading import Sounds
 from app.look.theme import theme
 from app.project.document import Edit
+from app.widgets.gesture import Hand
 from app.widgets.lane_geometry import LEFT, Scale
 from app.widgets.lane_paint import badge, playhead
 from app.widgets.memo import Once
@@ -57,7 +58,7 @@ class View(QWidget):
         self.editing, self.sounds = editing, sounds
         self.document, self.session = editing.document, editing.session
         self.each, self.first = USUAL, 0.0
-        self.gesture: MouseGesture | None = None
+        self.hand = Hand()
         self.held: Conversation | None = None  # as it would be if what is dragged were let go
         self.over: Hit = NOTHING
         self.pointer = QPointF(-1, -1)
@@ -115,7 +116,7 @@ class View(QWidget):
     def reveal(self) -> None:
         """Bring the selected segment in sight."""
         found = self.editing.segment(self.editing.last)
-        if found is not None and self.gesture is None:
+        if found is not None and self.hand.gesture is None:
             left, right = self.scale().x(found.start), self.scale().x(found.end)
             if left < LEFT or right > self.width():
                 self.look_at(found.start - 0.3 * (self.width() - LEFT) / self.each)
@@ -137,7 +138,7 @@ class View(QWidget):
 
     def _playhead(self, seconds: float) -> None:
         width = self.width() - LEFT
-        if width > 40 and self.gesture is None and self.editing.conversation is not None:
+        if width > 40 and self.hand.gesture is None and self.editing.conversation is not None:
             x = (seconds - self.first) * self.each
             if not 0 <= x <= width * (0.85 if self.session.transport.playing else 1.0):
                 self.look_at(seconds - 0.15 * width / self.each)
@@ -156,7 +157,7 @@ class View(QWidget):
         x = self.scale().x(self.session.transport.seconds)
         if x >= LEFT - 1:
             playhead(painter, t, x, self.height())
-        drag = self.gesture
+        drag = self.hand.gesture
         if isinstance(drag, SegmentDrag) and drag.begun and drag.words:
             font = QFont(self.font())
             font.setFeature(QFont.Tag("tnum"), 1)
@@ -196,10 +197,10 @@ class View(QWidget):
     def mousePressEvent(self, event: QMouseEvent) -> None:
         at, hit = event.position(), self._hit(event.position())
         self.pointer = at
-        if self.gesture is not None or hit.part == "nothing":
+        if self.hand.gesture is not None or hit.part == "nothing":
             return
         if event.button() == Qt.MouseButton.MiddleButton:
-            self.gesture = Pan(self, at)
+            self.hand.take(Pan(self), at)
         elif event.button() == Qt.MouseButton.LeftButton and hit.part == "title":
             self.session.onstage.set_side(hit.side)
         elif event.button() == Qt.MouseButton.LeftButton:
@@ -207,7 +208,7 @@ class View(QWidget):
                 self._select(hit, event.modifiers())
             elif not event.modifiers():
                 self.editing.select(())
-            self.gesture = gesture_for(self, hit, at)
+            self.hand.take(gesture_for(self, hit), at)
         self._show_cursor(hit)
 
     def _select(self, hit: Hit, modifiers: Qt.KeyboardModifier) -> None:
@@ -225,8 +226,7 @@ class View(QWidget):
 
     def mouseMoveEvent(self, event: QMouseEvent) -> None:
         self.pointer = event.position()
-        if self.gesture is not None:
-            self.gesture.update(event.position(), bool(event.modifiers() & Qt.KeyboardModifier.AltModifier))
+        if self.hand.move(event.position(), bool(event.modifiers() & Qt.KeyboardModifier.AltModifier)):
             return
         hit = self._hit(event.position())
         if hit != self.over:
@@ -235,11 +235,10 @@ class View(QWidget):
             self.update()
 
     def mouseReleaseEvent(self, event: QMouseEvent) -> None:
-        gesture, self.gesture = self.gesture, None
+        gesture = self.hand.let_go(event.position())
         if gesture is None:
             return
         moved = not isinstance(gesture, SegmentDrag) or gesture.begun
-        gesture.finish()
         if not moved and isinstance(gesture, SegmentDrag) and not event.modifiers() and gesture.hit.at >= 0:
             self.editing.select({(gesture.hit.side, gesture.hit.at)})
         self.over = self._hit(event.position())
@@ -268,21 +267,20 @@ class View(QWidget):
         shape = Qt.CursorShape
         by_part = dict.fromkeys(("start", "end", "peak"), shape.SizeHorCursor)
         by_part |= {"gap": shape.CrossCursor, "title": shape.PointingHandCursor}
-        held = isinstance(self.gesture, Pan) or (hit.part == "body" and self.gesture is not None)
+        held = isinstance(self.hand.gesture, Pan) or (hit.part == "body" and self.hand.gesture is not None)
         self.setCursor(shape.ClosedHandCursor if held else by_part.get(hit.part, shape.ArrowCursor))
 
     def _stop_dragging(self) -> bool:
         """Cancel what is being dragged; return whether something was."""
-        gesture, self.gesture = self.gesture, None
-        if gesture is not None:
-            gesture.cancel()
+        dropped = self.hand.drop("escape")
+        if dropped:
             self._show_cursor(NOTHING)
-        return gesture is not None
+        return dropped
 
     # --- menu, keys and tips
 
     def contextMenuEvent(self, event: QContextMenuEvent) -> None:
-        if self.editing.conversation is None or self.gesture is not None:
+        if self.editing.conversation is None or self.hand.gesture is not None:
             return
         if event.reason() == QContextMenuEvent.Reason.Keyboard:
             x = min(max(LEFT, self.scale().x(self.session.transport.seconds)), self.width())
@@ -317,7 +315,7 @@ class View(QWidget):
         if key == Qt.Key.Key_Escape and (self._stop_dragging() or self.editing.chosen):
             self.editing.select(())
             self.update()
-        elif self.gesture is not None or self.editing.conversation is None:
+        elif self.hand.gesture is not None or self.editing.conversation is None:
             event.ignore()  # what is held is not edited by keys as well
         elif deed is not None and (self.editing.chosen or not deed.needs):
             deed.run(self.editing, self._seconds())
@@ -350,7 +348,7 @@ class View(QWidget):
             return True
         if isinstance(event, QKeyEvent) and event.type() == QKeyEvent.Type.ShortcutOverride and self.editing.conversation is not None:
             deed = deed_of(event.key(), event.modifiers())
-            escapes = event.key() == Qt.Key.Key_Escape and (self.gesture is not None or self.editing.chosen)
+            escapes = event.key() == Qt.Key.Key_Escape and (self.hand.gesture is not None or self.editing.chosen)
             if escapes or (deed is not None and (self.editing.chosen or not deed.needs)):
                 event.accept()  # here it is about segments, not about what is selected elsewhere
                 return True
@@ -359,7 +357,7 @@ class View(QWidget):
     def tip(self, at: QPointF) -> str:
         """Return what to say about what is under a point."""
         of, hit = self.editing.conversation, self._hit(at)
-        if of is None or self.gesture is not None:
+        if of is None or self.hand.gesture is not None:
             return ""
         if hit.at >= 0:
             words = segment_words(of.sides[hit.side].segments[hit.at])

@@ -24,10 +24,9 @@ from PySide6.QtGui import (
 from PySide6.QtWidgets import QInputDialog, QMenu, QToolTip, QWidget
 
 from app.features.graph.graph_drops import Drop, drop_at, perform
-from app.features.graph.graph_gestures import LikelihoodDrag, MouseGesture, RowDrag
+from app.features.graph.graph_gestures import HeadDrag, LikelihoodDrag, RowDrag
 from app.features.graph.graph_layout import Hit, Layout, arrange
 from app.features.graph.graph_painter import Look, paint
-from app.features.graph.repoint import HeadDrag
 from app.look.plural import many
 from app.look.theme import theme
 from app.project.document import Document
@@ -35,6 +34,7 @@ from app.project.load import Load
 from app.stage.performance import Performance
 from app.stage.session import Session
 from app.stage.thumbnails import Thumbnails
+from app.widgets.gesture import Hand
 from app.widgets.mime import load_of
 from metagraph.graph import edits
 from metagraph.graph.expand import size
@@ -57,7 +57,7 @@ class Canvas(QWidget):
     ):
         super().__init__(parent)
         self.document, self.session, self.performance, self.thumbnails = document, session, performance, thumbnails
-        self.gesture: MouseGesture | None = None
+        self.hand = Hand()
         self.scroll: dict[Kind, int] = {}
         self.row_actions: list[QAction] = []  # the window's commands that go into an action's menu
         self.hover = NOTHING
@@ -198,6 +198,14 @@ class Canvas(QWidget):
         self.scroll.clear()
         self._stale()
 
+    @property
+    def widget(self) -> QWidget:
+        return self
+
+    def refuse(self, words: str) -> None:
+        """Say why something cannot be done."""
+        self.refused.emit(words)
+
     # --- mouse
 
     def mousePressEvent(self, event: QMouseEvent) -> None:
@@ -213,11 +221,11 @@ class Canvas(QWidget):
         elif hit.area == "other":
             self._choose_other(event.globalPosition().toPoint())
         elif hit.area == "bar" and hit.ident:
-            self.gesture = LikelihoodDrag(self, hit.ident)
+            self.hand.take(LikelihoodDrag(self, hit.ident), event.position())
         elif hit.area in ("row", "head") and hit.ident:
             self._press_row(hit.ident, event)
             if hit.area == "head":
-                self.gesture = HeadDrag(self, hit.ident, event.position())
+                self.hand.take(HeadDrag(self, hit.ident), event.position())
         elif hit.area == "card" and hit.ident:
             self.session.selection.select_actions(
                 tuple(a.id for a in self.document.project.graphs[self.session.place.layer].of(hit.ident, "stance"))
@@ -237,23 +245,21 @@ class Canvas(QWidget):
         elif action not in chosen:
             self.session.selection.select_actions((action,))
         self.focus = action
-        self.gesture = RowDrag(self, action, event.position())
+        self.hand.take(RowDrag(self, action), event.position())
 
     def mouseMoveEvent(self, event: QMouseEvent) -> None:
-        if self.gesture is not None and event.buttons() & Qt.MouseButton.LeftButton:
-            self.gesture.update(event.position())
+        if event.buttons() & Qt.MouseButton.LeftButton and self.hand.move(event.position()):
             return
         hit = self.layout_now().hit(event.position())
         if hit != self.hover:
             self._set_hover(hit)
 
     def mouseReleaseEvent(self, event: QMouseEvent) -> None:
-        if self.gesture is not None:
-            gesture, self.gesture = self.gesture, None
-            gesture.finish(event.position())
+        gesture = self.hand.let_go(event.position())
+        if gesture is not None:
             hit = self.layout_now().hit(event.position())
             plain = not event.modifiers() & (Qt.KeyboardModifier.ControlModifier | Qt.KeyboardModifier.ShiftModifier)
-            if isinstance(gesture, RowDrag | HeadDrag) and not gesture.dragging and plain and hit.ident == gesture.action:
+            if isinstance(gesture, RowDrag | HeadDrag) and not gesture.begun and plain and hit.ident == gesture.action:
                 self._hover_shown = False  # asked for: it goes on when the pointer leaves
                 self.session.selection.select_actions((gesture.action,))
                 self.session.show_context(gesture.action)
@@ -304,7 +310,7 @@ class Canvas(QWidget):
         event.ignore()
 
     def event(self, event: QEvent) -> bool:
-        if event.type() == QEvent.Type.ShortcutOverride and self.gesture is not None and event.key() == Qt.Key.Key_Escape:  # type: ignore[attr-defined]
+        if event.type() == QEvent.Type.ShortcutOverride and self.hand.gesture is not None and event.key() == Qt.Key.Key_Escape:  # type: ignore[attr-defined]
             event.accept()  # cancels the drag rather than what the preview shows
             return True
         if event.type() == QEvent.Type.ToolTip and isinstance(event, QHelpEvent):
@@ -437,10 +443,7 @@ class Canvas(QWidget):
             self.document.edit("Change likelihood", lambda p: edits.update_actions(p, chosen, likelihood=value), merge="likelihood keys")
         elif key in (Qt.Key.Key_Return, Qt.Key.Key_Enter) and self.focus in ids:
             self.session.show_context(str(self.focus))
-        elif key == Qt.Key.Key_Escape and self.gesture is not None:
-            self.gesture.cancel()
-            self.gesture = None
-        else:
+        elif key != Qt.Key.Key_Escape or not self.hand.drop("escape"):
             super().keyPressEvent(event)
 
     def keyReleaseEvent(self, event: QKeyEvent) -> None:

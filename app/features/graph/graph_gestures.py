@@ -1,78 +1,101 @@
-"""Drags of the mouse on the canvas as objects, from press to release."""
+"""Drags on the canvas: of a likelihood's bar, of actions, of the head of a transition's arrow."""
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Protocol
-
 from PySide6.QtCore import QPointF, Qt
 from PySide6.QtGui import QDrag
-from PySide6.QtWidgets import QApplication
 
+from app.features.graph.graph_host import GraphHost
 from app.features.graph.graph_layout import likelihood_at
+from app.features.graph.repoint import NOWHERE, repoint_at
+from app.widgets.gesture import PressDrag, Reason
 from app.widgets.mime import drag_picture, mime
 from metagraph.graph import edits
 
-if TYPE_CHECKING:
-    from app.features.graph.graph_canvas import Canvas
 
+class LikelihoodDrag(PressDrag):
+    """Drags a likelihood bar; all selected actions follow when the bar is of one of them."""
 
-class MouseGesture(Protocol):
-    """One drag of the mouse, from press to release. Only `finish` changes the project for good."""
-
-    def update(self, at: QPointF) -> None: ...
-    def finish(self, at: QPointF) -> None: ...
-    def cancel(self) -> None: ...
-
-
-class LikelihoodDrag:
-    """Drags a likelihood bar; all selected actions follow when the bar is of one of them. One undo step."""
-
-    def __init__(self, canvas: Canvas, action: str) -> None:
-        self.canvas, self.action = canvas, action
-        chosen = canvas.session.selection.actions
+    def __init__(self, host: GraphHost, action: str) -> None:
+        super().__init__()
+        self.host = host
+        chosen = host.session.selection.actions
         self.actions = chosen if action in chosen else (action,)
-        self.row = canvas.layout_now().row(action)
+        self.row = host.layout_now().row(action)
 
-    def update(self, at: QPointF) -> None:
+    def update(self, at: QPointF, free: bool = False) -> None:
         if self.row is not None:
             value = likelihood_at(self.row, at.x())
-            self.canvas.document.edit(
+            self.host.document.edit(
                 "Change likelihood", lambda p: edits.update_actions(p, self.actions, likelihood=value), merge="likelihood"
             )
 
     def finish(self, at: QPointF) -> None:
         self.update(at)
-        self.canvas.document.finish_merging()
+        self.host.document.finish_merging()
 
-    def cancel(self) -> None:
-        self.canvas.document.cancel_merging("likelihood")
+    def cancel(self, reason: Reason) -> None:
+        self.host.document.cancel_merging("likelihood")
 
 
-class RowDrag:
+class RowDrag(PressDrag):
     """Drags actions onto another node or stance, as a real drag so that everything that takes drops can take them."""
 
-    def __init__(self, canvas: Canvas, action: str, at: QPointF) -> None:
-        self.canvas, self.action, self.origin = canvas, action, at
-        self.dragging = False
+    def __init__(self, host: GraphHost, action: str) -> None:
+        super().__init__()
+        self.host, self.action = host, action
 
-    def update(self, at: QPointF) -> None:
-        if self.dragging or (at - self.origin).manhattanLength() < QApplication.startDragDistance():
+    def update(self, at: QPointF, free: bool = False) -> None:
+        if self.begun or not self.caught(at):
             return
-        self.dragging = True
-        chosen = self.canvas.session.selection.actions
+        chosen = self.host.session.selection.actions
         actions = chosen if self.action in chosen else (self.action,)
-        drag = QDrag(self.canvas)
+        widget = self.host.widget
+        drag = QDrag(widget)
         drag.setMimeData(mime(actions=actions))
-        drag.setPixmap(drag_picture(f"{len(actions)} actions" if len(actions) > 1 else self._name(), self.canvas))
-        self.canvas.gesture = None
+        drag.setPixmap(drag_picture(f"{len(actions)} actions" if len(actions) > 1 else self._name(), widget))
+        self.host.hand.drop("taken over")
         drag.exec(Qt.DropAction.MoveAction)
 
     def _name(self) -> str:
-        found = self.canvas.document.project.action(self.action)
+        found = self.host.document.project.action(self.action)
         return found.name if found is not None else ""
 
     def finish(self, at: QPointF) -> None:
-        pass
+        """It was a click."""
 
-    def cancel(self) -> None:
-        pass
+
+class HeadDrag(PressDrag):
+    """Drags the head of a transition's arrow; all selected transitions follow when it is one of them."""
+
+    def __init__(self, host: GraphHost, action: str) -> None:
+        super().__init__()
+        self.host, self.action = host, action
+        chosen = [a.id for a in host.session.selection.selected_actions() if a.kind == "transition"]
+        self.actions = tuple(chosen) if action in chosen else (action,)
+
+    def update(self, at: QPointF, free: bool = False) -> None:
+        if not self.caught(at):
+            return
+        layout = self.host.layout_now()
+        hit = layout.hit(at, dragging=True)
+        drop = repoint_at(self.host.document.project, self.actions, hit)
+        chip = next((c.rect for c in layout.chips if hit.area == "chip" and c.stance == hit.ident), None)
+        row = layout.row(self.action)
+        start = QPointF(row.head.center()) if row is not None else self.origin
+        end = QPointF(chip.center().x(), chip.bottom() + 2) if chip is not None else at
+        self.host.point(drop, hit if chip is not None else NOWHERE, (start, end))
+
+    def finish(self, at: QPointF) -> None:
+        if not self.begun:
+            return
+        hit = self.host.layout_now().hit(at, dragging=True)
+        drop = repoint_at(self.host.document.project, self.actions, hit)
+        self.host.point(None, NOWHERE, None)
+        if drop.possible:
+            self.host.end_in(self.actions, str(drop.end))
+        elif hit.area == "chip":
+            self.host.refuse(drop.words.replace("*", ""))
+
+    def cancel(self, reason: Reason) -> None:
+        self.host.point(None, NOWHERE, None)

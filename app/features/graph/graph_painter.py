@@ -10,7 +10,6 @@ from PySide6.QtGui import QColor, QFont, QFontMetricsF, QImage, QPainter, QPaint
 
 from app.features.graph.graph_drops import Drop
 from app.features.graph.graph_layout import GRID, Chip, Hit, Layout, Node, bar_part
-from app.features.graph.repoint import draw_arrow
 from app.look.plural import short
 from app.look.theme import KIND_MARKS, KIND_TITLES, Theme
 from metagraph.graph.model import Action, Kind, Project
@@ -330,3 +329,27 @@ def _row(painter: QPainter, action: Action, rect: QRectF, bar: QRectF, kind: Kin
     painter.drawRoundedRect(QRectF(bar.left(), bar.top(), max(3.0, bar.width() * bar_part(action.likelihood)), bar.height()), 1.5, 1.5)
     if hover and look.hover.area == "bar":
         painter.drawEllipse(QPointF(bar.left() + bar.width() * bar_part(action.likelihood), bar.center().y()), 4.5, 4.5)
+
+
+TIP = 9.0  # pixels of an arrow's head
+
+
+def draw_arrow(painter: QPainter, start: QPointF, end: QPointF, color: QColor, sure: bool) -> None:
+    """Draw an arrow in a curve that leaves and arrives upright."""
+    pen = QPen(color, 2.0)
+    if not sure:
+        pen.setDashPattern([4, 3])
+    bend = min(120.0, max(24.0, abs(end.y() - start.y()) * 0.4))
+    up = 1.0 if end.y() <= start.y() else -1.0
+    path = QPainterPath(start)
+    foot = end + QPointF(0, up * TIP)
+    path.cubicTo(start - QPointF(0, up * bend), foot + QPointF(0, up * bend), foot)
+    painter.save()
+    painter.setPen(pen)
+    painter.setBrush(Qt.BrushStyle.NoBrush)
+    painter.drawPath(path)
+    painter.setPen(Qt.PenStyle.NoPen)
+    painter.setBrush(color)
+    painter.drawPolygon([end, foot + QPointF(TIP * 0.55, 0), foot - QPointF(TIP * 0.55, 0)])
+    painter.drawEllipse(QRectF(start - QPointF(3, 3), start + QPointF(3, 3)))
+    painter.restore()

@@ -20,11 +20,11 @@ from PySide6.QtGui import (
     QResizeEvent,
     QWheelEvent,
 )
-from PySide6.QtWidgets import QToolTip, QWidget
+from PySide6.QtWidgets import QMenu, QToolTip, QWidget
 
 from app.features.manual import manual_commands as commands
 from app.features.manual import manual_painter as painter
-from app.features.manual.manual_gestures import Band, Drag, DrawLink, Move, Pan
+from app.features.manual.manual_gestures import Band, DrawLink, Move, Pan
 from app.features.manual.manual_overlay import Marks, paint_over, plays
 from app.features.manual.manual_pictures import Pictures
 from app.features.manual.manual_scene import NODE, NOTHING, Scene, View, fitted
@@ -33,6 +33,7 @@ from app.project.document import Document
 from app.stage.performance import Performance
 from app.stage.session import Session
 from app.stage.thumbnails import Thumbnails
+from app.widgets.gesture import Hand
 from app.widgets.mime import load_of
 from metagraph.graph import manual_edits
 from metagraph.graph.edits import EditError
@@ -61,7 +62,7 @@ class ManualCanvas(QWidget):
         self.document, self.session, self.performance = document, session, performance
         self.pictures = Pictures(thumbnails, session)
         self.view = View()
-        self.gesture: Drag | None = None
+        self.hand = Hand()
         self.hover = NOTHING
         self.troubles: dict[str, str] = {}
         self.at = QPointF(200, 200)  # where the mouse was last
@@ -174,7 +175,7 @@ class ManualCanvas(QWidget):
 
     def _relayer(self) -> None:
         self._scene = None
-        self.cancel()
+        self.hand.drop("replaced")
         self.view = self._views.get(self.session.place.layer) or self.scene().first_view(QSizeF(self.size()))
         self._stale()
         self.viewed.emit()
@@ -211,7 +212,7 @@ class ManualCanvas(QWidget):
             scene = Scene(scene.manual, self._dragged)
             look = self._look(scene)
         marks = Marks(
-            self._dragged, self.hover, *self._link, self._band, self._turn, self.at, self.gesture is not None, self._dropping, self._map(),
+            self._dragged, self.hover, *self._link, self._band, self._turn, self.at, self.hand.gesture is not None, self._dropping, self._map(),
         )  # fmt: skip
         paint_over(p, look, marks, QRectF(self.rect()))
         p.end()
@@ -231,28 +232,31 @@ class ManualCanvas(QWidget):
 
     # --- mouse
 
-    def cancel(self) -> None:
-        """Give up the drag that is going on."""
-        if self.gesture is not None:
-            gesture, self.gesture = self.gesture, None
-            gesture.cancel()
+    def show_cursor(self, shape: Qt.CursorShape) -> None:
+        self.setCursor(shape)
+
+    def refuse(self, words: str) -> None:
+        """Say why something cannot be done."""
+        self.refused.emit(words)
 
     def begin_link(self, source: str) -> None:
         """Draw a link from a node to where the mouse is pressed next: the menu's way."""
-        self.gesture = DrawLink(self, source, self.at, sticky=True)
-        self.gesture.update(self.at)
+        self.hand.take(DrawLink(self, source, sticky=True), self.at)
+        self.hand.move(self.at)
 
     def mousePressEvent(self, event: QMouseEvent) -> None:
         self.setFocus(Qt.FocusReason.MouseFocusReason)
         at, button, keys = event.position(), event.button(), event.modifiers()
         self.at = at
-        if isinstance(self.gesture, DrawLink) and self.gesture.sticky:
-            gesture, self.gesture = self.gesture, None
-            gesture.finish(at) if button == Qt.MouseButton.LeftButton else gesture.cancel()
+        if isinstance(self.hand.gesture, DrawLink) and self.hand.gesture.sticky:
+            if button == Qt.MouseButton.LeftButton:
+                self.hand.let_go(at)
+            else:
+                self.hand.drop("replaced")
             return
-        self.cancel()
+        self.hand.drop("replaced")
         if button in (Qt.MouseButton.MiddleButton, Qt.MouseButton.RightButton) or keys & Qt.KeyboardModifier.AltModifier:
-            self.gesture = Pan(self, at)
+            self.hand.take(Pan(self), at)
             return
         if button != Qt.MouseButton.LeftButton:
             return
@@ -260,7 +264,7 @@ class ManualCanvas(QWidget):
         more = bool(keys & (Qt.KeyboardModifier.ControlModifier | Qt.KeyboardModifier.ShiftModifier))
         s = self.session
         if hit.area == "edge" and not more:
-            self.gesture = DrawLink(self, hit.ident, at)
+            self.hand.take(DrawLink(self, hit.ident), at)
             if hit.ident != ANY and hit.ident not in s.selection.states:
                 s.selection.select_states((hit.ident,))
         elif hit.area in ("node", "edge"):
@@ -268,19 +272,18 @@ class ManualCanvas(QWidget):
                 s.selection.select_states(_toggled(s.selection.states, hit.ident), s.selection.links)
             elif hit.ident != ANY and hit.ident not in s.selection.states:
                 s.selection.select_states((hit.ident,))
-            self.gesture = Move(self, hit.ident, at)
+            self.hand.take(Move(self, hit.ident), at)
         elif hit.area == "link":
             s.selection.select_states(s.selection.states if more else (), _toggled(s.selection.links, hit.ident) if more else (hit.ident,))
         else:
             kept = (s.selection.states, s.selection.links) if more else ((), ())
             if not more:
                 s.selection.select_states()
-            self.gesture = Band(self, at, kept)
+            self.hand.take(Band(self, kept), at)
 
     def mouseMoveEvent(self, event: QMouseEvent) -> None:
         self.at = event.position()
-        if self.gesture is not None:
-            self.gesture.update(self.at)
+        if self.hand.move(self.at):
             return
         hit = self.scene().hit(self.view.back(self.at), self.view.scale)
         if hit.area == "edge" or hit != self.hover:
@@ -290,16 +293,16 @@ class ManualCanvas(QWidget):
             self.update()
 
     def mouseReleaseEvent(self, event: QMouseEvent) -> None:
-        gesture = self.gesture
-        if gesture is None or (isinstance(gesture, DrawLink) and gesture.sticky):
+        if isinstance(self.hand.gesture, DrawLink) and self.hand.gesture.sticky:
             return
-        self.gesture = None
-        gesture.finish(event.position())
+        gesture = self.hand.let_go(event.position())
+        if gesture is None:
+            return
         if isinstance(gesture, Pan) and not gesture.begun and event.button() == Qt.MouseButton.RightButton:
             self._menu(event.position())
         hit = self.scene().hit(self.view.back(event.position()), self.view.scale)
-        clicked = isinstance(gesture, Move) and not gesture.begun and not event.modifiers()
-        if clicked and hit.ident == gesture.node and hit.ident != ANY and event.button() == Qt.MouseButton.LeftButton:  # type: ignore[union-attr]
+        plain = not event.modifiers() and event.button() == Qt.MouseButton.LeftButton
+        if plain and isinstance(gesture, Move) and not gesture.begun and hit.ident == gesture.node and hit.ident != ANY:
             self.session.selection.select_states((hit.ident,))
 
     def mouseDoubleClickEvent(self, event: QMouseEvent) -> None:
@@ -307,7 +310,7 @@ class ManualCanvas(QWidget):
             return
         hit = self.scene().hit(self.view.back(event.position()), self.view.scale)
         if hit.area in ("node", "edge", "link") and hit.ident != ANY:
-            self.cancel()
+            self.hand.drop("replaced")
             self.session.show_context(hit.ident)
 
     def leaveEvent(self, event: QEvent) -> None:
@@ -328,7 +331,10 @@ class ManualCanvas(QWidget):
 
     def _menu(self, at: QPointF) -> None:
         self.at = at
-        commands.menu(self, self.scene().hit(self.view.back(at), self.view.scale)).popup(self.mapToGlobal(at.toPoint()))
+        menu = QMenu(self)
+        menu.setAttribute(Qt.WidgetAttribute.WA_DeleteOnClose)
+        commands.fill(menu, self, self.scene().hit(self.view.back(at), self.view.scale))
+        menu.popup(self.mapToGlobal(at.toPoint()))
 
     # --- edits
 

@@ -3,22 +3,19 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from typing import TYPE_CHECKING
 
 from PySide6.QtCore import Qt
 from PySide6.QtGui import QKeyEvent, QKeySequence
 from PySide6.QtWidgets import QMenu
 
 from app.features.manual.arranging import arranged
+from app.features.manual.manual_host import ManualHost
 from app.features.manual.manual_painter import facts, words_of
 from app.features.manual.manual_scene import Hit
 from app.project.load import Load
 from metagraph.graph import manual_edits
 from metagraph.graph.manual import ANY, Link
 from metagraph.graph.model import Project
-
-if TYPE_CHECKING:
-    from app.features.manual.manual_canvas import ManualCanvas
 
 Run = Callable[[], object]
 Standard = QKeySequence.StandardKey
@@ -35,7 +32,7 @@ class Clipboard:
 kept = Clipboard()
 
 
-def remove(canvas: ManualCanvas) -> None:
+def remove(canvas: ManualHost) -> None:
     s = canvas.session
     count = len(s.selection.states) + len(s.selection.links)
     what = (
@@ -49,7 +46,7 @@ def remove(canvas: ManualCanvas) -> None:
     canvas.do(text, lambda p: manual_edits.remove(p, s.selection.states, s.selection.links))
 
 
-def copy(canvas: ManualCanvas) -> None:
+def copy(canvas: ManualHost) -> None:
     """Keep the selected states, or the settings of the selected link."""
     s, project = canvas.session, canvas.document.project
     if s.selection.states:
@@ -58,7 +55,7 @@ def copy(canvas: ManualCanvas) -> None:
         kept.piece, kept.settings = None, project.link(s.selection.links[0])
 
 
-def paste(canvas: ManualCanvas) -> None:
+def paste(canvas: ManualHost) -> None:
     """Paste states where the mouse is, or settings onto the selected links."""
     links, settings = canvas.session.selection.links, kept.settings
     if settings is not None and links:
@@ -68,14 +65,14 @@ def paste(canvas: ManualCanvas) -> None:
         _paste(canvas, kept.piece, at.x(), at.y(), "Paste")
 
 
-def duplicate(canvas: ManualCanvas) -> None:
+def duplicate(canvas: ManualHost) -> None:
     piece = manual_edits.copied(canvas.document.project, canvas.session.selection.states)
     if piece.states:
         x, y = min(s.x for s in piece.states), min(s.y for s in piece.states)
         _paste(canvas, piece, x + SHIFT, y + SHIFT, "Duplicate")
 
 
-def _paste(canvas: ManualCanvas, piece: manual_edits.Piece, x: float, y: float, verb: str) -> None:
+def _paste(canvas: ManualHost, piece: manual_edits.Piece, x: float, y: float, verb: str) -> None:
     layer = canvas.session.place.layer
     made: tuple[str, ...] = ()
 
@@ -88,11 +85,11 @@ def _paste(canvas: ManualCanvas, piece: manual_edits.Piece, x: float, y: float, 
         canvas.session.selection.select_states(made)
 
 
-def select_all(canvas: ManualCanvas) -> None:
+def select_all(canvas: ManualHost) -> None:
     canvas.session.selection.select_states(tuple(canvas.scene().manual.states))
 
 
-def arrange(canvas: ManualCanvas) -> None:
+def arrange(canvas: ManualHost) -> None:
     """Put every node where the automatic layout has it, and show all."""
     layer, places = canvas.session.place.layer, arranged(canvas.scene().manual)
     canvas.do("Arrange nodes", lambda p: manual_edits.move_nodes(p, layer, places))
@@ -100,11 +97,11 @@ def arrange(canvas: ManualCanvas) -> None:
     canvas.fit()
 
 
-def start_here(canvas: ManualCanvas, state: str) -> None:
+def start_here(canvas: ManualHost, state: str) -> None:
     canvas.do("Start here", lambda p: manual_edits.set_start(p, state))
 
 
-def nudge(canvas: ManualCanvas, x: float, y: float) -> None:
+def nudge(canvas: ManualHost, x: float, y: float) -> None:
     """Move the selected nodes a little."""
     layer, found = canvas.session.place.layer, canvas.scene().manual.states
     places = {i: (found[i].x + x, found[i].y + y) for i in canvas.session.selection.states if i in found}
@@ -112,15 +109,15 @@ def nudge(canvas: ManualCanvas, x: float, y: float) -> None:
         canvas.do("Move node" if len(places) == 1 else f"Move {len(places)} nodes", lambda p: manual_edits.move_nodes(p, layer, places))
 
 
-def can_paste(canvas: ManualCanvas) -> bool:
+def can_paste(canvas: ManualHost) -> bool:
     return kept.piece is not None or (kept.settings is not None and bool(canvas.session.selection.links))
 
 
-def for_key(canvas: ManualCanvas, event: QKeyEvent) -> Run | None:
+def for_key(canvas: ManualHost, event: QKeyEvent) -> Run | None:
     """Return what a key does here, None where it is the window's."""
     s = canvas.session
     if event.key() == Qt.Key.Key_Escape:
-        return canvas.cancel if canvas.gesture is not None else None
+        return (lambda: canvas.hand.drop("escape")) if canvas.hand.gesture is not None else None
     if event.key() == Qt.Key.Key_D and event.modifiers() == Qt.KeyboardModifier.ControlModifier:  # on X11 also a key to delete
         return lambda: duplicate(canvas)
     for standard, run in (
@@ -141,10 +138,8 @@ def for_key(canvas: ManualCanvas, event: QKeyEvent) -> Run | None:
     return None
 
 
-def menu(canvas: ManualCanvas, hit: Hit) -> QMenu:
-    """Return what can be done with what is under the mouse; it is selected, unless it is already."""
-    out = QMenu(canvas)
-    out.setAttribute(Qt.WidgetAttribute.WA_DeleteOnClose)
+def fill(out: QMenu, canvas: ManualHost, hit: Hit) -> None:
+    """Fill a menu with what can be done with what is under the mouse; it is selected, unless it is already."""
     s = canvas.session
 
     def add(text: str, run: Run, keys: str = "", enabled: bool = True) -> None:
@@ -177,10 +172,9 @@ def menu(canvas: ManualCanvas, hit: Hit) -> QMenu:
         out.addSeparator()
         add("Arrange nodes", lambda: arrange(canvas), enabled=bool(canvas.scene().manual.states))
         add("Show all", lambda: _show_all(canvas), "F")
-    return out
 
 
-def _show_all(canvas: ManualCanvas) -> None:
+def _show_all(canvas: ManualHost) -> None:
     canvas.session.selection.select_states()
     canvas.fit()
 
@@ -192,7 +186,7 @@ def drop_words(project: Project, load: Load) -> tuple[bool, str]:
     return why is None, words[:1].upper() + words[1:]
 
 
-def tip(canvas: ManualCanvas, hit: Hit) -> str:
+def tip(canvas: ManualHost, hit: Hit) -> str:
     """Return what to say about what is under the mouse."""
     manual = canvas.scene().manual
     trouble = canvas.troubles.get(hit.ident, "")

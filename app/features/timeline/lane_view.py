@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
-
 from PySide6.QtCore import QPointF, QRectF, Qt
 from PySide6.QtGui import (
     QColor,
@@ -21,10 +19,12 @@ from PySide6.QtGui import (
 )
 from PySide6.QtWidgets import QApplication, QMenu, QToolTip, QWidget
 
+from app.features.timeline.request_drag import RequestDrag
 from app.look.theme import theme
 from app.stage.performance import Performance
 from app.stage.session import Session
-from app.widgets.lane_geometry import LEFT, RULER, Mark, Scale, cue_at, lane_at, mark_at, marks, time_of, told
+from app.widgets.gesture import Hand
+from app.widgets.lane_geometry import LEFT, RULER, Mark, Scale, cue_at, lane_at, mark_at, marks, told
 from app.widgets.lane_paint import Scene, badge, paint, playhead
 from app.widgets.memo import Once
 from app.widgets.request_menu import ask_menu
@@ -34,22 +34,6 @@ CATCH = 3  # pixels the mouse must move for a press to become a drag
 ZOOM = 1.2
 COPIES = Qt.KeyboardModifier.ControlModifier | Qt.KeyboardModifier.AltModifier
 TEXT = "Requests, and what plays. Up and Down choose a request, Left and Right move it, Enter changes it, Insert asks for something."
-
-
-@dataclass
-class Drag:
-    """Asks being moved, or copied, in time: silently until the button is released, then one edit.
-
-    ident: the one that is held. lone: let go without moving it, it is selected no longer.
-    """
-
-    idents: tuple[str, ...]
-    ident: str
-    grip: float
-    by: float = 0.0
-    begun: bool = False
-    copy: bool = False
-    lone: bool = False
 
 
 class Lanes(QWidget):
@@ -64,7 +48,7 @@ class Lanes(QWidget):
         self.each = 44.0
         self.first = 0.0
         self.follow = True
-        self.drag: Drag | None = None
+        self.hand = Hand()
         self._marks: Once[list[Mark]] = Once()
         self._still: Once[QPixmap] = Once()  # all but what moves while it plays
         self.painted = 0  # how often that was made
@@ -85,7 +69,7 @@ class Lanes(QWidget):
         """Return the requests as they are drawn now."""
         if self.session.transport.show != "plan":
             return []
-        p, drag = self.performance, self.drag if self.drag is not None and self.drag.begun else None
+        p, drag = self.performance, self.drag
         asks, answers, project, scale = p.asks, p.answers(), p.document.project, self.scale()
 
         def make() -> list[Mark]:
@@ -102,7 +86,7 @@ class Lanes(QWidget):
 
     def _playhead(self, seconds: float) -> None:
         width = self.width() - LEFT
-        if self.follow and width > 40 and self.drag is None:
+        if self.follow and width > 40 and self.hand.gesture is None:
             x = (seconds - self.first) * self.each
             if x > width * 0.85:
                 self.first = seconds - 0.15 * width / self.each
@@ -125,7 +109,7 @@ class Lanes(QWidget):
         painter.drawPixmap(0, 0, self._picture())
         playhead(painter, t, self.scale().x(self.session.transport.seconds), self.height())
         drag = self.drag
-        if drag is not None and drag.begun:
+        if drag is not None:
             held = next((m for m in reversed(self.marks()) if m.ask.id == drag.ident), None)
             if held is not None:
                 font = QFont(self.font())
@@ -215,17 +199,15 @@ class Lanes(QWidget):
         if ident not in chosen:
             self.session.onstage.select_requests((*chosen, ident) if more else (ident,))
         if self.performance.requests.editable:
-            self.drag = Drag(self.session.onstage.requests, ident, event.position().x(), lone=lone)
+            self.hand.take(RequestDrag(self, self.session.onstage.requests, ident, lone), event.position())
         elif lone:
             self.session.onstage.select_requests(tuple(i for i in chosen if i != ident))
 
     def mouseMoveEvent(self, event: QMouseEvent) -> None:
-        x, drag = event.position().x(), self.drag
-        if drag is not None:
-            drag.begun = drag.begun or abs(x - drag.grip) >= CATCH
-            drag.copy = bool(event.modifiers() & COPIES)
-            drag.by = self._within(drag, round((x - drag.grip) / self.each, 2))
-            self.setCursor(Qt.CursorShape.DragCopyCursor if drag.copy and drag.begun else Qt.CursorShape.SizeHorCursor)
+        x = event.position().x()
+        if self.hand.move(event.position(), bool(event.modifiers() & COPIES)):
+            copying = self.drag is not None and self.drag.copy
+            self.setCursor(Qt.CursorShape.DragCopyCursor if copying else Qt.CursorShape.SizeHorCursor)
             self.update()
         elif event.buttons() & Qt.MouseButton.LeftButton:
             self._scrub(x)
@@ -239,19 +221,14 @@ class Lanes(QWidget):
 
     _grip = 0.0
 
-    def _within(self, drag: Drag, by: float) -> float:
-        """Return by how much they can be moved: none to before the beginning."""
-        answers = self.performance.answers()
-        return max(by, -min((time_of(x, answers.get(x.id)) for x in self.performance.asks if x.id in drag.idents), default=0.0))
+    @property
+    def drag(self) -> RequestDrag | None:
+        """The requests that are being dragged; None before the mouse has moved far enough, too."""
+        gesture = self.hand.gesture
+        return gesture if isinstance(gesture, RequestDrag) and gesture.begun else None
 
     def mouseReleaseEvent(self, event: QMouseEvent) -> None:
-        drag, self.drag = self.drag, None
-        if drag is not None and drag.begun and drag.by and drag.copy:
-            self.performance.requests.copy(drag.idents, drag.by)
-        elif drag is not None and drag.begun and drag.by:
-            self.performance.requests.move(drag.idents, drag.by)
-        elif drag is not None and drag.lone and not drag.begun:
-            self.session.onstage.select_requests(tuple(i for i in self.session.onstage.requests if i != drag.ident))
+        self.hand.let_go(event.position())
         self.update()
 
     def mouseDoubleClickEvent(self, event: QMouseEvent) -> None:
@@ -347,13 +324,12 @@ class Lanes(QWidget):
 
     def keyPressEvent(self, event: QKeyEvent) -> None:
         chosen, key, can = self.session.onstage.requests, event.key(), self.performance.requests.editable
-        if key == Qt.Key.Key_Escape and self.drag is not None:
-            self.drag = None
+        if key == Qt.Key.Key_Escape and self.hand.drop("escape"):
             self.setCursor(Qt.CursorShape.ArrowCursor)
             self.update()
         elif key == Qt.Key.Key_Escape and chosen:
             self.session.onstage.select_requests(())
-        elif self.drag is not None:
+        elif self.hand.gesture is not None:
             return  # what is held is not edited by keys as well
         elif chosen and can and key in (Qt.Key.Key_Left, Qt.Key.Key_Right):
             self._nudge(Qt.Key(key), event.modifiers())
@@ -382,7 +358,9 @@ class Lanes(QWidget):
             return True
         if isinstance(event, QKeyEvent) and event.type() == QKeyEvent.Type.ShortcutOverride:
             mine = (Qt.Key.Key_Left, Qt.Key.Key_Right, Qt.Key.Key_Return, Qt.Key.Key_Escape)
-            if (self.drag is not None and event.key() == Qt.Key.Key_Escape) or (self.session.onstage.requests and event.key() in mine):
+            if (self.hand.gesture is not None and event.key() == Qt.Key.Key_Escape) or (
+                self.session.onstage.requests and event.key() in mine
+            ):
                 event.accept()
                 return True
         return super().event(event)  # type: ignore[arg-type]

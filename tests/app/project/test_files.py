@@ -12,6 +12,7 @@ from PySide6.QtWidgets import QFileDialog, QMessageBox, QWidget
 
 from app.project.document import Document, untitled_journal
 from app.project.files import Files
+from app.project.importing import Importing
 from app.project.jobs import Jobs
 from metagraph.formats.bvh import write_bvh
 from metagraph.formats.journal import journal_path
@@ -51,7 +52,10 @@ class Desk(Files):
         self.words, self.reports, self.drops = [], [], []
         self.told.connect(self.words.append)
         self.report.connect(lambda title, lines: self.reports.append((title, lines)))
-        self.imported.connect(lambda result, drop: self.drops.append(drop))
+        self.importing = Importing(self.document, self.jobs, self, window)
+        self.importing.told.connect(self.words.append)
+        self.importing.report.connect(lambda title, lines: self.reports.append((title, lines)))
+        self.importing.imported.connect(lambda result, drop: self.drops.append(drop))
 
     def idle(self) -> bool:
         return not self.jobs.running
@@ -81,7 +85,7 @@ def clips(toy, tmp_path) -> Path:
 def saved(desk, clips, tmp_path, qtbot) -> Path:
     """A project file with those clips."""
     path = tmp_path / "mine.metagraph.yaml"
-    desk.import_paths([str(clips)])
+    desk.importing.import_paths([str(clips)])
     qtbot.waitUntil(lambda: len(desk.document.project.clips) == 3)
     desk.document.save(path)
     return path
@@ -235,7 +239,7 @@ def test_edits_since_the_last_save_are_offered(desk, person, saved, qtbot, answe
 
 @pytest.mark.parametrize("answer", [BUTTON.Yes, BUTTON.Discard])
 def test_a_project_never_saved_is_offered_too(desk, person, clips, qtbot, answer):
-    desk.import_paths([str(clips)])
+    desk.importing.import_paths([str(clips)])
     qtbot.waitUntil(lambda: len(desk.document.project.clips) == 3)
     assert desk.document.dirty
     crash(desk)
@@ -274,7 +278,7 @@ def test_a_journal_of_another_state_of_the_file_is_kept_aside(desk, person, save
 
 def test_a_folder_with_a_bad_file_brings_in_the_rest_and_says_what_failed(desk, clips, qtbot):
     (clips / "broken.bvh").write_text("HIERARCHY\nROOT Hips\n{\n")
-    desk.import_paths([str(clips)])
+    desk.importing.import_paths([str(clips)])
     qtbot.waitUntil(lambda: bool(desk.reports))
     assert sorted(e.name for e in desk.document.project.clips.values()) == ["idle", "nod", "wave"]
     title, lines = desk.reports[0]
@@ -287,17 +291,17 @@ def test_a_folder_with_a_bad_file_brings_in_the_rest_and_says_what_failed(desk, 
 
 def test_importing_nothing_says_what_clips_are(desk, tmp_path, qtbot):
     (tmp_path / "empty").mkdir()
-    desk.import_paths([str(tmp_path / "empty")])
+    desk.importing.import_paths([str(tmp_path / "empty")])
     qtbot.waitUntil(lambda: bool(desk.reports))
     assert desk.reports[0][0] == "Nothing was imported"
     assert "BVH" in desk.reports[0][1][0]
 
 
 def test_importing_again_refreshes_in_place(desk, clips, qtbot):
-    desk.import_paths([str(clips)])
+    desk.importing.import_paths([str(clips)])
     qtbot.waitUntil(lambda: len(desk.document.project.clips) == 3)
     ids = list(desk.document.project.clips)
-    desk.import_paths([str(clips / "idle.bvh"), str(clips / "more")])
+    desk.importing.import_paths([str(clips / "idle.bvh"), str(clips / "more")])
     qtbot.waitUntil(lambda: len(desk.words) == 2)
     assert list(desk.document.project.clips) == ids
 
@@ -306,12 +310,12 @@ def test_an_import_carries_its_drop_and_what_was_loaded(desk, clips, qtbot):
     from app.features.graph.graph_drops import Drop
 
     drop = Drop(True, "here", "stance")
-    desk.import_paths([str(clips)], drop)
+    desk.importing.import_paths([str(clips)], drop)
     qtbot.waitUntil(lambda: desk.drops == [drop])
 
 
 def test_an_import_for_a_project_that_was_left_is_dropped(desk, clips, qtbot):
-    desk.import_paths([str(clips)])
+    desk.importing.import_paths([str(clips)])
     desk.document.load(Project("another"), None)
     qtbot.waitUntil(desk.idle)
     qtbot.wait(20)
@@ -323,8 +327,8 @@ def test_dialogs_left_with_cancel_do_nothing(desk, person, monkeypatch):
     monkeypatch.setattr(QFileDialog, "getOpenFileName", lambda *a, **k: ("", ""))
     monkeypatch.setattr(QFileDialog, "getOpenFileNames", lambda *a, **k: ([], ""))
     desk.ask_open()
-    desk.ask_import_folder()
-    desk.ask_import_files()
+    desk.importing.ask_import_folder()
+    desk.importing.ask_import_files()
     assert desk.idle()
 
 
@@ -339,7 +343,7 @@ def test_missing_clips_are_found_where_they_are_now(desk, person, saved, clips, 
     qtbot.waitUntil(lambda: len(desk.document.project.clips) == 3)
     assert all(e.motion is None for e in desk.document.project.clips.values())
     person.folder(elsewhere)
-    desk.find_missing()
+    desk.importing.find_missing()
     qtbot.waitUntil(lambda: desk.words[-1] == "Found 3 of 3 missing clips.")
     assert all(e.motion is not None for e in desk.document.project.clips.values())
     assert desk.document.dirty, "the new paths are to be saved"
@@ -347,7 +351,7 @@ def test_missing_clips_are_found_where_they_are_now(desk, person, saved, clips, 
 
 
 def test_when_nothing_is_missing_nothing_is_asked(desk, saved):
-    desk.find_missing()
+    desk.importing.find_missing()
     assert desk.words[-1] == "No clip file is missing."
 
 
@@ -356,7 +360,7 @@ def test_not_finding_them_says_so(desk, person, saved, tmp_path, qtbot):
     desk.document.load(replace(desk.document.project, clips=clips), None)
     (tmp_path / "nothing").mkdir()
     person.folder(tmp_path / "nothing")
-    desk.find_missing()
+    desk.importing.find_missing()
     qtbot.waitUntil(lambda: desk.words[-1] == "Found 0 of 3 missing clips.")
 
 

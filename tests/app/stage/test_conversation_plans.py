@@ -132,7 +132,9 @@ def test_a_side_moved_by_another_project_uses_that_ones_clips_and_one_that_canno
     save_project(absolute(other, folder), folder / "other.metagraph.yaml")
     for path, alpha, told in (("other.metagraph.yaml", 9.0, False), ("missing.metagraph.yaml", project.settings.alpha, True)):
         sides = (talk.sides[0], msgspec.structs.replace(talk.sides[1], project=path))
-        shown = ConversationPlans().show(replace(project, conversations={"v9000": msgspec.structs.replace(talk, sides=sides)}), "v9000", folder)
+        shown = ConversationPlans().show(
+            replace(project, conversations={"v9000": msgspec.structs.replace(talk, sides=sides)}), "v9000", folder
+        )
         assert shown.both[1].project.settings.alpha == alpha
         assert any("missing" in note for note in shown.notes) == told
 
@@ -164,7 +166,9 @@ def test_a_side_can_move_with_a_clip_instead_of_its_graph_and_still_speaks_and_a
 
     def shown(motion: str | None):
         sides = (msgspec.structs.replace(talk.sides[0], motion=motion), talk.sides[1])
-        return ConversationPlans().show(replace(project, conversations={"v9000": msgspec.structs.replace(talk, sides=sides)}), "v9000", talking.parent)
+        return ConversationPlans().show(
+            replace(project, conversations={"v9000": msgspec.structs.replace(talk, sides=sides)}), "v9000", talking.parent
+        )
 
     still, moved, lost = shown(None), shown(clip.id), shown("c0")
     arm = project.skeleton.index("RightUpperArm") if "RightUpperArm" in project.skeleton else 10

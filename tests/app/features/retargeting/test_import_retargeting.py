@@ -33,7 +33,8 @@ def own(drive, folder):
     drive.importing.import_paths([str(folder / "rest.glb"), str(folder / "wave.glb")])
     drive.wait(lambda: len(drive.document.project.clips) == 2)
     drive.said = []
-    drive.files.told.connect(drive.said.append)
+    drive.importing.told.connect(drive.said.append)
+    drive.importing.retarget.__self__.told.connect(drive.said.append)
     return drive
 
 

@@ -69,7 +69,7 @@ def takes_part(drive, tiny):
     guides = []
 
     def start(participant: str = "P01") -> Participant:
-        guide = begin(drive.window, read_study(tiny), participant)
+        guide = begin(drive.shell, read_study(tiny), participant)
         assert guide is not None
         guide.over.connect(lambda: guides.remove(guide))
         guides.append(guide)

@@ -210,8 +210,8 @@ def test_a_sitting_is_open_once(drive, takes_part, tiny, monkeypatch):
     takes_part()
     told = []
     monkeypatch.setattr(QMessageBox, "warning", lambda *words: told.append(words[2]))
-    assert begin(drive.window, read_study(tiny), "P01") is None
-    assert begin(drive.window, read_study(tiny), "nobody") is None
+    assert begin(drive.shell, read_study(tiny), "P01") is None
+    assert begin(drive.shell, read_study(tiny), "nobody") is None
     assert "another window has this sitting open" in told[0] and "'nobody' does not take part" in told[1]
 
 
@@ -231,7 +231,7 @@ def test_who_takes_part_is_chosen_from_a_list_that_tells_how_far_each_is(drive, 
 
     p = takes_part("P02")
     p.guide.leave()
-    run_study(drive.window, tiny)
+    run_study(drive.shell, tiny)
     chooser = drive.window.findChild(Chooser)
     rows = [chooser.list.item(n).text() for n in range(chooser.list.count())]
     assert rows == ["P01    not begun", "P02    goes on at: A tiny study", "P03    not begun", "P04    not begun"]
@@ -278,7 +278,7 @@ from metagraph.graph import edits
 from metagraph.study.plan import read_study
 window = make_window()
 window.show()
-guide = begin(window, read_study(Path(sys.argv[1])), "P01")
+guide = begin(window.shell, read_study(Path(sys.argv[1])), "P01")
 def step():
     if guide._working:
         count = len(window.shell.document.project.graphs["head"].stances)

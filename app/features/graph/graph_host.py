@@ -1,0 +1,30 @@
+"""What drags on the canvas of the meta-graph need of it."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import Protocol
+
+from PySide6.QtCore import QPointF
+from PySide6.QtWidgets import QWidget
+
+from app.features.graph.graph_drops import Drop
+from app.features.graph.graph_layout import Hit, Layout
+from app.project.document import Document
+from app.stage.session import Session
+from app.widgets.gesture import Hand
+
+
+class GraphHost(Protocol):
+    """The canvas as its gestures see it. hand: what holds them."""
+
+    document: Document
+    session: Session
+    hand: Hand
+
+    @property
+    def widget(self) -> QWidget: ...
+    def layout_now(self) -> Layout: ...
+    def point(self, drop: Drop | None, hit: Hit, arrow: tuple[QPointF, QPointF] | None) -> None: ...
+    def end_in(self, actions: Sequence[str], stance: str) -> None: ...
+    def refuse(self, words: str) -> None: ...

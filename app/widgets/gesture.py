@@ -1,0 +1,81 @@
+"""Drags of the mouse as objects: from a press to the release, or to what breaks them off."""
+
+from __future__ import annotations
+
+from typing import Literal, Protocol
+
+from PySide6.QtCore import QPointF
+from PySide6.QtWidgets import QApplication
+
+Reason = Literal["escape", "replaced", "taken over", "lost"]
+
+
+class Gesture(Protocol):
+    """One drag. Points are the widget's, in pixels. Only `finish` changes the project for good, in one step.
+
+    begun: the mouse has moved far enough for it to be a drag and no click. free: nothing is to snap, or the key for another way is held.
+    reason, of being broken off: "escape" was pressed, another gesture "replaced" it, a drag of the system has "taken over", or what it
+    was about was "lost".
+    """
+
+    begun: bool
+
+    def begin(self, at: QPointF) -> None: ...
+    def update(self, at: QPointF, free: bool = False) -> None: ...
+    def finish(self, at: QPointF) -> None: ...
+    def cancel(self, reason: Reason) -> None: ...
+
+
+class PressDrag:
+    """What drags share that begin once the mouse has moved far enough. catch: pixels; None for the system's own distance."""
+
+    catch: float | None = None
+
+    def __init__(self) -> None:
+        self.origin = QPointF()
+        self.begun = False
+
+    def begin(self, at: QPointF) -> None:
+        self.origin = at
+
+    def caught(self, at: QPointF) -> bool:
+        """Return whether it is a drag by now."""
+        far = QApplication.startDragDistance() if self.catch is None else self.catch
+        self.begun = self.begun or (at - self.origin).manhattanLength() >= far
+        return self.begun
+
+    def cancel(self, reason: Reason) -> None:
+        """Nothing was shown that would have to be taken back."""
+
+
+class Hand:
+    """What the mouse holds in a widget: one gesture, or nothing."""
+
+    def __init__(self) -> None:
+        self.gesture: Gesture | None = None
+
+    def take(self, gesture: Gesture, at: QPointF) -> None:
+        """Begin a gesture; one that still goes on is broken off."""
+        self.drop("replaced")
+        self.gesture = gesture
+        gesture.begin(at)
+
+    def move(self, at: QPointF, free: bool = False) -> bool:
+        """Let the gesture follow the mouse; return whether there is one."""
+        if self.gesture is not None:
+            self.gesture.update(at, free)
+        return self.gesture is not None
+
+    def let_go(self, at: QPointF) -> Gesture | None:
+        """Finish the gesture; return it."""
+        gesture, self.gesture = self.gesture, None
+        if gesture is not None:
+            gesture.finish(at)
+        return gesture
+
+    def drop(self, reason: Reason) -> bool:
+        """Break the gesture off; return whether there was one."""
+        gesture, self.gesture = self.gesture, None
+        if gesture is not None:
+            gesture.cancel(reason)
+        return gesture is not None
