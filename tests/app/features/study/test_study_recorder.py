@@ -43,7 +43,7 @@ def recorded(toys):
 
     toys.pause(300)
     log = Kept()
-    toys.recorder = Recorder(toys.window, log)
+    toys.recorder = Recorder(toys.shell, log)
     toys.log = log
     yield toys
     toys.recorder.stop()
