@@ -6,8 +6,10 @@ from collections.abc import Sequence
 from typing import Any
 
 from PySide6.QtCore import QEvent, Qt
-from PySide6.QtGui import QKeyEvent, QKeySequence, QWheelEvent
-from PySide6.QtWidgets import QComboBox, QDoubleSpinBox, QLineEdit, QWidget
+from PySide6.QtGui import QKeyEvent, QKeySequence
+from PySide6.QtWidgets import QComboBox, QLineEdit, QWidget
+
+from app.widgets.quiet_fields import ComboBox, DoubleSpinBox
 
 MIXED = "mixed"
 
@@ -72,7 +74,7 @@ class Field(QLineEdit):
             super().keyPressEvent(event)
 
 
-class Seconds(QDoubleSpinBox):
+class Seconds(DoubleSpinBox):
     """A number that can also show that many values differ; typing or stepping then sets all."""
 
     def __init__(self, parent: QWidget, tip: str, most: float = 1e4, suffix: str = " s", step: float = 0.05, decimals: int = 2) -> None:
@@ -94,7 +96,7 @@ class Seconds(QDoubleSpinBox):
 
     def stepBy(self, steps: int) -> None:
         if steps < 0 and self.value() + steps * self.singleStep() < 0:
-            self.setValue(0.0)  # what is below stands for "mixed"
+            self.step_to(0.0)  # what is below stands for "mixed"
         else:
             super().stepBy(steps)
 
@@ -112,14 +114,8 @@ class Seconds(QDoubleSpinBox):
         else:
             super().keyPressEvent(event)
 
-    def wheelEvent(self, event: QWheelEvent) -> None:
-        if self.hasFocus():
-            super().wheelEvent(event)
-        else:
-            event.ignore()  # scrolling the panel must not change numbers
 
-
-class Chooser(QComboBox):
+class Chooser(ComboBox):
     """A combo box that long entries do not widen and scrolling does not change."""
 
     def __init__(self, parent: QWidget, toolTip: str) -> None:
@@ -142,6 +138,3 @@ class Chooser(QComboBox):
         self.setPlaceholderText(otherwise)
         self.setCurrentIndex(next((row for row, (_, data) in enumerate(entries) if data == chosen), -1))
         self.blockSignals(False)
-
-    def wheelEvent(self, event: QWheelEvent) -> None:
-        event.ignore()

@@ -8,6 +8,7 @@ from PySide6.QtCore import Qt
 from PySide6.QtWidgets import QDialog, QDialogButtonBox, QDoubleSpinBox, QFormLayout, QLabel, QLineEdit, QVBoxLayout, QWidget
 
 from app.project.document import Document
+from app.widgets.quiet_fields import DoubleSpinBox
 from metagraph.graph import staging
 
 AXES = (
@@ -34,7 +35,7 @@ class PointEditor(QDialog):
         form.addRow("Name", self.name)
         self.axes: list[QDoubleSpinBox] = []
         for (words, tip), value in zip(AXES, (0.6, 1.5, 1.2), strict=True):
-            box = QDoubleSpinBox(self, minimum=-1000.0, maximum=1000.0, decimals=2, singleStep=0.1, suffix=" m")
+            box = DoubleSpinBox(self, minimum=-1000.0, maximum=1000.0, decimals=2, singleStep=0.1, suffix=" m")
             box.setValue(value)
             box.setToolTip(tip)
             box.setAccessibleName(words)

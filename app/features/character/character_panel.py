@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 from PySide6.QtCore import QElapsedTimer, Qt, QTimer
-from PySide6.QtWidgets import QComboBox, QHBoxLayout, QLabel, QSizePolicy, QSlider, QToolButton, QVBoxLayout, QWidget
+from PySide6.QtWidgets import QHBoxLayout, QLabel, QSizePolicy, QToolButton, QVBoxLayout, QWidget
 
 from app.look import icons
 from app.look.theme import theme
@@ -14,6 +14,7 @@ from app.stage.performance import Performance
 from app.stage.playback_source import ASIDE
 from app.stage.playhead import Playhead
 from app.stage.session import Session
+from app.widgets.quiet_fields import ComboBox, Slider
 from metagraph.graph import anatomy
 from metagraph.graph.model import LAYERS, Project
 from preview.camera import close_up, whole_figure
@@ -46,7 +47,7 @@ class PreviewPanel(QWidget):
         layout.setContentsMargins(0, 0, 0, 0)
         layout.setSpacing(0)
         layout.addWidget(self.view, 1)
-        self.scrub = QSlider(Qt.Orientation.Horizontal, self, toolTip="Scrub")
+        self.scrub = Slider(Qt.Orientation.Horizontal, self, toolTip="Scrub")
         self.scrub.setRange(0, 10000)
         self.scrub.setAccessibleName("Playhead")
         self.scrub.setSingleStep(50)
@@ -94,7 +95,7 @@ class PreviewPanel(QWidget):
         self.play_button = button("Play or pause (Space)", lambda: self.session.transport.set_playing(not self.session.transport.playing))
         self.loop_button = button("Loop (L)", self._set_loop, checkable=True)
         self.loop_button.setChecked(self.session.transport.loop)
-        self.speed_box = QComboBox(self, toolTip="Speed")
+        self.speed_box = ComboBox(self, toolTip="Speed")
         self.speed_box.setAccessibleName("Speed")
         self.speed_box.addItems([f"{s:g}×" for s in SPEEDS])
         self.speed_box.setCurrentIndex(SPEEDS.index(1.0))

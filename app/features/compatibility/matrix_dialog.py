@@ -11,7 +11,6 @@ from PySide6.QtCore import Qt
 from PySide6.QtGui import QFontMetrics
 from PySide6.QtWidgets import (
     QAbstractItemView,
-    QComboBox,
     QDialog,
     QHBoxLayout,
     QHeaderView,
@@ -31,6 +30,7 @@ from app.project.document import Document
 from app.project.jobs import Job, Jobs
 from app.stage.compatibility_state import Compatibility, proposed_fields
 from app.stage.session import Session
+from app.widgets.quiet_fields import ComboBox
 from metagraph.graph import edits
 from metagraph.graph.model import KINDS, Action, Project
 
@@ -51,7 +51,7 @@ class MatrixDialog(QDialog):
         self.search = QLineEdit(self, placeholderText="Search clips", clearButtonEnabled=True)
         self.search.setAccessibleName("Search clips")
         self.search.textChanged.connect(self._narrow)
-        self.which = QComboBox(self)
+        self.which = ComboBox(self)
         for text, key in (("All clips", "all"), ("Placed on this layer", "placed"), ("Not placed on it", "free")):
             self.which.addItem(text, key)
         self.which.activated.connect(self._narrow)
@@ -85,7 +85,7 @@ class MatrixDialog(QDialog):
         self.words = QLabel(self, wordWrap=True)
         self.words.setMinimumHeight(56)
         self.words.setAlignment(Qt.AlignmentFlag.AlignTop)
-        self.kind = QComboBox(self)
+        self.kind = ComboBox(self)
         self.kind.setAccessibleName("Place as")
         for kind in KINDS:
             self.kind.addItem(f"{KIND_MARKS[kind]} {KIND_TITLES[kind]}", kind)

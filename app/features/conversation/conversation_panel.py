@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from PySide6.QtCore import Qt, QTimer, Signal
 from PySide6.QtGui import QDragEnterEvent, QDragMoveEvent, QDropEvent, QResizeEvent
-from PySide6.QtWidgets import QComboBox, QHBoxLayout, QLabel, QMenu, QToolButton, QVBoxLayout, QWidget
+from PySide6.QtWidgets import QHBoxLayout, QLabel, QMenu, QToolButton, QVBoxLayout, QWidget
 
 from app.features.conversation.segment_editing import Editing
 from app.features.conversation.segment_lanes import segment_words
@@ -16,6 +16,7 @@ from app.project.document import Document
 from app.project.jobs import Jobs
 from app.stage.session import Session
 from app.widgets.mime import sounds_of
+from app.widgets.quiet_fields import ComboBox
 from app.widgets.sentence import Sentence
 from metagraph.graph.conversation import SPOKEN, side_name
 
@@ -54,7 +55,7 @@ class ConversationPanel(QWidget):
         row = QHBoxLayout()
         row.setContentsMargins(12, 0, 12, 2)
         row.setSpacing(8)
-        self.stage = QComboBox(self, toolTip="Which conversation is on stage: it moves both characters")
+        self.stage = ComboBox(self, toolTip="Which conversation is on stage: it moves both characters")
         self.stage.setAccessibleName("Conversation on stage")
         self.stage.setMinimumWidth(150)
         self.stage.activated.connect(lambda _: self.session.onstage.set_conversation(self.stage.currentData()))

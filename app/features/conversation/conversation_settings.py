@@ -24,6 +24,7 @@ from PySide6.QtWidgets import (
 from app.look.theme import SOUND_MARKS, strengthen
 from app.project.document import Document
 from app.project.speech_files import SOUNDS, channels_of
+from app.widgets.quiet_fields import ComboBox, DoubleSpinBox
 from metagraph.formats.store import SUFFIX, relative
 from metagraph.graph import conversing
 from metagraph.graph.conversation import HESITATIONS, RESPONSES, Conversation, Rates, side_name
@@ -164,7 +165,7 @@ class RatesDialog(SettingDialog):
         for row, (name, (words, tip)) in enumerate(RATES.items(), 1):
             grid.addWidget(QLabel(words.capitalize(), self), row, 0)
             for side in (0, 1):
-                field = QDoubleSpinBox(self, toolTip=tip, suffix=" %", decimals=0)
+                field = DoubleSpinBox(self, toolTip=tip, suffix=" %", decimals=0)
                 field.setRange(0, 100)
                 field.lineEdit().setTextMargins(6, 0, 0, 0)
                 field.setAccessibleName(f"{side_name(self.conversation, side)} {words}")
@@ -213,7 +214,7 @@ class SidesDialog(SettingDialog):
         for side, of in enumerate(self.conversation.sides):
             top = 6 * side
             grid.addWidget(caption(("First speaker", "Second speaker")[side], self), top, 0, 1, 3)
-            name, sound, channel, mover = QLineEdit(of.name, self), QLineEdit(of.audio or "", self), QComboBox(self), QLineEdit(self)
+            name, sound, channel, mover = QLineEdit(of.name, self), QLineEdit(of.audio or "", self), ComboBox(self), QLineEdit(self)
             mover.setText(of.project or "")
             mover.setToolTip("The project whose graph and character move this one")
             mover.setClearButtonEnabled(True)
@@ -237,7 +238,7 @@ class SidesDialog(SettingDialog):
             self.movers.append(mover)
             self._show_channels(side, of.channel)
             sound.editingFinished.connect(lambda side=side: self._show_channels(side, self.channels[side].currentData()))
-        self.distance = QDoubleSpinBox(self, suffix=" m", decimals=2, singleStep=0.1, toolTip="How far apart the two stand")
+        self.distance = DoubleSpinBox(self, suffix=" m", decimals=2, singleStep=0.1, toolTip="How far apart the two stand")
         self.distance.setRange(0.2, 20)
         self.distance.setValue(self.conversation.distance)
         self.distance.lineEdit().setTextMargins(6, 0, 0, 0)

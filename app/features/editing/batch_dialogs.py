@@ -23,6 +23,7 @@ from PySide6.QtWidgets import (
 
 from app.look.theme import strengthen
 from app.project.document import Document
+from app.widgets.quiet_fields import ComboBox
 from metagraph.graph import batch
 from metagraph.graph.edits import EditError
 
@@ -160,7 +161,7 @@ class ReplaceDialog(BatchDialog):
 
     def __init__(self, document: Document, actions: Sequence[str], parent: QWidget | None = None) -> None:
         super().__init__(document, actions, "Replace the clip", "Replace", parent)
-        self.clips = QComboBox(self, editable=True)
+        self.clips = ComboBox(self, editable=True)
         self.clips.setInsertPolicy(QComboBox.InsertPolicy.NoInsert)
         self.clips.setAccessibleName("Clip")
         for clip in document.project.clips.values():

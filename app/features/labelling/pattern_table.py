@@ -10,6 +10,7 @@ from PySide6.QtCore import QAbstractTableModel, QModelIndex, QPersistentModelInd
 from PySide6.QtGui import QFont
 from PySide6.QtWidgets import QComboBox, QStyledItemDelegate, QStyleOptionViewItem, QWidget
 
+from app.widgets.quiet_fields import ComboBox
 from metagraph.graph.words import KINDS, LAYERS, LIMBS
 from metagraph.suggest.words_defaults import DEFAULTS
 from metagraph.suggest.words_patterns import FIELDS, Patterns, PatternsError, forget, remembered
@@ -166,7 +167,7 @@ class MeaningEditor(QStyledItemDelegate):
         few = MEANINGS[row.field]
         if index.column() != 2 or not few:
             return super().createEditor(parent, option, index)
-        box = QComboBox(parent)
+        box = ComboBox(parent)
         fill_meanings(box, row.field)
         return box
 

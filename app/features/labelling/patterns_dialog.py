@@ -10,7 +10,6 @@ from PySide6.QtGui import QKeyEvent, QKeySequence, QShortcut
 from PySide6.QtWidgets import (
     QAbstractItemView,
     QCheckBox,
-    QComboBox,
     QDialog,
     QDialogButtonBox,
     QFileDialog,
@@ -32,6 +31,7 @@ from app.look.theme import KIND_MARKS, theme
 from app.project.document import Document
 from app.project.learned import Learned
 from app.stage.session import Session
+from app.widgets.quiet_fields import ComboBox
 from metagraph.errors import FileError
 from metagraph.suggest.words import NameGuess, Patterns, PatternsError, merged, read_names
 from metagraph.suggest.words_patterns import FIELDS
@@ -135,11 +135,11 @@ class PatternsDialog(QDialog):
     def _adder(self) -> QGridLayout:
         self.phrase = QLineEdit(self, placeholderText="words, like check watch")
         self.phrase.setAccessibleName("Words of the new pattern")
-        self.field = QComboBox(self)
+        self.field = ComboBox(self)
         self.field.setAccessibleName("About")
         for name in FIELDS:
             self.field.addItem(ABOUT[name], name)
-        self.meaning = QComboBox(self)
+        self.meaning = ComboBox(self)
         self.meaning.setAccessibleName("Meaning")
         self.field.currentIndexChanged.connect(lambda _: fill_meanings(self.meaning, self.field.currentData()))
         fill_meanings(self.meaning, "kinds")

@@ -12,7 +12,6 @@ from PySide6.QtWidgets import (
     QLabel,
     QProgressBar,
     QPushButton,
-    QSpinBox,
     QTreeWidget,
     QTreeWidgetItem,
     QVBoxLayout,
@@ -22,6 +21,7 @@ from PySide6.QtWidgets import (
 from app.features.labelling.review_words import about
 from app.look.theme import KIND_MARKS, theme
 from app.stage.session import Session
+from app.widgets.quiet_fields import SpinBox
 from metagraph.graph.model import Project
 from metagraph.suggest.propose import waiting
 from metagraph.suggest.review import Pace, Review
@@ -61,7 +61,7 @@ class ReviewQueue(QWidget):
         self.sure.setAutoDefault(False)
         self.sure.setToolTip("Places all that are at least so sure, and about which nothing is disputed (A)")
         self.sure.clicked.connect(self.sure_wanted)
-        self.limit = QSpinBox(self)
+        self.limit = SpinBox(self)
         self.limit.setRange(0, 100)
         self.limit.setValue(90)
         self.limit.setSuffix(" %")

@@ -6,16 +6,14 @@ from collections.abc import Callable
 from functools import partial
 
 from PySide6.QtCore import Qt
-from PySide6.QtGui import QMouseEvent, QWheelEvent
+from PySide6.QtGui import QMouseEvent
 from PySide6.QtWidgets import (
     QButtonGroup,
     QCheckBox,
-    QDoubleSpinBox,
     QGridLayout,
     QHBoxLayout,
     QLabel,
     QScrollArea,
-    QSlider,
     QToolButton,
     QVBoxLayout,
     QWidget,
@@ -23,6 +21,7 @@ from PySide6.QtWidgets import (
 
 from app.project.document import Document
 from app.stage.session import Session
+from app.widgets.quiet_fields import DoubleSpinBox, Slider
 from app.widgets.request_menu import MODE_WORDS
 from metagraph.graph import staging
 from metagraph.graph.edits import EditError
@@ -30,24 +29,17 @@ from metagraph.graph.life import DIALS, MANNER_DIALS, MANNERS, Dial, Life, manne
 from metagraph.graph.model import MODES, Mode, Project
 
 
-class Slider(QSlider):
+class DialSlider(Slider):
     """A slider that a double click puts back and that the wheel moves only once it has the keyboard."""
 
     def __init__(self, parent: QWidget, steps: int, put_back: Callable[[], None]) -> None:
         super().__init__(Qt.Orientation.Horizontal, parent)
         self.setRange(0, steps)
         self.setPageStep(max(1, steps // 10))
-        self.setFocusPolicy(Qt.FocusPolicy.StrongFocus)
         self._put_back = put_back
 
     def mouseDoubleClickEvent(self, event: QMouseEvent) -> None:
         self._put_back()
-
-    def wheelEvent(self, event: QWheelEvent) -> None:
-        if self.hasFocus():
-            super().wheelEvent(event)
-        else:
-            event.ignore()
 
 
 class Row:
@@ -59,11 +51,11 @@ class Row:
         self.tick = QCheckBox(dial.label, parent)
         self.tick.setToolTip(f"{dial.tip}\nUntick it to turn it off." if dial.off is not None else dial.tip)
         self.label = QLabel(dial.label, parent, toolTip=dial.tip)
-        self.slider = Slider(parent, round((dial.high - dial.low) / dial.step), self.put_back)
+        self.slider = DialSlider(parent, round((dial.high - dial.low) / dial.step), self.put_back)
         self.slider.setToolTip(f"{dial.tip}\nDouble-click puts it back to {default:g} {dial.unit}".rstrip())
         self.slider.setAccessibleName(dial.label)
         decimals = 0 if dial.step >= 1 else 1 if dial.step >= 0.1 else 3 if dial.step < 0.01 else 2
-        self.number = QDoubleSpinBox(parent, minimum=dial.low, maximum=dial.high, singleStep=dial.step, decimals=decimals)
+        self.number = DoubleSpinBox(parent, minimum=dial.low, maximum=dial.high, singleStep=dial.step, decimals=decimals)
         self.number.setSuffix(f" {dial.unit}" if dial.unit else "")
         self.number.setAccessibleName(dial.label)
         self.number.setKeyboardTracking(False)

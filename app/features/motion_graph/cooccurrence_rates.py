@@ -7,7 +7,6 @@ from typing import Any
 
 from PySide6.QtCore import Qt
 from PySide6.QtWidgets import (
-    QComboBox,
     QDialog,
     QHBoxLayout,
     QHeaderView,
@@ -21,6 +20,7 @@ from PySide6.QtWidgets import (
 
 from app.look.theme import strengthen
 from app.project.document import Document
+from app.widgets.quiet_fields import ComboBox
 from metagraph.graph.conversation import Rates
 from metagraph.graph.conversing import set_rates
 
@@ -79,7 +79,7 @@ class RatesDialog(QDialog):
         box.addWidget(self.table, 1)
         row_box = QHBoxLayout()
         row_box.addWidget(QLabel("Move so", self))
-        self.who = QComboBox(self)
+        self.who = ComboBox(self)
         self.who.setAccessibleName("Whose rates")
         for ident, talk in document.project.conversations.items():
             self.who.addItem(f"{talk.name}: both", (ident, (0, 1)))

@@ -7,13 +7,11 @@ from typing import Any
 from PySide6.QtCore import Qt, QTimer
 from PySide6.QtWidgets import (
     QDialog,
-    QDoubleSpinBox,
     QHBoxLayout,
     QHeaderView,
     QLabel,
     QProgressBar,
     QPushButton,
-    QSpinBox,
     QTableWidget,
     QTableWidgetItem,
     QVBoxLayout,
@@ -29,6 +27,7 @@ from app.look.plural import many
 from app.project.document import Document
 from app.project.jobs import Job, Jobs
 from app.stage.session import Session
+from app.widgets.quiet_fields import DoubleSpinBox, SpinBox
 from metagraph.graph import edits
 from metagraph.graph.conversing import change_side
 from metagraph.graph.model import Project
@@ -91,10 +90,10 @@ class MotionGraphDialog(QDialog):
         self.right.setSpacing(6)
         self.right.addWidget(self._heading("What counts as a jump"))
         row = QHBoxLayout()
-        self.k = QSpinBox(self, minimum=2, maximum=10, value=3)
+        self.k = SpinBox(self, minimum=2, maximum=10, value=3)
         self.k.setToolTip("Costs are those of a frame and one so many frames later: the larger, the more transitions, and the rougher")
         self.k.setAccessibleName("Frames apart")
-        self.level = QDoubleSpinBox(self, minimum=50, maximum=99.9, value=95, suffix=" %", decimals=1)
+        self.level = DoubleSpinBox(self, minimum=50, maximum=99.9, value=95, suffix=" %", decimals=1)
         self.level.setToolTip("Transitions may cost as much as so many of these costs")
         self.level.setAccessibleName("Level")
         for words, field in (("Frames apart (k)", self.k), ("Level", self.level)):

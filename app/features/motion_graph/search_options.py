@@ -3,12 +3,13 @@
 from __future__ import annotations
 
 from PySide6.QtCore import Signal
-from PySide6.QtWidgets import QCheckBox, QComboBox, QDoubleSpinBox, QFrame, QHBoxLayout, QLabel, QPushButton, QVBoxLayout, QWidget
+from PySide6.QtWidgets import QCheckBox, QDoubleSpinBox, QFrame, QHBoxLayout, QLabel, QPushButton, QVBoxLayout, QWidget
 
 from app.features.motion_graph.synthesis_jobs import Wish
 from app.features.motion_graph.takes_list import side_words
 from app.look.theme import strengthen
 from app.project.document import Document
+from app.widgets.quiet_fields import ComboBox, DoubleSpinBox
 from metagraph.graph.conversation import SOUNDS, Sound, heard_by
 
 WINDOW = 15.0  # seconds, as in the paper's evaluation
@@ -32,20 +33,20 @@ class Wishes(QFrame):
         title.setProperty("heading", True)
         box.addWidget(title)
         row = QHBoxLayout()
-        self.speech = QComboBox(self)
+        self.speech = ComboBox(self)
         self.speech.setAccessibleName("Goes with")
         self.speech.setMinimumWidth(200)
         self.speech.activated.connect(self._limits)
         self.start = self._seconds("From", 0.0, 0.0)
         self.length = self._seconds("Seconds", 1.0, WINDOW)
-        self.search = QComboBox(self)
+        self.search = ComboBox(self)
         self.search.setAccessibleName("Search")
         self.search.addItem("the best there is", True)
         self.search.addItem("quick, by chance", False)
         self.search.setItemData(0, "Dynamic programming over all frames: finds a motion whenever there is one, none costs less", 3)
         self.search.setItemData(1, "Stochastic greedy search, as in the paper: other results with other seeds; may find nothing", 3)
         self.search.activated.connect(self._limits)
-        self.seed = QDoubleSpinBox(self, minimum=1, maximum=9999, decimals=0, value=1)
+        self.seed = DoubleSpinBox(self, minimum=1, maximum=9999, decimals=0, value=1)
         self.seed.setAccessibleName("Seed")
         for words, field in (
             ("Goes with", self.speech), ("from", self.start), ("for", self.length), ("Search", self.search), ("seed", self.seed),
@@ -64,7 +65,7 @@ class Wishes(QFrame):
         self.peaks = QCheckBox("Stresses", self, checked=True)
         self.peaks.setToolTip("A clause's stress lies where the stress lay that the motion was made with")
         row.addWidget(self.peaks)
-        self.tolerance = QDoubleSpinBox(self, minimum=0.0, maximum=1.0, singleStep=0.05, decimals=2, value=0.1, suffix=" s")
+        self.tolerance = DoubleSpinBox(self, minimum=0.0, maximum=1.0, singleStep=0.05, decimals=2, value=0.1, suffix=" s")
         self.tolerance.setAccessibleName("Tolerance")
         row.addSpacing(8)
         row.addWidget(QLabel("give or take", self))
@@ -85,7 +86,7 @@ class Wishes(QFrame):
         self.fill()
 
     def _seconds(self, name: str, least: float, value: float) -> QDoubleSpinBox:
-        out = QDoubleSpinBox(self, minimum=least, maximum=3600, decimals=1, value=value, suffix=" s")
+        out = DoubleSpinBox(self, minimum=least, maximum=3600, decimals=1, value=value, suffix=" s")
         out.setAccessibleName(name)
         return out
 

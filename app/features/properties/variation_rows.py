@@ -6,9 +6,10 @@ from collections.abc import Callable, Sequence
 from typing import Any
 
 from PySide6.QtCore import Signal
-from PySide6.QtWidgets import QCheckBox, QFormLayout, QHBoxLayout, QSpinBox, QToolButton, QWidget
+from PySide6.QtWidgets import QCheckBox, QFormLayout, QHBoxLayout, QToolButton, QWidget
 
 from app.widgets.form_fields import MIXED, Mixed, Seconds, common
+from app.widgets.quiet_fields import SpinBox
 from metagraph.graph import edits
 from metagraph.graph.model import Action, Project, Settings
 from metagraph.playback.phases import phases
@@ -36,7 +37,7 @@ class ActionRows(QWidget):
         self.found.clicked.connect(lambda: self.changed.emit("Take phases as found", {"timing": dict.fromkeys(PHASE_FIELDS)}))
         self.cooldown = Seconds(parent, "Seconds after it has ended in which it is not drawn again", 3600, " s", 0.5, 1)
         self.cooldown.valueChanged.connect(lambda v: v >= 0 and self.changed.emit("Change cooldown", {"cooldown": round(v, 2)}))
-        self.spacing = QSpinBox(parent, toolTip="How many others of its kind and stance play before it may be drawn again")
+        self.spacing = SpinBox(parent, toolTip="How many others of its kind and stance play before it may be drawn again")
         self.spacing.setAccessibleName("Others between")
         self.spacing.setRange(-2, 31)
         self.spacing.setKeyboardTracking(False)

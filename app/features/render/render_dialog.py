@@ -7,10 +7,8 @@ from pathlib import Path
 from PySide6.QtCore import QSettings, Qt, QUrl, Signal
 from PySide6.QtGui import QDesktopServices
 from PySide6.QtWidgets import (
-    QComboBox,
     QDialog,
     QDialogButtonBox,
-    QDoubleSpinBox,
     QFileDialog,
     QFormLayout,
     QHBoxLayout,
@@ -27,6 +25,7 @@ from app.project.jobs import Job, Jobs
 from app.stage.performance import Performance
 from app.stage.render_process import SUFFIXES, Wanted, write
 from app.stage.session import Session
+from app.widgets.quiet_fields import ComboBox, DoubleSpinBox
 
 SIZES = ((640, 360), (960, 540), (1280, 720), (1920, 1080))
 
@@ -48,7 +47,7 @@ class RenderDialog(QDialog):
         layout = QVBoxLayout(self)
         form = QFormLayout()
         layout.addLayout(form)
-        self.kind = QComboBox(self)
+        self.kind = ComboBox(self)
         for suffix, words in SUFFIXES.items():
             self.kind.addItem(words, suffix)
         self.kind.activated.connect(lambda _: self._suffixed())
@@ -63,15 +62,15 @@ class RenderDialog(QDialog):
         row.addWidget(self.file, 1)
         row.addWidget(browse)
         form.addRow("File", row)
-        self.seconds = QDoubleSpinBox(self, minimum=0.1, maximum=3600, decimals=1, suffix=" s")
+        self.seconds = DoubleSpinBox(self, minimum=0.1, maximum=3600, decimals=1, suffix=" s")
         self.seconds.setValue(kept.length if kept is not None else min(30.0, performance.length))
         form.addRow("Length", self.seconds)
-        self.size_box = QComboBox(self)
+        self.size_box = ComboBox(self)
         for width, height in SIZES:
             self.size_box.addItem(f"{width} × {height}", (width, height))
         self.size_box.setCurrentIndex(int(QSettings().value("render/size", 2)))
         form.addRow("Size", self.size_box)
-        self.fps = QComboBox(self)
+        self.fps = ComboBox(self)
         for fps in (24.0, 25.0, 30.0, 60.0):
             self.fps.addItem(f"{fps:g} a second", fps)
         self.fps.setCurrentIndex(2)

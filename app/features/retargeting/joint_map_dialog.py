@@ -24,6 +24,7 @@ from PySide6.QtWidgets import (
 from app.features.retargeting.stick_figures import StickFigures
 from app.look.theme import DARK, LIGHT, strengthen
 from app.project.jobs import Jobs
+from app.widgets.quiet_fields import ComboBox
 from metagraph.formats.imports import Strangers
 from metagraph.graph.bring import Bringing
 from metagraph.motion.clip import Clip
@@ -148,11 +149,11 @@ class JointMapDialog(QDialog):
     def combo(self, joint: str) -> QComboBox:
         """Return the box in which is chosen what the joint moves."""
         if joint not in self.combos:
-            combo = QComboBox(self.tree, toolTip="The joint of your character that follows it")
+            combo = ComboBox(self.tree, toolTip="The joint of your character that follows it")
             combo.setModel(self.names)
             combo.setAccessibleName(f"{joint} moves")
             combo.setFocusPolicy(Qt.FocusPolicy.StrongFocus)
-            combo.wheelEvent = lambda event: event.ignore()  # type: ignore[method-assign]
+
             combo.setCurrentIndex(self._number(joint))
             combo.activated.connect(lambda n: self._choose(joint, n))
             self.tree.setItemWidget(self.rows[joint], 1, combo)
@@ -168,7 +169,7 @@ class JointMapDialog(QDialog):
         page = QWidget(self)
         box = QVBoxLayout(page)
         box.setContentsMargins(8, 0, 0, 0)
-        self.clip = QComboBox(page, toolTip="The clip that is played")
+        self.clip = ComboBox(page, toolTip="The clip that is played")
         self.clip.setAccessibleName("Clip that is played")
         self.clip.addItems([clip.name for *_, clip in self.strangers.clips])
         self.clip.activated.connect(lambda _: self._play())

@@ -19,6 +19,7 @@ from PySide6.QtWidgets import (
 from app.project.document import Document
 from app.stage.session import Session
 from app.widgets.joint_mask import JOINT, joint_tree
+from app.widgets.quiet_fields import ComboBox
 from metagraph.graph import anatomy, edits
 from metagraph.graph.model import PARTS, Part, Project
 from metagraph.motion.roles import ROLES, missing_roles
@@ -45,17 +46,14 @@ class SkeletonDialog(QDialog):
         self.roles: dict[str, QComboBox] = {}
         self.parts: dict[str, QComboBox] = {}
         for name, item in self.items.items():
-            role = QComboBox(self.tree, toolTip="What this joint is in a human body")
+            role = ComboBox(self.tree, toolTip="What this joint is in a human body")
             role.addItem("-", None)
             for r in ROLES:
                 role.addItem(r.replace("_", " "), r)
             role.activated.connect(lambda _, j=name, box=role: self._set_role(j, box.currentData()))
-            part = QComboBox(self.tree, toolTip="Which layers move it follows from its body part")
+            part = ComboBox(self.tree, toolTip="Which layers move it follows from its body part")
             part.addItems(PARTS)
             part.activated.connect(lambda _, j=name, box=part: self._set_part(j, box.currentText()))
-            for box in (role, part):
-                box.setFocusPolicy(Qt.FocusPolicy.StrongFocus)
-                box.wheelEvent = lambda event: event.ignore()  # type: ignore[method-assign]
             self.tree.setItemWidget(item, 1, role)
             self.tree.setItemWidget(item, 2, part)
             self.roles[name], self.parts[name] = role, part

@@ -15,13 +15,13 @@ from PySide6.QtWidgets import (
     QFormLayout,
     QLabel,
     QLineEdit,
-    QSpinBox,
     QVBoxLayout,
     QWidget,
 )
 
 from app.stage.performance import Performance
 from app.widgets.lane_geometry import outcome
+from app.widgets.quiet_fields import ComboBox, DoubleSpinBox, SpinBox
 from app.widgets.request_menu import MODE_WORDS, ask_words, lane_of
 from metagraph.graph.edits import EditError
 from metagraph.graph.model import LAYERS, LIMBS, MODES, Project
@@ -112,14 +112,14 @@ class AskEditor(QDialog):
         if name in ("at", "stroke", "duration", "hold"):
             return self._seconds(name, value)
         if name == "priority":
-            spin = QSpinBox(self)
+            spin = SpinBox(self)
             spin.setRange(-1000, 1000)
             spin.setValue(value)
             spin.setKeyboardTracking(False)
             spin.valueChanged.connect(lambda v: self._set(name, v))
             return spin
         if name == "amount":
-            amount = QDoubleSpinBox(self, minimum=0.0, maximum=1.0, singleStep=0.1)
+            amount = DoubleSpinBox(self, minimum=0.0, maximum=1.0, singleStep=0.1)
             amount.setValue(value)
             amount.setKeyboardTracking(False)
             amount.valueChanged.connect(lambda v: self._set(name, round(v, 3)))
@@ -137,7 +137,7 @@ class AskEditor(QDialog):
 
     def _seconds(self, name: str, value: float | None) -> QDoubleSpinBox:
         """Return a number of seconds; at its lowest it is left open."""
-        spin = QDoubleSpinBox(self, decimals=2, singleStep=0.1, suffix=" s")
+        spin = DoubleSpinBox(self, decimals=2, singleStep=0.1, suffix=" s")
         spin.setRange(-0.01, 600.0 if name == "hold" else 1e6)
         spin.setSpecialValueText(UNSET)
         spin.setValue(-0.01 if value is None else value)
@@ -170,7 +170,7 @@ class AskEditor(QDialog):
             items = [(n, n) for n in dict.fromkeys(("user", "ahead", *project.points))]
         else:
             return None
-        box = QComboBox(self)
+        box = ComboBox(self)
         if value not in [v for _, v in items]:
             items.append((value if isinstance(value, str) else "a point", value))
         for words, data in items:

@@ -4,13 +4,11 @@ from __future__ import annotations
 
 from PySide6.QtCore import QTimer
 from PySide6.QtWidgets import (
-    QComboBox,
     QHBoxLayout,
     QInputDialog,
     QLabel,
     QMenu,
     QMessageBox,
-    QSpinBox,
     QToolButton,
     QVBoxLayout,
     QWidget,
@@ -22,6 +20,7 @@ from app.project.document import Document
 from app.stage.performance import Performance
 from app.stage.session import Session
 from app.widgets.lane_geometry import outcome, wanted
+from app.widgets.quiet_fields import ComboBox, SpinBox
 from app.widgets.request_menu import ask_menu
 from app.widgets.sentence import Sentence
 from metagraph.graph import edits, staging
@@ -47,7 +46,7 @@ class TimelinePanel(QWidget):
         row = QHBoxLayout()
         row.setContentsMargins(12, 0, 12, 2)
         row.setSpacing(8)
-        self.stage = QComboBox(self, toolTip="Which performance is on stage; improvised, the models fill the time on their own")
+        self.stage = ComboBox(self, toolTip="Which performance is on stage; improvised, the models fill the time on their own")
         self.stage.setAccessibleName("Performance")
         self.stage.setMinimumWidth(150)
         self.stage.activated.connect(self._put_on)
@@ -76,7 +75,7 @@ class TimelinePanel(QWidget):
         self.ask.clicked.connect(self._ask)
         row.addWidget(self.ask)
         row.addWidget(QLabel("Seed", self))
-        self.seed = QSpinBox(self, toolTip="Another seed gives another performance of the same graph")
+        self.seed = SpinBox(self, toolTip="Another seed gives another performance of the same graph")
         self.seed.setFixedWidth(84)
         self.seed.lineEdit().setTextMargins(6, 0, 0, 0)
         self.seed.setRange(0, 999999)
