@@ -4,13 +4,13 @@ from __future__ import annotations
 
 import json
 import sys
-from argparse import Namespace
+from argparse import ArgumentParser, Namespace
 from collections.abc import Iterable, Mapping
 from difflib import get_close_matches
 from pathlib import Path
 from typing import Any
 
-from app.features.models.annotation_reading import Reading, begin, into, told
+from app.project.annotation_reading import Reading, begin, into, told
 from app.project.opening import open_whole
 from metagraph.errors import FileError
 from metagraph.formats.elan import read_elan
@@ -21,7 +21,22 @@ from metagraph.playback.compare import compare
 from metagraph.playback.learn import Act, learn, state_words, states_of
 
 
-def annotate(options: Namespace) -> int:
+def arguments(parser: ArgumentParser) -> None:
+    """Add the options."""
+    parser.add_argument("annotation", type=Path, help="an .eaf file")
+    parser.add_argument("--tier", action="append", default=[], metavar="NAME=ROLE",
+                           help="what a tier stands for: left arm, right arm, arms, head action, head stance, body, ignore")  # fmt: skip
+    parser.add_argument("--label", action="append", default=[], metavar="LABEL=MEANING",
+                           help='what a label means: gesture, fidget, transition, ignore ..., then tags ("gesture positive")')  # fmt: skip
+    meaning = parser.add_mutually_exclusive_group()
+    meaning.add_argument("--states", action="store_true", help="positive and negative gestures are states of their own")
+    meaning.add_argument("--shares", action="store_true", help="they are shares of all gestures (the default)")
+    parser.add_argument("--smoothing", type=float, default=0.0, help="added to every count (default: 0, as in the paper)")
+    parser.add_argument("--learn", action="store_true", help="learn the models of all layers that were annotated")
+    parser.add_argument("--perform", metavar="NAME", help="keep it as a performance")
+
+
+def run(options: Namespace) -> int:
     """Say what an annotation is read as; with `learn` or `perform`, work it into the project and save that."""
     path: Path = options.project
     opened = open_whole(path)

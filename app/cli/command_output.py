@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import json
 import sys
-from argparse import Namespace
+from argparse import ArgumentParser, Namespace
 from pathlib import Path
 from typing import Any
 
@@ -48,3 +48,11 @@ def _kept(project: Project, name: str) -> Performance:
 
 def say(options: Namespace, words: str, data: Any) -> None:
     print(json.dumps(data) if options.json else words)
+
+
+def performance_arguments(parser: ArgumentParser, seconds: float) -> None:
+    """Add the options that say which performance, and how much of it. seconds: the usual length."""
+    parser.add_argument("-s", "--seconds", type=float, help=f"length of the performance (default: its own, else {seconds:g})")
+    parser.set_defaults(usual_seconds=seconds)
+    parser.add_argument("--performance", metavar="NAME", help="a performance that is kept in the project (default: improvise)")
+    parser.add_argument("--seed", type=int, help="another performance of the same project (default: the project's seed)")

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import sys
 import time
-from argparse import Namespace
+from argparse import ArgumentParser, Namespace
 from pathlib import Path
 from typing import Any
 
@@ -16,7 +16,20 @@ LOOK = 0.3  # seconds between two looks at the project file
 SHOWN = 8  # files named on the screen
 
 
-def export(options: Namespace) -> int:
+def arguments(parser: ArgumentParser) -> None:
+    """Add the options."""
+    parser.add_argument("project", type=Path, nargs="?", help="the project file")
+    parser.add_argument("-o", "--out", type=Path, help="a folder")
+    parser.add_argument("-t", "--target", default="metagraph", help="what to write for (default: metagraph, one JSON and one GLB)")
+    parser.add_argument("--targets", action="store_true", help="list the targets there are")
+    parser.add_argument("--watch", action="store_true", help="go on, and write again whenever the project is saved")
+    parser.add_argument("--serve", action="store_true", help="go on, and show the web page to this machine's browser")
+    parser.add_argument("--vectors", action="store_true", help="write conformance vectors for runtimes as well")
+    parser.add_argument("--expanded", action="store_true", help="list the expanded state machine in the JSON as well")
+    parser.add_argument("--no-mesh", action="store_true", help="leave the character's mesh out of the GLB")
+
+
+def run(options: Namespace) -> int:
     """Write a project for a target; with `watch` go on until interrupted."""
     from metagraph.engines.targets import registry
 

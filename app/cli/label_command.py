@@ -31,10 +31,10 @@ def arguments(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("--no-pictures", action="store_true", help="leave the pictures out of the report")
 
 
-def label(options: Namespace) -> int:
+def run(options: Namespace) -> int:
     """Label a folder or project; write the project and an HTML report beside it."""
     from app.cli.command_output import say
-    from app.features.labelling.label_report import needs_a_look, report
+    from app.cli.label_report import needs_a_look, report
     from metagraph.errors import FileError
     from metagraph.formats.atomic import write_atomically
     from metagraph.formats.store import SUFFIX, save_project
@@ -80,7 +80,7 @@ def label(options: Namespace) -> int:
 def _taught(options: Namespace, path: Path) -> tuple[Patterns | None, list[Example]]:
     """Return the name patterns to read with and the examples to learn from; neither unless asked for, so that a run is the same
     everywhere."""
-    from app.features.labelling.pattern_files import read_patterns
+    from app.project.pattern_files import read_patterns
     from metagraph.suggest.words import merged
 
     given = read_patterns(options.patterns) if options.patterns is not None else None

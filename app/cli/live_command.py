@@ -34,7 +34,7 @@ def arguments(parser: ArgumentParser) -> None:
     parser.add_argument("--keep", metavar="NAME", help="keep what was asked in the project at the end, as a performance")
 
 
-def live(options: Namespace) -> int:
+def run(options: Namespace) -> int:
     """Play until standard input ends or the program is interrupted."""
     import asyncio
     import gc

@@ -34,7 +34,7 @@ def arguments(parser: ArgumentParser) -> None:
     parser.add_argument("--size", default="960x540", help="width x height of pictures in pixels (default: 960x540)")
 
 
-def mimic(options: Namespace) -> int:
+def run(options: Namespace) -> int:
     """Tell what is seen in keypoints; with `out` write the character mimicking it, with `keep` keep it in the project."""
     from app.cli.command_output import opened
     from app.cli.render_command import size_of

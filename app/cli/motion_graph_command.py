@@ -69,7 +69,7 @@ def arguments(parser: ArgumentParser) -> None:
     action("co-occurrence", "count how often hands and head move with what is said", co_occurrence, speech=True)
 
 
-def motion_graph(options: Namespace) -> int:
+def run(options: Namespace) -> int:
     """Do the action that was asked for."""
     return int(options.run(options))
 

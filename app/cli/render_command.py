@@ -3,20 +3,33 @@
 from __future__ import annotations
 
 import sys
-from argparse import Namespace
+from argparse import ArgumentParser, Namespace
 from collections.abc import Iterator, Sequence
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 
-from app.cli.command_output import opened, say, staged
+from app.cli.command_output import opened, performance_arguments, say, staged
 from app.stage.playback_source import ASIDE, Shown, alone
 from metagraph.graph.model import Project
 from metagraph.playback.bake import bake
 from metagraph.playback.plan import Plan
 
 Seen = tuple[Any, Shown]  # a figure, and what it plays
+
+
+def arguments(parser: ArgumentParser) -> None:
+    """Add the options."""
+    performance_arguments(parser, 10.0)
+    parser.add_argument("-o", "--out", type=Path, required=True, help="a .png, .mp4, .glb or .bvh file")
+    parser.add_argument("--progress", action="store_true", help="tell after each picture of a video how many there are")
+    parser.add_argument("--clip", help="draw this clip of the project alone")
+    parser.add_argument("--conversation", metavar="NAME", help="draw both sides of this conversation, with their sound")
+    parser.add_argument("--size", default="960x540", help="width x height in pixels (default: 960x540)")
+    parser.add_argument("--fps", type=float, default=30.0, help="pictures a second of a video (default: 30)")
+    parser.add_argument("--frames", type=int, default=24, help="pictures on a contact sheet (default: 24)")
+    parser.add_argument("--theme", choices=("dark", "light"), default="dark")
 
 
 def figure_of(project: Project, folder: Path) -> Any:
@@ -67,7 +80,7 @@ def _actor(figure: Any, shown: Shown, times: Any) -> Any:
     return Actor(figure, rotations, positions, morphs)
 
 
-def render(options: Namespace) -> int:
+def run(options: Namespace) -> int:
     project = opened(options.project)
     if project.skeleton is None:
         raise ValueError("the project has no clips; there is nothing to draw")

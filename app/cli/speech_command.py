@@ -26,7 +26,7 @@ def arguments(parser: ArgumentParser) -> None:
     parser.add_argument("--name", help="what the conversation is called (default: as the sound)")
 
 
-def speech(options: Namespace) -> int:
+def run(options: Namespace) -> int:
     """Read a conversation, tell what is in it; with `out` write it, with `project` keep it there."""
     from app.cli.command_output import say
     from metagraph.formats.conversations import read_conversation

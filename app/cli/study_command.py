@@ -51,7 +51,7 @@ def arguments(parser: ArgumentParser) -> None:
     made.add_argument("--sus", type=float, nargs=2, default=(78.0, 52.0), metavar=("META", "MANUAL"), help="mean SUS scores")
 
 
-def study(options: Namespace) -> int:
+def run(options: Namespace) -> int:
     """Do the action that was asked for."""
     return int(options.run(options))
 

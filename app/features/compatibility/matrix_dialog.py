@@ -101,7 +101,7 @@ class MatrixDialog(QDialog):
         self._lay_out(close)
         for signal in (session.place.layer_changed, compatibility.changed):
             signal.connect(self.refresh)
-        compatibility.compared.connect(lambda layer: self.refresh() if layer == self.session.place.layer else None)
+        compatibility.compared.connect(self._compared)
         document.changed.connect(self._follow)
         session.look.changed.connect(self.table.viewport().update)
         self.refresh()
@@ -131,6 +131,10 @@ class MatrixDialog(QDialog):
 
     def _follow(self, before: Project, after: Project) -> None:
         if before.graphs is not after.graphs or before.clips is not after.clips:
+            self.refresh()
+
+    def _compared(self, layer: str) -> None:
+        if layer == self.session.place.layer:
             self.refresh()
 
     def refresh(self) -> None:

@@ -25,11 +25,11 @@ from PySide6.QtWidgets import (
     QWidget,
 )
 
-from app.features.labelling.pattern_files import read_patterns, write_patterns
 from app.features.labelling.pattern_table import ABOUT, MINE, NOBODY, Chosen, MeaningEditor, PatternTable, Row, fill_meanings, without
 from app.look.theme import KIND_MARKS, theme
 from app.project.document import Document
 from app.project.learned import Learned
+from app.project.pattern_files import read_patterns, write_patterns
 from app.stage.session import Session
 from app.widgets.quiet_fields import ComboBox
 from metagraph.errors import FileError

@@ -26,10 +26,10 @@ from PySide6.QtWidgets import (
     QWidget,
 )
 
-from app.features.models.annotation_reading import Reading, begin, into, told
 from app.features.models.meaning_choices import ChoiceTable, Entries, Row
 from app.look.plural import many
 from app.look.theme import KIND_MARKS, strengthen, theme
+from app.project.annotation_reading import Reading, begin, into, told
 from app.project.document import Document
 from app.stage.session import Session
 from app.widgets.act_strip import Strip, clock

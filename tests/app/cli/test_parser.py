@@ -341,7 +341,7 @@ def loaded(code: str) -> set[str]:
 
 
 @pytest.mark.parametrize(
-    "code", ["import app.cli", f"from app.cli.parser import main; main(['plan', {SAMPLE!r}, '-s', '2'])"], ids=["start", "plan"]
+    "code", ["import app.cli.parser", f"from app.cli.parser import main; main(['plan', {SAMPLE!r}, '-s', '2'])"], ids=["start", "plan"]
 )
 def test_commands_without_a_window_import_neither_qt_nor_anything_heavy(code: str) -> None:
     assert not loaded(code) & {"PySide6", "moderngl", *HEAVY}

@@ -520,8 +520,8 @@ def test_closing_asks_about_changes_and_windows_follow_each_other(toys, qtbot, m
     second = make_window()
     second.show()
     second.load_late_panels_soon()
-    qtbot.waitUntil(lambda: second.ready, timeout=15000)
-    assert not second.document.project.clips
+    qtbot.waitUntil(lambda: second.places.ready, timeout=15000)
+    assert not second.shell.document.project.clips
     assert second.close()
     second.deleteLater()
 

@@ -10,6 +10,7 @@ import pytest
 from app.project.document import Document
 from app.project.jobs import Jobs
 from app.stage.performance import Performance
+from app.stage.playhead import Playhead
 from app.stage.playback_source import LEAD, alone, in_context
 from app.stage.session import Session
 from metagraph.graph import asks as a
@@ -146,32 +147,32 @@ def test_a_request_appears_in_the_plan_and_can_be_withdrawn(stage, qtbot, toy):
     qtbot.waitUntil(lambda: planned(stage))
     unasked = stage.shown.plan.layers["arms"].cues
     far = toy.id(stage.document.project, "far")
-    stage.ask(a.Go(stance=far, at=3.0))
+    stage.requests.ask(a.Go(stance=far, at=3.0))
     qtbot.waitUntil(lambda: any(c.then == far and c.start < 6 for c in stage.shown.plan.layers["arms"].cues))
-    stage.withdraw(stage.asks[0].id)
+    stage.requests.withdraw(stage.asks[0].id)
     qtbot.waitUntil(lambda: stage.shown.plan.layers["arms"].cues == unasked)
     assert stage.asks == ()
 
 
 def test_asks_are_kept_with_the_project_and_undone_like_any_edit(stage, qtbot):
-    stage.ask(a.Gesture(at=3.0), "Ask for a gesture")
+    stage.requests.ask(a.Gesture(at=3.0), "Ask for a gesture")
     project = stage.document.project
-    assert [p.name for p in project.performances.values()] == ["Performance"] and stage.kept is not None
-    stage.ask(a.Nod(at=4.0))
+    assert [p.name for p in project.performances.values()] == ["Performance"] and stage.requests.kept is not None
+    stage.requests.ask(a.Nod(at=4.0))
     assert len(stage.asks) == 2, "the second joins the first"
     first = stage.asks[0].id
-    stage.move_asks((first,), 1.25)
+    stage.requests.move((first,), 1.25)
     assert stage.asks[0].at == 4.25
-    stage.change_ask(first, priority=5)
+    stage.requests.change(first, priority=5)
     assert stage.asks[0].priority == 5
     for _ in range(4):
         stage.document.undo()
-    assert stage.kept is None and stage.asks == () and stage.session.onstage.performance is None
+    assert stage.requests.kept is None and stage.asks == () and stage.session.onstage.performance is None
 
 
 def test_an_ask_for_now_gets_a_time_just_after_the_playhead(stage, qtbot):
     stage.session.transport.seek(7.0)
-    stage.ask(a.Gesture())
+    stage.requests.ask(a.Gesture())
     assert stage.asks[0].at == pytest.approx(7.15)
     assert stage.session.onstage.requests == (stage.asks[0].id,)
 
@@ -196,12 +197,12 @@ def test_a_kept_performance_has_its_own_length_and_seed(stage, qtbot):
 
 
 def test_answers_are_about_the_plan_that_is_shown(stage, qtbot):
-    stage.ask(a.Gesture(at=3.0, tags=("nonsense",)))
+    stage.requests.ask(a.Gesture(at=3.0, tags=("nonsense",)))
     qtbot.waitUntil(lambda: bool(stage.answers()) and stage.answers()[stage.asks[0].id].state == "refused")
 
 
 def test_another_project_forgets_requests_and_length(stage, qtbot, toy):
-    stage.ask(a.Gesture(at=3.0))
+    stage.requests.ask(a.Gesture(at=3.0))
     stage.length = 600.0
     stage.document.load(toy.project(), None)
     qtbot.waitUntil(lambda: planned(stage))
@@ -230,19 +231,19 @@ def test_playing_loops_or_goes_on_for_ever(stage, qtbot):
     qtbot.waitUntil(lambda: planned(stage))
     session = stage.session
     session.transport.seek(59.9)
-    stage.advance(0.2)
+    Playhead(stage.session, stage).advance(0.2)
     assert session.transport.seconds == pytest.approx(0.1, abs=1e-6)
     session.transport.loop = False
     session.transport.seek(50.0)
-    stage.advance(0.1)
+    Playhead(stage.session, stage).advance(0.1)
     qtbot.waitUntil(lambda: stage.shown.length == 120.0)
     assert session.transport.playing
     session.transport.show_clip(next(iter(session.document.project.clips)))
     qtbot.waitUntil(lambda: stage.shown.clip is not None)
     session.transport.seek(1.99)
-    stage.advance(0.2)
+    Playhead(stage.session, stage).advance(0.2)
     assert not session.transport.playing, "a clip alone ends"
     assert session.transport.seconds == pytest.approx(2.0)
     session.transport.set_playing(False)
-    stage.advance(1.0)
+    Playhead(stage.session, stage).advance(1.0)
     assert session.transport.seconds == pytest.approx(2.0)

@@ -109,7 +109,7 @@ def test_escape_gives_a_drag_up_and_a_click_on_the_arrow_plays(toys):
     drive.pause(30)
     assert drive.canvas._drop is not None and "far" in drive.canvas._sentence()
     QTest.keyClick(widget, Qt.Key.Key_Escape)
-    assert drive.canvas._drop is None and drive.canvas.gesture is None
+    assert drive.canvas._drop is None and drive.canvas.hand.gesture is None
     QTest.mouseRelease(widget, Qt.MouseButton.LeftButton, pos=drive.chip(drive.id("far"))[1])
     assert drive.document.project.action(way).end_stance == drive.id("up")
     drive.click(head(drive, way))

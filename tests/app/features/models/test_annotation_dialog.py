@@ -7,7 +7,7 @@ from PySide6.QtCore import QSettings, Qt
 from PySide6.QtWidgets import QInputDialog
 
 from app.features.models.annotation_dialog import REMEMBERED, SAMPLE, AnnotateDialog, keep, meaning_entries, meaning_words, recall
-from app.features.models.annotation_reading import begin
+from app.project.annotation_reading import begin
 from app.project.document import Document
 from app.stage.session import Session
 from metagraph.formats.elan import read_elan

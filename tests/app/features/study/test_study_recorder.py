@@ -223,4 +223,5 @@ def test_operators_are_counted_outside_a_study_while_that_is_wanted(toys):
     d.window.findChild(Counting).show()
     assert d.window.findChild(Counting).label.text().startswith("K 1   P 0   B 2   D 0   H 1   0.")
     d.actions["count_operators"].trigger()
-    assert d.window.findChild(Counting) is None and not d.actions["count_operators"].isChecked()
+    d.wait(lambda: d.window.findChild(Counting) is None)
+    assert not d.actions["count_operators"].isChecked()

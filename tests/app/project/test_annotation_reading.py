@@ -7,7 +7,7 @@ from typing import Any
 
 import pytest
 
-from app.features.models.annotation_reading import begin, into, remember, told
+from app.project.annotation_reading import begin, into, remember, told
 from metagraph.formats.data import from_data, to_data
 from metagraph.formats.elan import read_elan
 from metagraph.graph.model import LAYERS, Project
@@ -15,7 +15,7 @@ from metagraph.playback.annotation import Annotation, Interval, Tier
 from metagraph.playback.hear import perform
 from metagraph.playback.learn import acts_of_asks
 
-SAMPLE = Path(__file__).resolve().parents[4] / "sample_clips" / "annotation" / "conversation.eaf"
+SAMPLE = Path(__file__).resolve().parents[3] / "sample_clips" / "annotation" / "conversation.eaf"
 
 
 def tier(name: str, *texts: str) -> Tier:

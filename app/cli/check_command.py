@@ -1,0 +1,28 @@
+"""`metagraph check`: what is wrong with a project, and what to do about it."""
+
+from __future__ import annotations
+
+import json
+from argparse import ArgumentParser, Namespace
+from collections import Counter
+
+from app.cli.command_output import opened
+from metagraph.graph.check import check as find_problems
+
+
+def arguments(parser: ArgumentParser) -> None:
+    """Add the options."""
+    parser.add_argument("--strict", action="store_true", help="warnings count as problems for the exit code, too")
+
+
+def run(options: Namespace) -> int:
+    problems = find_problems(opened(options.project))
+    counts = Counter(p.severity for p in problems)
+    if options.json:
+        fields = ("severity", "code", "message", "remedy", "layer", "stance", "action", "clip")
+        print(json.dumps({"problems": [{f: getattr(p, f) for f in fields} for p in problems]}))
+    else:
+        for p in problems:
+            print(f"{p.severity:8}{f'{p.layer}: ' if p.layer else ''}{p.message}\n        {p.remedy}")
+        print(f"{counts['error']} errors, {counts['warning']} warnings, {counts['hint']} hints")
+    return 3 if counts["error"] or (options.strict and counts["warning"]) else 0

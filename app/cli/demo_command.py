@@ -1,0 +1,57 @@
+"""`metagraph demo`: the main job without a window."""
+
+from __future__ import annotations
+
+import json
+from argparse import ArgumentParser, Namespace
+from pathlib import Path
+
+from app.cli.command_output import opened, performance_arguments, staged
+from app.cli.render_command import draw_to, figure_of, sound_of
+from app.stage.playback_source import Shown
+from metagraph.formats.store import SUFFIX
+from metagraph.graph.expand import size
+from metagraph.graph.model import LAYERS
+
+SAMPLE = Path(__file__).resolve().parents[2] / "sample_clips" / f"sample{SUFFIX}"
+
+
+def arguments(parser: ArgumentParser) -> None:
+    """Add the options."""
+    parser.add_argument("-o", "--out", type=Path, default=Path("out"), help="a folder (default: out)")
+    performance_arguments(parser, 60.0)
+
+
+def run(options: Namespace) -> int:
+    """The main job without a window: graph, performance, contact sheet, video, export; say where the results are."""
+    from metagraph.engines.export import export as write_export
+
+    source: Path = getattr(options, "project", None) or SAMPLE
+    project = opened(source)
+    folder = source.resolve().parent
+    made = staged(project, options)
+    out: Path = options.out
+    out.mkdir(parents=True, exist_ok=True)
+    whole = size(project)
+    cues = sum(len(made.layers[layer].cues) for layer in LAYERS)
+    quiet = options.json
+    if not quiet:
+        print(f"{project.name}: {whole.clips} clips placed")
+        print(f"the machine nobody had to draw: {whole.states} states, {whole.connections:,} connections")
+        print(f"planned {made.end:g} s: {cues} actions on {len(LAYERS)} layers")
+    shown = Shown(project, made, made.end)
+    seen = [(figure_of(project, folder), shown)]
+    sheet, video = out / f"{project.name}.png", out / f"{project.name}.mp4"
+    draw_to(sheet, seen, made.end, (960, 540), 30, 24, "dark")
+    if not quiet:
+        print(f"contact sheet  {sheet.resolve()}", flush=True)
+    draw_to(video, seen, made.end, (640, 360), 30, 0, "dark", sound_of(shown, folder, made.end))
+    if not quiet:
+        print(f"video          {video.resolve()}", flush=True)
+    exported = write_export(project, out, character=folder / project.character if project.character else None)
+    results = {"sheet": sheet, "video": video, "json": exported.json, "glb": exported.glb}
+    if quiet:
+        print(json.dumps({k: str(v.resolve()) for k, v in results.items()}))
+    else:
+        print(f"graph (JSON)   {exported.json.resolve()}\nclips (GLB)    {exported.glb.resolve()}")
+    return 0

@@ -1,0 +1,54 @@
+"""`metagraph import`: clips into a project."""
+
+from __future__ import annotations
+
+import sys
+from argparse import ArgumentParser, Namespace
+from pathlib import Path
+
+from app.cli.command_output import opened, say
+from metagraph.formats.imports import import_files
+from metagraph.formats.store import SUFFIX, save_project
+from metagraph.graph.model import Project
+
+
+def arguments(parser: ArgumentParser) -> None:
+    """Add the options."""
+    parser.add_argument("paths", type=Path, nargs="+", help="clip files and folders: BVH, GLB, glTF, VRM animation, FBX")
+    parser.add_argument("--retarget", action="store_true", help="bring clips of other skeletons onto the project's")
+
+
+def run(options: Namespace) -> int:
+    path: Path = options.project
+    if path.is_file():
+        project = opened(path)
+    else:
+        if path.suffix not in (".yaml", ".yml"):
+            path = path.with_name(path.name + SUFFIX)
+        project = Project(name=path.name.removesuffix(SUFFIX))
+    show = sys.stderr.isatty() and not options.json
+
+    def progress(done: int, total: int, file: Path) -> None:
+        if show:
+            print(f"\r{done}/{total} {file.name[:50]:<50}", end="", file=sys.stderr)
+
+    result = import_files(project, path.resolve().parent, options.paths, progress, retarget="yes" if options.retarget else "no")
+    if show:
+        print(file=sys.stderr)
+    for failure in result.failures:
+        print(f"left out: {failure}", file=sys.stderr)
+    if not options.json:
+        for note in result.notes:
+            print(f"note: {note}", file=sys.stderr)
+    if result.loaded:
+        project = result.into(project)
+        save_project(project, path, path)
+    data = {
+        "project": str(path), "imported": len(result.loaded), "retargeted": result.retargeted, "failures": list(result.failures),
+        "notes": list(result.notes),
+    }  # fmt: skip
+    brought = f" ({result.retargeted} retargeted)" if result.retargeted else ""
+    say(options, f"{path}: {len(result.loaded)} clips imported{brought}, {len(result.failures)} files left out", data)
+    if not result.loaded and result.failures:
+        return 1
+    return 3 if result.failures else 0

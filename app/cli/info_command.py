@@ -1,0 +1,63 @@
+"""`metagraph info`: what is in a project, an export or a clip file."""
+
+from __future__ import annotations
+
+from argparse import ArgumentParser, Namespace
+from pathlib import Path
+from typing import Any
+
+from app.cli.command_output import opened, say
+from metagraph.formats.clips import SUFFIXES, read_clips
+from metagraph.graph.expand import size
+from metagraph.graph.model import KINDS, LAYERS
+
+
+def arguments(parser: ArgumentParser) -> None:
+    """Add the options."""
+    parser.add_argument("path", type=Path, help="a project, an exported JSON, or a clip file")
+
+
+def run(options: Namespace) -> int:
+    path: Path = options.path
+    if path.suffix.lower() in SUFFIXES:
+        clips = read_clips(path)
+        from metagraph.motion.roles import find_roles
+
+        roles = find_roles(clips[0].skeleton)
+        joints = clips[0].skeleton.names
+        data: dict[str, Any] = {
+            "joints": len(joints),
+            "height": round(clips[0].skeleton.height, 3),
+            "clips": [
+                {"name": c.name, "frames": c.frames, "fps": c.fps, "seconds": round(c.duration, 3), "notes": list(c.notes)} for c in clips
+            ],
+            "roles": {role: joints[j] for role, j in roles.items()},
+        }
+        lines = [f"{path.name}: {len(clips)} clips on {len(joints)} joints, {data['height']} m tall"]
+        lines += [f"  {c.name:40} {c.duration:7.2f} s  {c.frames:5} frames at {c.fps:g} fps" for c in clips]
+        say(options, "\n".join(lines), data)
+        return 0
+    if path.suffix == ".json":
+        from metagraph.engines.reading import read_export
+
+        project = read_export(path, motions=False)
+    else:
+        project = opened(path)
+    whole = size(project)
+    layers = {
+        layer: {
+            "stances": len(project.graphs[layer].stances),
+            **{k: sum(a.kind == k for a in project.graphs[layer].actions.values()) for k in KINDS},
+        }
+        for layer in LAYERS
+    }
+    data = {"name": project.name, "clips": len(project.clips), "placed": whole.clips, "states": whole.states,
+            "connections": whole.connections, "joints": len(project.skeleton) if project.skeleton else 0, "layers": layers}  # fmt: skip
+    lines = [f"{project.name}: {len(project.clips)} clips, {whole.clips} placed, {data['joints']} joints"]
+    for layer, counts in layers.items():
+        lines.append(
+            f"  {layer:5} " + ", ".join(f"{n} {k.removesuffix('s')}{'s' if n != 1 else ''}" for k, n in counts.items() if k != "stance")
+        )
+    lines.append(f"  the machine it stands for: {whole.states} states, {whole.connections} connections")
+    say(options, "\n".join(lines), data)
+    return 0

@@ -1,0 +1,34 @@
+"""`metagraph plan`: a performance as a list of actions."""
+
+from __future__ import annotations
+
+import json
+import sys
+from argparse import ArgumentParser, Namespace
+
+from app.cli.command_output import opened, performance_arguments, staged
+from metagraph.graph.model import LAYERS
+
+
+def arguments(parser: ArgumentParser) -> None:
+    """Add the options."""
+    performance_arguments(parser, 20.0)
+
+
+def run(options: Namespace) -> int:
+    project = opened(options.project)
+    made = staged(project, options)
+    rows = [
+        {"layer": layer, "start": round(cue.start, 4), "end": round(cue.end, 4), "kind": cue.action.kind, "action": cue.action.id,
+         "name": cue.action.name, "stance": cue.stance, "then": cue.then}
+        for layer in LAYERS for cue in made.layers[layer].cues
+    ]  # fmt: skip
+    if options.json:
+        reports = [{"request": r.request, "outcome": r.outcome, "message": r.message, "layer": r.layer} for r in made.reports]
+        print(json.dumps({"seed": made.seed, "end": made.end, "cues": rows, "reports": reports}))
+        return 0
+    for row in sorted(rows, key=lambda r: (r["start"], r["layer"])):
+        print(f"{row['start']:8.2f} {row['end']:8.2f}  {row['layer']:5} {row['kind']:11} {row['name']}")
+    if not rows:
+        print("Nothing plays: no layer has a stance with a loop and actions around it.", file=sys.stderr)
+    return 0
