@@ -26,6 +26,7 @@ def arguments(parser: ArgumentParser) -> None:
     parser.add_argument("--serve", action="store_true", help="go on, and show the web page to this machine's browser")
     parser.add_argument("--vectors", action="store_true", help="write conformance vectors for runtimes as well")
     parser.add_argument("--expanded", action="store_true", help="list the expanded state machine in the JSON as well")
+    parser.add_argument("--overwrite", action="store_true", help="also files that an export of something else, or somebody, put there")
     parser.add_argument("--no-mesh", action="store_true", help="leave the character's mesh out of the GLB")
 
 
@@ -98,7 +99,8 @@ def _once(options: Namespace) -> None:
 
     project, differences = exportable(opened(options.project))
     character = options.project.resolve().parent / project.character if project.character and not options.no_mesh else None
-    made = registry.write(project, options.target, options.out, character, options.expanded, base=options.project.resolve().parent)
+    made = registry.write(project, options.target, options.out, character, options.expanded,
+                          base=options.project.resolve().parent, overwrite=options.overwrite)  # fmt: skip
     files = list(made.files)
     if options.vectors:
         from metagraph.engines.vectors import write_vectors

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import json
-from dataclasses import dataclass
+from dataclasses import asdict, dataclass, field, replace
 from functools import cache
 from html import escape
 from pathlib import Path
@@ -20,6 +20,7 @@ from PySide6.QtWidgets import (
     QHBoxLayout,
     QLabel,
     QLineEdit,
+    QMessageBox,
     QProgressBar,
     QPushButton,
     QScrollArea,
@@ -33,6 +34,7 @@ from app.look.theme import strengthen
 from app.project.document import Document
 from app.project.jobs import Job, Jobs
 from metagraph.engines.targets import registry
+from metagraph.engines.targets.placing import ForeignFilesError
 from metagraph.engines.targets.target import Report, Target
 from metagraph.engines.vectors import write_vectors
 from metagraph.graph.check import check
@@ -44,13 +46,22 @@ NAME = Qt.ItemDataRole.UserRole
 
 @dataclass(frozen=True)
 class Choice:
-    """What was last chosen for a project. folder: empty for the usual one."""
+    """What was last chosen for a project. folders: by target, where it is not the usual one."""
 
     target: str = registry.DEFAULT
-    folder: str = ""
+    folders: dict[str, str] = field(default_factory=dict)
     mesh: bool = True
     expanded: bool = False
     vectors: bool = False
+
+
+@dataclass(frozen=True)
+class Result:
+    """What came of an export: where it stands, and what there is to say of it."""
+
+    folder: str
+    words: str
+    trouble: str
 
 
 @cache
@@ -71,8 +82,8 @@ class ExportDialog(QDialog):
         self.setAttribute(Qt.WidgetAttribute.WA_DeleteOnClose)  # a running export goes on; the status bar shows it
         self.setWindowTitle("Export for engines")
         self.resize(860, 560)
-        self.written = ""  # the target that was last written
-        chosen = self._remembered()
+        self.results: dict[str, Result] = {}  # of what was written, by target
+        chosen = self.chosen = self._remembered()
         self.targets = self._list()
         self.title = QLabel(self)
         self.title.setProperty("heading", True)
@@ -129,7 +140,8 @@ class ExportDialog(QDialog):
         project = self.document.project
         form = QFormLayout()
         row = QHBoxLayout()
-        self.folder = QLineEdit(chosen.folder or self._usual(), self)
+        self.folder = QLineEdit(self)
+        self.folder.textEdited.connect(self._name_folder)
         self.folder.setAccessibleName("Folder")
         browse = QPushButton("Choose…", self)
         browse.clicked.connect(self._browse)
@@ -168,13 +180,18 @@ class ExportDialog(QDialog):
         try:
             data: Any = json.loads(str(QSettings().value(self._key()) or "{}"))
             known = Choice(**data)
-            return known if known.target in registry.targets() else Choice(folder=known.folder)
-        except (ValueError, TypeError):
+            folders = {str(k): str(v) for k, v in known.folders.items()}
+            return replace(known, folders=folders, target=known.target if known.target in registry.targets() else registry.DEFAULT)
+        except (ValueError, TypeError, AttributeError):
             return Choice()
 
-    def _usual(self) -> str:
+    def _usual(self, target: str) -> str:
+        """Return the folder a target goes to unless another is chosen: one of its own, since exports share names of files."""
         folder = self.document.folder or Path.home()
-        return str(folder / f"{self.document.project.name}-export")
+        return str(folder / f"{self.document.project.name}-export" / target)
+
+    def _name_folder(self, folder: str) -> None:
+        self.chosen.folders[self.target.name] = folder
 
     def _select(self, name: str) -> None:
         found = next(i for group in self._groups() for i in (group.child(n) for n in range(group.childCount())) if i.data(0, NAME) == name)
@@ -192,6 +209,7 @@ class ExportDialog(QDialog):
 
     def _describe(self) -> None:
         target, project = self.target, self.project
+        self.folder.setText(self.chosen.folders.get(target.name) or self._usual(target.name))
         whole = size(project)
         played = (target.name == registry.DEFAULT) or target.group == registry.target(registry.DEFAULT).group
         self.title.setText(target.title)
@@ -206,57 +224,87 @@ class ExportDialog(QDialog):
         told = "".join(f"<li>{escape(words)}</li>" for words in self.differences)
         differs = f"<p><b>How it differs from what was drawn</b></p><ul style='margin-left:-20px'>{told}</ul>" if told else ""
         self.losses.setText(note + differs + lost)
+        self._show_result()
+
+    def _show_result(self) -> None:
+        """Say what was written for the target that is chosen; of another it would be wrong here."""
+        name = self.target.name
+        self.open_button.setText("Open in browser" if name == "web" else "Open folder")
+        result = self.results.get(name)
+        self.open_button.setEnabled(result is not None)
+        if result is not None:
+            self.words.setText(result.words)
+        if self.go.isEnabled() or result is not None:  # else it says why nothing can be exported
+            self.trouble.setText(result.trouble if result is not None else "")
 
     def _browse(self) -> None:
         name = QFileDialog.getExistingDirectory(self, "Export into", self.folder.text())
         if name:
             self.folder.setText(name)
+            self._name_folder(name)
 
     def _open(self) -> None:
         """Show what was written: a web page in the browser, all else as a folder."""
-        folder = self.folder.text()
-        QDesktopServices.openUrl(QUrl(served(folder)) if self.written == "web" else QUrl.fromLocalFile(folder))
+        name = self.target.name
+        folder = self.results[name].folder
+        QDesktopServices.openUrl(QUrl(served(folder)) if name == "web" else QUrl.fromLocalFile(folder))
 
     # --- writing
 
-    def _export(self) -> None:
+    def _export(self, overwrite: bool = False) -> None:
         project, folder, name = self.project, Path(self.folder.text()), self.target.name
         base = self.document.folder
         expanded, vectors = self.expanded.isChecked(), self.vectors.isChecked() and not self.vectors.isHidden()
         character = (base or Path()) / project.character if project.character and self.mesh.isChecked() else None
-        chosen = {"target": name, "folder": str(folder), "mesh": self.mesh.isChecked(), "expanded": expanded, "vectors": vectors}
-        QSettings().setValue(self._key(), json.dumps(chosen))
+        self.chosen = Choice(name, self.chosen.folders, self.mesh.isChecked(), expanded, vectors)
+        QSettings().setValue(self._key(), json.dumps(asdict(self.chosen)))
         self.go.setEnabled(False)
         self.trouble.clear()
         self.progress.setRange(0, 0)
         self.progress.show()
 
         def work(job: Job) -> Report:
-            made = registry.write(project, name, folder, character, expanded, job.tell, base)
+            made = registry.write(project, name, folder, character, expanded, job.tell, base, overwrite)
             if vectors:
                 write_vectors(next(path for path in made.files if path.suffix == ".json"))
             return made
 
-        job = self.jobs.start("Exporting", work, self._done, self._failed)
+        def failed(error: Exception) -> None:
+            self._failed(name, error)
+
+        job = self.jobs.start("Exporting", work, lambda made: self._done(made, folder), failed)
         job.progress.connect(self._tell)
 
     def _tell(self, done: int, total: int, words: str) -> None:
         self.progress.setRange(0, total)
         self.progress.setValue(done)
 
-    def _done(self, made: Report) -> None:
+    def _done(self, made: Report, folder: Path) -> None:
         self.progress.hide()
         self.go.setEnabled(True)
-        self.open_button.setEnabled(True)
-        self.written = made.target
-        self.open_button.setText("Open in browser" if made.target == "web" else "Open folder")
         main = [path.name for path in sorted(made.files, key=lambda path: -path.stat().st_size)[:3]]
         more = f" and {len(made.files) - 3} more files" if len(made.files) > 3 else ""
         size = sum(path.stat().st_size for path in made.files) / 1e6
-        self.words.setText(f"Written: {', '.join(main)}{more}, {size:.1f} MB with {made.clips} clips.")
-        self.trouble.setText("\n".join(made.warnings[:5]))
+        words = f"Written: {', '.join(main)}{more}, {size:.1f} MB with {made.clips} clips."
+        self.results[made.target] = Result(str(folder), words, "\n".join(made.warnings[:5]))
+        if self.target.name == made.target:
+            self._show_result()
 
-    def _failed(self, error: Exception) -> None:
+    def _failed(self, target: str, error: Exception) -> None:
         self.progress.hide()
         self.go.setEnabled(True)
+        if isinstance(error, ForeignFilesError) and self.target.name == target:
+            self._ask_overwrite(error)
+        else:
+            self.trouble.setText(str(error))
+
+    def _ask_overwrite(self, error: ForeignFilesError) -> None:
+        """Ask before anything that is not of this export is overwritten."""
+        box = QMessageBox(QMessageBox.Icon.Question, "Overwrite?", f"{error.folder} already has files of another origin.", parent=self)
+        box.setInformativeText("Written over would be:\n" + "\n".join(error.files[:8]) + ("\n…" if len(error.files) > 8 else ""))
+        box.setAttribute(Qt.WidgetAttribute.WA_DeleteOnClose)
+        overwrite = box.addButton("Overwrite", QMessageBox.ButtonRole.DestructiveRole)
+        box.addButton("Choose another folder…", QMessageBox.ButtonRole.RejectRole)
+        box.buttonClicked.connect(lambda button: self._export(overwrite=True) if button is overwrite else self._browse())
         self.trouble.setText(str(error))
+        box.open()

@@ -9,8 +9,9 @@ from importlib import import_module
 from pathlib import Path
 
 from metagraph.engines.export import ExportError, sound, stem_of
+from metagraph.engines.targets.placing import Staging
+from metagraph.engines.targets.placing import place as move
 from metagraph.engines.targets.target import Order, Report, Target, Tell
-from metagraph.errors import FileError
 from metagraph.graph.model import Project
 from metagraph.motion.character import Character
 
@@ -50,22 +51,22 @@ def write(
     expanded: bool = False,
     tell: Tell | None = None,
     base: Path | None = None,
+    overwrite: bool = False,
 ) -> Report:
     """Write a project for a target into a folder, which is made.
 
     character: the mesh or its file, None to leave it out. expanded: list the state machine in the JSON as well. base: the folder
-    the lines' sounds are relative to, None to leave them where they are. Raises ExportError while the project has errors, FileError
-    when a file cannot be written.
+    the lines' sounds are relative to, None to leave them where they are. overwrite: also files that are not of an earlier export of
+    the same project for the same target. Raises ExportError while the project has errors, `ForeignFilesError`, an ExportError, where such files
+    stand in the way, FileError when a file cannot be written.
     """
     chosen = target(name)
     warnings = sound(project)
     place = Path(folder)
-    try:
-        place.mkdir(parents=True, exist_ok=True)
-    except OSError as error:
-        raise FileError(place, f"cannot be made ({error.strerror})", "on making the folder", "Choose a folder you may write to.") from None
-    order = Order(project, place, stem_of(project), character, expanded, tell or (lambda done, total, words: None), base)
-    made = chosen.write(order)
-    return Report(
-        name, made.files, len(project.uses.keys() | {project.base.clip} - {None}), losses(project, name), (*made.notes, *warnings)
-    )
+    with Staging(place) as staged:
+        order = Order(project, staged, stem_of(project), character, expanded, tell or (lambda done, total, words: None), base)
+        made = chosen.write(order)
+        names = tuple(path.relative_to(staged).as_posix() for path in made.files)
+        move(staged, place, names, name, project.name, overwrite)
+    clips = len(project.uses.keys() | {project.base.clip} - {None})
+    return Report(name, tuple(place / n for n in names), clips, losses(project, name), (*made.notes, *warnings))

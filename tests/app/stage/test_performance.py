@@ -10,8 +10,8 @@ import pytest
 from app.project.document import Document
 from app.project.jobs import Jobs
 from app.stage.performance import Performance
-from app.stage.playhead import Playhead
 from app.stage.playback_source import LEAD, alone, in_context
+from app.stage.playhead import Playhead
 from app.stage.session import Session
 from metagraph.graph import asks as a
 from metagraph.graph import edits, staging

@@ -7,6 +7,7 @@ import json
 import pytest
 from PySide6.QtCore import QPoint, Qt
 from PySide6.QtTest import QTest
+from PySide6.QtWidgets import QMessageBox
 
 from metagraph.engines.targets import registry
 
@@ -31,6 +32,12 @@ def pick(drive, dialog, name: str) -> None:
     spot = dialog.targets.visualItemRect(item).center()
     QTest.mouseClick(dialog.targets.viewport(), Qt.MouseButton.LeftButton, pos=QPoint(spot.x(), spot.y()))
     drive.pause(30)
+
+
+def put(dialog, folder: str) -> None:
+    """Type a folder."""
+    dialog.folder.selectAll()
+    QTest.keyClicks(dialog.folder, folder)
 
 
 def test_every_target_is_offered_and_says_what_it_writes_and_loses(toys):
@@ -61,7 +68,7 @@ def test_a_target_is_written_and_remembered_with_its_options(toys, tmp_path):
     drive = toys
     dialog = opened(drive)
     pick(drive, dialog, "xstate")
-    dialog.folder.setText(str(tmp_path / "chart"))
+    put(dialog, str(tmp_path / "chart"))
     QTest.mouseClick(dialog.go, Qt.MouseButton.LeftButton)
     drive.wait(lambda: dialog.open_button.isEnabled(), 60)
     chart = next((tmp_path / "chart").glob("*.xstate.json"))
@@ -78,7 +85,7 @@ def test_vectors_are_written_where_they_are_asked_for(toys, tmp_path):
     drive = toys
     dialog = opened(drive)
     pick(drive, dialog, "metagraph")
-    dialog.folder.setText(str(tmp_path / "game"))
+    put(dialog, str(tmp_path / "game"))
     QTest.mouseClick(dialog.vectors, Qt.MouseButton.LeftButton, pos=QPoint(8, dialog.vectors.height() // 2))
     assert dialog.vectors.isChecked()
     QTest.mouseClick(dialog.go, Qt.MouseButton.LeftButton)
@@ -111,7 +118,7 @@ def test_a_web_page_is_opened_in_the_browser_and_all_else_as_a_folder(toys, tmp_
     dialog = opened(drive)
     for name, words in (("web", "Open in browser"), ("bml", "Open folder")):
         pick(drive, dialog, name)
-        dialog.folder.setText(str(tmp_path / name))
+        put(dialog, str(tmp_path / name))
         QTest.mouseClick(dialog.go, Qt.MouseButton.LeftButton)
         drive.wait(lambda words=words: dialog.open_button.isEnabled() and dialog.open_button.text() == words and dialog.go.isEnabled(), 60)
         QTest.mouseClick(dialog.open_button, Qt.MouseButton.LeftButton)
@@ -119,4 +126,48 @@ def test_a_web_page_is_opened_in_the_browser_and_all_else_as_a_folder(toys, tmp_
     with urllib.request.urlopen(page.toString(), timeout=10) as answer:
         assert b"player/main.js" in answer.read()
     assert folder.toLocalFile() == str(tmp_path / "bml")
+    dialog.reject()
+
+
+def test_each_target_has_a_folder_of_its_own_and_its_own_result(toys, tmp_path, monkeypatch):
+    from metagraph.engines.targets import web
+
+    monkeypatch.setattr(web, "three_js", lambda folder: None)
+    drive = toys
+    drive.document.save(tmp_path / "toy.metagraph.yaml")
+    dialog = opened(drive)
+    folders = {}
+    for name in registry.targets():
+        pick(drive, dialog, name)
+        folders[name] = dialog.folder.text()
+    assert len(set(folders.values())) == len(folders)
+    pick(drive, dialog, "web")
+    QTest.mouseClick(dialog.go, Qt.MouseButton.LeftButton)
+    drive.wait(lambda: dialog.open_button.isEnabled(), 60)
+    page = (tmp_path / "toy-export" / "web" / "index.html").read_bytes()
+    pick(drive, dialog, "unity")
+    assert not dialog.open_button.isEnabled() and "Written" not in dialog.words.text(), "what was written is the page"
+    QTest.mouseClick(dialog.go, Qt.MouseButton.LeftButton)
+    drive.wait(lambda: dialog.open_button.isEnabled(), 60)
+    pick(drive, dialog, "web")
+    assert "Written" in dialog.words.text() and "index.html" not in dialog.folder.text()
+    assert (tmp_path / "toy-export" / "web" / "index.html").read_bytes() == page
+    dialog.reject()
+
+
+def test_files_of_another_origin_are_asked_about_before_they_are_overwritten(toys, tmp_path):
+    drive = toys
+    (tmp_path / "toy.xstate.json").write_text("mine")
+    dialog = opened(drive)
+    pick(drive, dialog, "xstate")
+    put(dialog, str(tmp_path))
+    QTest.mouseClick(dialog.go, Qt.MouseButton.LeftButton)
+    drive.wait(lambda: any(box.isVisible() for box in dialog.findChildren(QMessageBox)), 60)
+    box = next(box for box in dialog.findChildren(QMessageBox) if box.isVisible())
+    assert "toy.xstate.json" in box.informativeText()
+    assert (tmp_path / "toy.xstate.json").read_text() == "mine"
+    overwrite = next(b for b in box.buttons() if b.text().replace("&", "") == "Overwrite")
+    QTest.mouseClick(overwrite, Qt.MouseButton.LeftButton)
+    drive.wait(lambda: dialog.open_button.isEnabled(), 60)
+    assert json.loads((tmp_path / "toy.xstate.json").read_bytes())["type"] == "parallel"
     dialog.reject()

@@ -8,7 +8,7 @@ import jsonschema
 import pytest
 from PySide6.QtCore import QPoint, QPointF, Qt
 from PySide6.QtTest import QTest
-from PySide6.QtWidgets import QMenu, QApplication
+from PySide6.QtWidgets import QApplication, QMenu
 
 from metagraph.engines.export import schema_text
 from metagraph.engines.reading import read_export

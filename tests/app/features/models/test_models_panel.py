@@ -8,9 +8,9 @@ import numpy as np
 import pytest
 
 from app.features.models.annotation_dialog import SAMPLE
-from app.project.annotation_reading import begin, into
 from app.features.models.compare_plot import ComparePlot, long_words, often_words, short, verdict
 from app.features.models.models_panel import IMPORTED, ModelsPanel
+from app.project.annotation_reading import begin, into
 from app.project.document import Document
 from app.project.jobs import Jobs
 from app.stage.session import Session

@@ -1,0 +1,113 @@
+"""Putting an export's files where they are wanted, whole, and over nothing that is not its own.
+
+An export is written beside the folder first. A record in the folder says which target, which project and which files stand there,
+with their digests, so that writing again knows its own files; what else stands in the way is foreign.
+"""
+
+from __future__ import annotations
+
+import hashlib
+import shutil
+import tempfile
+from collections.abc import Iterable, Mapping
+from pathlib import Path
+
+import msgspec
+
+from metagraph.engines.export import ExportError
+from metagraph.errors import FileError
+from metagraph.formats.atomic import write_atomically
+
+RECORD = ".metagraph-export.json"
+NAMED = 4  # foreign files that are named
+
+
+class Record(msgspec.Struct, frozen=True):
+    """What was written: for which target, of which project; its files by their paths in the folder, with their SHA-256."""
+
+    target: str
+    project: str
+    files: dict[str, str]
+
+
+class ForeignFilesError(ExportError):
+    """Files stand where the export would go that are of something else, or were changed since. files: their paths in the folder."""
+
+    def __init__(self, folder: Path, files: tuple[str, ...], of: Record | None) -> None:
+        self.folder, self.files = folder, files
+        more = f" and {len(files) - NAMED} more" if len(files) > NAMED else ""
+        whose = f"; the folder holds an export of '{of.project}' for '{of.target}'" if of is not None else ""
+        super().__init__(
+            f"{folder} already has {', '.join(files[:NAMED])}{more}{whose}. Choose another folder, or say that they may be overwritten."
+        )
+
+
+def read_record(folder: Path) -> Record | None:
+    """Return what was exported into a folder; None where nothing was, or where it cannot be told."""
+    try:
+        return msgspec.json.decode((folder / RECORD).read_bytes(), type=Record)
+    except (OSError, msgspec.DecodeError):
+        return None
+
+
+def foreign(folder: Path, wanted: Mapping[str, str], target: str, project: str) -> tuple[str, ...]:
+    """Return which files would be overwritten that are of something else, or were changed since they were written. wanted: the new
+    files by name, with their digests; one that stands there already, byte for byte, is in nobody's way."""
+    known = read_record(folder)
+    mine: Mapping[str, str] = known.files if known is not None and (known.target, known.project) == (target, project) else {}
+    out = []
+    for name, digest in wanted.items():
+        path = folder / name
+        if path.is_dir() or (path.exists() and _digest(path) not in (digest, mine.get(name))):
+            out.append(name)
+    return tuple(out)
+
+
+def place(staged: Path, folder: Path, names: Iterable[str], target: str, project: str, overwrite: bool) -> None:
+    """Move files from where they were staged into a folder, and take away what an earlier export of the same left that this has not.
+
+    Raises ForeignFilesError, before anything is changed, unless they may be overwritten; FileError when a file cannot be written.
+    """
+    before = read_record(folder)
+    digests = {name: _digest(staged / name) for name in names}
+    others = foreign(folder, digests, target, project)
+    if others and not overwrite:
+        raise ForeignFilesError(folder, others, before)
+    try:
+        for name in digests:
+            path = folder / name
+            path.parent.mkdir(parents=True, exist_ok=True)
+            (staged / name).replace(path)
+        if before is not None and (before.target, before.project) == (target, project):
+            for name in before.files.keys() - digests.keys():
+                old = folder / name
+                if old.is_file() and _digest(old) == before.files[name]:
+                    old.unlink()
+    except OSError as error:
+        where = Path(error.filename2 or error.filename or folder)
+        remedy = "Close what has it open, or choose a folder you may write to, with space left."
+        raise FileError(where, f"cannot be written ({error.strerror or error})", "on exporting", remedy) from None
+    write_atomically(folder / RECORD, msgspec.json.format(msgspec.json.encode(Record(target, project, digests)), indent=1))
+
+
+class Staging:
+    """A folder beside the export's own, so that moving out of it is one step a file; gone at the end. Raises FileError."""
+
+    def __init__(self, folder: Path) -> None:
+        try:
+            folder.mkdir(parents=True, exist_ok=True)
+            self.path = Path(tempfile.mkdtemp(prefix=".exporting-", dir=folder))
+        except OSError as error:
+            remedy = "Choose a folder you may write to."
+            raise FileError(folder, f"cannot be made ({error.strerror or error})", "on making the folder", remedy) from None
+
+    def __enter__(self) -> Path:
+        return self.path
+
+    def __exit__(self, *_: object) -> None:
+        shutil.rmtree(self.path, ignore_errors=True)
+
+
+def _digest(path: Path) -> str:
+    with path.open("rb") as file:
+        return hashlib.file_digest(file, "sha256").hexdigest()
