@@ -55,7 +55,7 @@ def draw(offscreen: Any, figure: Any, order: Order) -> list[np.ndarray]:
 
 
 def serve(orders: BinaryIO, results: BinaryIO) -> None:
-    """Answer pickled orders with pickled (number, pictures) until the other side is gone: stills before loops, the latest first."""
+    """Answer pickled orders with pickled (number, None) when one is begun and (number, pictures) when it is drawn, until the other side is gone: stills before loops, the latest first."""
     from preview.offscreen import Offscreen, OpenGLError
 
     waiting: _Waiting = queue.PriorityQueue()
@@ -67,6 +67,8 @@ def serve(orders: BinaryIO, results: BinaryIO) -> None:
     figures: dict[tuple[str, Path | None], Any] = {}
     with offscreen:
         while (order := waiting.get()[2]) is not None:
+            pickle.dump((order.number, None), results)  # begun: whoever waits knows what it was if this process ends
+            results.flush()
             key = (order.clip.skeleton.fingerprint, order.character)
             if key not in figures:
                 figures[key] = _figure(order.clip.skeleton, order.character)

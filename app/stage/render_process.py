@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import os
 import subprocess
 import sys
 import tempfile
@@ -43,7 +44,16 @@ def write(project: Project, folder: Path, wanted: Wanted, job: Job) -> Path:
             words += ["--performance", wanted.performance]
         if wanted.conversation is not None:
             words += ["--conversation", wanted.conversation]
-        process = subprocess.Popen(words, stdout=subprocess.DEVNULL, stderr=subprocess.PIPE, text=True, cwd=Path(__file__).parents[2])
+        process = subprocess.Popen(
+            words,
+            stdout=subprocess.DEVNULL,
+            stderr=subprocess.PIPE,
+            text=True,
+            encoding="utf-8",
+            errors="replace",
+            env={**os.environ, "PYTHONIOENCODING": "utf-8"},
+            cwd=Path(__file__).parents[2],
+        )
         said: list[str] = []
         reader = threading.Thread(target=_listen, args=(process, job, said), daemon=True)
         reader.start()

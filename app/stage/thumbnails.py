@@ -8,6 +8,7 @@ import queue
 import subprocess
 import sys
 import threading
+from collections import OrderedDict
 from pathlib import Path
 
 from PySide6.QtCore import QObject, Qt, Signal
@@ -23,6 +24,8 @@ from metagraph.graph.model import Project
 from metagraph.motion.clip import Clip
 
 Key = tuple[str, str, str]  # clip id, what, theme
+MOST = 128 * 1024 * 1024  # bytes of pictures that are kept; those not seen for longest go, and are drawn again when they are
+TRIES = 3  # times the process is started without drawing anything before it is given up
 
 
 class Thumbnails(QObject):
@@ -30,11 +33,13 @@ class Thumbnails(QObject):
 
     ready = Signal(str)
     _drawn = Signal(int, object)
+    _ended = Signal(object)  # the process
 
     def __init__(self, document: Document, session: Session, figures: Figures, parent: QObject | None = None) -> None:
         super().__init__(parent)
         self.document, self.session, self.figures = document, session, figures
-        self._pictures: dict[Key, tuple[Clip, list[QImage]]] = {}
+        self._pictures: OrderedDict[Key, tuple[Clip, list[QImage]]] = OrderedDict()
+        self.bytes = 0  # of all pictures
         self._asked: dict[Key, Clip] = {}
         self._orders: dict[int, tuple[Key, Clip]] = {}
         self._number = 0
@@ -42,6 +47,9 @@ class Thumbnails(QObject):
         self._queue: queue.SimpleQueue[Order | None] = queue.SimpleQueue()
         self._threads: list[threading.Thread] = []
         self._stopped = False
+        self._begun: int | None = None  # the order that is being drawn
+        self._fruitless = 0  # starts of the process that have drawn nothing
+        self._ended.connect(self._restart, Qt.ConnectionType.QueuedConnection)
         self._drawn.connect(self._keep, Qt.ConnectionType.QueuedConnection)
         document.changed.connect(self._follow)
         figures.changed.connect(self.forget)
@@ -64,6 +72,7 @@ class Thumbnails(QObject):
         key = (clip, what, self.session.look.name)
         found = self._pictures.get(key)
         if found is not None and found[0] is motion:
+            self._pictures.move_to_end(key)
             return found[1]
         if self._asked.get(key) is not motion:
             self._asked[key] = motion
@@ -73,6 +82,7 @@ class Thumbnails(QObject):
     def forget(self) -> None:
         """Draw everything anew: the figure has changed."""
         self._pictures.clear()
+        self.bytes = 0
         self._asked.clear()
         self._orders.clear()
         self.ready.emit("")
@@ -80,17 +90,37 @@ class Thumbnails(QObject):
     def _follow(self, before: Project, after: Project) -> None:
         if before.skeleton is not after.skeleton and before.skeleton != after.skeleton:
             self.forget()
+        elif before.clips is not after.clips:
+            for key in [k for k in self._pictures if k[0] not in after.clips]:
+                self._let_go(key)
 
-    def _keep(self, number: int, pictures: list[QImage]) -> None:
+    def _keep(self, number: int, pictures: list[QImage] | None) -> None:
+        if pictures is None:
+            self._begun = number
+            return
+        self._begun, self._fruitless = None, 0
         key, motion = self._orders.pop(number, (None, None))
-        if key is not None and motion is not None:  # else it was forgotten meanwhile
-            self._pictures[key] = (motion, pictures)
-            self.ready.emit(key[0])
+        if key is None or motion is None:  # it was forgotten meanwhile
+            return
+        self._let_go(key)
+        self._asked[key] = motion
+        self._pictures[key] = (motion, pictures)
+        self.bytes += _size(pictures)
+        while self.bytes > MOST and len(self._pictures) > 1:
+            self._let_go(next(iter(self._pictures)))
+        self.ready.emit(key[0])
+
+    def _let_go(self, key: Key) -> None:
+        """Forget a picture; it is drawn again when it is asked for."""
+        found = self._pictures.pop(key, None)
+        if found is not None:
+            self.bytes -= _size(found[1])
+            self._asked.pop(key, None)
 
     # --- the other process
 
     def _order(self, key: Key, motion: Clip) -> None:
-        if self._stopped:
+        if self._stopped or self._fruitless >= TRIES:
             return
         if self._process is None:
             self._start()
@@ -111,15 +141,17 @@ class Thumbnails(QObject):
             [sys.executable, "-m", "app.stage.picture_process"],
             stdin=subprocess.PIPE, stdout=subprocess.PIPE, stderr=subprocess.DEVNULL, cwd=root,
         )  # fmt: skip
-        for work in (self._send, self._listen):
-            thread = threading.Thread(target=work, args=(self._process,), name="thumbnails", daemon=True)
+        self._threads = [t for t in self._threads if t.is_alive()]
+        for work, more in ((self._send, (self._queue,)), (self._listen, ())):
+            thread = threading.Thread(target=work, args=(self._process, *more), name="thumbnails", daemon=True)
             thread.start()
             self._threads.append(thread)
 
-    def _send(self, process: subprocess.Popen[bytes]) -> None:
+    @staticmethod
+    def _send(process: subprocess.Popen[bytes], orders: queue.SimpleQueue[Order | None]) -> None:
         assert process.stdin is not None
         with contextlib.suppress(OSError, ValueError), process.stdin as pipe:  # it ended; there are no pictures then
-            while (order := self._queue.get()) is not None:
+            while (order := orders.get()) is not None:
                 pickle.dump(order, pipe)
                 pipe.flush()
 
@@ -128,7 +160,26 @@ class Thumbnails(QObject):
         with contextlib.suppress(EOFError, OSError, RuntimeError, pickle.UnpicklingError), process.stdout as pipe:
             while True:
                 number, pictures = pickle.load(pipe)
-                self._drawn.emit(number, [to_image(p) for p in pictures])
+                self._drawn.emit(number, None if pictures is None else [to_image(p) for p in pictures])
+        with contextlib.suppress(RuntimeError):  # the window is gone
+            self._ended.emit(process)
+
+    def _restart(self, process: subprocess.Popen[bytes]) -> None:
+        """The process has ended by itself: start another, and leave out the picture it ended over."""
+        if self._stopped or process is not self._process:
+            return
+        process.wait(5)
+        self._queue.put(None)
+        self._process, self._queue = None, queue.SimpleQueue()
+        if self._begun is not None:
+            self._orders.pop(self._begun, None)  # it stays asked for, so nobody asks again
+            self._begun = None
+        else:
+            self._fruitless += 1
+        again, self._orders = self._orders, {}
+        if self._fruitless < TRIES:
+            for key, motion in again.values():
+                self._order(key, motion)
 
     def stop(self) -> None:
         """End the process; at closing."""
@@ -140,3 +191,7 @@ class Thumbnails(QObject):
             self._process = None
         for thread in self._threads:  # both end with the process; one that still made pictures would outlive Qt
             thread.join(5)
+
+
+def _size(pictures: list[QImage]) -> int:
+    return sum(picture.sizeInBytes() for picture in pictures)

@@ -3,14 +3,16 @@
 from __future__ import annotations
 
 import os
+from collections.abc import Callable
 from dataclasses import dataclass
+from functools import partial
 from pathlib import Path
 from typing import Any
 
-from PySide6.QtCore import QObject, Signal
+from PySide6.QtCore import QObject, Qt, Signal
 
 from app.features.conversation.segment_hits import pitch_maxima
-from app.features.conversation.waveforms import Envelope
+from app.features.conversation.waveforms import Envelope, binned
 from app.project.document import Document
 from app.project.jobs import Job, Jobs
 from app.stage.session import Session
@@ -27,7 +29,7 @@ Key = tuple[str, int | None]  # a sound's path, and the channel
 
 @dataclass
 class Heard:
-    """One side's sound, filled while it is read. told: how far it is, in words; "" when all is there. missing: why there is none.
+    """One side's sound, filled on the window's thread while another reads it. told: how far it is, in words; "" when all is there. missing: why there is none.
     loudest: of its samples, 0..1. maxima: seconds at which the pitch is highest. length: seconds."""
 
     wave: Envelope | None = None
@@ -44,12 +46,14 @@ class Sounds(QObject):
     """changed: a sound has come, has come further, or is known to be missing."""
 
     changed = Signal()
+    _read = Signal(object)  # from the thread that reads: what to do here with what it has
 
     def __init__(self, document: Document, session: Session, jobs: Jobs, parent: QObject | None = None) -> None:
         super().__init__(parent)
         self.document, self.session, self.jobs = document, session, jobs
         self.heard: dict[Key, Heard] = {}
         self._job: Job | None = None
+        self._read.connect(_do, Qt.ConnectionType.QueuedConnection)
         document.changed.connect(lambda before, after: self._follow() if before.conversations is not after.conversations else None)
         document.loaded.connect(self.forget)
         session.onstage.conversation_changed.connect(self._staged)
@@ -93,7 +97,7 @@ class Sounds(QObject):
         self.heard = {k: h if (h := self.heard.get(k)) is not None and not h.told else Heard() for k in keys}
         wanted = {k: h for k, h in self.heard.items() if h.told}
         if wanted:
-            work = _Work(wanted)
+            work = _Work(wanted, self._read.emit)
             self._job = self.jobs.start("Reading the conversation", work)
             for signal in (self._job.progress, self._job.ended):
                 signal.connect(self._came)
@@ -109,8 +113,12 @@ class Sounds(QObject):
 class _Work:
     """Reads sounds: each file once, then what is seen of its channels, then their pitch, which takes longest."""
 
-    def __init__(self, wanted: dict[Key, Heard]) -> None:
-        self.wanted = wanted
+    def __init__(self, wanted: dict[Key, Heard], hand_over: Callable[[Callable[[], None]], None]) -> None:
+        self.wanted, self.hand_over = wanted, hand_over
+
+    def set(self, heard: Heard, **values: Any) -> None:
+        """Set fields of what is painted, on the window's thread."""
+        self.hand_over(partial(_set, heard, values))
 
     def __call__(self, job: Job) -> None:
         samples: dict[Key, tuple[Any, int]] = {}
@@ -120,63 +128,68 @@ class _Work:
             mine = {k: h for k, h in self.wanted.items() if k[0] == path}
             done += len(mine)
             try:
-                samples |= _read(path, mine)
+                samples |= self._read(path, mine)
             except FileError as error:
                 for heard in mine.values():
-                    heard.told, heard.missing = "", f"{error} {ANEW}"
+                    self.set(heard, told="", missing=f"{error} {ANEW}")
             if job.cancelled:
                 return
         for key, (sound, rate) in samples.items():
-            _draw(job, self.wanted[key], sound, rate, (done, steps))
+            self._draw(job, self.wanted[key], sound, rate, (done, steps))
             done += 1
         for key, (sound, rate) in samples.items():
             if job.cancelled:
                 return
             job.tell(done, steps, "pitch")
-            _sing(self.wanted[key], sound, rate)
+            self._sing(self.wanted[key], sound, rate)
             done += 1
         job.tell(steps, steps)
 
+    def _read(self, path: str, wanted: dict[Key, Heard]) -> dict[Key, tuple[Any, int]]:
+        """Return the samples `[N]` of each wanted channel, and how many a second. Raises FileError."""
+        from metagraph.speech.sound import read_recording
 
-def _read(path: str, wanted: dict[Key, Heard]) -> dict[Key, tuple[Any, int]]:
-    """Return the samples `[N]` of each wanted channel, and how many a second. Raises FileError."""
-    from metagraph.speech.sound import read_recording
+        read = read_recording(path, LONGEST, KEPT)
+        out: dict[Key, tuple[Any, int]] = {}
+        for key, heard in wanted.items():
+            channel = key[1]
+            if channel is not None and channel >= len(read.samples):
+                self.set(heard, told="", missing=f"{Path(path).name} has no channel {channel + 1}. {ANEW}")
+                continue
+            out[key] = (read.samples.mean(0) if channel is None else read.samples[channel], read.rate)
+            self.set(heard, length=read.duration)
+        return out
 
-    read = read_recording(path, LONGEST, KEPT)
-    out: dict[Key, tuple[Any, int]] = {}
-    for key, heard in wanted.items():
-        channel = key[1]
-        if channel is not None and channel >= len(read.samples):
-            heard.told = ""
-            heard.missing = f"{Path(path).name} has no channel {channel + 1}. {ANEW}"
-            continue
-        out[key] = (read.samples.mean(0) if channel is None else read.samples[channel], read.rate)
-        heard.length = read.duration
-    return out
+    def _draw(self, job: Job, heard: Heard, samples: Any, rate: int, progress: tuple[int, int]) -> None:
+        """Fill the waveform, a minute at a time."""
+        wave, loudest = Envelope(len(samples) / rate), 0.0
+        self.set(heard, wave=wave)
+        each, step = rate / wave.rate, round(BLOCK * wave.rate)
+        for first in range(0, len(wave.lows[0]), step):
+            begin = round(first * each)
+            if begin >= len(samples) or job.cancelled:
+                break
+            piece = samples[begin : round((first + step) * each)]
+            self.hand_over(partial(wave.put, first, *binned(piece, each)))
+            loudest = max(loudest, float(abs(piece).max()))
+            self.set(heard, loudest=loudest, part=0.5 * begin / len(samples))
+            job.tell(*progress, "waveform")
+        self.set(heard, part=0.5, told="Finding the pitch …")
+
+    def _sing(self, heard: Heard, samples: Any, rate: int) -> None:
+        """Find the pitch."""
+        from metagraph.speech.pitch import pitch
+
+        found = pitch(samples, rate)
+        curve = Envelope(len(samples) / rate, HOPS)
+        curve.fill(0, found.hertz)
+        self.set(heard, maxima=pitch_maxima(found.times, found.hertz), pitch=curve, part=1.0, told="")
 
 
-def _draw(job: Job, heard: Heard, samples: Any, rate: int, progress: tuple[int, int]) -> None:
-    """Fill the waveform, a minute at a time."""
-    wave = heard.wave = Envelope(len(samples) / rate)
-    each, step = rate / wave.rate, round(BLOCK * wave.rate)
-    for first in range(0, len(wave.lows[0]), step):
-        begin = round(first * each)
-        if begin >= len(samples) or job.cancelled:
-            break
-        piece = samples[begin : round((first + step) * each)]
-        wave.fill(first, piece, each)
-        heard.loudest = max(heard.loudest, float(abs(piece).max()))
-        heard.part = 0.5 * begin / len(samples)
-        job.tell(*progress, "waveform")
-    heard.part, heard.told = 0.5, "Finding the pitch …"
+def _set(heard: Heard, values: dict[str, Any]) -> None:
+    for name, value in values.items():
+        setattr(heard, name, value)
 
 
-def _sing(heard: Heard, samples: Any, rate: int) -> None:
-    """Find the pitch."""
-    from metagraph.speech.pitch import pitch
-
-    found = pitch(samples, rate)
-    curve = Envelope(len(samples) / rate, HOPS)
-    curve.fill(0, found.hertz)
-    heard.maxima = pitch_maxima(found.times, found.hertz)
-    heard.pitch, heard.part, heard.told = curve, 1.0, ""
+def _do(what: Callable[[], None]) -> None:
+    what()

@@ -30,14 +30,15 @@ class Envelope:
 
     def fill(self, first: int, values: Array, each: float = 1.0) -> None:
         """Fill bins from the `first` on from values `[N]`, `each` of them a bin; nan is nothing."""
-        values = np.asarray(values, np.float32)
-        count = min(int(np.ceil(len(values) / each)), len(self.lows[0]) - first)
+        self.put(first, *binned(values, each))
+
+    def put(self, first: int, lows: Array, highs: Array) -> None:
+        """Fill bins from the `first` on with their least and greatest values `[N]`; quick, for the window's thread."""
+        count = min(len(lows), len(self.lows[0]) - first)
         if count <= 0:
             return
-        starts = np.minimum((np.arange(count) * each).astype(int), len(values) - 1)
         end = first + count
-        self.lows[0][first:end] = np.minimum.reduceat(np.where(np.isnan(values), np.inf, values), starts)
-        self.highs[0][first:end] = np.maximum.reduceat(np.where(np.isnan(values), -np.inf, values), starts)
+        self.lows[0][first:end], self.highs[0][first:end] = lows[:count], highs[:count]
         for n in range(1, _LEVELS):
             first, end = first // _FOUR, -(-end // _FOUR)
             below = slice(first * _FOUR, end * _FOUR)
@@ -77,6 +78,17 @@ class Envelope:
                 out.append(np.where(both, a * (1 - part) + b * part, nearest))
         low, high = out
         return np.minimum(low[:-1], low[1:]), np.maximum(high[:-1], high[1:])
+
+
+def binned(values: Array, each: float = 1.0) -> tuple[Array, Array]:
+    """Return the least and greatest `[B]` of bins of `each` values `[N]`; nan is nothing. For a thread: it takes what the values take."""
+    values = np.asarray(values, np.float32)
+    count = int(np.ceil(len(values) / each))
+    if count <= 0:
+        return np.empty(0, np.float32), np.empty(0, np.float32)
+    starts = np.minimum((np.arange(count) * each).astype(int), len(values) - 1)
+    lows = np.minimum.reduceat(np.where(np.isnan(values), np.inf, values), starts)
+    return lows, np.maximum.reduceat(np.where(np.isnan(values), -np.inf, values), starts)
 
 
 def joined(low: Array, high: Array, least: float) -> tuple[Array, Array]:
