@@ -11,9 +11,9 @@ from typing import Any
 from app.project.opening import open_whole
 from metagraph.graph.asks import Performance
 from metagraph.graph.model import Project
-from metagraph.playback.hear import perform
 from metagraph.playback.plan import Plan
 from metagraph.playback.planner import make_plan
+from metagraph.playback.running_plan import perform
 
 LONGEST = 36000  # seconds of one performance, ten hours
 

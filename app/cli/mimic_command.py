@@ -66,7 +66,7 @@ def run(options: Namespace) -> int:
 
 
 def _planned(project: Project, kept: Performance) -> Plan:
-    from metagraph.playback.hear import perform
+    from metagraph.playback.running_plan import perform
 
     return perform(project, kept.asks, kept.length, kept.seed, dict(kept.stances), kept.idle)
 

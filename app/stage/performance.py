@@ -20,10 +20,11 @@ from app.stage.session import Session
 from metagraph.graph.asks import AnyAsk
 from metagraph.graph.model import LAYERS, Project
 from metagraph.motion.skeleton import Pose, Skeleton
-from metagraph.playback.hear import Answer, answers, perform
+from metagraph.playback.hear import Answer, answers
 from metagraph.playback.manual import Fire
 from metagraph.playback.plan import Plan
 from metagraph.playback.planner import make_plan
+from metagraph.playback.running_plan import perform
 
 LENGTH = 60.0  # seconds planned ahead, and how much more whenever the playhead comes near the end
 AHEAD = 15.0  # seconds before the end at which more is planned

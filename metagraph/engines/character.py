@@ -22,12 +22,11 @@ from metagraph.engines.reading import read_export
 from metagraph.graph import asks as a
 from metagraph.graph.model import LAYERS, Layer, Project
 from metagraph.motion.skeleton import Pose
-from metagraph.playback.hear import Answer, answer, answers, hear, since
+from metagraph.playback.hear import Answer, answer, answers
 from metagraph.playback.plan import Plan
 from metagraph.playback.player import morphs_at, pose_at
+from metagraph.playback.running_plan import CUT, RunningPlan
 
-SLACK = 2.0  # seconds by which the plan may fall behind its horizon before it is extended
-CUT = 15.0  # seconds between two cuts of the past
 LEAP = 3600.0  # seconds an update may move on: all that lies between is planned
 REMEMBERED = 1000  # answers that are kept after what they tell of was forgotten, and happenings nobody asked for
 
@@ -62,7 +61,7 @@ class Character:
     ) -> None:
         self.project = export if isinstance(export, Project) else read_export(export, resolved=True)
         self.now = 0.0
-        self._idle, self._stances, self._ahead, self._recent = idle, dict(stances or {}), ahead, recent
+        self._recent = recent
         self._queue: list[a.AnyAsk] = []
         self._asked: set[str] = set()  # ids that the plan can tell of
         self._settled: dict[str, Answer] = {}  # answers of those it has forgotten or never heard of
@@ -70,8 +69,12 @@ class Character:
         self._count = 0
         self._cut = 0.0
         self._seen = -inf  # when the update before was
-        empty = Plan(self.project.settings.seed if seed is None else seed & 0xFFFFFFFF, 0.0)
-        self.plan = hear(self.project, empty, 0.0, [], ahead, self._stances, idle)
+        self._running = RunningPlan(self.project, None if seed is None else seed & 0xFFFFFFFF, stances, idle, ahead)
+
+    @property
+    def plan(self) -> Plan:
+        """The plan as it is now."""
+        return self._running.plan
 
     @property
     def problems(self) -> tuple[str, ...]:
@@ -137,14 +140,12 @@ class Character:
         return self.pose()
 
     def _plan_on(self) -> None:
-        far = self.plan.end >= self.now + self._ahead - min(SLACK, self._ahead / 2)
-        if self._queue or not far:
-            end = self.plan.end if far else self.now + self._ahead
-            self.plan = hear(self.project, self.plan, self.now, self._queue, end, self._stances, self._idle)
-            for ask in self._queue:
-                if isinstance(ask, a.Withdraw):
-                    self._settle(Answer(ask.id, "done", None, None, (), ""))
-            self._queue = []
+        self._running.reach(self.now)
+        self._running.hear(self.now, self._queue)
+        for ask in self._queue:
+            if isinstance(ask, a.Withdraw):
+                self._settle(Answer(ask.id, "done", None, None, (), ""))
+        self._queue = []
         if self._seen - self._cut >= CUT:  # what has begun and ended since then is still to be told
             self._cut = self._seen
             self._forget(self._seen - self._recent)
@@ -152,7 +153,7 @@ class Character:
     def _forget(self, over: float) -> None:
         """Forget what is over, and settle the answers of what was asked for then."""
         known = answers(self.plan, self._asked)
-        self.plan = since(self.plan, over)
+        self._running.forget(over)
         left = answers(self.plan, self._asked)
         for ident, told in known.items():
             # What the plan no longer knows was played; so was a look without an end that another has replaced.

@@ -26,14 +26,11 @@ from metagraph.live.poses import Stream, due
 from metagraph.live.tape import Tape
 from metagraph.live.work import Client, Open, Out, Work, thinned
 from metagraph.playback.bml import Block, read_block
-from metagraph.playback.hear import hear, since
 from metagraph.playback.phases import phases
 from metagraph.playback.plan import Plan
+from metagraph.playback.running_plan import CUT, RECENT, RunningPlan
 
 AGAIN = 0.25  # seconds for which a layer without room is not tried again
-SLACK = 2.0  # seconds by which the plan may fall behind its horizon before it is extended
-RECENT = 30.0  # seconds of past that are planned on from; what lies before costs nothing
-CUT = 15.0  # seconds between two cuts
 TIDY = 0.25  # seconds between two looks at what is over
 KEPT = 10.0  # seconds for which what was told and asked of the plan is kept when it is over
 TOLD = 100  # of what was told to others than those who ask, the last are kept
@@ -51,7 +48,8 @@ class LiveSession:
         ahead: float = 20.0,
         stances: Mapping[Layer, str] | None = None,
     ) -> None:
-        self.project, self.idle, self.history, self.ahead, self.stances = project, idle, history, ahead, dict(stances or {})
+        self.project, self.history = project, history
+        self.running = RunningPlan(project, seed, stances, idle, ahead)
         self.now = 0.0
         self.clients: dict[int, Client] = {}
         self.ledger = Ledger()
@@ -64,8 +62,11 @@ class LiveSession:
         self._edited = False
         self._cold = [x for x in project.actions() if x.kind == "gesture"]
         self._told: dict[str, bytes] = {}
-        empty = Plan(project.settings.seed if seed is None else seed, 0.0)
-        self.plan = hear(project, empty, 0.0, [], ahead, self.stances, idle)
+
+    @property
+    def plan(self) -> Plan:
+        """The plan as it is now."""
+        return self.running.plan
 
     # --- clients
 
@@ -95,7 +96,8 @@ class LiveSession:
 
     def change(self, project: Project) -> None:
         """Go on with an edited project; what has not begun is planned anew at the next tick."""
-        self.project, self._words, self._edited = project, Words(project), True
+        self.project = self.running.project = project
+        self._words, self._edited = Words(project), True
         self._cold = [x for x in project.actions() if x.kind == "gesture"]
         self._told.clear()
 
@@ -289,13 +291,11 @@ class LiveSession:
     def _plan(self, work: Work, out: Out) -> None:
         """Work a tick's asks in, answer them, and tell of others that are planned otherwise because of them."""
         now, ledger = self.now, self.ledger
-        end = self.plan.end if self.plan.end >= now + self.ahead - SLACK else now + self.ahead
-        if self._edited or end > self.plan.end:
-            self.plan = hear(self.project, self.plan, now, [], end, self.stances, self.idle)
+        self.running.reach(now, self._edited)
         if work.asks:
             asks = list(work.asks.values())
             self.tape.keep(asks)
-            self.plan = hear(self.project, self.plan, now, asks, end, self.stances, self.idle)
+            self.running.hear(now, asks)
         for done in work.over:
             out.replies[done.place] = Reply(id=done.ident, state="refused", why=done.why)
         if not (work.asks or work.open or self._edited):
@@ -369,20 +369,19 @@ class LiveSession:
             return
         now = self._tidied = self.now
         self.ledger.forget(now)
-        plan = self.plan
         recent = max(RECENT, self.project.settings.memory)
         if now > self._begin + recent + CUT:
-            self._past.append((self._begin, plan))
-            self._begin = now - recent
-            plan = since(plan, self._begin)
+            begin, self._begin = self._begin, now - recent
+            self._past.append((begin, self.running.forget(self._begin)))
             while self._past and self._past[0][0] < now - self.history - recent - CUT:
                 self._past.popleft()
+        plan = self.plan
         near = {m.request.id for layer in plan.layers.values() for m in layer.metas if m.end > now - KEPT}
         owner = self.ledger.owner
         last = len(plan.reports) - TOLD
         reports = tuple(r for n, r in enumerate(plan.reports) if n >= last or (r.at > now - KEPT and owner(r.request)))
         requests = tuple(r for r in plan.requests if r.id in near or owner(r.id))
-        self.plan = replace(plan, reports=reports, requests=requests, track=thinned(plan, now))
+        self.running.plan = replace(plan, reports=reports, requests=requests, track=thinned(plan, now))
 
     def plan_at(self, seconds: float) -> Plan:
         """Return the plan that knows what was shown at a time: the running one, or for the past one of before."""
@@ -393,4 +392,4 @@ class LiveSession:
     def performance(self, name: str) -> a.Performance:
         """Return the session so far, to be kept: `perform` plays it as it was played. Raises AskError when it was too long."""
         asks, length = self.tape.asks(), max(self.now, 0.1)
-        return a.Performance(name=name, asks=asks, seed=self.plan.seed, length=length, idle=self.idle, stances=self.stances)
+        return a.Performance(name=name, asks=asks, seed=self.plan.seed, length=length, idle=self.running.idle, stances=self.running.stances)

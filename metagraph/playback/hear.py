@@ -1,16 +1,10 @@
-"""Performing what is asked, all at once or while it comes in.
-
-`perform` plans a whole performance; `hear` works into a running plan what has just been asked. Both are one function: a
-performance whose asks say when they became known (`told`) is planned through the same steps as it was live.
-"""
+"""Working into a running plan what has just been asked, and telling what becomes of it."""
 
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from typing import Any, Literal
-
-import msgspec
 
 from metagraph.graph.asks import AnyAsk
 from metagraph.graph.model import LAYERS, Layer, Project
@@ -21,25 +15,6 @@ from metagraph.playback.planner import extend
 from metagraph.playback.understand import understand
 
 State = Literal["planned", "late", "refused", "done"]
-
-
-def perform(
-    project: Project,
-    asks: Iterable[AnyAsk],
-    end: float,
-    seed: int | None = None,
-    stances: Mapping[Layer, str] | None = None,
-    idle: bool = True,
-) -> Plan:
-    """Plan a performance from 0 to `end` seconds. Arguments as for `make_plan`."""
-    groups: dict[float, list[AnyAsk]] = {0.0: []}
-    for number, ask in enumerate(asks):
-        named = ask if ask.id else msgspec.structs.replace(ask, id=f"ask{number}")
-        groups.setdefault(ask.told or 0.0, []).append(named)
-    plan = Plan(project.settings.seed if seed is None else seed, 0.0)
-    for told in sorted(groups):
-        plan = hear(project, plan, told, groups[told], end, stances, idle)
-    return plan
 
 
 def hear(
@@ -61,7 +36,7 @@ def hear(
     every = "" in meant.withdrawn
     gone = meant.withdrawn | {r.id for r in meant.requests} | {i.id for i in meant.items} | {r.request for r in meant.refused}
     asked_before = {r.id for r in plan.requests} | {i.id for i in plan.track.items}
-    belonging = {i for i in asked_before if i in gone or ("." in i and any(owner in gone for owner in _owners(i)))}
+    belonging = {i for i in asked_before if i in gone or ("." in i and any(owner in gone for owner in owners(i)))}
     withdrawn = asked_before if every else belonging
     staying = {s.layer for s in (*plan.track.stays, *meant.items) if isinstance(s, StayFrom) and s.on}
     items = [i for i in meant.items if not isinstance(i, StayFrom) or i.layer in staying]
@@ -75,7 +50,7 @@ def hear(
     return replace(after, reports=(*after.reports, *meant.refused)) if meant.refused else after
 
 
-def _owners(ident: str) -> Iterator[str]:
+def owners(ident: str) -> Iterator[str]:
     """Yield the asks a request may have been made by: that of its own id, and those of which it would be a part."""
     yield ident
     while True:
@@ -107,7 +82,7 @@ def answers(plan: Plan, idents: Iterable[str]) -> dict[str, Answer]:
     found: dict[str, _Found] = {ident: _Found() for ident in idents}
 
     def of(made: str) -> Iterator[_Found]:
-        return (found[owner] for owner in _owners(made) if owner in found)
+        return (found[owner] for owner in owners(made) if owner in found)
 
     for layer in plan.layers.values():
         for cue in layer.cues:

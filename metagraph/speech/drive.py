@@ -13,9 +13,9 @@ from metagraph.graph.asks import AnyAsk, Behave, Change, Fidget, Gesture, Look, 
 from metagraph.graph.conversation import Conversation, Segment, heard_by
 from metagraph.graph.model import Layer, Mode, Project
 from metagraph.playback.choice import uniform
-from metagraph.playback.hear import perform
 from metagraph.playback.phases import phases
 from metagraph.playback.plan import Plan
+from metagraph.playback.running_plan import perform
 
 PARTNER = "partner"  # the named point where the other's head is
 TOLERANCE = 0.1  # seconds a stroke may be off its peak (section 7.2)

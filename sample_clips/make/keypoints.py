@@ -21,9 +21,9 @@ from metagraph.graph.model import LAYERS, Layer, Project
 from metagraph.mimicry.points import LAYOUTS
 from metagraph.mimicry.signatures import Body
 from metagraph.motion.skeleton import Pose
-from metagraph.playback.hear import perform
 from metagraph.playback.plan import Plan
 from metagraph.playback.player import pose_at
+from metagraph.playback.running_plan import perform
 
 SAMPLE = Path(__file__).resolve().parents[1] / "sample.metagraph.yaml"
 OUT = Path(__file__).resolve().parents[1] / "keypoints"

@@ -103,7 +103,7 @@ def test_a_fault_of_the_planner_does_not_stop_the_game(stick: Project, monkeypat
     character = Character(stick)
     plan = character.plan
     with monkeypatch.context() as broken:
-        broken.setattr("metagraph.engines.character.hear", lambda *_: 1 // 0)
+        broken.setattr("metagraph.playback.running_plan.hear", lambda *_: 1 // 0)
         ident = character.ask({"do": "nod"})
         character.update(1.0)
         assert character.answer(ident).state == "refused"

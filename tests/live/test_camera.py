@@ -12,7 +12,7 @@ from metagraph.graph import edits
 from metagraph.graph.model import LAYERS, Project
 from metagraph.live.messages import Reply, encode
 from metagraph.live.session import LiveSession
-from metagraph.playback.hear import perform
+from metagraph.playback.running_plan import perform
 from sample_clips.make.keypoints import View, played, seen
 
 TICK = 1 / 60

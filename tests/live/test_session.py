@@ -20,8 +20,8 @@ from metagraph.live import limits
 from metagraph.live.messages import Event, Reply, encode
 from metagraph.live.session import LiveSession
 from metagraph.live.work import Out
-from metagraph.playback.hear import perform
 from metagraph.playback.player import pose_at
+from metagraph.playback.running_plan import perform
 from tests.live.traffic import mixed, valid
 
 TICK = 1 / 60

@@ -7,7 +7,8 @@ from typing import Any
 
 from metagraph.graph import asks as a
 from metagraph.graph.model import Project
-from metagraph.playback.hear import answer, answers, perform
+from metagraph.playback.hear import answer, answers
+from metagraph.playback.running_plan import perform
 
 
 class Counted(tuple[Any, ...]):

@@ -13,9 +13,10 @@ from hypothesis import strategies as st
 
 from metagraph.graph import asks as a
 from metagraph.graph.model import LAYERS, Layer, Project
-from metagraph.playback.hear import answer, hear, perform, since
+from metagraph.playback.hear import answer, hear, since
 from metagraph.playback.plan import Cue, Plan
 from metagraph.playback.player import pose_at
+from metagraph.playback.running_plan import perform
 
 END = 30.0
 _SAMPLE: list[Project] = []

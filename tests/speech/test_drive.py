@@ -11,7 +11,7 @@ from hypothesis import strategies as st
 from metagraph.graph.asks import Behave, Change, Fidget, Gesture, Nod
 from metagraph.graph.conversation import SPOKEN, Conversation, Rates, Segment, Side, Spoken, heard_by
 from metagraph.graph.model import Project
-from metagraph.playback.hear import perform
+from metagraph.playback.running_plan import perform
 from metagraph.speech.drive import TOLERANCE, asks_of, drive, strokes
 
 

@@ -12,8 +12,8 @@ from metagraph.formats.data import from_data, to_data
 from metagraph.formats.elan import read_elan
 from metagraph.graph.model import LAYERS, Project
 from metagraph.playback.annotation import Annotation, Interval, Tier
-from metagraph.playback.hear import perform
 from metagraph.playback.learn import acts_of_asks
+from metagraph.playback.running_plan import perform
 
 SAMPLE = Path(__file__).resolve().parents[3] / "sample_clips" / "annotation" / "conversation.eaf"
 

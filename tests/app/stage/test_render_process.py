@@ -37,8 +37,8 @@ def test_a_video_is_written_and_its_progress_told(qapp, talk, tmp_path):
 
 
 def test_motion_is_the_performance(qapp, talk, tmp_path):
-    from metagraph.playback.hear import perform
     from metagraph.playback.player import pose_at
+    from metagraph.playback.running_plan import perform
 
     project, ident = talk
     write(project, ROOT / "sample_clips", Wanted(tmp_path / "a.bvh", ident, 1.0), Job("x", lambda job: None))

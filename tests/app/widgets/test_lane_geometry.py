@@ -15,8 +15,9 @@ from app.widgets.lane_geometry import LEFT, RULER, Scale, advance, cue_at, lane_
 from app.widgets.request_menu import STAGE
 from metagraph.graph import asks as a
 from metagraph.graph.model import LAYERS
-from metagraph.playback.hear import answer, perform
+from metagraph.playback.hear import answer
 from metagraph.playback.planner import make_plan
+from metagraph.playback.running_plan import perform
 
 
 @given(first=st.floats(0, 1e4), each=st.floats(2, 400), seconds=st.floats(0, 1e4))
