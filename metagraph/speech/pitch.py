@@ -1,4 +1,4 @@
-"""How high a voice is, moment by moment: its fundamental frequency, F0, by YIN (de Cheveigné and Kawahara 2002) as librosa computes it.
+"""How high a voice is, moment by moment: its fundamental frequency, F0, by YIN (de Cheveigné and Kawahara 2002).
 
 YIN finds a period in anything. A moment counts as voiced where it is audible, where the sound does repeat after that period, where its
 pitch lies in this voice's own range (two-pass quantiles, De Looze and Hirst 2008) and near its neighbours', not an octave off.
@@ -14,6 +14,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from metagraph.speech.sound import HOP
+from metagraph.speech.yin import yin
 
 Array = NDArray[Any]
 
@@ -24,7 +25,8 @@ FLOOR = 34.0  # dB below the loudest moments that still counts as voice
 JUMP = 6.0  # semitones away from the neighbours' median that a moment may be
 NEAR = 9  # moments either side that count as neighbours
 _SHORTEST = 3  # moments a voiced stretch has at least
-_BLOCK = 3000  # moments at a time
+_BLOCK = 1000  # moments at a time
+_MARGIN = 128  # samples at the lower rate that resampling looks ahead and back
 _PIECE, _TRIED = 500, 12000  # moments in a piece; and in all those that tell a voice's range
 PROMINENT = 0.25  # semitones a peak stands out by at least
 
@@ -80,21 +82,12 @@ def _blocks(
 def _block(samples: Array, rate: int, times: Array, bounds: tuple[float, float], audible: float) -> tuple[Array, Array, Array]:
     """Return F0 within bounds (Hz), how well the sound repeats after its period (0..1) and its level (dB) at times `HOP` apart. Moments
     softer than `audible` dB are passed over: nan, 0."""
-    from librosa import yin  # half a second, first time
-
     every = max(1, rate // RATE)
     own = rate / every
     size = int(2 ** np.ceil(np.log2(2.5 * own / LOWEST)))  # of a frame, samples: two of the longest periods, and some
-    first = round(times[0] * rate) - (size // 2) * every
-    last = round(times[-1] * rate) + (size - size // 2 + 1) * every
-    piece = np.asarray(samples[max(first, 0) : max(last, 0)], np.float64)
-    piece = np.pad(piece, (max(-first, 0), max(0, last - first - len(piece) - max(-first, 0))))
-    if every > 1:
-        from scipy.signal import resample_poly
-
-        piece = resample_poly(piece, 1, every)
-    starts = np.round((times - times[0]) * own).astype(int)
-    frames = np.lib.stride_tricks.sliding_window_view(piece, size)[np.minimum(starts, len(piece) - size)]
+    starts = np.round(times * own).astype(int) - size // 2
+    frames = np.lib.stride_tricks.sliding_window_view(_thinned(samples, every, int(starts[0]), int(starts[-1]) + size), size)
+    frames = frames[starts - starts[0]]
     frames = frames - frames.mean(1, keepdims=True)
     level = 10 * np.log10((frames * frames).mean(1) + 1e-12)
     hertz, repeats = np.full(len(times), np.nan), np.zeros(len(times))
@@ -102,9 +95,7 @@ def _block(samples: Array, rate: int, times: Array, bounds: tuple[float, float],
     if not some.any():
         return hertz, repeats, level
     frames = frames[some]
-    with warnings.catch_warnings():  # of frames of digital silence
-        warnings.simplefilter("ignore")
-        found = yin(frames.reshape(-1), fmin=bounds[0], fmax=bounds[1], sr=own, frame_length=size, hop_length=size, center=False)
+    found = yin(frames, own, *bounds)
     period = np.clip(np.round(own / found).astype(int), 2, size // 2)
     one = frames[:, : size - size // 2]
     two = np.take_along_axis(frames, np.arange(size - size // 2)[None, :] + period[:, None], 1)
@@ -113,6 +104,20 @@ def _block(samples: Array, rate: int, times: Array, bounds: tuple[float, float],
     alike[(found >= 0.98 * bounds[1]) | (found <= 1.005 * bounds[0])] = 0.0  # at the edge of what was tried: none was found
     hertz[some], repeats[some] = found, alike
     return hertz, repeats, level
+
+
+def _thinned(samples: Array, every: int, first: int, last: int) -> Array:
+    """Return samples `first` to `last`, float64, of the sound `[N]` at an `every`th of its rate, silence before and
+    after it: to 1e-6 the same in whichever pieces they are asked for."""
+    margin = _MARGIN if every > 1 else 0
+    start, end = (first - margin) * every, (last + margin) * every
+    piece = np.asarray(samples[max(start, 0) : max(end, 0)], np.float64)
+    piece = np.pad(piece, (max(-start, 0), max(0, end - start - len(piece) - max(-start, 0))))
+    if every == 1:
+        return piece
+    import soxr
+
+    return np.asarray(soxr.resample(piece, every, 1)[margin : margin + last - first])
 
 
 def _near(hertz: Array, voiced: Array) -> Array:
