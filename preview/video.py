@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable
+from concurrent.futures import Future, ThreadPoolExecutor
 from fractions import Fraction
 from pathlib import Path
 from typing import Any
@@ -34,6 +35,7 @@ def write_video(
     size: width and height of the video; by default that of the first frame, made even as H.264 needs. Frames that differ
     are scaled. quality: x264's rate factor, 0 (lossless) .. 51. progress is called with the number of frames written.
     sound: mono samples `[N]`, -1..1, and how many there are a second; cut or filled with silence to the pictures' length.
+    A picture is encoded while the next is drawn; `frames` is asked, and progress told, in the caller's thread.
     The file appears only when it is complete. Raises FileError (no frames, not writable), Cancelled.
     """
     import av
@@ -44,9 +46,23 @@ def write_video(
     part = path.with_name(f".{path.name}.part.mp4")
     count = 0
     try:
-        with av.open(str(part), "w", format="mp4", options={"movflags": "faststart"}) as container:
+        with av.open(str(part), "w", format="mp4", options={"movflags": "faststart"}) as container, ThreadPoolExecutor(1) as encoder:
             stream: Any = None
             voice: Any = None
+            encoding: Future[None] | None = None
+
+            def encode(frame: Any) -> None:
+                for packet in stream.encode(frame):  # scales to the stream's size when the frame differs
+                    container.mux(packet)
+
+            def encoded() -> None:
+                nonlocal count
+                if encoding is not None:
+                    encoding.result()
+                    count += 1
+                    if progress is not None:
+                        progress(count)
+
             for picture in frames:
                 if cancelled is not None and cancelled():
                     raise Cancelled
@@ -60,11 +76,9 @@ def write_video(
                     if sound is not None:
                         voice = container.add_stream("aac", rate=sound[1], layout="mono")
                 frame = av.VideoFrame.from_ndarray(np.ascontiguousarray(picture[..., :3], np.uint8), format="rgb24")
-                for packet in stream.encode(frame):  # scales to the stream's size when the frame differs
-                    container.mux(packet)
-                count += 1
-                if progress is not None:
-                    progress(count)
+                encoded()
+                encoding = encoder.submit(encode, frame)
+            encoded()
             if stream is None:
                 raise FileError(path, "there are no frames to write", remedy="Choose a time span longer than one frame.")
             for packet in stream.encode():

@@ -6,15 +6,11 @@ from pathlib import Path
 
 
 def main() -> None:
-    import numpy as np
-
     from app.features.motion_graph.synthesis_jobs import Wish, synthesise, takes_of, usable
     from metagraph.formats.store import open_project
-    from metagraph.speech.pitch import pitch
     from metagraph.synthesis.graph import build
     from metagraph.synthesis.states import states_of
 
-    pitch(np.sin(np.arange(16000) / 20), 16000)
     project = open_project(Path(__file__).resolve().parents[1] / "sample_clips" / "sample.metagraph.yaml").project
     takes = takes_of(project, [i for i in usable(project) if project.clips[i].name.endswith("__stance")])
     synthesise(build(states_of(takes.clips)), takes, Wish(4.0, ()), "new")

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import threading
+
 import numpy as np
 import pytest
 
@@ -71,6 +73,48 @@ def test_a_failed_frame_leaves_the_old_file_alone(tmp_path):
         write_video(path, broken(), 30)
     assert path.read_bytes() == b"old"
     assert len(list(tmp_path.iterdir())) == 1
+
+
+def test_a_picture_is_encoded_while_the_next_is_drawn_and_told_of_in_its_order(tmp_path):
+    at_work, told = set(), []
+
+    def drawn():
+        for picture in frames(6):
+            at_work.add(threading.get_ident())
+            yield picture
+            picture[:] = 255  # whoever draws may draw into the same memory again
+
+    write_video(tmp_path / "a.mp4", drawn(), 30, progress=lambda n: told.append((n, threading.get_ident())))
+    assert told == [(n, threading.get_ident()) for n in range(1, 7)] and at_work == {threading.get_ident()}
+    assert [round(float(p.mean()) / 20) for p in decoded(tmp_path / "a.mp4")[0]] == list(range(6))
+
+
+def test_a_failing_encoder_is_told_and_leaves_nothing(tmp_path, monkeypatch):
+    import av
+
+    class Full:
+        """A file on a full disk."""
+
+        def __init__(self, *words, **more):
+            self.file = real(*words, **more)
+
+        def __enter__(self):
+            return self
+
+        def __exit__(self, *error):
+            self.file.close()
+
+        def add_stream(self, *words, **more):
+            return self.file.add_stream(*words, **more)
+
+        def mux(self, packet):
+            raise OSError(28, "No space left on device")
+
+    real = av.open
+    monkeypatch.setattr(av, "open", Full)
+    with pytest.raises(FileError, match="No space left"):
+        write_video(tmp_path / "a.mp4", frames(80), 30)
+    assert list(tmp_path.iterdir()) == []
 
 
 def test_a_folder_that_is_not_there_is_named(tmp_path):
