@@ -3,6 +3,7 @@
 
 Makes `.venv`, installs the pinned dependencies into it, installs missing system libraries on Debian and Ubuntu (at
 once as root, through sudo after asking otherwise), then runs. Whatever follows is passed on: `python3 run.py check my.metagraph.yaml`.
+`python3 run.py install` installs now what is otherwise installed when first needed, for work without a network.
 """
 
 import ctypes
@@ -17,6 +18,8 @@ ROOT = Path(__file__).resolve().parent
 VENV = ROOT / ".venv"
 WINDOWS = os.name == "nt"
 PYTHON = VENV / ("Scripts/python.exe" if WINDOWS else "bin/python")
+# Everybody needs the first list, new motion and hours of BVH the second, and tests all.
+LISTS = ("requirements.txt", "requirements-compiled.txt", "requirements-test.txt")
 
 # Library or program -> Debian package. Drawing without a screen needs the first group, a window the second, tests the third.
 DRAWING = {"libEGL.so.1": "libegl1", "libGL.so.1": "libgl1"}
@@ -47,10 +50,12 @@ ENGINES = {
 def main(arguments):
     if not (3, 11) <= sys.version_info[:2] <= (3, 13):
         return f"Python 3.11, 3.12 or 3.13 is needed, this is {sys.version_info[0]}.{sys.version_info[1]}."
+    if arguments == ["install"]:
+        return environment(1)
     testing = arguments[:1] == ["test"]
     screen = not sys.platform.startswith("linux") or bool(os.environ.get("DISPLAY") or os.environ.get("WAYLAND_DISPLAY"))
     trouble = system_libraries(screen, testing) if sys.platform.startswith("linux") else None
-    trouble = trouble or environment(testing)
+    trouble = trouble or environment(2 if testing else 0)
     if trouble:
         return trouble
     if testing:
@@ -134,15 +139,14 @@ def engines():
 # --- the environment
 
 
-def environment(testing):
-    """Make .venv and install what is pinned; nothing to do when that was done before."""
-    files = [ROOT / "requirements.txt", *([ROOT / "requirements-test.txt"] if testing else [])]
-    want = hashlib.sha256(b"".join(f.read_bytes() for f in [*files, ROOT / "pyproject.toml"])).hexdigest()
-    stamp = VENV / (".installed-test" if testing else ".installed")
-    if PYTHON.exists() and stamp.exists() and stamp.read_text() == want:
+def environment(most):
+    """Make .venv and install what is pinned in the lists up to number `most`; nothing to do when that was done before."""
+    if any(stamp(n).exists() and stamp(n).read_text() == wanted(n) for n in range(most, len(LISTS))):
         return None
+    if any(stamp(n).exists() for n in range(1, len(LISTS))):
+        most = max(most, 1)  # a compiler that is there has to fit the rest
     if not PYTHON.exists() or not pip("--version", quiet=True):
-        print("Making the environment in .venv (once, about a minute) ...", flush=True)
+        print("Making the environment in .venv (once, less than a minute) ...", flush=True)
         shutil.rmtree(VENV, ignore_errors=True)
         made = subprocess.run([sys.executable, "-m", "venv", str(VENV)], capture_output=True, text=True)
         if made.returncode != 0:
@@ -150,15 +154,27 @@ def environment(testing):
             hint = " On Debian or Ubuntu: sudo apt-get install -y python3-venv" if sys.platform.startswith("linux") else ""
             return f"The environment could not be made: {(made.stdout + made.stderr).strip().splitlines()[-1]}.{hint}"
     print("Installing dependencies ...", flush=True)
-    if not pip("install", "--disable-pip-version-check", "-q", *(x for f in files for x in ("-r", str(f)))):
+    # Modules are compiled when they are first imported: most never are.
+    install = ("install", "--disable-pip-version-check", "-q", "--no-compile")
+    if not pip(*install, *(word for name in LISTS[: most + 1] for word in ("-r", str(ROOT / name)))):
         return "The dependencies could not be installed; what pip said is above. Check the network and start again."
-    if not pip("install", "--disable-pip-version-check", "-q", "--no-deps", "--no-build-isolation", "-e", str(ROOT)):
+    if not pip(*install, "--no-deps", "--no-build-isolation", "-e", str(ROOT)):
         return "Metagraph could not be installed into its environment; what pip said is above."
     # FBX is an extra with no wheel for every system: welcome where it installs, not missed where it does not.
-    if not pip("install", "--disable-pip-version-check", "-q", "--only-binary", ":all:", "ufbx==0.0.5", quiet=True):
+    if not pip(*install, "--only-binary", ":all:", "ufbx==0.0.5", quiet=True):
         print("(FBX files cannot be read on this system; BVH and glTF can.)")
-    stamp.write_text(want)
+    stamp(most).write_text(wanted(most))
     return None
+
+
+def stamp(most):
+    """Return the file that tells which lists were installed."""
+    return VENV / (".installed", ".installed-compiled", ".installed-test")[most]
+
+
+def wanted(most):
+    """Return what the stamp holds while nothing has changed."""
+    return hashlib.sha256(b"".join((ROOT / name).read_bytes() for name in (*LISTS[: most + 1], "pyproject.toml"))).hexdigest()
 
 
 def pip(*arguments, quiet=False):

@@ -3,8 +3,11 @@
 from __future__ import annotations
 
 import importlib.util
+import re
 import subprocess
 import sys
+import tomllib
+from itertools import pairwise
 from pathlib import Path
 from types import ModuleType
 from typing import Any
@@ -139,7 +142,7 @@ def test_a_failed_installation_says_what_to_do(bare: ModuleType, monkeypatch: py
 @pytest.fixture
 def pinned(run: ModuleType, tmp_path: Path) -> ModuleType:
     """With something to install."""
-    for name in ("requirements.txt", "requirements-test.txt", "pyproject.toml"):
+    for name in (*run.LISTS, "pyproject.toml"):
         (tmp_path / name).write_text(name)
     return run
 
@@ -153,17 +156,66 @@ def test_the_environment_is_made_once_and_again_when_what_is_pinned_changes(pinn
     started = Started()
     monkeypatch.setattr(pinned.subprocess, "call", started)
     make_python(pinned)
-    assert pinned.environment(False) is None
+    assert pinned.environment(0) is None
     assert any("requirements.txt" in word for word in started[1])
     assert not any("requirements-test.txt" in word for command in started for word in command)
+    assert not any("requirements-compiled.txt" in word for command in started for word in command)
     count = len(started)
-    assert pinned.environment(False) is None
+    assert pinned.environment(0) is None
     assert len(started) == count
     (pinned.ROOT / "requirements.txt").write_text("other")
-    assert pinned.environment(False) is None
+    assert pinned.environment(0) is None
     assert len(started) > count
-    assert pinned.environment(True) is None
-    assert any("requirements-test.txt" in word for command in started for word in command)
+
+
+def listed(command: list[str]) -> list[str]:
+    """Return which lists a command installs."""
+    return [Path(word).name for flag, word in pairwise(command) if flag == "-r"]
+
+
+def test_each_list_is_installed_with_those_before_it_and_serves_whoever_needs_less(
+    pinned: ModuleType, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    started = Started()
+    monkeypatch.setattr(pinned.subprocess, "call", started)
+    make_python(pinned)
+    for most in range(3):
+        assert pinned.environment(most) is None
+        assert [listed(command) for command in started if listed(command)] == [list(pinned.LISTS[: most + 1])]
+        started.clear()
+    assert pinned.environment(0) is pinned.environment(1) is None and not started
+    pinned.stamp(0).unlink()
+    assert pinned.environment(0) is None and not started  # all that the tests need is enough
+
+
+def test_a_compiler_that_was_added_is_kept_up_to_date_with_the_rest(pinned: ModuleType, monkeypatch: pytest.MonkeyPatch) -> None:
+    started = Started()
+    monkeypatch.setattr(pinned.subprocess, "call", started)
+    make_python(pinned)
+    assert pinned.main(["install"]) is None
+    assert listed(started[1]) == list(pinned.LISTS[:2])
+    started.clear()
+    (pinned.ROOT / "requirements.txt").write_text("other")
+    assert pinned.environment(0) is None
+    assert listed(started[1]) == list(pinned.LISTS[:2])
+
+
+def test_what_is_pinned_is_pinned_once_and_names_no_place_to_load_it_from() -> None:
+    names: list[str] = []
+    for file in sorted(ROOT.glob("requirements*.txt")):
+        lines = file.read_text().splitlines()
+        assert all(re.fullmatch(r"[a-z0-9.-]+==[0-9][\w.]*( ; [a-z_]+ [<>!=]+ '[\w.]+')?", line) for line in lines), file
+        names += [f"{line.split('==')[0]} {line.partition(' ; ')[2]}" for line in lines]
+    assert len(set(names)) == len(names)
+
+
+def test_what_is_declared_is_pinned_in_the_list_of_those_who_need_it(run: ModuleType) -> None:
+    project = tomllib.loads((ROOT / "pyproject.toml").read_text())["project"]
+    extras = project["optional-dependencies"]
+    for name, declared in zip(run.LISTS, (project["dependencies"], extras["compiled"], extras["test"]), strict=True):
+        pinned = {line.split("==")[0] for line in (ROOT / name).read_text().splitlines()}
+        missing = {re.split(r"[^\w.-]", word)[0].lower() for word in declared} - pinned
+        assert missing <= ({"numba"} if name == "requirements-test.txt" else set()), name
 
 
 def test_an_environment_that_cannot_be_made_leaves_nothing_and_names_the_package(
@@ -171,7 +223,7 @@ def test_an_environment_that_cannot_be_made_leaves_nothing_and_names_the_package
 ) -> None:
     failed = subprocess.CompletedProcess([], 1, "", "ensurepip is not available")
     monkeypatch.setattr(pinned.subprocess, "run", lambda *args, **kwargs: failed)
-    words = pinned.environment(False)
+    words = pinned.environment(0)
     assert "ensurepip is not available" in words
     if sys.platform.startswith("linux"):
         assert "sudo apt-get install -y python3-venv" in words
@@ -181,7 +233,7 @@ def test_an_environment_that_cannot_be_made_leaves_nothing_and_names_the_package
 def test_a_failed_download_is_told_and_tried_again_next_time(pinned: ModuleType, monkeypatch: pytest.MonkeyPatch) -> None:
     make_python(pinned)
     monkeypatch.setattr(pinned.subprocess, "call", Started(0, 1))
-    assert "could not be installed" in pinned.environment(False)
+    assert "could not be installed" in pinned.environment(0)
     assert not list(pinned.VENV.glob(".installed*"))
 
 
@@ -190,7 +242,7 @@ def test_fbx_is_not_missed_where_it_cannot_be_installed(
 ) -> None:
     make_python(pinned)
     monkeypatch.setattr(pinned.subprocess, "call", Started(0, 0, 0, 1))
-    assert pinned.environment(False) is None
+    assert pinned.environment(0) is None
     assert "FBX files cannot be read on this system" in capsys.readouterr().out
 
 

@@ -3,16 +3,17 @@
 from __future__ import annotations
 
 import re
-import sys
 from collections.abc import Collection
 from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass, field
 from pathlib import Path
+from threading import Lock
 from typing import Any, NoReturn
 
 import numpy as np
 from numpy.typing import NDArray
 
+from metagraph.compiling import CompilerError, there
 from metagraph.errors import FileError
 from metagraph.formats.atomic import write_atomically
 from metagraph.formats.bvh_space import USUAL, stand, unit, z_up
@@ -26,9 +27,11 @@ from metagraph.motion.skeleton import Skeleton, unique_names
 Array = NDArray[Any]
 
 # Where compiling pays: numba takes 0.6 s to import, numpy reads 30 MB/s, the compiled loops 330 MB/s. Many small files
-# count as one large one.
-_COMPILED_FROM = 24 << 20
+# count as one large one. Installing numba takes as long as reading some hundred megabytes without it.
+_COMPILED_FROM, _INSTALLED_FROM = 24 << 20, 240 << 20
 _read_so_far = [0]  # bytes of motion this process has read
+_loops: list[Any] = []  # the module of compiled loops, once it is whole; None where it cannot be had
+_importing = Lock()
 _DAMAGED = "The file is damaged: export it again."
 
 
@@ -239,11 +242,26 @@ def _fps(text: str, step: float) -> float:
     return 1 / step
 
 
+def _kernels() -> Any:
+    """Return the module of compiled loops where it pays and is there; None otherwise, and while another thread imports it."""
+    if not _loops and _read_so_far[0] >= (_COMPILED_FROM if there() else _INSTALLED_FROM) and _importing.acquire(blocking=False):
+        try:
+            from metagraph.formats import bvh_kernels
+
+            _loops.append(bvh_kernels)
+        except CompilerError:
+            _loops.append(None)
+        finally:
+            _importing.release()
+    return _loops[0] if _loops else None
+
+
 def _numbers(path: Path, data: bytes, start: int, channels: int) -> Array:
     """Return every number after `start` as float64."""
     _read_so_far[0] += len(data) - start
-    if "metagraph.formats.bvh_kernels" in sys.modules or _read_so_far[0] >= _COMPILED_FROM:
-        numbers, stopped = _compiled_numbers(data, start)
+    kernels = _kernels()
+    if kernels is not None:
+        numbers, stopped = _compiled_numbers(kernels.parse, data, start)
     else:
         try:
             numbers, stopped = np.array(data[start:].split(), np.float64), len(data)
@@ -265,10 +283,8 @@ def _numbers(path: Path, data: bytes, start: int, channels: int) -> Array:
     raise FileError(path, "it holds bytes that are not numbers", f"line {_line(data, stopped)}", _DAMAGED)
 
 
-def _compiled_numbers(data: bytes, start: int) -> tuple[Array, int]:
+def _compiled_numbers(parse: Any, data: bytes, start: int) -> tuple[Array, int]:
     """Return the numbers and where reading stopped, using two threads on large files."""
-    from metagraph.formats.bvh_kernels import parse
-
     whole = np.frombuffer(data, np.uint8)
     end = len(data)
     middle = data.find(b"\n", (start + end) // 2) + 1 if end - start > 1 << 20 else 0
@@ -293,7 +309,7 @@ def _rotations(values: Array, joints: list[_Joint], columns: list[list[int]]) ->
     frames = len(values)
     turns = [[c for c, name in zip(own, joint.channels, strict=True) if name[1] == "r"] for joint, own in zip(joints, columns, strict=True)]
     orders = ["".join(name[0] for name in joint.channels if name[1] == "r") for joint in joints]
-    kernels = sys.modules.get("metagraph.formats.bvh_kernels")
+    kernels = _kernels()
     if kernels is None:
         out = rotation.identity((frames, len(joints)))
         for order in set(orders) - {""}:

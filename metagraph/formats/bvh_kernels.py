@@ -2,20 +2,15 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
 from typing import Any
 
-import numba
 import numpy as np
+
+from metagraph.compiling import compiler
 
 _POWERS = 10.0 ** np.arange(23)  # exact in double precision
 
-
-def _compiled(function: Callable[..., Any]) -> Any:
-    try:
-        return numba.njit(cache=True, nogil=True, fastmath={"contract", "arcp", "nsz"})(function)
-    except RuntimeError:  # no folder to cache in
-        return numba.njit(nogil=True, fastmath={"contract", "arcp", "nsz"})(function)
+_compiled = compiler(nogil=True, fastmath={"contract", "arcp", "nsz"})
 
 
 @_compiled

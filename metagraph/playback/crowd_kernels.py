@@ -7,11 +7,11 @@ they count, and at the end; products do not mind.
 
 from __future__ import annotations
 
-from collections.abc import Callable
 from typing import Any
 
-import numba
 import numpy as np
+
+from metagraph.compiling import compiler
 
 Array = Any
 Number = Any  # float32 throughout, except for times
@@ -20,13 +20,7 @@ Loop = tuple[Spot, Spot, Number]  # a stance loop, the other side of its seam, a
 
 LANES = 16  # joints in a block
 
-
-def _compiled(function: Callable[..., Any]) -> Any:
-    options: dict[str, Any] = {"nogil": True, "fastmath": {"contract", "arcp", "nsz"}, "error_model": "numpy"}
-    try:
-        return numba.njit(cache=True, **options)(function)
-    except RuntimeError:  # no folder to cache in
-        return numba.njit(**options)(function)
+_compiled = compiler(nogil=True, fastmath={"contract", "arcp", "nsz"}, error_model="numpy")
 
 
 # --- blocks `[64]` float32

@@ -6,31 +6,19 @@ those that differ most come first. Targets lie in blocks of 64, `[block, term, x
 
 from __future__ import annotations
 
-from collections.abc import Callable
 from typing import Any
 
-import numba
 import numpy as np
+
+from metagraph.compiling import compiler
 
 Array = Any
 
 LANES = 64  # wide enough that the loops cost little, narrow enough that most blocks end early
 EVERY = 4  # terms between looks at whether a block is done with
 
-
-def compiled(function: Callable[..., Any], fast: bool = True) -> Any:
-    options: dict[str, Any] = {"nogil": True, "error_model": "numpy"}
-    if fast:
-        options["fastmath"] = True
-    try:
-        return numba.njit(cache=True, **options)(function)
-    except RuntimeError:  # no folder to cache in
-        return numba.njit(**options)(function)
-
-
-def compiled_exactly(function: Callable[..., Any]) -> Any:
-    """Compile where infinite means out of reach: fast arithmetic takes it that nothing is."""
-    return compiled(function, fast=False)
+compiled = compiler(nogil=True, fastmath=True, error_model="numpy")
+compiled_exactly = compiler(nogil=True, error_model="numpy")  # where infinite means out of reach: fast arithmetic takes it that nothing is
 
 
 @compiled

@@ -4,11 +4,19 @@ from __future__ import annotations
 
 import subprocess
 import sys
+import threading
+from concurrent.futures import ThreadPoolExecutor
+from importlib.abc import Loader, MetaPathFinder
+from importlib.machinery import ModuleSpec
+from importlib.util import find_spec, spec_from_loader
 from pathlib import Path
+from types import ModuleType
+from typing import Any
 
 import numpy as np
 import pytest
 
+from metagraph.compiling import CompilerError
 from metagraph.errors import FileError
 from metagraph.formats import bvh
 from metagraph.formats.bvh import read_bvh, write_bvh
@@ -49,14 +57,16 @@ Frame Time: {time}
 {rows}"""
 
 
+def choose(monkeypatch: pytest.MonkeyPatch, compiled: bool) -> None:
+    """Have numbers read by the compiled loops, or without them."""
+    monkeypatch.setattr(bvh, "_loops", [])
+    monkeypatch.setattr(bvh, "_COMPILED_FROM", 0 if compiled else 1 << 60)
+
+
 @pytest.fixture(params=["numpy", "compiled"])
 def path(request: pytest.FixtureRequest, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
     """A file to write, read once by each of the two number parsers."""
-    if request.param == "compiled":
-        import metagraph.formats.bvh_kernels  # noqa: F401  (its presence selects it)
-    else:
-        monkeypatch.setattr(bvh, "_COMPILED_FROM", 1 << 60)
-        monkeypatch.delitem(sys.modules, "metagraph.formats.bvh_kernels", raising=False)
+    choose(monkeypatch, request.param == "compiled")
     return tmp_path / "clip.bvh"
 
 
@@ -346,17 +356,97 @@ def test_a_large_file_split_between_two_threads_reads_as_a_small_one(tmp_path: P
     text = "\n".join(" ".join(f"{v:.6g}" for v in row) for row in values)
     path = tmp_path / "large.bvh"
     path.write_text(figure(rows=text + "\n", frames=12000))
-    monkeypatch.setattr(bvh, "_COMPILED_FROM", 1 << 60)
-    monkeypatch.delitem(sys.modules, "metagraph.formats.bvh_kernels", raising=False)
+    choose(monkeypatch, False)
     slow = read_bvh(path, 0.01)
-    import metagraph.formats.bvh_kernels  # noqa: F401
-
+    choose(monkeypatch, True)
     fast = read_bvh(path, 0.01)
     assert path.stat().st_size > 700_000
     side = np.sign(np.einsum("fji,fji->fj", fast.rotations, slow.rotations))[..., None]  # half turns may fall to either side
     np.testing.assert_allclose(fast.rotations, slow.rotations * side, atol=2e-7)
     np.testing.assert_array_equal(fast.translations, slow.translations)
     assert (np.einsum("fji,fji->fj", fast.rotations[1:], fast.rotations[:-1]) >= 0).all()
+
+
+class SlowImport(MetaPathFinder, Loader):
+    """Finds one module and, while it is being imported, waits until it is let go on."""
+
+    def __init__(self, name: str) -> None:
+        self.real = find_spec(name)
+        self.name, self.begun, self.go_on = name, threading.Event(), threading.Event()
+
+    def find_spec(self, name: str, path: object, target: object = None) -> ModuleSpec | None:
+        return spec_from_loader(name, self) if name == self.name else None
+
+    def create_module(self, spec: ModuleSpec) -> None:
+        return None
+
+    def exec_module(self, module: ModuleType) -> None:
+        self.begun.set()
+        assert self.go_on.wait(20)
+        assert self.real is not None and self.real.loader is not None
+        module.__file__ = self.real.origin
+        self.real.loader.exec_module(module)
+
+
+def test_a_file_read_while_another_thread_imports_the_compiled_loops_reads_all_the_same(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    first, second = tmp_path / "first.bvh", tmp_path / "second.bvh"
+    for path in (first, second):
+        path.write_text(figure())
+    choose(monkeypatch, False)
+    expected = read_bvh(first, 0.01)
+    name = "metagraph.formats.bvh_kernels"
+    slow = SlowImport(name)
+    monkeypatch.delitem(sys.modules, name, raising=False)
+    monkeypatch.delattr("metagraph.formats.bvh_kernels", raising=False)
+    monkeypatch.setattr(sys, "meta_path", [slow, *sys.meta_path])
+    has_numbers, numbers = threading.Event(), bvh._numbers
+
+    def wait_behind_numbers(path: Path, *rest: Any) -> Any:
+        found = numbers(path, *rest)
+        if path == first:
+            has_numbers.set()
+            assert slow.begun.wait(20)
+        return found
+
+    monkeypatch.setattr(bvh, "_numbers", wait_behind_numbers)
+    with ThreadPoolExecutor(2) as pool:
+        try:
+            one = pool.submit(read_bvh, first, 0.01)
+            assert has_numbers.wait(20)
+            monkeypatch.setattr(bvh, "_COMPILED_FROM", 0)
+            other = pool.submit(read_bvh, second, 0.01)
+            np.testing.assert_array_equal(one.result(20).rotations, expected.rotations)
+        finally:
+            slow.go_on.set()
+        np.testing.assert_allclose(other.result(60).rotations, expected.rotations, atol=2e-7)
+
+
+def test_without_a_compiler_large_files_are_read_all_the_same_and_it_is_asked_for_once(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    asked = []
+
+    def offline(**options: Any) -> Any:
+        asked.append(options)
+        raise CompilerError("no network")
+
+    path = tmp_path / "clip.bvh"
+    path.write_text(figure())
+    choose(monkeypatch, True)
+    expected = read_bvh(path, 0.01)
+    choose(monkeypatch, True)
+    monkeypatch.delitem(sys.modules, "metagraph.formats.bvh_kernels", raising=False)
+    monkeypatch.delattr("metagraph.formats.bvh_kernels", raising=False)
+    monkeypatch.setattr("metagraph.compiling.compiler", offline)
+    monkeypatch.setattr(bvh, "there", lambda: False)
+    read_bvh(path, 0.01)
+    assert not asked  # so little is not worth it
+    monkeypatch.setattr(bvh, "_INSTALLED_FROM", 0)
+    for _ in range(2):
+        np.testing.assert_allclose(read_bvh(path, 0.01).rotations, expected.rotations, atol=2e-7)
+    assert len(asked) == 1
 
 
 def test_importing_the_reader_does_not_import_numba() -> None:
