@@ -141,7 +141,8 @@ def engines():
 
 def environment(most):
     """Make .venv and install what is pinned in the lists up to number `most`; nothing to do when that was done before."""
-    if any(stamp(n).exists() and stamp(n).read_text() == wanted(n) for n in range(most, len(LISTS))):
+    current = [n for n in range(len(LISTS)) if stamp(n).exists() and stamp(n).read_text() == wanted(n)]
+    if current and current[-1] >= most:
         return None
     if any(stamp(n).exists() for n in range(1, len(LISTS))):
         most = max(most, 1)  # a compiler that is there has to fit the rest
@@ -158,10 +159,10 @@ def environment(most):
     install = ("install", "--disable-pip-version-check", "-q", "--no-compile")
     if not pip(*install, *(word for name in LISTS[: most + 1] for word in ("-r", str(ROOT / name)))):
         return "The dependencies could not be installed; what pip said is above. Check the network and start again."
-    if not pip(*install, "--no-deps", "--no-build-isolation", "-e", str(ROOT)):
+    if not current and not pip(*install, "--no-deps", "--no-build-isolation", "-e", str(ROOT)):
         return "Metagraph could not be installed into its environment; what pip said is above."
     # FBX is an extra with no wheel for every system: welcome where it installs, not missed where it does not.
-    if not pip(*install, "--only-binary", ":all:", "ufbx==0.0.5", quiet=True):
+    if not current and not pip(*install, "--only-binary", ":all:", "ufbx==0.0.5", quiet=True):
         print("(FBX files cannot be read on this system; BVH and glTF can.)")
     stamp(most).write_text(wanted(most))
     return None

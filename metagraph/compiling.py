@@ -7,6 +7,7 @@ is asked for, into the environment that run.py made, and by the user's own comma
 from __future__ import annotations
 
 import importlib
+import os
 import subprocess
 import sys
 from collections.abc import Callable
@@ -54,7 +55,8 @@ def _install() -> None:
     if not setup.exists() or not any((Path(sys.prefix) / name).exists() for name in (".installed", ".installed-test")):
         raise CompilerError(f'This needs numba, which is not installed. Install it: "{sys.executable}" -m pip install "{NUMBA}"')
     print("Installing the compiler that new motion needs (60 MB to load, once) ...", file=sys.stderr, flush=True)
-    made = subprocess.run([sys.executable, str(setup), "install"], cwd=ROOT, capture_output=True, text=True)
+    environ = {"PIP_RETRIES": "2", **os.environ}  # where there is no network that is told in seconds
+    made = subprocess.run([sys.executable, str(setup), "install"], cwd=ROOT, capture_output=True, text=True, env=environ)
     importlib.invalidate_caches()
     if made.returncode != 0 or not there():
         said = [line for line in (made.stdout + made.stderr).splitlines() if "ERROR" in line] or ["nothing was said"]

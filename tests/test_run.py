@@ -182,6 +182,7 @@ def test_each_list_is_installed_with_those_before_it_and_serves_whoever_needs_le
     for most in range(3):
         assert pinned.environment(most) is None
         assert [listed(command) for command in started if listed(command)] == [list(pinned.LISTS[: most + 1])]
+        assert any("-e" in command for command in started) == (most == 0)  # what does not change is there already
         started.clear()
     assert pinned.environment(0) is pinned.environment(1) is None and not started
     pinned.stamp(0).unlink()
@@ -195,6 +196,7 @@ def test_a_compiler_that_was_added_is_kept_up_to_date_with_the_rest(pinned: Modu
     assert pinned.main(["install"]) is None
     assert listed(started[1]) == list(pinned.LISTS[:2])
     started.clear()
+    assert pinned.main(["install"]) is None and not started
     (pinned.ROOT / "requirements.txt").write_text("other")
     assert pinned.environment(0) is None
     assert listed(started[1]) == list(pinned.LISTS[:2])
