@@ -18,6 +18,8 @@ from metagraph.engines.reading import read_export
 from metagraph.engines.script import Case, Step
 from metagraph.engines.vectors import write_vectors
 from metagraph.playback.life.voice import voice_from_text
+from tests.engines.mutants import broken, folders_to_try
+from tests.processes import Answering, started
 
 ROOT = Path(__file__).resolve().parents[2]
 RUNTIME = ROOT / "metagraph" / "engines" / "runtimes" / "javascript"
@@ -604,7 +606,7 @@ MUTATIONS = [
     ("pose.js", "if (at === 0 || rest.fadeStart + rest.fade <= time) return stance;", "return stance;", "the fade from loop to loop"),
     ("pose.js", "for (let s = 0; s < action.still.length; s++) {", "for (let s = 0; s < 0; s++) {", "the other arm of a one-armed action"),
     ("life/evaluate.js", "const INHALE = 0.4;", "const INHALE = 0.5;", "the shape of a breath"),
-    ("life/evaluate.js", "(whole - gone) / life.blink_open)));", "1));", "the shape of a blink"),
+    ("life/evaluate.js", "(whole - gone) / life.blink_open", "1", "the shape of a blink"),
     ("life/evaluate.js", "channels[n] = shut[n] - already;", "channels[n] = shut[n];", "lids that a clip has shut already"),
     ("life/evaluate.js", "MORPH_LOOK = 30 * RADIANS", "MORPH_LOOK = 25 * RADIANS", "morph targets of a look"),
     ("life/solve.js", "const SMALL = 15 * RADIANS;", "const SMALL = 10 * RADIANS;", "the head's part of a turn"),
@@ -631,15 +633,104 @@ MUTATIONS = [
     ("glb.js", "slerp(out, o, values, a, values, b, part);", "slerp(out, o, values, a, values, b, 0);", "keys that were thinned out"),
 ]  # fmt: skip
 
+# A case that notices each, tried first; the others follow where it does not.
+NOTICED_BY = {
+    "rare: cut short": ["parts that are withdrawn with their owner"],
+    "sample: head: holds and preparations": ["the window of a stroke"],
+    "sample: nods": ["lids that a clip has shut already"],
+    "sparse: a queue": ["ids at equal starts and priorities"],
+    "sparse: arms: holds and preparations": [
+        "where a gesture without preparation begins", "the stretch of a hold",
+        "how early a gesture with a stroke may begin",
+    ],
+    "sparse: arms: strokes in time": ["a stroke in time"],
+    "sparse: arms: to stay": ["gaps for what models write", "staying in a stance"],
+    "sparse: asked again under the same id": ["keys that were thinned out"],
+    "sparse: asked in the past, at rest": ["what is past", "the lookahead"],
+    "sparse: chatter 3": ["time that models leave to what runs"],
+    "sparse: cut": ["what goes on after a cut"],
+    "sparse: cut again and again": ["priority at equal starts"],
+    "sparse: cut and resumed": ["cooling down", "the key of a remainder"],
+    "sparse: hashes": ["the zero byte that closes a word", "the mixing", "bytes of UTF-8"],
+    "sparse: layers arms": ["when a loop begins anew"],
+    "sparse: much that is forgotten": ["the weight of a candidate"],
+    "sparse: no room": ["the shortest part worth keeping"],
+    "sparse: the arms begin in s6": [
+        "the gap between what a model writes", "how long what a model writes lasts", "the side of offsets",
+    ],
+    "stick: a past that is forgotten": [
+        "the head's part of a turn", "the shares of neck and chest", "the head's part up and down",
+        "how the head settles",
+    ],
+    "stick: a queue": ["the earliest exit", "blending out of an early exit"],
+    "stick: a thing that moves": ["strict looks"],
+    "stick: arms: a way that is interrupted": ["the first short way", "ways"],
+    "stick: arms: holds and preparations": ["how short a hold can be", "the least blend of what is cut into"],
+    "stick: arms: the same asked over and over": ["alpha", "never the same twice", "the order of the layers"],
+    "stick: arms: to stay": [
+        "the key of a hop", "blends that must fit", "the seam of a loop", "the period of a loop with a seam",
+    ],
+    "stick: body: an action of another stance": [
+        "the blending curve", "the idle manner", "the usual rate of breath", "the edge a cue is led out from",
+        "the fade from loop to loop",
+    ],
+    "stick: body: to stay": ["the other arm of a one-armed action"],
+    "stick: chatter 1": ["the blink that opens a speech", "looks that wait beneath a more important one"],
+    "stick: chatter 2": ["spelling"],
+    "stick: chatter 3": ["the share of negative gestures"],
+    "stick: cut": ["the shortest fixation", "the time between aversions", "jumps up and down"],
+    "stick: head: the same asked over and over": ["spacing that gives way by one"],
+    "stick: lines": [
+        "the shape of a blink", "what a blink closes", "the head that follows the eyes",
+        "how early a mouth shapes itself",
+    ],
+    "stick: looks": ["a look that ends an aversion"],
+    "stick: nods": ["the tag of a nod"],
+    "stick: something near": ["things nearer than the nose", "how fast eyes jump"],
+    "stick: stressed syllables": [
+        "the shape of a breath", "blinks on stressed syllables", "a mouth that closes where speech was cut",
+    ],
+    "stick: words that are said": ["a lesser speech", "the silent e"],
+    "varied: all withdrawn": ["the count under a likelihood", "the model's wishes, one after the other"],
+    "varied: arms: fidgets": ["how long what was asked for waits"],
+    "varied: blinks and modes": ["morph targets of a look"],
+    "varied: looks": ["weights of turns", "weights of translations"],
+}  # fmt: skip
+HINTS = {about: case for case, noticed in NOTICED_BY.items() for about in noticed}
+
+
+@pytest.fixture(scope="module")
+def node(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Answering]:
+    """One Node that tries all mutants."""
+    with started("node", Path(__file__).parent / "run" / "mutants.mjs", stdin=subprocess.PIPE, stdout=subprocess.PIPE) as process:
+        yield Answering(process)
+
+
+@pytest.fixture(scope="module")
+def single(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """Where folders of single cases are made."""
+    return tmp_path_factory.mktemp("single")
+
+
+def test_what_tries_mutants_finds_no_fault_with_what_is_whole(
+    node: Answering, single: Path, tmp_path: Path, rare: Path, sample: Path
+) -> None:
+    runtime = shutil.copytree(RUNTIME, tmp_path / "javascript")
+    folders = [VARIED, STICK, rare, sample, *VECTORS]
+    tried = [folders_to_try(hint, folders, single)[0] for hint in NOTICED_BY]
+    found = json.loads(node.ask(json.dumps({"runtime": str(runtime), "folders": list(map(str, tried))})))
+    assert found == {"fault": "", "difference": ""}
+
 
 @pytest.mark.parametrize(("file", "rule", "instead", "about"), MUTATIONS, ids=[m[3].replace(" ", "-") for m in MUTATIONS])
 def test_the_vectors_notice_when_a_rule_is_broken(
-    tmp_path: Path, sample: Path, rare: Path, file: str, rule: str, instead: str, about: str
+    node: Answering, single: Path, tmp_path: Path, sample: Path, rare: Path, file: str, rule: str, instead: str, about: str
 ) -> None:
-    runtime = tmp_path / "javascript"
+    changed = broken(RUNTIME / file, rule, instead)
+    runtime = tmp_path / "javascript"  # of its own: a module is loaded once from a place
     shutil.copytree(RUNTIME, runtime)
-    path = runtime / file
-    source = path.read_text()
-    assert source.count(rule) == 1, f"{file} has '{rule}' {source.count(rule)} times"
-    path.write_text(source.replace(rule, instead))
-    assert any(conformance(folder, runtime=runtime).returncode != 0 for folder in (VARIED, STICK, rare, sample, *VECTORS)), about
+    (runtime / file).write_text(changed, encoding="utf-8")
+    tried = folders_to_try(HINTS.get(about), [VARIED, STICK, rare, sample, *VECTORS], single)
+    found = json.loads(node.ask(json.dumps({"runtime": str(runtime), "folders": list(map(str, tried))})))
+    assert not found["fault"], "a mutant that cannot be loaded proves nothing"
+    assert found["difference"], about

@@ -1,0 +1,41 @@
+"""Runtimes with one rule broken, and the conformance vectors that must notice.
+
+What notices a mutant is known once it was found, so that each is written down with a hint, `folder: case`: that case is tried
+before all others. A hint that has grown stale costs time and nothing else.
+"""
+
+from __future__ import annotations
+
+import json
+import re
+import shutil
+from pathlib import Path
+
+
+def broken(path: Path, rule: str, instead: str) -> str:
+    """Return a source with a rule changed, which must stand in it once."""
+    source = path.read_text(encoding="utf-8")
+    assert source.count(rule) == 1, f"{path.name} has '{rule}' {source.count(rule)} times"
+    return source.replace(rule, instead)
+
+
+def folders_to_try(hint: str | None, folders: list[Path], scratch: Path) -> list[Path]:
+    """Return the folders of vectors, with one before them that has the hint's case alone. scratch: where such folders are made."""
+    name, _, case = (hint or "").partition(": ")
+    return [*(only(each, case, scratch) for each in folders if each.name == name), *folders]
+
+
+def only(folder: Path, case: str, scratch: Path) -> Path:
+    """Return a folder with a folder's export and those of its vectors that have a name; "hashes" are what comes before the cases."""
+    target = scratch / f"{folder.name}-{re.sub('[^a-z0-9]+', '-', case)}"
+    if not target.exists():
+        vectors = json.loads((folder / "vectors.json").read_bytes())
+        vectors["cases"] = [each for each in vectors["cases"] if each["name"] == case]
+        if case != "hashes":
+            vectors["hashes"] = []
+        target.mkdir(parents=True)
+        export = folder / vectors["export"]
+        for file in (export, export.with_name(json.loads(export.read_bytes())["glb"])):
+            shutil.copy(file, target)
+        (target / "vectors.json").write_text(json.dumps(vectors, ensure_ascii=False), encoding="utf-8")
+    return target
