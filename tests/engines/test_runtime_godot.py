@@ -16,11 +16,8 @@ from typing import Any
 import pytest
 
 from metagraph import engines
-from metagraph.engines.export import export
-from metagraph.engines.vectors import write_vectors
-from metagraph.formats.store import open_project
+from tests.engines.mutants import broken, folders_to_try
 
-ROOT = Path(__file__).resolve().parents[2]
 ADDON = Path(engines.__file__).with_name("runtimes") / "godot" / "addons"
 FOLDERS = sorted(path for path in Path(engines.__file__).with_name("conformance").iterdir() if path.is_dir())
 STICK = next(folder for folder in FOLDERS if folder.name == "stick")
@@ -81,10 +78,8 @@ def test_shipped_vectors_pass_on_the_engine(game: Path, folder: Path) -> None:
 
 
 @needs_godot
-def test_vectors_of_the_sample_pass_on_the_engine(game: Path, tmp_path: Path) -> None:
-    made = export(open_project(ROOT / "sample_clips" / "sample.metagraph.yaml").project, tmp_path / "sample", mesh=False)
-    write_vectors(made.json)
-    code, told = godot(game, "addons/metagraph/conformance.gd", tmp_path / "sample")
+def test_vectors_of_the_sample_pass_on_the_engine(game: Path, sample_export: Path) -> None:
+    code, told = godot(game, "addons/metagraph/conformance.gd", sample_export)
     assert code == 0, told
     assert " 0 failed" in told
 
@@ -124,18 +119,41 @@ MUTATIONS = {
     "what is forgotten of life": ("planner.gd", "changes.life = Schedule.since(plan.life, seconds)", "changes.life = plan.life"),
 }
 
+# A case that notices each, tried first.
+HINTS = {
+    "the curve of blends": "stick: layers body",
+    "uses are counted": "stick: cut again and again",
+    "ties go by id": "stick: ties of start and priority",
+    "layers multiply on the right": "stick: no time at all",
+    "the hash": "stick: hashes",
+    "a remainder has a key of its own": "stick: cut and resumed",
+    "holds hurry": "stick: arms: holds and preparations",
+    "the head sets off after the eyes": "stick: looks",
+    "a blink shuts what is open": "stick: blinks and modes",
+    "the other arm keeps to the stance": "stick: no room",
+    "what is forgotten of life": "stick: a past that is forgotten",
+}
+
 
 @needs_godot
 @pytest.mark.parametrize("rule", MUTATIONS)
-def test_a_broken_rule_fails_the_vectors(game: Path, rule: str) -> None:
-    file, said, broken = MUTATIONS[rule]
+def test_a_broken_rule_fails_the_vectors(game: Path, single: Path, rule: str) -> None:
+    file, said, instead = MUTATIONS[rule]
     path = game / "addons" / "metagraph" / "core" / file
-    text = path.read_text()
-    assert text.count(said) == 1
-    path.write_text(text.replace(said, broken))
-    code, told = godot(game, "addons/metagraph/conformance.gd", STICK)
+    path.write_text(broken(path, said, instead))
+    for folder in folders_to_try(HINTS.get(rule), [STICK], single):
+        code, told = godot(game, "addons/metagraph/conformance.gd", folder)
+        if code:
+            break
     assert code == 1
     assert "FAIL " in told
+
+
+@needs_godot
+def test_the_single_cases_that_notice_mutants_pass_where_nothing_is_broken(game: Path, single: Path) -> None:
+    tried = [folders_to_try(hint, [STICK], single)[0] for hint in HINTS.values()]
+    code, told = godot(game, "addons/metagraph/conformance.gd", *tried)
+    assert code == 0, told
 
 
 # --- bad input

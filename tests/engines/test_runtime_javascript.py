@@ -6,7 +6,6 @@ import json
 import shutil
 import struct
 import subprocess
-import sys
 from collections.abc import Iterator
 from pathlib import Path
 from typing import Any
@@ -69,16 +68,6 @@ def test_it_does_what_the_shipped_vectors_say(folder: Path) -> None:
     assert done.returncode == 0, done.stdout + done.stderr
 
 
-@pytest.fixture(scope="module")
-def sample(tmp_path_factory: pytest.TempPathFactory) -> Path:
-    """A folder with the sample project's export and vectors."""
-    target = tmp_path_factory.mktemp("sample")
-    project = ROOT / "sample_clips" / "sample.metagraph.yaml"
-    command = [sys.executable, "-m", "app.cli", "export", str(project), "--no-mesh", "--vectors", "-o", str(target)]
-    subprocess.run(command, check=True, cwd=ROOT, capture_output=True, timeout=120)
-    return target
-
-
 def rarely(document: dict[str, Any]) -> None:
     """Change an export so that it needs what few do: long spacing, ways of equal length, eyes that joints do not turn."""
     arms, body, head = (document["layers"][layer] for layer in ("arms", "body", "head"))
@@ -127,8 +116,8 @@ def rare(tmp_path_factory: pytest.TempPathFactory) -> Path:
     return target
 
 
-def test_it_does_what_the_sample_project_does(sample: Path) -> None:
-    done = conformance(sample)
+def test_it_does_what_the_sample_project_does(sample_export: Path) -> None:
+    done = conformance(sample_export)
     assert done.returncode == 0, done.stdout + done.stderr
 
 
@@ -700,23 +689,17 @@ HINTS = {about: case for case, noticed in NOTICED_BY.items() for about in notice
 
 
 @pytest.fixture(scope="module")
-def node(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Answering]:
+def node() -> Iterator[Answering]:
     """One Node that tries all mutants."""
     with started("node", Path(__file__).parent / "run" / "mutants.mjs", stdin=subprocess.PIPE, stdout=subprocess.PIPE) as process:
         yield Answering(process)
 
 
-@pytest.fixture(scope="module")
-def single(tmp_path_factory: pytest.TempPathFactory) -> Path:
-    """Where folders of single cases are made."""
-    return tmp_path_factory.mktemp("single")
-
-
 def test_what_tries_mutants_finds_no_fault_with_what_is_whole(
-    node: Answering, single: Path, tmp_path: Path, rare: Path, sample: Path
+    node: Answering, single: Path, tmp_path: Path, rare: Path, sample_export: Path
 ) -> None:
     runtime = shutil.copytree(RUNTIME, tmp_path / "javascript")
-    folders = [VARIED, STICK, rare, sample, *VECTORS]
+    folders = [VARIED, STICK, rare, sample_export, *VECTORS]
     tried = [folders_to_try(hint, folders, single)[0] for hint in NOTICED_BY]
     found = json.loads(node.ask(json.dumps({"runtime": str(runtime), "folders": list(map(str, tried))})))
     assert found == {"fault": "", "difference": ""}
@@ -724,13 +707,13 @@ def test_what_tries_mutants_finds_no_fault_with_what_is_whole(
 
 @pytest.mark.parametrize(("file", "rule", "instead", "about"), MUTATIONS, ids=[m[3].replace(" ", "-") for m in MUTATIONS])
 def test_the_vectors_notice_when_a_rule_is_broken(
-    node: Answering, single: Path, tmp_path: Path, sample: Path, rare: Path, file: str, rule: str, instead: str, about: str
+    node: Answering, single: Path, tmp_path: Path, sample_export: Path, rare: Path, file: str, rule: str, instead: str, about: str
 ) -> None:
     changed = broken(RUNTIME / file, rule, instead)
     runtime = tmp_path / "javascript"  # of its own: a module is loaded once from a place
     shutil.copytree(RUNTIME, runtime)
     (runtime / file).write_text(changed, encoding="utf-8")
-    tried = folders_to_try(HINTS.get(about), [VARIED, STICK, rare, sample, *VECTORS], single)
+    tried = folders_to_try(HINTS.get(about), [VARIED, STICK, rare, sample_export, *VECTORS], single)
     found = json.loads(node.ask(json.dumps({"runtime": str(runtime), "folders": list(map(str, tried))})))
     assert not found["fault"], "a mutant that cannot be loaded proves nothing"
     assert found["difference"], about

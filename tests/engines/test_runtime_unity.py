@@ -16,11 +16,9 @@ from typing import Any
 import numpy as np
 import pytest
 
-from metagraph.engines.export import export
 from metagraph.engines.reading import read_export
-from metagraph.engines.vectors import write_vectors
 from metagraph.graph.asks import ask_from
-from metagraph.graph.model import LAYERS, Project
+from metagraph.graph.model import LAYERS
 from metagraph.motion import rotation
 from metagraph.playback.hear import hear, since
 from metagraph.playback.life.voice import voice_from_text
@@ -249,9 +247,8 @@ def test_the_runtime_agrees_with_the_vectors(conformance: Path, folder: Path) ->
     assert done.returncode == 0, done.stdout[:2000] + done.stderr[:2000]
 
 
-def test_the_runtime_agrees_with_the_sample_project(conformance: Path, sample: Project, tmp_path: Path) -> None:
-    write_vectors(export(sample, tmp_path, character=ROOT / "sample_clips" / "mannequin.glb").json)
-    done = mono(conformance, tmp_path)
+def test_the_runtime_agrees_with_the_sample_project(conformance: Path, sample_export: Path) -> None:
+    done = mono(conformance, sample_export)
     assert done.returncode == 0, done.stdout[:2000] + done.stderr[:2000]
 
 
@@ -755,12 +752,6 @@ NOTICED_BY = {
     "varied: stressed syllables": ["a blink at the first stressed syllable", "mouths that are early"],
 }  # fmt: skip
 HINTS = {about: case for case, noticed in NOTICED_BY.items() for about in noticed}
-
-
-@pytest.fixture(scope="module")
-def single(tmp_path_factory: pytest.TempPathFactory) -> Path:
-    """Where folders of single cases are made."""
-    return tmp_path_factory.mktemp("single")
 
 
 def program_of(host: Host, out: Path, sources: list[Path]) -> Path:

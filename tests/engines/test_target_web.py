@@ -17,7 +17,6 @@ from PIL import Image
 
 from metagraph.engines.reading import read_export
 from metagraph.engines.targets import registry, web
-from metagraph.engines.vectors import write_vectors
 from metagraph.graph.model import Project
 from metagraph.playback.hear import hear
 from metagraph.playback.plan import Plan
@@ -161,14 +160,11 @@ def test_what_is_missing_newer_or_cut_short_is_told_in_the_page(page: Path, tmp_
     assert "cut.glb" in told[2] or "GLB" in told[2]
 
 
-def test_the_vectors_hold_in_the_browser(page: Path, tmp_path: Path) -> None:
+def test_the_vectors_hold_in_the_browser(page: Path, sample_export: Path, tmp_path: Path) -> None:
     shutil.copytree(page, tmp_path / "page")
     shutil.copy(HERE.parents[1] / "metagraph" / "engines" / "runtimes" / "javascript" / "conformance.mjs", tmp_path / "page" / "metagraph")
     shutil.copytree(CONFORMANCE, tmp_path / "page" / "conformance")
-    write_vectors(tmp_path / "page" / "sample.json")
-    (tmp_path / "page" / "conformance" / "sample").mkdir()
-    for name in ("sample.json", "sample.glb", "vectors.json"):
-        shutil.move(tmp_path / "page" / name, tmp_path / "page" / "conformance" / "sample" / name)
+    shutil.copytree(sample_export, tmp_path / "page" / "conformance" / "sample")
     (tmp_path / "page" / "vectors.html").write_text("<!doctype html><title>vectors</title>")
     run = """(async () => { const { runVectors } = await import("/metagraph/conformance.mjs"); const out = {};
       for (const name of ["stick", "varied", "sparse", "sample"]) {
