@@ -12,6 +12,7 @@ import re
 import zlib
 from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import dataclass
+from functools import lru_cache
 from itertools import pairwise
 from typing import Any
 
@@ -109,6 +110,7 @@ def _scalar(value: Any) -> str:
     return "[]" if isinstance(value, list) else number(value)
 
 
+@lru_cache(maxsize=4096)  # paths of joints come back in every clip
 def text(value: str) -> str:
     """Return a text as YAML on one line: plain where it can be, even where it looks like a number, for Unity reads by type."""
     if re.fullmatch(r"\w*", value, re.ASCII):
@@ -159,7 +161,8 @@ def clip_asset(clip: Clip, name: str, moving: Moving, base: Pose, loop: bool, re
         curves[kind] += ["  - curve:", "      serializedVersion: 2", "      m_Curve:"]
         into, away = _tangents(values, slopes, keys)
         for place, key in enumerate(keys):
-            curves[kind].append(_key(key / clip.fps, values[key], into[place] * clip.fps, away[place] * clip.fps))
+            slope = (into[place] * clip.fps).tolist(), (away[place] * clip.fps).tolist()
+            curves[kind].append(_key(key / clip.fps, values[key].tolist(), *slope))
         curves[kind] += ["      m_PreInfinity: 2", "      m_PostInfinity: 2", "      m_RotationOrder: 4", f"    path: {text(path)}"]
         hashed = zlib.crc32(path.encode())
         bound.append({"serializedVersion": 2, "path": hashed, "attribute": kind, "script": NOTHING, "typeID": 4, "customType": 0})
@@ -191,7 +194,7 @@ def _settings(seconds: float, loop: bool, reference: Inline | None) -> dict[str,
     return out | {"m_KeepOriginalPositionY": 1, "m_KeepOriginalPositionXZ": 0, "m_HeightFromFeet": 0, "m_Mirror": 0}
 
 
-def _key(time: float, value: Array, into: Array, away: Array) -> str:
+def _key(time: float, value: list[float], into: list[float], away: list[float]) -> str:
     """Return a key. Version 2 is that of Unity 5.5 to 2017, which newer ones read: half the size, for it has no tangents' weights."""
     return (
         f"      - serializedVersion: 2\n        time: {number(time)}\n        value: {_vector(value, 6)}\n"
@@ -210,20 +213,28 @@ def _keys(values: Array, slopes: Array, tolerance: float) -> list[int]:
     if np.linalg.norm(values - values[0], axis=1).max() <= tolerance:
         return [0]
     halves = np.stack([values, np.concatenate([(values[1:] + values[:-1]) / 2, values[-1:]])], 1).reshape(-1, values.shape[1])
+    corners = np.concatenate([values, slopes])
     kept, stretches = {0, len(values) - 1}, [(0, len(values) - 1)]
     while stretches:
         first, last = stretches.pop()
         if last - first < 2:
             continue
-        u = np.linspace(0, 1, 2 * (last - first) + 1)[1:-1, None]
-        guess = (2 * u**3 - 3 * u**2 + 1) * values[first] + (3 * u**2 - 2 * u**3) * values[last]
-        guess += ((u**3 - 2 * u**2 + u) * slopes[first] + (u**3 - u**2) * slopes[last]) * (last - first)
-        off = np.linalg.norm(guess - halves[2 * first + 1 : 2 * last], axis=1)
-        if off.max() > tolerance:
-            worst = min(max((2 * first + 2 + int(off.argmax())) // 2, first + 1), last - 1)
+        apart = _cubic(last - first) @ corners[[first, last, len(values) + first, len(values) + last]]
+        apart -= halves[2 * first + 1 : 2 * last]
+        off = np.einsum("ij,ij->i", apart, apart)
+        place = int(off.argmax())
+        if off[place] > tolerance**2:
+            worst = min(max((2 * first + 2 + place) // 2, first + 1), last - 1)
             kept.add(worst)
             stretches += [(first, worst), (worst, last)]
     return sorted(kept)
+
+
+@lru_cache(maxsize=1024)
+def _cubic(frames: int) -> Array:
+    """Return the weights `[2 * frames - 1, 4]` of two values and two slopes at all half frames between them."""
+    u = np.linspace(0, 1, 2 * frames + 1)[1:-1]
+    return np.stack([2 * u**3 - 3 * u**2 + 1, 3 * u**2 - 2 * u**3, (u**3 - 2 * u**2 + u) * frames, (u**3 - u**2) * frames], 1)
 
 
 def _tangents(values: Array, slopes: Array, keys: list[int]) -> tuple[Array, Array]:
