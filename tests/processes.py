@@ -17,19 +17,23 @@ PATIENCE = 10.0  # seconds that a program is given to end once it was told to
 
 
 @contextlib.contextmanager
-def started(*command: object, ignored: bool = False, **options: Any) -> Iterator[subprocess.Popen[str]]:
+def started(*command: object, ignored: bool = False, longest: float = 600.0, **options: Any) -> Iterator[subprocess.Popen[str]]:
     """Start a program in this project's folder; at the end it is told to end, and killed if it does not.
 
-    ignored: starts it where interrupts are ignored, as `nohup` and background jobs of scripts do. options: of Popen; texts
-    unless told otherwise.
+    ignored: starts it where interrupts are ignored, as `nohup` and background jobs of scripts do. longest: seconds after which it
+    is killed whatever it does, so that nobody waits for its words for ever. options: of Popen; texts unless told otherwise.
     """
     options = {"cwd": ROOT, "text": True, **options}
     if ignored:
         options["preexec_fn"] = _ignore_interrupts
     process = subprocess.Popen(list(map(str, command)), **options)
+    late = threading.Timer(longest, process.kill)
+    late.daemon = True
+    late.start()
     try:
         yield process
     finally:
+        late.cancel()
         end(process)
 
 

@@ -2,9 +2,12 @@
 
 from __future__ import annotations
 
+import contextlib
 import json
+import signal
 import sys
 from argparse import ArgumentParser, Namespace
+from collections.abc import Iterator
 from pathlib import Path
 from typing import Any
 
@@ -16,6 +19,23 @@ from metagraph.playback.planner import make_plan
 from metagraph.playback.running_plan import perform
 
 LONGEST = 36000  # seconds of one performance, ten hours
+
+
+@contextlib.contextmanager
+def until_told_to_stop() -> Iterator[None]:
+    """Leave what runs inside by Ctrl+C or SIGTERM, also where the program was started with interrupts ignored, as `nohup` and background
+    jobs of scripts do: Python itself does not listen to them there. Call it in the main thread."""
+
+    def stop(*_: object) -> None:
+        raise KeyboardInterrupt
+
+    before = {number: signal.signal(number, stop) for number in (signal.SIGINT, signal.SIGTERM)}
+    try:
+        with contextlib.suppress(KeyboardInterrupt):
+            yield
+    finally:
+        for number, handler in before.items():
+            signal.signal(number, handler)
 
 
 def opened(path: Path) -> Project:

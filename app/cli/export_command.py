@@ -8,7 +8,7 @@ from argparse import ArgumentParser, Namespace
 from pathlib import Path
 from typing import Any
 
-from app.cli.command_output import opened, say
+from app.cli.command_output import opened, say, until_told_to_stop
 from metagraph.engines.export import ExportError
 from metagraph.errors import FileError
 
@@ -31,7 +31,7 @@ def arguments(parser: ArgumentParser) -> None:
 
 
 def run(options: Namespace) -> int:
-    """Write a project for a target; with `watch` go on until interrupted."""
+    """Write a project for a target; with `watch` and `serve` go on until told to stop."""
     from metagraph.engines.targets import registry
 
     if options.targets:
@@ -48,10 +48,9 @@ def run(options: Namespace) -> int:
     if not (options.watch or options.serve):
         _once(options)
         return 0
-    try:
+    with until_told_to_stop():
         _go_on(options)
-    except KeyboardInterrupt:
-        print("stopped", file=sys.stderr)
+    print("stopped", file=sys.stderr)
     return 0
 
 

@@ -25,6 +25,7 @@ from metagraph.formats.store import SUFFIX, save_project
 from metagraph.graph import conversing, edits
 from metagraph.graph.conversation import Conversation, Rates, Segment, Side, Word
 from metagraph.graph.model import Project
+from tests.processes import started
 from tests.projects import clip, histories
 
 ROOT = Path(__file__).resolve().parents[2]
@@ -334,17 +335,15 @@ while True:
 
 @pytest.mark.skipif(os.name == "nt", reason="there is no kill -9 on Windows")
 def test_a_process_killed_between_edits_loses_none_that_was_finished(saved: Path) -> None:
-    child = subprocess.Popen([sys.executable, "-c", CHILD, str(saved)], cwd=ROOT, stdout=subprocess.PIPE, text=True)
-    assert child.stdout is not None
-    finished = -1
-    for line in child.stdout:
-        finished = int(line)
-        if finished >= 25:
-            break
-    os.kill(child.pid, signal.SIGKILL)
-    rest = child.stdout.read().split()
-    child.stdout.close()
-    child.wait()
+    with started(sys.executable, "-c", CHILD, saved, stdout=subprocess.PIPE) as child:
+        assert child.stdout is not None
+        finished = -1
+        for line in child.stdout:
+            finished = int(line)
+            if finished >= 25:
+                break
+        os.kill(child.pid, signal.SIGKILL)
+        rest = child.stdout.read().split()
     finished = int(rest[-1]) if rest else finished
     found = recover(journal_path(saved), saved)
     assert found is not None

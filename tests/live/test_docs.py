@@ -13,6 +13,7 @@ from pathlib import Path
 import pytest
 
 from metagraph.live import hub, limits, messages, osc, schemas, tape
+from tests.processes import metagraph, started
 
 ROOT = Path(__file__).resolve().parents[2]
 PAGE = (ROOT / "docs" / "live.md").read_text(encoding="utf-8")
@@ -85,8 +86,8 @@ def test_the_clients_on_the_page_are_the_files_and_ten_lines_long(tag: str, name
 @pytest.fixture(scope="module")
 def port() -> Iterator[str]:
     """A session in a process of its own; the port it listens on."""
-    words = ["live", str(ROOT / "sample_clips" / "sample.metagraph.yaml"), "--json", "--port", "0", "--no-osc", "--no-stdin"]
-    with subprocess.Popen([sys.executable, "-m", "app.cli", *words], stdout=subprocess.PIPE, text=True, cwd=ROOT) as process:
+    words = ["live", ROOT / "sample_clips" / "sample.metagraph.yaml", "--json", "--port", "0", "--no-osc", "--no-stdin"]
+    with started(*metagraph(*words), stdout=subprocess.PIPE) as process:
         assert process.stdout is not None
         yield json.loads(process.stdout.readline())["websocket"].rpartition(":")[2]
         process.terminate()

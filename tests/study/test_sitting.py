@@ -19,6 +19,7 @@ from metagraph.study.log import read
 from metagraph.study.plan import read_study
 from metagraph.study.sitting import Sitting, SittingError, phases, where
 from metagraph.study.work import make, reopen, write
+from tests.processes import started
 
 ROOT = Path(__file__).resolve().parents[2]
 
@@ -209,8 +210,8 @@ def test_killed_at_100_moments_nothing_is_lost_and_nothing_is_there_twice(tiny):
     kills, seen = 0, set()
     ahead = Counter()  # edits that a kill came between, and the log does not have: in each phase that was begun
     for participant in study.plan.ids:
-        words = [sys.executable, str(Path(__file__).with_name("scripted.py")), str(tiny), participant]
-        with subprocess.Popen(words, cwd=ROOT, stdin=subprocess.PIPE, stdout=subprocess.PIPE, text=True) as process:
+        words = [sys.executable, Path(__file__).with_name("scripted.py"), tiny, participant]
+        with started(*words, stdin=subprocess.PIPE, stdout=subprocess.PIPE) as process:
             for _ in range(400):
                 process.stdin.write(f"{draw.randrange(1300) if kills < 100 else 1e9} {draw.uniform(0, 6)}\n")
                 process.stdin.flush()

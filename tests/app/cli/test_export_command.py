@@ -14,6 +14,7 @@ import pytest
 
 from app.cli.parser import main
 from metagraph.engines.vectors import check_vectors
+from tests.processes import metagraph, started, until
 
 ROOT = Path(__file__).resolve().parents[3]
 SAMPLE = ROOT / "sample_clips" / "sample.metagraph.yaml"
@@ -62,25 +63,16 @@ def test_watching_writes_again_after_each_saving_and_survives_a_broken_project(t
     text = SAMPLE.read_text()
     project.write_text(text)
     command = [sys.executable, "-m", "app.cli", "export", str(project), "-t", "bml", "-o", str(tmp_path / "out"), "--watch"]
-    with subprocess.Popen(command, cwd=ROOT, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True) as running:
-        try:
-            written = tmp_path / "out" / "sample.vocabulary.json"
-
-            def until(sure) -> None:
-                end = time.monotonic() + 30
-                while not sure() and time.monotonic() < end:
-                    time.sleep(0.05)
-                assert sure()
-
-            until(written.exists)
-            project.write_text("metagraph: [broken")
-            time.sleep(0.8)
-            assert running.poll() is None
-            project.write_text(text.replace("name: hands at sides", "name: hands down"))
-            until(lambda: "hands down" in written.read_text())
-        finally:
-            running.send_signal(signal.SIGINT)
-            _, told = running.communicate(timeout=20)
+    with started(*command, stdout=subprocess.DEVNULL, stderr=subprocess.PIPE) as running:
+        written = tmp_path / "out" / "sample.vocabulary.json"
+        until(written.exists, "the export")
+        project.write_text("metagraph: [broken")
+        time.sleep(0.8)
+        assert running.poll() is None
+        project.write_text(text.replace("name: hands at sides", "name: hands down"))
+        until(lambda: "hands down" in written.read_text(), "the export of what was saved")
+        running.send_signal(signal.SIGINT)
+        _, told = running.communicate(timeout=20)
     assert running.returncode == 0
     assert "error:" in told and "stopped" in told
 
@@ -91,13 +83,35 @@ def test_the_web_page_is_served_until_it_is_stopped(tmp_path):
 
     command = [sys.executable, "-m", "app.cli", "export", str(SAMPLE), "-t", "web", "-o", str(tmp_path / "page"), "--serve", "--no-mesh"]
     environ = {**os.environ, "PATH": "", "XDG_CACHE_HOME": str(tmp_path)}  # without npm nothing is fetched
-    with subprocess.Popen(command, cwd=ROOT, stdout=subprocess.DEVNULL, stderr=subprocess.PIPE, text=True, env=environ) as running:
-        try:
-            line = next(line for line in running.stderr if "the page is at" in line)
-            url = line.split("the page is at ")[1].split()[0]
-            with urllib.request.urlopen(url + "sample.json", timeout=10) as answer:
-                assert json.loads(answer.read())["glb"] == "sample.glb"
-        finally:
-            running.send_signal(signal.SIGINT)
-            running.communicate(timeout=20)
+    with started(*command, stdout=subprocess.DEVNULL, stderr=subprocess.PIPE, env=environ) as running:
+        line = next(line for line in running.stderr if "the page is at" in line)
+        url = line.split("the page is at ")[1].split()[0]
+        with urllib.request.urlopen(url + "sample.json", timeout=10) as answer:
+            assert json.loads(answer.read())["glb"] == "sample.glb"
+        running.send_signal(signal.SIGINT)
+        running.communicate(timeout=20)
     assert running.returncode == 0
+
+
+@pytest.mark.skipif(os.name == "nt", reason="is stopped by a signal")
+@pytest.mark.parametrize(
+    ("how", "number"), [("watch", signal.SIGTERM), ("serve", signal.SIGTERM), ("live", signal.SIGTERM), ("watch", signal.SIGINT)]
+)
+def test_what_goes_on_is_stopped_where_interrupts_are_ignored(how, number, tmp_path):
+    """As a background job of a script is: Python installs no handler of its own there, and a wait would be for ever."""
+    words = {
+        "watch": ("export", SAMPLE, "-t", "bml", "-o", tmp_path / "out", "--watch", "--no-mesh"),
+        "serve": ("export", SAMPLE, "-t", "web", "-o", tmp_path / "out", "--serve", "--no-mesh"),
+        "live": ("live", SAMPLE, "--json", "--port", "0", "--osc-port", "0", "--no-stdin"),
+    }[how]
+    environ = {**os.environ, "PATH": "", "XDG_CACHE_HOME": str(tmp_path)}  # without npm nothing is fetched
+    pipes = {"stdout": subprocess.PIPE, "stderr": subprocess.PIPE, "env": environ}
+    with started(*metagraph(*words), ignored=True, **pipes) as running:
+        if how == "serve":
+            assert any("the page is at" in line for line in running.stderr)
+        else:
+            assert running.stdout.readline()
+        running.send_signal(number)
+        _, told = running.communicate(timeout=20)
+    assert running.returncode == 0, told
+    assert "Traceback" not in told
