@@ -2,10 +2,11 @@
 
 from __future__ import annotations
 
+import math
 import os
-import subprocess
 import sys
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import pytest
@@ -15,14 +16,18 @@ from metagraph.graph import edits
 from metagraph.graph.model import LAYERS, Layer, Life, Project
 from metagraph.motion import rotation
 from metagraph.motion.clip import Clip
+from tests import kernels
 
 ROOT = Path(__file__).resolve().parents[1]
 
-# Processes that compile the same kernels at once would leave a cache that crashes both, from then on: each keeps its own.
-WORKER = os.environ.get("PYTEST_XDIST_WORKER")
-KERNELS = ROOT / ".pytest_cache" / "numba" / str(WORKER)
-if WORKER:
-    os.environ["NUMBA_CACHE_DIR"] = str(KERNELS)
+WORKER = os.environ.get("PYTEST_XDIST_WORKER", "")
+os.environ["NUMBA_CACHE_DIR"] = str(kernels.provide(WORKER or "alone"))
+
+# Files that take longest, the longest first: begun late, one of them would keep one process busy while the others have nothing left.
+LONG = (
+    "app/test_cli.py",
+    "test_docs.py",
+)
 
 # The gate must give the same answer twice; at the desk, examples are drawn anew each time.
 settings.register_profile("gate", derandomize=True, deadline=None)
@@ -30,11 +35,46 @@ settings.register_profile("desk", deadline=None)
 settings.load_profile("gate" if os.environ.get("CI") else "desk")
 
 
-@pytest.fixture(scope="session", autouse=True)
-def compiled() -> None:
-    """A new cache is filled before the first test: some kernels compile for longer than a window is waited for."""
-    if WORKER and not KERNELS.exists():
-        subprocess.run([sys.executable, "-m", "tests.kernels"], cwd=ROOT, check=True)
+PEAK = pytest.StashKey[dict[str, float]]()
+
+
+def pytest_configure(config: pytest.Config) -> None:
+    """Before the first process starts, compile what tests would wait for longer than a window is given."""
+    config.stash[PEAK] = {}
+    if config.getoption("numprocesses", None):
+        kernels.make()
+
+
+def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
+    """Put the files that take longest first; the others keep their order."""
+    place = {str(ROOT / "tests" / name): n for n, name in enumerate(LONG)}
+    items.sort(key=lambda item: place.get(str(item.path), len(LONG)))
+
+
+def pytest_sessionfinish(session: pytest.Session) -> None:
+    """A process of several tells the one that started it how much memory it took."""
+    if WORKER:
+        session.config.workeroutput["peak"] = memory()  # type: ignore[attr-defined]
+
+
+@pytest.hookimpl(optionalhook=True)
+def pytest_testnodedown(node: Any, error: object) -> None:
+    node.config.stash[PEAK][node.gateway.id] = getattr(node, "workeroutput", {}).get("peak", math.nan)
+
+
+def pytest_terminal_summary(terminalreporter: Any, config: pytest.Config) -> None:
+    """Say at the end how much memory the tests took, so that nothing grows unseen."""
+    peaks = config.stash[PEAK] or {"this process": memory()}
+    terminalreporter.write_line("peak memory: " + ", ".join(f"{name} {peak:,.0f} MB" for name, peak in sorted(peaks.items())))
+
+
+def memory() -> float:
+    """Return the most memory this process ever held, megabytes; nan where the system does not tell."""
+    try:
+        import resource
+    except ImportError:
+        return math.nan
+    return resource.getrusage(resource.RUSAGE_SELF).ru_maxrss / (1e6 if sys.platform == "darwin" else 1e3)
 
 
 @pytest.fixture(scope="session")

@@ -24,7 +24,7 @@ def run(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> ModuleType:
     assert spec is not None and spec.loader is not None
     module = importlib.util.module_from_spec(spec)
     spec.loader.exec_module(module)
-    for name in ("call", "run"):
+    for name in ("call", "run", "Popen"):
         monkeypatch.setattr(module.subprocess, name, lambda *args, **kwargs: pytest.fail(f"started {args[0]}"))
     monkeypatch.setattr(module, "ROOT", tmp_path)
     monkeypatch.setattr(module, "VENV", tmp_path / ".venv")
@@ -42,6 +42,20 @@ class Started(list[Any]):
     def __call__(self, command: list[str], **more: Any) -> int:
         self.append([str(word) for word in command])
         return self.answers.pop(0) if self.answers else 0
+
+
+class Compiling:
+    """Takes the place of subprocess.Popen."""
+
+    waited = False
+
+    def __call__(self, command: list[str], **more: Any) -> Compiling:
+        assert command[1:] == ["-m", "tests.kernels"]
+        return self
+
+    def wait(self) -> int:
+        self.waited = True
+        return 0
 
 
 class Terminal:
@@ -274,9 +288,11 @@ def test_it_starts_the_window_or_the_same_job_without_one(
 
 def test_the_tests_are_lint_types_imports_and_pytest_and_one_failure_is_a_failure(run: ModuleType, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(run.shutil, "which", lambda program: None)
-    calls = Started(0, 0, 1, 0, 0)
+    calls, compiling = Started(0, 0, 1, 0, 0), Compiling()
     monkeypatch.setattr(run.subprocess, "call", calls)
+    monkeypatch.setattr(run.subprocess, "Popen", compiling)
     assert run.run_tests([]) == 1
+    assert compiling.waited
     assert [Path(command[0]).name.removesuffix(".exe") for command in calls] == ["ruff", "ruff", "mypy", "lint-imports", "python"]
     monkeypatch.setattr(run, "spread", lambda arguments: ["--spread"])
     calls = Started(0)
@@ -288,17 +304,17 @@ def test_the_tests_are_lint_types_imports_and_pytest_and_one_failure_is_a_failur
 @pytest.mark.parametrize(
     ("arguments", "cores", "processes"),
     [
-        ([], 1, 1), ([], 2, 2), ([], 64, 2), (["tests/app"], 2, 2), (["-k", "journal", "-x"], 2, 2),
+        ([], 1, 1), ([], 2, 2), ([], 16, 16), (["tests/app"], 2, 2), (["-k", "journal", "-x"], 4, 4),
         (["tests/test_run.py"], 2, 1), (["tests/test_run.py::test_it"], 2, 1), (["-n", "4"], 8, 1), (["-n0"], 8, 1),
         (["tests/app", "--dist=load"], 8, 1), (["-s"], 8, 1), (["--pdb"], 8, 1), (["-p", "no:xdist"], 8, 1),
     ],
 )  # fmt: skip
-def test_tests_are_spread_over_two_cores_unless_asked_otherwise(
+def test_tests_are_spread_over_all_cores_unless_asked_otherwise(
     run: ModuleType, monkeypatch: pytest.MonkeyPatch, arguments: list[str], cores: int, processes: int
 ) -> None:
     monkeypatch.setattr(run.os, "sched_getaffinity", lambda process: set(range(cores)), raising=False)
     found = run.spread(arguments)
-    assert found[:2] == (["-n", "2"] if processes == 2 else [])
+    assert found[:2] == (["-n", str(processes)] if processes > 1 else [])
 
 
 # --- engines exports are tested in
