@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import hashlib
 import struct
 from collections.abc import Collection, Mapping, Sequence
 from pathlib import Path
@@ -284,7 +285,22 @@ def _animation(
     return {"name": clip.name, "samplers": samplers, "channels": channels, "extras": {"fps": clip.fps}}
 
 
+# Which frames to keep is most of the time of an export, and the same when it is written again, or for another engine.
+_KNOWN: dict[tuple[bytes, tuple[int, ...], float, bool], list[Array]] = {}
+_MOST = 1000  # tracks of clips that are remembered, some 10 kB each
+
+
 def _keys(values: Array, tolerance: float, turning: bool) -> list[Array]:
+    """Return what `_thinned` does, as it was found the first time."""
+    key = (hashlib.blake2b(np.ascontiguousarray(values).data, digest_size=16).digest(), values.shape, tolerance, turning)
+    found = _KNOWN.pop(key, None) or _thinned(values, tolerance, turning)
+    _KNOWN[key] = found  # the last used last
+    if len(_KNOWN) > _MOST:
+        _KNOWN.pop(next(iter(_KNOWN)), None)
+    return found
+
+
+def _thinned(values: Array, tolerance: float, turning: bool) -> list[Array]:
     """Return for each track of `values [F, C, n]` the frames to keep so that what lies between is within tolerance.
 
     Every track starts with its ends and is split at its worst frame until none is too far off, all tracks at once.
