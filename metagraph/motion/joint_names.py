@@ -11,6 +11,8 @@ def _words(text: str) -> frozenset[str]:
 
 
 _LEFT, _RIGHT = {"left", "l", "lft", "lf"}, {"right", "r", "rgt", "rt"}
+# Capture labs write small letters without a gap: lfemur, rhumerus.
+_BONES = re.compile(r"([lr])(hipjoint|femur|tibia|foot|toes|clavicle|humerus|radius|wrist|hand|fingers|thumb)")
 # Joints that serve the animator or the skin, not the body.
 HELPERS = _words(
     "ik fk pole target ctrl control controller twist roll helper end nub effector goal slot aux adjust adj dummy socket prop"
@@ -44,7 +46,7 @@ def take_apart(name: str) -> Words:
     words: list[str] = []
     side, number = "centre", 0
     for piece in pieces:
-        glued = re.fullmatch(r"(left|right)(\w+)", piece)
+        glued = re.fullmatch(r"(left|right)(\w+)", piece) or _BONES.fullmatch(piece)
         for word in (glued[1], glued[2]) if glued else (piece,):
             if word in _LEFT:
                 side = "left"
@@ -63,9 +65,9 @@ def kind_of(words: Words) -> str:
     if own & _FOUR_LEGGED and ("leg" in joined or "foot" in joined or "paw" in joined or "toe" in joined):
         return ""
     for kind, tests in (
-        ("lower_arm", ("forearm", "lowerarm", "lowarm", "armlower", "elbow", "ulna")),
+        ("lower_arm", ("forearm", "lowerarm", "lowarm", "armlower", "elbow", "ulna", "radius")),
         ("upper_arm", ("upperarm", "uparm", "armupper", "humerus")),
-        ("lower_leg", ("lowerleg", "lowleg", "leglower", "knee", "calf", "shin")),
+        ("lower_leg", ("lowerleg", "lowleg", "leglower", "knee", "calf", "shin", "tibia")),
         ("upper_leg", ("upperleg", "upleg", "legupper", "thigh", "femur")),
         ("shoulder", ("clav", "collar", "scapula")),
     ):

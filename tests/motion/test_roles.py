@@ -116,6 +116,13 @@ FAMILIES = {
         ["@ThighBend", "@Shin", "@Foot", "@Toe"],
         ("l", "r"),
     ),
+    "acclaim": (
+        ["root", "lowerback", "upperback", "thorax"],
+        ["lowerneck", "upperneck", "head"],
+        ["@clavicle", "@humerus", "@radius", "@wrist", "@hand"],
+        ["@hipjoint", "@femur", "@tibia", "@foot", "@toes"],
+        ("l", "r"),
+    ),
     "kaykit": (
         ["hips", "spine", "chest"],
         ["head"],
@@ -157,7 +164,7 @@ def test_every_naming_family_is_a_humanoid_with_its_limbs_in_order(name: str) ->
     hand = {"kaykit": 2}.get(name, 3)
     assert skeleton.names[roles["left_hand"]] == arm[hand].replace("@", left)
     assert skeleton.names[roles["left_upper_arm"]] == arm[hand - 2].replace("@", left)
-    foot = {"cmu": 3}.get(name, 2)
+    foot = {"cmu": 3, "acclaim": 3}.get(name, 2)
     assert skeleton.names[roles["left_foot"]] == leg[foot].replace("@", left)
     assert skeleton.names[roles["left_upper_leg"]] == leg[foot - 2].replace("@", left)
     parts = dict(zip(skeleton.names, body_parts(skeleton), strict=True))
