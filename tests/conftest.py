@@ -86,6 +86,14 @@ def shared_data() -> Path:
     return folder
 
 
+@pytest.fixture(scope="session")
+def zoo_files(tmp_path_factory: pytest.TempPathFactory) -> dict[str, Path]:
+    """The files of characters as studios have them, by name; made here."""
+    from tests import zoo
+
+    return zoo.make(tmp_path_factory.mktemp("zoo"))
+
+
 class Toy:
     """Builds small projects whose motion is known: arms that swing and a head that turns, on sixteen joints."""
 

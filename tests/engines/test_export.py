@@ -419,7 +419,19 @@ def test_projects_of_real_clips_are_exported_and_validate(
 ) -> None:
     files = [p for p in gather([shared_data / folder]) if pattern in p.as_posix()]
     project = import_files(Project(folder), None, files).into(Project(folder))
-    ids = list(project.clips)
+    exported_and_valid(project, list(project.clips), tmp_path, idle, gestures)
+
+
+def test_a_project_of_the_zoo_is_exported_and_validates(zoo_files: dict[str, Path], tmp_path: Path) -> None:
+    """Everybody comes onto the first one's skeleton."""
+    project = import_files(Project("zoo"), None, [zoo_files["mixamo"]]).into(Project("zoo"))
+    others = [path for name, path in zoo_files.items() if name != "mixamo"]
+    project = import_files(project, None, others, retarget="yes").into(project)
+    assert len(project.clips) == 2 * 1 + 3 * 5
+    exported_and_valid(project, list(project.clips), tmp_path, 0, 6)
+
+
+def exported_and_valid(project: Project, ids: list[str], tmp_path: Path, idle: int, gestures: int) -> None:
     project = edits.add_stance(project, "body", "rest", [ids[idle]])
     project = edits.add_stance(project, "body", "other", [ids[idle + 1]])
     stances = list(project.graphs["body"].stances)

@@ -47,7 +47,17 @@ def project_of(files: list[Path], name: str) -> Project:
 )
 def test_vectors_of_real_clips_hold(shared_data: Path, tmp_path: Path, folder: str, pattern: str) -> None:
     files = [path for path in gather([shared_data / folder]) if pattern in path.as_posix()]
-    made = write(project_of(files, f"{folder}{pattern}"), tmp_path)
+    vectors_hold(project_of(files, f"{folder}{pattern}"), tmp_path)
+
+
+# Spaces in names, other letters, neither fingers nor toes; the other characters are no other to an export.
+@pytest.mark.parametrize("name", ["biped", "japanese", "bare"])
+def test_vectors_of_the_zoo_hold(zoo_files: dict[str, Path], tmp_path: Path, name: str) -> None:
+    vectors_hold(project_of([zoo_files[name]], name), tmp_path)
+
+
+def vectors_hold(project: Project, tmp_path: Path) -> None:
+    made = write(project, tmp_path)
     write_vectors(made.json)
     assert check_vectors(tmp_path).failures == []
     if shutil.which("node") is None:

@@ -15,6 +15,7 @@ from metagraph.formats.gltf import write_glb
 from metagraph.motion import rotation
 from metagraph.motion.clip import Clip
 from sample_clips.make.skeleton import mannequin_skeleton
+from tests import zoo
 
 SKELETON = mannequin_skeleton()
 
@@ -121,6 +122,18 @@ def test_the_digest_is_the_sha_256_of_the_content(tmp_path: Path) -> None:
     assert digest(tmp_path / "a.bvh") == hashlib.sha256(b"content").hexdigest()
     with pytest.raises(FileError):
         digest(tmp_path / "none")
+
+
+@pytest.mark.parametrize("name", zoo.ANIMALS)
+def test_units_axes_rests_and_bind_poses_of_the_zoo_are_seen_through(zoo_files: dict[str, Path], name: str) -> None:
+    animal, clips = zoo.ANIMALS[name], read_clips(zoo_files[name])
+    assert [c.name for c in clips] == (list(zoo.TAKES) if animal.kind == ".glb" else [name])
+    for clip, take in zip(clips, zoo.TAKES, strict=False):
+        assert clip.fps == pytest.approx(animal.fps) and clip.duration == pytest.approx(zoo.SECONDS)
+        _, positions = clip.skeleton.globals(clip.poses())
+        for joint in zoo.joints_of(animal):
+            found = positions[:, clip.skeleton.index(str(animal.called(joint)))]
+            assert np.abs(found - zoo.places(name, joint, take)).max() < 1e-3, joint
 
 
 def test_all_real_files_are_read_or_refused_in_words(shared_data: Path) -> None:

@@ -21,6 +21,7 @@ from metagraph.motion import rotation
 from metagraph.motion.character import Character, Material, Surface
 from metagraph.motion.clip import Clip
 from sample_clips.make.skeleton import mannequin_skeleton
+from tests import zoo
 
 COMPONENTS = {"i1": 5120, "u1": 5121, "<i2": 5122, "<u2": 5123, "<u4": 5125, "<f4": 5126}
 WIDTHS = {1: "SCALAR", 2: "VEC2", 3: "VEC3", 4: "VEC4", 16: "MAT4"}
@@ -646,13 +647,23 @@ def by_the_book(path: Path, name: str, seconds: float) -> dict[str, np.ndarray]:
     ],
 )
 def test_real_clips_put_every_joint_where_the_specification_does(shared_data: Path, file: str, name: str, frame: int, unit: float) -> None:
-    clip = next(c for c in read_gltf_clips(shared_data / file) if c.name == name)
+    agrees_with_the_book(shared_data / file, name, frame, unit, rough="adult" in file)
+
+
+@pytest.mark.parametrize("name", [name for name, animal in zoo.ANIMALS.items() if animal.kind == ".glb"])
+@pytest.mark.parametrize("take", zoo.TAKES)
+def test_clips_of_the_zoo_put_every_joint_where_the_specification_does(zoo_files: dict[str, Path], name: str, take: str) -> None:
+    agrees_with_the_book(zoo_files[name], take, 17, 1.0)
+
+
+def agrees_with_the_book(file: Path, name: str, frame: int, unit: float, rough: bool = False) -> None:
+    clip = next(c for c in read_gltf_clips(file) if c.name == name)
     rotations, positions = clip.skeleton.globals(clip.poses()[frame])
-    expected = by_the_book(shared_data / file, name, frame / clip.fps)
+    expected = by_the_book(file, name, frame / clip.fps)
     for i, joint in enumerate(clip.skeleton.names):
-        np.testing.assert_allclose(positions[i], expected[joint][:3, 3] * unit, atol=2e-3 if "adult" in file else 2e-4, err_msg=joint)
+        np.testing.assert_allclose(positions[i], expected[joint][:3, 3] * unit, atol=2e-3 if rough else 2e-4, err_msg=joint)
         axes = expected[joint][:3, :3] / np.linalg.norm(expected[joint][:3, :3], axis=0)
-        np.testing.assert_allclose(rotation.to_matrix(rotations[i]), axes, atol=2e-2 if "adult" in file else 2e-3, err_msg=joint)
+        np.testing.assert_allclose(rotation.to_matrix(rotations[i]), axes, atol=2e-2 if rough else 2e-3, err_msg=joint)
 
 
 @pytest.mark.parametrize("file", ["characters/alien/alien.gltf", "characters/adult_female/cristine/cristine.gltf"])

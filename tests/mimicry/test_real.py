@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -14,6 +15,7 @@ from metagraph.mimicry.measures import turned
 from metagraph.mimicry.mimic import Mimic
 from metagraph.mimicry.points import PLACE
 from metagraph.mimicry.signatures import Body
+from tests import zoo
 
 HEADS = ("head_neutral", "head_l", "head_r", "head_u", "head_d")
 ARMS = ("Idle", "Unarmed_Idle", "2H_Melee_Idle", "Blocking", "Sit_Chair_Idle")
@@ -27,6 +29,30 @@ def project_of(path: Path, names: tuple[str, ...], layer: Layer) -> Project:
     for name in names:
         project = edits.add_stance(project, layer, name, [ids[name]])
     return edits.set_base(project, ids[names[0]])
+
+
+def poses_of(name: str, path: Path, frames: dict[str, int]) -> Project:
+    """A project whose stances are single moments of a clip of the zoo, held."""
+    clip = read_clips(path)[0]
+    project = Project(name, life=Life(on=False))
+    moments = {n: round(at * clip.fps / 30) for n, at in frames.items()}
+    held = [
+        (f"{n}.glb", 0, "", replace(clip, name=n, rotations=clip.rotations[[f, f]], translations=clip.translations[[f, f]], weights=None))
+        for n, f in moments.items()
+    ]
+    project = edits.add_clips(project, held)
+    ids = {entry.name: entry.id for entry in project.clips.values()}
+    for n in frames:
+        project = edits.add_stance(project, "arms", n, [ids[n]])
+    return edits.set_base(project, next(iter(ids.values())))
+
+
+@pytest.mark.parametrize("name", zoo.ANIMALS)
+def test_arms_of_the_zoo_held_high_low_and_between(zoo_files: dict[str, Path], name: str) -> None:
+    frames = {"between": 0, "high": 15, "low": 45}
+    project = poses_of(name, zoo_files[name], frames)
+    for turn in (0.0, 0.5):
+        assert seen(project, "arms", 3, turn) == {n: n for n in frames}
 
 
 def seen(project: Project, layer: Layer, dims: int, turn: float = 0.0) -> dict[str, str | None]:

@@ -16,6 +16,7 @@ from metagraph.motion import rotation
 from metagraph.motion.clip import Clip
 from metagraph.motion.mirror import mirror, pairs_of, swap_sides
 from metagraph.motion.skeleton import Pose, Skeleton
+from tests.zoo import ANIMALS
 
 MIRROR = np.array([-1.0, 1, 1])
 
@@ -204,14 +205,27 @@ FILES = (
 
 @pytest.mark.parametrize("file", FILES)
 def test_real_clips_come_back_when_mirrored_twice_and_put_hands_where_the_others_were(shared_data: Path, file: str) -> None:
-    for clip in read_clips(shared_data / file)[:5]:
+    mirrored_twice(shared_data / file)
+
+
+@pytest.mark.parametrize("name", ANIMALS)
+def test_clips_of_the_zoo_come_back_when_mirrored_twice_and_put_hands_where_the_others_were(zoo_files: dict[str, Path], name: str) -> None:
+    mirrored_twice(zoo_files[name])
+
+
+def mirrored_twice(file: Path) -> None:
+    for clip in read_clips(file)[:5]:
         pairs = pairs_of(clip.skeleton)
         twin = mirror(clip, pairs)
         degrees, metres = apart(clip, mirror(twin, pairs))
         assert degrees < 1e-4 and metres < 1e-6 * max(1, clip.skeleton.height)  # float32 metres of a tall robot
         _, before = clip.skeleton.globals(clip.poses())
         _, after = clip.skeleton.globals(twin.poses())
-        hands = [j for j, n in enumerate(clip.skeleton.names) if n.endswith(("wrist", "hand.L", "hand.R", "Hand", "wrist.l", "Palm2L"))]
+        hands = [
+            j
+            for j, n in enumerate(clip.skeleton.names)
+            if n.endswith(("wrist", "hand.L", "hand.R", "Hand", "wrist.l", "Palm2L", "hand_l", "手首"))
+        ]
         for hand in hands:  # the robot's hand is made of four palms that rest turned otherwise on either side
             away = np.linalg.norm(after[:, hand] - before[:, pairs[hand]] * MIRROR, axis=-1).max()
             assert away < 0.04 * clip.skeleton.height, clip.skeleton.names[hand]

@@ -12,6 +12,7 @@ from metagraph.motion import rotation
 from metagraph.motion.roles import PARTS, REQUIRED, ROLES, body_parts, find_roles, is_humanoid, joint_sides, missing_roles
 from metagraph.motion.skeleton import Skeleton
 from sample_clips.make.skeleton import mannequin_skeleton
+from tests.zoo import ANIMALS, FIGURE
 
 
 def tree(text: str) -> Skeleton:
@@ -335,6 +336,20 @@ def test_real_people_have_the_roles_one_would_point_at(shared_data: Path, file: 
     parts = body_parts(skeleton, roles)
     assert set(parts) >= {"legs", "spine", "arms", "head"}
     assert joint_sides(skeleton, roles).count("left") == pytest.approx(joint_sides(skeleton, roles).count("right"), abs=3)
+
+
+@pytest.mark.parametrize("name", ANIMALS)
+def test_joints_of_the_zoo_have_the_roles_they_are_named_for(zoo_files: dict[str, Path], name: str) -> None:
+    from metagraph.formats.clips import read_clips
+
+    skeleton = read_clips(zoo_files[name])[0].skeleton
+    roles = find_roles(skeleton)
+    assert is_humanoid(roles), missing_roles(roles)
+    named = {role: skeleton.names[joint] for role, joint in roles.items()}
+    wanted = {role: ANIMALS[name].called(role) for role in ROLES if role in FIGURE and role in REQUIRED}
+    assert {role: named[role] for role in wanted} == wanted
+    assert {"legs", "spine", "arms", "head"} <= set(body_parts(skeleton, roles))
+    assert joint_sides(skeleton, roles).count("left") == joint_sides(skeleton, roles).count("right")
 
 
 @pytest.mark.parametrize("file", ["bird-animations.glb", "quad-creature-animations.glb"])

@@ -84,7 +84,15 @@ def test_a_project_without_lines_has_no_voices(folder: Path) -> None:
 
 
 def test_the_first_peak_of_a_real_line_brings_a_blink(shared_data: Path) -> None:
-    voice = read_voice(shared_data / "praatio-speech" / "mary.wav")
+    blinks_at_the_first_peak(shared_data / "praatio-speech" / "mary.wav")
+
+
+def test_the_first_peak_of_a_samples_line_brings_a_blink() -> None:
+    blinks_at_the_first_peak(Path(__file__).parents[2] / "sample_clips" / "lines" / "hello.flac")
+
+
+def blinks_at_the_first_peak(sound: Path) -> None:
+    voice = read_voice(sound)
     found = schedule(Project().life, track_of([Speech("s", 10.0, 10.0 + voice.duration, "m")]), {"m": voice}, 1, 20.0, Schedule(), 0.0)
     assert 10.0 + float(voice.peaks[0]) in found.blinks.starts
 

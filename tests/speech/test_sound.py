@@ -21,6 +21,8 @@ from metagraph.speech.textgrid import read_textgrid
 
 Array = np.ndarray[Any, Any]
 RATE = 16000
+LINES = Path(__file__).parents[2] / "sample_clips" / "lines"
+SAMPLES = sorted(path.stem for path in LINES.glob("*.flac"))
 REAL = (("bobby", "bobby_phones"), ("mary", "mary"), ("damon_set_test", "damon_set_test"))
 
 
@@ -118,8 +120,17 @@ def test_a_short_gap_is_a_stop_and_a_long_one_silence() -> None:
 @pytest.mark.parametrize(("name", "phones"), REAL)
 def test_syllables_of_real_speech_lie_in_its_vowels(shared_data: Path, name: str, phones: str) -> None:
     folder = shared_data / "praatio-speech"
-    peaks, _ = syllables(hear(*read_sound(folder / f"{name}.wav")))
-    vowels = [p for p in pieces_of(read_textgrid(folder / f"{phones}.TextGrid")) if p.viseme in ("aa", "E", "I", "O", "U", "RR")]
+    syllables_in_vowels(folder / f"{name}.wav", folder / f"{phones}.TextGrid")
+
+
+@pytest.mark.parametrize("name", SAMPLES)
+def test_syllables_of_the_samples_lines_lie_in_their_vowels(name: str) -> None:
+    syllables_in_vowels(LINES / f"{name}.flac", LINES / f"{name}.TextGrid")
+
+
+def syllables_in_vowels(sound: Path, grid: Path) -> None:
+    peaks, _ = syllables(hear(*read_sound(sound)))
+    vowels = [p for p in pieces_of(read_textgrid(grid)) if p.viseme in ("aa", "E", "I", "O", "U", "RR")]
     inside = [any(v.start - 0.03 <= t <= v.end + 0.03 for v in vowels) for t in peaks]
     assert len(peaks) >= 3 and np.mean(inside) >= 0.75
 
@@ -127,9 +138,17 @@ def test_syllables_of_real_speech_lie_in_its_vowels(shared_data: Path, name: str
 @pytest.mark.parametrize(("name", "phones"), REAL)
 def test_the_mouth_guessed_from_sound_opens_when_the_phones_say_so(shared_data: Path, name: str, phones: str) -> None:
     folder = shared_data / "praatio-speech"
+    mouth_opens(folder / f"{name}.wav", folder / f"{phones}.TextGrid")
+
+
+@pytest.mark.parametrize("name", SAMPLES)
+def test_the_mouth_guessed_from_the_samples_lines_opens_when_their_phones_say_so(name: str) -> None:
+    mouth_opens(LINES / f"{name}.flac", LINES / f"{name}.TextGrid")
+
+
+def mouth_opens(sound: Path, grid: Path) -> None:
     opening = np.array([OPENING.get(v, 0.0) for v in VISEMES])
-    known = read_voice(folder / f"{name}.wav", folder / f"{phones}.TextGrid")
-    guessed = read_voice(folder / f"{name}.wav")
+    known, guessed = read_voice(sound, grid), read_voice(sound)
     assert np.corrcoef(known.weights @ opening, guessed.weights @ opening)[0, 1] > 0.4
     assert len(known.peaks) == len(guessed.peaks) and known.duration == guessed.duration
 

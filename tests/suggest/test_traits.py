@@ -250,6 +250,14 @@ def test_missing_clips_are_left_out(sample: Project) -> None:
     assert set(traits_of(project)) == set(some) - {first}
 
 
+def test_clips_of_the_zoo_have_finite_traits(zoo_files: dict[str, Path]) -> None:
+    from metagraph.formats.clips import read_clips
+
+    for path in zoo_files.values():
+        for found in traits_of(read_clips(path)).values():
+            assert np.isfinite(numbers(found)).all(), path.name
+
+
 @pytest.mark.parametrize("name", ["mesh2motion-cmu", "robot-expressive", "fbx-pab"])
 def test_real_clips_have_finite_traits(shared_data: Path, name: str) -> None:
     from metagraph.errors import FileError

@@ -24,6 +24,7 @@ from metagraph.playback.life.schedule import Schedule, schedule
 from metagraph.playback.life.track import BlinkAt, LookAt, ModeFrom, Speech, Track, track_of
 from metagraph.playback.planner import make_plan
 from metagraph.playback.player import pose_at
+from tests import zoo
 
 Array = np.ndarray[Any, Any]
 OFF = Life(on=False)
@@ -387,15 +388,23 @@ def test_a_body_without_a_face_turns_its_head_and_breathes(toy: Any) -> None:
 
 
 def test_real_bodies_without_faces_are_brought_to_life(shared_data: Path) -> None:
-    folder = shared_data / "bandai-namco-1"
-    project = import_files(Project(), folder, [folder / "dataset-1_bow_normal_001.bvh"]).into(Project())
+    brought_to_life(shared_data / "bandai-namco-1" / "dataset-1_bow_normal_001.bvh", {"Neck", "Head"})
+
+
+@pytest.mark.parametrize("name", zoo.ANIMALS)
+def test_bodies_of_the_zoo_are_brought_to_life(zoo_files: dict[str, Path], name: str) -> None:
+    brought_to_life(zoo_files[name], {str(zoo.ANIMALS[name].called(joint)) for joint in ("neck", "head")})
+
+
+def brought_to_life(path: Path, upper: set[str]) -> None:
+    project = import_files(Project(), path.parent, [path]).into(Project())
     assert project.skeleton is not None
     clip = next(iter(project.clips.values())).motion
     assert clip is not None
     project = edits.set_base(project, next(iter(project.clips)), 0)
     times = np.arange(0, clip.duration, 1 / 30)
     before, after = alive(project, Life(), BUSY, times, clip.pose_at(times))
-    assert np.isfinite(after.rotations).all() and {"Neck", "Head"} & moved(project, before, after)
+    assert np.isfinite(after.rotations).all() and upper & moved(project, before, after)
     apart = np.degrees(rotation.angle_between(before.rotations.astype(float), after.rotations.astype(float)))
     assert apart.max() < 45
 
