@@ -38,11 +38,17 @@ class Loader(getattr(yaml, "CBaseLoader", yaml.BaseLoader)):  # type: ignore[mis
 Loader.add_multi_constructor("tag:unity3d.com,2011:", lambda loader, klass, node: (klass, loader.construct_mapping(node, deep=True)))
 
 
+KEY = r"      - serializedVersion: 2\n"
+ALL_BUT_LAST = re.compile(rf"(?:{KEY}(?:        .*\n)+)+(?={KEY})")
+
+
 class Objects(dict[str, tuple[str, dict[str, Any]]]):
     """The objects of a file: id -> class and fields."""
 
-    def __init__(self, path: Path) -> None:
-        head, *documents = re.split(r"^--- ", path.read_text("utf-8"), flags=re.MULTILINE)
+    def __init__(self, path: Path, ends: bool = False) -> None:
+        """ends: of curves only the last keys, which is read many times as fast."""
+        words = path.read_text("utf-8")
+        head, *documents = re.split(r"^--- ", ALL_BUT_LAST.sub("", words) if ends else words, flags=re.MULTILINE)
         assert head == "%YAML 1.1\n%TAG !u! tag:unity3d.com,2011:\n"
         for document in documents:
             match = re.match(r"!u!(\d+) &(\d+)\n", document)
@@ -88,8 +94,8 @@ def states_of(controller: Objects, layer: str) -> dict[str, dict[str, Any]]:
     return {state["m_Name"]: state for state in (controller.at(child["m_State"]) for child in found["m_ChildStates"])}
 
 
-def motion_of(made: Made, state: dict[str, Any]) -> dict[str, Any]:
-    (fields,) = Objects(guids(made)[state["m_Motion"]["guid"]]).of(74)
+def motion_of(made: Made, state: dict[str, Any], ends: bool = False) -> dict[str, Any]:
+    (fields,) = Objects(guids(made)[state["m_Motion"]["guid"]], ends).of(74)
     return fields
 
 
@@ -283,7 +289,7 @@ def test_clips_have_their_lengths_loop_where_they_loop_and_are_additive_to_the_b
 ) -> None:
     known = guids(made)
     for machine, state, clip in pairs(sample)[::3]:
-        fields = motion_of(made, states_of(controller, machine.layer)[state.name])
+        fields = motion_of(made, states_of(controller, machine.layer)[state.name], ends=True)
         settings = fields["m_AnimationClipSettings"]
         assert settings["m_LoopTime"] == str(int(state.loop)) and fields["m_Legacy"] == "0"
         assert float(settings["m_StopTime"]) == pytest.approx(clip.duration, abs=1e-5)
@@ -363,5 +369,6 @@ def test_clips_whose_names_differ_by_case_alone_have_files_of_their_own(toy: Any
 
 
 def test_the_mesh_goes_along_where_there_is_one(sample: Project, tmp_path: Path) -> None:
-    made = write(sample, tmp_path, character=Path(__file__).parents[2] / "sample_clips" / "mannequin.glb")
+    few = edits.remove_actions(sample, [a.id for a in sample.actions() if a.kind != "stance"])
+    made = write(few, tmp_path, character=Path(__file__).parents[2] / "sample_clips" / "mannequin.glb")
     assert made.files[-1].name == "talk.glb" and not made.notes

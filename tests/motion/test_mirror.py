@@ -221,11 +221,8 @@ def mirrored_twice(file: Path) -> None:
         assert degrees < 1e-4 and metres < 1e-6 * max(1, clip.skeleton.height)  # float32 metres of a tall robot
         _, before = clip.skeleton.globals(clip.poses())
         _, after = clip.skeleton.globals(twin.poses())
-        hands = [
-            j
-            for j, n in enumerate(clip.skeleton.names)
-            if n.endswith(("wrist", "hand.L", "hand.R", "Hand", "wrist.l", "Palm2L", "hand_l", "手首"))
-        ]
+        ends = ("wrist", "hand.L", "hand.R", "Hand", "wrist.l", "Palm2L", "hand_l", "lhand", "hand.l", "手首")
+        hands = [j for j, n in enumerate(clip.skeleton.names) if n.endswith(ends)]
         for hand in hands:  # the robot's hand is made of four palms that rest turned otherwise on either side
             away = np.linalg.norm(after[:, hand] - before[:, pairs[hand]] * MIRROR, axis=-1).max()
             assert away < 0.04 * clip.skeleton.height, clip.skeleton.names[hand]
