@@ -24,10 +24,7 @@ WORKER = os.environ.get("PYTEST_XDIST_WORKER", "")
 os.environ["NUMBA_CACHE_DIR"] = str(kernels.provide(WORKER or "alone"))
 
 # Files that take longest, the longest first: begun late, one of them would keep one process busy while the others have nothing left.
-LONG = (
-    "app/test_cli.py",
-    "test_docs.py",
-)
+LONG = ("test_docs.py", "live/test_session.py")
 
 # The gate must give the same answer twice; at the desk, examples are drawn anew each time.
 settings.register_profile("gate", derandomize=True, deadline=None)
