@@ -6,6 +6,7 @@ import json
 from pathlib import Path
 
 from app.project.document import state_folder
+from metagraph.formats.atomic import write_atomically
 from metagraph.motion.joint_map import JointMap, RetargetError
 
 MOST = 100  # the oldest go first
@@ -32,8 +33,8 @@ def kept_maps() -> dict[tuple[str, str], JointMap]:
 
 
 def keep_map(joint_map: JointMap) -> None:
-    """Remember a map. Raises OSError."""
+    """Remember a map. Raises FileError."""
     maps = kept_maps()
     maps.pop((joint_map.source, joint_map.target), None)
     rows = [found.to_json() for found in [*maps.values(), joint_map][-MOST:]]
-    _place().write_text(json.dumps(rows), encoding="utf-8")
+    write_atomically(_place(), json.dumps(rows).encode())

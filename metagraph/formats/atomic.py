@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import errno
 import os
-import tempfile
+import uuid
 from pathlib import Path
 
 from metagraph.errors import FileError
@@ -19,18 +19,15 @@ def write_atomically(path: Path, content: bytes) -> None:
         exists = path.exists()
         if exists and not os.access(path, os.W_OK):
             raise PermissionError(errno.EACCES, "it is read-only")
-        handle, name = tempfile.mkstemp(prefix=".saving-", dir=path.parent)
-        temporary = Path(name)
+        temporary = path.with_name(f".saving-{uuid.uuid4().hex}")
+        # The system takes the umask off; asking for it would mean to set it, for every thread of the process.
+        handle = os.open(temporary, os.O_CREAT | os.O_EXCL | os.O_WRONLY | getattr(os, "O_BINARY", 0), 0o666)
         with os.fdopen(handle, "wb") as file:
             file.write(content)
             file.flush()
             os.fsync(file.fileno())
         if exists:
             temporary.chmod(path.stat().st_mode & 0o777)
-        else:
-            mask = os.umask(0)
-            os.umask(mask)
-            temporary.chmod(0o666 & ~mask)
         temporary.replace(path)
         temporary = None
     except OSError as error:

@@ -21,6 +21,7 @@ from typing import Any
 import msgspec
 
 from metagraph.errors import FileError
+from metagraph.formats.atomic import write_atomically
 from metagraph.study.tasks import Answer, Event, TaskRun, answers, moment, task_runs
 
 __all__ = ["BOUNDARIES", "NAME", "TYPES", "Answer", "Event", "Log", "TaskRun", "Writer", "read", "wall_time"]
@@ -242,7 +243,7 @@ class Writer:
         number = 1
         while (aside := self.path.with_name(f"{self.path.stem}.torn-{number}")).exists():
             number += 1
-        aside.write_bytes(content[whole:])
+        write_atomically(aside, content[whole:])
         os.truncate(self.path, whole)
 
     def _failure(self, error: OSError) -> FileError:

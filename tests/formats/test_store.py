@@ -240,10 +240,19 @@ def test_permissions_are_kept_and_new_files_get_the_usual_ones(tmp_path: Path) -
     old.chmod(0o640)
     write_atomically(old, b"y")
     assert stat.S_IMODE(old.stat().st_mode) == 0o640
-    mask = os.umask(0)
-    os.umask(mask)
-    write_atomically(new, b"y")
-    assert stat.S_IMODE(new.stat().st_mode) == 0o666 & ~mask
+    mask = os.umask(0o027)
+    try:
+        write_atomically(new, b"y")
+    finally:
+        os.umask(mask)
+    assert stat.S_IMODE(new.stat().st_mode) == 0o640
+
+
+def test_the_umask_of_the_process_is_not_touched(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    touched: list[int] = []
+    monkeypatch.setattr(os, "umask", lambda mask: touched.append(mask) or 0o022)
+    write_atomically(tmp_path / "new", b"y")
+    assert not touched, "another thread may make a file at that moment"
 
 
 def test_a_read_only_file_is_not_replaced(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:

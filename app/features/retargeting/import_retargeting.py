@@ -12,6 +12,7 @@ from app.look.plural import clips_words
 from app.project.document import Document
 from app.project.jobs import Job, Jobs
 from app.project.kept_maps import keep_map
+from metagraph.errors import FileError
 from metagraph.formats.imports import Imported, Strangers, bring_over, strangers_of
 from metagraph.graph.bring import Bringing
 from metagraph.motion.joint_map import JointMap
@@ -81,8 +82,8 @@ class Retargeting(QObject):
         source = self.document.path
         try:
             keep_map(joint_map)
-        except OSError as error:
-            self.told.emit(f"The joint map is kept in this project only ({error.strerror or error}).")
+        except (FileError, OSError) as error:
+            self.told.emit(f"The joint map is kept in this project only ({error}).")
 
         def done(result: Imported) -> None:
             if self.document.path != source or self.document.project.skeleton is not bringing.project.skeleton:
