@@ -53,8 +53,8 @@ def open_window(path: Path | None, sample: bool = False) -> Window:
     files = window.shell.files
     if path is not None:
         files.open(path)
-    elif not files.recover_untitled() and sample:
-        files.open(SAMPLE, template=True)
+    else:
+        files.recover_untitled(lambda: files.open(SAMPLE, template=True) if sample else None)
     window.load_late_panels_soon()
     return window
 

@@ -1,1 +1,1 @@
-"""The document and its files, journals, watching and jobs."""
+"""The document and its files: who has one open, saving and recovering, other programs, watching, and jobs."""

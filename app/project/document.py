@@ -5,17 +5,19 @@ Every change - drop, menu, paste, undo, load - ends in `changed(before, after)`;
 
 from __future__ import annotations
 
-import os
 from collections.abc import Callable
+from contextlib import suppress
 from dataclasses import replace
 from pathlib import Path
 
-from PySide6.QtCore import QLockFile, QObject, QStandardPaths, Signal
+from PySide6.QtCore import QObject, QStandardPaths, Signal
 from PySide6.QtGui import QUndoCommand, QUndoStack
 
+from app.project.writing import Writing, project_name
 from metagraph.errors import FileError
 from metagraph.formats.journal import Journal, journal_path
-from metagraph.formats.store import SUFFIX, moved, save_project
+from metagraph.formats.locking import Lock, new_owner
+from metagraph.formats.store import file_digest, moved
 from metagraph.graph.model import Project
 
 Edit = Callable[[Project], Project]
@@ -50,6 +52,9 @@ class Document(QObject):
     """changed: (before, after) projects. loaded: comes first when `after` is another project, not an edited one.
 
     state_changed: path, dirty mark or undo texts may differ. saved: it was written. failed: words for the user.
+
+    common: the project as its file was when it was read or saved last, None where that is not known; digest: of that file, SHA-256.
+    lock: of the file, while this window has it. read_only: another window has it, so saving asks for another place.
     """
 
     changed = Signal(object, object)
@@ -65,8 +70,14 @@ class Document(QObject):
         self.undo_stack = QUndoStack(self)
         self.undo_stack.cleanChanged.connect(self.state_changed)
         self.undo_stack.indexChanged.connect(self.state_changed)
+        self.owner = new_owner()
+        self.lock: Lock | None = None
+        self.read_only = False
+        self.common: Project | None = None
+        self.digest: str | None = None
         self._journal: Journal | None = None
         self._unsafe = False  # no journal can be written; that was told
+        self._returned = False  # motion came back that earlier steps do not have
 
     # --- editing
 
@@ -94,10 +105,23 @@ class Document(QObject):
             top.cancelled = True
             self.undo_stack.undo()
 
+    def take_motion(self, text: str, function: Edit) -> None:
+        """Let clips have their motion again. Where nothing that is saved changes by that it is no step, and no undo takes it away."""
+        after = function(self.project)
+        if after != self.project:
+            self.edit(text, lambda _: after)
+        elif after is not self.project:
+            self._returned = True
+            before, self.project = self.project, after
+            self.common = after if self.common is before else self.common
+            self.changed.emit(before, after)
+
     def _set(self, project: Project) -> None:
+        if self._returned:
+            project = _with_motion(project, self.project)
         before, self.project = self.project, project
         if self._journal is None and not self._unsafe:  # the first edit of a window that opened nothing
-            self._begin_journal(before if self.path is None else None)
+            self._begin_journal(before if self.path is None or self.read_only else None)
         if self._journal is not None:
             try:
                 self._journal.edit(before, project)
@@ -113,7 +137,7 @@ class Document(QObject):
 
     @property
     def dirty(self) -> bool:
-        return not self.undo_stack.isClean()
+        return not self.undo_stack.isClean() and self.project is not self.common
 
     @property
     def folder(self) -> Path | None:
@@ -122,68 +146,168 @@ class Document(QObject):
 
     # --- files
 
-    def load(self, project: Project, path: Path | None, recovered: bool = False) -> None:
-        """Show another project; without a path its clip paths are absolute. recovered: it holds edits that are not in its file."""
-        self.close_journal()
+    def load(
+        self,
+        project: Project,
+        path: Path | None,
+        recovered: int = 0,
+        *,
+        common: Project | None = None,
+        digest: str | None = None,
+        lock: Lock | None = None,
+        read_only: bool = False,
+    ) -> None:
+        """Show another project; without a path its clip paths are absolute. recovered: how many edits it holds that are not in its file.
+
+        common, digest: what its file holds, and that file's (as it is now, when left out). lock: of that file.
+        """
+        self._leave_file(lock)
         before, self.project = self.project, project
-        self.path = path
+        self.path, self.lock, self.read_only, self._returned = path, lock, read_only, False
+        self.digest = digest or self._digest_now()
+        self.common = common if recovered else project
         self.undo_stack.clear()
         if recovered:
             self.undo_stack.resetClean()
-        self._begin_journal(project if recovered or path is None else None)
+        self._begin_journal(project if recovered or path is None else None, recovered)
         self.loaded.emit()
         self.changed.emit(before, project)
         self.state_changed.emit()
 
-    def save(self, path: Path | None = None) -> None:
-        """Write the project, to its own file or another; in a new place it is named after its file. Raises FileError."""
-        target = path or self.path
-        if target is None:
-            raise ValueError("a project that was never saved needs a path")
-        if target == self.path:
-            save_project(self.project, target)
-        else:
-            after = replace(moved(self.project, self.path, target), name=project_name(target))
-            save_project(after, target, target)
-            before, self.project = self.project, after
-            # Steps back would bring paths relative to the old place; a new place begins a new history.
-            self.undo_stack.clear()
-            self.path = target
-            self.changed.emit(before, after)
+    def reload(self, project: Project, digest: str) -> None:
+        """Take over what another program has made of the file: one step, which can be undone, to the saved state."""
+        if project != self.project:
+            self.undo_stack.push(_Change(self, "Reload from disk", self.project, project, None))
+        self.common, self.digest = self.project, digest
         self.undo_stack.setClean()
         self._begin_journal(None)
         self.state_changed.emit()
+
+    def save(self, path: Path | None = None) -> None:
+        """Write the project at once, whatever its file has become; see `begin_saving`. Raises FileError."""
+        writing = self.begin_saving(path)
+        writing.write()
+        self.end_saving(writing)
+
+    def begin_saving(self, path: Path | None = None) -> Writing:
+        """Return how the project as it is now is written, to its own file or another; in a new place it is named after its file.
+
+        `write` may run on any thread while edits go on; then comes `end_saving`.
+        """
+        target = path or self.path
+        if target is None:
+            raise ValueError("a project that was never saved needs a path")
+        mark = None
+        if self._journal is not None:
+            with suppress(FileError):  # it is about to be saved
+                mark = self._journal.mark()
+        return Writing(self.project, self.path, target, self._journal, mark)
+
+    def end_saving(self, writing: Writing) -> None:
+        """The file is written: what it holds is the saved state. Edits that were made meanwhile are not."""
+        edited = self.project is not writing.project
+        elsewhere = writing.target != self.path
+        if elsewhere:
+            before = self.project
+            after = writing.after
+            if edited:
+                after = replace(moved(before, self.path, writing.target), name=project_name(writing.target))
+            # Steps back would bring paths relative to the old place; a new place begins a new history.
+            self.undo_stack.clear()
+            self._move_lock(writing.target)
+            self.project, self.path, self.read_only, self._returned = after, writing.target, False, False
+            self.changed.emit(before, after)
+        self.common, self.digest = writing.after, writing.digest
+        if edited:
+            self.undo_stack.resetClean()
+        else:
+            self.undo_stack.setClean()
+        if elsewhere or not edited:  # else the journal has a mark behind which it goes on
+            self._begin_journal(self.project if edited else None, int(edited))
+        self.state_changed.emit()
         self.saved.emit()
+
+    # --- lock
+
+    def _move_lock(self, target: Path) -> None:
+        lock = Lock(target, self.owner)
+        if self.lock is None or self.lock.path != lock.path:
+            lock.acquire()  # where somebody else has it, the window has asked before
+            if self.lock is not None:
+                self.lock.release()
+            self.lock = lock
+
+    def regain(self, lock: Lock) -> None:
+        """The lock of the project's file is ours, perhaps after it was not."""
+        self.lock, self.read_only = lock, False
+        self.state_changed.emit()
+
+    def lose_lock(self) -> None:
+        """Another window has taken the file over: from now on it is read only."""
+        self.lock, self.read_only = None, True
+        self.keep_all()
+        self.state_changed.emit()
 
     # --- journal
 
-    def _begin_journal(self, base: Project | None) -> None:
-        if self._journal is not None:
-            self._journal.remove()
-        self._unsafe = False
-        place = untitled_journal() if self.path is None else journal_path(self.path)
-        self._journal = Journal(place, self.path)
+    @property
+    def journal_place(self) -> Path:
+        """Where this sitting keeps its edits."""
+        if self.path is None:
+            return journal_path(state_folder() / "untitled", self.owner.sitting)
+        return journal_path(self.path, self.owner.sitting)
+
+    def _begin_journal(self, base: Project | None, unsaved: int = 0) -> None:
+        """base: what the journal has to hold itself, since no file does; unsaved: how many edits that has which no file has."""
+        old, self._journal, self._unsafe = self._journal, None, False
+        if old is not None:
+            old.close()
+        journal = Journal(self.journal_place, self.path, self.owner, self.digest)
         if base is not None:
             try:
-                self._journal.begin(base)
+                journal.begin(base, unsaved)
             except (FileError, OSError) as error:
-                self._journal, self._unsafe = None, True
+                self._unsafe = True  # what was in the old one stays there
                 self.failed.emit(f"Autosave is off: {error}")
+                return
+        if base is not None or not self.read_only:  # else it begins with the first edit, and with the project before that
+            self._journal = journal
+        if old is not None and (base is None or old.path != journal.path):
+            old.remove()
+
+    def keep_all(self) -> None:
+        """Write the whole project into the journal, since the file it builds on is another one now."""
+        if self.dirty:
+            self._begin_journal(self.project, max(1, self.undo_stack.count()))
+
+    def touch_journal(self) -> None:
+        """See `Journal.touch`."""
+        if self._journal is not None:
+            self._journal.touch()
 
     def close_journal(self) -> None:
-        """Forget the journal; when the user has saved or chosen to discard."""
+        """Forget the journal, and give the file back; when the user has saved or chosen to discard."""
+        self._leave_file(None)
+
+    def _leave_file(self, lock: Lock | None) -> None:
         if self._journal is not None:
             self._journal.remove()
             self._journal = None
+        if self.lock is not None and (lock is None or lock.path != self.lock.path):
+            self.lock.release()
+        self.lock = None
+
+    def _digest_now(self) -> str | None:
+        try:
+            return file_digest(self.path)
+        except OSError:
+            return None
 
 
-def project_name(path: Path) -> str:
-    """Return what a project saved as `path` is called: the file's name without `.metagraph.yaml`."""
-    name = path.name
-    for suffix in (SUFFIX, ".yaml", ".yml"):
-        if name.lower().endswith(suffix) and len(name) > len(suffix):
-            return name[: -len(suffix)]
-    return name
+def _with_motion(project: Project, other: Project) -> Project:
+    """Return the project, its clips without motion as `other` has them."""
+    found = {i: other.clips[i] for i, e in project.clips.items() if e.motion is None and other.clips.get(i) == e}
+    return replace(project, clips={**project.clips, **found}) if found else project
 
 
 def state_folder() -> Path:
@@ -191,17 +315,3 @@ def state_folder() -> Path:
     folder = Path(QStandardPaths.writableLocation(QStandardPaths.StandardLocation.AppDataLocation))
     folder.mkdir(parents=True, exist_ok=True)
     return folder
-
-
-_lock: QLockFile | None = None
-
-
-def untitled_journal() -> Path:
-    """Return where edits of a project without a file are kept; a second window at the same time has a place of its own."""
-    global _lock
-    if _lock is None:
-        _lock = QLockFile(str(state_folder() / "untitled.lock"))
-        _lock.setStaleLockTime(0)
-        _lock.tryLock(0)
-    name = "untitled.journal" if _lock.isLocked() else f"untitled-{os.getpid()}.journal"
-    return state_folder() / name

@@ -3,17 +3,26 @@
 from __future__ import annotations
 
 import json
+from collections.abc import Callable, Sequence
+from dataclasses import replace
 from pathlib import Path
 
 from PySide6.QtCore import QObject, Signal
 from PySide6.QtWidgets import QFileDialog, QMessageBox, QWidget
 
-from app.project.document import Document, state_folder, untitled_journal
+from app.project.document import Document, state_folder
 from app.project.jobs import Job, Jobs
+from app.project.keeper import Keeper
+from app.project.leftovers import Found, forget, keep_as_copy, look_beside, read_untitled, untitled_journals
 from app.project.opening import load_whole, open_whole
+from app.project.questions import ask_changed, ask_held, ask_keep, ask_recover, holder_words
+from app.project.saver import Saver
+from app.project.writing import FileChangedError, file_changed
 from metagraph.errors import FileError
-from metagraph.formats.journal import journal_path, recover
-from metagraph.formats.store import SUFFIX, Opened, absolute
+from metagraph.formats.atomic import write_atomically
+from metagraph.formats.locking import Lock
+from metagraph.formats.recovery import Left
+from metagraph.formats.store import SUFFIX, Opened, absolute, read_project
 from metagraph.graph.model import Project
 
 RECENT = 10
@@ -23,16 +32,32 @@ PRACTICE = Path(__file__).resolve().parents[2] / "sample_clips" / f"practice{SUF
 
 
 class Files(QObject):
-    """told: words for the status bar. report: (title, lines) to read. opened: a project is shown."""
+    """told: words for the status bar. report: (title, lines) to read. opened: a project is shown.
+    changed_outside: (words, tip, what shows more), when another program has written the project file."""
 
     told = Signal(str)
     report = Signal(str, object)
     opened = Signal()
+    changed_outside = Signal(str, str, object)
 
     def __init__(self, document: Document, jobs: Jobs, window: QWidget) -> None:
         super().__init__(window)
         self.document, self.jobs, self.window = document, jobs, window
+        self.saver = Saver(document, jobs, self)
+        self.saver.saved.connect(self._saved)
+        self.saver.failed.connect(self._not_saved)
+        self.saver.changed.connect(self._changed)
+        self.keeper = Keeper(document, jobs, self)
+        self.keeper.told.connect(self.told)
+        self._asked_for: Lock | None = None  # of the place that is being saved to
+        self._told_of: str | None = None  # the digest of a changed file that was told of
+        self._era = 0  # counts the projects that were shown
+        document.loaded.connect(self._next_era)
         self.closed = ""  # why no other project or clip may be brought in now, in words
+
+    def _next_era(self) -> None:
+        self._era += 1
+        self._told_of = None
 
     def refuse(self) -> bool:
         """Return whether nothing may be brought in now, and say why."""
@@ -57,7 +82,8 @@ class Files(QObject):
             self.open(Path(name))
 
     def open(self, path: Path, template: bool = False) -> None:
-        """Open a project; its clips load on a thread. Asks about unsaved changes and about a journal that was left behind.
+        """Open a project; its clips load on a thread. Asks about unsaved changes, about another window that has it open, and about
+        journals that were left behind.
 
         template: a copy without a file is opened; saving asks for a place of one's own.
         """
@@ -65,63 +91,121 @@ class Files(QObject):
             return
         if not self.may_leave():
             return
-        recovered = None if template else self._offer(journal_path(path), path)
         left = self.document.project
+        if template:
+            self._open(path, left, template=True)
+            return
+        owner = self.document.owner
+        self.jobs.start(
+            f"Opening {path.name}", lambda _: look_beside(path, owner), lambda found: self._looked(path, left, found), self.show_failure
+        )
 
-        def work(job: Job) -> Opened:
-            if recovered is not None:
-                return load_whole(recovered, path.parent, job.tell)
-            return open_whole(path, job.tell)
+    def _looked(self, path: Path, before: Project, found: Found) -> None:
+        """Ask about what was found beside a project file, and open it."""
+        read_only = False
+        holder = found.holder
+        while holder is not None and not read_only:
+            answer = ask_held(self.window, path, holder)
+            if answer == "copy":
+                self._open(path, before, template=True)
+                return
+            if answer is None:
+                return
+            read_only = answer == "read only"
+            if answer == "take over" and found.lock is not None:
+                holder = found.lock.acquire(take_over=True)
+        for note in found.notes:
+            self.told.emit(note)
+        chosen: Left | None = None
+        copies: list[Left] = []
+        for n, left in enumerate(found.left):
+            if chosen is None:
+                chosen = left if ask_recover(self.window, left, path, len(found.left) - n - 1) else None
+            elif ask_keep(self.window, left, path):
+                copies.append(left)
+        self._open(path, before, found, chosen, copies, read_only=read_only)
 
-        def done(opened: Opened) -> None:
-            if self.document.project is not left and not self.may_leave():
+    def _open(
+        self,
+        path: Path,
+        before: Project,
+        found: Found | None = None,
+        chosen: Left | None = None,
+        copies: Sequence[Left] = (),
+        template: bool = False,
+        read_only: bool = False,
+    ) -> None:
+        """Load a project and its clips, and show it in place of `before`. chosen: a journal's edits, taken over; copies: those saved
+        beside it."""
+        lock = found.lock if found is not None and found.lock is not None and found.lock.held else None
+
+        def work(job: Job) -> tuple[Opened, Project | None, list[Path]]:
+            kept = [keep_as_copy(other, path) for other in copies]
+            if chosen is None:
+                return open_whole(path, job.tell), None, kept
+            common = None if chosen.behind else read_project(path)
+            return replace(load_whole(chosen.project, path.parent, job.tell), digest=chosen.digest), common, kept
+
+        def release() -> None:
+            if lock is not None and (self.document.lock is None or self.document.lock.path != lock.path):
+                lock.release()
+
+        def done(result: tuple[Opened, Project | None, list[Path]]) -> None:
+            opened, common, kept = result
+            if self.document.project is not before and not self.may_leave():
+                release()
                 return  # it was edited meanwhile
             if template:
                 self.document.load(absolute(opened.project, path.parent), None)
             else:
-                self.document.load(opened.project, path, recovered is not None)
+                edits = chosen.edits if chosen is not None else 0
+                self.document.load(opened.project, path, edits, common=common, digest=opened.digest, lock=lock, read_only=read_only)
                 self._remember(path)
+            for other in found.left if found is not None else ():
+                forget(other.path)
             self.opened.emit()
+            if kept:
+                self.told.emit(f"Saved beside it: {', '.join(place.name for place in kept)}")
             if opened.notes:
                 self.report.emit(f"{path.name} was opened, but", list(opened.notes))
 
-        self.jobs.start(f"Opening {path.name}", work, done, self.show_failure)
+        def failed(error: Exception) -> None:
+            release()
+            self.show_failure(error)
 
-    def recover_untitled(self) -> bool:
-        """Offer what was never saved before a crash; return whether it is being opened."""
-        project = self._offer(untitled_journal(), None)
-        if project is None:
-            return False
+        self.jobs.start(f"Opening {path.name}", work, done, failed)
+
+    def recover_untitled(self, otherwise: Callable[[], object] = lambda: None) -> None:
+        """Offer what was never saved before a crash; where nothing is, or is wanted, do `otherwise`."""
+        journals = untitled_journals()
+        if journals:
+            self.jobs.start("Recovering", lambda _: read_untitled(journals), lambda found: self._offer(found, otherwise), self.show_failure)
+        else:
+            otherwise()
+
+    def _offer(self, found: Found, otherwise: Callable[[], object]) -> None:
+        for note in found.notes:
+            self.told.emit(note)
+        for n, left in enumerate(found.left):
+            if ask_recover(self.window, left, None, len(found.left) - n - 1):
+                break
+            forget(left.path)
+        else:
+            otherwise()
+            return
+        era = self._era
 
         def done(opened: Opened) -> None:
-            self.document.load(opened.project, None, recovered=True)
+            if era != self._era or self.document.dirty:
+                return  # it is offered again another time
+            self.document.load(opened.project, None, left.edits)
+            forget(left.path)
             self.opened.emit()
+            rest = len(found.left) - n - 1
+            if rest:
+                self.told.emit(f"{rest} more will be offered when Metagraph is started again.")
 
-        self.jobs.start("Recovering", lambda job: load_whole(project, Path("/"), job.tell), done, self.show_failure)
-        return True
-
-    def _offer(self, journal: Path, saved: Path | None) -> Project | None:
-        """Ask whether to take over a journal's edits; None when there are none or they are not wanted."""
-        try:
-            found = recover(journal, saved)
-        except FileError as error:
-            kept = journal.with_suffix(".old")
-            journal.replace(kept)
-            self.told.emit(f"{error} ({kept.name})")
-            return None
-        if found is None:
-            return None
-        project, count = found
-        name = saved.name if saved is not None else "A project that was never saved"
-        edits = f"{count} edit{'s' if count != 1 else ''}"
-        answer = QMessageBox.question(
-            self.window,
-            "Recover edits?",
-            f"{name} was not closed properly. {edits.capitalize()} since the last save can be recovered.",
-            QMessageBox.StandardButton.Yes | QMessageBox.StandardButton.Discard,
-            QMessageBox.StandardButton.Yes,
-        )
-        return project if answer == QMessageBox.StandardButton.Yes else None
+        self.jobs.start("Recovering", lambda job: load_whole(left.project, Path("/"), job.tell), done, self.show_failure)
 
     def show_failure(self, error: Exception) -> None:
         """Say what went wrong with a job."""
@@ -133,9 +217,11 @@ class Files(QObject):
     # --- save
 
     def save(self) -> bool:
-        if self.document.path is None:
+        """Begin to save, on a thread; return whether that was not called off."""
+        if self.document.path is None or self.document.read_only:
             return self.save_as()
-        return self._save(None)
+        self.saver.save()
+        return True
 
     def save_as(self) -> bool:
         start = self.document.folder or Path.home()
@@ -143,22 +229,75 @@ class Files(QObject):
         if not name:
             return False
         path = Path(name)
-        return self._save(path if path.suffix in (".yaml", ".yml") else path.with_name(path.name + SUFFIX))
-
-    def _save(self, path: Path | None) -> bool:
-        try:
-            self.document.save(path)
-        except FileError as error:
-            QMessageBox.warning(self.window, "Not saved", str(error))
+        path = path if path.suffix in (".yaml", ".yml") else path.with_name(path.name + SUFFIX)
+        lock = Lock(path, self.document.owner)
+        holder = lock.acquire()
+        if holder is not None:
+            QMessageBox.warning(
+                self.window, "Not saved", f"{path.name} is open in another window, by {holder_words(holder)}. Choose another name."
+            )
             return False
-        assert self.document.path is not None
-        self._remember(self.document.path)
-        self.told.emit(f"Saved {self.document.path.name}")
+        if self.document.path is not None and Lock(self.document.path, self.document.owner).path == lock.path:
+            path = self.document.path  # by another name, or whoever had it is gone
+            self.document.regain(lock)
+        else:
+            self._asked_for = lock
+        self.saver.save(path)
         return True
+
+    def _saved(self, path: Path) -> None:
+        self._asked_for = None  # the document's now
+        self._remember(path)
+        self.told.emit(f"Saved {path.name}")
+
+    def _not_saved(self, error: Exception, path: Path | None) -> None:
+        if self._asked_for is not None:
+            self._asked_for.release()
+            self._asked_for = None
+        QMessageBox.warning(self.window, "Not saved", str(error))
+
+    def _changed(self, changed: FileChangedError) -> None:
+        """The project file is another one than was read: ask what to do with both."""
+        document = self.document
+        era, dirty = self._era, document.dirty
+        answer = ask_changed(self.window, changed, document.common, document.project, dirty)
+        if era != self._era:
+            return
+        if answer == "save as":
+            self.save_as()
+        elif answer == "anyway":
+            self.saver.save(anyway=True)
+        elif answer == "reload" and changed.theirs is not None and changed.digest is not None:
+            theirs, digest, folder = changed.theirs, changed.digest, changed.path.parent
+
+            def done(opened: Opened) -> None:
+                if era == self._era:
+                    document.reload(opened.project, digest)
+                    self.told.emit(f"Read {changed.path.name} again")
+
+            self.jobs.start(f"Reading {changed.path.name} again", lambda job: load_whole(theirs, folder, job.tell), done, self.show_failure)
+
+    def look_at_file(self) -> None:
+        """Look whether the project file has changed on disk, and say so."""
+        document = self.document
+        path, digest = document.path, document.digest
+        if path is None or digest is None or self.saver.busy:
+            return
+
+        def done(changed: FileChangedError | None) -> None:
+            if changed is None or self.saver.busy or (document.path, document.digest) != (path, digest) or changed.digest == self._told_of:
+                return
+            self._told_of = changed.digest
+            document.keep_all()
+            what = "look…" if document.dirty else "reload…"
+            tip = "Another program, another window or a version control update has written it"
+            self.changed_outside.emit(f"{path.name} changed on disk: {what}", tip, lambda: self._changed(changed))
+
+        self.jobs.start("project file", lambda _: file_changed(path, digest), done, quick=True)
 
     def may_leave(self) -> bool:
         """Return whether the project may be left: nothing unsaved, or saved or discarded when asked."""
-        if not self.document.dirty:
+        if self.saver.wait():
             return True
         box = QMessageBox.StandardButton
         answer = QMessageBox.question(
@@ -168,7 +307,7 @@ class Files(QObject):
             box.Save | box.Discard | box.Cancel,
             box.Save,
         )
-        return self.save() if answer == box.Save else answer == box.Discard
+        return (self.save() and self.saver.wait()) if answer == box.Save else answer == box.Discard
 
     # --- recent
 
@@ -183,6 +322,6 @@ class Files(QObject):
     def _remember(self, path: Path) -> None:
         names = [str(path.resolve()), *(str(p) for p in self.recent() if p != path.resolve())]
         try:
-            (state_folder() / "recent.json").write_text(json.dumps(names[:RECENT]), encoding="utf-8")
-        except OSError:
+            write_atomically(state_folder() / "recent.json", json.dumps(names[:RECENT]).encode())
+        except (FileError, OSError):
             self.told.emit("The list of recent projects could not be written.")

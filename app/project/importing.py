@@ -15,9 +15,11 @@ from app.project.files import Files
 from app.project.jobs import Job, Jobs
 from app.project.kept_maps import kept_maps
 from app.project.load import Load
+from app.project.opening import take_over
 from metagraph.formats.clips import SUFFIXES
 from metagraph.formats.imports import Imported, Strangers, import_files
 from metagraph.formats.repairs import repairs_of
+from metagraph.formats.store import Opened, load_returned
 from metagraph.formats.takes import NAME
 from metagraph.graph.model import Project
 
@@ -156,12 +158,28 @@ class Importing(QObject):
         return Load(clips=tuple(known[(path, take)] for path, take, _, _ in result.loaded if (path, take) in known))
 
     def find_missing(self) -> None:
-        """Ask where missing clip files are now, and load them from there."""
-        project, era = self.document.project, self._era
-        missing = [e for e in project.clips.values() if e.motion is None]
-        if not missing:
+        """Load clip files that were missing and are back; ask where the others are now, and load them from there."""
+        project, era, folder = self.document.project, self._era, self.document.folder
+        count = sum(1 for e in project.clips.values() if e.motion is None)
+        if not count:
             self.told.emit("No clip file is missing.")
             return
+
+        def done(back: Opened) -> None:
+            if era != self._era:
+                return
+            self.document.take_motion("Read clips that are back", lambda p: take_over(p, back.project))
+            if any(e.motion is None for e in self.document.project.clips.values()):
+                self._ask_for_missing(count)
+            else:
+                self.told.emit(f"Found {count} of {count} missing clips.")
+
+        self.jobs.start("Looking for clips", lambda job: load_returned(project, folder, job.tell), done, self.files.show_failure)
+
+    def _ask_for_missing(self, count: int) -> None:
+        """count: how many were missing before some were found at their places."""
+        project, era = self.document.project, self._era
+        missing = [e for e in project.clips.values() if e.motion is None]
         name = QFileDialog.getExistingDirectory(
             self.widget, f"Where are the {len(missing)} missing clips?", str(self.document.folder or Path.home())
         )
@@ -177,10 +195,9 @@ class Importing(QObject):
         def done(found: Project) -> None:
             if era != self._era:
                 return
-            before = {i for i, e in self.document.project.clips.items() if e.motion is None}
-            self.document.edit("Find missing clips", lambda p: _take_over(p, found))
-            left = sum(1 for i in before if self.document.project.clips[i].motion is None)
-            self.told.emit(f"Found {len(before) - left} of {len(before)} missing clips.")
+            self.document.take_motion("Find missing clips", lambda p: take_over(p, found))
+            left = sum(1 for e in self.document.project.clips.values() if e.motion is None)
+            self.told.emit(f"Found {count - left} of {count} missing clips.")
 
         self.jobs.start("Looking for clips", work, done, self.files.show_failure)
 
@@ -195,9 +212,3 @@ def _together(parts: Sequence[Imported]) -> Imported:
         retargeted=sum(part.retargeted for part in parts),
         left=sum(part.left for part in parts),
     )
-
-
-def _take_over(project: Project, found: Project) -> Project:
-    """Return `project` with the clips that have motion in `found` and none here."""
-    clips = {i: found.clips[i] if e.motion is None and i in found.clips else e for i, e in project.clips.items()}
-    return replace(project, clips=clips)

@@ -13,7 +13,8 @@ from PySide6.QtCore import QObject, QRunnable, Qt, QThreadPool, Signal
 class Job(QObject):
     """A running job. `done` carries its result, `failed` the exception, `progress` (done, total, words).
 
-    Exactly one of done and failed is emitted, then `ended`; after `cancel` neither done nor failed is.
+    Exactly one of done and failed is emitted, then `ended`; after `cancel` neither done nor failed is. Then it is freed, with what is
+    connected to it and all that its work holds; only `title` and `cancelled` may be asked for after that.
     """
 
     progress = Signal(int, int, str)
@@ -40,10 +41,16 @@ class Job(QObject):
             else:
                 self.failed.emit(error)
         self.ended.emit()
+        self._work = _nothing
+        self.deleteLater()  # what is connected keeps the job alive, and is kept by it: Qt alone can part them
 
     def tell(self, done: int, total: int, words: str = "") -> None:
         """Report progress; called by the work, on its own thread."""
         self.progress.emit(done, total, words)
+
+
+def _nothing(job: Job) -> None:
+    """The work of a job that is over."""
 
 
 class _Runner(QRunnable):
@@ -61,6 +68,7 @@ class _Runner(QRunnable):
             problem = error
         with contextlib.suppress(RuntimeError):  # the window is gone; nobody wants the result
             self.job._over.emit(result, problem)
+        del self.job  # the pool forgets a runner later than the job is delivered
 
 
 _BUSY: list[QThreadPool] = []  # pools that outlive their window because a job would not end

@@ -24,6 +24,12 @@ def load_whole(project: Project, folder: Path, progress: Progress | None = None)
     return _voiced(load_motions(project, folder, progress), folder)
 
 
+def take_over(project: Project, found: Project) -> Project:
+    """Return `project` with the clips that have motion in `found` and none here."""
+    clips = {i: found.clips[i] if e.motion is None and i in found.clips else e for i, e in project.clips.items()}
+    return replace(project, clips=clips, skeleton=project.skeleton or found.skeleton)
+
+
 def _faced(project: Project, folder: Path) -> Project:
     """Return the project knowing its character's morph targets; what is wrong with the file, whoever draws it says."""
     if project.character is None:

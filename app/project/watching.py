@@ -1,31 +1,44 @@
-"""Clip files that change on disk, as when they are exported again, are read anew in place: timing and labels stay, one step to undo."""
+"""Clip files that change on disk, as when they are exported again, are read anew in place: timing and labels stay, one step to undo.
+
+Files that were missing and are back are read, too; and whoever asks is told when the project's own file may have changed.
+"""
 
 from __future__ import annotations
 
+import os
+import time
 from collections.abc import Mapping
 from dataclasses import replace
-from pathlib import Path
 
 from PySide6.QtCore import QObject, QTimer, Signal
 
 from app.project.document import Document
 from app.project.jobs import Job, Jobs
+from app.project.opening import take_over
 from metagraph.formats.imports import Imported, import_files
+from metagraph.formats.store import Opened, load_returned
+from metagraph.graph.model import ClipEntry
 
 EVERY = 1500  # ms between two looks; files on network drives tell nobody when they change
-State = tuple[int, int]  # of a file: when it was written, and its size
+SHARE = 20  # one part in so many of the time, at most, is spent looking
+State = tuple[int, int] | None  # of a file: when it was written, and its size; None while it is not there
 
 
 class Watcher(QObject):
-    """Looks at the files of the project's clips. told: words for the status bar."""
+    """Looks at the files of the project's clips. told: words for the status bar. file_touched: look whether the project file changed."""
 
     told = Signal(str)
+    file_touched = Signal()
 
     def __init__(self, document: Document, jobs: Jobs, parent: QObject | None = None) -> None:
         super().__init__(parent)
         self.document, self.jobs = document, jobs
-        self._known: dict[Path, State] = {}  # as they were last read
-        self._changing: dict[Path, State] = {}  # seen to have changed, perhaps still being written
+        self._known: dict[str, State] = {}  # as they were last read
+        self._changing: dict[str, State] = {}  # seen to have changed, perhaps still being written
+        self._clips: Mapping[str, ClipEntry] = {}  # those that `_paths` are of
+        self._paths: list[str] = []
+        self._missing: frozenset[str] = frozenset()  # those of clips without motion
+        self._file: State = None  # the project file
         self._busy = False
         self._timer = QTimer(self)
         self._timer.setInterval(EVERY)
@@ -42,68 +55,112 @@ class Watcher(QObject):
         (self._timer.start if on else self._timer.stop)()
 
     def _forget(self) -> None:
-        self._known.clear()
-        self._changing.clear()
+        self._known, self._changing = {}, {}  # new ones: a look may be under way
+        self._clips, self._file = {}, None
 
     def look(self) -> None:
         """Look at the files once, on a thread."""
-        if self._busy or not self.document.project.clips:
+        if self._busy or not (self.document.project.clips or self.document.path):
             return
         self._busy = True
-        folder, project = self.document.folder or Path(), self.document.project
-        names = {clip.path for clip in project.clips.values()}  # a thousand paths would take their time here
+        self._gather()
+        file, paths, missing, known = self.document.path, self._paths, self._missing, self._known
 
-        def work(_: Job) -> dict[Path, State]:
-            return _states([folder / name for name in names])
+        def work(_: Job) -> tuple[dict[str, State], State, float]:
+            begun = time.perf_counter()
+            return _changed(paths, missing, known), _state(str(file)) if file else None, time.perf_counter() - begun
 
-        self.jobs.start("Looking for changed files", work, self._compare, self._failed, quick=True)
+        self.jobs.start("Looking for changed files", work, lambda found: self._compare(known, *found), self._failed, quick=True)
+
+    def _gather(self) -> None:
+        """Find out which files are looked at; a clip whose motion came or went is another mapping of clips."""
+        clips = self.document.project.clips
+        if clips is self._clips:
+            return
+        folder = str(self.document.folder or "")
+        self._clips = clips
+        self._missing = frozenset(os.path.join(folder, e.path.replace("\\", "/")) for e in clips.values() if e.motion is None)  # noqa: PTH118
+        here = {os.path.join(folder, path) for path in {e.path for e in clips.values() if e.motion is not None}}  # noqa: PTH118
+        self._paths = [*(here | self._missing)]
 
     def _failed(self, error: Exception) -> None:
         self._busy = False
 
-    def _compare(self, now: Mapping[Path, State]) -> None:
+    def _compare(self, known: dict[str, State], now: Mapping[str, State], file: State, seconds: float) -> None:
         self._busy = False
-        ready = []
-        for path, state in now.items():
-            before = self._known.setdefault(path, state)
-            if state == before:
-                self._changing.pop(path, None)
-            elif self._changing.get(path) == state:  # it was the same a look ago, so whoever writes it is done
-                ready.append(path)
-            else:
-                self._changing[path] = state
-        for path in ready:
-            self._known[path] = self._changing.pop(path)
+        if known is not self._known:
+            return  # another project was opened meanwhile
+        if self.on:
+            self._timer.setInterval(max(EVERY, int(seconds * 1000 * SHARE)))
+        if file != self._file:
+            self._file = file
+            self.file_touched.emit()
+        ready = [path for path, state in now.items() if self._changing.get(path, ()) == state]  # whoever writes it is done
+        self._changing = {path: state for path, state in now.items() if path not in ready}
+        self._known.update((path, now[path]) for path in ready)
         if ready:
             self._read(ready)
 
-    def _read(self, paths: list[Path]) -> None:
-        project, folder = self.document.project, self.document.folder
+    def _read(self, paths: list[str]) -> None:
+        project, folder, known = self.document.project, self.document.folder, self._known
+        again = [path for path in paths if path not in self._missing]
+        back = len(again) < len(paths)
 
-        def work(job: Job) -> Imported:
-            return import_files(project, folder, paths, lambda n, total, path: job.tell(n, total, path.name), lambda: job.cancelled)
+        def work(job: Job) -> tuple[Imported, Opened | None]:
+            tell = lambda n, total, path: job.tell(n, total, path.name)  # noqa: E731
+            returned = load_returned(project, folder, job.tell) if back else None
+            return import_files(project, folder, again, tell, lambda: job.cancelled), returned
 
-        self.jobs.start("Reading changed clips", work, self._taken, lambda error: self.told.emit(str(error)))
+        def done(read: tuple[Imported, Opened | None]) -> None:
+            if known is self._known:
+                self._taken(*read)
 
-    def _taken(self, result: Imported) -> None:
+        self.jobs.start("Reading changed clips", work, done, lambda error: self.told.emit(str(error)))
+
+    def _taken(self, result: Imported, returned: Opened | None) -> None:
+        if returned is not None:
+            self._put_back(returned)
         known = {(clip.path, clip.take): clip.digest for clip in self.document.project.clips.values()}
         again = tuple(x for x in result.loaded if known.get((x[0], x[1]), x[2]) != x[2])
         if again:
             count = len(again)
             self.document.edit(f"Refresh {count} clip{'s' if count != 1 else ''}", replace(result, loaded=again, character=None).into)
-            names = ", ".join(x[3].name for x in again[:3]) + (" ..." if count > 3 else "")
-            self.told.emit(f"Changed on disk and read again: {names}")
+            self.told.emit(f"Changed on disk and read again: {_names([x[3].name for x in again])}")
         if result.failures:
             self.told.emit(f"Changed on disk, but: {result.failures[0]}")
 
+    def _put_back(self, returned: Opened) -> None:
+        before = self.document.project
+        self.document.take_motion("Read clips that are back", lambda p: take_over(p, returned.project))
+        back = [e.name for i, e in self.document.project.clips.items() if e.motion is not None and before.clips[i].motion is None]
+        if back:
+            self.told.emit(f"Back again: {_names(back)}")
+        else:
+            told = [note for note in returned.notes if not note.endswith("is missing")]
+            self.told.emit(f"A missing file is back, but: {told[0] if told else 'its clip cannot be read'}")
 
-def _states(paths: list[Path]) -> dict[Path, State]:
-    """Return the states of the files that are there."""
-    out: dict[Path, State] = {}
+
+def _names(names: list[str]) -> str:
+    return ", ".join(names[:3]) + (" ..." if len(names) > 3 else "")
+
+
+def _state(path: str) -> State:
+    try:
+        found = os.stat(path)  # noqa: PTH116 - a Path of each would take as long again
+    except OSError:
+        return None
+    return found.st_mtime_ns, found.st_size
+
+
+def _changed(paths: list[str], missing: frozenset[str], known: dict[str, State]) -> dict[str, State]:
+    """Return the states of files that are not as they are known, and note those that are seen for the first time.
+
+    One that is not there is being replaced, or gone; what is missing is told elsewhere.
+    """
+    out: dict[str, State] = {}
     for path in paths:
-        try:
-            found = path.stat()
-        except OSError:
-            continue  # being replaced, or gone; what is missing is told elsewhere
-        out[path] = (found.st_mtime_ns, found.st_size)
+        state = _state(path)
+        before = known.setdefault(path, None if path in missing else state)
+        if state is not None and state != before:
+            out[path] = state
     return out

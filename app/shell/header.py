@@ -46,6 +46,7 @@ class Header(QToolBar):
         """Show name and dirty mark as they are now."""
         d = self.document
         saved = "not saved yet" if d.path is None else "edited" if d.dirty else "saved"
+        saved = f"read-only, {saved}" if d.read_only else saved
         dim = theme(self.session.look.name).dim
         self.name.setText(f"<b>{escape(d.project.name)}</b>&nbsp;&nbsp;<span style='color:{dim}'>{saved}</span>")
 

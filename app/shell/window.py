@@ -125,6 +125,8 @@ class Window(QMainWindow):
         d.changed.connect(self._edited)
         d.state_changed.connect(self.refresh)
         d.loaded.connect(shell.notice.clear)
+        shell.watcher.file_touched.connect(shell.files.look_at_file)
+        shell.files.changed_outside.connect(shell.notice.tell)
         d.saved.connect(lambda: shell.learned.keep(d, shell.jobs))
         for signal in (
             s.place.layer_changed, s.selection.changed, s.transport.show_changed, s.transport.playing_changed, s.place.stance_changed, s.onstage.performance_changed,
@@ -185,7 +187,9 @@ class Window(QMainWindow):
     def refresh(self) -> None:
         """Show the state of document and session in title, header and menus."""
         self.shell.actions.refresh()
-        self.setWindowTitle(f"{self.shell.document.project.name}{'[*]'} - Metagraph")
+        self.setWindowTitle(
+            f"{self.shell.document.project.name}{'[*]'}{' (read-only)' if self.shell.document.read_only else ''} - Metagraph"
+        )
         self.setWindowModified(self.shell.document.dirty)
         self.header.refresh()
 

@@ -1,14 +1,19 @@
 """The autosave journal: every finished edit is appended at once, so a crash loses nothing that was finished.
 
-A journal belongs to a saved project file (or to none, for a project never saved) and begins with its SHA-256. Each line
-after that is one edit as JSON: what changed in the project's plain data. A torn last line is ignored.
+A journal belongs to one sitting at a saved project file (or at none, for a project never saved) and begins with the file's
+SHA-256. Each line after that is one edit as JSON: what changed in the project's plain data. A torn last line is ignored.
+While the project is saved, edits go on: a `mark` stands where the saved project was, and once more, with the SHA-256 of the file
+that is about to be written, before it is. So whichever of the two files a crash leaves, the edits after it are known.
+`recovery` reads journals.
 """
 
 from __future__ import annotations
 
-import hashlib
 import json
-from collections.abc import Callable, Mapping, Sequence
+import os
+import threading
+from collections.abc import Callable, Mapping
+from contextlib import suppress
 from pathlib import Path
 from typing import Any, BinaryIO
 
@@ -19,7 +24,6 @@ from metagraph.formats.data import (
     STRUCTS,
     action_data,
     clip_data,
-    from_data,
     markov_data,
     skeleton_data,
     stance_data,
@@ -28,13 +32,13 @@ from metagraph.formats.data import (
     weights_data,
 )
 from metagraph.formats.fields import Data, DataError
+from metagraph.formats.locking import Owner
 from metagraph.formats.manual_data import link_data, manual_data, state_data
-from metagraph.formats.store import read_project
+from metagraph.formats.store import file_digest
 from metagraph.graph.manual import Manual
 from metagraph.graph.model import LAYERS, Layer, MetaGraph, Project
 
-_KEYED = ("clips", "stances", "actions", "states", "links")
-_KEPT = "It is kept; rename it to look into it."
+KEYED = ("clips", "stances", "actions", "states", "links")
 
 
 # --- what changed ----------------------------------------------------------------------------------------------------
@@ -120,117 +124,50 @@ def _keyed(out: Data, key: str, before: Mapping[str, Any], after: Mapping[str, A
         out[f"{key}_after"] = {i: order[n - 1] if n else None for n, i in enumerate(order) if i not in before}
 
 
-# --- and back --------------------------------------------------------------------------------------------------------
-
-
-class _Replay:
-    """Project data that changes are worked into; lists are held by id, so that a change costs what it is large."""
-
-    def __init__(self, data: Data) -> None:
-        self.top = _opened({key: value for key, value in data.items() if key != "manual"})
-        self.layers = {layer: _opened(data["layers"][layer]) for layer in LAYERS}
-        self.manual = {layer: _opened(machine) for layer, machine in data.get("manual", {}).items()}
-
-    def apply(self, change: Data) -> None:
-        for layer, part in change.get("layers", {}).items():
-            _work_in(self.layers[layer], part)
-        for layer, part in change.get("manual", {}).items():
-            if part is None:
-                self.manual.pop(layer, None)
-            elif layer in self.manual:
-                _work_in(self.manual[layer], part)
-            else:
-                self.manual[layer] = _opened(part)
-        _work_in(self.top, {key: value for key, value in change.items() if key not in ("layers", "manual")})
-
-    def data(self) -> Data:
-        out = {**_closed(self.top), "layers": {layer: _closed(part) for layer, part in self.layers.items()}}
-        return {**out, "manual": {layer: _closed(part) for layer, part in self.manual.items()}} if self.manual else out
-
-
-def _opened(data: Data) -> Data:
-    return {key: {item["id"]: item for item in value} if key in _KEYED else value for key, value in data.items()}
-
-
-def _closed(data: Data) -> Data:
-    return {key: list(value.values()) if key in _KEYED else value for key, value in data.items()}
-
-
-def _work_in(data: Data, change: Data) -> None:
-    for key, value in change.items():
-        if key in _KEYED:
-            items = data.setdefault(key, {})
-            for ident, item in value.items():
-                if item is None:
-                    items.pop(ident, None)
-                else:
-                    items[ident] = item
-        elif not key.endswith(("_order", "_after")):
-            data[key] = value
-    for key in _KEYED:
-        if f"{key}_order" in change:
-            data[key] = {i: data[key][i] for i in change[f"{key}_order"]}
-        elif f"{key}_after" in change:
-            data[key] = _inserted(data[key], change[f"{key}_after"])
-
-
-def _inserted(items: Data, places: Mapping[str, str | None]) -> Data:
-    """Return items in the order that puts each of `places` right behind another item, None being the beginning."""
-    following: dict[str | None, list[str]] = {}
-    for ident, before in places.items():
-        following.setdefault(before, []).append(ident)
-    out: Data = {}
-    queue: list[str] = following.pop(None, [])[::-1]
-    rest = iter([i for i in items if i not in places])
-    while True:
-        if not queue:
-            following_one = next(rest, None)
-            if following_one is None:
-                break
-            queue.append(following_one)
-        ident = queue.pop()
-        out[ident] = items[ident]
-        queue.extend(reversed(following.pop(ident, ())))
-    return {**out, **items}
-
-
-def apply(data: Data, change: Data) -> Data:
-    """Return project data with one change worked in. Raises KeyError, TypeError or AttributeError when they do not fit."""
-    replay = _Replay(data)
-    replay.apply(change)
-    return replay.data()
-
-
 # --- the file --------------------------------------------------------------------------------------------------------
 
 
 class Journal:
-    """Appends edits to a file, begun with the first. Beginning truncates: whoever does has taken over what was in it, or declined it.
+    """Appends edits to a file, begun with the first. Beginning replaces what was in it: whoever does has taken that over, or declined it.
 
-    saved: the project file as it is now, which the edits build on.
+    saved: the project file that the edits build on; digest: its SHA-256, where it was another one than it is now. owner: whose
+    sitting it is, so that others leave it alone while that goes on.
     """
 
-    def __init__(self, path: Path, saved: Path | None) -> None:
+    def __init__(self, path: Path, saved: Path | None, owner: Owner | None = None, digest: str | None = None) -> None:
         self.path = path
         self._file: BinaryIO | None = None
-        self._head: Data = {"saved": _digest(saved), "file": str(saved) if saved else None}
+        self._head: Data = {"saved": digest or file_digest(saved), "file": str(saved) if saved else None}
+        if owner is not None:
+            self._head["owner"] = msgspec.to_builtins(owner)
         self._behind: Project | None = None  # the project before the first edit that could not be written
+        self._marks = 0
+        self._turn = threading.RLock()  # a thread that saves writes, too
 
-    def begin(self, base: Project | None = None) -> None:
-        """Start anew from the saved file, or from `base` written into the journal when there is none. Raises FileError."""
-        self.close()
+    def begin(self, base: Project | None = None, unsaved: int = 0) -> None:
+        """Start anew from the saved file, or from `base` written into the journal when there is none. Raises FileError.
+
+        unsaved: how many edits of `base` are in no file.
+        """
         try:
-            head = self._head if base is None else {**self._head, "base": to_data(base)}
+            head = self._head if base is None else {**self._head, "unsaved": unsaved, "base": to_data(base)}
         except DataError as error:
             raise FileError(self.path, f"cannot be written ({error})", error.where, "Correct that value.") from None
-        try:
-            self.path.parent.mkdir(parents=True, exist_ok=True)
-            self._file = self.path.open("wb")
-        except OSError as error:
-            raise FileError(
-                self.path, f"cannot be written ({error.strerror})", "on beginning it", "Save the project now and then."
-            ) from None
-        self._write(head)
+        with self._turn:
+            self.close()
+            part = self.path.with_name(f"{self.path.name}.new")
+            try:
+                self.path.parent.mkdir(parents=True, exist_ok=True)
+                part.write_bytes(_encoded(head) + b"\n")
+                part.replace(self.path)  # until then the old one stands
+                self._file = self.path.open("r+b")
+                self._file.seek(0, os.SEEK_END)
+            except OSError as error:
+                with suppress(OSError):
+                    part.unlink(missing_ok=True)
+                raise FileError(
+                    self.path, f"cannot be written ({error.strerror})", "on beginning it", "Save the project now and then."
+                ) from None
 
     def edit(self, before: Project, after: Project) -> None:
         """Append one finished edit. Raises FileError when it cannot be written; the edit itself stands, and is written with the next."""
@@ -246,7 +183,29 @@ class Journal:
             self._write(change)
         self._behind = None
 
+    def mark(self) -> int | None:
+        """Write that the project as it is now is being saved; return the mark's number, None without an edit. Raises FileError."""
+        if self._file is None or self._behind is not None:
+            return None
+        self._marks += 1
+        self._write({"mark": self._marks})
+        return self._marks
+
+    def settle(self, mark: int, digest: str) -> None:
+        """Write what file a mark is about to become, before it does; on any thread. Raises FileError."""
+        if self._file is not None:
+            self._write({"mark": mark, "saved": digest})
+
+    def touch(self) -> None:
+        """Show computers that share the drive that this sitting goes on. Raises OSError."""
+        if self._file is not None:
+            os.utime(self.path)
+
     def _write(self, record: Data) -> None:
+        with self._turn:
+            self._add(record)
+
+    def _add(self, record: Data) -> None:
         assert self._file is not None
         start = self._file.tell()
         try:
@@ -287,65 +246,6 @@ def _encoded(record: Data) -> bytes:
         return json.dumps(record, separators=(",", ":"), allow_nan=False).encode()
 
 
-def _digest(path: Path | None) -> str | None:
-    if path is None or not path.is_file():
-        return None
-    return hashlib.sha256(path.read_bytes()).hexdigest()
-
-
-def recover(journal: Path, saved: Path | None) -> tuple[Project, int] | None:
-    """Return the project with the journal's edits worked in, without motion, and how many there were; None if there is nothing.
-
-    Raises FileError when the journal belongs to another state of the file, or nothing in it can be used.
-    """
-    try:
-        lines = journal.read_bytes().split(b"\n")[:-1]  # what follows the last newline was torn
-    except OSError:
-        return None
-    if len(lines) < 2:
-        return None
-    records: list[Data] = []
-    for line in lines:
-        try:
-            record = json.loads(line)
-        except (ValueError, RecursionError):
-            break
-        if not isinstance(record, dict):
-            break
-        records.append(record)
-    if not records or "saved" not in records[0]:
-        raise FileError(journal, "is damaged", "line 1", _KEPT)
-    if records[0]["saved"] != _digest(saved):
-        raise FileError(journal, "belongs to another state of the project file", "line 1", _KEPT)
-    base = records[0].get("base")
-    if not isinstance(base, dict):
-        base = to_data(read_project(saved, []) if saved is not None and saved.is_file() else Project())
-    # Usually all are good; else the longest beginning that is.
-    good, bad = 0, len(records)
-    count = len(records) - 1
-    found: Project | None = None
-    while count > good:
-        project = _replayed(base, records[1 : count + 1])
-        if project is not None:
-            good, found = count, project
-        else:
-            bad = count
-        count = (good + bad) // 2
-    if found is None:
-        raise FileError(journal, "is damaged", "line 2", _KEPT)
-    return found, good
-
-
-def _replayed(base: Data, records: Sequence[Data]) -> Project | None:
-    try:
-        replay = _Replay(base)
-        for record in records:
-            replay.apply(record)
-        return from_data(replay.data(), [])
-    except (DataError, KeyError, TypeError, AttributeError):
-        return None
-
-
-def journal_path(saved: Path) -> Path:
-    """Return where the journal of a project file lies: beside it, hidden."""
-    return saved.with_name(f".{saved.name}.journal")
+def journal_path(saved: Path, sitting: str = "") -> Path:
+    """Return where the journal of a sitting at a project file lies: beside it, hidden. Without a sitting: as it was called at first."""
+    return saved.with_name(f".{saved.name}.{sitting}.journal" if sitting else f".{saved.name}.journal")

@@ -5,6 +5,7 @@ Clip paths are relative to the project file and carry the file's SHA-256, so a m
 
 from __future__ import annotations
 
+import hashlib
 import os
 import re
 from collections.abc import Callable, Iterable, Mapping
@@ -38,10 +39,11 @@ UPGRADES: dict[int, Callable[[Data], Data]] = {}
 
 @dataclass(frozen=True)
 class Opened:
-    """A project read from a file. notes: what was repaired or is worth knowing, in words."""
+    """A project read from a file. notes: what was repaired or is worth knowing, in words. digest: of the file, SHA-256 in hex."""
 
     project: Project
     notes: tuple[str, ...] = ()
+    digest: str | None = None
 
 
 # --- text ------------------------------------------------------------------------------------------------------------
@@ -97,12 +99,27 @@ def save_project(project: Project, path: str | Path, was_at: Path | None = None)
     path = Path(path)
     if was_at is not None:
         project = moved(project, was_at, path)
+    write_atomically(path, encoded(project, path))
+    return project
+
+
+def encoded(project: Project, path: Path) -> bytes:
+    """Return what a project's file at `path` holds. Raises FileError."""
     try:
-        text = to_text(to_data(project))
+        return to_text(to_data(project)).encode()
     except DataError as error:
         raise FileError(path, f"cannot be saved: {error}", error.where, "Correct that value.") from None
-    write_atomically(path, text.encode())
-    return project
+
+
+def file_digest(path: Path | None) -> str | None:
+    """Return the SHA-256 of a project file, hex, by which it is known to have changed; None where there is no file."""
+    if path is None or not path.is_file():
+        return None
+    return content_digest(path.read_bytes())
+
+
+def content_digest(content: bytes) -> str:
+    return hashlib.sha256(content).hexdigest()
 
 
 def moved(project: Project, old: Path | None, new: Path) -> Project:
@@ -159,21 +176,36 @@ def relative(path: Path, folder: Path) -> str:
 def read_project(path: str | Path, notes: list[str] | None = None) -> Project:
     """Read a project file without loading its clips. notes: see `data.from_data`. Raises FileError."""
     path = Path(path)
+    return _decoded(_content(path), path, notes)
+
+
+def _content(path: Path) -> bytes:
     try:
-        text = path.read_bytes().decode("utf-8-sig")
+        return path.read_bytes()
     except OSError as error:
         raise FileError(path, f"cannot be read ({error.strerror or error})", "on opening it", "Check that it is there.") from None
+
+
+def _decoded(content: bytes, path: Path, notes: list[str] | None = None) -> Project:
+    try:
+        return from_text(content.decode("utf-8-sig"), path, notes)
     except UnicodeDecodeError as error:
         raise FileError(path, "is not text", f"byte {error.start}", "Choose a Metagraph project file.") from None
-    return from_text(text, path, notes)
+
+
+def read_with_digest(path: Path, notes: list[str] | None = None) -> tuple[Project, str]:
+    """Read a project file without loading its clips; return with it the digest of just what was read. Raises FileError."""
+    content = _content(path)
+    return _decoded(content, path, notes), content_digest(content)
 
 
 def open_project(path: str | Path, progress: Callable[[int, int], None] | None = None) -> Opened:
     """Read a project file and load its clips; missing or broken clip files leave their clips without motion, with a note."""
     path = Path(path)
     notes: list[str] = []
-    opened = load_motions(read_project(path, notes), path.parent, progress)
-    return replace(opened, notes=(*notes, *opened.notes))
+    project, found = read_with_digest(path, notes)
+    opened = load_motions(project, path.parent, progress)
+    return replace(opened, notes=(*notes, *opened.notes), digest=found)
 
 
 def load_motions(project: Project, folder: Path | None, progress: Callable[[int, int], None] | None = None) -> Opened:
@@ -186,10 +218,14 @@ def load_motions(project: Project, folder: Path | None, progress: Callable[[int,
 def relocate(project: Project, folder: Path | None, where: Path, progress: Callable[[int, int], None] | None = None) -> Project:
     """Return the project with missing clips loaded from anywhere below `where`, their paths corrected.
 
-    They are found by content, or by name where the content has changed.
+    They are found by content, or by name where the content has changed; those that are at their places again are read there.
     """
-    lost = _lost(project, folder)
-    return _load(project, folder, _find(lost, where, by_name=True), progress, only=lost).project
+    return _load(project, folder, _find(_lost(project, folder), where, by_name=True), progress).project
+
+
+def load_returned(project: Project, folder: Path | None, progress: Callable[[int, int], None] | None = None) -> Opened:
+    """Load the motion of the clips that have none and whose files are at their places; nothing is searched."""
+    return _load(project, folder, {}, progress)
 
 
 def _place(entry: ClipEntry, folder: Path | None) -> Path:
@@ -212,14 +248,13 @@ def _load(
     folder: Path | None,
     found: Mapping[str, Path],
     progress: Callable[[int, int], None] | None,
-    only: Mapping[str, object] | None = None,
 ) -> Opened:
     """Load the clips without motion, from `found` those that are elsewhere."""
     notes: list[str] = []
     clips = dict(project.clips)
     by_path: dict[str, list[ClipEntry]] = {}
     for entry in clips.values():
-        if entry.motion is None and (only is None or entry.path in only):
+        if entry.motion is None:
             by_path.setdefault(entry.path, []).append(entry)
     skeleton = project.skeleton
     strangers: list[str] = []  # ids of clips that do not fit the skeleton

@@ -3,12 +3,13 @@
 from __future__ import annotations
 
 from collections.abc import Callable
+from contextlib import suppress
 from dataclasses import replace
 from pathlib import Path
 
 from metagraph.errors import FileError
 from metagraph.formats.imports import import_files
-from metagraph.formats.journal import journal_path, recover
+from metagraph.formats.recovery import left_journals, recover
 from metagraph.formats.store import Opened, load_motions, read_project, relative, save_project
 from metagraph.graph import edits
 from metagraph.graph.model import Project
@@ -54,11 +55,15 @@ def reopen(path: Path, progress: Progress | None = None) -> tuple[Opened, int]:
 
     A journal of an older state of the file has nothing to add: the file was saved after it.
     """
-    try:
-        found = recover(journal_path(path), path)
-    except FileError:
-        found = None
-    project, count = found if found is not None else (read_project(path), 0)
-    if count:  # whoever opens it begins a new journal, and may be killed just then
+    project, count, used = None, 0, None
+    for journal in left_journals(path):  # the latest counts
+        with suppress(FileError):
+            found = recover(journal, path)
+            if found is not None:
+                project, count, used = *found, journal
+    if project is None:
+        project = read_project(path)
+    if used is not None:  # whoever opens it begins a new journal, and may be killed just then
         save_project(project, path)
+        used.unlink(missing_ok=True)
     return load_motions(project, path.parent, progress), count

@@ -20,7 +20,8 @@ from hypothesis import strategies as st
 
 from metagraph.errors import FileError
 from metagraph.formats.data import from_data, to_data
-from metagraph.formats.journal import Journal, apply, changes, journal_path, recover
+from metagraph.formats.journal import Journal, changes, journal_path
+from metagraph.formats.recovery import apply, recover
 from metagraph.formats.store import SUFFIX, save_project
 from metagraph.graph import conversing, edits
 from metagraph.graph.conversation import Conversation, Rates, Segment, Side, Word

@@ -6,9 +6,10 @@ import json
 
 import pytest
 
-from app.project.document import Document, project_name, untitled_journal
+from app.project.document import Document
+from app.project.writing import project_name
 from metagraph.errors import FileError
-from metagraph.formats.journal import journal_path, recover
+from metagraph.formats.recovery import recover
 from metagraph.formats.store import read_project, save_project
 from metagraph.graph import edits
 from metagraph.graph.edits import EditError
@@ -161,27 +162,27 @@ def test_loading_forgets_the_steps_of_what_was_before(document, toy):
 
 def test_edits_of_an_unsaved_project_are_in_its_journal(document, toy):
     beat = toy.id(document.project, "rest beat lf")
-    assert recover(untitled_journal(), None) is None, "no edits, nothing to recover"
+    assert recover(document.journal_place, None) is None, "no edits, nothing to recover"
     likely(document, beat, 2.0)
     likely(document, beat, 2.5)
     document.undo()
-    found, count = recover(untitled_journal(), None)
+    found, count = recover(document.journal_place, None)
     assert count == 3
     assert found.action(beat).likelihood == 2.0
     document.close_journal()
-    assert not untitled_journal().exists()
+    assert not document.journal_place.exists()
 
 
 def test_edits_of_a_saved_project_are_beside_it_until_it_is_saved(document, toy, tmp_path):
     path, beat = tmp_path / "mine.metagraph.yaml", toy.id(document.project, "rest beat lf")
     document.save(path)
-    assert not untitled_journal().exists()
-    assert not journal_path(path).exists()
+    assert not document.journal_place.exists()
+    assert not document.journal_place.exists()
     likely(document, beat, 2.0)
-    found, count = recover(journal_path(path), path)
+    found, count = recover(document.journal_place, path)
     assert (found.action(beat).likelihood, count) == (2.0, 1)
     document.save()
-    assert not journal_path(path).exists()
+    assert not document.journal_place.exists()
 
 
 def test_recovered_edits_are_unsaved_and_survive_a_second_crash(qapp, toy, tmp_path):
@@ -193,7 +194,7 @@ def test_recovered_edits_are_unsaved_and_survive_a_second_crash(qapp, toy, tmp_p
     document.load(recovered, path, recovered=True)
     assert document.dirty
     document.edit("Change seed", lambda p: edits.set_settings(p, seed=5))
-    found, _ = recover(journal_path(path), path)
+    found, _ = recover(document.journal_place, path)
     assert (found.action(beat).likelihood, found.settings.seed) == (2.0, 5)
     document.save()
     assert not document.dirty
@@ -203,7 +204,7 @@ def test_a_journal_that_cannot_be_written_is_told_and_the_edit_stands(document, 
     path, beat, told = tmp_path / "mine.metagraph.yaml", toy.id(document.project, "rest beat lf"), []
     document.save(path)
     document.failed.connect(told.append)
-    journal_path(path).mkdir()
+    document.journal_place.mkdir()
     seen = []
     document.changed.connect(lambda a, b: seen.append(b))
     likely(document, beat, 2.0)
@@ -211,22 +212,22 @@ def test_a_journal_that_cannot_be_written_is_told_and_the_edit_stands(document, 
     assert seen == [document.project], "the views follow all the same"
     assert len(told) == 1
     assert "autosaved" in told[0]
-    journal_path(path).rmdir()
+    document.journal_place.rmdir()
 
 
 def test_a_drag_writes_small_records(document, toy):
     beat = toy.id(document.project, "rest beat lf")
     for value in range(1, 50):
         likely(document, beat, 1 + value / 100, merge="likelihood")
-    lines = untitled_journal().read_text().splitlines()[1:]
+    lines = document.journal_place.read_text().splitlines()[1:]
     assert max(map(len, lines)) < 600
     assert all(json.loads(line) for line in lines)
 
 
 def test_a_document_that_opened_nothing_is_autosaved_from_the_first_edit_on(qapp, toy):
     document = Document()
-    assert not untitled_journal().exists(), "what a crash left behind must first be offered"
+    assert not document.journal_place.exists(), "what a crash left behind must first be offered"
     document.edit("Import", lambda p: edits.add_clips(p, [("a.glb", 0, "", toy.clip("a"))]))
-    found, count = recover(untitled_journal(), None)
+    found, count = recover(document.journal_place, None)
     assert ([e.name for e in found.clips.values()], count) == (["a"], 1)
     document.close_journal()

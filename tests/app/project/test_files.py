@@ -10,15 +10,16 @@ from pathlib import Path
 import pytest
 from PySide6.QtWidgets import QFileDialog, QMessageBox, QWidget
 
-from app.project.document import Document, untitled_journal
+from app.project.document import Document, state_folder
 from app.project.files import Files
 from app.project.importing import Importing
 from app.project.jobs import Jobs
 from metagraph.formats.bvh import write_bvh
-from metagraph.formats.journal import journal_path
+from metagraph.formats.locking import new_owner
 from metagraph.formats.store import open_project, save_project
 from metagraph.graph import edits
 from metagraph.graph.model import Project
+from tests.sittings import kill_sittings
 
 BUTTON = QMessageBox.StandardButton
 
@@ -213,9 +214,13 @@ def test_edits_made_while_another_project_opens_are_not_thrown_away(desk, person
 
 def crash(desk) -> None:
     """Forget the document without closing it, as a killed program does."""
-    desk.document._journal.close()
-    desk.document._journal = None
-    desk.document.undo_stack.setClean()
+    document = desk.document
+    place = document.journal_place
+    document._journal.close()
+    kill_sittings(place.parent)
+    document._journal = document.lock = None
+    document.owner = new_owner()
+    document.undo_stack.setClean()
 
 
 @pytest.mark.parametrize("answer", [BUTTON.Yes, BUTTON.Discard])
@@ -232,9 +237,8 @@ def test_edits_since_the_last_save_are_offered(desk, person, saved, qtbot, answe
     assert desk.document.project.settings.seed == (8 if taken else 1)
     assert desk.document.dirty is taken
     assert all(e.motion is not None for e in desk.document.project.clips.values())
-    change_seed(desk, 5)  # a new journal takes the old one's place
-    assert journal_path(saved).exists()
-    person.next = []
+    change_seed(desk, 5)
+    assert list(saved.parent.glob(".*.journal")) == [desk.document.journal_place], "a new journal takes the old one's place"
 
 
 @pytest.mark.parametrize("answer", [BUTTON.Yes, BUTTON.Discard])
@@ -243,11 +247,11 @@ def test_a_project_never_saved_is_offered_too(desk, person, clips, qtbot, answer
     qtbot.waitUntil(lambda: len(desk.document.project.clips) == 3)
     assert desk.document.dirty
     crash(desk)
-    assert untitled_journal().exists()
-    person.next = [answer]
+    person.next, otherwise = [answer], []
     desk.document.project = Project()
-    assert desk.recover_untitled() is (answer == BUTTON.Yes)
+    desk.recover_untitled(lambda: otherwise.append(1))
     qtbot.waitUntil(desk.idle)
+    assert bool(otherwise) is (answer == BUTTON.Discard)
     assert "never saved" in person.asked[0]
     assert len(desk.document.project.clips) == (3 if answer == BUTTON.Yes else 0)
     if answer == BUTTON.Yes:
@@ -257,8 +261,9 @@ def test_a_project_never_saved_is_offered_too(desk, person, clips, qtbot, answer
 
 
 def test_without_a_crash_nothing_is_offered(desk, person):
-    assert not desk.recover_untitled()
-    assert not person.asked
+    otherwise = []
+    desk.recover_untitled(lambda: otherwise.append(1))
+    assert otherwise and not person.asked
 
 
 def test_a_journal_of_another_state_of_the_file_is_kept_aside(desk, person, saved, qtbot):
@@ -381,7 +386,6 @@ def test_recent_projects_are_the_latest_first_and_only_those_that_exist(desk, tm
 
 @pytest.mark.parametrize("content", ["", "{", "[1, null]", json.dumps({"a": 1}), json.dumps(None)])
 def test_a_broken_list_of_recent_projects_is_an_empty_one(desk, content):
-    from app.project.document import state_folder
 
     (state_folder() / "recent.json").write_text(content)
     assert desk.recent() == []

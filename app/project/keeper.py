@@ -1,0 +1,45 @@
+"""Shows other windows, every now and then, that this one still has its file."""
+
+from __future__ import annotations
+
+from contextlib import suppress
+
+from PySide6.QtCore import QObject, QTimer, Signal
+
+from app.project.document import Document
+from app.project.jobs import Jobs
+from metagraph.formats.locking import REFRESH
+
+
+class Keeper(QObject):
+    """Touches the lock and the journal on a thread, since a network drive may take its time. told: words when the lock was taken over."""
+
+    told = Signal(str)
+
+    def __init__(self, document: Document, jobs: Jobs, parent: QObject) -> None:
+        super().__init__(parent)
+        self.document, self.jobs = document, jobs
+        self._busy = False
+        self._timer = QTimer(self, interval=int(REFRESH * 1000))
+        self._timer.timeout.connect(self.refresh)
+        self._timer.start()
+
+    def refresh(self) -> None:
+        """Touch them once."""
+        if self._busy or self.document.path is None:
+            return
+        self._busy = True
+        document, lock = self.document, self.document.lock
+
+        def work(_: object) -> bool:
+            with suppress(OSError):
+                document.touch_journal()
+            return lock is None or lock.refresh()
+
+        def done(ours: bool) -> None:
+            self._busy = False
+            if not ours and document.lock is lock and document.path is not None:
+                document.lose_lock()
+                self.told.emit(f"Another window has taken {document.path.name} over. This one can look and try, and save elsewhere.")
+
+        self.jobs.start("lock", work, done, lambda _: done(True), quick=True)

@@ -1,0 +1,88 @@
+"""Saving on a thread: one writing after another, told when done, waited for at closing."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+from PySide6.QtCore import QEventLoop, QObject, Signal
+
+from app.project.document import Document
+from app.project.jobs import Jobs
+from app.project.writing import FileChangedError, Writing
+
+
+class Saver(QObject):
+    """saved: the path that was written. failed: why not, and the place asked for (None: its own). changed: FileChangedError, when
+    another program has written the file. idle: nothing is being written any more."""
+
+    saved = Signal(object)
+    failed = Signal(object, object)
+    changed = Signal(object)
+    idle = Signal()
+
+    def __init__(self, document: Document, jobs: Jobs, parent: QObject) -> None:
+        super().__init__(parent)
+        self.document, self.jobs = document, jobs
+        self._writing: Writing | None = None
+        self._next: list[tuple[Path | None, bool]] = []
+        self._left = False  # another project was opened while this one was written
+        document.loaded.connect(self._leave)
+
+    @property
+    def busy(self) -> bool:
+        return self._writing is not None
+
+    def save(self, path: Path | None = None, anyway: bool = False) -> None:
+        """Begin to write the project as it is now, or as it is when what is being written is done. anyway: whatever its file has become."""
+        if self._writing is not None:
+            self._next.append((path, anyway))
+            return
+        document = self.document
+        document.finish_merging()  # what comes now is not saved with it, and is a step of its own
+        writing = self._writing = document.begin_saving(path)
+        self._left = False
+        expected = document.digest if writing.target == document.path and not anyway else None
+
+        def work(_: object) -> Writing:
+            writing.write(expected)
+            return writing
+
+        self.jobs.start(f"Saving {writing.target.name}", work, self._written, lambda error: self._stopped(error, path), quick=True)
+
+    def wait(self) -> bool:
+        """Wait until nothing is being written, with the window painted but taking no input; return whether all edits are saved."""
+        while self.busy:
+            loop = QEventLoop()
+            self.idle.connect(loop.quit)
+            loop.exec(QEventLoop.ProcessEventsFlag.ExcludeUserInputEvents)
+        return not self.document.dirty
+
+    def _leave(self) -> None:
+        self._left = True
+        self._next.clear()
+
+    def _written(self, writing: Writing) -> None:
+        if not self._left:
+            self.document.end_saving(writing)
+        self._writing = None
+        self.saved.emit(writing.target)
+        self._go_on()
+
+    def _stopped(self, error: Exception, path: Path | None) -> None:
+        self._writing = None
+        self._next.clear()
+        if isinstance(error, FileChangedError):
+            if not self._left:
+                self.document.keep_all()
+                self.changed.emit(error)
+        else:
+            self.failed.emit(error, path)
+        self._go_on()
+
+    def _go_on(self) -> None:
+        while self._next and not self.busy:
+            path, anyway = self._next.pop(0)
+            if path is not None or self.document.dirty:
+                self.save(path, anyway)
+        if not self.busy:
+            self.idle.emit()
