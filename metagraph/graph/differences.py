@@ -12,7 +12,7 @@ from metagraph.graph.model import LAYERS, Project
 
 _NAMED = {"clips": "Clip", "lines": "Line", "points": "Point", "performances": "Performance", "conversations": "Conversation"}
 _REST = ("name", "character", "base", "roles", "parts", "markov", "settings", "life", "face", "tiers", "labels", "joint_maps", "skeleton")
-_UNSEEN = ("motion", "id", "digest", "layer")
+_UNSEEN = ("id", "digest")  # of no use to a reader
 
 
 def differences(before: Project, after: Project) -> list[str]:
@@ -54,7 +54,7 @@ def _keyed(word: str, before: Mapping[str, Any], after: Mapping[str, Any], where
             continue
         some: Any = old if new is None else new
         title = f"{word or some.kind.capitalize()} '{_title(some, ident)}'{where}"
-        yield f"{title} {_fate(old, new)}{_what(old, new)}"
+        yield f"{title} {_fate(old, new)}{_what(old, new) if old is not None and new is not None else ''}"
 
 
 def _title(value: Any, ident: str) -> str:
@@ -63,15 +63,13 @@ def _title(value: Any, ident: str) -> str:
 
 def _what(old: Any, new: Any) -> str:
     """Return which fields differ, with their values where those are short."""
-    if old is None or new is None:
-        return ""
-    words = [_change(name, a, b) for name, a, b in _fields(old, new) if a != b and name not in _UNSEEN]
+    words = [word for name, a, b in _fields(old, new) if a != b and (word := _change(name, a, b))]
     return f": {', '.join(words)}" if words else ""
 
 
 def _fields(old: Any, new: Any, prefix: str = "") -> Iterator[tuple[str, Any, Any]]:
     if is_dataclass(old) and type(old) is type(new):
-        names = [f.name for f in fields(old)]
+        names = [f.name for f in fields(old) if f.compare and f.name not in _UNSEEN]
     elif isinstance(old, msgspec.Struct) and type(old) is type(new):
         names = list(old.__struct_fields__)
     elif isinstance(old, Mapping) and isinstance(new, Mapping):

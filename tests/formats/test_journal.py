@@ -8,6 +8,7 @@ import random
 import signal
 import subprocess
 import sys
+from collections.abc import Callable, Iterator
 from dataclasses import replace
 from itertools import pairwise
 from pathlib import Path
@@ -21,13 +22,15 @@ from hypothesis import strategies as st
 from metagraph.errors import FileError
 from metagraph.formats.data import from_data, to_data
 from metagraph.formats.journal import Journal, changes, journal_path
-from metagraph.formats.recovery import apply, recover
-from metagraph.formats.store import SUFFIX, save_project
+from metagraph.formats.locking import new_owner
+from metagraph.formats.recovery import apply, left_journals, read_journal, recover
+from metagraph.formats.store import SUFFIX, content_digest, encoded, file_digest, save_project
 from metagraph.graph import conversing, edits
 from metagraph.graph.conversation import Conversation, Rates, Segment, Side, Word
 from metagraph.graph.model import Project
 from tests.processes import started
 from tests.projects import clip, histories
+from tests.sittings import kill_sittings
 
 ROOT = Path(__file__).resolve().parents[2]
 
@@ -252,6 +255,143 @@ def test_a_journal_knows_the_file_as_it_was_when_the_edits_began(saved: Path) ->
 def test_there_is_no_journal_where_there_is_no_file(tmp_path: Path) -> None:
     assert recover(tmp_path / "none", None) is None
     assert recover(tmp_path, None) is None
+
+
+# --- saving while edits go on
+
+
+@pytest.fixture
+def kept() -> Iterator[Callable[..., Journal]]:
+    """Makes journals, and closes them in the end."""
+    made: list[Journal] = []
+
+    def make(*words: Any) -> Journal:
+        made.append(Journal(*words))
+        return made[-1]
+
+    yield make
+    for journal in made:
+        journal.close()
+
+
+@pytest.mark.parametrize("written", [False, True])
+def test_edits_made_while_saving_are_known_whichever_file_a_crash_leaves(saved: Path, kept: Callable[..., Journal], written: bool) -> None:
+    path = journal_path(saved)
+    states = [large(5)]
+    for n in range(5):
+        states.append(edits.rename_clip(states[-1], "c1", f"name {n}"))
+    journal = kept(path, saved)
+    journal.edit(states[0], states[1])
+    journal.edit(states[1], states[2])
+    mark = journal.mark()
+    assert mark is not None
+    journal.edit(states[2], states[3])  # while the thread puts the file into words
+    journal.settle(mark, content_digest(encoded(states[2], saved)))
+    journal.edit(states[3], states[4])  # while it writes
+    if written:
+        save_project(states[2], saved)
+    journal.edit(states[4], states[5])
+    found = recover(path, saved)
+    assert found is not None
+    assert same(found[0], states[5])
+    assert found[1] == (3 if written else 5)
+
+
+def test_a_journal_of_which_all_was_saved_offers_nothing(saved: Path, kept: Callable[..., Journal]) -> None:
+    journal, after = kept(journal_path(saved), saved), edits.rename_clip(large(5), "c1", "x")
+    journal.edit(large(5), after)
+    mark = journal.mark()
+    assert mark is not None
+    journal.settle(mark, content_digest(encoded(after, saved)))
+    save_project(after, saved)
+    assert recover(journal.path, saved) is None
+
+
+def test_nothing_is_marked_before_the_first_edit(saved: Path, kept: Callable[..., Journal]) -> None:
+    journal = kept(journal_path(saved), saved)
+    assert journal.mark() is None
+    assert not journal.path.exists()
+
+
+def test_the_last_of_several_savings_counts(saved: Path, kept: Callable[..., Journal]) -> None:
+    journal, states = kept(journal_path(saved), saved), [large(5)]
+    for n in range(6):
+        states.append(edits.rename_clip(states[-1], "c1", f"name {n}"))
+        journal.edit(states[-2], states[-1])
+        if n in (1, 3):
+            mark = journal.mark()
+            assert mark is not None
+            journal.settle(mark, content_digest(encoded(states[-1], saved)))
+            save_project(states[-1], saved)
+    found = recover(journal.path, saved)
+    assert found is not None
+    assert same(found[0], states[-1]) and found[1] == 2
+
+
+def test_edits_that_were_recovered_and_killed_before_the_next_are_there_still(saved: Path, kept: Callable[..., Journal]) -> None:
+    journal, project = kept(journal_path(saved), saved), edits.rename_clip(large(5), "c1", "recovered")
+    journal.begin(project, unsaved=3)
+    found = recover(journal.path, saved)
+    assert found is not None
+    assert same(found[0], project) and found[1] == 3
+
+
+def test_a_project_in_a_journal_without_an_edit_is_nothing_to_recover(saved: Path, kept: Callable[..., Journal]) -> None:
+    journal = kept(journal_path(saved), saved)
+    journal.begin(large(5))
+    assert recover(journal.path, saved) is None
+
+
+# --- sittings
+
+
+def test_a_journal_that_holds_its_project_is_read_though_the_file_has_changed(saved: Path, kept: Callable[..., Journal]) -> None:
+    journal, after = kept(journal_path(saved, "ab"), saved, new_owner()), edits.rename_clip(large(5), "c1", "mine")
+    before = file_digest(saved)
+    journal.begin(large(5))
+    journal.edit(large(5), after)
+    save_project(edits.rename_project(large(5), "theirs"), saved)
+    found = read_journal(journal.path, saved)
+    assert found is not None
+    assert same(found.project, after)
+    assert found.behind and found.digest == before, "saving it has to ask"
+    with pytest.raises(FileError, match="another state"):
+        recover(journal.path, saved)
+
+
+def test_the_journal_of_a_sitting_that_goes_on_is_not_offered_and_those_of_dead_ones_are(saved: Path, kept: Callable[..., Journal]) -> None:
+    after, paths = edits.rename_clip(large(5), "c1", "x"), []
+    for sitting in ("a1", "b2", ""):
+        journal = kept(journal_path(saved, sitting), saved, new_owner() if sitting else None)
+        journal.edit(large(5), after)
+        journal.close()
+        paths.append(journal.path)
+    assert left_journals(saved) == [paths[2]], "one that does not say whose it is was written before they did"
+    kill_sittings(saved.parent)
+    assert sorted(left_journals(saved)) == sorted(paths)
+
+
+def test_the_journals_of_other_projects_beside_it_are_not_its_own(saved: Path, kept: Callable[..., Journal]) -> None:
+    for name in (f"a{saved.name}", f"{saved.name}.copy", "x"):
+        journal = kept(journal_path(saved.with_name(name), "ab"), None)
+        journal.begin(large(1), 1)
+        journal.close()
+    assert left_journals(saved) == []
+    assert left_journals(saved.parent / "no such folder" / "x") == []
+
+
+def test_beginning_anew_never_leaves_less_than_before(saved: Path, kept: Callable[..., Journal], monkeypatch: pytest.MonkeyPatch) -> None:
+    journal, after = kept(journal_path(saved), saved), edits.rename_clip(large(5), "c1", "x")
+    journal.edit(large(5), after)
+
+    def stop(*args: Any) -> None:
+        raise KeyboardInterrupt
+
+    monkeypatch.setattr(Path, "replace", stop)  # killed just then
+    with pytest.raises(KeyboardInterrupt):
+        journal.begin(after, 1)
+    found = recover(journal.path, saved)
+    assert found is not None and same(found[0], after)
 
 
 class Full:

@@ -355,6 +355,41 @@ def test_missing_clips_are_found_where_they_are_now(desk, person, saved, clips, 
     shutil.rmtree(elsewhere)
 
 
+def gone_and_back(desk, saved, clips, qtbot):
+    """Open the project while a clip's file is gone; put the file back."""
+    (clips / "wave.bvh").rename(clips / "wave.kept")
+    desk.document.load(Project(), None)
+    desk.open(saved)
+    qtbot.waitUntil(lambda: len(desk.document.project.clips) == 3 and desk.idle())
+    assert [e.name for e in desk.document.project.clips.values() if e.motion is None] == ["wave"]
+    (clips / "wave.kept").rename(clips / "wave.bvh")
+
+
+def test_a_clip_whose_file_was_put_back_is_found_without_asking(desk, saved, clips, qtbot):
+    gone_and_back(desk, saved, clips, qtbot)
+    desk.importing.find_missing()
+    qtbot.waitUntil(lambda: desk.words[-1] == "Found 1 of 1 missing clips.")
+    assert all(e.motion is not None for e in desk.document.project.clips.values())
+    assert not desk.document.dirty, "the file says the same as before"
+
+
+def test_a_clip_whose_file_was_put_back_is_there_when_the_project_is_opened_again(desk, saved, clips, qtbot):
+    gone_and_back(desk, saved, clips, qtbot)
+    desk.open(saved)
+    qtbot.waitUntil(lambda: all(e.motion is not None for e in desk.document.project.clips.values()))
+
+
+def test_undo_does_not_take_away_what_came_back(desk, saved, clips, qtbot):
+    gone_and_back(desk, saved, clips, qtbot)
+    change_seed(desk)
+    desk.importing.find_missing()
+    qtbot.waitUntil(lambda: desk.words[-1] == "Found 1 of 1 missing clips.")
+    desk.document.undo()
+    assert desk.document.project.settings.seed == 1
+    assert all(e.motion is not None for e in desk.document.project.clips.values())
+    assert not desk.document.dirty
+
+
 def test_when_nothing_is_missing_nothing_is_asked(desk, saved):
     desk.importing.find_missing()
     assert desk.words[-1] == "No clip file is missing."

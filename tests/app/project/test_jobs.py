@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
+import gc
 import threading
+import weakref
 
 import pytest
 
@@ -34,15 +36,17 @@ def test_a_result_is_delivered_on_the_windows_thread(jobs, qtbot):
 
 
 def test_progress_comes_in_order_before_the_result(jobs, qtbot):
-    seen = []
+    seen, going = [], threading.Event()
 
     def work(job):
+        assert going.wait(10)
         for n in range(5):
             job.tell(n, 5, f"file {n}")
         return "all"
 
     job = jobs.start("work", work, seen.append)
     job.progress.connect(lambda *a: seen.append(a))
+    going.set()
     qtbot.waitUntil(lambda: not jobs.running)
     assert seen == [*((n, 5, f"file {n}") for n in range(5)), "all"]
 
@@ -135,3 +139,35 @@ def test_after_stop_nothing_starts_any_more(qtbot):
     jobs.start("late and quick", lambda job: ran.append(2), quick=True)
     qtbot.wait(50)
     assert ran == []
+
+
+class Heavy:
+    """Stands for a project."""
+
+
+@pytest.mark.parametrize("quick", [False, True])
+@pytest.mark.parametrize("way", ["done", "failed", "cancelled"])
+def test_a_job_that_is_over_is_freed_with_all_it_holds(jobs, qtbot, quick, way):
+    alive, ended = [], []
+
+    def start() -> None:
+        heavy, result = Heavy(), Heavy()
+
+        def work(job):
+            assert heavy is not None
+            if way == "failed":
+                raise ValueError("no luck")
+            return result
+
+        job = jobs.start("work", work, lambda _: heavy, lambda _: heavy, quick)
+        job.ended.connect(lambda: ended.append(1))
+        if way == "cancelled":
+            job.cancel()
+        alive.extend(weakref.ref(x) for x in (job, heavy, result))
+
+    for _ in range(100):
+        start()
+    qtbot.waitUntil(lambda: len(ended) == 100)
+    qtbot.wait(20)
+    gc.collect()
+    assert sum(ref() is not None for ref in alive) == 0

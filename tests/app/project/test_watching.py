@@ -6,6 +6,7 @@ import os
 import shutil
 
 import pytest
+from PySide6.QtWidgets import QMessageBox
 
 from app.project import watching
 
@@ -91,3 +92,42 @@ def test_nothing_is_followed_when_it_is_switched_off(opened):
     assert drive.document.project is project
     drive.actions["watch"].trigger()
     assert drive.watcher.on
+
+
+def test_a_file_that_was_missing_when_the_project_was_opened_and_is_put_back_is_read(opened, qtbot):
+    drive = opened
+    project_file = drive.place / "mine.metagraph.yaml"
+    drive.document.save(project_file)
+    shutil.move(drive.place / "wave.glb", drive.place / "wave.kept")
+    drive.files.open(project_file)
+    clip = drive.ids["wave"]
+    drive.wait(lambda: drive.document.project.clips[clip].motion is None)
+    drive.wait(lambda: any(p.clip == clip for p in drive.problems.problems))
+    for box in drive.window.findChildren(QMessageBox):
+        box.close()
+    drive.pause(300)
+    said = []
+    drive.watcher.told.connect(said.append)
+    shutil.move(drive.place / "wave.kept", drive.place / "wave.glb")
+    drive.wait(lambda: drive.document.project.clips[clip].motion is not None)
+    assert said == ["Back again: wave"]
+    assert not drive.document.dirty, "nothing that is saved has changed"
+    drive.wait(lambda: not any(p.clip == clip for p in drive.problems.problems))
+
+
+def test_a_missing_file_that_comes_back_broken_is_told_once(opened):
+    drive = opened
+    project_file = drive.place / "mine.metagraph.yaml"
+    drive.document.save(project_file)
+    (drive.place / "wave.glb").unlink()
+    drive.files.open(project_file)
+    drive.wait(lambda: drive.document.project.clips[drive.ids["wave"]].motion is None)
+    for box in drive.window.findChildren(QMessageBox):
+        box.close()
+    said = []
+    drive.watcher.told.connect(said.append)
+    drive.pause(300)
+    (drive.place / "wave.glb").write_bytes(b"not a glb at all")
+    drive.wait(lambda: bool(said))
+    drive.pause(500)
+    assert len(said) == 1 and "wave.glb" in said[0]
