@@ -38,7 +38,7 @@ def differences(before: Project, after: Project) -> list[str]:
         old_machine, new_machine = before.manual.get(layer), after.manual.get(layer)
         if old_machine != new_machine:
             lines.append(f"Manual state machine ({layer}) {_fate(old_machine, new_machine)}")
-    return lines
+    return [" ".join(line.split()) for line in lines]  # names may hold anything
 
 
 def _fate(old: object, new: object) -> str:
