@@ -53,7 +53,7 @@ def _keyed(word: str, before: Mapping[str, Any], after: Mapping[str, Any], where
         if old is new or old == new:
             continue
         some: Any = old if new is None else new
-        title = f"{word or some.kind.capitalize()} '{_title(some, ident)}'{where}"
+        title = f"{word or ('Stance loop' if some.kind == 'stance' else some.kind.capitalize())} '{_title(some, ident)}'{where}"
         yield f"{title} {_fate(old, new)}{_what(old, new) if old is not None and new is not None else ''}"
 
 

@@ -137,8 +137,8 @@ def test_the_alien_is_imported_dropped_timed_saved_killed_reopened_and_exported(
     path = tmp_path / "alien.metagraph.yaml"
     monkeypatch.setattr(QFileDialog, "getSaveFileName", lambda *a, **k: (str(path), ""))
     QTest.keyClick(drive.window, Qt.Key.Key_S, Qt.KeyboardModifier.ControlModifier)
+    drive.wait(lambda: not drive.document.dirty)
     assert path.is_file()
-    assert not drive.document.dirty
     saved = drive.document.project
 
     # Another window opens it, edits, and is killed.

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import os
 import shutil
 from dataclasses import replace
 from pathlib import Path
@@ -424,3 +425,17 @@ def test_a_broken_list_of_recent_projects_is_an_empty_one(desk, content):
 
     (state_folder() / "recent.json").write_text(content)
     assert desk.recent() == []
+
+
+def test_a_full_disk_leaves_the_list_of_recent_projects_as_it_was(desk, tmp_path, monkeypatch):
+    place = tmp_path / "a.metagraph.yaml"
+    desk.document.save(place)
+    desk._remember(place)
+
+    def full(*args):
+        raise OSError(28, "No space left on device")
+
+    monkeypatch.setattr(os, "fsync", full)
+    desk._remember(tmp_path / "b.metagraph.yaml")
+    assert desk.recent() == [place]
+    assert "could not be written" in desk.words[-1]

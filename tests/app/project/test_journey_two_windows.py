@@ -43,10 +43,10 @@ def hear(line):
     if word == "click":
         next(b for b in box.buttons() if b.text().replace("&", "") == rest).click()
     elif word == "edit":
-        window.document.edit("Change seed", lambda p: edits.set_settings(p, seed=int(rest)))
-        print("edited", window.document.project.settings.seed, flush=True)
+        shell.document.edit("Change seed", lambda p: edits.set_settings(p, seed=int(rest)))
+        print("edited", shell.document.project.settings.seed, flush=True)
     elif word == "save":
-        window.actions["save"].trigger()
+        shell.actions["save"].trigger()
     elif word == "grab":
         (box or window).grab().save(rest)
         print("grabbed", flush=True)
@@ -67,8 +67,9 @@ timer = QTimer(interval=20)
 timer.timeout.connect(look)
 timer.start()
 window = open_window(Path(sys.argv[1]))
-window.files.opened.connect(lambda: print("opened", window.windowTitle(), window.document.project.settings.seed, flush=True))
-window.document.saved.connect(lambda: print("saved", window.document.path.name, flush=True))
+shell = window.shell
+shell.files.opened.connect(lambda: print("opened", window.windowTitle(), shell.document.project.settings.seed, flush=True))
+shell.document.saved.connect(lambda: print("saved", shell.document.path.name, flush=True))
 QTimer.singleShot(120000, lambda: app.exit(9))
 sys.exit(app.exec())
 """
@@ -181,8 +182,8 @@ import sys
 from pathlib import Path
 from PySide6.QtCore import QCoreApplication, QTimer
 from PySide6.QtWidgets import QApplication
-from app.document import Document
-from app.jobs import Jobs
+from app.project.document import Document
+from app.project.jobs import Jobs
 from app.project.saver import Saver
 from metagraph.formats.store import read_with_digest
 from metagraph.graph import edits

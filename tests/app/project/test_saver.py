@@ -7,9 +7,9 @@ import threading
 import pytest
 from PySide6.QtCore import QTimer
 
-from app.document import Document
-from app.jobs import Jobs
 from app.project import writing
+from app.project.document import Document
+from app.project.jobs import Jobs
 from app.project.saver import Saver
 from metagraph.errors import FileError
 from metagraph.formats.recovery import read_journal

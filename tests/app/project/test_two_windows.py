@@ -9,10 +9,10 @@ import msgspec
 import pytest
 from PySide6.QtWidgets import QFileDialog, QMessageBox, QWidget
 
-from app.document import Document
-from app.files import Files
-from app.jobs import Jobs
 from app.project import questions
+from app.project.document import Document
+from app.project.files import Files
+from app.project.jobs import Jobs
 from metagraph.formats.journal import Journal, journal_path
 from metagraph.formats.locking import STALE, lock_path, new_owner
 from metagraph.formats.recovery import left_journals

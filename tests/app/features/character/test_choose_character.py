@@ -1,0 +1,56 @@
+"""Choosing a character: its file is read beside the window, and what comes too late is dropped."""
+
+from __future__ import annotations
+
+import threading
+from types import SimpleNamespace
+
+import pytest
+from PySide6.QtWidgets import QFileDialog
+
+from app.features.character import choose_character
+from app.project.document import Document
+from app.project.jobs import Jobs
+from metagraph.formats import gltf
+from metagraph.graph.model import Project
+
+
+@pytest.fixture
+def shell(qapp, toy, tmp_path, monkeypatch):
+    """What choosing a character needs of a window."""
+    document, jobs, told = Document(), Jobs(), []
+    document.load(toy.project(), None)
+    monkeypatch.setattr(QFileDialog, "getOpenFileName", lambda *a, **k: (str(tmp_path / "somebody.glb"), ""))
+    yield SimpleNamespace(document=document, jobs=jobs, widget=None, tell=told.append, told=told)
+    jobs.stop()
+    document.close_journal()
+
+
+def test_a_characters_morph_targets_are_read_beside_the_window(shell, qtbot, monkeypatch):
+    threads = []
+
+    def read(path):
+        threads.append(threading.current_thread())
+        return ("jawOpen",)
+
+    monkeypatch.setattr(gltf, "morph_targets", read)
+    choose_character(shell)
+    qtbot.waitUntil(lambda: shell.document.project.character is not None)
+    assert shell.document.project.character.endswith("somebody.glb")
+    assert threads[0] is not threading.main_thread()
+    assert shell.document.undo_stack.undoText() == "Choose character"
+
+
+def test_a_file_that_is_no_character_is_told_and_none_is_chosen(shell, qtbot):
+    choose_character(shell)
+    qtbot.waitUntil(lambda: bool(shell.told))
+    assert "somebody.glb" in shell.told[0]
+    assert shell.document.project.character is None
+
+
+def test_a_character_chosen_for_a_project_that_was_left_is_dropped(shell, qtbot, monkeypatch, tmp_path):
+    monkeypatch.setattr(gltf, "morph_targets", lambda path: ())
+    choose_character(shell)
+    shell.document.load(Project(), tmp_path / "other.metagraph.yaml")
+    qtbot.waitUntil(lambda: not shell.jobs.running)
+    assert shell.document.project.character is None
