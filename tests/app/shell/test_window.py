@@ -149,8 +149,8 @@ def test_the_whole_job_by_keyboard_alone(drive, folder, tmp_path, monkeypatch):
     drive.key(KEY.Key_Z, CTRL)
     monkeypatch.setattr(QFileDialog, "getSaveFileName", lambda *a, **k: (str(tmp_path / "by keys"), ""))
     drive.key(KEY.Key_S, CTRL)
+    drive.wait(lambda: "by keys" in drive.window.windowTitle())
     assert (tmp_path / "by keys.metagraph.yaml").is_file()
-    assert "by keys" in drive.window.windowTitle()
 
 
 def test_single_keys_yield_to_typing_and_to_focused_buttons(toys):
