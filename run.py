@@ -1,9 +1,11 @@
 #!/usr/bin/env python3
-"""Set up and start Metagraph: `python3 run.py`. Test it: `python3 run.py test`. Needs Python 3.11 to 3.13 and nothing else.
+"""Set up and start Metagraph: `python3 run.py`. Test it: `python3 run.py test`. Needs Python 3.11 to 3.13 and
+nothing else.
 
-Makes `.venv`, installs the pinned dependencies into it, installs missing system libraries on Debian and Ubuntu (at
-once as root, through sudo after asking otherwise), then runs. Whatever follows is passed on: `python3 run.py check my.metagraph.yaml`.
-`python3 run.py install` installs now what is otherwise installed when first needed, for work without a network.
+Makes `.venv`, installs the pinned dependencies into it, installs missing system libraries on Debian and
+Ubuntu (at once as root, through sudo after asking otherwise), then runs. Whatever follows is passed on:
+`python3 run.py check my.metagraph.yaml`. `python3 run.py install` installs now what is otherwise installed
+when first needed, for work without a network.
 """
 
 import ctypes
@@ -21,7 +23,8 @@ PYTHON = VENV / ("Scripts/python.exe" if WINDOWS else "bin/python")
 # Everybody needs the first list, new motion and hours of BVH the second, and tests all.
 LISTS = ("requirements.txt", "requirements-compiled.txt", "requirements-test.txt")
 
-# Library or program -> Debian package. Drawing without a screen needs the first group, a window the second, tests the third.
+# Library or program -> Debian package. Drawing without a screen needs the first group, a window the second,
+# tests the third.
 DRAWING = {"libEGL.so.1": "libegl1", "libGL.so.1": "libgl1"}
 WINDOW = {
     "libglib-2.0.so.0": "libglib2.0-0",
@@ -53,7 +56,9 @@ def main(arguments):
     if arguments == ["install"]:
         return environment(1)
     testing = arguments[:1] == ["test"]
-    screen = not sys.platform.startswith("linux") or bool(os.environ.get("DISPLAY") or os.environ.get("WAYLAND_DISPLAY"))
+    screen = not sys.platform.startswith("linux") or bool(
+        os.environ.get("DISPLAY") or os.environ.get("WAYLAND_DISPLAY")
+    )
     trouble = system_libraries(screen, testing) if sys.platform.startswith("linux") else None
     trouble = trouble or environment(2 if testing else 0)
     if trouble:
@@ -61,7 +66,10 @@ def main(arguments):
     if testing:
         engines()
         return run_tests(arguments[1:])
-    return subprocess.call([str(PYTHON), "-m", "app.cli", *(arguments or (["window", "--sample"] if screen else ["demo"]))], cwd=ROOT)
+    return subprocess.call(
+        [str(PYTHON), "-m", "app.cli", *(arguments or (["window", "--sample"] if screen else ["demo"]))],
+        cwd=ROOT,
+    )
 
 
 # --- system libraries
@@ -91,7 +99,10 @@ def system_libraries(screen, testing):
     install = ["apt-get", "install", "-y", "--no-install-recommends", *packages]
     line = "sudo apt-get update && sudo " + " ".join(install)
     if shutil.which("apt-get") is None:
-        return "System libraries are missing. This installs them on Debian and Ubuntu; elsewhere they have similar names:\n  " + line
+        return (
+            "System libraries are missing. This installs them on Debian and Ubuntu; elsewhere they have "
+            "similar names:\n  "
+        ) + line
     if os.geteuid() == 0:
         prefix = []
     elif shutil.which("sudo") and sys.stdin.isatty():
@@ -119,7 +130,9 @@ def engines():
     if os.geteuid() == 0:
         prefix = []
     elif shutil.which("sudo") and sys.stdin.isatty():
-        if input(f"Install {', '.join(absent)} as well, to test exports in engines? [Y/n] ").strip().lower() not in ("", "y", "yes"):
+        if input(
+            f"Install {', '.join(absent)} as well, to test exports in engines? [Y/n] "
+        ).strip().lower() not in ("", "y", "yes"):
             return
         prefix = ["sudo"]
     else:
@@ -140,7 +153,9 @@ def engines():
 
 
 def environment(most):
-    """Make .venv and install what is pinned in the lists up to number `most`; nothing to do when that was done before."""
+    """Make .venv and install what is pinned in the lists up to number `most`; nothing to do when that was
+    done before.
+    """
     current = [n for n in range(len(LISTS)) if stamp(n).exists() and stamp(n).read_text() == wanted(n)]
     if current and current[-1] >= most:
         return None
@@ -152,13 +167,24 @@ def environment(most):
         made = subprocess.run([sys.executable, "-m", "venv", str(VENV)], capture_output=True, text=True)
         if made.returncode != 0:
             shutil.rmtree(VENV, ignore_errors=True)
-            hint = " On Debian or Ubuntu: sudo apt-get install -y python3-venv" if sys.platform.startswith("linux") else ""
-            return f"The environment could not be made: {(made.stdout + made.stderr).strip().splitlines()[-1]}.{hint}"
+            hint = (
+                " On Debian or Ubuntu: sudo apt-get install -y python3-venv"
+                if sys.platform.startswith("linux")
+                else ""
+            )
+            return (
+                "The environment could not be made: "
+                f"{(made.stdout + made.stderr).strip().splitlines()[-1]}.{hint}"
+            )
     print("Installing dependencies ...", flush=True)
     # Modules are compiled when they are first imported: most never are.
     install = ("install", "--disable-pip-version-check", "-q", "--no-compile")
     if not pip(*install, *(word for name in LISTS[: most + 1] for word in ("-r", str(ROOT / name)))):
-        return "The dependencies could not be installed; what pip said is above. Check the network and start again."
+        return (
+            "The dependencies could not be installed; what pip said is above. Check the network and "
+            "start "
+            "again."
+        )
     if not current and not pip(*install, "--no-deps", "--no-build-isolation", "-e", str(ROOT)):
         return "Metagraph could not be installed into its environment; what pip said is above."
     # FBX is an extra with no wheel for every system: welcome where it installs, not missed where it does not.
@@ -175,7 +201,9 @@ def stamp(most):
 
 def wanted(most):
     """Return what the stamp holds while nothing has changed."""
-    return hashlib.sha256(b"".join((ROOT / name).read_bytes() for name in (*LISTS[: most + 1], "pyproject.toml"))).hexdigest()
+    return hashlib.sha256(
+        b"".join((ROOT / name).read_bytes() for name in (*LISTS[: most + 1], "pyproject.toml"))
+    ).hexdigest()
 
 
 def pip(*arguments, quiet=False):
@@ -198,14 +226,31 @@ def run_tests(arguments):
     wanted = wanted.read_text() if wanted.exists() else None
     if npm and wanted and not (stamp.exists() and stamp.read_text() == wanted):
         # The engines exports are checked in; their tests skip where there is no Node.
-        options = ["--prefix", str(ROOT / "tests"), "--no-package-lock", "--no-audit", "--no-fund", "--silent", "--fetch-retries=1"]
-        if subprocess.call([npm, "install", *options], stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL) == 0:
+        options = [
+            "--prefix",
+            str(ROOT / "tests"),
+            "--no-package-lock",
+            "--no-audit",
+            "--no-fund",
+            "--silent",
+            "--fetch-retries=1",
+        ]
+        if (
+            subprocess.call([npm, "install", *options], stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
+            == 0
+        ):
             stamp.write_text(wanted)
-    lint = [[tool("ruff"), "check", "."], [tool("ruff"), "format", "--check", "."], [tool("mypy")], [tool("lint-imports")]]
+    lint = [
+        [tool("ruff"), "check", "."],
+        [tool("ruff"), "format", "--check", "."],
+        [tool("mypy")],
+        [tool("lint-imports")],
+    ]
     tests = [str(PYTHON), "-m", "pytest", *spread(arguments), *arguments]
     if arguments:
         return told(tests)
-    # What the tests call compiled is compiled meanwhile: on another core, and once for all of their processes.
+    # What the tests call compiled is compiled meanwhile: on another core, and once for all of their
+    # processes.
     compiling = subprocess.Popen([str(PYTHON), "-m", "tests.kernels"], cwd=ROOT)
     try:
         failed = [told(step) for step in lint]
@@ -220,13 +265,26 @@ def told(command):
 
 
 def spread(arguments):
-    """Return pytest's options to run in a process for each core, each with a screen of its own; none for named files or where asked
-    otherwise."""
+    """Return pytest's options to run in a process for each core, each with a screen of its own; none for
+    named files or where asked otherwise.
+    """
     cores = len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count() or 1
-    own = ("-n", "--numprocesses", "--dist", "-s", "--capture", "--pdb", "--trace", "--co", "-pno:xdist", "no:xdist")
+    own = (
+        "-n",
+        "--numprocesses",
+        "--dist",
+        "-s",
+        "--capture",
+        "--pdb",
+        "--trace",
+        "--co",
+        "-pno:xdist",
+        "no:xdist",
+    )
     if cores < 2 or any(word.startswith(own) or ".py" in word for word in arguments):
         return []
-    # Whole files, since many make something dear once; in the order that tests/conftest.py gives them, the longest first.
+    # Whole files, since many make something dear once; in the order that tests/conftest.py gives them, the
+    # longest first.
     return ["-n", str(cores), "--dist", "loadfile", "--no-loadscope-reorder"]
 
 

@@ -1,8 +1,9 @@
-"""Let the scripted participant do the labelling task in both conditions: `python docs/participant.py`, under Xvfb.
+"""Let the scripted participant do the labelling task in both conditions: `python docs/participant.py`, under
+Xvfb.
 
-With 10, 20, 50, 100 and 152 of the sample clips, or with the numbers given, through the real windows with real events (needs xdotool; half
-an hour for all). Writes docs/participant.md, a table, and docs/participant.svg, how each grows. A run that was interrupted goes on where
-it was; `--anew` begins again.
+With 10, 20, 50, 100 and 152 of the sample clips, or with the numbers given, through the real windows with
+real events (needs xdotool; half an hour for all). Writes docs/participant.md, a table, and
+docs/participant.svg, how each grows. A run that was interrupted goes on where it was; `--anew` begins again.
 """
 
 from __future__ import annotations
@@ -91,7 +92,9 @@ def done(condition: str, clips: int) -> dict[str, Any]:
     window.make_late_panels()
     window.activateWindow()
     corner = window.statusBar().mapToGlobal(QPoint(300, 8))
-    subprocess.run(["xdotool", "mousemove", str(corner.x()), str(corner.y()), "click", "1"], check=True, timeout=10)
+    subprocess.run(
+        ["xdotool", "mousemove", str(corner.x()), str(corner.y()), "click", "1"], check=True, timeout=10
+    )
     QTest.qWait(300)
     drive = Driver(window, Bot())
     given = task(open_project(SAMPLE).project, clips)
@@ -102,10 +105,16 @@ def done(condition: str, clips: int) -> dict[str, Any]:
     QTest.qWait(50)
     s = result.score
     return {
-        "condition": condition, "clips": clips, "operators": dict(result.operators), "predicted": result.predicted,
-        "seconds": result.seconds, "ours": result.ours, "connections": s.right, "missing": s.missing,
+        "condition": condition,
+        "clips": clips,
+        "operators": dict(result.operators),
+        "predicted": result.predicted,
+        "seconds": result.seconds,
+        "ours": result.ours,
+        "connections": s.right,
+        "missing": s.missing,
         "mistakes": s.extra + s.wrong + sum(m.count for m in s.mistakes if m.what != "missing"),
-    }  # fmt: skip
+    }
 
 
 def table(rows: Sequence[Mapping[str, Any]]) -> str:
@@ -113,8 +122,16 @@ def table(rows: Sequence[Mapping[str, Any]]) -> str:
     lines = []
     for row in sorted(rows, key=lambda r: (r["clips"], list(NAMES).index(r["condition"]))):
         base = next((r for r in rows if r["clips"] == row["clips"] and r["condition"] == "meta"), row)
-        cells = [row["clips"], NAMES[row["condition"]], *(f"{row['operators'].get(k, 0):,}" for k in OPERATORS)]
-        cells += [time_words(row["predicted"]), f"{row['predicted'] / row['clips']:.1f} s", f"{row['predicted'] / base['predicted']:.1f}"]
+        cells = [
+            row["clips"],
+            NAMES[row["condition"]],
+            *(f"{row['operators'].get(k, 0):,}" for k in OPERATORS),
+        ]
+        cells += [
+            time_words(row["predicted"]),
+            f"{row['predicted'] / row['clips']:.1f} s",
+            f"{row['predicted'] / base['predicted']:.1f}",
+        ]
         cells += [f"{row['connections']:,}", f"{row['missing']:,}", row["mistakes"], f"{row['ours']:.0f} s"]
         lines.append(f"| {' | '.join(map(str, cells))} |")
     return f"{ABOVE}{chr(10).join(lines)}{BELOW}"
@@ -143,11 +160,22 @@ def plot(rows: Sequence[Mapping[str, Any]]) -> str:
     for value, words in TICKS.items():
         if y1 <= math.log10(value) <= y2:
             at = y(value)
-            parts.append(f'<line x1="{left}" x2="{wide - right}" y1="{at:.1f}" y2="{at:.1f}" stroke="{gray}" stroke-opacity=".3"/>')
-            parts.append(f'<text x="{left - 8}" y="{at + 4:.1f}" text-anchor="end" fill="{gray}">{words}</text>')
+            parts.append(
+                f'<line x1="{left}" x2="{wide - right}" y1="{at:.1f}" y2="{at:.1f}" stroke="{gray}" '
+                'stroke-opacity=".3"/>'
+            )
+            parts.append(
+                f'<text x="{left - 8}" y="{at + 4:.1f}" text-anchor="end" fill="{gray}">{words}</text>'
+            )
     for size in sizes:
-        parts.append(f'<text x="{x(size):.1f}" y="{high - bottom + 20}" text-anchor="middle" fill="{gray}">{size}</text>')
-    parts.append(f'<text x="{(left + wide - right) / 2}" y="{high - 6}" text-anchor="middle" fill="{gray}">clips</text>')
+        parts.append(
+            f'<text x="{x(size):.1f}" y="{high - bottom + 20}" text-anchor="middle" '
+            f'fill="{gray}">{size}</text>'
+        )
+    parts.append(
+        f'<text x="{(left + wide - right) / 2}" y="{high - 6}" text-anchor="middle" '
+        f'fill="{gray}">clips</text>'
+    )
     for condition, color in COLORS.items():
         mine = sorted((r for r in rows if r["condition"] == condition), key=lambda r: r["clips"])
         if not mine:
@@ -159,9 +187,13 @@ def plot(rows: Sequence[Mapping[str, Any]]) -> str:
         last = mine[-1]
         *first, words = NAMES[condition].split(", ")
         for n, line in enumerate([*first, f"{words}, {time_words(last['predicted'])}"]):
-            parts.append(f'<text x="{points[-1][0] + 14:.1f}" y="{points[-1][1] + 4 + 15 * n:.1f}" fill="{color}">{line}</text>')
+            parts.append(
+                f'<text x="{points[-1][0] + 14:.1f}" y="{points[-1][1] + 4 + 15 * n:.1f}" '
+                f'fill="{color}">{line}</text>'
+            )
     return (
-        f'<svg xmlns="http://www.w3.org/2000/svg" viewBox="0 0 {wide} {high}" font-family="sans-serif" font-size="12" role="img" '
+        f'<svg xmlns="http://www.w3.org/2000/svg" viewBox="0 0 {wide} {high}" font-family="sans-serif" '
+        'font-size="12" role="img" '
         f'aria-label="Predicted time of both conditions over the number of clips">{"".join(parts)}</svg>\n'
     )
 
@@ -178,7 +210,11 @@ def main(arguments: Sequence[str]) -> None:
             if any(r["clips"] == size and r["condition"] == condition for r in rows):
                 continue
             row = done(condition, size)
-            print(f"{size} clips, {NAMES[condition]}: {time_words(row['predicted'])} predicted, {row['seconds']:.0f} s here", flush=True)
+            print(
+                f"{size} clips, {NAMES[condition]}: {time_words(row['predicted'])} predicted, "
+                f"{row['seconds']:.0f} s here",
+                flush=True,
+            )
             rows.append(row)
             with kept.open("a") as file:
                 file.write(json.dumps(row) + "\n")

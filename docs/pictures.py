@@ -1,8 +1,9 @@
-"""Take the pictures of the documentation from the real window: `python docs/pictures.py` (on a screen, or under `xvfb-run`).
+"""Take the pictures of the documentation from the real window: `python docs/pictures.py` (on a screen, or
+under `xvfb-run`).
 
-Writes docs/window.png, practice.png, empty.png, light.png, requests.png, models.png, label.png, export.png, web.png,
-conversation.png, motion-graph.png and performance.png, from our own sample clips only; with names behind it, only those. The web
-page needs Node, Chromium and what tests/package.json names.
+Writes docs/window.png, practice.png, empty.png, light.png, requests.png, models.png, label.png, export.png,
+web.png, conversation.png, motion-graph.png and performance.png, from our own sample clips only; with names
+behind it, only those. The web page needs Node, Chromium and what tests/package.json names.
 """
 
 from __future__ import annotations
@@ -95,16 +96,27 @@ def half_labelled() -> None:
         document.edit("Place", lambda p: edits.place(p, [ids[n] for n in names], "arms", kind, stance, end))
 
     for name in ("hands_at_sides", "arms_crossed", "on_hips"):
-        document.edit("New stance", lambda p, n=name: edits.add_stance(p, "arms", n.replace("_", " "), [ids[f"{n}__stance"]]))
+        document.edit(
+            "New stance",
+            lambda p, n=name: edits.add_stance(p, "arms", n.replace("_", " "), [ids[f"{n}__stance"]]),
+        )
     sides, crossed, hips = list(document.project.graphs["arms"].stances)
-    taken = [n for n in ids if n.startswith("hands_at_sides__") and not n.endswith("stance") and "__to__" not in n]
+    taken = [
+        n for n in ids if n.startswith("hands_at_sides__") and not n.endswith("stance") and "__to__" not in n
+    ]
     put("gesture", sides, taken[:9])
     put("fidget", sides, [n for n in ids if "check_watch" in n or "flick_fingers" in n])
     put("transition", sides, ["hands_at_sides__to__arms_crossed"], crossed)
     put("transition", sides, ["hands_at_sides__to__on_hips"], hips)
-    put("gesture", crossed, [n for n in ids if n.startswith("arms_crossed__") and "__to__" not in n and "stance" not in n][:3])
+    put(
+        "gesture",
+        crossed,
+        [n for n in ids if n.startswith("arms_crossed__") and "__to__" not in n and "stance" not in n][:3],
+    )
     put("transition", crossed, ["arms_crossed__to__hands_at_sides"], sides)
-    document.edit("Place", lambda p: edits.place(p, [ids["on_hips__to__hands_at_sides"]], "arms", "gesture", sides))  # a mistake to find
+    document.edit(
+        "Place", lambda p: edits.place(p, [ids["on_hips__to__hands_at_sides"]], "arms", "gesture", sides)
+    )  # a mistake to find
     session.place.set_stance(sides)
     out.library.chips["unlabelled"].click()
     out.show("problems")
@@ -124,10 +136,16 @@ def requests() -> None:
     stage, session = out.performance, out.session
     session.transport.set_playing(False)
     for ask in (
-        a.Say(text="Well, I would not say so. But who knows?", at=1.0), a.Gesture(tags=("negative",), at=1.4, priority=2),
-        a.Go(stance="on hips", at=4.0), a.Look(to="user", at=4.5), a.Nod(at=6.0), a.Gesture(tags=("greeting",), at=8.0),
-        a.Gesture(tags=("positive",), at=10.0), a.Play(action="shrug_bt_01", at=11.5), a.Go(stance="weight left", at=7.0),
-    ):  # fmt: skip
+        a.Say(text="Well, I would not say so. But who knows?", at=1.0),
+        a.Gesture(tags=("negative",), at=1.4, priority=2),
+        a.Go(stance="on hips", at=4.0),
+        a.Look(to="user", at=4.5),
+        a.Nod(at=6.0),
+        a.Gesture(tags=("greeting",), at=8.0),
+        a.Gesture(tags=("positive",), at=10.0),
+        a.Play(action="shrug_bt_01", at=11.5),
+        a.Go(stance="weight left", at=7.0),
+    ):
         stage.ask(ask)
     session.onstage.select_requests(())
     session.transport.seek(2.0)
@@ -145,7 +163,9 @@ def models() -> None:
     out = window()
     out.files.open(SAMPLE, template=True)
     wait(20000, lambda: bool(out.document.project.clips))
-    open_annotation(out, ROOT / "sample_clips" / "annotation" / "conversation.eaf", lambda dialog: dialog.accept())  # type: ignore[arg-type]
+    open_annotation(
+        out, ROOT / "sample_clips" / "annotation" / "conversation.eaf", lambda dialog: dialog.accept()
+    )  # type: ignore[arg-type]
     wait(8000, lambda: "arms" in out.document.project.markov)
     out.session.place.set_layer("arms")
     out.show("models")
@@ -266,7 +286,11 @@ def page() -> None:
         ]
         (folder / "steps.json").write_text(json.dumps(steps))
         script = ROOT / "tests" / "engines" / "run" / "browser.mjs"
-        subprocess.run(["node", str(script), str(folder), str(folder / "steps.json")], check=True, stdout=subprocess.DEVNULL)
+        subprocess.run(
+            ["node", str(script), str(folder), str(folder / "steps.json")],
+            check=True,
+            stdout=subprocess.DEVNULL,
+        )
     print("docs/web.png")
 
 

@@ -1,7 +1,7 @@
 """Loops compiled by numba, for the few things that NumPy takes ten times as long for.
 
-numba and its LLVM are 210 MB, and most people's work never meets such a loop: they are installed when the first one
-is asked for, into the environment that run.py made, and by the user's own command elsewhere.
+numba and its LLVM are 210 MB, and most people's work never meets such a loop: they are installed when the
+first one is asked for, into the environment that run.py made, and by the user's own command elsewhere.
 """
 
 from __future__ import annotations
@@ -32,8 +32,10 @@ def there() -> bool:
 
 
 def compiler(**options: Any) -> Callable[[Callable[..., Any]], Any]:
-    """Return a decorator that compiles a loop as `numba.njit` does with these options, and keeps what it made on disk
-    where there is a folder for that. Installs numba (a minute, once) where it may. Raises CompilerError."""
+    """Return a decorator that compiles a loop as `numba.njit` does with these options, and keeps what it made
+    on disk where there is a folder for that. Installs numba (a minute, once) where it may. Raises
+    CompilerError.
+    """
     if not there():
         with _ONE:
             if not there():
@@ -50,17 +52,31 @@ def compiler(**options: Any) -> Callable[[Callable[..., Any]], Any]:
 
 
 def _install() -> None:
-    """Have run.py install numba into the environment it made: whoever started run.py asked for what it takes."""
+    """Have run.py install numba into the environment it made: whoever started run.py asked for what it
+    takes.
+    """
     setup = ROOT / "run.py"
-    if not setup.exists() or not any((Path(sys.prefix) / name).exists() for name in (".installed", ".installed-test")):
-        raise CompilerError(f'This needs numba, which is not installed. Install it: "{sys.executable}" -m pip install "{NUMBA}"')
-    print("Installing the compiler that new motion needs (60 MB to load, once) ...", file=sys.stderr, flush=True)
+    if not setup.exists() or not any(
+        (Path(sys.prefix) / name).exists() for name in (".installed", ".installed-test")
+    ):
+        raise CompilerError(
+            f'This needs numba, which is not installed. Install it: "{sys.executable}" -m pip install '
+            f'"{NUMBA}"'
+        )
+    print(
+        "Installing the compiler that new motion needs (60 MB to load, once) ...", file=sys.stderr, flush=True
+    )
     environ = {"PIP_RETRIES": "2", **os.environ}  # where there is no network that is told in seconds
-    made = subprocess.run([sys.executable, str(setup), "install"], cwd=ROOT, capture_output=True, text=True, env=environ)
+    made = subprocess.run(
+        [sys.executable, str(setup), "install"], cwd=ROOT, capture_output=True, text=True, env=environ
+    )
     importlib.invalidate_caches()
     if made.returncode != 0 or not there():
-        said = [line for line in (made.stdout + made.stderr).splitlines() if "ERROR" in line] or ["nothing was said"]
+        said = [line for line in (made.stdout + made.stderr).splitlines() if "ERROR" in line] or [
+            "nothing was said"
+        ]
         raise CompilerError(
             f"This needs numba, which could not be installed ({said[-1].strip()}). "
-            "Check the network and try again, or install it before you go where there is none: python3 run.py install"
+            "Check the network and try again, or install it before you go where there is none: python3 "
+            "run.py install"
         )

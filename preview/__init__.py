@@ -9,7 +9,8 @@
         picture = offscreen.render(scene, camera)         # uint8 [H, W, 4]
     Renderer(ctx).draw(scene, camera, size, fbo, DARK)    # in a window
 
-Modules: `camera` (Camera, whole_figure, upper_body, close_up), `figure` (SkinnedFigure, StickFigure), `scene` (Actor,
-Scene, Theme, DARK, LIGHT), `renderer` (Renderer), `offscreen` (Offscreen, OpenGLError), `video` (write_video), `sheet`
-(contact_sheet, write_png), `thumbnail` (thumbnail, telling_frame). Import from them; this package loads nothing itself.
+Modules: `camera` (Camera, whole_figure, upper_body, close_up), `figure` (SkinnedFigure, StickFigure), `scene`
+(Actor, Scene, Theme, DARK, LIGHT), `renderer` (Renderer), `offscreen` (Offscreen, OpenGLError), `video`
+(write_video), `sheet` (contact_sheet, write_png), `thumbnail` (thumbnail, telling_frame). Import from them;
+this package loads nothing itself.
 """

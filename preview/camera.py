@@ -1,7 +1,8 @@
 """The camera: a frozen value turned, moved and zoomed by pure functions, with its matrices.
 
-Angles are radians, lengths metres. `yaw` 0 looks at the character's face (the eye is on +Z), positive yaw shows its left
-side; `pitch` is the eye's height above the target. Matrices are row-major (`M @ column`), float64.
+Angles are radians, lengths metres. `yaw` 0 looks at the character's face (the eye is on +Z), positive yaw
+shows its left side; `pitch` is the eye's height above the target. Matrices are row-major (`M @ column`),
+float64.
 """
 
 from __future__ import annotations
@@ -68,21 +69,29 @@ class Camera:
         return out
 
     def ray(self, x: float, y: float, aspect: float) -> tuple[Array, Array]:
-        """Return origin `[3]` and unit direction `[3]` through the point `x, y`: 0..1 from the picture's upper left."""
+        """Return origin `[3]` and unit direction `[3]` through the point `x, y`: 0..1 from the picture's
+        upper left.
+        """
         half = math.tan(self.fov / 2)
         right, up, back = self.axes
         direction = right * ((2 * x - 1) * half * aspect) + up * ((1 - 2 * y) * half) - back
         return self.eye, direction / np.linalg.norm(direction)
 
     def project(self, points: ArrayLike, aspect: float) -> Array:
-        """Return where `points [..., 3]` are seen `[..., 2]`: 0..1 from the picture's upper left; NaN behind the eye."""
+        """Return where `points [..., 3]` are seen `[..., 2]`: 0..1 from the picture's upper left; NaN behind
+        the eye.
+        """
         p = (np.asarray(points, float) - self.eye) @ self.axes.T
         depth = np.where(p[..., 2] < -1e-9, -p[..., 2], np.nan)
         half = math.tan(self.fov / 2)
-        return np.stack([0.5 + p[..., 0] / (2 * half * aspect * depth), 0.5 - p[..., 1] / (2 * half * depth)], -1)
+        return np.stack(
+            [0.5 + p[..., 0] / (2 * half * aspect * depth), 0.5 - p[..., 1] / (2 * half * depth)], -1
+        )
 
     def orbit(self, dx: float, dy: float) -> Camera:
-        """Turn round the target by a drag of `dx, dy` picture heights to the right and down; one height is half a turn."""
+        """Turn round the target by a drag of `dx, dy` picture heights to the right and down; one height is
+        half a turn.
+        """
         yaw = math.remainder(self.yaw - dx * math.pi, 2 * math.pi)
         return replace(self, yaw=yaw, pitch=min(PITCH_LIMIT, max(-PITCH_LIMIT, self.pitch + dy * math.pi)))
 
@@ -98,7 +107,9 @@ class Camera:
         return replace(self, distance=min(FARTHEST, max(NEAREST, self.distance * 1.12**-steps)))
 
     def frame(self, bounds: tuple[ArrayLike, ArrayLike], aspect: float, margin: float = 1.08) -> Camera:
-        """Keep the direction; aim at the box `bounds` (lowest and highest corner) and step back until it just fits."""
+        """Keep the direction; aim at the box `bounds` (lowest and highest corner) and step back until it just
+        fits.
+        """
         low, high = np.asarray(bounds[0], float), np.asarray(bounds[1], float)
         if not (np.isfinite(low).all() and np.isfinite(high).all()):
             return self
@@ -107,16 +118,26 @@ class Camera:
         corners = signs * half @ self.axes.T
         tan_y = math.tan(self.fov / 2) / margin
         tan_x = tan_y * aspect
-        distance = np.max(corners[:, 2] + np.maximum(np.abs(corners[:, 0]) / tan_x, np.abs(corners[:, 1]) / tan_y))
-        return replace(self, target=(float(centre[0]), float(centre[1]), float(centre[2])), distance=max(NEAREST, float(distance)))
+        distance = np.max(
+            corners[:, 2] + np.maximum(np.abs(corners[:, 0]) / tan_x, np.abs(corners[:, 1]) / tan_y)
+        )
+        return replace(
+            self,
+            target=(float(centre[0]), float(centre[1]), float(centre[2])),
+            distance=max(NEAREST, float(distance)),
+        )
 
     def facing(self, yaw: float, pitch: float) -> Camera:
         """Look from another side."""
-        return replace(self, yaw=math.remainder(yaw, 2 * math.pi), pitch=min(PITCH_LIMIT, max(-PITCH_LIMIT, pitch)))
+        return replace(
+            self, yaw=math.remainder(yaw, 2 * math.pi), pitch=min(PITCH_LIMIT, max(-PITCH_LIMIT, pitch))
+        )
 
 
 def whole_figure(bounds: tuple[ArrayLike, ArrayLike], aspect: float, heading: float = 0.0) -> Camera:
-    """Three quarters in front, all of the box in the picture. `heading`: where the character faces, radians about +Y."""
+    """Three quarters in front, all of the box in the picture. `heading`: where the character faces, radians
+    about +Y.
+    """
     camera = Camera()
     return camera.facing(camera.yaw + heading, camera.pitch).frame(bounds, aspect)
 
@@ -130,9 +151,15 @@ def close_up(head: ArrayLike, height: float, aspect: float, heading: float = 0.0
 
 
 def upper_body(head: ArrayLike, height: float, aspect: float, heading: float = 0.0) -> Camera:
-    """From the hips up, room for gesturing arms: `head` is the middle of the head `[3]`, `height` the figure's in metres."""
+    """From the hips up, room for gesturing arms: `head` is the middle of the head `[3]`, `height` the
+    figure's in metres.
+    """
     x, y, z = np.asarray(head, float)
     camera = Camera().facing(math.radians(20.0) + heading, math.radians(5.0))
     return camera.frame(
-        ((x - 0.24 * height, y - 0.5 * height, z - 0.08 * height), (x + 0.24 * height, y + 0.1 * height, z + 0.08 * height)), aspect
+        (
+            (x - 0.24 * height, y - 0.5 * height, z - 0.08 * height),
+            (x + 0.24 * height, y + 0.1 * height, z + 0.08 * height),
+        ),
+        aspect,
     )

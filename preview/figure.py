@@ -1,4 +1,6 @@
-"""Figures: what is drawn for a skeleton. They turn global joint transforms into a mesh's palette, any number at once."""
+"""Figures: what is drawn for a skeleton. They turn global joint transforms into a mesh's palette, any number
+at once.
+"""
 
 from __future__ import annotations
 
@@ -17,14 +19,19 @@ from preview.mesh import VERTEX, Batch, Mesh, ball, capsule, coarse, egg
 
 Array = NDArray[Any]
 
-LEFT_COLOR, MIDDLE_COLOR, RIGHT_COLOR = (222, 226, 232), (190, 193, 198), (150, 154, 163)  # neutral: only light tells the sides apart
+LEFT_COLOR, MIDDLE_COLOR, RIGHT_COLOR = (
+    (222, 226, 232),
+    (190, 193, 198),
+    (150, 154, 163),
+)  # neutral: only light tells the sides apart
 
 
 class Figure:
     """A mesh that follows a skeleton.
 
-    skeleton: whose global transforms the figure takes. mesh: in its rest pose. sources: `[M]`, for each matrix of the
-    palette the joint of `skeleton` it follows (-1: none). shadow: joints `[S]` and radii `[S]` that darken the ground.
+    skeleton: whose global transforms the figure takes. mesh: in its rest pose. sources: `[M]`, for each
+    matrix of the palette the joint of `skeleton` it follows (-1: none). shadow: joints `[S]` and radii `[S]`
+    that darken the ground.
     """
 
     morphs: tuple[str, ...] = ()  # names of the mesh's morph targets
@@ -53,15 +60,21 @@ class Figure:
         return parent
 
     def palette(self, rotations: Array, positions: Array) -> Array:
-        """Return `[..., M, 3, 4]` float32: rest pose to posed, from global `rotations [..., J, 4]`, `positions [..., J, 3]`."""
+        """Return `[..., M, 3, 4]` float32: rest pose to posed, from global `rotations [..., J, 4]`,
+        `positions [..., J, 3]`.
+        """
         raise NotImplementedError
 
     def morph_weights(self, values: Mapping[str, float]) -> Array | None:
-        """Return weights `[K]` in the order of `morphs`, 0 for those not named; None for a figure without any."""
+        """Return weights `[K]` in the order of `morphs`, 0 for those not named; None for a figure without
+        any.
+        """
         return np.array([values.get(name, 0.0) for name in self.morphs], np.float32) if self.morphs else None
 
     def bounds(self, positions: Array) -> tuple[Array, Array]:
-        """Return the lowest and highest corner of a box round the figure in all poses `positions [..., J, 3]`."""
+        """Return the lowest and highest corner of a box round the figure in all poses `positions [..., J,
+        3]`.
+        """
         box = self._balls(positions)
         if box is None:
             return np.zeros(3), np.ones(3)
@@ -78,7 +91,9 @@ class Figure:
 
     @cached_property
     def _slack(self) -> tuple[Array, Array]:
-        """How much the box of balls is too large at rest, below and above: large ears make a large ball round the head."""
+        """How much the box of balls is too large at rest, below and above: large ears make a large ball round
+        the head.
+        """
         _, rest = self.skeleton.globals(self.skeleton.rest)
         box, mesh = self._balls(rest), self.mesh.vertices["position"]
         if box is None or not len(mesh):
@@ -87,10 +102,16 @@ class Figure:
 
     @cached_property
     def _reach(self) -> tuple[Array, Array]:
-        """Joints `[N]` and how far the mesh stands off them `[N]`, metres: off the bones below them where there are any."""
+        """Joints `[N]` and how far the mesh stands off them `[N]`, metres: off the bones below them where
+        there are any.
+        """
         _, rest = self.skeleton.globals(self.skeleton.rest)
         vertices = self.mesh.vertices
-        main = np.take_along_axis(vertices["bones"], vertices["weights"].argmax(1)[:, None], 1)[:, 0] if len(vertices) else np.zeros(0, int)
+        main = (
+            np.take_along_axis(vertices["bones"], vertices["weights"].argmax(1)[:, None], 1)[:, 0]
+            if len(vertices)
+            else np.zeros(0, int)
+        )
         owner = self.sources[main]
         for joint in reversed(range(len(self.skeleton))):  # what is not drawn counts for the joint above
             if not self.drawn[joint]:
@@ -116,7 +137,9 @@ class Figure:
         if self._head is None:
             top = np.argmax(np.asarray(positions)[..., 1], -1)
             return np.take_along_axis(np.asarray(positions), top[..., None, None], -2)[..., 0, :]
-        up = rotation.rotate(rotation.conjugate(self._rest_rotation(self._head)), np.array([0, 0.05 * self.height, 0]))
+        up = rotation.rotate(
+            rotation.conjugate(self._rest_rotation(self._head)), np.array([0, 0.05 * self.height, 0])
+        )
         return np.asarray(positions[..., self._head, :] + rotation.rotate(rotations[..., self._head, :], up))
 
     def _rest_rotation(self, joint: int) -> Array:
@@ -126,8 +149,8 @@ class Figure:
 class SkinnedFigure(Figure):
     """A character's mesh on a project's skeleton, which may be another than its own.
 
-    Joints are matched by name; one that is missing follows its nearest matched ancestor, and one without any such
-    ancestor follows the first that matched. `matched` counts the joints found.
+    Joints are matched by name; one that is missing follows its nearest matched ancestor, and one without any
+    such ancestor follows the first that matched. `matched` counts the joints found.
     """
 
     def __init__(self, character: Character, skeleton: Skeleton | None = None) -> None:
@@ -151,19 +174,27 @@ class SkinnedFigure(Figure):
         turn = rotation.multiply(np.asarray(rotations, np.float32)[..., sources, :], self._inverse_rotations)
         out = np.empty((*turn.shape[:-1], 3, 4), np.float32)
         out[..., :3] = rotation.to_matrix(turn)
-        out[..., 3] = np.asarray(positions, np.float32)[..., sources, :] - rotation.rotate(turn, self._rest_positions)
+        out[..., 3] = np.asarray(positions, np.float32)[..., sources, :] - rotation.rotate(
+            turn, self._rest_positions
+        )
         out[..., self.sources < 0, :, :] = np.eye(3, 4, dtype=np.float32)
         return out
 
 
 class StickFigure(Figure):
-    """Tapered bones, joint balls and a head for any skeleton, sized by it. The left is a little lighter than the right."""
+    """Tapered bones, joint balls and a head for any skeleton, sized by it. The left is a little lighter than
+    the right.
+    """
 
     def __init__(self, skeleton: Skeleton) -> None:
         # Matrix j moves with joint j; matrix J + j stretches from the drawn joint above to joint j.
         count = len(skeleton)
         self._parts: list[tuple[tuple[Array, Array, Array], int, Array, tuple[int, int, int]]] = []
-        super().__init__(skeleton, Mesh(np.zeros(0, VERTEX), np.zeros((0, 3), np.uint32), (), 2 * count), np.tile(np.arange(count), 2))
+        super().__init__(
+            skeleton,
+            Mesh(np.zeros(0, VERTEX), np.zeros((0, 3), np.uint32), (), 2 * count),
+            np.tile(np.arange(count), 2),
+        )
         rest_r, rest_p = skeleton.globals(skeleton.rest)
         self._rest_rotations, self._rest_positions = rest_r.astype(np.float32), rest_p.astype(np.float32)
         self._above_of = np.arange(count)
@@ -192,7 +223,9 @@ class StickFigure(Figure):
         along = np.einsum("...ij,...j->...i", matrix, np.broadcast_to(axis, now.shape))
         out[..., count:, :, :3] = matrix + stretch[..., None, None] * along[..., :, None] * axis[..., None, :]
         out[..., count:, :, 3] = positions[..., above, :] - np.einsum(
-            "...ij,...j->...i", out[..., count:, :, :3], np.broadcast_to(self._rest_positions[above], now.shape)
+            "...ij,...j->...i",
+            out[..., count:, :, :3],
+            np.broadcast_to(self._rest_positions[above], now.shape),
         )
         return out
 
@@ -210,10 +243,19 @@ class StickFigure(Figure):
             small = finger[child] or length < 0.02 * height
             thick = min(0.15 * length, 0.022 * height) if not small else min(0.2 * length, 0.0055 * height)
             thin = thick * (0.62 if not small else 0.85)
-            radius[child], radius[parent] = max(radius[child], thin), max(radius[parent], thick if not finger[child] else 0)
+            radius[child], radius[parent] = (
+                max(radius[child], thin),
+                max(radius[parent], thick if not finger[child] else 0),
+            )
             sides, rings = (6, 2) if small else (12, 3)
             turn = rotation.between(np.array([0.0, 1, 0]), offset)
-            self._add(capsule(length, thick, thin, sides, rings), len(skeleton) + int(child), rest[parent], colors[int(side[child])], turn)
+            self._add(
+                capsule(length, thick, thin, sides, rings),
+                len(skeleton) + int(child),
+                rest[parent],
+                colors[int(side[child])],
+                turn,
+            )
         for joint in np.flatnonzero(self.drawn):
             if joint == self._head or finger[joint]:
                 continue
@@ -235,10 +277,22 @@ class StickFigure(Figure):
         self._add(egg(tall, tall * 0.42), joint, rest[joint] + [0, -0.1 * tall, 0.06 * tall], color)
 
     def _add(
-        self, shape: tuple[Array, Array, Array], matrix: int, at: Array, color: tuple[int, int, int], turn: Array = rotation.IDENTITY
+        self,
+        shape: tuple[Array, Array, Array],
+        matrix: int,
+        at: Array,
+        color: tuple[int, int, int],
+        turn: Array = rotation.IDENTITY,
     ) -> None:
         positions, normals, triangles = shape
-        self._parts.append(((rotation.rotate(turn, positions) + at, rotation.rotate(turn, normals), triangles), matrix, at, color))
+        self._parts.append(
+            (
+                (rotation.rotate(turn, positions) + at, rotation.rotate(turn, normals), triangles),
+                matrix,
+                at,
+                color,
+            )
+        )
 
 
 def _joined(parts: list[Any], matrices: int) -> Mesh:
@@ -259,10 +313,16 @@ def _joined(parts: list[Any], matrices: int) -> Mesh:
 
 
 def _character_mesh(character: Character) -> Mesh:
-    """Bring a character's surfaces together by texture, so that a model of many plain materials is one draw."""
+    """Bring a character's surfaces together by texture, so that a model of many plain materials is one
+    draw.
+    """
     groups: dict[tuple[bytes | None, bool], list[tuple[Array, Material]]] = {}
     for surface in character.surfaces:
-        material = character.materials[surface.material] if surface.material < len(character.materials) else Material("")
+        material = (
+            character.materials[surface.material]
+            if surface.material < len(character.materials)
+            else Material("")
+        )
         run = np.asarray(character.triangles[surface.first : surface.first + surface.count])
         groups.setdefault((material.image, material.double_sided), []).append((run, material))
     if not character.surfaces and len(character.triangles):
@@ -274,7 +334,11 @@ def _character_mesh(character: Character) -> Mesh:
         for run, material in runs:
             used, corners = np.unique(run, return_inverse=True)
             v = np.zeros(len(used), VERTEX)
-            v["position"], v["normal"], v["uv"] = character.positions[used], character.normals[used], character.uvs[used]
+            v["position"], v["normal"], v["uv"] = (
+                character.positions[used],
+                character.normals[used],
+                character.uvs[used],
+            )
             weights = np.maximum(np.nan_to_num(character.weights[used]), 0)
             total = weights.sum(1, keepdims=True)
             v["weights"] = np.where(total > 1e-6, weights / np.maximum(total, 1e-6), [1.0, 0, 0, 0])
@@ -287,11 +351,23 @@ def _character_mesh(character: Character) -> Mesh:
         batches.append(Batch(start, first - start, image, double_sided))
     if not batches:
         return Mesh(np.zeros(0, VERTEX), np.zeros((0, 3), np.uint32), (), len(character.skeleton))
-    morphs = None if character.morph_positions is None else np.asarray(character.morph_positions, np.float32)[:, np.concatenate(origins)]
-    return Mesh(np.concatenate(vertices), np.concatenate(triangles).astype(np.uint32), tuple(batches), len(character.skeleton), morphs)
+    morphs = (
+        None
+        if character.morph_positions is None
+        else np.asarray(character.morph_positions, np.float32)[:, np.concatenate(origins)]
+    )
+    return Mesh(
+        np.concatenate(vertices),
+        np.concatenate(triangles).astype(np.uint32),
+        tuple(batches),
+        len(character.skeleton),
+        morphs,
+    )
 
 
 def _srgb8(linear: tuple[float, ...]) -> list[int]:
     """Linear 0..1 to sRGB 0..255."""
     c = np.clip(np.asarray(linear, float), 0, 1)
-    return [int(x) for x in np.round(255 * np.where(c <= 0.0031308, 12.92 * c, 1.055 * c ** (1 / 2.4) - 0.055))]
+    return [
+        int(x) for x in np.round(255 * np.where(c <= 0.0031308, 12.92 * c, 1.055 * c ** (1 / 2.4) - 0.055))
+    ]

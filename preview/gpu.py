@@ -83,7 +83,8 @@ class Store:
         self.marks.release()
 
     def prepare(self, actors: Sequence[Actor], meshes: Sequence[Mesh]) -> list[int]:
-        """Load meshes, palettes (all in one texture) and marks; return each actor's first row in the palette texture.
+        """Load meshes, palettes (all in one texture) and marks; return each actor's first row in the palette
+        texture.
 
         meshes: one for each actor, in order, then any others the frame draws.
         """
@@ -96,7 +97,9 @@ class Store:
             rows.append(row)
             row += actor.count
         crowded = len(self._meshes) > KEEP_MESHES
-        for mesh in [m for m, loaded in self._meshes.items() if loaded.idle > (0 if crowded else IDLE_FRAMES)]:
+        for mesh in [
+            m for m, loaded in self._meshes.items() if loaded.idle > (0 if crowded else IDLE_FRAMES)
+        ]:
             self._meshes.pop(mesh).release()
         if actors:
             self._write_palettes(actors, rows, row)
@@ -112,7 +115,9 @@ class Store:
             data = np.zeros((height, width, 3, 4), np.float32)
             for actor, row in zip(actors, rows, strict=True):
                 palette = actor.figure.palette(actor.rotations, actor.positions)
-                data[row : row + actor.count, : actor.figure.mesh.matrices] = palette.reshape(actor.count, -1, 3, 4)
+                data[row : row + actor.count, : actor.figure.mesh.matrices] = palette.reshape(
+                    actor.count, -1, 3, 4
+                )
         if self.palette.size[0] < 3 * width or self.palette.size[1] < height:
             self.palette.release()
             self.palette = self._ctx.texture((3 * width, height), 4, dtype="f4")
@@ -124,7 +129,10 @@ class Store:
         marks = np.zeros((len(actors), width, 4), np.uint8)
         for row, actor in zip(marks, actors, strict=True):
             for joint, color in actor.marks.items():
-                row[: len(actor.figure.sources)][actor.figure.sources == joint] = (*(round(255 * c) for c in color), MARK_STRENGTH)
+                row[: len(actor.figure.sources)][actor.figure.sources == joint] = (
+                    *(round(255 * c) for c in color),
+                    MARK_STRENGTH,
+                )
         self.marks.release()
         self.marks = self._ctx.texture((width, len(actors)), 4, marks.tobytes())
         self.marks.filter = moderngl.NEAREST, moderngl.NEAREST
@@ -160,7 +168,8 @@ class Store:
 
 @lru_cache(maxsize=32)
 def decoded(encoded: bytes) -> tuple[tuple[int, int], bytes]:
-    """Return a texture's size and RGBA pixels; one that cannot be read becomes white, as the figure is worth more than its paint.
+    """Return a texture's size and RGBA pixels; one that cannot be read becomes white, as the figure is worth
+    more than its paint.
 
     Kept, so that whoever loads a figure on a thread can decode there and drawing need not wait.
     """

@@ -22,7 +22,9 @@ _RIGHT = re.compile(r"right|(^|[^a-z])r([^a-z]|$)")
 
 
 def words(name: str) -> str:
-    """Return the name in lower case with its humps split: `mixamorig:LeftUpLeg2` gives `mixamorig:left_up_leg2`."""
+    """Return the name in lower case with its humps split: `mixamorig:LeftUpLeg2` gives
+    `mixamorig:left_up_leg2`.
+    """
     return re.sub(r"(?<=[a-z0-9])(?=[A-Z])|(?<=[A-Z])(?=[A-Z][a-z])", "_", name).lower()
 
 
@@ -36,12 +38,20 @@ def is_finger(name: str) -> bool:
 
 
 def is_face(name: str) -> bool:
-    """Whether the joint is in the face, or hair and cloth: things too small or too loose to stand for a bone."""
-    return bool(_FACE.search(words(name).replace("forearm", "").replace("fore_arm", "").replace("gear", "").replace("rear", "")))
+    """Whether the joint is in the face, or hair and cloth: things too small or too loose to stand for a
+    bone.
+    """
+    return bool(
+        _FACE.search(
+            words(name).replace("forearm", "").replace("fore_arm", "").replace("gear", "").replace("rear", "")
+        )
+    )
 
 
 def sides(skeleton: Skeleton) -> NDArray[Any]:
-    """Return `[J]`: 1 left, -1 right, 0 middle; by name, else as the parent, as left and right are rarely said twice."""
+    """Return `[J]`: 1 left, -1 right, 0 middle; by name, else as the parent, as left and right are rarely
+    said twice.
+    """
     out = np.zeros(len(skeleton), np.int8)
     for i, name in enumerate(skeleton.names):
         word = words(name)

@@ -1,4 +1,6 @@
-"""What the graphics card is given: vertices skinned to the matrices of a palette, and boxes and capsules to build them from."""
+"""What the graphics card is given: vertices skinned to the matrices of a palette, and boxes and capsules to
+build them from.
+"""
 
 from __future__ import annotations
 
@@ -38,7 +40,8 @@ class Batch:
 class Mesh:
     """vertices: `[V]` of VERTEX in rest pose. triangles: `[N, 3]`. matrices: how many the palette holds.
 
-    morphs: offsets of the positions `[K, V, 3]`, or None. Compared by identity: the renderer keeps one copy per value.
+    morphs: offsets of the positions `[K, V, 3]`, or None. Compared by identity: the renderer keeps one copy
+    per value.
     """
 
     vertices: Array
@@ -49,9 +52,11 @@ class Mesh:
 
 
 def coarse(mesh: Mesh, cells: int = 84) -> Mesh:
-    """Return a mesh with vertices merged that share a cell (height / `cells`), a bone and a piece: for shadows and crowds.
+    """Return a mesh with vertices merged that share a cell (height / `cells`), a bone and a piece: for
+    shadows and crowds.
 
-    A piece is what triangles connect; pieces stay apart since their places in a texture have nothing in common.
+    A piece is what triangles connect; pieces stay apart since their places in a texture have nothing in
+    common.
     """
     if not len(mesh.triangles):
         return mesh
@@ -59,10 +64,16 @@ def coarse(mesh: Mesh, cells: int = 84) -> Mesh:
     low, high = position.min(0), position.max(0)
     size = max(float((high - low).max()) / cells, 1e-9)
     cell = ((position - low) / size).astype(np.int64)
-    bone = np.take_along_axis(mesh.vertices["bones"], mesh.vertices["weights"].argmax(1)[:, None], 1)[:, 0].astype(np.int64)
-    paint = np.clip(mesh.vertices["uv"] % 1.0, 0, 0.999) @ np.array([0, 16.0])  # nor do far places of one piece
+    bone = np.take_along_axis(mesh.vertices["bones"], mesh.vertices["weights"].argmax(1)[:, None], 1)[
+        :, 0
+    ].astype(np.int64)
+    paint = np.clip(mesh.vertices["uv"] % 1.0, 0, 0.999) @ np.array(
+        [0, 16.0]
+    )  # nor do far places of one piece
     piece = _pieces(len(position), mesh.triangles) * 16 + paint.astype(np.int64)
-    key = (((piece * (mesh.matrices + 1) + bone) * (cells + 2) + cell[:, 0]) * (cells + 2) + cell[:, 1]) * (cells + 2) + cell[:, 2]
+    key = (((piece * (mesh.matrices + 1) + bone) * (cells + 2) + cell[:, 0]) * (cells + 2) + cell[:, 1]) * (
+        cells + 2
+    ) + cell[:, 2]
     _, first, group, count = np.unique(key, return_index=True, return_inverse=True, return_counts=True)
     middle = np.zeros((len(first), 3))
     np.add.at(middle, group, position)
@@ -96,11 +107,16 @@ def _pieces(count: int, triangles: Array) -> Array:
 
 
 def lathe(profile: Sequence[tuple[float, float]], sides: int) -> tuple[Array, Array, Array]:
-    """Turn a profile of `(y, radius)` pairs, from low to high, round the Y axis: positions, normals `[V, 3]`, triangles."""
+    """Turn a profile of `(y, radius)` pairs, from low to high, round the Y axis: positions, normals `[V, 3]`,
+    triangles.
+    """
     p = np.asarray(profile, float)
     slope = np.gradient(p, axis=0)
     outward = np.stack([-slope[:, 1], slope[:, 0]], -1)  # (along y, along the radius)
-    outward[0], outward[-1] = ((-1.0, 0.0) if p[0, 1] < 1e-9 else outward[0]), ((1.0, 0.0) if p[-1, 1] < 1e-9 else outward[-1])
+    outward[0], outward[-1] = (
+        ((-1.0, 0.0) if p[0, 1] < 1e-9 else outward[0]),
+        ((1.0, 0.0) if p[-1, 1] < 1e-9 else outward[-1]),
+    )
     outward /= np.maximum(np.linalg.norm(outward, axis=1, keepdims=True), 1e-12)
     angle = np.arange(sides) * (2 * math.pi / sides)
     circle = np.stack([np.sin(angle), np.cos(angle)], -1)
@@ -112,14 +128,18 @@ def lathe(profile: Sequence[tuple[float, float]], sides: int) -> tuple[Array, Ar
     i, j = np.meshgrid(np.arange(len(p) - 1), np.arange(sides), indexing="ij")
     a, b = i * sides + j, i * sides + (j + 1) % sides
     c, d = a + sides, b + sides
-    triangles = np.concatenate([np.stack([a, b, d], -1).reshape(-1, 3), np.stack([a, d, c], -1).reshape(-1, 3)])
+    triangles = np.concatenate(
+        [np.stack([a, b, d], -1).reshape(-1, 3), np.stack([a, d, c], -1).reshape(-1, 3)]
+    )
     flat = positions.reshape(-1, 3)
     corner = flat[triangles]
     area = np.linalg.norm(np.cross(corner[:, 1] - corner[:, 0], corner[:, 2] - corner[:, 0]), axis=1)
     return flat, normals.reshape(-1, 3), triangles[area > 1e-12]
 
 
-def capsule(length: float, low: float, high: float, sides: int = 10, rings: int = 3) -> tuple[Array, Array, Array]:
+def capsule(
+    length: float, low: float, high: float, sides: int = 10, rings: int = 3
+) -> tuple[Array, Array, Array]:
     """A tapered bone along +Y from 0 to `length` with round ends of the radii `low` and `high`."""
     turn = np.linspace(-math.pi / 2, 0, rings + 1)
     first = [(low * math.sin(t), low * math.cos(t) if i else 0.0) for i, t in enumerate(turn)]
@@ -130,7 +150,13 @@ def capsule(length: float, low: float, high: float, sides: int = 10, rings: int 
 def ball(radius: float, sides: int = 12, rings: int = 8) -> tuple[Array, Array, Array]:
     """A sphere round the origin."""
     turn = np.linspace(-math.pi / 2, math.pi / 2, rings + 1)
-    return lathe([(radius * math.sin(t), 0.0 if i in (0, rings) else radius * math.cos(t)) for i, t in enumerate(turn)], sides)
+    return lathe(
+        [
+            (radius * math.sin(t), 0.0 if i in (0, rings) else radius * math.cos(t))
+            for i, t in enumerate(turn)
+        ],
+        sides,
+    )
 
 
 def egg(profile_height: float, radius: float, sides: int = 18, rings: int = 14) -> tuple[Array, Array, Array]:

@@ -39,7 +39,8 @@ def standalone_context() -> moderngl.Context:
 class Offscreen:
     """A picture of `width` by `height` pixels to draw into, with its own context and renderer.
 
-    Use it in a `with` block or call `release()`; from one thread. Any size may be asked of `render`; it grows.
+    Use it in a `with` block or call `release()`; from one thread. Any size may be asked of `render`; it
+    grows.
     """
 
     def __init__(self, width: int, height: int, samples: int | None = None) -> None:
@@ -56,7 +57,9 @@ class Offscreen:
         with self._ctx:
             return str(self._ctx.info["GL_RENDERER"])
 
-    def render(self, scene: Scene, camera: Camera, theme: Theme = DARK, size: tuple[int, int] | None = None) -> NDArray[np.uint8]:
+    def render(
+        self, scene: Scene, camera: Camera, theme: Theme = DARK, size: tuple[int, int] | None = None
+    ) -> NDArray[np.uint8]:
         """Return the picture `[H, W, 4]` uint8, sRGB, first row at the top, alpha premultiplied."""
         if size is not None and (max(1, size[0]), max(1, size[1])) != self.size:
             self.resize(*size)
@@ -91,5 +94,7 @@ class Offscreen:
     def __enter__(self) -> Offscreen:
         return self
 
-    def __exit__(self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None) -> None:
+    def __exit__(
+        self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
+    ) -> None:
         self.release()

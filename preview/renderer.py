@@ -1,4 +1,6 @@
-"""Draws scenes with OpenGL 3.3: the same pictures in a window and without one, on a graphics card and in software."""
+"""Draws scenes with OpenGL 3.3: the same pictures in a window and without one, on a graphics card and in
+software.
+"""
 
 from __future__ import annotations
 
@@ -22,18 +24,25 @@ TO_LIGHT = np.array([-0.42, 0.80, 0.62]) / np.linalg.norm([-0.42, 0.80, 0.62])
 SHADOW_SIZE = 512
 SHADOW_LIMIT = 8  # instances; a crowd has only the soft spots under it
 SHADE = 0.8  # how dark the figure's shadow on itself is
-COARSE_BELOW, COARSE_CROWD_BELOW = 90, 240  # pixels of height under which figures are drawn with their coarse mesh
+COARSE_BELOW, COARSE_CROWD_BELOW = (
+    90,
+    240,
+)  # pixels of height under which figures are drawn with their coarse mesh
 _SOFTWARE = ("llvmpipe", "softpipe", "swiftshader", "software", "basic render")
 
 
 def is_software(ctx: moderngl.Context) -> bool:
-    """Whether the context draws with the processor: multisampling is then too slow and edges are smoothed afterwards."""
+    """Whether the context draws with the processor: multisampling is then too slow and edges are smoothed
+    afterwards.
+    """
     return any(word in str(ctx.info.get("GL_RENDERER", "")).lower() for word in _SOFTWARE)
 
 
 @dataclass(frozen=True, eq=False)
 class _Frame:
-    """What the passes of one picture share. rows: each actor's first row in the palette. light: world to shadow map."""
+    """What the passes of one picture share. rows: each actor's first row in the palette. light: world to
+    shadow map.
+    """
 
     scene: Scene
     actors: list[Actor]
@@ -56,7 +65,9 @@ class _Frame:
 
 
 class Renderer:
-    """Belongs to one context. `samples` None chooses: 4 on a graphics card, 0 in software (edges are smoothed instead)."""
+    """Belongs to one context. `samples` None chooses: 4 on a graphics card, 0 in software (edges are smoothed
+    instead).
+    """
 
     def __init__(self, ctx: moderngl.Context, samples: int | None = None) -> None:
         self.ctx = ctx
@@ -77,7 +88,12 @@ class Renderer:
     def release(self) -> None:
         """Give everything on the graphics card back; the context must be current."""
         self.store.release()
-        for held in (*self._plain.values(), *self._programs.values(), *self._buffers.values(), *reversed(self._targets)):
+        for held in (
+            *self._plain.values(),
+            *self._programs.values(),
+            *self._buffers.values(),
+            *reversed(self._targets),
+        ):
             held.release()
         self._shadow_fbo.release()
         self._shadow_map.release()
@@ -85,8 +101,16 @@ class Renderer:
             gone.clear()
         self._targets.clear()
 
-    def draw(self, scene: Scene, camera: Camera, size: tuple[int, int], target: moderngl.Framebuffer, theme: Theme = DARK) -> None:
-        """Draw into `target`'s lower left `size` (width, height, pixels). Sets all state it needs; keeps none of the caller's.
+    def draw(
+        self,
+        scene: Scene,
+        camera: Camera,
+        size: tuple[int, int],
+        target: moderngl.Framebuffer,
+        theme: Theme = DARK,
+    ) -> None:
+        """Draw into `target`'s lower left `size` (width, height, pixels). Sets all state it needs; keeps none
+        of the caller's.
 
         Actors whose transforms hold something that is not a number are left out.
         """
@@ -96,14 +120,20 @@ class Renderer:
         solid = [a for a in actors if a.opacity >= 1]
         cast = scene.shadow and 0 < sum(a.count for a in solid) <= SHADOW_LIMIT
         small = COARSE_BELOW if sum(a.count for a in actors) <= SHADOW_LIMIT else COARSE_CROWD_BELOW
-        meshes = [a.figure.coarse if a.morphs is None and _tall(a, camera, height) < small else a.figure.mesh for a in actors]
+        meshes = [
+            a.figure.coarse if a.morphs is None and _tall(a, camera, height) < small else a.figure.mesh
+            for a in actors
+        ]
         rows = self.store.prepare(actors, meshes + ([a.figure.coarse for a in solid] if cast else []))
         matrix = camera.projection(width / height) @ camera.view()
-        frame = _Frame(scene, actors, rows, camera, (width, height), theme, matrix, Scene(tuple(solid)).bounds(), meshes)
+        frame = _Frame(
+            scene, actors, rows, camera, (width, height), theme, matrix, Scene(tuple(solid)).bounds(), meshes
+        )
         if cast:
             frame = replace(frame, light=self._cast(frame))
 
-        # The ground and the sky need no smoothing and go to the target; figures are drawn apart and laid over them.
+        # The ground and the sky need no smoothing and go to the target; figures are drawn apart and laid over
+        # them.
         covered = _covered(frame)
         self._state(target, (0, 0, width, height), moderngl.NOTHING)
         if scene.background is not None:
@@ -143,7 +173,12 @@ class Renderer:
         self.store.palette.use(0)
         for i in which:
             _set(program, u_row=frame.rows[i])
-            self._triangles(frame.actors[i].figure.coarse if coarse else frame.meshes[i], frame.actors[i], program, "depth")
+            self._triangles(
+                frame.actors[i].figure.coarse if coarse else frame.meshes[i],
+                frame.actors[i],
+                program,
+                "depth",
+            )
 
     def _bodies(self, frame: _Frame, which: Sequence[int]) -> None:
         theme = frame.theme
@@ -157,13 +192,35 @@ class Renderer:
                 if not any((b.image is not None) == (kind == "textured") for b in frame.meshes[i].batches):
                     continue
                 sunk = frame.floor and float(np.min(actor.positions[..., 1])) < 0
-                flags = (("TEXTURED", kind == "textured"), ("MARKED", bool(actor.marks)), ("SHADOWED", cast), ("SUNK", sunk))
+                flags = (
+                    ("TEXTURED", kind == "textured"),
+                    ("MARKED", bool(actor.marks)),
+                    ("SHADOWED", cast),
+                    ("SUNK", sunk),
+                )
                 words = [w for w, on in flags if on]
                 head = "#version 330 core\n" + "".join(f"#define {w}\n" for w in words)
-                program = self._program("body " + " ".join(words), head + shaders.BODY_VERTEX, head + shaders.BODY)
-                _set(program, u_matrix=frame.matrix, u_eye=frame.camera.eye, u_to_light=TO_LIGHT, u_opacity=actor.opacity)
-                _set(program, u_palette=0, u_shadow=1, u_image=2, u_marks=3, u_marks_row=i, u_row=frame.rows[i])
-                _set(program, u_key=theme.key, u_above=theme.above, u_below=theme.below, u_rim=theme.rim, u_shade=SHADE)
+                program = self._program(
+                    "body " + " ".join(words), head + shaders.BODY_VERTEX, head + shaders.BODY
+                )
+                _set(
+                    program,
+                    u_matrix=frame.matrix,
+                    u_eye=frame.camera.eye,
+                    u_to_light=TO_LIGHT,
+                    u_opacity=actor.opacity,
+                )
+                _set(
+                    program, u_palette=0, u_shadow=1, u_image=2, u_marks=3, u_marks_row=i, u_row=frame.rows[i]
+                )
+                _set(
+                    program,
+                    u_key=theme.key,
+                    u_above=theme.above,
+                    u_below=theme.below,
+                    u_rim=theme.rim,
+                    u_shade=SHADE,
+                )
                 if frame.light is not None:
                     _set(program, u_light=frame.light)
                 self._triangles(frame.meshes[i], actor, program, kind)
@@ -189,7 +246,9 @@ class Renderer:
             reach = min(60.0, max(7.0, 2.2 * camera.distance))
             x, z = camera.target[0], camera.target[2]
             right = camera.axes[0]
-            edge = camera.project((x + 4 * reach * right[2], 0.0, z - 4 * reach * right[0]), width / height)[1]
+            edge = camera.project((x + 4 * reach * right[2], 0.0, z - 4 * reach * right[0]), width / height)[
+                1
+            ]
             sky_from = int(np.clip((1 - edge) * height - 1, 0, height)) if np.isfinite(edge) else 0
             self._ground(frame, (x, z, 4 * reach, 4 * reach), (right[0], right[2]), reach)
             if casters:
@@ -200,7 +259,9 @@ class Renderer:
             self._sky("sky", self._program("sky", shaders.COVER, shaders.SKY), frame, moderngl.TRIANGLES, 3)
             target.scissor = None
 
-    def _ground(self, frame: _Frame, patch: tuple[float, ...], turn: tuple[float, float], reach: float) -> None:
+    def _ground(
+        self, frame: _Frame, patch: tuple[float, ...], turn: tuple[float, float], reach: float
+    ) -> None:
         theme, distance = frame.theme, frame.camera.distance
         spacing = 0.5 if distance < 14 else 1.0 if distance < 40 else 5.0
         program = self._program("ground", shaders.GROUND_VERTEX, shaders.GROUND)
@@ -229,7 +290,12 @@ class Renderer:
 
     def _sky(self, key: str, program: moderngl.Program, frame: _Frame, mode: int, count: int) -> None:
         """Draw with a program that ends in the sky's colours."""
-        _set(program, u_pixel=(1 / frame.size[0], 1 / frame.size[1]), u_top=frame.theme.top, u_bottom=frame.theme.bottom)
+        _set(
+            program,
+            u_pixel=(1 / frame.size[0], 1 / frame.size[1]),
+            u_top=frame.theme.top,
+            u_bottom=frame.theme.bottom,
+        )
         self._bare(key, program).render(mode, count)
 
     def _overlay(self, frame: _Frame) -> None:
@@ -238,7 +304,11 @@ class Renderer:
         for actor in frame.actors:
             if actor.bones and len(actor.figure.lines):
                 p = np.asarray(actor.positions).reshape(-1, len(actor.figure.skeleton), 3)
-                segments.append(np.concatenate([p[:, actor.figure.line_starts], p[:, actor.figure.lines]], -1).reshape(-1, 6))
+                segments.append(
+                    np.concatenate([p[:, actor.figure.line_starts], p[:, actor.figure.lines]], -1).reshape(
+                        -1, 6
+                    )
+                )
         if not segments:
             return
         lines = np.concatenate(segments)
@@ -303,10 +373,14 @@ class Renderer:
         self._size = size
 
     def _triangles(self, mesh: Mesh, actor: Actor, program: moderngl.Program, kind: str) -> None:
-        """Draw the actor's batches that `program` is for: all (kind depth), the plain ones or the textured ones."""
+        """Draw the actor's batches that `program` is for: all (kind depth), the plain ones or the textured
+        ones.
+        """
         loaded = self.store[mesh]
         array = loaded.array(self.ctx, program, kind)
-        flags = moderngl.DEPTH_TEST | (moderngl.BLEND if actor.opacity < 1 and kind != "depth" else moderngl.NOTHING)
+        flags = moderngl.DEPTH_TEST | (
+            moderngl.BLEND if actor.opacity < 1 and kind != "depth" else moderngl.NOTHING
+        )
         for batch in mesh.batches:
             if kind != "depth" and (batch.image is not None) != (kind == "textured"):
                 continue
@@ -343,7 +417,10 @@ class Renderer:
 
 def _drawable(actor: Actor) -> bool:
     return bool(
-        actor.count and len(actor.figure.mesh.vertices) and np.isfinite(actor.positions).all() and np.isfinite(actor.rotations).all()
+        actor.count
+        and len(actor.figure.mesh.vertices)
+        and np.isfinite(actor.positions).all()
+        and np.isfinite(actor.rotations).all()
     )
 
 

@@ -19,9 +19,9 @@ Color = tuple[float, float, float]
 class Actor:
     """A figure in one pose, or in many at once (a crowd is one draw).
 
-    rotations `[..., J, 4]` xyzw and positions `[..., J, 3]`: global, on the figure's skeleton. morphs: weights `[K]`.
-    marks: sRGB colours 0..1 for joints to point out, such as those of a mask. bones: draw the skeleton over the mesh.
-    opacity below 1 makes a ghost, without shadow.
+    rotations `[..., J, 4]` xyzw and positions `[..., J, 3]`: global, on the figure's skeleton. morphs:
+    weights `[K]`. marks: sRGB colours 0..1 for joints to point out, such as those of a mask. bones: draw the
+    skeleton over the mesh. opacity below 1 makes a ghost, without shadow.
     """
 
     figure: Figure
@@ -40,7 +40,9 @@ class Actor:
 
 @dataclass(frozen=True, eq=False)
 class Scene:
-    """background: one flat sRGB colour with alpha, premultiplied, instead of the theme's; there is no ground then."""
+    """background: one flat sRGB colour with alpha, premultiplied, instead of the theme's; there is no ground
+    then.
+    """
 
     actors: tuple[Actor, ...] = ()
     ground: bool = True
@@ -48,7 +50,9 @@ class Scene:
     background: tuple[float, float, float, float] | None = None
 
     def bounds(self) -> tuple[Array, Array]:
-        """Return the lowest and highest corner of a box round all actors; a person's size when there are none."""
+        """Return the lowest and highest corner of a box round all actors; a person's size when there are
+        none.
+        """
         boxes = [a.figure.bounds(a.positions) for a in self.actors if a.count]
         if not boxes:
             return np.array([-0.5, 0.0, -0.5]), np.array([0.5, 1.8, 0.5])
@@ -57,7 +61,9 @@ class Scene:
 
 @dataclass(frozen=True)
 class Theme:
-    """Colours: sky, floor and ink in sRGB 0..1; lights linear. All neutral: in the window colour means kind."""
+    """Colours: sky, floor and ink in sRGB 0..1; lights linear. All neutral: in the window colour means
+    kind.
+    """
 
     name: str
     top: Color

@@ -288,7 +288,8 @@ out vec4 o_color;
 void main() { o_color = texelFetch(u_picture, ivec2(gl_FragCoord.xy), 0); }
 """
 
-# Smooths edges found by contrast: looks along an edge's direction and takes the mean, unless that leaves the local range.
+# Smooths edges found by contrast: looks along an edge's direction and takes the mean, unless that leaves the
+# local range.
 SMOOTH = """#version 330 core
 uniform sampler2D u_picture;
 uniform vec2 u_pixel;

@@ -30,7 +30,8 @@ def contact_sheet(
 ) -> Array:
     """Return one picture `[H, W, 3]` uint8 of `images` (uint8 `[h, w, 3 or 4]`, any sizes) in `columns`.
 
-    labels: a line under each image; notes: a fainter second line. Words too long for their image end in an ellipsis.
+    labels: a line under each image; notes: a fainter second line. Words too long for their image end in an
+    ellipsis.
     """
     from PIL import Image, ImageDraw
 
@@ -52,7 +53,9 @@ def contact_sheet(
         x, y = gap + (i % columns) * (width + gap), head + gap + (i // columns) * (cell + gap)
         picture = Image.fromarray(np.ascontiguousarray(image))
         page.paste(
-            picture, (x + (width - picture.width) // 2, y + (height - picture.height) // 2), picture if picture.mode == "RGBA" else None
+            picture,
+            (x + (width - picture.width) // 2, y + (height - picture.height) // 2),
+            picture if picture.mode == "RGBA" else None,
         )
         for line, (words, color) in enumerate(((labels, ink), (notes, faint))):
             if i < len(words):
@@ -71,7 +74,9 @@ def write_png(path: str | Path, picture: Array) -> None:
         Image.fromarray(np.ascontiguousarray(picture)).save(part, "PNG", compress_level=6)
         part.replace(path)
     except OSError as error:
-        raise FileError(path, f"the picture could not be written ({error})", remedy="Check the folder and the free space.") from error
+        raise FileError(
+            path, f"the picture could not be written ({error})", remedy="Check the folder and the free space."
+        ) from error
     finally:
         part.unlink(missing_ok=True)
 

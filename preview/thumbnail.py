@@ -22,13 +22,17 @@ LOOK_AT = 120  # frames of a clip that are compared
 
 
 def telling_frame(clip: Clip) -> int:
-    """Return the frame whose pose is farthest from the first: root aside, fingers and face counting little."""
+    """Return the frame whose pose is farthest from the first: root aside, fingers and face counting
+    little.
+    """
     frames = np.unique(np.linspace(0, clip.frames - 1, min(clip.frames, LOOK_AT)).round().astype(int))
     poses = clip.poses()[frames]
     translations = poses.translations.copy()
     translations[:, 0] = 0
     _, positions = clip.skeleton.globals(Pose(poses.rotations, translations))
-    small = np.array([rules.is_finger(n) or rules.is_face(n) or rules.is_control(n) for n in clip.skeleton.names])
+    small = np.array(
+        [rules.is_finger(n) or rules.is_face(n) or rules.is_control(n) for n in clip.skeleton.names]
+    )
     apart = np.linalg.norm(positions - positions[:1], axis=-1) * np.where(small, 0.1, 1.0)
     return int(frames[np.argmax(apart.sum(1))])
 
@@ -46,9 +50,9 @@ def thumbnail(
 ) -> Array:
     """Return a square picture `[size * scale, size * scale, 4]` uint8 of one pose on the figure's skeleton.
 
-    rotations `[J, 4]`, positions `[J, 3]`: global. paper: sRGB background, None for a transparent one. tint: an sRGB
-    colour (that of the clip's kind) the paper takes a little of. All clips of a skeleton are framed alike, so that they
-    can be compared; one that leaves the frame is shown whole.
+    rotations `[J, 4]`, positions `[J, 3]`: global. paper: sRGB background, None for a transparent one. tint:
+    an sRGB colour (that of the clip's kind) the paper takes a little of. All clips of a skeleton are framed
+    alike, so that they can be compared; one that leaves the frame is shown whole.
     """
     pixels = size * scale
     background = (0.0, 0.0, 0.0, 0.0)

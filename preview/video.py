@@ -32,11 +32,12 @@ def write_video(
 ) -> int:
     """Write `frames` (uint8 `[H, W, 3 or 4]`, sRGB, all of one size) at `fps` and return how many there were.
 
-    size: width and height of the video; by default that of the first frame, made even as H.264 needs. Frames that differ
-    are scaled. quality: x264's rate factor, 0 (lossless) .. 51. progress is called with the number of frames written.
-    sound: mono samples `[N]`, -1..1, and how many there are a second; cut or filled with silence to the pictures' length.
-    A picture is encoded while the next is drawn; `frames` is asked, and progress told, in the caller's thread.
-    The file appears only when it is complete. Raises FileError (no frames, not writable), Cancelled.
+    size: width and height of the video; by default that of the first frame, made even as H.264 needs. Frames
+    that differ are scaled. quality: x264's rate factor, 0 (lossless) .. 51. progress is called with the
+    number of frames written. sound: mono samples `[N]`, -1..1, and how many there are a second; cut or filled
+    with silence to the pictures' length. A picture is encoded while the next is drawn; `frames` is asked, and
+    progress told, in the caller's thread. The file appears only when it is complete. Raises FileError (no
+    frames, not writable), Cancelled.
     """
     import av
 
@@ -46,7 +47,10 @@ def write_video(
     part = path.with_name(f".{path.name}.part.mp4")
     count = 0
     try:
-        with av.open(str(part), "w", format="mp4", options={"movflags": "faststart"}) as container, ThreadPoolExecutor(1) as encoder:
+        with (
+            av.open(str(part), "w", format="mp4", options={"movflags": "faststart"}) as container,
+            ThreadPoolExecutor(1) as encoder,
+        ):
             stream: Any = None
             voice: Any = None
             encoding: Future[None] | None = None
@@ -75,19 +79,25 @@ def write_video(
                     stream.options = {"preset": "veryfast", "crf": str(quality), "tune": "animation"}
                     if sound is not None:
                         voice = container.add_stream("aac", rate=sound[1], layout="mono")
-                frame = av.VideoFrame.from_ndarray(np.ascontiguousarray(picture[..., :3], np.uint8), format="rgb24")
+                frame = av.VideoFrame.from_ndarray(
+                    np.ascontiguousarray(picture[..., :3], np.uint8), format="rgb24"
+                )
                 encoded()
                 encoding = encoder.submit(encode, frame)
             encoded()
             if stream is None:
-                raise FileError(path, "there are no frames to write", remedy="Choose a time span longer than one frame.")
+                raise FileError(
+                    path, "there are no frames to write", remedy="Choose a time span longer than one frame."
+                )
             for packet in stream.encode():
                 container.mux(packet)
             if voice is not None and sound is not None:
                 _write_sound(container, voice, sound[0], round(count / fps * sound[1]))
         part.replace(path)
     except OSError as error:
-        raise FileError(path, f"the video could not be written ({error})", remedy="Check the folder and the free space.") from error
+        raise FileError(
+            path, f"the video could not be written ({error})", remedy="Check the folder and the free space."
+        ) from error
     finally:
         part.unlink(missing_ok=True)
     return count
@@ -101,7 +111,9 @@ def _write_sound(container: Any, stream: Any, samples: Array, count: int) -> Non
     whole[: min(count, len(samples))] = samples[:count]
     size = 1024
     for first in range(0, count, size):
-        frame = av.AudioFrame.from_ndarray(np.ascontiguousarray(whole[None, first : first + size]), format="fltp", layout="mono")
+        frame = av.AudioFrame.from_ndarray(
+            np.ascontiguousarray(whole[None, first : first + size]), format="fltp", layout="mono"
+        )
         frame.sample_rate, frame.pts = stream.rate, first
         for packet in stream.encode(frame):
             container.mux(packet)

@@ -23,7 +23,8 @@ ROOT = Path(__file__).resolve().parents[1]
 WORKER = os.environ.get("PYTEST_XDIST_WORKER", "")
 os.environ["NUMBA_CACHE_DIR"] = str(kernels.provide(WORKER or "alone"))
 
-# Files that take longest, the longest first: begun late, one of them would keep one process busy while the others have nothing left.
+# Files that take longest, the longest first: begun late, one of them would keep one process busy while the
+# others have nothing left.
 LONG = ("test_docs.py", "live/test_session.py")
 
 # The gate must give the same answer twice; at the desk, examples are drawn anew each time.
@@ -62,7 +63,9 @@ def pytest_testnodedown(node: Any, error: object) -> None:
 def pytest_terminal_summary(terminalreporter: Any, config: pytest.Config) -> None:
     """Say at the end how much memory the tests took, so that nothing grows unseen."""
     peaks = config.stash[PEAK] or {"this process": memory()}
-    terminalreporter.write_line("peak memory: " + ", ".join(f"{name} {peak:,.0f} MB" for name, peak in sorted(peaks.items())))
+    terminalreporter.write_line(
+        "peak memory: " + ", ".join(f"{name} {peak:,.0f} MB" for name, peak in sorted(peaks.items()))
+    )
 
 
 def memory() -> float:
@@ -92,45 +95,87 @@ def zoo_files(tmp_path_factory: pytest.TempPathFactory) -> dict[str, Path]:
 
 
 class Toy:
-    """Builds small projects whose motion is known: arms that swing and a head that turns, on sixteen joints."""
+    """Builds small projects whose motion is known: arms that swing and a head that turns, on sixteen
+    joints.
+    """
 
     def __init__(self) -> None:
         from metagraph.motion.skeleton import Skeleton
 
         rows = [
-            ("Hips", -1, (0, 1.0, 0)), ("Spine", 0, (0, 0.2, 0)), ("Neck", 1, (0, 0.3, 0)), ("Head", 2, (0, 0.1, 0)),
-            ("LeftUpperArm", 1, (0.2, 0.25, 0)), ("LeftLowerArm", 4, (0.3, 0, 0)), ("LeftHand", 5, (0.25, 0, 0)),
-            ("RightUpperArm", 1, (-0.2, 0.25, 0)), ("RightLowerArm", 7, (-0.3, 0, 0)), ("RightHand", 8, (-0.25, 0, 0)),
-            ("LeftUpperLeg", 0, (0.1, -0.05, 0)), ("LeftLowerLeg", 10, (0, -0.45, 0)), ("LeftFoot", 11, (0, -0.45, 0)),
-            ("RightUpperLeg", 0, (-0.1, -0.05, 0)), ("RightLowerLeg", 13, (0, -0.45, 0)), ("RightFoot", 14, (0, -0.45, 0)),
-        ]  # fmt: skip
+            ("Hips", -1, (0, 1.0, 0)),
+            ("Spine", 0, (0, 0.2, 0)),
+            ("Neck", 1, (0, 0.3, 0)),
+            ("Head", 2, (0, 0.1, 0)),
+            ("LeftUpperArm", 1, (0.2, 0.25, 0)),
+            ("LeftLowerArm", 4, (0.3, 0, 0)),
+            ("LeftHand", 5, (0.25, 0, 0)),
+            ("RightUpperArm", 1, (-0.2, 0.25, 0)),
+            ("RightLowerArm", 7, (-0.3, 0, 0)),
+            ("RightHand", 8, (-0.25, 0, 0)),
+            ("LeftUpperLeg", 0, (0.1, -0.05, 0)),
+            ("LeftLowerLeg", 10, (0, -0.45, 0)),
+            ("LeftFoot", 11, (0, -0.45, 0)),
+            ("RightUpperLeg", 0, (-0.1, -0.05, 0)),
+            ("RightLowerLeg", 13, (0, -0.45, 0)),
+            ("RightFoot", 14, (0, -0.45, 0)),
+        ]
         names, parents, offsets = zip(*rows, strict=True)
-        self.skeleton = Skeleton(names, np.array(parents), np.tile([0.0, 0, 0, 1], (len(rows), 1)), np.array(offsets, float))
+        self.skeleton = Skeleton(
+            names, np.array(parents), np.tile([0.0, 0, 0, 1], (len(rows), 1)), np.array(offsets, float)
+        )
 
     def clip(
-        self, name: str, seconds: float = 1.0, start: float = 0.0, end: float | None = None, swing: float = 0.6, fps: float = 30
+        self,
+        name: str,
+        seconds: float = 1.0,
+        start: float = 0.0,
+        end: float | None = None,
+        swing: float = 0.6,
+        fps: float = 30,
     ) -> Clip:
-        """A clip in which the arms go from angle `start` to `end` by way of `swing` more radians; head and hips sway along."""
+        """A clip in which the arms go from angle `start` to `end` by way of `swing` more radians; head and
+        hips sway along.
+        """
         frames = round(seconds * fps) + 1
         x = np.linspace(0, 1, frames)
-        angle = start + ((start if end is None else end) - start) * (3 * x**2 - 2 * x**3) + swing * np.sin(np.pi * x) ** 2
+        angle = (
+            start
+            + ((start if end is None else end) - start) * (3 * x**2 - 2 * x**3)
+            + swing * np.sin(np.pi * x) ** 2
+        )
         rotations = np.tile(self.skeleton.rest_rotations, (frames, 1, 1))
-        for joint, axis, share in (("LeftUpperArm", (0, 0, 1.0), 1), ("RightUpperArm", (0, 0, -1.0), 0.8), ("Head", (1.0, 0, 0), 0.3)):
+        for joint, axis, share in (
+            ("LeftUpperArm", (0, 0, 1.0), 1),
+            ("RightUpperArm", (0, 0, -1.0), 0.8),
+            ("Head", (1.0, 0, 0), 0.3),
+        ):
             rotations[:, self.skeleton.index(joint)] = rotation.from_axis_angle(np.array(axis), angle * share)
         translations = np.tile(self.skeleton.rest_translations[:1], (frames, 1, 1))
         translations[:, 0, 0] += 0.03 * swing * np.sin(np.pi * x) ** 2
         return Clip(name, self.skeleton, fps, rotations, translations)
 
     def project(self, layer: Layer = "arms", loop: float = 2.0) -> Project:
-        """Stances rest, up, far on one layer, joined rest <-> up <-> far; gestures, fidgets and transitions named after themselves."""
+        """Stances rest, up, far on one layer, joined rest <-> up <-> far; gestures, fidgets and transitions
+        named after themselves.
+        """
         angles = {"rest": 0.0, "up": 0.8, "far": 1.4}
         clips = [self.clip(f"{name} loop", loop, angle, swing=0.05) for name, angle in angles.items()]
-        lengths = {"rest short": 0.6, "rest beat lf": 0.9, "rest wave rt": 1.2, "rest long": 2.4, "up beat": 0.7, "up point": 1.1}
+        lengths = {
+            "rest short": 0.6,
+            "rest beat lf": 0.9,
+            "rest wave rt": 1.2,
+            "rest long": 2.4,
+            "up beat": 0.7,
+            "up point": 1.1,
+        }
         lengths |= {"rest scratch": 1.0, "rest cough": 0.8, "up yawn": 1.0}
         clips += [self.clip(name, seconds, angles[name.split()[0]]) for name, seconds in lengths.items()]
         ways = (("rest", "up"), ("up", "rest"), ("up", "far"), ("far", "up"))
         clips += [self.clip(f"{a} to {b}", 0.8, angles[a], angles[b]) for a, b in ways]
-        project = edits.add_clips(Project("toy", life=Life(on=False)), [(f"{c.name}.glb", 0, "", c) for c in clips])
+        project = edits.add_clips(
+            Project("toy", life=Life(on=False)), [(f"{c.name}.glb", 0, "", c) for c in clips]
+        )
         clip = {entry.name: entry.id for entry in project.clips.values()}
         for name in angles:
             project = edits.add_stance(project, layer, name, [clip[f"{name} loop"]])

@@ -1,7 +1,7 @@
 """Compiles what is compiled when first called, once for all processes that test: `python -m tests.kernels`.
 
-Processes that compile the same kernels at once would leave a cache that crashes both, from then on. So it is made once, kept
-under the state of what is compiled, and each process is given a copy of its own.
+Processes that compile the same kernels at once would leave a cache that crashes both, from then on. So it is
+made once, kept under the state of what is compiled, and each process is given a copy of its own.
 """
 
 from __future__ import annotations
@@ -38,7 +38,10 @@ def make() -> Path:
         HOME.mkdir(parents=True, exist_ok=True)
         scratch = tempfile.mkdtemp(dir=HOME)
         subprocess.run(
-            [sys.executable, "-m", "tests.kernels", "here"], cwd=ROOT, env={**os.environ, "NUMBA_CACHE_DIR": scratch}, check=True
+            [sys.executable, "-m", "tests.kernels", "here"],
+            cwd=ROOT,
+            env={**os.environ, "NUMBA_CACHE_DIR": scratch},
+            check=True,
         )
         with contextlib.suppress(OSError):  # another was faster
             Path(scratch).rename(found)
@@ -69,7 +72,9 @@ def compile_all() -> None:
     project = open_project(ROOT / "sample_clips" / "sample.metagraph.yaml").project
     with tempfile.TemporaryDirectory() as folder:
         bvh._loops.append(bvh_kernels)  # else only large files need it
-        bvh.write_bvh(next(clip.motion for clip in project.clips.values() if clip.motion), Path(folder) / "a.bvh")
+        bvh.write_bvh(
+            next(clip.motion for clip in project.clips.values() if clip.motion), Path(folder) / "a.bvh"
+        )
         bvh.read_bvh(Path(folder) / "a.bvh")
     crowd = Crowd(project, [make_plan(project, 5.0)])
     crowd.poses(1.0)

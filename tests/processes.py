@@ -17,11 +17,14 @@ PATIENCE = 10.0  # seconds that a program is given to end once it was told to
 
 
 @contextlib.contextmanager
-def started(*command: object, ignored: bool = False, longest: float = 600.0, **options: Any) -> Iterator[subprocess.Popen[str]]:
+def started(
+    *command: object, ignored: bool = False, longest: float = 600.0, **options: Any
+) -> Iterator[subprocess.Popen[str]]:
     """Start a program in this project's folder; at the end it is told to end, and killed if it does not.
 
-    ignored: starts it where interrupts are ignored, as `nohup` and background jobs of scripts do. longest: seconds after which it
-    is killed whatever it does, so that nobody waits for its words for ever. options: of Popen; texts unless told otherwise.
+    ignored: starts it where interrupts are ignored, as `nohup` and background jobs of scripts do. longest:
+    seconds after which it is killed whatever it does, so that nobody waits for its words for ever. options:
+    of Popen; texts unless told otherwise.
     """
     options = {"cwd": ROOT, "text": True, **options}
     if ignored:
@@ -71,7 +74,9 @@ class Answering:
         self._patience = patience  # seconds for one answer
 
     def ask(self, line: str) -> str:
-        """Return the answer to a line, without its end. Raises AssertionError where there is none, or none in time."""
+        """Return the answer to a line, without its end. Raises AssertionError where there is none, or none in
+        time.
+        """
         assert self._process.stdin is not None and self._process.stdout is not None
         late = threading.Timer(self._patience, self._process.kill)
         late.daemon = True

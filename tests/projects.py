@@ -16,15 +16,70 @@ from metagraph.motion.clip import Clip
 from metagraph.motion.skeleton import Skeleton
 
 NASTY = (
-    "yes", "no", "Off", "null", "~", "1e3", "1_000", "0x1F", "12:30:00", "2024-01-01", ".inf", "NaN", "=", "<<", "true", "y", "None",
-    "#hash", "a #b", "a: b", "a:b", "- a", "-", "?", "[x]", "{x}", "*a", "&a", "!tag", "!!python/object", "%d", "@a", "`a", "a\tb",
-    "'single'", '"double"', "back\\slash", "new\nline", "\r\n", "trailing ", " leading", "Größe", "日本語", "🙂", "a\u2028b", "\u0085",
-    "\x7f", "\ufeff", "\x00", "...", "---", "|", ">", "a,b", "nod_01 (v2)", "e1", "x" * 300, "\ud83d",
-)  # fmt: skip
+    "yes",
+    "no",
+    "Off",
+    "null",
+    "~",
+    "1e3",
+    "1_000",
+    "0x1F",
+    "12:30:00",
+    "2024-01-01",
+    ".inf",
+    "NaN",
+    "=",
+    "<<",
+    "true",
+    "y",
+    "None",
+    "#hash",
+    "a #b",
+    "a: b",
+    "a:b",
+    "- a",
+    "-",
+    "?",
+    "[x]",
+    "{x}",
+    "*a",
+    "&a",
+    "!tag",
+    "!!python/object",
+    "%d",
+    "@a",
+    "`a",
+    "a\tb",
+    "'single'",
+    '"double"',
+    "back\\slash",
+    "new\nline",
+    "\r\n",
+    "trailing ",
+    " leading",
+    "Größe",
+    "日本語",
+    "🙂",
+    "a\u2028b",
+    "\u0085",
+    "\x7f",
+    "\ufeff",
+    "\x00",
+    "...",
+    "---",
+    "|",
+    ">",
+    "a,b",
+    "nod_01 (v2)",
+    "e1",
+    "x" * 300,
+    "\ud83d",
+)
 
 times = st.floats(0, 30).map(lambda x: round(x, 3))
 words = st.one_of(
-    st.sampled_from([n for n in NASTY if n != "\ud83d"]), st.text(st.characters(exclude_categories=["Cs"]), min_size=1, max_size=12)
+    st.sampled_from([n for n in NASTY if n != "\ud83d"]),
+    st.text(st.characters(exclude_categories=["Cs"]), min_size=1, max_size=12),
 )
 
 
@@ -54,7 +109,12 @@ def _import(draw: Any, project: Project) -> Project:
     return edits.add_clips(
         project,
         [
-            (f"clips/{draw(names)}.glb", n, draw(st.sampled_from(["", "ab" * 32])), clip(draw(names), draw(st.integers(1, 90))))
+            (
+                f"clips/{draw(names)}.glb",
+                n,
+                draw(st.sampled_from(["", "ab" * 32])),
+                clip(draw(names), draw(st.integers(1, 90))),
+            )
             for n in range(count)
         ],
     )
@@ -77,7 +137,12 @@ def _place(draw: Any, project: Project) -> Project:
     chosen = draw(st.lists(st.sampled_from([*project.clips]), min_size=1, max_size=3))
     try:
         return edits.place(
-            project, chosen, layer, draw(st.sampled_from(KINDS)), draw(st.sampled_from(stances)), draw(st.sampled_from(stances))
+            project,
+            chosen,
+            layer,
+            draw(st.sampled_from(KINDS)),
+            draw(st.sampled_from(stances)),
+            draw(st.sampled_from(stances)),
         )
     except edits.EditError:
         return project
@@ -99,14 +164,21 @@ def _update(draw: Any, project: Project) -> Project:
                 "timing": st.fixed_dictionaries(
                     {},
                     optional={
-                        "start": times, "end": st.none() | times, "blend_in": times, "blend_out": times, "loop": st.booleans(),
-                        "earliest_exit": st.none() | times, "stroke": st.none() | times,
+                        "start": times,
+                        "end": st.none() | times,
+                        "blend_in": times,
+                        "blend_out": times,
+                        "loop": st.booleans(),
+                        "earliest_exit": st.none() | times,
+                        "stroke": st.none() | times,
                     },
                 ),
             },
         )
-    )  # fmt: skip
-    return edits.update_actions(project, draw(st.lists(st.sampled_from(ids), min_size=1, max_size=3)), **changes)
+    )
+    return edits.update_actions(
+        project, draw(st.lists(st.sampled_from(ids), min_size=1, max_size=3)), **changes
+    )
 
 
 def _remove(draw: Any, project: Project) -> Project:
@@ -120,7 +192,9 @@ def _remove_stance(draw: Any, project: Project) -> Project:
 
 
 def _remove_clips(draw: Any, project: Project) -> Project:
-    return edits.remove_clips(project, [draw(st.sampled_from([*project.clips]))]) if project.clips else project
+    return (
+        edits.remove_clips(project, [draw(st.sampled_from([*project.clips]))]) if project.clips else project
+    )
 
 
 def _move(draw: Any, project: Project) -> Project:
@@ -146,18 +220,30 @@ def _rest(draw: Any, project: Project) -> Project:
     return draw(
         st.sampled_from(
             [
-                lambda p: edits.set_weight(p, layer, draw(st.sampled_from(PARTS)), draw(st.sampled_from([0.0, 0.35, 2.0]))),
-                lambda p: edits.set_settings(p, seed=draw(st.integers(0, 2**32 - 1)), alpha=draw(st.sampled_from([0.0, 2.5]))),
+                lambda p: edits.set_weight(
+                    p, layer, draw(st.sampled_from(PARTS)), draw(st.sampled_from([0.0, 0.35, 2.0]))
+                ),
+                lambda p: edits.set_settings(
+                    p, seed=draw(st.integers(0, 2**32 - 1)), alpha=draw(st.sampled_from([0.0, 2.5]))
+                ),
                 lambda p: edits.set_settings(p, never_twice=draw(st.booleans())),
                 lambda p: edits.set_role(p, draw(names), draw(st.none() | st.sampled_from(SKELETON.names))),
-                lambda p: edits.set_part(p, [draw(st.sampled_from(SKELETON.names))], draw(st.none() | st.sampled_from(PARTS))),
+                lambda p: edits.set_part(
+                    p, [draw(st.sampled_from(SKELETON.names))], draw(st.none() | st.sampled_from(PARTS))
+                ),
                 lambda p: edits.set_character(p, draw(st.none() | words)),
                 lambda p: edits.rename_project(p, draw(names)),
-                lambda p: edits.set_base(p, draw(st.sampled_from([None, *p.clips])), draw(st.integers(0, 40))),
+                lambda p: edits.set_base(
+                    p, draw(st.sampled_from([None, *p.clips])), draw(st.integers(0, 40))
+                ),
                 lambda p: edits.set_markov(
                     p,
                     Markov(
-                        layer, (("left", "gesture"), ("both", "fidget"), ("both", "transition")), ((third, third, third),) * 3, 1.5, 0.25
+                        layer,
+                        (("left", "gesture"), ("both", "fidget"), ("both", "transition")),
+                        ((third, third, third),) * 3,
+                        1.5,
+                        0.25,
                     ),
                 ),
                 lambda p: edits.set_markov(
@@ -171,7 +257,13 @@ def _rest(draw: Any, project: Project) -> Project:
                         lengths=draw(st.sampled_from([(), ((1.25, 0.0), (0.5, 2.125))])),
                     ),
                 ),
-                lambda p: replace(p, graphs={**p.graphs, layer: replace(p.graphs[layer], start=next(iter(p.graphs[layer].stances), None))}),
+                lambda p: replace(
+                    p,
+                    graphs={
+                        **p.graphs,
+                        layer: replace(p.graphs[layer], start=next(iter(p.graphs[layer].stances), None)),
+                    },
+                ),
             ]
         )
     )(project)
@@ -182,30 +274,66 @@ def _manual(draw: Any, project: Project) -> Project:
     found = manual_edits.machine(project, layer)
     states, links = [*found.states], [*found.links]
     if not states or (project.clips and draw(st.integers(0, 3)) == 0):
-        chosen = draw(st.lists(st.sampled_from([*project.clips]), min_size=1, max_size=3)) if project.clips else []
-        return manual_edits.add_states(project, chosen, layer, draw(times), -draw(times)) if chosen else project
+        chosen = (
+            draw(st.lists(st.sampled_from([*project.clips]), min_size=1, max_size=3)) if project.clips else []
+        )
+        return (
+            manual_edits.add_states(project, chosen, layer, draw(times), -draw(times)) if chosen else project
+        )
     some = draw(st.lists(st.sampled_from(states), min_size=1, max_size=3))
     step = draw(st.integers(0, 7))
     if step < 3 or not links:
-        return manual_edits.add_link(project, layer, draw(st.sampled_from([*states, ANY])), draw(st.sampled_from(states)))
+        return manual_edits.add_link(
+            project, layer, draw(st.sampled_from([*states, ANY])), draw(st.sampled_from(states))
+        )
     if step == 3:
-        fields = {"loop": draw(st.booleans()), "start": draw(times), "end": draw(st.none() | times), "limb": draw(st.sampled_from(LIMBS))}
-        return manual_edits.update_states(project, some, name=draw(names), joints=draw(st.sampled_from([(), ("Head",)])), **fields)
+        fields = {
+            "loop": draw(st.booleans()),
+            "start": draw(times),
+            "end": draw(st.none() | times),
+            "limb": draw(st.sampled_from(LIMBS)),
+        }
+        return manual_edits.update_states(
+            project, some, name=draw(names), joints=draw(st.sampled_from([(), ("Head",)])), **fields
+        )
     if step == 4:
-        condition = {"when": draw(st.sampled_from(WHENS)), "trigger": draw(names), "weight": draw(st.sampled_from([0.5, 3.0]))}
+        condition = {
+            "when": draw(st.sampled_from(WHENS)),
+            "trigger": draw(names),
+            "weight": draw(st.sampled_from([0.5, 3.0])),
+        }
         fields = {"exit_time": draw(st.none() | times), "blend": draw(times)}
-        return manual_edits.update_links(project, [draw(st.sampled_from(links))], condition=condition, **fields)
+        return manual_edits.update_links(
+            project, [draw(st.sampled_from(links))], condition=condition, **fields
+        )
     if step == 5:
-        return manual_edits.paste(project, layer, manual_edits.copied(project, some), draw(times), draw(times))[0]
+        return manual_edits.paste(
+            project, layer, manual_edits.copied(project, some), draw(times), draw(times)
+        )[0]
     if step == 6:
         return manual_edits.remove(project, some[:1], [draw(st.sampled_from(links))])
-    return manual_edits.set_start(manual_edits.move_nodes(project, layer, {some[0]: (draw(times), 0.5), ANY: (-3.0, 4.0)}), some[-1])
+    return manual_edits.set_start(
+        manual_edits.move_nodes(project, layer, {some[0]: (draw(times), 0.5), ANY: (-3.0, 4.0)}), some[-1]
+    )
 
 
 EDITS: tuple[Callable[[Any, Project], Project], ...] = (
-    _import, _stance, _stance, _place, _place, _place, _update, _update, _remove, _remove_stance, _remove_clips, _move, _rest,
-    _manual, _manual,
-)  # fmt: skip
+    _import,
+    _stance,
+    _stance,
+    _place,
+    _place,
+    _place,
+    _update,
+    _update,
+    _remove,
+    _remove_stance,
+    _remove_clips,
+    _move,
+    _rest,
+    _manual,
+    _manual,
+)
 
 
 @st.composite

@@ -1,4 +1,6 @@
-"""The compiler that comes when it is needed: when it is asked for, by which command, and what is said where it cannot be had."""
+"""The compiler that comes when it is needed: when it is asked for, by which command, and what is said where
+it cannot be had.
+"""
 
 from __future__ import annotations
 
@@ -81,15 +83,22 @@ def test_without_a_network_the_reason_and_the_command_for_later_are_told_and_it_
     ours: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     setup = Setup(
-        monkeypatch, works=False, said="trying\nERROR: No matching distribution found for numba\nThe compiler could not be installed"
+        monkeypatch,
+        works=False,
+        said="trying\nERROR: No matching distribution found for numba\nThe compiler could not be installed",
     )
     for _ in range(2):
-        with pytest.raises(CompilerError, match=r"No matching distribution found for numba\).*network.*python3 run\.py install"):
+        with pytest.raises(
+            CompilerError,
+            match=r"No matching distribution found for numba\).*network.*python3 run\.py install",
+        ):
             compiler()
     assert len(setup.started) == 2
 
 
-def test_an_environment_of_somebody_else_is_left_alone_and_its_command_is_told(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
+def test_an_environment_of_somebody_else_is_left_alone_and_its_command_is_told(
+    monkeypatch: pytest.MonkeyPatch, tmp_path: Path
+) -> None:
     setup = Setup(monkeypatch, works=True)
     monkeypatch.setattr(sys, "prefix", str(tmp_path))
     with pytest.raises(CompilerError) as told:

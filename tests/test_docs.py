@@ -1,4 +1,6 @@
-"""What the documentation says is true: its code runs, its links lead somewhere, its fields are the schema's."""
+"""What the documentation says is true: its code runs, its links lead somewhere, its fields are the
+schema's.
+"""
 
 from __future__ import annotations
 
@@ -17,7 +19,12 @@ from metagraph.formats.store import from_text
 from metagraph.study.plan import from_text as study_from_text
 
 ROOT = Path(__file__).resolve().parents[1]
-PAGES = [ROOT / "README.md", ROOT / "CONTRIBUTING.md", ROOT / "CHANGELOG.md", *sorted((ROOT / "docs").glob("*.md"))]
+PAGES = [
+    ROOT / "README.md",
+    ROOT / "CONTRIBUTING.md",
+    ROOT / "CHANGELOG.md",
+    *sorted((ROOT / "docs").glob("*.md")),
+]
 BLOCK = re.compile(r"^```(\w+)\n(.*?)^```$", re.S | re.M)
 PICTURES = ("window", "practice", "empty", "performance")
 
@@ -57,10 +64,14 @@ def samples(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
 
 
 @pytest.mark.parametrize(("page", "n"), of("python"))
-def test_python_in_the_pages_runs_and_prints_what_follows_it(page: Path, n: int, samples: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_python_in_the_pages_runs_and_prints_what_follows_it(
+    page: Path, n: int, samples: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
     every = blocks(page)
     monkeypatch.setattr(
-        Path, "write_bytes", lambda self, data: pytest.fail("wrote other bytes") if self.read_bytes() != data else len(data)
+        Path,
+        "write_bytes",
+        lambda self, data: pytest.fail("wrote other bytes") if self.read_bytes() != data else len(data),
     )
     out = io.StringIO()
     with contextlib.redirect_stdout(out):
@@ -71,7 +82,9 @@ def test_python_in_the_pages_runs_and_prints_what_follows_it(page: Path, n: int,
 
 @pytest.mark.gl
 @pytest.mark.parametrize(("page", "n"), of("sh"))
-def test_commands_in_the_pages_run(page: Path, n: int, samples: Path, capsys: pytest.CaptureFixture[str]) -> None:
+def test_commands_in_the_pages_run(
+    page: Path, n: int, samples: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
     for line in blocks(page)[n][1].splitlines():
         program, *words = shlex.split(line)
         assert program == "metagraph"
@@ -91,7 +104,9 @@ def test_project_and_study_files_in_the_pages_can_be_read(page: Path, n: int) ->
         return
     project = from_text(text, Path("page.metagraph.yaml"))
     assert project.clips and project.skeleton is not None
-    assert any(a.kind == "gesture" for a in project.actions()) or any(m.links for m in project.manual.values())
+    assert any(a.kind == "gesture" for a in project.actions()) or any(
+        m.links for m in project.manual.values()
+    )
 
 
 def anchors(page: Path) -> set[str]:

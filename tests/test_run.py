@@ -25,7 +25,9 @@ def run(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> ModuleType:
     module = importlib.util.module_from_spec(spec)
     spec.loader.exec_module(module)
     for name in ("call", "run", "Popen"):
-        monkeypatch.setattr(module.subprocess, name, lambda *args, **kwargs: pytest.fail(f"started {args[0]}"))
+        monkeypatch.setattr(
+            module.subprocess, name, lambda *args, **kwargs: pytest.fail(f"started {args[0]}")
+        )
     monkeypatch.setattr(module, "ROOT", tmp_path)
     monkeypatch.setattr(module, "VENV", tmp_path / ".venv")
     monkeypatch.setattr(module, "PYTHON", tmp_path / ".venv" / "bin" / "python")
@@ -68,13 +70,19 @@ class Terminal:
 
 def test_it_needs_nothing_but_python() -> None:
     code = (
-        f"import sys; sys.path.insert(0, {str(ROOT)!r}); import run; print([m for m in sys.modules if m in ('numpy', 'yaml', 'PySide6')])"
+        f"import sys; sys.path.insert(0, {str(ROOT)!r}); import run; print([m for m in sys.modules if m "
+        "in ('numpy', 'yaml', 'PySide6')])"
     )
-    made = subprocess.run([sys.executable, "-S", "-c", code], cwd="/", capture_output=True, text=True, check=True)
+    made = subprocess.run(
+        [sys.executable, "-S", "-c", code], cwd="/", capture_output=True, text=True, check=True
+    )
     assert made.stdout.strip() == "[]"
 
 
-@pytest.mark.parametrize(("version", "fits"), [((3, 10), False), ((3, 11), True), ((3, 13), True), ((3, 14), False), ((2, 7), False)])
+@pytest.mark.parametrize(
+    ("version", "fits"),
+    [((3, 10), False), ((3, 11), True), ((3, 13), True), ((3, 14), False), ((2, 7), False)],
+)
 def test_the_wrong_python_is_refused_in_words(
     run: ModuleType, monkeypatch: pytest.MonkeyPatch, version: tuple[int, int], fits: bool
 ) -> None:
@@ -92,12 +100,21 @@ def test_a_complete_system_misses_nothing(run: ModuleType, monkeypatch: pytest.M
     assert run.system_libraries(True, True) is None
 
 
-def test_without_a_screen_only_drawing_is_needed_and_tests_need_it_all(run: ModuleType, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_without_a_screen_only_drawing_is_needed_and_tests_need_it_all(
+    run: ModuleType, monkeypatch: pytest.MonkeyPatch
+) -> None:
     monkeypatch.setattr(run, "loads", lambda library: False)
     monkeypatch.setattr(run.shutil, "which", lambda program: None)
     assert run.missing(False, False) == ["libegl1", "libgl1"]
     assert set(run.missing(True, False)) == {*run.DRAWING.values(), *run.WINDOW.values()}
-    assert set(run.missing(False, True)) == {*run.DRAWING.values(), *run.WINDOW.values(), "xvfb", "xauth", "xdotool", "espeak-ng"}
+    assert set(run.missing(False, True)) == {
+        *run.DRAWING.values(),
+        *run.WINDOW.values(),
+        "xvfb",
+        "xauth",
+        "xdotool",
+        "espeak-ng",
+    }
 
 
 def test_a_library_that_cannot_be_loaded_is_missing(run: ModuleType) -> None:
@@ -117,13 +134,18 @@ def bare(run: ModuleType, monkeypatch: pytest.MonkeyPatch) -> ModuleType:
     return run
 
 
-def test_without_apt_the_line_for_debian_is_printed(bare: ModuleType, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_without_apt_the_line_for_debian_is_printed(
+    bare: ModuleType, monkeypatch: pytest.MonkeyPatch
+) -> None:
     monkeypatch.setattr(bare.shutil, "which", lambda program: None)
     assert bare.system_libraries(False, False).endswith(LINE)
 
 
 def test_without_a_terminal_to_ask_on_the_line_is_printed(bare: ModuleType) -> None:
-    assert bare.system_libraries(False, False) == f"System libraries are missing. Install them and start again:\n  {LINE}"
+    assert (
+        bare.system_libraries(False, False)
+        == f"System libraries are missing. Install them and start again:\n  {LINE}"
+    )
 
 
 def test_sudo_is_used_after_asking_and_not_without(bare: ModuleType, monkeypatch: pytest.MonkeyPatch) -> None:
@@ -141,7 +163,9 @@ def test_the_administrator_is_not_asked(bare: ModuleType, monkeypatch: pytest.Mo
     started = Started()
     monkeypatch.setattr(bare.os, "geteuid", lambda: 0, raising=False)
     monkeypatch.setattr(
-        bare.subprocess, "call", lambda *a, **k: (monkeypatch.setattr(bare, "loads", lambda library: True), started(*a, **k))[1]
+        bare.subprocess,
+        "call",
+        lambda *a, **k: (monkeypatch.setattr(bare, "loads", lambda library: True), started(*a, **k))[1],
     )
     assert bare.system_libraries(False, False) is None
     assert started[1] == ["apt-get", "install", "-y", "--no-install-recommends", "libegl1", "libgl1"]
@@ -150,7 +174,10 @@ def test_the_administrator_is_not_asked(bare: ModuleType, monkeypatch: pytest.Mo
 def test_a_failed_installation_says_what_to_do(bare: ModuleType, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(bare.os, "geteuid", lambda: 0, raising=False)
     monkeypatch.setattr(bare.subprocess, "call", Started(100))
-    assert bare.system_libraries(False, False) == f"That failed. Install them yourself and start again:\n  {LINE}"
+    assert (
+        bare.system_libraries(False, False)
+        == f"That failed. Install them yourself and start again:\n  {LINE}"
+    )
 
 
 @pytest.fixture
@@ -166,7 +193,9 @@ def make_python(run: ModuleType) -> None:
     run.PYTHON.write_text("")
 
 
-def test_the_environment_is_made_once_and_again_when_what_is_pinned_changes(pinned: ModuleType, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_the_environment_is_made_once_and_again_when_what_is_pinned_changes(
+    pinned: ModuleType, monkeypatch: pytest.MonkeyPatch
+) -> None:
     started = Started()
     monkeypatch.setattr(pinned.subprocess, "call", started)
     make_python(pinned)
@@ -196,14 +225,18 @@ def test_each_list_is_installed_with_those_before_it_and_serves_whoever_needs_le
     for most in range(3):
         assert pinned.environment(most) is None
         assert [listed(command) for command in started if listed(command)] == [list(pinned.LISTS[: most + 1])]
-        assert any("-e" in command for command in started) == (most == 0)  # what does not change is there already
+        assert any("-e" in command for command in started) == (
+            most == 0
+        )  # what does not change is there already
         started.clear()
     assert pinned.environment(0) is pinned.environment(1) is None and not started
     pinned.stamp(0).unlink()
     assert pinned.environment(0) is None and not started  # all that the tests need is enough
 
 
-def test_a_compiler_that_was_added_is_kept_up_to_date_with_the_rest(pinned: ModuleType, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_a_compiler_that_was_added_is_kept_up_to_date_with_the_rest(
+    pinned: ModuleType, monkeypatch: pytest.MonkeyPatch
+) -> None:
     started = Started()
     monkeypatch.setattr(pinned.subprocess, "call", started)
     make_python(pinned)
@@ -220,7 +253,9 @@ def test_what_is_pinned_is_pinned_once_and_names_no_place_to_load_it_from() -> N
     names: list[str] = []
     for file in sorted(ROOT.glob("requirements*.txt")):
         lines = file.read_text().splitlines()
-        assert all(re.fullmatch(r"[a-z0-9.-]+==[0-9][\w.]*( ; [a-z_]+ [<>!=]+ '[\w.]+')?", line) for line in lines), file
+        assert all(
+            re.fullmatch(r"[a-z0-9.-]+==[0-9][\w.]*( ; [a-z_]+ [<>!=]+ '[\w.]+')?", line) for line in lines
+        ), file
         names += [f"{line.split('==')[0]} {line.partition(' ; ')[2]}" for line in lines]
     assert len(set(names)) == len(names)
 
@@ -228,7 +263,9 @@ def test_what_is_pinned_is_pinned_once_and_names_no_place_to_load_it_from() -> N
 def test_what_is_declared_is_pinned_in_the_list_of_those_who_need_it(run: ModuleType) -> None:
     project = tomllib.loads((ROOT / "pyproject.toml").read_text())["project"]
     extras = project["optional-dependencies"]
-    for name, declared in zip(run.LISTS, (project["dependencies"], extras["compiled"], extras["test"]), strict=True):
+    for name, declared in zip(
+        run.LISTS, (project["dependencies"], extras["compiled"], extras["test"]), strict=True
+    ):
         pinned = {line.split("==")[0] for line in (ROOT / name).read_text().splitlines()}
         missing = {re.split(r"[^\w.-]", word)[0].lower() for word in declared} - pinned
         assert missing <= ({"numba"} if name == "requirements-test.txt" else set()), name
@@ -246,7 +283,9 @@ def test_an_environment_that_cannot_be_made_leaves_nothing_and_names_the_package
     assert not pinned.VENV.exists()
 
 
-def test_a_failed_download_is_told_and_tried_again_next_time(pinned: ModuleType, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_a_failed_download_is_told_and_tried_again_next_time(
+    pinned: ModuleType, monkeypatch: pytest.MonkeyPatch
+) -> None:
     make_python(pinned)
     monkeypatch.setattr(pinned.subprocess, "call", Started(0, 1))
     assert "could not be installed" in pinned.environment(0)
@@ -286,14 +325,22 @@ def test_it_starts_the_window_or_the_same_job_without_one(
     assert calls[0][1:] == ["-m", "app.cli", *started]
 
 
-def test_the_tests_are_lint_types_imports_and_pytest_and_one_failure_is_a_failure(run: ModuleType, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_the_tests_are_lint_types_imports_and_pytest_and_one_failure_is_a_failure(
+    run: ModuleType, monkeypatch: pytest.MonkeyPatch
+) -> None:
     monkeypatch.setattr(run.shutil, "which", lambda program: None)
     calls, compiling = Started(0, 0, 1, 0, 0), Compiling()
     monkeypatch.setattr(run.subprocess, "call", calls)
     monkeypatch.setattr(run.subprocess, "Popen", compiling)
     assert run.run_tests([]) == 1
     assert compiling.waited
-    assert [Path(command[0]).name.removesuffix(".exe") for command in calls] == ["ruff", "ruff", "mypy", "lint-imports", "python"]
+    assert [Path(command[0]).name.removesuffix(".exe") for command in calls] == [
+        "ruff",
+        "ruff",
+        "mypy",
+        "lint-imports",
+        "python",
+    ]
     monkeypatch.setattr(run, "spread", lambda arguments: ["--spread"])
     calls = Started(0)
     monkeypatch.setattr(run.subprocess, "call", calls)
@@ -305,7 +352,8 @@ def test_the_tests_are_lint_types_imports_and_pytest_and_one_failure_is_a_failur
     ("arguments", "cores", "processes"),
     [
         ([], 1, 1), ([], 2, 2), ([], 16, 16), (["tests/app"], 2, 2), (["-k", "journal", "-x"], 4, 4),
-        (["tests/test_run.py"], 2, 1), (["tests/test_run.py::test_it"], 2, 1), (["-n", "4"], 8, 1), (["-n0"], 8, 1),
+        (["tests/test_run.py"], 2, 1), (["tests/test_run.py::test_it"], 2, 1), (["-n", "4"], 8, 1),
+        (["-n0"], 8, 1),
         (["tests/app", "--dist=load"], 8, 1), (["-s"], 8, 1), (["--pdb"], 8, 1), (["-p", "no:xdist"], 8, 1),
     ],
 )  # fmt: skip
@@ -324,7 +372,9 @@ def test_tests_are_spread_over_all_cores_unless_asked_otherwise(
 def without(run: ModuleType, monkeypatch: pytest.MonkeyPatch) -> ModuleType:
     """A Debian that has apt and nothing to test exports in."""
     monkeypatch.setattr(run.sys, "platform", "linux")
-    monkeypatch.setattr(run.shutil, "which", lambda program: "/usr/bin/apt-get" if program == "apt-get" else None)
+    monkeypatch.setattr(
+        run.shutil, "which", lambda program: "/usr/bin/apt-get" if program == "apt-get" else None
+    )
     return run
 
 
@@ -337,7 +387,9 @@ def test_what_exports_are_run_in_is_installed_as_far_as_there_is_any(
     monkeypatch.setattr(without.subprocess, "call", calls)
     without.engines()
     assert calls[1][4:] == packages
-    calls = Started(0, 100, *(0 for _ in packages[1:]), 100)  # together they fail, then the last of them alone
+    calls = Started(
+        0, 100, *(0 for _ in packages[1:]), 100
+    )  # together they fail, then the last of them alone
     monkeypatch.setattr(without.subprocess, "call", calls)
     without.engines()
     assert [command[-1] for command in calls[2:]] == packages
@@ -354,7 +406,9 @@ def test_engines_are_not_asked_for_where_nobody_answers(
     assert not calls and "sudo apt-get install" in capsys.readouterr().out
 
 
-def test_nothing_is_installed_where_all_engines_are_or_no_apt_is(run: ModuleType, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_nothing_is_installed_where_all_engines_are_or_no_apt_is(
+    run: ModuleType, monkeypatch: pytest.MonkeyPatch
+) -> None:
     calls = Started()
     monkeypatch.setattr(run.subprocess, "call", calls)
     for which in (lambda program: f"/usr/bin/{program}", lambda program: None):

@@ -1,8 +1,9 @@
 """Characters as studios have them, made here: other names, other rests, other units and axes, pieces missing.
 
-Nothing of it was recorded: one figure of seventeen joints does the same calisthenics of sines on each skeleton. The names are the
-conventions of tools, not anybody's files. `make(folder)` writes a file for each of `ANIMALS`, some kilobytes each; the
-answers one would give by hand (which joint is the left hand, how tall they are) stand with them.
+Nothing of it was recorded: one figure of seventeen joints does the same calisthenics of sines on each
+skeleton. The names are the conventions of tools, not anybody's files. `make(folder)` writes a file for each
+of `ANIMALS`, some kilobytes each; the answers one would give by hand (which joint is the left hand, how tall
+they are) stand with them.
 """
 
 from __future__ import annotations
@@ -26,9 +27,14 @@ from metagraph.motion.skeleton import Skeleton
 
 Array = NDArray[Any]
 SECONDS = 2.0
-TAKES = {"calisthenics": 1.0, "half": 0.5, "the other way": -0.7}  # takes -> how far it is done; a BVH has the first alone
+TAKES = {
+    "calisthenics": 1.0,
+    "half": 0.5,
+    "the other way": -0.7,
+}  # takes -> how far it is done; a BVH has the first alone
 
-# The figure in a T-pose, metres, Y up, facing +Z: joint -> its parent and where it is. Its left side is at +X.
+# The figure in a T-pose, metres, Y up, facing +Z: joint -> its parent and where it is. Its left side is at
+# +X.
 FIGURE: dict[str, tuple[str | None, tuple[float, float, float]]] = {
     "hips": (None, (0, 0.95, 0)),
     "spine": ("hips", (0, 1.05, 0)),
@@ -54,10 +60,11 @@ for _side, _x in (("left", 1.0), ("right", -1.0)):
 class Animal:
     """One character.
 
-    names: the figure's joint -> what it is called, a `@` standing for the side; joints without a name are missing. sides: what `@` is
-    on the left and the right. arms: degrees that arms hang below the horizontal at rest. unit: metres of a unit of the file. up: the
-    axis of the file that points up. bones: whether joints' Y axes lie along their bones in the T-pose, else they are parallel to the
-    world's. above: a joint on the ground above the hips. bind: whether the first frame is the rest pose. size: of the body; legs: of
+    names: the figure's joint -> what it is called, a `@` standing for the side; joints without a name are
+    missing. sides: what `@` is on the left and the right. arms: degrees that arms hang below the horizontal
+    at rest. unit: metres of a unit of the file. up: the axis of the file that points up. bones: whether
+    joints' Y axes lie along their bones in the T-pose, else they are parallel to the world's. above: a joint
+    on the ground above the hips. bind: whether the first frame is the rest pose. size: of the body; legs: of
     the legs beside that.
     """
 
@@ -92,29 +99,102 @@ def _names(prefix: str, trunk: str, arm: str, leg: str) -> dict[str, str]:
 
 ANIMALS: dict[str, Animal] = {
     # Centimetres under a scaled node, T-pose, bones along Y, as the web service writes them.
-    "mixamo": Animal(".glb", _names("mixamorig:", "Hips, Spine, Spine2, Neck, Head", "@Shoulder, @Arm, @ForeArm, @Hand, @HandIndex1",
-                                    "@UpLeg, @Leg, @Foot, @ToeBase"), bones=True),
+    "mixamo": Animal(
+        ".glb",
+        _names(
+            "mixamorig:",
+            "Hips, Spine, Spine2, Neck, Head",
+            "@Shoulder, @Arm, @ForeArm, @Hand, @HandIndex1",
+            "@UpLeg, @Leg, @Foot, @ToeBase",
+        ),
+        bones=True,
+    ),
     # Z up under a turned node, names with spaces, arms down, a rate of its own.
-    "biped": Animal(".glb", _names("Bip01 ", "Pelvis, Spine, Spine1, Neck, Head",
-                                   "@ Clavicle, @ UpperArm, @ Forearm, @ Hand, @ Finger0", "@ Thigh, @ Calf, @ Foot, @ Toe0"),
-                    ("L", "R"), arms=75, up="Z", bones=True, fps=25),
+    "biped": Animal(
+        ".glb",
+        _names(
+            "Bip01 ",
+            "Pelvis, Spine, Spine1, Neck, Head",
+            "@ Clavicle, @ UpperArm, @ Forearm, @ Hand, @ Finger0",
+            "@ Thigh, @ Calf, @ Foot, @ Toe0",
+        ),
+        ("L", "R"),
+        arms=75,
+        up="Z",
+        bones=True,
+        fps=25,
+    ),
     # Lower case, a fast camera, the bind pose on the first frame, no fingers.
-    "cmu": Animal(".bvh", _names("", "hips, lowerback, thorax, lowerneck, head", "@clavicle, @humerus, @radius, @hand, -",
-                                 "@femur, @tibia, @foot, @toes"), ("l", "r"), fps=120, bind=True),
+    "cmu": Animal(
+        ".bvh",
+        _names(
+            "",
+            "hips, lowerback, thorax, lowerneck, head",
+            "@clavicle, @humerus, @radius, @hand, -",
+            "@femur, @tibia, @foot, @toes",
+        ),
+        ("l", "r"),
+        fps=120,
+        bind=True,
+    ),
     # A-pose, Z up, a root on the ground above the pelvis, a game's rate.
-    "unreal": Animal(".glb", _names("", "pelvis, spine_01, spine_03, neck_01, head",
-                                    "clavicle_@, upperarm_@, lowerarm_@, hand_@, index_01_@", "thigh_@, calf_@, foot_@, ball_@"),
-                     ("l", "r"), arms=45, up="Z", bones=True, fps=60, above="root"),
+    "unreal": Animal(
+        ".glb",
+        _names(
+            "",
+            "pelvis, spine_01, spine_03, neck_01, head",
+            "clavicle_@, upperarm_@, lowerarm_@, hand_@, index_01_@",
+            "thigh_@, calf_@, foot_@, ball_@",
+        ),
+        ("l", "r"),
+        arms=45,
+        up="Z",
+        bones=True,
+        fps=60,
+        above="root",
+    ),
     # Names in Japanese, metres, A-pose, no toes, short.
-    "japanese": Animal(".glb", _names("", "センター, 上半身, 上半身2, 首, 頭", "@肩, @腕, @ひじ, @手首, @人指１", "@足, @ひざ, @足首, -"),
-                       ("左", "右"), arms=35, unit=1.0, size=0.9),
+    "japanese": Animal(
+        ".glb",
+        _names(
+            "", "センター, 上半身, 上半身2, 首, 頭", "@肩, @腕, @ひじ, @手首, @人指１", "@足, @ひざ, @足首, -"
+        ),
+        ("左", "右"),
+        arms=35,
+        unit=1.0,
+        size=0.9,
+    ),
     # Z up in a BVH, in metres, arms down, neither fingers nor toes.
-    "bare": Animal(".bvh", _names("", "Hips, Spine, Chest, Neck, Head", "@Collar, @UpperArm, @LowerArm, @Hand, -",
-                                  "@UpperLeg, @LowerLeg, @Foot, -"), arms=80, unit=1.0, up="Z", fps=24),
+    "bare": Animal(
+        ".bvh",
+        _names(
+            "",
+            "Hips, Spine, Chest, Neck, Head",
+            "@Collar, @UpperArm, @LowerArm, @Hand, -",
+            "@UpperLeg, @LowerLeg, @Foot, -",
+        ),
+        arms=80,
+        unit=1.0,
+        up="Z",
+        fps=24,
+    ),
     # A large head on short legs, no neck, no toes, a thousandth of a metre a unit.
-    "toon": Animal(".glb", _names("", "hips, spine, chest, -, head", "shoulder.@, upperarm.@, lowerarm.@, hand.@, -",
-                                  "upperleg.@, lowerleg.@, foot.@, -"), ("l", "r"), arms=20, unit=0.001, fps=30, size=0.8, legs=0.7),
-}  # fmt: skip
+    "toon": Animal(
+        ".glb",
+        _names(
+            "",
+            "hips, spine, chest, -, head",
+            "shoulder.@, upperarm.@, lowerarm.@, hand.@, -",
+            "upperleg.@, lowerleg.@, foot.@, -",
+        ),
+        ("l", "r"),
+        arms=20,
+        unit=0.001,
+        fps=30,
+        size=0.8,
+        legs=0.7,
+    ),
+}
 
 
 def joints_of(animal: Animal) -> list[str]:
@@ -145,7 +225,9 @@ def _drop(joint: str, degrees: float) -> Array:
 
 
 def _moves(joint: str, t: Array, far: float) -> Array:
-    """Return how joints are turned away from the T-pose at times, `[F, 4]`, in the world: what every character does alike."""
+    """Return how joints are turned away from the T-pose at times, `[F, 4]`, in the world: what every
+    character does alike.
+    """
 
     def turn(axis: tuple[float, float, float], degrees: Array) -> Array:
         return rotation.from_axis_angle(np.array(axis), np.radians(degrees))
@@ -183,7 +265,9 @@ def _local(above: Array | None, own: Array) -> Array:
 
 @cache
 def clip_of(name: str, take: str = "calisthenics") -> Clip:
-    """Return what a character does, in the units and axes of its file; `root`s above and the bind pose included."""
+    """Return what a character does, in the units and axes of its file; `root`s above and the bind pose
+    included.
+    """
     animal = ANIMALS[name]
     joints = joints_of(animal)
     t = np.arange(round(SECONDS * animal.fps) + 1) / animal.fps
@@ -196,12 +280,20 @@ def clip_of(name: str, take: str = "calisthenics") -> Clip:
             moving[joint] = rotation.multiply(moving[joint], rotation.conjugate(resting[joint]))
             resting[joint] = rotation.identity()
     rows: list[tuple[str, int, Array, Array, Array]] = []
-    turned = rotation.from_axis_angle(np.array([1.0, 0, 0]), np.pi / 2) if animal.up == "Z" else rotation.identity()
+    turned = (
+        rotation.from_axis_angle(np.array([1.0, 0, 0]), np.pi / 2)
+        if animal.up == "Z"
+        else rotation.identity()
+    )
     if animal.above is not None:
         rows.append((animal.above, -1, turned, np.zeros(3), np.tile(turned, (len(t), 1))))
     for joint in joints:
         above = _parent(animal, joint)
-        parent = len(rows) - len(joints[: joints.index(joint)]) + joints.index(above) if above is not None else len(rows) - 1
+        parent = (
+            len(rows) - len(joints[: joints.index(joint)]) + joints.index(above)
+            if above is not None
+            else len(rows) - 1
+        )
         called = animal.called(joint)
         assert called is not None
         if above is None:
@@ -212,26 +304,37 @@ def clip_of(name: str, take: str = "calisthenics") -> Clip:
             # BVH's offsets are those of the rest pose; elsewhere they lie in the parent's axes.
             apart = _place(animal, joint) - _place(animal, above)
             hanging = rotation.rotate(_drop(above, animal.arms), apart)
-            offset = hanging if animal.kind == ".bvh" else rotation.rotate(rotation.conjugate(resting[above]), hanging)
+            offset = (
+                hanging
+                if animal.kind == ".bvh"
+                else rotation.rotate(rotation.conjugate(resting[above]), hanging)
+            )
             own, path = _local(resting[above], resting[joint]), _local(moving[above], moving[joint])
         rows.append((called, parent if above is not None else len(rows) - 1, own, offset / animal.unit, path))
     names, parents, rest, offsets, paths = zip(*rows, strict=True)
     if animal.kind == ".bvh":  # the offsets turn, not the rest pose
         rest = tuple(rotation.identity() for _ in rest)
-        offsets = tuple(rotation.rotate(turned, o) if n > (animal.above is not None) else o for n, o in enumerate(offsets))
+        offsets = tuple(
+            rotation.rotate(turned, o) if n > (animal.above is not None) else o for n, o in enumerate(offsets)
+        )
         back = rotation.conjugate(turned)
         paths = tuple(
-            rotation.multiply(rotation.multiply(turned, p), back) if n else rotation.multiply(p, back) for n, p in enumerate(paths)
+            rotation.multiply(rotation.multiply(turned, p), back) if n else rotation.multiply(p, back)
+            for n, p in enumerate(paths)
         )
     skeleton = Skeleton(names, np.array(parents), np.stack(rest), np.stack(offsets))
     whole = rotation.continuous(np.stack(paths, 1))
     if animal.bind:
         whole = np.concatenate([skeleton.rest_rotations[None], whole])
-    return Clip(take, skeleton, animal.fps, whole, np.tile(skeleton.rest_translations[:1], (len(whole), 1, 1)))
+    return Clip(
+        take, skeleton, animal.fps, whole, np.tile(skeleton.rest_translations[:1], (len(whole), 1, 1))
+    )
 
 
 def places(name: str, joint: str, take: str = "calisthenics") -> Array:
-    """Return where a joint of the figure is in each frame, `[F, 3]` metres with Y up: from the T-pose alone, whatever the file says."""
+    """Return where a joint of the figure is in each frame, `[F, 3]` metres with Y up: from the T-pose alone,
+    whatever the file says.
+    """
     animal = ANIMALS[name]
     t = np.arange(round(SECONDS * animal.fps) + 1) / animal.fps
     line = [joint]
@@ -239,7 +342,9 @@ def places(name: str, joint: str, take: str = "calisthenics") -> Array:
         line.insert(0, above)
     at = np.tile(_place(animal, line[0]), (len(t), 1))
     for above, below in pairwise(line):
-        at = at + rotation.rotate(_moves(above, t, TAKES[take]), _place(animal, below) - _place(animal, above))
+        at = at + rotation.rotate(
+            _moves(above, t, TAKES[take]), _place(animal, below) - _place(animal, above)
+        )
     return at
 
 
@@ -256,19 +361,27 @@ def make(folder: Path) -> dict[str, Path]:
 
 
 def _write_glb(path: Path, clips: list[Clip], animal: Animal) -> None:
-    """Write a GLB whose joints have the units and axes of the tool, under a node that makes metres with Y up of them."""
+    """Write a GLB whose joints have the units and axes of the tool, under a node that makes metres with Y up
+    of them.
+    """
     write_glb(path, clips, quantize=False)
     raw = path.read_bytes()
     (length,) = struct.unpack_from("<I", raw, 12)
     document, rest = json.loads(raw[20 : 20 + length]), raw[20 + length :]
-    node: dict[str, Any] = {"name": "Armature", "scale": [animal.unit] * 3, "children": document["scenes"][0]["nodes"]}
+    node: dict[str, Any] = {
+        "name": "Armature",
+        "scale": [animal.unit] * 3,
+        "children": document["scenes"][0]["nodes"],
+    }
     if animal.up == "Z":
         node["rotation"] = rotation.from_axis_angle(np.array([1.0, 0, 0]), -np.pi / 2).tolist()
     document["nodes"].append(node)
     document["scenes"][0]["nodes"] = [len(document["nodes"]) - 1]
     head = json.dumps(document).encode()
     head += b" " * (-len(head) % 4)
-    path.write_bytes(struct.pack("<4sIIII", b"glTF", 2, 20 + len(head) + len(rest), len(head), 0x4E4F534A) + head + rest)
+    path.write_bytes(
+        struct.pack("<4sIIII", b"glTF", 2, 20 + len(head) + len(rest), len(head), 0x4E4F534A) + head + rest
+    )
 
 
 def _write_bvh(path: Path, clip: Clip, animal: Animal) -> None:
@@ -281,13 +394,25 @@ def _write_bvh(path: Path, clip: Clip, animal: Animal) -> None:
         turns = "Zrotation Xrotation Yrotation"
         channels = f"6 Xposition Yposition Zposition {turns}" if depth == 0 else f"3 {turns}"
         lines.extend(
-            [f"{pad}{kind} {skeleton.names[j]}", f"{pad}{{", f"{pad}\tOFFSET {x:.5f} {y:.5f} {z:.5f}", f"{pad}\tCHANNELS {channels}"]
+            [
+                f"{pad}{kind} {skeleton.names[j]}",
+                f"{pad}{{",
+                f"{pad}\tOFFSET {x:.5f} {y:.5f} {z:.5f}",
+                f"{pad}\tCHANNELS {channels}",
+            ]
         )
         children = np.flatnonzero(skeleton.parents == j).tolist()
         for child in children:
             joint(child, depth + 1)
         if not children:
-            lines.extend([f"{pad}\tEnd Site", f"{pad}\t{{", f"{pad}\t\tOFFSET 0 {0.05 / animal.unit:.5f} 0", f"{pad}\t}}"])
+            lines.extend(
+                [
+                    f"{pad}\tEnd Site",
+                    f"{pad}\t{{",
+                    f"{pad}\t\tOFFSET 0 {0.05 / animal.unit:.5f} 0",
+                    f"{pad}\t}}",
+                ]
+            )
         lines.append(f"{pad}}}")
 
     joint(0, 0)

@@ -24,20 +24,40 @@ from metagraph.playback.learn import Act, learn, state_words, states_of
 def arguments(parser: ArgumentParser) -> None:
     """Add the options."""
     parser.add_argument("annotation", type=Path, help="an .eaf file")
-    parser.add_argument("--tier", action="append", default=[], metavar="NAME=ROLE",
-                           help="what a tier stands for: left arm, right arm, arms, head action, head stance, body, ignore")  # fmt: skip
-    parser.add_argument("--label", action="append", default=[], metavar="LABEL=MEANING",
-                           help='what a label means: gesture, fidget, transition, ignore ..., then tags ("gesture positive")')  # fmt: skip
+    parser.add_argument(
+        "--tier",
+        action="append",
+        default=[],
+        metavar="NAME=ROLE",
+        help="what a tier stands for: left arm, right arm, arms, head action, head stance, body, ignore",
+    )
+    parser.add_argument(
+        "--label",
+        action="append",
+        default=[],
+        metavar="LABEL=MEANING",
+        help='what a label means: gesture, fidget, transition, ignore ..., then tags ("gesture positive")',
+    )
     meaning = parser.add_mutually_exclusive_group()
-    meaning.add_argument("--states", action="store_true", help="positive and negative gestures are states of their own")
-    meaning.add_argument("--shares", action="store_true", help="they are shares of all gestures (the default)")
-    parser.add_argument("--smoothing", type=float, default=0.0, help="added to every count (default: 0, as in the paper)")
-    parser.add_argument("--learn", action="store_true", help="learn the models of all layers that were annotated")
+    meaning.add_argument(
+        "--states", action="store_true", help="positive and negative gestures are states of their own"
+    )
+    meaning.add_argument(
+        "--shares", action="store_true", help="they are shares of all gestures (the default)"
+    )
+    parser.add_argument(
+        "--smoothing", type=float, default=0.0, help="added to every count (default: 0, as in the paper)"
+    )
+    parser.add_argument(
+        "--learn", action="store_true", help="learn the models of all layers that were annotated"
+    )
     parser.add_argument("--perform", metavar="NAME", help="keep it as a performance")
 
 
 def run(options: Namespace) -> int:
-    """Say what an annotation is read as; with `learn` or `perform`, work it into the project and save that."""
+    """Say what an annotation is read as; with `learn` or `perform`, work it into the project and save
+    that.
+    """
     path: Path = options.project
     opened = open_whole(path)
     project = opened.project
@@ -51,7 +71,9 @@ def run(options: Namespace) -> int:
             options.annotation, f"nothing in it is read as an action; its tiers are {tiers}", "in its tiers",
             f"Say what they stand for: --tier \"NAME=left arm\" (or {', '.join(list(ROLES)[1:])}).",
         )  # fmt: skip
-    made = into(project, reading, LAYERS if options.learn else (), options.states, options.perform, options.smoothing)
+    made = into(
+        project, reading, LAYERS if options.learn else (), options.states, options.perform, options.smoothing
+    )
     saved = bool(made.learned) or made.performance is not None
     if saved:
         save_project(made.project, path, path)
@@ -60,7 +82,10 @@ def run(options: Namespace) -> int:
         "annotation": str(options.annotation),
         "seconds": round(reading.annotation.end, 3),
         "tiers": dict(reading.roles),
-        "labels": [{"layer": x.layer, "label": x.text, "count": x.count, "meaning": x.meaning} for x in reading.labels],
+        "labels": [
+            {"layer": x.layer, "label": x.text, "count": x.count, "meaning": x.meaning}
+            for x in reading.labels
+        ],
         "layers": models,
         "learned": list(made.learned),
         "performance": made.performance,
@@ -73,7 +98,9 @@ def run(options: Namespace) -> int:
     return 0 if models else 3
 
 
-def _reading(annotation: Annotation, options: Namespace, tiers: Mapping[str, str], labels: Mapping[str, str]) -> Reading:
+def _reading(
+    annotation: Annotation, options: Namespace, tiers: Mapping[str, str], labels: Mapping[str, str]
+) -> Reading:
     names = [tier.name for tier in annotation.tiers]
     roles = _said(options.tier, "--tier", "LH=left arm", names)
     for role in roles.values():
@@ -88,7 +115,9 @@ def _reading(annotation: Annotation, options: Namespace, tiers: Mapping[str, str
     return Reading(annotation, found.roles, said, found.memory)
 
 
-def _said(given: Iterable[str], option: str, example: str, known: list[str], spelled: Any = str) -> dict[str, str]:
+def _said(
+    given: Iterable[str], option: str, example: str, known: list[str], spelled: Any = str
+) -> dict[str, str]:
     """Return NAME=WORDS options as a mapping. Raises ValueError for names that are not there."""
     out = {}
     for text in given:
@@ -133,13 +162,19 @@ def _lines(data: Mapping[str, Any], reading: Reading, path: Path) -> Iterable[st
     if len(data["labels"]) > 30:
         yield f"  and {len(data['labels']) - 30} rarer labels"
     for layer, found in data["layers"].items():
-        yield f"{layer}: {found['actions']} actions, {found['per_minute']:g} a minute, {found['gap']:g} s of rest on average"
+        often, rest = found["per_minute"], found["gap"]
+        yield f"{layer}: {found['actions']} actions, {often:g} a minute, {rest:g} s of rest on average"
         for n, state in enumerate(found["states"]):
             row = "".join(f"{100 * p:5.0f}" if p else "    ." for p in found["matrix"][n])
             often = f"seen {found['seen'][n]:4.0%}, made {found['made'][n]:4.0%}"
-            yield f"  {state:26}{row}   {often}   {found['lengths'][n][0]:.1f} s, deviation {found['lengths'][n][1]:.1f}"
+            mean, deviation = found["lengths"][n][:2]
+            yield f"  {state:26}{row}   {often}   {mean:.1f} s, deviation {deviation:.1f}"
     if data["learned"]:
         yield f"learned: {', '.join(data['learned'])}"
     if data["performance"]:
         yield f"kept as a performance: {data['performance']}"
-    yield f"saved {path}" if data["saved"] else "nothing was saved; --learn learns models from it, --perform NAME keeps it as a performance"
+    yield (
+        f"saved {path}"
+        if data["saved"]
+        else "nothing was saved; --learn learns models from it, --perform NAME keeps it as a performance"
+    )

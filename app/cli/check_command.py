@@ -12,7 +12,9 @@ from metagraph.graph.check import check as find_problems
 
 def arguments(parser: ArgumentParser) -> None:
     """Add the options."""
-    parser.add_argument("--strict", action="store_true", help="warnings count as problems for the exit code, too")
+    parser.add_argument(
+        "--strict", action="store_true", help="warnings count as problems for the exit code, too"
+    )
 
 
 def run(options: Namespace) -> int:

@@ -23,8 +23,10 @@ LONGEST = 36000  # seconds of one performance, ten hours
 
 @contextlib.contextmanager
 def until_told_to_stop() -> Iterator[None]:
-    """Leave what runs inside by Ctrl+C or SIGTERM, also where the program was started with interrupts ignored, as `nohup` and background
-    jobs of scripts do: Python itself does not listen to them there. Call it in the main thread."""
+    """Leave what runs inside by Ctrl+C or SIGTERM, also where the program was started with interrupts
+    ignored, as `nohup` and background jobs of scripts do: Python itself does not listen to them there. Call
+    it in the main thread.
+    """
 
     def stop(*_: object) -> None:
         raise KeyboardInterrupt
@@ -72,7 +74,13 @@ def say(options: Namespace, words: str, data: Any) -> None:
 
 def performance_arguments(parser: ArgumentParser, seconds: float) -> None:
     """Add the options that say which performance, and how much of it. seconds: the usual length."""
-    parser.add_argument("-s", "--seconds", type=float, help=f"length of the performance (default: its own, else {seconds:g})")
+    parser.add_argument(
+        "-s", "--seconds", type=float, help=f"length of the performance (default: its own, else {seconds:g})"
+    )
     parser.set_defaults(usual_seconds=seconds)
-    parser.add_argument("--performance", metavar="NAME", help="a performance that is kept in the project (default: improvise)")
-    parser.add_argument("--seed", type=int, help="another performance of the same project (default: the project's seed)")
+    parser.add_argument(
+        "--performance", metavar="NAME", help="a performance that is kept in the project (default: improvise)"
+    )
+    parser.add_argument(
+        "--seed", type=int, help="another performance of the same project (default: the project's seed)"
+    )

@@ -23,7 +23,9 @@ def arguments(parser: ArgumentParser) -> None:
 
 
 def run(options: Namespace) -> int:
-    """The main job without a window: graph, performance, contact sheet, video, export; say where the results are."""
+    """The main job without a window: graph, performance, contact sheet, video, export; say where the results
+    are.
+    """
     from metagraph.engines.export import export as write_export
 
     source: Path = getattr(options, "project", None) or SAMPLE

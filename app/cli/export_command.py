@@ -20,13 +20,30 @@ def arguments(parser: ArgumentParser) -> None:
     """Add the options."""
     parser.add_argument("project", type=Path, nargs="?", help="the project file")
     parser.add_argument("-o", "--out", type=Path, help="a folder")
-    parser.add_argument("-t", "--target", default="metagraph", help="what to write for (default: metagraph, one JSON and one GLB)")
+    parser.add_argument(
+        "-t",
+        "--target",
+        default="metagraph",
+        help="what to write for (default: metagraph, one JSON and one GLB)",
+    )
     parser.add_argument("--targets", action="store_true", help="list the targets there are")
-    parser.add_argument("--watch", action="store_true", help="go on, and write again whenever the project is saved")
-    parser.add_argument("--serve", action="store_true", help="go on, and show the web page to this machine's browser")
-    parser.add_argument("--vectors", action="store_true", help="write conformance vectors for runtimes as well")
-    parser.add_argument("--expanded", action="store_true", help="list the expanded state machine in the JSON as well")
-    parser.add_argument("--overwrite", action="store_true", help="also files that an export of something else, or somebody, put there")
+    parser.add_argument(
+        "--watch", action="store_true", help="go on, and write again whenever the project is saved"
+    )
+    parser.add_argument(
+        "--serve", action="store_true", help="go on, and show the web page to this machine's browser"
+    )
+    parser.add_argument(
+        "--vectors", action="store_true", help="write conformance vectors for runtimes as well"
+    )
+    parser.add_argument(
+        "--expanded", action="store_true", help="list the expanded state machine in the JSON as well"
+    )
+    parser.add_argument(
+        "--overwrite",
+        action="store_true",
+        help="also files that an export of something else, or somebody, put there",
+    )
     parser.add_argument("--no-mesh", action="store_true", help="leave the character's mesh out of the GLB")
 
 
@@ -36,10 +53,16 @@ def run(options: Namespace) -> int:
 
     if options.targets:
         for target in registry.targets().values():
-            print(f"{target.name:18} {target.title}: {target.files}{' (experimental)' if target.untried else ''}")
+            print(
+                f"{target.name:18} {target.title}: "
+                f"{target.files}{' (experimental)' if target.untried else ''}"
+            )
         return 0
     if options.project is None or options.out is None:
-        print("metagraph export: which project, and where to? metagraph export my.metagraph.yaml -o game/", file=sys.stderr)
+        print(
+            "metagraph export: which project, and where to? metagraph export my.metagraph.yaml -o game/",
+            file=sys.stderr,
+        )
         return 2
     registry.target(options.target)  # a wrong name is told before anything is read
     if options.serve and options.target != "web":
@@ -97,16 +120,25 @@ def _once(options: Namespace) -> None:
     from metagraph.graph.manual_meta import exportable
 
     project, differences = exportable(opened(options.project))
-    character = options.project.resolve().parent / project.character if project.character and not options.no_mesh else None
+    character = (
+        options.project.resolve().parent / project.character
+        if project.character and not options.no_mesh
+        else None
+    )
     made = registry.write(project, options.target, options.out, character, options.expanded,
                           base=options.project.resolve().parent, overwrite=options.overwrite)  # fmt: skip
     files = list(made.files)
     if options.vectors:
         from metagraph.engines.vectors import write_vectors
 
-        graph = next((path for path in files if path.suffix == ".json" and path.with_suffix(".glb") in files), None)
+        graph = next(
+            (path for path in files if path.suffix == ".json" and path.with_suffix(".glb") in files), None
+        )
         if graph is None:
-            print(f"note: target '{options.target}' is not played by a runtime: there are no vectors for it", file=sys.stderr)
+            print(
+                f"note: target '{options.target}' is not played by a runtime: there are no vectors for it",
+                file=sys.stderr,
+            )
         else:
             files.append(write_vectors(graph))
     for warning in made.warnings:
@@ -128,7 +160,9 @@ def _once(options: Namespace) -> None:
         "warnings": list(made.warnings),
     }
     shown = (
-        data["files"] if len(files) <= SHOWN else [*data["files"][: SHOWN - 1], f"... and {len(files) - SHOWN + 1} more in {options.out}"]
+        data["files"]
+        if len(files) <= SHOWN
+        else [*data["files"][: SHOWN - 1], f"... and {len(files) - SHOWN + 1} more in {options.out}"]
     )
     say(options, "\n".join(shown), data)
     sys.stdout.flush()

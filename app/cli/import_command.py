@@ -14,8 +14,12 @@ from metagraph.graph.model import Project
 
 def arguments(parser: ArgumentParser) -> None:
     """Add the options."""
-    parser.add_argument("paths", type=Path, nargs="+", help="clip files and folders: BVH, GLB, glTF, VRM animation, FBX")
-    parser.add_argument("--retarget", action="store_true", help="bring clips of other skeletons onto the project's")
+    parser.add_argument(
+        "paths", type=Path, nargs="+", help="clip files and folders: BVH, GLB, glTF, VRM animation, FBX"
+    )
+    parser.add_argument(
+        "--retarget", action="store_true", help="bring clips of other skeletons onto the project's"
+    )
 
 
 def run(options: Namespace) -> int:
@@ -32,7 +36,9 @@ def run(options: Namespace) -> int:
         if show:
             print(f"\r{done}/{total} {file.name[:50]:<50}", end="", file=sys.stderr)
 
-    result = import_files(project, path.resolve().parent, options.paths, progress, retarget="yes" if options.retarget else "no")
+    result = import_files(
+        project, path.resolve().parent, options.paths, progress, retarget="yes" if options.retarget else "no"
+    )
     if show:
         print(file=sys.stderr)
     for failure in result.failures:
@@ -44,11 +50,18 @@ def run(options: Namespace) -> int:
         project = result.into(project)
         save_project(project, path, path)
     data = {
-        "project": str(path), "imported": len(result.loaded), "retargeted": result.retargeted, "failures": list(result.failures),
+        "project": str(path),
+        "imported": len(result.loaded),
+        "retargeted": result.retargeted,
+        "failures": list(result.failures),
         "notes": list(result.notes),
-    }  # fmt: skip
+    }
     brought = f" ({result.retargeted} retargeted)" if result.retargeted else ""
-    say(options, f"{path}: {len(result.loaded)} clips imported{brought}, {len(result.failures)} files left out", data)
+    say(
+        options,
+        f"{path}: {len(result.loaded)} clips imported{brought}, {len(result.failures)} files left out",
+        data,
+    )
     if not result.loaded and result.failures:
         return 1
     return 3 if result.failures else 0

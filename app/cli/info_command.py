@@ -29,7 +29,14 @@ def run(options: Namespace) -> int:
             "joints": len(joints),
             "height": round(clips[0].skeleton.height, 3),
             "clips": [
-                {"name": c.name, "frames": c.frames, "fps": c.fps, "seconds": round(c.duration, 3), "notes": list(c.notes)} for c in clips
+                {
+                    "name": c.name,
+                    "frames": c.frames,
+                    "fps": c.fps,
+                    "seconds": round(c.duration, 3),
+                    "notes": list(c.notes),
+                }
+                for c in clips
             ],
             "roles": {role: joints[j] for role, j in roles.items()},
         }
@@ -51,12 +58,24 @@ def run(options: Namespace) -> int:
         }
         for layer in LAYERS
     }
-    data = {"name": project.name, "clips": len(project.clips), "placed": whole.clips, "states": whole.states,
-            "connections": whole.connections, "joints": len(project.skeleton) if project.skeleton else 0, "layers": layers}  # fmt: skip
+    data = {
+        "name": project.name,
+        "clips": len(project.clips),
+        "placed": whole.clips,
+        "states": whole.states,
+        "connections": whole.connections,
+        "joints": len(project.skeleton) if project.skeleton else 0,
+        "layers": layers,
+    }
     lines = [f"{project.name}: {len(project.clips)} clips, {whole.clips} placed, {data['joints']} joints"]
     for layer, counts in layers.items():
         lines.append(
-            f"  {layer:5} " + ", ".join(f"{n} {k.removesuffix('s')}{'s' if n != 1 else ''}" for k, n in counts.items() if k != "stance")
+            f"  {layer:5} "
+            + ", ".join(
+                f"{n} {k.removesuffix('s')}{'s' if n != 1 else ''}"
+                for k, n in counts.items()
+                if k != "stance"
+            )
         )
     lines.append(f"  the machine it stands for: {whole.states} states, {whole.connections} connections")
     say(options, "\n".join(lines), data)

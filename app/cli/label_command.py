@@ -1,4 +1,6 @@
-"""Labelling a folder without a window: import, propose, place what is sure, and write down what was decided and why."""
+"""Labelling a folder without a window: import, propose, place what is sure, and write down what was decided
+and why.
+"""
 
 from __future__ import annotations
 
@@ -18,16 +20,34 @@ if TYPE_CHECKING:  # reading a command line must not wait for arrays
 
 def arguments(parser: argparse.ArgumentParser) -> None:
     """Add the options of `label`."""
-    parser.add_argument("folder", type=Path, help="a folder of clips, or a project whose clips wait to be labelled")
-    parser.add_argument("-o", "--out", type=Path, help="the project to write (default: beside the folder, called after it)")
     parser.add_argument(
-        "--above", type=float, default=0.0, metavar="SURE", help="place only what is at least so sure, 0 to 1 (default: all)"
+        "folder", type=Path, help="a folder of clips, or a project whose clips wait to be labelled"
     )
     parser.add_argument(
-        "--from", dest="sources", action="append", choices=("name", "motion", "learned"), help="believe only this; may be repeated"
+        "-o", "--out", type=Path, help="the project to write (default: beside the folder, called after it)"
     )
-    parser.add_argument("--learned", action="store_true", help="use what you taught the window: corrections, name patterns, saved projects")
-    parser.add_argument("--patterns", type=Path, metavar="FILE", help="name patterns exported from the window (Graph menu)")
+    parser.add_argument(
+        "--above",
+        type=float,
+        default=0.0,
+        metavar="SURE",
+        help="place only what is at least so sure, 0 to 1 (default: all)",
+    )
+    parser.add_argument(
+        "--from",
+        dest="sources",
+        action="append",
+        choices=("name", "motion", "learned"),
+        help="believe only this; may be repeated",
+    )
+    parser.add_argument(
+        "--learned",
+        action="store_true",
+        help="use what you taught the window: corrections, name patterns, saved projects",
+    )
+    parser.add_argument(
+        "--patterns", type=Path, metavar="FILE", help="name patterns exported from the window (Graph menu)"
+    )
     parser.add_argument("--no-pictures", action="store_true", help="leave the pictures out of the report")
 
 
@@ -44,8 +64,15 @@ def run(options: Namespace) -> int:
     began = time.perf_counter()
     source: Path = options.folder
     if not source.exists():
-        raise FileError(source, "there is no such folder or project", "on labelling it", "Give a folder of clips, or a project.")
-    path: Path = options.out or (source if source.is_file() else source.resolve().parent / f"{source.resolve().name}{SUFFIX}")
+        raise FileError(
+            source,
+            "there is no such folder or project",
+            "on labelling it",
+            "Give a folder of clips, or a project.",
+        )
+    path: Path = options.out or (
+        source if source.is_file() else source.resolve().parent / f"{source.resolve().name}{SUFFIX}"
+    )
     if path.suffix not in (".yaml", ".yml"):
         path = path.with_name(path.name + SUFFIX)
     patterns, examples = _taught(options, path)
@@ -66,20 +93,31 @@ def run(options: Namespace) -> int:
             print(f"held: {made.name}: {rest.reason}", file=sys.stderr)
     for clip, why in taken.left.items():
         print(f"left: {project.clips[clip].name}: {why}", file=sys.stderr)
-    words = f"{path}: {len(taken.placed)} of {len(found.proposals)} clips labelled in {seconds:.1f} s, {len(look)} need a look\n{place}"
+    words = (
+        f"{path}: {len(taken.placed)} of {len(found.proposals)} clips labelled in {seconds:.1f} s, "
+        f"{len(look)} need a look\n{place}"
+    )
     names = {clip: project.clips[clip].name for clip in found.proposals}
     data = {
-        "project": str(path), "report": str(place), "labelled": len(taken.placed), "left": {names[c]: why for c, why in taken.left.items()},
-        "held": {s.name: r.reason for i, r in taken.held.items() if (s := taken.project.stance(i)) is not None},
-        "look": [names[p.clip] for p in look], "errors": errors, "seconds": round(seconds, 2),
-    }  # fmt: skip
+        "project": str(path),
+        "report": str(place),
+        "labelled": len(taken.placed),
+        "left": {names[c]: why for c, why in taken.left.items()},
+        "held": {
+            s.name: r.reason for i, r in taken.held.items() if (s := taken.project.stance(i)) is not None
+        },
+        "look": [names[p.clip] for p in look],
+        "errors": errors,
+        "seconds": round(seconds, 2),
+    }
     say(options, words, data)
     return 3 if taken.left or errors else 0
 
 
 def _taught(options: Namespace, path: Path) -> tuple[Patterns | None, list[Example]]:
-    """Return the name patterns to read with and the examples to learn from; neither unless asked for, so that a run is the same
-    everywhere."""
+    """Return the name patterns to read with and the examples to learn from; neither unless asked for, so that
+    a run is the same everywhere.
+    """
     from app.project.pattern_files import read_patterns
     from metagraph.suggest.words import merged
 
@@ -90,7 +128,9 @@ def _taught(options: Namespace, path: Path) -> tuple[Patterns | None, list[Examp
 
     from app.project.learned import Learned
 
-    QCoreApplication.setApplicationName("Metagraph")  # as the window is called: that is where it keeps what it learned
+    QCoreApplication.setApplicationName(
+        "Metagraph"
+    )  # as the window is called: that is where it keeps what it learned
     QCoreApplication.setOrganizationName("Metagraph")
     learned = Learned()
     learned.failed.connect(lambda words: print(f"note: {words}", file=sys.stderr))
@@ -112,7 +152,9 @@ def _project(source: Path, path: Path) -> tuple[Project, list[str]]:
     result = import_files(empty, path.resolve().parent, [source])
     if not result.loaded:
         why = result.failures[0] if result.failures else "no clip was found in it"
-        raise FileError(source, why, "on importing it", "Clips are BVH, GLB, glTF, VRM animation or FBX files.")
+        raise FileError(
+            source, why, "on importing it", "Clips are BVH, GLB, glTF, VRM animation or FBX files."
+        )
     return result.into(empty), [*result.failures, *result.notes]
 
 
@@ -126,7 +168,11 @@ def _pictures(project: Project, folder: Path, clips: list[str]) -> Mapping[str, 
     try:
         figure = figure_of(project, folder)
         with Offscreen(192, 192) as stage:
-            return {c: clip_thumbnail(stage, figure, m, size=192, scale=1) for c in clips if (m := project.clips[c].motion) is not None}
+            return {
+                c: clip_thumbnail(stage, figure, m, size=192, scale=1)
+                for c in clips
+                if (m := project.clips[c].motion) is not None
+            }
     except (OpenGLError, FileError) as error:
         print(f"note: the report has no pictures: {error}", file=sys.stderr)
         return {}

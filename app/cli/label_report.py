@@ -1,4 +1,6 @@
-"""What was labelled and why, as one HTML file that needs nothing beside it: what needs a person first, then all the rest by stance."""
+"""What was labelled and why, as one HTML file that needs nothing beside it: what needs a person first, then
+all the rest by stance.
+"""
 
 from __future__ import annotations
 
@@ -12,7 +14,12 @@ from metagraph.graph.model import LAYERS, Project
 from metagraph.suggest.belief import Belief
 from metagraph.suggest.propose import Proposal, Proposals, Taken
 
-KIND_MARKS = {"stance": "●", "gesture": "▲", "fidget": "◆", "transition": "➜"}  # as in the window; its module needs Qt
+KIND_MARKS = {
+    "stance": "●",
+    "gesture": "▲",
+    "fidget": "◆",
+    "transition": "➜",
+}  # as in the window; its module needs Qt
 SURE = 0.9  # from here on a proposal needs no second look
 
 STYLE = """
@@ -36,15 +43,22 @@ ul { margin: 4px 0 0; padding-left: 18px; font-size: 13px; }
 """
 
 
-def report(project: Project, found: Proposals, taken: Taken, pictures: Mapping[str, Any], notes: Iterable[str] = ()) -> str:
+def report(
+    project: Project, found: Proposals, taken: Taken, pictures: Mapping[str, Any], notes: Iterable[str] = ()
+) -> str:
     """Return the page. pictures: clip -> `[H, W, 4]` uint8, of those that could be drawn."""
     doubtful = [p for p in found.doubtful if needs_a_look(p, taken)]
     told = [f"<li>{escape(note)}</li>" for note in notes]
     stances = {i: s.name for i in taken.held if (s := taken.project.stance(i)) is not None}
-    held = [f"<li>{escape(stances[i])}: {escape(rest.reason)}</li>" for i, rest in taken.held.items() if i in stances]
+    held = [
+        f"<li>{escape(stances[i])}: {escape(rest.reason)}</li>"
+        for i, rest in taken.held.items()
+        if i in stances
+    ]
     parts = [
         f"<h1>{escape(project.name)}: {len(taken.placed)} of {len(found.proposals)} clips labelled</h1>",
-        f"<p class='dim'>{len(doubtful)} of them need a person's look. Each says what it was taken for, how sure that is, and why.</p>",
+        f"<p class='dim'>{len(doubtful)} of them need a person's look. Each says what it was taken for, how "
+        "sure that is, and why.</p>",
         f"<h2>Stances that no clip rests in</h2><ul>{''.join(held)}</ul>" if held else "",
         f"<h2>While importing</h2><ul>{''.join(told)}</ul>" if told else "",
         f"<h2>Needs a look ({len(doubtful)})</h2>" if doubtful else "<h2>Nothing needs a look</h2>",
@@ -58,18 +72,32 @@ def report(project: Project, found: Proposals, taken: Taken, pictures: Mapping[s
         for key, place in found.places.items():
             there = [p for p in mine if p.stance is not None and p.stance.value == key and p not in doubtful]
             if there:
-                parts.append(f"<h3>{escape(place.name)} ({len(there)})</h3>{_cards(project, found, there, taken, pictures)}")
+                parts.append(
+                    f"<h3>{escape(place.name)} "
+                    f"({len(there)})</h3>{_cards(project, found, there, taken, pictures)}"
+                )
     body = "\n".join(parts)
-    head = f"<meta charset='utf-8'><link rel='icon' href='data:,'><title>{escape(project.name)}: labels</title><style>{STYLE}</style>"
+    head = (
+        f"<meta charset='utf-8'><link rel='icon' href='data:,'><title>{escape(project.name)}: "
+        f"labels</title><style>{STYLE}</style>"
+    )
     return f"<!doctype html><html lang='en'><head>{head}</head><body>\n{body}\n</body></html>\n"
 
 
 def needs_a_look(p: Proposal, taken: Taken) -> bool:
-    """Whether somebody should look at a proposal: it is unsure, its sources disagree, it would jump, or it was not placed."""
+    """Whether somebody should look at a proposal: it is unsure, its sources disagree, it would jump, or it
+    was not placed.
+    """
     return p.confidence < SURE or bool(p.conflicts) or p.good is False or p.clip in taken.left
 
 
-def _cards(project: Project, found: Proposals, proposals: Iterable[Proposal], taken: Taken, pictures: Mapping[str, Any]) -> str:
+def _cards(
+    project: Project,
+    found: Proposals,
+    proposals: Iterable[Proposal],
+    taken: Taken,
+    pictures: Mapping[str, Any],
+) -> str:
     return f"<div class='cards'>{''.join(_card(project, found, p, taken, pictures) for p in proposals)}</div>"
 
 
@@ -79,20 +107,45 @@ def _card(project: Project, found: Proposals, p: Proposal, taken: Taken, picture
     if p.end_stance is not None:
         where += f" ➜ {found.places[p.end_stance.value].name}"
     limb = f", {p.limb.value} arm" if p.limb.value != "both" else ""
-    rows: list[tuple[str, Belief[Any] | None]] = [("kind", p.kind), ("layer", p.layer), ("stance", p.stance), ("end", p.end_stance)]
+    rows: list[tuple[str, Belief[Any] | None]] = [
+        ("kind", p.kind),
+        ("layer", p.layer),
+        ("stance", p.stance),
+        ("end", p.end_stance),
+    ]
     if limb:
         rows.append(("arm", p.limb))
     if p.tags is not None:
         rows.append((f"tags {', '.join(p.tags.value)}", p.tags))
-    reasons = [f"<li>{escape(name)} {b.confidence:.0%}: {escape(b.reason)}</li>" for name, b in rows if b is not None]
-    details = [f"<li>{escape(_said(name, b.value))} {b.confidence:.0%}: {escape(b.reason)}</li>" for name, b in p.details.items()]
+    reasons = [
+        f"<li>{escape(name)} {b.confidence:.0%}: {escape(b.reason)}</li>" for name, b in rows if b is not None
+    ]
+    details = [
+        f"<li>{escape(_said(name, b.value))} {b.confidence:.0%}: {escape(b.reason)}</li>"
+        for name, b in p.details.items()
+    ]
     if details:
-        reasons.append(f"<li><details><summary class='dim'>timing, joints, likelihood</summary><ul>{''.join(details)}</ul></details></li>")
-    warnings = [*p.conflicts, *([p.timing_reason] if p.good is False else []), *([taken.left[p.clip]] if p.clip in taken.left else [])]
+        reasons.append(
+            "<li><details><summary class='dim'>timing, joints, "
+            f"likelihood</summary><ul>{''.join(details)}</ul></details></li>"
+        )
+    warnings = [
+        *p.conflicts,
+        *([p.timing_reason] if p.good is False else []),
+        *([taken.left[p.clip]] if p.clip in taken.left else []),
+    ]
     reasons = [f"<li class='warn'>{escape(words)}</li>" for words in warnings] + reasons
-    picture = f"<img alt='' src='{_data(pictures[p.clip])}'>" if p.clip in pictures else "<div class='none'></div>"
-    title = f"<b>{escape(project.clips[p.clip].name)}</b><br><span class='{kind}'>{KIND_MARKS[kind]} {kind}</span>"
-    return f"<div class='card'>{picture}<div>{title} <span class='dim'>{escape(where)}{limb}</span><ul>{''.join(reasons)}</ul></div></div>"
+    picture = (
+        f"<img alt='' src='{_data(pictures[p.clip])}'>" if p.clip in pictures else "<div class='none'></div>"
+    )
+    title = (
+        f"<b>{escape(project.clips[p.clip].name)}</b><br><span class='{kind}'>{KIND_MARKS[kind]} "
+        f"{kind}</span>"
+    )
+    return (
+        f"<div class='card'>{picture}<div>{title} <span "
+        f"class='dim'>{escape(where)}{limb}</span><ul>{''.join(reasons)}</ul></div></div>"
+    )
 
 
 def _said(name: str, value: Any) -> str:

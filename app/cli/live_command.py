@@ -20,18 +20,28 @@ if TYPE_CHECKING:
 
 def arguments(parser: ArgumentParser) -> None:
     """Add the command's options."""
-    parser.add_argument("--port", type=int, default=PORT, help=f"of the WebSocket, 0 for any that is free (default: {PORT})")
+    parser.add_argument(
+        "--port", type=int, default=PORT, help=f"of the WebSocket, 0 for any that is free (default: {PORT})"
+    )
     parser.add_argument("--osc-port", type=int, default=OSC_PORT, metavar="PORT",
                         help=f"of OSC over UDP, 0 for any that is free (default: {OSC_PORT})")  # fmt: skip
     parser.add_argument("--no-websocket", action="store_true", help="do not listen for WebSocket")
     parser.add_argument("--no-osc", action="store_true", help="do not listen for OSC")
-    parser.add_argument("--no-stdin", action="store_true", help="do not read requests from standard input, nor end with it")
+    parser.add_argument(
+        "--no-stdin", action="store_true", help="do not read requests from standard input, nor end with it"
+    )
     parser.add_argument("--host", default="", help="listen there, not on this machine alone; needs a token")
     parser.add_argument("--token", help="what clients must say first (default: $METAGRAPH_TOKEN)")
-    parser.add_argument("--origin", action="append", default=[], help='let web pages of this origin connect; "null" for files')
-    parser.add_argument("--seed", type=int, help="another performance of the same project (default: the project's seed)")
+    parser.add_argument(
+        "--origin", action="append", default=[], help='let web pages of this origin connect; "null" for files'
+    )
+    parser.add_argument(
+        "--seed", type=int, help="another performance of the same project (default: the project's seed)"
+    )
     parser.add_argument("--no-idle", action="store_true", help="do nothing that is not asked for")
-    parser.add_argument("--keep", metavar="NAME", help="keep what was asked in the project at the end, as a performance")
+    parser.add_argument(
+        "--keep", metavar="NAME", help="keep what was asked in the project at the end, as a performance"
+    )
 
 
 def run(options: Namespace) -> int:
@@ -95,7 +105,9 @@ def _end_by_signals(server: Server) -> None:
 
 
 def _greet(server: Server, ready: Ready, options: Options, as_json: bool) -> None:
-    """Say where one can be reached: to programs with a line of JSON on standard output, to people in words."""
+    """Say where one can be reached: to programs with a line of JSON on standard output, to people in
+    words.
+    """
     if as_json:
         import msgspec
 
@@ -109,7 +121,11 @@ def _greet(server: Server, ready: Ready, options: Options, as_json: bool) -> Non
     ways += [f"WebSocket on {ready.websocket}"] if ready.websocket is not None else []
     ways += [f"OSC on {ready.osc[0]}, port {ready.osc[1]}"] if ready.osc is not None else []
     token = "; clients need the token" if ready.token else ""
-    print(f"The character listens: {', '.join(ways) or 'to nobody'}{token}. Ctrl+C ends it.", file=sys.stderr, flush=True)
+    print(
+        f"The character listens: {', '.join(ways) or 'to nobody'}{token}. Ctrl+C ends it.",
+        file=sys.stderr,
+        flush=True,
+    )
 
 
 def _keep(session: LiveSession, options: Namespace) -> None:

@@ -22,20 +22,49 @@ OUT = (".mp4", ".png", ".glb", ".bvh", ".json")
 
 def arguments(parser: ArgumentParser) -> None:
     """Add the command's options."""
-    parser.add_argument("keypoints", type=Path, help="OpenPose's or MediaPipe's keypoints: a JSON file, or a folder of OpenPose frames")
-    parser.add_argument("-o", "--out", type=Path, help=f"write it: a video, a contact sheet, motion, or the requests ({', '.join(OUT)})")
+    parser.add_argument(
+        "keypoints",
+        type=Path,
+        help="OpenPose's or MediaPipe's keypoints: a JSON file, or a folder of OpenPose frames",
+    )
+    parser.add_argument(
+        "-o",
+        "--out",
+        type=Path,
+        help=f"write it: a video, a contact sheet, motion, or the requests ({', '.join(OUT)})",
+    )
     parser.add_argument("--keep", metavar="NAME", help="keep it as a performance of the project")
-    parser.add_argument("--no-mirror", action="store_true", help="the character's left is the person's left, not as in a mirror")
-    parser.add_argument("--gaze", action="store_true", help="the character looks where the person's head is turned, too")
-    parser.add_argument("--layer", action="append", choices=LAYERS, help="only this layer mimics; may be given several times")
-    parser.add_argument("--fps", type=float, help="frames a second of the keypoints, where they have no times (default: 30)")
-    parser.add_argument("--picture", metavar="WxH", help="the camera's picture, where coordinates are shares of it (default: 16:9)")
-    parser.add_argument("--seed", type=int, help="another performance of the same project (default: the project's seed)")
-    parser.add_argument("--size", default="960x540", help="width x height of pictures in pixels (default: 960x540)")
+    parser.add_argument(
+        "--no-mirror",
+        action="store_true",
+        help="the character's left is the person's left, not as in a mirror",
+    )
+    parser.add_argument(
+        "--gaze", action="store_true", help="the character looks where the person's head is turned, too"
+    )
+    parser.add_argument(
+        "--layer", action="append", choices=LAYERS, help="only this layer mimics; may be given several times"
+    )
+    parser.add_argument(
+        "--fps", type=float, help="frames a second of the keypoints, where they have no times (default: 30)"
+    )
+    parser.add_argument(
+        "--picture",
+        metavar="WxH",
+        help="the camera's picture, where coordinates are shares of it (default: 16:9)",
+    )
+    parser.add_argument(
+        "--seed", type=int, help="another performance of the same project (default: the project's seed)"
+    )
+    parser.add_argument(
+        "--size", default="960x540", help="width x height of pictures in pixels (default: 960x540)"
+    )
 
 
 def run(options: Namespace) -> int:
-    """Tell what is seen in keypoints; with `out` write the character mimicking it, with `keep` keep it in the project."""
+    """Tell what is seen in keypoints; with `out` write the character mimicking it, with `keep` keep it in the
+    project.
+    """
     from app.cli.command_output import opened
     from app.cli.render_command import size_of
     from metagraph.formats.keypoints import read_keypoints
@@ -51,15 +80,23 @@ def run(options: Namespace) -> int:
     seen = read_keypoints(options.keypoints, options.fps, picture)
     length = round(seen.seconds + REST, 3)
     new = Performance(name=options.keep or options.keypoints.stem, seed=options.seed, length=length)
-    found = mimic_performance(project, seen, not options.no_mirror, options.layer or LAYERS, options.gaze, new)
+    found = mimic_performance(
+        project, seen, not options.no_mirror, options.layer or LAYERS, options.gaze, new
+    )
     kept = placed(project, found.performance)
     made = _planned(project, kept)
-    written = [str(x) for x in (_keep(options, project, kept), _write(options, project, kept, made, size)) if x is not None]
+    written = [
+        str(x)
+        for x in (_keep(options, project, kept), _write(options, project, kept, made, size))
+        if x is not None
+    ]
     for note in seen.notes:
         print(f"note: {note}", file=sys.stderr)
     rows = _rows(project, found, made)
     if options.json:
-        print(json.dumps({**_facts(options, seen), "seen": rows, "notes": list(seen.notes), "written": written}))
+        print(
+            json.dumps({**_facts(options, seen), "seen": rows, "notes": list(seen.notes), "written": written})
+        )
     else:
         print("\n".join(_lines(options, seen, rows, written)))
     return 0 if rows else 3
@@ -81,7 +118,9 @@ def _keep(options: Namespace, project: Project, kept: Performance) -> Path | Non
     return Path(options.project)
 
 
-def _write(options: Namespace, project: Project, kept: Performance, made: Plan, size: tuple[int, int]) -> Path | None:
+def _write(
+    options: Namespace, project: Project, kept: Performance, made: Plan, size: tuple[int, int]
+) -> Path | None:
     out: Path | None = options.out
     if out is None:
         return None
@@ -111,26 +150,45 @@ def _rows(project: Project, found: Mimicry, made: Plan) -> list[dict[str, Any]]:
     for sight in found.sightings:
         stance = project.stance(sight.stance)
         said = answer(made, sight.id)
-        rows.append({
-            "at": round(sight.at, 3), "layer": sight.layer, "stance": sight.stance, "name": stance.name if stance else sight.stance,
-            "distance": round(sight.distance, 2), "again": sight.again, "state": said.state,
-            "goes": None if said.at is None else round(said.at, 3), "there": None if said.until is None else round(said.until, 3),
-        })  # fmt: skip
+        rows.append(
+            {
+                "at": round(sight.at, 3),
+                "layer": sight.layer,
+                "stance": sight.stance,
+                "name": stance.name if stance else sight.stance,
+                "distance": round(sight.distance, 2),
+                "again": sight.again,
+                "state": said.state,
+                "goes": None if said.at is None else round(said.at, 3),
+                "there": None if said.until is None else round(said.until, 3),
+            }
+        )
     return rows
 
 
 def _facts(options: Namespace, seen: Keypoints) -> dict[str, Any]:
-    return {"keypoints": str(options.keypoints), "seconds": round(seen.seconds, 3), "frames": len(seen), "dimensions": seen.dims,
-            "mirrored": not options.no_mirror}  # fmt: skip
+    return {
+        "keypoints": str(options.keypoints),
+        "seconds": round(seen.seconds, 3),
+        "frames": len(seen),
+        "dimensions": seen.dims,
+        "mirrored": not options.no_mirror,
+    }
 
 
 def _lines(options: Namespace, seen: Keypoints, rows: list[dict[str, Any]], written: list[str]) -> list[str]:
     how = "as in a mirror" if not options.no_mirror else "left as left"
     out = [f"{options.keypoints}: {len(seen)} frames, {seen.seconds:.1f} s, {seen.dims} dimensions, {how}"]
     for row in rows:
-        when = f"goes there {row['goes']:.2f} s to {row['there']:.2f} s" if row["goes"] is not None else "is there already"
+        when = (
+            f"goes there {row['goes']:.2f} s to {row['there']:.2f} s"
+            if row["goes"] is not None
+            else "is there already"
+        )
         when = "cannot go there" if row["state"] == "refused" else when
-        out.append(f"{row['at']:8.2f}  {row['layer']:5} {row['name']:20} {when}{' (again)' if row['again'] else ''}")
+        out.append(
+            f"{row['at']:8.2f}  {row['layer']:5} {row['name']:20} {when}{' (again)' if row['again'] else ''}"
+        )
     if not rows:
         out.append("no stance of the project was made out")
     return [*out, *(f"written {path}" for path in written)]

@@ -1,4 +1,6 @@
-"""`metagraph motion-graph`: graphs over the frames of long takes, motion that goes with new speech, and how well that works."""
+"""`metagraph motion-graph`: graphs over the frames of long takes, motion that goes with new speech, and how
+well that works.
+"""
 
 from __future__ import annotations
 
@@ -28,45 +30,123 @@ def arguments(parser: ArgumentParser) -> None:
 
     def action(name: str, words: str, run: Any, speech: bool = False) -> ArgumentParser:
         out = actions.add_parser(name, help=words, description=words[:1].upper() + words[1:] + ".")
-        out.add_argument("takes", type=Path, nargs="+", help="clip files, folders of them, or projects; all of one skeleton")
+        out.add_argument(
+            "takes",
+            type=Path,
+            nargs="+",
+            help="clip files, folders of them, or projects; all of one skeleton",
+        )
         out.add_argument("--json", action="store_true", help="print what a program can read")
         if speech:
-            out.add_argument("--speech", type=Path, nargs="+", required=True, metavar="FILE",
-                             help="what was said in each: .eaf, .TextGrid or a conversation's .json, called as the take is")  # fmt: skip
-            out.add_argument("--side", default="1", help="whose motion the takes are: 1 or 2 in the files' order, or a name (default: 1)")
+            out.add_argument(
+                "--speech",
+                type=Path,
+                nargs="+",
+                required=True,
+                metavar="FILE",
+                help="what was said in each: .eaf, .TextGrid or a conversation's .json, called as the "
+                "take is",
+            )
+            out.add_argument(
+                "--side",
+                default="1",
+                help="whose motion the takes are: 1 or 2 in the files' order, or a name (default: 1)",
+            )
         out.set_defaults(run=run)
         return out
 
     def graph(out: ArgumentParser, k: bool = True) -> None:
         if k:
-            out.add_argument("--k", type=int, default=3, help="a transition may cost what frames so many apart differ by (default: 3)")
-        out.add_argument("--level", type=float, default=0.95, help="share of those it may be as dear as, 0 to 1 (default: 0.95)")
-        out.add_argument("--keys", type=float, default=0.2225, help="share of frames transitions may leave and enter (default: 0.2225)")
-        out.add_argument("--most", type=int, help="keep only so many of the cheapest transitions of a frame (default: all)")
+            out.add_argument(
+                "--k",
+                type=int,
+                default=3,
+                help="a transition may cost what frames so many apart differ by (default: 3)",
+            )
+        out.add_argument(
+            "--level",
+            type=float,
+            default=0.95,
+            help="share of those it may be as dear as, 0 to 1 (default: 0.95)",
+        )
+        out.add_argument(
+            "--keys",
+            type=float,
+            default=0.2225,
+            help="share of frames transitions may leave and enter (default: 0.2225)",
+        )
+        out.add_argument(
+            "--most", type=int, help="keep only so many of the cheapest transitions of a frame (default: all)"
+        )
 
     built = action("build", "build the graph of takes, and tell what is in it", build)
     graph(built)
-    built.add_argument("--keep", type=Path, metavar="FOLDER", help="keep what is finished there, to take up again after an end")
-    graph(action("table", "compare graphs for k = 2, 3 and 4, before and after their loose parts are cut away", table), k=False)
+    built.add_argument(
+        "--keep",
+        type=Path,
+        metavar="FOLDER",
+        help="keep what is finished there, to take up again after an end",
+    )
+    graph(
+        action(
+            "table",
+            "compare graphs for k = 2, 3 and 4, before and after their loose parts are cut away",
+            table,
+        ),
+        k=False,
+    )
     made = action("synthesize", "make motion that goes with speech", synthesize, speech=True)
     graph(made)
     wanted = made.add_mutually_exclusive_group(required=True)
-    wanted.add_argument("--take", metavar="N", help="speech of this take, by number from 1 or by name, which is itself left out")
+    wanted.add_argument(
+        "--take",
+        metavar="N",
+        help="speech of this take, by number from 1 or by name, which is itself left out",
+    )
     wanted.add_argument("--new", type=Path, metavar="FILE", help="speech of this file")
-    made.add_argument("--start", type=float, default=0.0, help="from this second of the speech on (default: 0)")
-    made.add_argument("-s", "--seconds", type=float, help="so long (default: 15, or to the end of a shorter speech)")
-    made.add_argument("--search", choices=("exact", "greedy"), default="exact", help="the cheapest path, or a quick one (default: exact)")
-    made.add_argument("--without", action="append", default=[], choices=(*SPOKEN, "idle", "peaks"), help="leave a constraint out")
-    made.add_argument("--tolerance", type=float, default=0.1, help="seconds starts, ends and stresses may be off (default: 0.1)")
+    made.add_argument(
+        "--start", type=float, default=0.0, help="from this second of the speech on (default: 0)"
+    )
+    made.add_argument(
+        "-s", "--seconds", type=float, help="so long (default: 15, or to the end of a shorter speech)"
+    )
+    made.add_argument(
+        "--search",
+        choices=("exact", "greedy"),
+        default="exact",
+        help="the cheapest path, or a quick one (default: exact)",
+    )
+    made.add_argument(
+        "--without",
+        action="append",
+        default=[],
+        choices=(*SPOKEN, "idle", "peaks"),
+        help="leave a constraint out",
+    )
+    made.add_argument(
+        "--tolerance",
+        type=float,
+        default=0.1,
+        help="seconds starts, ends and stresses may be off (default: 0.1)",
+    )
     made.add_argument("--seed", type=int, default=1, help="another path of the greedy search (default: 1)")
     made.add_argument("-o", "--out", type=Path, required=True, help="a .bvh or .glb file")
-    tried = action("evaluate", "hold out each take, search the others for its speech, and count what is found", evaluate, speech=True)
+    tried = action(
+        "evaluate",
+        "hold out each take, search the others for its speech, and count what is found",
+        evaluate,
+        speech=True,
+    )
     graph(tried)
     tried.add_argument("-o", "--out", type=Path, help="write each case to a .csv file")
-    tried.add_argument("--search", action="append", choices=("exact", "greedy"), help="only this search (default: both)")
+    tried.add_argument(
+        "--search", action="append", choices=("exact", "greedy"), help="only this search (default: both)"
+    )
     tried.add_argument("--quick", action="store_true", help="all constraints only, without leaving any out")
     tried.add_argument("--seed", type=int, default=1, help="other paths of the greedy search (default: 1)")
-    action("co-occurrence", "count how often hands and head move with what is said", co_occurrence, speech=True)
+    action(
+        "co-occurrence", "count how often hands and head move with what is said", co_occurrence, speech=True
+    )
 
 
 def run(options: Namespace) -> int:
@@ -74,11 +154,14 @@ def run(options: Namespace) -> int:
     return int(options.run(options))
 
 
-# --- what is given ---------------------------------------------------------------------------------------------------
+# --- what is given
+# --------------------------------------------------------------------------------------------------
 
 
 def _takes(paths: Sequence[Path]) -> list[tuple[str, Clip]]:
-    """Return takes under the names of their files; of files with several takes, or projects, under the takes' own."""
+    """Return takes under the names of their files; of files with several takes, or projects, under the takes'
+    own.
+    """
     from app.cli.command_output import opened
     from metagraph.errors import FileError
     from metagraph.formats.clips import read_clips
@@ -87,15 +170,27 @@ def _takes(paths: Sequence[Path]) -> list[tuple[str, Clip]]:
     out: list[tuple[str, Clip]] = []
     for path in paths:
         if not path.exists():
-            raise FileError(path, "there is no such file or folder", "on reading takes", "Give clip files, folders of them, or projects.")
+            raise FileError(
+                path,
+                "there is no such file or folder",
+                "on reading takes",
+                "Give clip files, folders of them, or projects.",
+            )
         if path.suffix in (".yaml", ".yml"):
-            out += [(Path(c.name).stem, c.motion) for c in opened(path).clips.values() if c.motion is not None]
+            out += [
+                (Path(c.name).stem, c.motion) for c in opened(path).clips.values() if c.motion is not None
+            ]
             continue
         for file in gather([path]):
             clips = read_clips(file)
             out += [(file.stem if len(clips) == 1 else c.name, c) for c in clips]
     if not out:
-        raise FileError(paths[0], "it holds no clips", "on reading takes", "Give clip files, folders of them, or projects.")
+        raise FileError(
+            paths[0],
+            "it holds no clips",
+            "on reading takes",
+            "Give clip files, folders of them, or projects.",
+        )
     twice = next((n for n, _ in out if sum(n == m for m, _ in out) > 1), None)
     if twice is not None:
         raise ValueError(f"two takes are called '{twice}', so speech cannot be told apart: rename one")
@@ -103,7 +198,9 @@ def _takes(paths: Sequence[Path]) -> list[tuple[str, Clip]]:
 
 
 def read_speech(path: Path, side: str) -> tuple[Segment, ...]:
-    """Return what one of the two in a file moves with, `heard_by`. side: 1, 2, or a name. Raises FileError."""
+    """Return what one of the two in a file moves with, `heard_by`. side: 1, 2, or a name. Raises
+    FileError.
+    """
     import msgspec
 
     from metagraph.errors import FileError
@@ -120,14 +217,23 @@ def read_speech(path: Path, side: str) -> tuple[Segment, ...]:
         told = read_transcript(path)
         if not any(told.segments.values()):
             raise FileError(path, "it holds no clauses, responses and hesitations", "", _SAVED)
-        names = [n for n in dict.fromkeys((*told.speakers, *told.segments)) if told.segments.get(n) or told.speakers.get(n)][:2]
+        names = [
+            n
+            for n in dict.fromkeys((*told.speakers, *told.segments))
+            if told.segments.get(n) or told.speakers.get(n)
+        ][:2]
         sides = [Side(name=n, segments=tuple(told.segments.get(n, ()))) for n in names]
         length = max(s.end for one in sides for s in one.segments)
-        made = Conversation(name=path.stem[:200], length=length, sides=(*sides, *(Side() for _ in range(2 - len(sides)))))
+        made = Conversation(
+            name=path.stem[:200], length=length, sides=(*sides, *(Side() for _ in range(2 - len(sides))))
+        )
     names = [s.name for s in made.sides]
     if side not in ("1", "2", *names):
         raise FileError(
-            path, f"nobody is called '{side}'", "its speakers", f"They are {', '.join(f'{n!r}' for n in names)}; or say 1 or 2."
+            path,
+            f"nobody is called '{side}'",
+            "its speakers",
+            f"They are {', '.join(f'{n!r}' for n in names)}; or say 1 or 2.",
         )
     return heard_by(made, names.index(side) if side in names else int(side) - 1)
 
@@ -143,8 +249,14 @@ def _paired(options: Namespace) -> tuple[list[Clip], list[tuple[Segment, ...]], 
     if missing or left:
         words = [f"no speech for {', '.join(missing[:5])}"] if missing else []
         words += [f"no take for {', '.join(left[:5])}"] if left else []
-        raise ValueError(f"{' and '.join(words)}: a speech file is called as its take is, take1.bvh and take1.eaf")
-    return [c for _, c in takes], [read_speech(files[n], options.side) for n, _ in takes], [n for n, _ in takes]
+        raise ValueError(
+            f"{' and '.join(words)}: a speech file is called as its take is, take1.bvh and take1.eaf"
+        )
+    return (
+        [c for _, c in takes],
+        [read_speech(files[n], options.side) for n, _ in takes],
+        [n for n, _ in takes],
+    )
 
 
 def _telling(options: Namespace, what: str) -> Callable[[int, int], None]:
@@ -152,7 +264,12 @@ def _telling(options: Namespace, what: str) -> Callable[[int, int], None]:
 
     def progress(done: int, total: int) -> None:
         if show:
-            print(f"\r{what}: {done:,} of {total:,}", end="\n" if done == total else "", file=sys.stderr, flush=True)
+            print(
+                f"\r{what}: {done:,} of {total:,}",
+                end="\n" if done == total else "",
+                file=sys.stderr,
+                flush=True,
+            )
 
     return progress
 
@@ -173,7 +290,8 @@ def _rates(clips: Sequence[Clip]) -> str:
     return f"{other} of {len(clips)} takes were brought to 30 frames a second" if other else ""
 
 
-# --- what is done ----------------------------------------------------------------------------------------------------
+# --- what is done
+# --------------------------------------------------------------------------------------------------
 
 
 def _states(clips: Sequence[Clip]) -> States:
@@ -208,14 +326,28 @@ def build(options: Namespace) -> int:
     states = _states([c for _, c in _takes(options.takes)])
     limit = threshold(states, options.k, options.level)
     begun = perf_counter()
-    whole = build_graph(states, limit, key_states(states, options.keys), options.most, False, _telling(options, "key states"),
-                        folder=options.keep)  # fmt: skip
+    whole = build_graph(
+        states,
+        limit,
+        key_states(states, options.keys),
+        options.most,
+        False,
+        _telling(options, "key states"),
+        folder=options.keep,
+    )
     graph = largest(whole)
-    facts = {**_facts(whole, graph), "takes": len(states.starts) - 1, "seconds": round(perf_counter() - begun, 3), **_limits(limit)}
+    facts = {
+        **_facts(whole, graph),
+        "takes": len(states.starts) - 1,
+        "seconds": round(perf_counter() - begun, 3),
+        **_limits(limit),
+    }
     words = (
         f"{facts['takes']} takes, {facts['states']:,} states, {facts['keys']:,} of them key states\n"
-        f"threshold at k = {limit.k}, {limit.level:.0%}: {limit.limit:.4g} m by {facts['by']}, {limit.observed:.4g} m observed\n"
-        f"{facts['transitions']:,} transitions; in the largest component {facts['kept']:,} states ({facts['kept'] / facts['states']:.0%}) "
+        f"threshold at k = {limit.k}, {limit.level:.0%}: {limit.limit:.4g} m by {facts['by']}, "
+        f"{limit.observed:.4g} m observed\n"
+        f"{facts['transitions']:,} transitions; in the largest component {facts['kept']:,} states "
+        f"({facts['kept'] / facts['states']:.0%}) "
         f"and {facts['kept_transitions']:,} transitions\nbuilt in {facts['seconds']:.2f} s"
     )
     say(options, words, facts)
@@ -225,8 +357,12 @@ def build(options: Namespace) -> int:
 def _facts(whole: MotionGraph, kept: MotionGraph | None) -> dict[str, Any]:
     states, edges = kept.size if kept is not None else (0, 0)
     return {
-        "states": len(whole.states), "keys": len(whole.keys), "transitions": len(whole.targets), "kept": states, "kept_transitions": edges,
-    }  # fmt: skip
+        "states": len(whole.states),
+        "keys": len(whole.keys),
+        "transitions": len(whole.targets),
+        "kept": states,
+        "kept_transitions": edges,
+    }
 
 
 def _limits(limit: Threshold) -> dict[str, Any]:
@@ -235,7 +371,9 @@ def _limits(limit: Threshold) -> dict[str, Any]:
 
 
 def table(options: Namespace) -> int:
-    """Print states and edges for k = 2, 3 and 4, before and after what is not in the largest component is removed."""
+    """Print states and edges for k = 2, 3 and 4, before and after what is not in the largest component is
+    removed.
+    """
     from app.cli.command_output import say
     from metagraph.synthesis.graph import build as build_graph
     from metagraph.synthesis.graph import largest, threshold
@@ -244,7 +382,13 @@ def table(options: Namespace) -> int:
     _checked(options)
     states = _states([c for _, c in _takes(options.takes)])
     keys = key_states(states, options.keys)
-    rows, lines = [], [f"{'k':<3}{'threshold':>11}{'observed':>11}{'states':>10}{'edges':>14}{'kept states':>14}{'kept edges':>14}"]
+    rows, lines = (
+        [],
+        [
+            f"{'k':<3}{'threshold':>11}{'observed':>11}{'states':>10}"
+            f"{'edges':>14}{'kept states':>14}{'kept edges':>14}"
+        ],
+    )
     follows = int((~states.last).sum())
     for k in (2, 3, 4):
         limit = threshold(states, k, options.level)
@@ -254,7 +398,9 @@ def table(options: Namespace) -> int:
         except SynthesisError:
             graph = None
         f = {**_facts(whole, graph), **_limits(limit)}
-        original = int((graph.kept[:-1] & graph.kept[1:] & ~states.last[:-1]).sum()) if graph is not None else 0
+        original = (
+            int((graph.kept[:-1] & graph.kept[1:] & ~states.last[:-1]).sum()) if graph is not None else 0
+        )
         f |= {"edges": f["transitions"] + follows, "kept_edges": f["kept_transitions"] + original}
         rows.append(f)
         lines.append(
@@ -282,12 +428,23 @@ def synthesize(options: Namespace) -> int:
 
     _checked(options)
     if options.out.suffix not in OUT:
-        raise ValueError(f"motion is written as {' or '.join(OUT)}, not as '{options.out.suffix or options.out.name}'")
+        raise ValueError(
+            f"motion is written as {' or '.join(OUT)}, not as '{options.out.suffix or options.out.name}'"
+        )
     clips, speech, names = _paired(options)
     if options.take is not None:
-        number = names.index(options.take) if options.take in names else int(options.take) - 1 if options.take.isdecimal() else -1
+        number = (
+            names.index(options.take)
+            if options.take in names
+            else int(options.take) - 1
+            if options.take.isdecimal()
+            else -1
+        )
         if not 0 <= number < len(names):
-            raise ValueError(f"there is no take '{options.take}'; there are {', '.join(names[:10])}, or say 1 to {len(names)}")
+            raise ValueError(
+                f"there is no take '{options.take}'; there are {', '.join(names[:10])}, or say 1 to "
+                f"{len(names)}"
+            )
         new = speech.pop(number)
         clips.pop(number)
     else:
@@ -295,7 +452,9 @@ def synthesize(options: Namespace) -> int:
     end = max((s.end for s in new), default=0.0)
     if options.start < 0 or (options.start >= end and options.seconds is None):
         place = options.new or Path(options.take)
-        raise FileError(place, f"its speech lasts from 0 to {end:.1f} s", "", "Let --start lie within, or give --seconds.")
+        raise FileError(
+            place, f"its speech lasts from 0 to {end:.1f} s", "", "Let --start lie within, or give --seconds."
+        )
     seconds = min(WINDOW, end - options.start) if options.seconds is None else options.seconds
     if not 0 < seconds <= 3600:
         raise ValueError("--seconds is more than 0 and at most 3600")
@@ -303,7 +462,9 @@ def synthesize(options: Namespace) -> int:
     keys = key_states(states, options.keys, changes(states, speech))
     graph = build_graph(states, threshold(states, options.k, options.level), keys, options.most)
     use = [k for k in SOUNDS if k not in options.without]
-    want = wanted(cut(new, options.start, seconds), seconds, options.tolerance, use, "peaks" not in options.without)
+    want = wanted(
+        cut(new, options.start, seconds), seconds, options.tolerance, use, "peaks" not in options.without
+    )
     sound = heard(states, speech)
     path = best(graph, sound, want) if options.search == "exact" else greedy(graph, sound, want, options.seed)
     clip = assemble(states, clips, path, options.out.stem)
@@ -313,10 +474,19 @@ def synthesize(options: Namespace) -> int:
     else:
         write_glb(options.out, [clip])
     data = {
-        "out": str(options.out), "seconds": seconds, "frames": clip.frames, "transitions": len(path.jumps), "cost": path.cost,
+        "out": str(options.out),
+        "seconds": seconds,
+        "frames": clip.frames,
+        "transitions": len(path.jumps),
+        "cost": path.cost,
         "takes": len({states.take(int(s)) for s in path.states}),
-    }  # fmt: skip
-    say(options, f"{options.out}: {seconds:.1f} s with {len(path.jumps)} transitions, cost {path.cost:.3g}, of {data['takes']} takes", data)
+    }
+    say(
+        options,
+        f"{options.out}: {seconds:.1f} s with {len(path.jumps)} transitions, cost {path.cost:.3g}, of "
+        f"{data['takes']} takes",
+        data,
+    )
     return 0
 
 
@@ -333,9 +503,18 @@ def evaluate(options: Namespace) -> int:
         print(f"note: {note}", file=sys.stderr)
     with _until_stopped() as stopped:
         found = run(
-            clips, speech, SETTINGS[:1] if options.quick else SETTINGS, options.search or ("greedy", "exact"), options.k, options.level,
-            options.keys, options.most, seed=options.seed, progress=_telling(options, "cases"), cancelled=stopped,
-        )  # fmt: skip
+            clips,
+            speech,
+            SETTINGS[:1] if options.quick else SETTINGS,
+            options.search or ("greedy", "exact"),
+            options.k,
+            options.level,
+            options.keys,
+            options.most,
+            seed=options.seed,
+            progress=_telling(options, "cases"),
+            cancelled=stopped,
+        )
     if options.out is not None:
         write_atomically(options.out, csv_of(found.cases).encode())
     data = {
@@ -357,7 +536,11 @@ def co_occurrence(options: Namespace) -> int:
     rows = count(clips, speech)
     lines = [f"{'':<34}{'matched':>8}{'total':>7}{'rate':>7}  {'95 %':<13}{'chance':>7}"]
     for r in rows:
-        rates = f"{r.rate:>7.0%}  {f'{r.low:.0%} to {r.high:.0%}':<13}{r.chance:>7.0%}" if r.total else f"{'-':>7}"
+        rates = (
+            f"{r.rate:>7.0%}  {f'{r.low:.0%} to {r.high:.0%}':<13}{r.chance:>7.0%}"
+            if r.total
+            else f"{'-':>7}"
+        )
         lines.append(f"{r.hypothesis:<34}{r.matched:>8}{r.total:>7}{rates}")
     say(options, "\n".join(lines), [asdict(r) for r in rows])
     return 0

@@ -38,33 +38,62 @@ examples:
 exit codes: 0 done, 1 an error, 2 wrong usage, 3 done but with problems"""
 
 
-# Commands by name: the module that adds their options and runs them, whether they take a project first, and what they do.
+# Commands by name: the module that adds their options and runs them, whether they take a project first, and
+# what they do.
 COMMANDS: dict[str, tuple[str, bool, str]] = {
     "window": ("window_command", False, "open the window"),
     "import": ("import_command", True, "add clips to a project, made if it is not there"),
     "label": ("label_command", False, "label the clips of a folder by their names and motion, and say why"),
     "check": ("check_command", True, "list the problems of a project"),
     "plan": ("plan_command", True, "plan a performance and print its actions"),
-    "render": ("render_command", True,
-               "draw a performance, or one clip: a contact sheet (.png), a video (.mp4), or plain motion (.glb, .bvh)"),
+    "render": (
+        "render_command",
+        True,
+        "draw a performance, or one clip: a contact sheet (.png), a video (.mp4), or plain motion (.glb, "
+        ".bvh)",
+    ),
     "annotate": ("annotate_command", True, "learn from an ELAN annotation what follows what, or perform it"),
-    "export": ("export_command", False, "write what an engine plays: the graph for a runtime, or an engine's own format"),
+    "export": (
+        "export_command",
+        False,
+        "write what an engine plays: the graph for a runtime, or an engine's own format",
+    ),
     "live": ("live_command", True, "play, and listen to what programs ask: JSON lines, WebSocket, OSC"),
-    "mimic": ("mimic_command", True, "tell what stances a person's keypoints show, and let the character do as they do"),
+    "mimic": (
+        "mimic_command",
+        True,
+        "tell what stances a person's keypoints show, and let the character do as they do",
+    ),
     "speech": ("speech_command", False, "read a conversation of two into clauses, responses and hesitations"),
-    "study": ("study_command", False, "time people at work: reports, data for other tools, simulated studies"),
-    "motion-graph": ("motion_graph_command", False,
-                     "graphs over the frames of long takes, motion that goes with speech, and how well that works"),
+    "study": (
+        "study_command",
+        False,
+        "time people at work: reports, data for other tools, simulated studies",
+    ),
+    "motion-graph": (
+        "motion_graph_command",
+        False,
+        "graphs over the frames of long takes, motion that goes with speech, and how well that works",
+    ),
     "info": ("info_command", False, "tell what is in a project, an export or a clip file"),
-    "demo": ("demo_command", False, "the main job without a window: sample project to performance, pictures, video and export"),
-}  # fmt: skip
+    "demo": (
+        "demo_command",
+        False,
+        "the main job without a window: sample project to performance, pictures, video and export",
+    ),
+}
 GROUPS = ("study", "motion-graph")  # their own commands take --json
 
 
 def _parser(chosen: str) -> argparse.ArgumentParser:
-    """Return the parser of all commands, with the options of the chosen one alone: the others' modules are not imported."""
+    """Return the parser of all commands, with the options of the chosen one alone: the others' modules are
+    not imported.
+    """
     parser = argparse.ArgumentParser(
-        prog="metagraph", description=DESCRIPTION, epilog=EXAMPLES, formatter_class=argparse.RawDescriptionHelpFormatter
+        prog="metagraph",
+        description=DESCRIPTION,
+        epilog=EXAMPLES,
+        formatter_class=argparse.RawDescriptionHelpFormatter,
     )
     parser.add_argument("--version", action="version", version=f"metagraph {__version__}")
     commands = parser.add_subparsers(dest="command", metavar="command")
@@ -107,7 +136,10 @@ def main(arguments: Sequence[str] | None = None) -> int:
         return _fail(options, str(error))
     except OSError as error:
         place = f"{error.filename}: " if error.filename else ""
-        return _fail(options, f"{place}{error.strerror or error}. Choose another place, or see whether you may write there.")
+        return _fail(
+            options,
+            f"{place}{error.strerror or error}. Choose another place, or see whether you may write there.",
+        )
     except MemoryError:
         return _fail(options, "there is not enough memory for that")
     except KeyboardInterrupt:

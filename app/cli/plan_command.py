@@ -19,12 +19,24 @@ def run(options: Namespace) -> int:
     project = opened(options.project)
     made = staged(project, options)
     rows = [
-        {"layer": layer, "start": round(cue.start, 4), "end": round(cue.end, 4), "kind": cue.action.kind, "action": cue.action.id,
-         "name": cue.action.name, "stance": cue.stance, "then": cue.then}
-        for layer in LAYERS for cue in made.layers[layer].cues
-    ]  # fmt: skip
+        {
+            "layer": layer,
+            "start": round(cue.start, 4),
+            "end": round(cue.end, 4),
+            "kind": cue.action.kind,
+            "action": cue.action.id,
+            "name": cue.action.name,
+            "stance": cue.stance,
+            "then": cue.then,
+        }
+        for layer in LAYERS
+        for cue in made.layers[layer].cues
+    ]
     if options.json:
-        reports = [{"request": r.request, "outcome": r.outcome, "message": r.message, "layer": r.layer} for r in made.reports]
+        reports = [
+            {"request": r.request, "outcome": r.outcome, "message": r.message, "layer": r.layer}
+            for r in made.reports
+        ]
         print(json.dumps({"seed": made.seed, "end": made.end, "cues": rows, "reports": reports}))
         return 0
     for row in sorted(rows, key=lambda r: (r["start"], r["layer"])):

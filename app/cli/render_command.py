@@ -23,9 +23,13 @@ def arguments(parser: ArgumentParser) -> None:
     """Add the options."""
     performance_arguments(parser, 10.0)
     parser.add_argument("-o", "--out", type=Path, required=True, help="a .png, .mp4, .glb or .bvh file")
-    parser.add_argument("--progress", action="store_true", help="tell after each picture of a video how many there are")
+    parser.add_argument(
+        "--progress", action="store_true", help="tell after each picture of a video how many there are"
+    )
     parser.add_argument("--clip", help="draw this clip of the project alone")
-    parser.add_argument("--conversation", metavar="NAME", help="draw both sides of this conversation, with their sound")
+    parser.add_argument(
+        "--conversation", metavar="NAME", help="draw both sides of this conversation, with their sound"
+    )
     parser.add_argument("--size", default="960x540", help="width x height in pixels (default: 960x540)")
     parser.add_argument("--fps", type=float, default=30.0, help="pictures a second of a video (default: 30)")
     parser.add_argument("--frames", type=int, default=24, help="pictures on a contact sheet (default: 24)")
@@ -53,7 +57,9 @@ def size_of(text: str) -> tuple[int, int]:
     return width, height
 
 
-def pictures(seen: Sequence[Seen], times: np.ndarray, size: tuple[int, int], look: str) -> Iterator[np.ndarray]:
+def pictures(
+    seen: Sequence[Seen], times: np.ndarray, size: tuple[int, int], look: str
+) -> Iterator[np.ndarray]:
     """Yield one picture `[H, W, 4]` for each time. The camera holds still."""
     from preview.camera import whole_figure
     from preview.offscreen import Offscreen
@@ -64,7 +70,9 @@ def pictures(seen: Sequence[Seen], times: np.ndarray, size: tuple[int, int], loo
     camera = whole_figure(scene.bounds(), size[0] / size[1], ASIDE if len(seen) > 1 else 0.0)
     with Offscreen(*size) as offscreen:
         for at in times:
-            yield offscreen.render(Scene(tuple(_actor(figure, shown, at) for figure, shown in seen)), camera, THEMES[look])
+            yield offscreen.render(
+                Scene(tuple(_actor(figure, shown, at) for figure, shown in seen)), camera, THEMES[look]
+            )
 
 
 def _actor(figure: Any, shown: Shown, times: Any) -> Any:
@@ -76,7 +84,9 @@ def _actor(figure: Any, shown: Shown, times: Any) -> Any:
     rotations, positions = skeleton.globals(pose)
     if shown.stand is not None:
         rotations, positions = shown.stand.placed(rotations, positions)
-    morphs = figure.morph_weights(shown.morphs(float(times))) if figure.morphs and np.ndim(times) == 0 else None
+    morphs = (
+        figure.morph_weights(shown.morphs(float(times))) if figure.morphs and np.ndim(times) == 0 else None
+    )
     return Actor(figure, rotations, positions, morphs)
 
 
@@ -90,7 +100,9 @@ def run(options: Namespace) -> int:
         raise ValueError("a contact sheet has 2 to 1000 pictures")
     if options.out.suffix not in (".png", ".mp4", ".glb", ".bvh"):
         name = options.out.suffix or options.out.name
-        raise ValueError(f"pictures are written as .png, videos as .mp4, motion as .glb or .bvh, not as '{name}'")
+        raise ValueError(
+            f"pictures are written as .png, videos as .mp4, motion as .glb or .bvh, not as '{name}'"
+        )
     size, folder = size_of(options.size), options.project.resolve().parent
     clip = None
     if options.clip is not None:
@@ -101,14 +113,28 @@ def run(options: Namespace) -> int:
     if options.conversation is not None:
         shown = _talking(project, options, folder)
     else:
-        shown = alone(project, clip) if clip is not None else Shown(project, staged(project, options), options.seconds)
+        shown = (
+            alone(project, clip)
+            if clip is not None
+            else Shown(project, staged(project, options), options.seconds)
+        )
     if options.out.suffix in (".glb", ".bvh"):
         for one, out in zip(shown.both, _outs(options.out, shown), strict=True):
             bake_to(out, one, options.seconds, options.fps, one.folder or folder)
     else:
         seen = [(figure_of(one.project, one.folder or folder), one) for one in shown.both]
         sound = sound_of(shown, folder, options.seconds) if options.out.suffix == ".mp4" else None
-        draw_to(options.out, seen, options.seconds, size, options.fps, options.frames, options.theme, sound, options.progress)
+        draw_to(
+            options.out,
+            seen,
+            options.seconds,
+            size,
+            options.fps,
+            options.frames,
+            options.theme,
+            sound,
+            options.progress,
+        )
     say(options, f"{options.out}", {"written": str(options.out)})
     return 0
 
@@ -120,7 +146,9 @@ def _talking(project: Project, options: Namespace, folder: Path) -> Shown:
     found = next((i for i, c in project.conversations.items() if options.conversation in (i, c.name)), None)
     if found is None:
         names = ", ".join(f"'{c.name}'" for c in project.conversations.values()) or "none"
-        raise ValueError(f"there is no conversation '{options.conversation}' in the project; it keeps {names}")
+        raise ValueError(
+            f"there is no conversation '{options.conversation}' in the project; it keeps {names}"
+        )
     shown = ConversationPlans().show(project, found, folder)
     for note in shown.notes:
         print(f"note: {note}", file=sys.stderr)
@@ -129,7 +157,9 @@ def _talking(project: Project, options: Namespace, folder: Path) -> Shown:
 
 
 def _outs(out: Path, shown: Shown) -> list[Path]:
-    """Return a file for each who is shown: both of a conversation have one each, in the character's own space."""
+    """Return a file for each who is shown: both of a conversation have one each, in the character's own
+    space.
+    """
     return [out] if shown.partner is None else [out.with_stem(f"{out.stem}-{n + 1}") for n in range(2)]
 
 
@@ -148,13 +178,22 @@ def sound_of(shown: Shown, folder: Path, seconds: float) -> tuple[np.ndarray, in
     sounds, notes = line_sounds(lines, folder)
     for note in notes:
         print(f"note: {note}", file=sys.stderr)
-    return mixed([part for one in shown.both for part in placed(one.plan, sounds)], 0, round(seconds * RATE)), RATE
+    return mixed(
+        [part for one in shown.both for part in placed(one.plan, sounds)], 0, round(seconds * RATE)
+    ), RATE
 
 
 def draw_to(
-    out: Path, seen: Sequence[Seen], seconds: float, size: tuple[int, int], fps: float, frames: int, look: str,
-    sound: tuple[np.ndarray, int] | None = None, progress: bool = False,
-) -> None:  # fmt: skip
+    out: Path,
+    seen: Sequence[Seen],
+    seconds: float,
+    size: tuple[int, int],
+    fps: float,
+    frames: int,
+    look: str,
+    sound: tuple[np.ndarray, int] | None = None,
+    progress: bool = False,
+) -> None:
     """Write a contact sheet (.png) or a video (.mp4), with its sound."""
     out.parent.mkdir(parents=True, exist_ok=True)
     if out.suffix == ".mp4":
@@ -173,14 +212,18 @@ def draw_to(
         times = np.linspace(0, seconds, max(2, frames))
         small = (max(16, size[0] * 2 * len(seen) // 9), max(16, size[1] * 5 // 9))
         images = list(pictures(seen, times, small, look))
-        labels = [f"{t:.2f} s  {', '.join(filter(None, (_doing(shown.plan, t) for _, shown in seen)))}".rstrip() for t in times]
+        labels = [
+            f"{t:.2f} s  {', '.join(filter(None, (_doing(shown.plan, t) for _, shown in seen)))}".rstrip()
+            for t in times
+        ]
         write_png(out, contact_sheet(images, 8 // len(seen), labels))
     else:
         raise ValueError(f"pictures are written as .png, videos as .mp4, not '{out.suffix}'")
 
 
 def bake_to(out: Path, shown: Shown, seconds: float, fps: float, folder: Path) -> None:
-    """Write a performance, or a clip, as plain motion: what an engine or an animation program plays without a planner.
+    """Write a performance, or a clip, as plain motion: what an engine or an animation program plays without a
+    planner.
 
     A GLB has the character in it, where the project has one.
     """
@@ -206,5 +249,12 @@ def bake_to(out: Path, shown: Shown, seconds: float, fps: float, folder: Path) -
 
 
 def _doing(made: Plan, seconds: float) -> str:
-    cue = next((cue for layer in ("arms", "head", "body") if (cue := made.layers[layer].cue_at(seconds)) is not None), None)  # type: ignore[index]
+    cue = next(
+        (
+            cue
+            for layer in ("arms", "head", "body")
+            if (cue := made.layers[layer].cue_at(seconds)) is not None
+        ),
+        None,
+    )  # type: ignore[index]
     return cue.action.name if cue is not None else ""

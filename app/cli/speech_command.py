@@ -1,4 +1,6 @@
-"""`metagraph speech`: what two say to each other, read from sound and words into clauses, responses and hesitations."""
+"""`metagraph speech`: what two say to each other, read from sound and words into clauses, responses and
+hesitations.
+"""
 
 from __future__ import annotations
 
@@ -16,11 +18,22 @@ OUT = (".eaf", ".TextGrid", ".json")
 
 def arguments(parser: ArgumentParser) -> None:
     """Add the command's options."""
-    parser.add_argument("audio", type=Path, nargs="+", help="a sound with one channel a speaker, or one file for each of the two")
     parser.add_argument(
-        "--words", type=Path, action="append", nargs="+", default=[], metavar="FILE",
-        help="what is said: TextGrid, ELAN, WebVTT, SRT, JSON or CTM; one for both, or one for each (default: loudness tells)",
-    )  # fmt: skip
+        "audio",
+        type=Path,
+        nargs="+",
+        help="a sound with one channel a speaker, or one file for each of the two",
+    )
+    parser.add_argument(
+        "--words",
+        type=Path,
+        action="append",
+        nargs="+",
+        default=[],
+        metavar="FILE",
+        help="what is said: TextGrid, ELAN, WebVTT, SRT, JSON or CTM; one for both, or one for each "
+        "(default: loudness tells)",
+    )
     parser.add_argument("-o", "--out", type=Path, help=f"write words, segments and peaks ({', '.join(OUT)})")
     parser.add_argument("--project", type=Path, help="keep it in this project")
     parser.add_argument("--name", help="what the conversation is called (default: as the sound)")
@@ -50,16 +63,27 @@ def run(options: Namespace) -> int:
         lines.append(f"  {row['name']}: {row['words']} words")
         for kind in ("clause", "response", "hesitation"):
             found = row[kind]
-            more = f", {found['words']:.2f} +- {found['spread']:.2f} words each" if kind == "clause" and found["words"] else ""
-            lines.append(f"    {found['count']:4} {kind}{'s' if found['count'] != 1 else ' '} {found['seconds']:7.1f} s{more}")
+            more = (
+                f", {found['words']:.2f} +- {found['spread']:.2f} words each"
+                if kind == "clause" and found["words"]
+                else ""
+            )
+            lines.append(
+                f"    {found['count']:4} {kind}{'s' if found['count'] != 1 else ' '} {found['seconds']:7.1f} "
+                f"s{more}"
+            )
     if ident is not None:
         lines.append(f"kept in {options.project} as {ident}")
     if out is not None:
         lines.append(f"written to {out}")
     data = {
-        "name": read.conversation.name, "length": read.conversation.length, "sides": rows, "notes": list(read.notes), "kept": ident,
+        "name": read.conversation.name,
+        "length": read.conversation.length,
+        "sides": rows,
+        "notes": list(read.notes),
+        "kept": ident,
         "written": str(out) if out is not None else None,
-    }  # fmt: skip
+    }
     say(options, "\n".join(lines), data)
     return 0
 
@@ -67,14 +91,21 @@ def run(options: Namespace) -> int:
 def _row(n: int, side: Side) -> dict[str, Any]:
     from statistics import fmean, pstdev
 
-    out: dict[str, Any] = {"name": side.name or f"speaker {n + 1}", "audio": side.audio, "channel": side.channel, "words": len(side.words)}
+    out: dict[str, Any] = {
+        "name": side.name or f"speaker {n + 1}",
+        "audio": side.audio,
+        "channel": side.channel,
+        "words": len(side.words),
+    }
     for kind in ("clause", "response", "hesitation"):
         some = [s for s in side.segments if s.kind == kind]
         sizes = [len(s.text.split()) for s in some if s.text]
         out[kind] = {
-            "count": len(some), "seconds": round(sum(s.end - s.start for s in some), 3),
-            "words": round(fmean(sizes), 3) if sizes else None, "spread": round(pstdev(sizes), 3) if sizes else None,
-        }  # fmt: skip
+            "count": len(some),
+            "seconds": round(sum(s.end - s.start for s in some), 3),
+            "words": round(fmean(sizes), 3) if sizes else None,
+            "spread": round(pstdev(sizes), 3) if sizes else None,
+        }
     return out
 
 

@@ -1,4 +1,6 @@
-"""`metagraph study`: reports of timing studies, their data for other tools, the published example, and simulated studies."""
+"""`metagraph study`: reports of timing studies, their data for other tools, the published example, and
+simulated studies.
+"""
 
 from __future__ import annotations
 
@@ -28,27 +30,54 @@ def arguments(parser: ArgumentParser) -> None:
 
     def folder(out: ArgumentParser) -> None:
         out.add_argument("folder", type=Path, help="the study's folder, or its study.yaml")
-        out.add_argument("--no-jumps", action="store_true", help="do not judge visible jumps, which needs the references' clips")
+        out.add_argument(
+            "--no-jumps",
+            action="store_true",
+            help="do not judge visible jumps, which needs the references' clips",
+        )
 
     run_arguments(action("run", "lead a participant through a sitting, in the window", run_study))
-    check_arguments(action("check", "print who does what in which order, and what would hamper the study", check_study))
-    reported = action("report", "write what a study found: a page (report/report.html) and tables as CSV", report)
+    check_arguments(
+        action("check", "print who does what in which order, and what would hamper the study", check_study)
+    )
+    reported = action(
+        "report", "write what a study found: a page (report/report.html) and tables as CSV", report
+    )
     folder(reported)
-    reported.add_argument("--out", type=Path, help="where to write it (default: report, in the study's folder)")
+    reported.add_argument(
+        "--out", type=Path, help="where to write it (default: report, in the study's folder)"
+    )
     exported = action("export", "write a study's data for other tools", export)
     folder(exported)
-    exported.add_argument("--bids", type=Path, required=True, metavar="OUT", help="a folder for the data in BIDS form")
+    exported.add_argument(
+        "--bids", type=Path, required=True, metavar="OUT", help="a folder for the data in BIDS form"
+    )
     action("example", "recompute the comparison that was published with the meta-graph", example)
     made = action("simulate", "write a study of simulated participants with known effects", simulate)
     made.add_argument("out", type=Path, help="a folder that is not there yet")
     made.add_argument("--participants", type=int, default=24, help="how many (default: 24)")
     made.add_argument("--seed", type=int, default=1, help="other people with the same effects (default: 1)")
     made.add_argument("--ratio", type=float, default=7.9, help="times as long by hand (default: 7.9)")
-    made.add_argument("--learning", type=float, default=-0.25, help="slope of log seconds over log clips (default: -0.25)")
-    made.add_argument("--order", type=float, default=0.9, help="seconds of a second sitting beside a first (default: 0.9)")
-    made.add_argument("--spread", type=float, default=0.3, help="how much people's ratios differ, on logs (default: 0.3)")
-    made.add_argument("--slips", type=float, nargs=2, default=(0.4, 3.0), metavar=("META", "MANUAL"), help="mean mistakes a task")
-    made.add_argument("--sus", type=float, nargs=2, default=(78.0, 52.0), metavar=("META", "MANUAL"), help="mean SUS scores")
+    made.add_argument(
+        "--learning", type=float, default=-0.25, help="slope of log seconds over log clips (default: -0.25)"
+    )
+    made.add_argument(
+        "--order", type=float, default=0.9, help="seconds of a second sitting beside a first (default: 0.9)"
+    )
+    made.add_argument(
+        "--spread", type=float, default=0.3, help="how much people's ratios differ, on logs (default: 0.3)"
+    )
+    made.add_argument(
+        "--slips",
+        type=float,
+        nargs=2,
+        default=(0.4, 3.0),
+        metavar=("META", "MANUAL"),
+        help="mean mistakes a task",
+    )
+    made.add_argument(
+        "--sus", type=float, nargs=2, default=(78.0, 52.0), metavar=("META", "MANUAL"), help="mean SUS scores"
+    )
 
 
 def run(options: Namespace) -> int:
@@ -80,7 +109,11 @@ def export(options: Namespace) -> int:
     written = write_bids(read_study(options.folder), results, options.bids)
     for words in results.data.missing:
         print(f"note: {words}", file=sys.stderr)
-    say(options, f"{options.bids}: {len(written)} files", {"written": [str(p) for p in written], "missing": list(results.data.missing)})
+    say(
+        options,
+        f"{options.bids}: {len(written)} files",
+        {"written": [str(p) for p in written], "missing": list(results.data.missing)},
+    )
     return 0
 
 
@@ -91,9 +124,12 @@ def example(options: Namespace) -> int:
 
     found = recomputed()
     data = {
-        "ratio": found.ratio.value, "interval": None, "minutes_a_clip": {"meta": found.minutes[0], "manual": found.minutes[1]},
-        "ratio_with_tutorial": found.with_tutorial, "people_needed": {str(k): v for k, v in found.needed.items()},
-    }  # fmt: skip
+        "ratio": found.ratio.value,
+        "interval": None,
+        "minutes_a_clip": {"meta": found.minutes[0], "manual": found.minutes[1]},
+        "ratio_with_tutorial": found.with_tutorial,
+        "people_needed": {str(k): v for k, v in found.needed.items()},
+    }
     say(options, told(found), data)
     return 0
 
@@ -104,9 +140,15 @@ def simulate(options: Namespace) -> int:
     from metagraph.study.simulate_files import write_study
 
     truth = Truth(
-        participants=options.participants, seed=options.seed, ratio=options.ratio, learning=options.learning, order=options.order,
-        spread=options.spread, slips=tuple(options.slips), sus=tuple(options.sus),
-    )  # fmt: skip
+        participants=options.participants,
+        seed=options.seed,
+        ratio=options.ratio,
+        learning=options.learning,
+        order=options.order,
+        spread=options.spread,
+        slips=tuple(options.slips),
+        sus=tuple(options.sus),
+    )
     made = write_study(options.out, truth)
     say(options, f"{made.path}: {truth.participants} simulated participants", {"study": str(made.path)})
     return 0
@@ -120,7 +162,9 @@ def _results(options: Namespace) -> Results:
 
     def progress(done: int, total: int) -> None:
         if show:
-            print(f"\r{done + 1} of {total} ", end="" if done + 1 < total else "\n", file=sys.stderr, flush=True)
+            print(
+                f"\r{done + 1} of {total} ", end="" if done + 1 < total else "\n", file=sys.stderr, flush=True
+            )
 
     return analyse(collect(options.folder, not options.no_jumps, progress))
 
@@ -128,14 +172,22 @@ def _results(options: Namespace) -> Results:
 def _facts(results: Results) -> dict[str, Any]:
     time = results.time
     return {
-        "title": results.data.title, "simulated": results.data.simulated, "people": len(results.data.participants),
-        "tasks_done": sum(1 for r in results.data.rows if r.done), "ratio": None if time is None else _estimate(time.ratio),
+        "title": results.data.title,
+        "simulated": results.data.simulated,
+        "people": len(results.data.participants),
+        "tasks_done": sum(1 for r in results.data.rows if r.done),
+        "ratio": None if time is None else _estimate(time.ratio),
         "seconds": {} if time is None else {c: _estimate(e) for c, e in time.means.items()},
-        "p": None if time is None else time.test.p, "slope": {c: _estimate(x.slope) for c, x in results.curves.items()},
+        "p": None if time is None else time.test.p,
+        "slope": {c: _estimate(x.slope) for c, x in results.curves.items()},
         "second_sitting": None if time is None or time.order is None else _estimate(time.order.second),
-        "measures": {m.name: {c: _estimate(e) for c, e in m.means.items()} for m in (*results.mistakes, *results.ratings)},
-        "cautions": [] if time is None else list(time.cautions), "missing": list(results.data.missing),
-    }  # fmt: skip
+        "measures": {
+            m.name: {c: _estimate(e) for c, e in m.means.items()}
+            for m in (*results.mistakes, *results.ratings)
+        },
+        "cautions": [] if time is None else list(time.cautions),
+        "missing": list(results.data.missing),
+    }
 
 
 def _estimate(found: Estimate) -> dict[str, Any]:

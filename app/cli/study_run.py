@@ -13,7 +13,9 @@ def run_arguments(parser: ArgumentParser) -> None:
     """Add the options of `run`."""
     parser.add_argument("study", type=Path, help="a study file, or the folder it is in")
     parser.add_argument("--participant", metavar="ID", help="who takes part (default: it is asked)")
-    parser.add_argument("--experimenter", action="store_true", help="notes are the experimenter's, not the participant's")
+    parser.add_argument(
+        "--experimenter", action="store_true", help="notes are the experimenter's, not the participant's"
+    )
 
 
 def run(options: Namespace) -> int:
@@ -32,7 +34,9 @@ def run(options: Namespace) -> int:
 
     window = make_window()
     window.show()
-    QTimer.singleShot(0, lambda: run_study(window.shell, study.path, options.participant, options.experimenter))
+    QTimer.singleShot(
+        0, lambda: run_study(window.shell, study.path, options.participant, options.experimenter)
+    )
     return app.exec()
 
 
@@ -50,8 +54,19 @@ def check(options: Namespace) -> int:
     problems = study.problems()
     rows = [(who, study.plan.blocks(who), standing(study, who)) for who in study.plan.ids]
     if options.json:
-        orders = {who: [{"condition": c, "tasks": list(tasks)} for c, tasks in blocks] for who, blocks, _ in rows}
-        print(json.dumps({"title": study.plan.title, "orders": orders, "standing": {r[0]: r[2] for r in rows}, "problems": problems}))
+        orders = {
+            who: [{"condition": c, "tasks": list(tasks)} for c, tasks in blocks] for who, blocks, _ in rows
+        }
+        print(
+            json.dumps(
+                {
+                    "title": study.plan.title,
+                    "orders": orders,
+                    "standing": {r[0]: r[2] for r in rows},
+                    "problems": problems,
+                }
+            )
+        )
     else:
         print(study.plan.title)
         for who, blocks, stands in rows:

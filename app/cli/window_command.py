@@ -1,4 +1,6 @@
-"""`metagraph window`: the window, on a project if one is named; where there is no screen, the same job without it."""
+"""`metagraph window`: the window, on a project if one is named; where there is no screen, the same job
+without it.
+"""
 
 from __future__ import annotations
 
@@ -18,18 +20,34 @@ def arguments(parser: ArgumentParser) -> None:
 
 def has_screen() -> bool:
     """Return whether a window can be shown."""
-    return not sys.platform.startswith("linux") or bool(os.environ.get("DISPLAY") or os.environ.get("WAYLAND_DISPLAY"))
+    return not sys.platform.startswith("linux") or bool(
+        os.environ.get("DISPLAY") or os.environ.get("WAYLAND_DISPLAY")
+    )
 
 
 def run(options: Namespace) -> int:
     if options.project is not None and not options.project.is_file():
-        raise FileError(options.project, "there is no such project", "on opening it", "Give a file ending in .metagraph.yaml.")
+        raise FileError(
+            options.project,
+            "there is no such project",
+            "on opening it",
+            "Give a file ending in .metagraph.yaml.",
+        )
     if not has_screen() and os.environ.get("QT_QPA_PLATFORM") is None:
         if not options.json:
             print("There is no screen here, so the same job runs without a window.\n")
         from app.cli.demo_command import run as demo
 
-        return demo(Namespace(json=options.json, out=Path("out"), seconds=60.0, seed=None, performance=None, project=options.project))
+        return demo(
+            Namespace(
+                json=options.json,
+                out=Path("out"),
+                seconds=60.0,
+                seed=None,
+                performance=None,
+                project=options.project,
+            )
+        )
     from app.main import run_window
 
     return run_window(options.project, options.sample)

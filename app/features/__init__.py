@@ -1,6 +1,7 @@
 """The features: each a folder that exports `contribute(shell)`, and none knows another.
 
-A feature is taken out by deleting its folder and its line here. The order is that of panels in a dock and of commands in a group.
+A feature is taken out by deleting its folder and its line here. The order is that of panels in a dock and of
+commands in a group.
 """
 
 FEATURES = (

@@ -1,4 +1,6 @@
-"""Icons: a few 24 x 24 paths drawn in the theme's text colour. Enough for a toolbar, and no font to load at start-up."""
+"""Icons: a few 24 x 24 paths drawn in the theme's text colour. Enough for a toolbar, and no font to load at
+start-up.
+"""
 
 from __future__ import annotations
 
@@ -17,7 +19,8 @@ PATHS = {
     "undo": "M8 5L4 9l4 4M4 9h10a5.5 5.5 0 0 1 0 11h-4",
     "redo": "M16 5l4 4-4 4M20 9H10a5.5 5.5 0 0 0 0 11h4",
     "frame": "M4 9V5a1 1 0 0 1 1-1h4M15 4h4a1 1 0 0 1 1 1v4M20 15v4a1 1 0 0 1-1 1h-4M9 20H5a1 1 0 0 1-1-1v-4",
-    "face": "M12 3.5a7 7 0 0 1 7 7c0 5-3 10-7 10s-7-5-7-10a7 7 0 0 1 7-7M9.5 11v.6M14.5 11v.6M9.8 15.6c1.4.9 3 .9 4.4 0",
+    "face": "M12 3.5a7 7 0 0 1 7 7c0 5-3 10-7 10s-7-5-7-10a7 7 0 0 1 7-7M9.5 11v.6M14.5 11v.6M9.8 15.6c1.4.9 "
+    "3 .9 4.4 0",
     "bones": "M12 4.5v8M12 12.5l-4.5 7M12 12.5l4.5 7M6 8.5h12",
     "add": "M12 5v14M5 12h14",
     "remove": "M6 6l12 12M18 6L6 18",
@@ -28,7 +31,8 @@ PATHS = {
     "warning": "M12 4l9 16H3zM12 10v4.5M12 17.2v.4",
     "machine": "M5 5.5h5v4H5zM14 14.5h5v4h-5zM14 5.5h5v4h-5zM10 7.5h4M16.5 9.5v5M10 9l4.5 6",
     "theme": "M12 3.5a8.5 8.5 0 1 0 0 17zM12 3.5a8.5 8.5 0 0 1 0 17",
-    "skeleton": "M12 3.5a2.5 2.5 0 1 1 0 5 2.5 2.5 0 0 1 0-5M12 8.5v6M7 10.5l5 1 5-1M12 14.5l-3 6M12 14.5l3 6",
+    "skeleton": "M12 3.5a2.5 2.5 0 1 1 0 5 2.5 2.5 0 0 1 0-5M12 8.5v6M7 10.5l5 1 5-1M12 14.5l-3 6M12 "
+    "14.5l3 6",
     "pin": "M12 13v7.5M8 4h8l-1 5 2.5 4h-11L9 9z",
     "more": "!M5 10.5h3v3H5zM10.5 10.5h3v3h-3zM16 10.5h3v3h-3z",
     "left": "M14.5 6l-6 6 6 6",
@@ -54,9 +58,14 @@ def _draw(name: str, color: str, pixels: int, opacity: float) -> QPixmap:
     path = PATHS[name]
     filled = path.startswith("!")
     style = (
-        f'fill="{color}"' if filled else f'fill="none" stroke="{color}" stroke-width="1.7" stroke-linecap="round" stroke-linejoin="round"'
+        f'fill="{color}"'
+        if filled
+        else f'fill="none" stroke="{color}" stroke-width="1.7" stroke-linecap="round" stroke-linejoin="round"'
     )
-    svg = f'<svg xmlns="http://www.w3.org/2000/svg" viewBox="0 0 24 24"><path {style} d="{path.lstrip("!")}"/></svg>'
+    svg = (
+        f'<svg xmlns="http://www.w3.org/2000/svg" viewBox="0 0 24 24"><path {style} '
+        f'd="{path.lstrip("!")}"/></svg>'
+    )
     picture = QPixmap(pixels, pixels)
     picture.fill(Qt.GlobalColor.transparent)
     painter = QPainter(picture)

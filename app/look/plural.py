@@ -9,7 +9,9 @@ def many(count: int, noun: str) -> str:
 
 
 def short(name: str, stance: str) -> str:
-    """Return an action's name without its stance's name in front: what is the same in every row tells nothing."""
+    """Return an action's name without its stance's name in front: what is the same in every row tells
+    nothing.
+    """
     wanted = [c for c in stance.lower() if c.isalnum()]
     place = 0
     for n, c in enumerate(name.lower()):

@@ -1,4 +1,6 @@
-"""Looks: palettes, the four kinds' colours, the style sheet. Colour means kind and nothing else; warnings are yellow."""
+"""Looks: palettes, the four kinds' colours, the style sheet. Colour means kind and nothing else; warnings are
+yellow.
+"""
 
 from __future__ import annotations
 
@@ -14,7 +16,9 @@ from metagraph.graph.model import Kind
 
 @dataclass(frozen=True)
 class Theme:
-    """Colours as #rrggbb. ground: behind panels; panel, card, field: ever closer to the eye; line: borders."""
+    """Colours as #rrggbb. ground: behind panels; panel, card, field: ever closer to the eye; line:
+    borders.
+    """
 
     name: str
     ground: str
@@ -31,7 +35,9 @@ class Theme:
     error: str
     kinds: Mapping[str, str]  # text and marks, contrast of at least 4.5:1 on panel and card
     fills: Mapping[str, str]  # areas
-    sounds: Mapping[str, str]  # areas of what is said; told apart by colour-blind people by their lightness, too
+    sounds: Mapping[
+        str, str
+    ]  # areas of what is said; told apart by colour-blind people by their lightness, too
 
     def kind(self, kind: Kind | str) -> QColor:
         return QColor(self.kinds[kind])
@@ -43,15 +49,41 @@ class Theme:
 _SOUNDS = {"clause": "#e05a7f", "response": "#d9e57f", "hesitation": "#aab1bc"}
 _KINDS = {"stance": "#3fb8a6", "gesture": "#f0a63c", "fidget": "#a98bf0", "transition": "#5aa3f0"}
 DARK = Theme(
-    "dark", ground="#17181b", panel="#1e2024", card="#25282d", field="#191b1f", hover="#2e3238", line="#34383f", text="#dfe3e8",
-    dim="#9aa1ab", strong="#e8eaed", on_strong="#17181b", warning="#e8c24a", error="#ff7a6e", kinds=_KINDS, fills=_KINDS, sounds=_SOUNDS,
-)  # fmt: skip
-LIGHT = Theme(
-    "light", ground="#e9ebee", panel="#f6f7f8", card="#ffffff", field="#ffffff", hover="#e4e7eb", line="#cdd2d8", text="#1d2126",
-    dim="#59616b", strong="#23272d", on_strong="#ffffff", warning="#7d5b00", error="#b3261e",
-    kinds={"stance": "#127065", "gesture": "#8f5a00", "fidget": "#6a45c4", "transition": "#1a63b8"}, fills=_KINDS,
+    "dark",
+    ground="#17181b",
+    panel="#1e2024",
+    card="#25282d",
+    field="#191b1f",
+    hover="#2e3238",
+    line="#34383f",
+    text="#dfe3e8",
+    dim="#9aa1ab",
+    strong="#e8eaed",
+    on_strong="#17181b",
+    warning="#e8c24a",
+    error="#ff7a6e",
+    kinds=_KINDS,
+    fills=_KINDS,
     sounds=_SOUNDS,
-)  # fmt: skip
+)
+LIGHT = Theme(
+    "light",
+    ground="#e9ebee",
+    panel="#f6f7f8",
+    card="#ffffff",
+    field="#ffffff",
+    hover="#e4e7eb",
+    line="#cdd2d8",
+    text="#1d2126",
+    dim="#59616b",
+    strong="#23272d",
+    on_strong="#ffffff",
+    warning="#7d5b00",
+    error="#b3261e",
+    kinds={"stance": "#127065", "gesture": "#8f5a00", "fidget": "#6a45c4", "transition": "#1a63b8"},
+    fills=_KINDS,
+    sounds=_SOUNDS,
+)
 THEMES = {"dark": DARK, "light": LIGHT}
 KIND_MARKS = {"stance": "●", "gesture": "▲", "fidget": "◆", "transition": "➜"}  # never colour alone
 SOUND_MARKS = {"clause": "■", "response": "✓", "hesitation": "…"}
@@ -66,12 +98,26 @@ def palette(look: Theme) -> QPalette:
     out = QPalette()
     role = QPalette.ColorRole
     for key, color in (
-        (role.Window, look.panel), (role.WindowText, look.text), (role.Base, look.field), (role.AlternateBase, look.card),
-        (role.Text, look.text), (role.Button, look.card), (role.ButtonText, look.text), (role.ToolTipBase, look.card),
-        (role.ToolTipText, look.text), (role.Highlight, look.hover), (role.HighlightedText, look.text),
-        (role.PlaceholderText, look.dim), (role.Link, look.text), (role.Mid, look.line), (role.Dark, look.line),
-        (role.BrightText, look.error), (role.Light, look.hover), (role.Midlight, look.hover), (role.Shadow, look.ground),
-    ):  # fmt: skip
+        (role.Window, look.panel),
+        (role.WindowText, look.text),
+        (role.Base, look.field),
+        (role.AlternateBase, look.card),
+        (role.Text, look.text),
+        (role.Button, look.card),
+        (role.ButtonText, look.text),
+        (role.ToolTipBase, look.card),
+        (role.ToolTipText, look.text),
+        (role.Highlight, look.hover),
+        (role.HighlightedText, look.text),
+        (role.PlaceholderText, look.dim),
+        (role.Link, look.text),
+        (role.Mid, look.line),
+        (role.Dark, look.line),
+        (role.BrightText, look.error),
+        (role.Light, look.hover),
+        (role.Midlight, look.hover),
+        (role.Shadow, look.ground),
+    ):
         out.setColor(key, QColor(color))
     for item in (role.Text, role.WindowText, role.ButtonText):
         faded = QColor(look.dim)

@@ -1,4 +1,6 @@
-"""An annotation on its way into a project: which tiers and labels are read as what, and what is made of it. For window and command line."""
+"""An annotation on its way into a project: which tiers and labels are read as what, and what is made of it.
+For window and command line.
+"""
 
 from __future__ import annotations
 
@@ -16,7 +18,9 @@ FEW = 30  # acts below which a model is a rough one
 
 @dataclass(frozen=True)
 class Reading:
-    """How an annotation is read. roles: tier -> role. said: label, or `layer: label` -> meaning, before what is remembered and guessed."""
+    """How an annotation is read. roles: tier -> role. said: label, or `layer: label` -> meaning, before what
+    is remembered and guessed.
+    """
 
     annotation: Annotation
     roles: Mapping[str, str]
@@ -40,25 +44,36 @@ class Reading:
         return replace(self, said={**self.said, label.key: meaning})
 
 
-def begin(annotation: Annotation, *tiers: Mapping[str, str], labels: tuple[Mapping[str, str], ...] = ()) -> Reading:
+def begin(
+    annotation: Annotation, *tiers: Mapping[str, str], labels: tuple[Mapping[str, str], ...] = ()
+) -> Reading:
     """Return a reading as remembered, the earlier memories first, and otherwise as guessed."""
     return Reading(annotation, guess_roles(annotation, *tiers), {}, labels)
 
 
 @dataclass(frozen=True)
 class Made:
-    """What became of a reading. learned: the layers that have a model of their own now. performance: id of what was kept."""
+    """What became of a reading. learned: the layers that have a model of their own now. performance: id of
+    what was kept.
+    """
 
     project: Project
     learned: tuple[Layer, ...] = ()
     performance: str | None = None
 
 
-def into(project: Project, reading: Reading, learned: Collection[Layer], tagged: bool, name: str | None, smoothing: float = 0.0) -> Made:
+def into(
+    project: Project,
+    reading: Reading,
+    learned: Collection[Layer],
+    tagged: bool,
+    name: str | None,
+    smoothing: float = 0.0,
+) -> Made:
     """Work a reading into a project: remember how it was read, learn models, keep it as a performance.
 
-    learned: layers to learn, as far as they were seen to do something. tagged: positive and negative become states of their own,
-    otherwise shares of gestures. name: of the performance, None to keep none.
+    learned: layers to learn, as far as they were seen to do something. tagged: positive and negative become
+    states of their own, otherwise shares of gestures. name: of the performance, None to keep none.
     """
     project = remember(project, reading)
     done = []
@@ -68,7 +83,9 @@ def into(project: Project, reading: Reading, learned: Collection[Layer], tagged:
             done.append(layer)
     kept = None
     if name is not None and any(reading.observed.values()):
-        project, kept = staging.add_performance(project, performance(name, reading.observed, reading.annotation.end))
+        project, kept = staging.add_performance(
+            project, performance(name, reading.observed, reading.annotation.end)
+        )
     return Made(project, tuple(done), kept)
 
 

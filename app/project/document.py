@@ -1,6 +1,7 @@
 """The document: the project being edited, its undo stack, its file and its journal.
 
-Every change - drop, menu, paste, undo, load - ends in `changed(before, after)`; views redraw what is not the same object.
+Every change - drop, menu, paste, undo, load - ends in `changed(before, after)`; views redraw what is not the
+same object.
 """
 
 from __future__ import annotations
@@ -26,7 +27,9 @@ Edit = Callable[[Project], Project]
 class _Change(QUndoCommand):
     """The one undo command: the project before and after."""
 
-    def __init__(self, document: Document, text: str, before: Project, after: Project, merge: str | None) -> None:
+    def __init__(
+        self, document: Document, text: str, before: Project, after: Project, merge: str | None
+    ) -> None:
         super().__init__(text)
         self.document, self.before, self.after, self.merge = document, before, after, merge
         self.cancelled = False
@@ -49,12 +52,15 @@ class _Change(QUndoCommand):
 
 
 class Document(QObject):
-    """changed: (before, after) projects. loaded: comes first when `after` is another project, not an edited one.
+    """changed: (before, after) projects. loaded: comes first when `after` is another project, not an edited
+    one.
 
-    state_changed: path, dirty mark or undo texts may differ. saved: it was written. failed: words for the user.
+    state_changed: path, dirty mark or undo texts may differ. saved: it was written. failed: words for the
+    user.
 
-    common: the project as its file was when it was read or saved last, None where that is not known; digest: of that file, SHA-256.
-    lock: of the file, while this window has it. read_only: another window has it, so saving asks for another place.
+    common: the project as its file was when it was read or saved last, None where that is not known; digest:
+    of that file, SHA-256. lock: of the file, while this window has it. read_only: another window has it, so
+    saving asks for another place.
     """
 
     changed = Signal(object, object)
@@ -82,7 +88,8 @@ class Document(QObject):
     # --- editing
 
     def edit(self, text: str, function: Edit, merge: str | None = None) -> None:
-        """Change the project by a pure function; one undo step named `text`. Edits with the same `merge` in a row are one step.
+        """Change the project by a pure function; one undo step named `text`. Edits with the same `merge` in a
+        row are one step.
 
         Raises EditError, from the function; the project is then as it was.
         """
@@ -106,7 +113,9 @@ class Document(QObject):
             self.undo_stack.undo()
 
     def take_motion(self, text: str, function: Edit) -> None:
-        """Let clips have their motion again. Where nothing that is saved changes by that it is no step, and no undo takes it away."""
+        """Let clips have their motion again. Where nothing that is saved changes by that it is no step, and
+        no undo takes it away.
+        """
         after = function(self.project)
         if after != self.project:
             self.edit(text, lambda _: after)
@@ -141,7 +150,9 @@ class Document(QObject):
 
     @property
     def folder(self) -> Path | None:
-        """What clip paths are relative to; None while the project was never saved (paths are absolute then)."""
+        """What clip paths are relative to; None while the project was never saved (paths are absolute
+        then).
+        """
         return self.path.parent if self.path is not None else None
 
     # --- files
@@ -157,9 +168,11 @@ class Document(QObject):
         lock: Lock | None = None,
         read_only: bool = False,
     ) -> None:
-        """Show another project; without a path its clip paths are absolute. recovered: how many edits it holds that are not in its file.
+        """Show another project; without a path its clip paths are absolute. recovered: how many edits it
+        holds that are not in its file.
 
-        common, digest: what its file holds, and that file's (as it is now, when left out). lock: of that file.
+        common, digest: what its file holds, and that file's (as it is now, when left out). lock: of that
+        file.
         """
         self._leave_file(lock)
         before, self.project = self.project, project
@@ -175,7 +188,9 @@ class Document(QObject):
         self.state_changed.emit()
 
     def reload(self, project: Project, digest: str) -> None:
-        """Take over what another program has made of the file: one step, which can be undone, to the saved state."""
+        """Take over what another program has made of the file: one step, which can be undone, to the saved
+        state.
+        """
         if project != self.project:
             self.undo_stack.push(_Change(self, "Reload from disk", self.project, project, None))
         self.common, self.digest = self.project, digest
@@ -190,7 +205,8 @@ class Document(QObject):
         self.end_saving(writing)
 
     def begin_saving(self, path: Path | None = None) -> Writing:
-        """Return how the project as it is now is written, to its own file or another; in a new place it is named after its file.
+        """Return how the project as it is now is written, to its own file or another; in a new place it is
+        named after its file.
 
         `write` may run on any thread while edits go on; then comes `end_saving`.
         """
@@ -258,7 +274,9 @@ class Document(QObject):
         return journal_path(self.path, self.owner.sitting)
 
     def _begin_journal(self, base: Project | None, unsaved: int = 0) -> None:
-        """base: what the journal has to hold itself, since no file does; unsaved: how many edits that has which no file has."""
+        """base: what the journal has to hold itself, since no file does; unsaved: how many edits that has
+        which no file has.
+        """
         old, self._journal, self._unsafe = self._journal, None, False
         if old is not None:
             old.close()
@@ -270,7 +288,9 @@ class Document(QObject):
                 self._unsafe = True  # what was in the old one stays there
                 self.failed.emit(f"Autosave is off: {error}")
                 return
-        if base is not None or not self.read_only:  # else it begins with the first edit, and with the project before that
+        if (
+            base is not None or not self.read_only
+        ):  # else it begins with the first edit, and with the project before that
             self._journal = journal
         if old is not None and (base is None or old.path != journal.path):
             old.remove()
@@ -306,7 +326,9 @@ class Document(QObject):
 
 def _with_motion(project: Project, other: Project) -> Project:
     """Return the project, its clips without motion as `other` has them."""
-    found = {i: other.clips[i] for i, e in project.clips.items() if e.motion is None and other.clips.get(i) == e}
+    found = {
+        i: other.clips[i] for i, e in project.clips.items() if e.motion is None and other.clips.get(i) == e
+    }
     return replace(project, clips={**project.clips, **found}) if found else project
 
 

@@ -1,4 +1,6 @@
-"""Opening, saving, importing and recovering, with the questions they ask. The window's right hand; it draws nothing."""
+"""Opening, saving, importing and recovering, with the questions they ask. The window's right hand; it draws
+nothing.
+"""
 
 from __future__ import annotations
 
@@ -77,13 +79,15 @@ class Files(QObject):
     def ask_open(self) -> None:
         if self.refuse():
             return
-        name, _ = QFileDialog.getOpenFileName(self.window, "Open project", str(self.document.folder or Path.home()), FILTER)
+        name, _ = QFileDialog.getOpenFileName(
+            self.window, "Open project", str(self.document.folder or Path.home()), FILTER
+        )
         if name:
             self.open(Path(name))
 
     def open(self, path: Path, template: bool = False) -> None:
-        """Open a project; its clips load on a thread. Asks about unsaved changes, about another window that has it open, and about
-        journals that were left behind.
+        """Open a project; its clips load on a thread. Asks about unsaved changes, about another window that
+        has it open, and about journals that were left behind.
 
         template: a copy without a file is opened; saving asks for a place of one's own.
         """
@@ -97,7 +101,10 @@ class Files(QObject):
             return
         owner = self.document.owner
         self.jobs.start(
-            f"Opening {path.name}", lambda _: look_beside(path, owner), lambda found: self._looked(path, left, found), self.show_failure
+            f"Opening {path.name}",
+            lambda _: look_beside(path, owner),
+            lambda found: self._looked(path, left, found),
+            self.show_failure,
         )
 
     def _looked(self, path: Path, before: Project, found: Found) -> None:
@@ -135,8 +142,9 @@ class Files(QObject):
         template: bool = False,
         read_only: bool = False,
     ) -> None:
-        """Load a project and its clips, and show it in place of `before`. chosen: a journal's edits, taken over; copies: those saved
-        beside it."""
+        """Load a project and its clips, and show it in place of `before`. chosen: a journal's edits, taken
+        over; copies: those saved beside it.
+        """
         lock = found.lock if found is not None and found.lock is not None and found.lock.held else None
 
         def work(job: Job) -> tuple[Opened, Project | None, list[Path]]:
@@ -144,7 +152,11 @@ class Files(QObject):
             if chosen is None:
                 return open_whole(path, job.tell), None, kept
             common = None if chosen.behind else read_project(path)
-            return replace(load_whole(chosen.project, path.parent, job.tell), digest=chosen.digest), common, kept
+            return (
+                replace(load_whole(chosen.project, path.parent, job.tell), digest=chosen.digest),
+                common,
+                kept,
+            )
 
         def release() -> None:
             if lock is not None and (self.document.lock is None or self.document.lock.path != lock.path):
@@ -159,7 +171,15 @@ class Files(QObject):
                 self.document.load(absolute(opened.project, path.parent), None)
             else:
                 edits = chosen.edits if chosen is not None else 0
-                self.document.load(opened.project, path, edits, common=common, digest=opened.digest, lock=lock, read_only=read_only)
+                self.document.load(
+                    opened.project,
+                    path,
+                    edits,
+                    common=common,
+                    digest=opened.digest,
+                    lock=lock,
+                    read_only=read_only,
+                )
                 self._remember(path)
             for other in found.left if found is not None else ():
                 forget(other.path)
@@ -179,7 +199,12 @@ class Files(QObject):
         """Offer what was never saved before a crash; where nothing is, or is wanted, do `otherwise`."""
         journals = untitled_journals()
         if journals:
-            self.jobs.start("Recovering", lambda _: read_untitled(journals), lambda found: self._offer(found, otherwise), self.show_failure)
+            self.jobs.start(
+                "Recovering",
+                lambda _: read_untitled(journals),
+                lambda found: self._offer(found, otherwise),
+                self.show_failure,
+            )
         else:
             otherwise()
 
@@ -205,7 +230,9 @@ class Files(QObject):
             if rest:
                 self.told.emit(f"{rest} more will be offered when Metagraph is started again.")
 
-        self.jobs.start("Recovering", lambda job: load_whole(left.project, Path("/"), job.tell), done, self.show_failure)
+        self.jobs.start(
+            "Recovering", lambda job: load_whole(left.project, Path("/"), job.tell), done, self.show_failure
+        )
 
     def show_failure(self, error: Exception) -> None:
         """Say what went wrong with a job."""
@@ -225,7 +252,9 @@ class Files(QObject):
 
     def save_as(self) -> bool:
         start = self.document.folder or Path.home()
-        name, _ = QFileDialog.getSaveFileName(self.window, "Save project as", str(start / f"{self.document.project.name}{SUFFIX}"), FILTER)
+        name, _ = QFileDialog.getSaveFileName(
+            self.window, "Save project as", str(start / f"{self.document.project.name}{SUFFIX}"), FILTER
+        )
         if not name:
             return False
         path = Path(name)
@@ -234,7 +263,9 @@ class Files(QObject):
         holder = lock.acquire()
         if holder is not None:
             QMessageBox.warning(
-                self.window, "Not saved", f"{path.name} is open in another window, by {holder_words(holder)}. Choose another name."
+                self.window,
+                "Not saved",
+                f"{path.name} is open in another window, by {holder_words(holder)}. Choose another name.",
             )
             return False
         if self.document.path is not None and Lock(self.document.path, self.document.owner).path == lock.path:
@@ -275,7 +306,12 @@ class Files(QObject):
                     document.reload(opened.project, digest)
                     self.told.emit(f"Read {changed.path.name} again")
 
-            self.jobs.start(f"Reading {changed.path.name} again", lambda job: load_whole(theirs, folder, job.tell), done, self.show_failure)
+            self.jobs.start(
+                f"Reading {changed.path.name} again",
+                lambda job: load_whole(theirs, folder, job.tell),
+                done,
+                self.show_failure,
+            )
 
     def look_at_file(self) -> None:
         """Look whether the project file has changed on disk, and say so."""
@@ -285,13 +321,20 @@ class Files(QObject):
             return
 
         def done(changed: FileChangedError | None) -> None:
-            if changed is None or self.saver.busy or (document.path, document.digest) != (path, digest) or changed.digest == self._told_of:
+            if (
+                changed is None
+                or self.saver.busy
+                or (document.path, document.digest) != (path, digest)
+                or changed.digest == self._told_of
+            ):
                 return
             self._told_of = changed.digest
             document.keep_all()
             what = "look…" if document.dirty else "reload…"
             tip = "Another program, another window or a version control update has written it"
-            self.changed_outside.emit(f"{path.name} changed on disk: {what}", tip, lambda: self._changed(changed))
+            self.changed_outside.emit(
+                f"{path.name} changed on disk: {what}", tip, lambda: self._changed(changed)
+            )
 
         self.jobs.start("project file", lambda _: file_changed(path, digest), done, quick=True)
 

@@ -1,4 +1,6 @@
-"""Bringing clips in: files and folders that are imported or dropped, and clip files that were lost and found."""
+"""Bringing clips in: files and folders that are imported or dropped, and clip files that were lost and
+found.
+"""
 
 from __future__ import annotations
 
@@ -29,8 +31,9 @@ Retarget = Callable[[Sequence[Strangers], Callable[[Imported], None]], None]
 
 @dataclass(frozen=True)
 class FileDrop:
-    """Files that are no clips, and who takes them when they are dropped or imported. suffixes: what they may end in, lower case.
-    claim: those that are really its own. take: what it does with them."""
+    """Files that are no clips, and who takes them when they are dropped or imported. suffixes: what they may
+    end in, lower case. claim: those that are really its own. take: what it does with them.
+    """
 
     suffixes: tuple[str, ...]
     claim: Callable[[Sequence[Path]], Sequence[Path]]
@@ -38,9 +41,11 @@ class FileDrop:
 
 
 class Importing(QObject):
-    """told: words for the status bar. report: (title, lines) to read. imported: (Imported, what was given with it to place them).
-    repaired: (title, ids of clips, lines) to look through; the lines say what else is to be read. noticed: the same, with nothing that
-    has to be read. drops: who takes what is no clip. retarget: asks about clips of other skeletons; without it they are left out."""
+    """told: words for the status bar. report: (title, lines) to read. imported: (Imported, what was given
+    with it to place them). repaired: (title, ids of clips, lines) to look through; the lines say what else is
+    to be read. noticed: the same, with nothing that has to be read. drops: who takes what is no clip.
+    retarget: asks about clips of other skeletons; without it they are left out.
+    """
 
     told = Signal(str)
     report = Signal(str, object)
@@ -67,19 +72,25 @@ class Importing(QObject):
     def ask_import_folder(self) -> None:
         if self.files.refuse():
             return
-        name = QFileDialog.getExistingDirectory(self.widget, "Import a folder of clips", str(self.document.folder or Path.home()))
+        name = QFileDialog.getExistingDirectory(
+            self.widget, "Import a folder of clips", str(self.document.folder or Path.home())
+        )
         if name:
             self.import_paths([name])
 
     def ask_import_files(self) -> None:
         if self.files.refuse():
             return
-        names, _ = QFileDialog.getOpenFileNames(self.widget, "Import clips", str(self.document.folder or Path.home()), CLIPS)
+        names, _ = QFileDialog.getOpenFileNames(
+            self.widget, "Import clips", str(self.document.folder or Path.home()), CLIPS
+        )
         if names:
             self.import_paths(names)
 
     def import_paths(self, paths: list[str], drop: object = None) -> None:
-        """Import files and folders on a thread; one undo step when it is done. drop: where to place them then."""
+        """Import files and folders on a thread; one undo step when it is done. drop: where to place them
+        then.
+        """
         if self.files.refuse():
             return
         for taker in self.drops:
@@ -127,7 +138,9 @@ class Importing(QObject):
         self.retarget(result.strangers, then)
 
     def _tell_imported(self, result: Imported) -> None:
-        """Say what came of an import: in the status bar, or to read where something was left out or repaired."""
+        """Say what came of an import: in the status bar, or to read where something was left out or
+        repaired.
+        """
         count, files = len(result.loaded), len(result.failures)
         words = f"Imported {clips_words(count)}"
         if result.retargeted:
@@ -137,28 +150,43 @@ class Importing(QObject):
             words = f"{words}, {out}" if count else out.capitalize()
         clips = self.load_for(result).clips
         repairs = repairs_of(self.document.project, clips)
-        if any(found.repair.name != NAME for found in repairs):  # a name is plain to see, and no reason to interrupt
+        if any(
+            found.repair.name != NAME for found in repairs
+        ):  # a name is plain to see, and no reason to interrupt
             told = {found.repair.words for found in repairs}
             notes = [note for note in result.notes if note.split(": ", 1)[-1] not in told]
             (self.repaired if files else self.noticed).emit(words, clips, [*result.failures, *notes])
             self.told.emit(words)
         elif files:
-            self.report.emit(f"{words}; {files} file{'s' if files != 1 else ''} could not be read", [*result.failures, *result.notes])
+            self.report.emit(
+                f"{words}; {files} file{'s' if files != 1 else ''} could not be read",
+                [*result.failures, *result.notes],
+            )
         elif not count and not result.left:
-            self.report.emit("Nothing was imported", ["No clip was found there. Clips are BVH, GLB, glTF, VRM animation or FBX files."])
+            self.report.emit(
+                "Nothing was imported",
+                ["No clip was found there. Clips are BVH, GLB, glTF, VRM animation or FBX files."],
+            )
         else:
             before = [note for note in result.notes if note.endswith("retargeted as before")]
             more = [note for note in result.notes if note not in before]
             words = ". ".join([words, *before])
-            self.told.emit(words + (f" ({len(more)} note{'s' if len(more) != 1 else ''}, see the tooltips)" if more else ""))
+            self.told.emit(
+                words
+                + (f" ({len(more)} note{'s' if len(more) != 1 else ''}, see the tooltips)" if more else "")
+            )
 
     def load_for(self, result: Imported) -> Load:
         """Return the imported clips as something that can be dropped."""
         known = {(e.path, e.take): e.id for e in self.document.project.clips.values()}
-        return Load(clips=tuple(known[(path, take)] for path, take, _, _ in result.loaded if (path, take) in known))
+        return Load(
+            clips=tuple(known[(path, take)] for path, take, _, _ in result.loaded if (path, take) in known)
+        )
 
     def find_missing(self) -> None:
-        """Load clip files that were missing and are back; ask where the others are now, and load them from there."""
+        """Load clip files that were missing and are back; ask where the others are now, and load them from
+        there.
+        """
         project, era, folder = self.document.project, self._era, self.document.folder
         count = sum(1 for e in project.clips.values() if e.motion is None)
         if not count:
@@ -174,14 +202,21 @@ class Importing(QObject):
             else:
                 self.told.emit(f"Found {count} of {count} missing clips.")
 
-        self.jobs.start("Looking for clips", lambda job: load_returned(project, folder, job.tell), done, self.files.show_failure)
+        self.jobs.start(
+            "Looking for clips",
+            lambda job: load_returned(project, folder, job.tell),
+            done,
+            self.files.show_failure,
+        )
 
     def _ask_for_missing(self, count: int) -> None:
         """count: how many were missing before some were found at their places."""
         project, era = self.document.project, self._era
         missing = [e for e in project.clips.values() if e.motion is None]
         name = QFileDialog.getExistingDirectory(
-            self.widget, f"Where are the {len(missing)} missing clips?", str(self.document.folder or Path.home())
+            self.widget,
+            f"Where are the {len(missing)} missing clips?",
+            str(self.document.folder or Path.home()),
         )
         if not name:
             return

@@ -13,8 +13,9 @@ from PySide6.QtCore import QObject, QRunnable, Qt, QThreadPool, Signal
 class Job(QObject):
     """A running job. `done` carries its result, `failed` the exception, `progress` (done, total, words).
 
-    Exactly one of done and failed is emitted, then `ended`; after `cancel` neither done nor failed is. Then it is freed, with what is
-    connected to it and all that its work holds; only `title` and `cancelled` may be asked for after that.
+    Exactly one of done and failed is emitted, then `ended`; after `cancel` neither done nor failed is. Then
+    it is freed, with what is connected to it and all that its work holds; only `title` and `cancelled` may be
+    asked for after that.
     """
 
     progress = Signal(int, int, str)
@@ -123,8 +124,9 @@ class Jobs(QObject):
     def stop(self) -> None:
         """Cancel everything, wait for it, and take nothing more; at closing.
 
-        A pool is destroyed with its owner and then waits for its threads while it holds the interpreter, which they
-        need to end: a deadlock. So none may start after this, and a pool still busy is not destroyed.
+        A pool is destroyed with its owner and then waits for its threads while it holds the interpreter,
+        which they need to end: a deadlock. So none may start after this, and a pool still busy is not
+        destroyed.
         """
         self._stopped = True
         for job in [*self.running, *self._alive]:

@@ -12,7 +12,9 @@ from metagraph.formats.locking import REFRESH
 
 
 class Keeper(QObject):
-    """Touches the lock and the journal on a thread, since a network drive may take its time. told: words when the lock was taken over."""
+    """Touches the lock and the journal on a thread, since a network drive may take its time. told: words when
+    the lock was taken over.
+    """
 
     told = Signal(str)
 
@@ -40,6 +42,9 @@ class Keeper(QObject):
             self._busy = False
             if not ours and document.lock is lock and document.path is not None:
                 document.lose_lock()
-                self.told.emit(f"Another window has taken {document.path.name} over. This one can look and try, and save elsewhere.")
+                self.told.emit(
+                    f"Another window has taken {document.path.name} over. This one can look and try, and "
+                    "save elsewhere."
+                )
 
         self.jobs.start("lock", work, done, lambda _: done(True), quick=True)

@@ -17,7 +17,9 @@ def _place() -> Path:
 
 
 def kept_maps() -> dict[tuple[str, str], JointMap]:
-    """Return the maps by the fingerprints of source and target, the latest last; what is damaged is passed over."""
+    """Return the maps by the fingerprints of source and target, the latest last; what is damaged is passed
+    over.
+    """
     try:
         rows = json.loads(_place().read_text(encoding="utf-8"))
     except (OSError, ValueError):

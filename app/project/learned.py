@@ -1,8 +1,10 @@
-"""What was learned from the user, kept between projects in the program's data folder; one for all windows of all programs at work.
+"""What was learned from the user, kept between projects in the program's data folder; one for all windows of
+all programs at work.
 
-Two files of one format, `metagraph.suggest.memory`: words and corrections, small and written at once; labelled clips of projects, large and
-written by a job. Every change reads the file anew under a lock, applies itself, and writes it whole, so that nothing another window
-learned is lost. A file that cannot be read is set aside, never overwritten.
+Two files of one format, `metagraph.suggest.memory`: words and corrections, small and written at once;
+labelled clips of projects, large and written by a job. Every change reads the file anew under a lock, applies
+itself, and writes it whole, so that nothing another window learned is lost. A file that cannot be read is set
+aside, never overwritten.
 """
 
 from __future__ import annotations
@@ -31,14 +33,18 @@ LOCK_WAIT = 2000  # milliseconds another window may take to write
 
 
 class Learned(QObject):
-    """What the user taught. changed: something was learned, forgotten or edited here. failed: words, when it could not be kept."""
+    """What the user taught. changed: something was learned, forgotten or edited here. failed: words, when it
+    could not be kept.
+    """
 
     changed = Signal()
     failed = Signal(str)
 
     def __init__(self, parent: QObject | None = None) -> None:
         super().__init__(parent)
-        self._read: dict[str, tuple[tuple[int, int], Memory]] = {}  # file -> its state when it was read, what it held
+        self._read: dict[
+            str, tuple[tuple[int, int], Memory]
+        ] = {}  # file -> its state when it was read, what it held
         self.paused = False  # nothing is learned from the participants of a study, nor used for them
         self._due = 0  # saved projects that a job is not done with
 
@@ -46,7 +52,9 @@ class Learned(QObject):
 
     @property
     def on(self) -> bool:
-        """Whether corrections and labelled clips are remembered and used. Patterns the user wrote are used either way."""
+        """Whether corrections and labelled clips are remembered and used. Patterns the user wrote are used
+        either way.
+        """
         return not self.paused and str(QSettings().value("learn", "true")) == "true"
 
     def set_on(self, on: bool) -> None:
@@ -83,19 +91,25 @@ class Learned(QObject):
     # --- learning
 
     def correct(self, name: str, field: str, value: str | Sequence[str], names: Sequence[str] = ()) -> None:
-        """Remember that a clip of this name was corrected; see `Memory.corrected`. Nothing happens while learning is off."""
+        """Remember that a clip of this name was corrected; see `Memory.corrected`. Nothing happens while
+        learning is off.
+        """
         if self.on:
             self._change(WORDS, lambda m: m.corrected(name, field, value, names))
 
     def keep(self, document: Document, jobs: Jobs | None = None) -> None:
-        """Remember a saved project's labelled clips, on a job. Without jobs, at closing: what a job was not done with, at once, then only
-        with the motion that was looked at before. One with unsaved changes is not remembered, nor one without a file."""
+        """Remember a saved project's labelled clips, on a job. Without jobs, at closing: what a job was not
+        done with, at once, then only with the motion that was looked at before. One with unsaved changes is
+        not remembered, nor one without a file.
+        """
         if not self.on or document.path is None or document.dirty:
             return
         project, key = document.project, key_of(document)
         if jobs is not None:
             self._due += 1
-            jobs.start("learning", lambda _: self._keep(project, key), self._kept, lambda _: self._kept(), quick=True)
+            jobs.start(
+                "learning", lambda _: self._keep(project, key), self._kept, lambda _: self._kept(), quick=True
+            )
         elif self._due:
             self._keep(project, key, wait=False)
 
@@ -140,7 +154,9 @@ class Learned(QObject):
                 return Memory()
             except (MemoryFormatError, ValueError, RecursionError) as error:
                 aside = _set_aside(path)
-                self.failed.emit(f"What was learned cannot be read: {path.name}: {error}. It was set aside as {aside}.")
+                self.failed.emit(
+                    f"What was learned cannot be read: {path.name}: {error}. It was set aside as {aside}."
+                )
                 return Memory()
             self._read[file] = stamp, memory
         return self._read[file][1]
@@ -150,13 +166,18 @@ class Learned(QObject):
         path = state_folder() / file
         lock = QLockFile(str(path.with_suffix(".lock")))
         if not lock.tryLock(LOCK_WAIT):
-            self.failed.emit(f"Nothing was learned: another window holds {path.name}. It will be tried again with the next correction.")
+            self.failed.emit(
+                f"Nothing was learned: another window holds {path.name}. It will be tried again with the "
+                "next correction."
+            )
             return
         try:
             before = self._memory(file)
             after = change(before)
             if after is not before:
-                write_atomically(path, json.dumps(after.to_json(), ensure_ascii=False, separators=(",", ":")).encode())
+                write_atomically(
+                    path, json.dumps(after.to_json(), ensure_ascii=False, separators=(",", ":")).encode()
+                )
                 state = path.stat()
                 self._read[file] = (state.st_mtime_ns, state.st_size), after
         except FileError as error:

@@ -1,4 +1,6 @@
-"""What stands beside a project file when it is opened: another window's lock, and journals of sittings that ended in a crash."""
+"""What stands beside a project file when it is opened: another window's lock, and journals of sittings that
+ended in a crash.
+"""
 
 from __future__ import annotations
 
@@ -13,12 +15,16 @@ from metagraph.formats.locking import Holder, Lock, Owner
 from metagraph.formats.recovery import Left, journals_in, left_journals, read_journal
 from metagraph.formats.store import SUFFIX, save_project
 
-UNTITLED = r"\.untitled\.[0-9a-f]+\.journal|untitled(-\d+)?\.journal"  # the second as they were called at first
+UNTITLED = (
+    r"\.untitled\.[0-9a-f]+\.journal|untitled(-\d+)?\.journal"  # the second as they were called at first
+)
 
 
 @dataclass(frozen=True)
 class Found:
-    """lock: ours, unless there is a holder. left: journals with edits, the latest first. notes: what cannot be recovered, in words."""
+    """lock: ours, unless there is a holder. left: journals with edits, the latest first. notes: what cannot
+    be recovered, in words.
+    """
 
     lock: Lock | None
     holder: Holder | None
@@ -69,10 +75,14 @@ def forget(journal: Path) -> None:
 
 
 def keep_as_copy(left: Left, saved: Path) -> Path:
-    """Save a journal's project beside the project file it belongs to, under a name that is free; return where. Raises FileError."""
+    """Save a journal's project beside the project file it belongs to, under a name that is free; return
+    where. Raises FileError.
+    """
     stem = saved.name.removesuffix(SUFFIX) if saved.name.endswith(SUFFIX) else saved.stem
     number = 1
-    while (place := saved.with_name(f"{stem} recovered{f' {number}' if number > 1 else ''}{SUFFIX}")).exists():
+    while (
+        place := saved.with_name(f"{stem} recovered{f' {number}' if number > 1 else ''}{SUFFIX}")
+    ).exists():
         number += 1
     save_project(left.project, place)
     return place

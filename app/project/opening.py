@@ -15,7 +15,9 @@ Progress = Callable[[int, int], None]
 
 
 def open_whole(path: Path, progress: Progress | None = None) -> Opened:
-    """Read a project file with its clips and voices. Raises FileError; what is missing beside it is in the notes."""
+    """Read a project file with its clips and voices. Raises FileError; what is missing beside it is in the
+    notes.
+    """
     return _voiced(open_project(path, progress), path.resolve().parent)
 
 
@@ -26,12 +28,16 @@ def load_whole(project: Project, folder: Path, progress: Progress | None = None)
 
 def take_over(project: Project, found: Project) -> Project:
     """Return `project` with the clips that have motion in `found` and none here."""
-    clips = {i: found.clips[i] if e.motion is None and i in found.clips else e for i, e in project.clips.items()}
+    clips = {
+        i: found.clips[i] if e.motion is None and i in found.clips else e for i, e in project.clips.items()
+    }
     return replace(project, clips=clips, skeleton=project.skeleton or found.skeleton)
 
 
 def _faced(project: Project, folder: Path) -> Project:
-    """Return the project knowing its character's morph targets; what is wrong with the file, whoever draws it says."""
+    """Return the project knowing its character's morph targets; what is wrong with the file, whoever draws it
+    says.
+    """
     if project.character is None:
         return project
     from metagraph.formats.gltf import morph_targets

@@ -28,7 +28,9 @@ def read_patterns(path: Path) -> Patterns:
     except PatternsError as error:
         raise FileError(path, str(error), "on reading name patterns", REMEDY) from None
     except OSError as error:
-        raise FileError(path, f"cannot be read ({error.strerror or error})", "on reading name patterns", REMEDY) from None
+        raise FileError(
+            path, f"cannot be read ({error.strerror or error})", "on reading name patterns", REMEDY
+        ) from None
 
 
 def write_patterns(path: Path, patterns: Patterns) -> None:

@@ -1,4 +1,6 @@
-"""What is asked about a project file: who has it open, what a crash left, what to do when another program has written it."""
+"""What is asked about a project file: who has it open, what a crash left, what to do when another program has
+written it.
+"""
 
 from __future__ import annotations
 
@@ -46,12 +48,17 @@ def holder_words(holder: Holder) -> str:
 
 def ask_held(window: QWidget, path: Path, holder: Holder) -> Held | None:
     """Ask how to open a file that another window has."""
-    box = QMessageBox(QMessageBox.Icon.Question, "Already open", f"{path.name} is open in another window.", parent=window)
+    box = QMessageBox(
+        QMessageBox.Icon.Question, "Already open", f"{path.name} is open in another window.", parent=window
+    )
     words = f"By {holder_words(holder)}.\n\n"
     if holder.gone:
         words += "That window has not been heard of for a while: it may be gone, or its computer asleep. "
         words += "Take over if you know that it is gone.\n\n"
-    words += "Read-only, you can look, play and try anything, and save it elsewhere. A copy is a project of your own."
+    words += (
+        "Read-only, you can look, play and try anything, and save it elsewhere. A copy is a project of "
+        "your own."
+    )
     box.setInformativeText(words)
     first = box.addButton("Open read-only", Role.AcceptRole)
     answers: dict[object, Held] = {first: "read only", box.addButton("Open a copy", Role.AcceptRole): "copy"}
@@ -67,7 +74,11 @@ def ask_recover(window: QWidget, left: Left, saved: Path | None, more: int = 0) 
     """Ask whether to take over a journal's edits. more: how many other journals there are."""
     name = saved.name if saved is not None else "A project that was never saved"
     edits = f"{left.edits} edit{'s' if left.edits != 1 else ''}"
-    words = f"{name} was not closed properly. {edits.capitalize()} since the last save can be recovered; the last is of"
+    words = (
+        f"{name} was not closed properly. {edits.capitalize()} since the last save can be recovered; "
+        "the "
+        "last is of"
+    )
     words += f" {moment_words(left.written)}."
     if left.behind:
         words += "\n\nThe file has been saved by somebody else since. Saving will show what differs."
@@ -79,7 +90,11 @@ def ask_recover(window: QWidget, left: Left, saved: Path | None, more: int = 0) 
 def ask_keep(window: QWidget, left: Left, saved: Path) -> bool:
     """Ask whether to save another window's edits as a copy, since those of one are taken over already."""
     edits = f"{left.edits} edit{'s' if left.edits != 1 else ''}"
-    words = f"Another window on {saved.name} was not closed properly either. {edits.capitalize()} of it, the last of"
+    words = (
+        f"Another window on {saved.name} was not closed properly either. {edits.capitalize()} of it, "
+        "the "
+        "last of"
+    )
     return _yes(window, f"{words} {moment_words(left.written)}, can be saved as a copy beside it.")
 
 
@@ -88,15 +103,27 @@ def _yes(window: QWidget, words: str) -> bool:
     return QMessageBox.question(window, "Recover edits?", words, box.Yes | box.Discard, box.Yes) == box.Yes
 
 
-def ask_changed(window: QWidget, changed: FileChangedError, common: Project | None, mine: Project, dirty: bool) -> Changed | None:
-    """Ask what to do when the project file is not the one that was read; the differences can be looked at first."""
+def ask_changed(
+    window: QWidget, changed: FileChangedError, common: Project | None, mine: Project, dirty: bool
+) -> Changed | None:
+    """Ask what to do when the project file is not the one that was read; the differences can be looked at
+    first.
+    """
     name = changed.path.name
-    box = QMessageBox(QMessageBox.Icon.Question, "Changed on disk", f"{name} has changed on disk.", parent=window)
-    words = "Another program, another window or a version control update has written it since it was opened or saved here."
+    box = QMessageBox(
+        QMessageBox.Icon.Question, "Changed on disk", f"{name} has changed on disk.", parent=window
+    )
+    words = (
+        "Another program, another window or a version control update has written it since it was opened "
+        "or saved here."
+    )
     if changed.theirs is None:
         words += f"\n\nIt cannot be read: {changed.why}"
     if dirty:
-        words += "\n\nSaving anyway replaces what is there. Reloading is a step that can be undone; your edits are kept in it."
+        words += (
+            "\n\nSaving anyway replaces what is there. Reloading is a step that can be undone; your "
+            "edits are kept in it."
+        )
     box.setInformativeText(words)
     answers: dict[object, Changed] = {}
     if dirty:
@@ -121,7 +148,9 @@ def ask_changed(window: QWidget, changed: FileChangedError, common: Project | No
 class DifferencesDialog(QDialog):
     """What the file on disk and the project here have become since they were the same."""
 
-    def __init__(self, changed: FileChangedError, common: Project | None, mine: Project, parent: QWidget | None = None) -> None:
+    def __init__(
+        self, changed: FileChangedError, common: Project | None, mine: Project, parent: QWidget | None = None
+    ) -> None:
         super().__init__(parent)
         self.setWindowTitle("Differences")
         self.resize(860, 460)
@@ -138,11 +167,15 @@ class DifferencesDialog(QDialog):
         if theirs is None:
             self._column(row, "On disk", [f"It cannot be read: {changed.why}"])
         elif common is not None:
-            self._column(row, "Done on disk", differences(common, theirs) or ["Nothing but spacing or comments"])
+            self._column(
+                row, "Done on disk", differences(common, theirs) or ["Nothing but spacing or comments"]
+            )
         if common is not None:
             self._column(row, "Done here", differences(common, mine) or ["Nothing"])
         elif theirs is not None:
-            self._column(row, "From the file on disk to what is here", differences(theirs, mine) or ["Nothing"])
+            self._column(
+                row, "From the file on disk to what is here", differences(theirs, mine) or ["Nothing"]
+            )
         buttons = QDialogButtonBox(QDialogButtonBox.StandardButton.Close, self)
         strengthen(buttons.button(QDialogButtonBox.StandardButton.Close))  # type: ignore[arg-type]
         buttons.rejected.connect(self.reject)

@@ -12,8 +12,9 @@ from app.project.writing import FileChangedError, Writing
 
 
 class Saver(QObject):
-    """saved: the path that was written. failed: why not, and the place asked for (None: its own). changed: FileChangedError, when
-    another program has written the file. idle: nothing is being written any more."""
+    """saved: the path that was written. failed: why not, and the place asked for (None: its own). changed:
+    FileChangedError, when another program has written the file. idle: nothing is being written any more.
+    """
 
     saved = Signal(object)
     failed = Signal(object, object)
@@ -33,7 +34,9 @@ class Saver(QObject):
         return self._writing is not None
 
     def save(self, path: Path | None = None, anyway: bool = False) -> None:
-        """Begin to write the project as it is now, or as it is when what is being written is done. anyway: whatever its file has become."""
+        """Begin to write the project as it is now, or as it is when what is being written is done. anyway:
+        whatever its file has become.
+        """
         if self._writing is not None:
             self._next.append((path, anyway))
             return
@@ -47,10 +50,18 @@ class Saver(QObject):
             writing.write(expected)
             return writing
 
-        self.jobs.start(f"Saving {writing.target.name}", work, self._written, lambda error: self._stopped(error, path), quick=True)
+        self.jobs.start(
+            f"Saving {writing.target.name}",
+            work,
+            self._written,
+            lambda error: self._stopped(error, path),
+            quick=True,
+        )
 
     def wait(self) -> bool:
-        """Wait until nothing is being written, with the window painted but taking no input; return whether all edits are saved."""
+        """Wait until nothing is being written, with the window painted but taking no input; return whether
+        all edits are saved.
+        """
         while self.busy:
             loop = QEventLoop()
             self.idle.connect(loop.quit)

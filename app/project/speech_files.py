@@ -1,4 +1,6 @@
-"""Which files are a conversation: sounds and transcripts among what is dropped, and what lies beside a sound."""
+"""Which files are a conversation: sounds and transcripts among what is dropped, and what lies beside a
+sound.
+"""
 
 from __future__ import annotations
 
@@ -12,12 +14,15 @@ TRANSCRIPTS = (".textgrid", ".eaf", ".vtt", ".srt", ".json", ".ctm")
 def kinds_of(paths: Sequence[Path]) -> tuple[tuple[Path, ...], tuple[Path, ...]]:
     """Return the sounds and the transcripts among files, in order of their names."""
     ordered = sorted(paths, key=lambda p: p.name.casefold())
-    return tuple(p for p in ordered if p.suffix.lower() in SOUNDS), tuple(p for p in ordered if p.suffix.lower() in TRANSCRIPTS)
+    return tuple(p for p in ordered if p.suffix.lower() in SOUNDS), tuple(
+        p for p in ordered if p.suffix.lower() in TRANSCRIPTS
+    )
 
 
 def converses(paths: Sequence[Path]) -> bool:
-    """Whether files dropped on the window are a conversation: two sounds, a sound and its words, or a sound with two channels. A single
-    sound with one channel is a line of dialogue."""
+    """Whether files dropped on the window are a conversation: two sounds, a sound and its words, or a sound
+    with two channels. A single sound with one channel is a line of dialogue.
+    """
     sounds, transcripts = kinds_of(paths)
     if not sounds or len(sounds) > 2 or len(sounds) + len(transcripts) < len(paths):
         return False
@@ -35,7 +40,9 @@ def channels_of(path: Path) -> int:
 
 
 def facts_of(path: Path) -> str:
-    """Return a sound file's name with its channels and length, by its head; the name alone where that cannot be read."""
+    """Return a sound file's name with its channels and length, by its head; the name alone where that cannot
+    be read.
+    """
     import soundfile
 
     try:
@@ -43,7 +50,10 @@ def facts_of(path: Path) -> str:
     except (soundfile.LibsndfileError, RuntimeError, OSError):
         return path.name
     minutes, seconds = divmod(round(info.duration), 60)
-    return f"{path.name} ({'one channel' if info.channels == 1 else f'{info.channels} channels'}, {minutes}:{seconds:02d})"
+    return (
+        f"{path.name} ({'one channel' if info.channels == 1 else f'{info.channels} channels'}, "
+        f"{minutes}:{seconds:02d})"
+    )
 
 
 def beside(sounds: Sequence[Path]) -> tuple[Path, ...]:

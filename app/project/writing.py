@@ -14,7 +14,9 @@ from metagraph.graph.model import Project
 
 
 class FileChangedError(Exception):
-    """The project file is not the one that was read or saved last. theirs: what it holds now, None where that cannot be read."""
+    """The project file is not the one that was read or saved last. theirs: what it holds now, None where that
+    cannot be read.
+    """
 
     def __init__(self, path: Path, theirs: Project | None, digest: str | None, why: str = "") -> None:
         super().__init__(f"{path.name} has changed")
@@ -25,8 +27,8 @@ class FileChangedError(Exception):
 class Writing:
     """One writing of a project as it was when it was asked for.
 
-    was: the file its paths are relative to. mark: where it stands in the journal. When it is written: after, the project as the file
-    has it, and digest, that file's SHA-256.
+    was: the file its paths are relative to. mark: where it stands in the journal. When it is written: after,
+    the project as the file has it, and digest, that file's SHA-256.
     """
 
     project: Project
@@ -38,7 +40,9 @@ class Writing:
     digest: str = ""
 
     def write(self, expected: str | None = None) -> None:
-        """Write the file whole or not at all. expected: the digest it has to have. Raises FileError, FileChangedError."""
+        """Write the file whole or not at all. expected: the digest it has to have. Raises FileError,
+        FileChangedError.
+        """
         self.after = self.project
         if self.target != self.was:
             self.after = replace(moved(self.project, self.was, self.target), name=project_name(self.target))

@@ -1,4 +1,6 @@
-"""The commands of all features as data: one table makes the menus, the header, the shortcuts and the list of shortcuts."""
+"""The commands of all features as data: one table makes the menus, the header, the shortcuts and the list of
+shortcuts.
+"""
 
 from __future__ import annotations
 
@@ -12,7 +14,8 @@ from PySide6.QtWidgets import QMenu, QMenuBar, QWidget
 Standard = QKeySequence.StandardKey
 Words = str | Callable[[], str]
 
-# The menus with their groups, in order; a line is drawn between groups. A group that is not named here comes last in its menu.
+# The menus with their groups, in order; a line is drawn between groups. A group that is not named here comes
+# last in its menu.
 MENUS: dict[str, tuple[str, ...]] = {
     "&File": ("project", "save", "import", "character", "write", "quit"),
     "&Edit": ("history", "selection", "properties", "find"),
@@ -29,10 +32,11 @@ MENUS: dict[str, tuple[str, ...]] = {
 class Command:
     """Something a user can do.
 
-    id: stable. menu, group: where it stands, see `MENUS`. keys: shortcuts. tip: a word more than its text. enabled, checked: asked
-    whenever something changed. visible: whether it is in its menu. text may be asked for, too. when: the mode in which it can be used.
-    study: whether it is offered to who works on a study's task; "labels": where the study allows proposals. menus: the context menus it
-    is in, "action" or "clip" or another's. fill: fills a submenu that is shown instead.
+    id: stable. menu, group: where it stands, see `MENUS`. keys: shortcuts. tip: a word more than its text.
+    enabled, checked: asked whenever something changed. visible: whether it is in its menu. text may be asked
+    for, too. when: the mode in which it can be used. study: whether it is offered to who works on a study's
+    task; "labels": where the study allows proposals. menus: the context menus it is in, "action" or "clip" or
+    another's. fill: fills a submenu that is shown instead.
     """
 
     id: str
@@ -79,7 +83,8 @@ class Actions:
             action = QAction(command.words, parent)
             action.setObjectName(command.id)
             if command.keys:
-                # A platform's standard key may be the one that is given beside it; twice, it would be ambiguous.
+                # A platform's standard key may be the one that is given beside it; twice, it would be
+                # ambiguous.
                 action.setShortcuts(list(dict.fromkeys(QKeySequence(k).toString() for k in command.keys)))
             keys = action.shortcut().toString(QKeySequence.SequenceFormat.NativeText)
             tip = command.tip or command.plain

@@ -1,4 +1,6 @@
-"""What the shell and the features know of each other: a feature's `contribute(shell)` takes a `Shell` and returns a `Contribution`."""
+"""What the shell and the features know of each other: a feature's `contribute(shell)` takes a `Shell` and
+returns a `Contribution`.
+"""
 
 from __future__ import annotations
 
@@ -44,7 +46,9 @@ class Services:
 
 
 class Shell(Protocol):
-    """What a feature is given. widget: the window as Qt knows it, the parent of dialogs. settings: kept between programs."""
+    """What a feature is given. widget: the window as Qt knows it, the parent of dialogs. settings: kept
+    between programs.
+    """
 
     document: Document
     stage: Stage
@@ -62,7 +66,9 @@ class Shell(Protocol):
         """Say something in the status bar."""
 
     def panel(self, ident: str) -> Any:
-        """Return a panel's widget, which is made now where it was not made yet. Raises LookupError where there is no such panel."""
+        """Return a panel's widget, which is made now where it was not made yet. Raises LookupError where
+        there is no such panel.
+        """
 
     def show(self, ident: str, on: bool = True) -> None:
         """Show a panel in front of those it shares its place with, or hide it."""
@@ -70,9 +76,11 @@ class Shell(Protocol):
 
 @dataclass(frozen=True)
 class Panel:
-    """A panel of the window. make: its widget. place: where it stands at first. late: made after the first picture, for a fast start.
-    scrolls: it may need more room than there is. when: in which mode it is shown. instead_of: the panel whose place it takes then.
-    study: whether it is shown while somebody works on a study's task."""
+    """A panel of the window. make: its widget. place: where it stands at first. late: made after the first
+    picture, for a fast start. scrolls: it may need more room than there is. when: in which mode it is shown.
+    instead_of: the panel whose place it takes then. study: whether it is shown while somebody works on a
+    study's task.
+    """
 
     id: str
     title: str
@@ -87,7 +95,9 @@ class Panel:
 
 @dataclass(frozen=True)
 class HeaderItem:
-    """Something in the bar on top. side: left, middle or right. make: its widget, or the id of a command to show as a button."""
+    """Something in the bar on top. side: left, middle or right. make: its widget, or the id of a command to
+    show as a button.
+    """
 
     side: Literal["left", "middle", "right"]
     make: Callable[[QWidget], QWidget] | str
@@ -95,8 +105,9 @@ class HeaderItem:
 
 @dataclass(frozen=True)
 class Contribution:
-    """What a feature adds to the window. late_imports: modules that are imported on a thread before the late panels are made, in the
-    background. close: called when the window closes."""
+    """What a feature adds to the window. late_imports: modules that are imported on a thread before the late
+    panels are made, in the background. close: called when the window closes.
+    """
 
     panels: tuple[Panel, ...] = ()
     commands: tuple[Command, ...] = ()

@@ -1,4 +1,6 @@
-"""The bar on top: the project's name, and what features put into it at the left, in the middle, at the right."""
+"""The bar on top: the project's name, and what features put into it at the left, in the middle, at the
+right.
+"""
 
 from __future__ import annotations
 
@@ -16,9 +18,18 @@ from app.stage.session import Session
 
 
 class Header(QToolBar):
-    """Shows the document's name and whether it is saved; its other parts follow what they show by themselves."""
+    """Shows the document's name and whether it is saved; its other parts follow what they show by
+    themselves.
+    """
 
-    def __init__(self, document: Document, session: Session, actions: Actions, items: Iterable[HeaderItem], parent: QWidget) -> None:
+    def __init__(
+        self,
+        document: Document,
+        session: Session,
+        actions: Actions,
+        items: Iterable[HeaderItem],
+        parent: QWidget,
+    ) -> None:
         super().__init__("Main", parent)
         self.document, self.session = document, session
         self.setObjectName("toolbar")
@@ -48,7 +59,9 @@ class Header(QToolBar):
         saved = "not saved yet" if d.path is None else "edited" if d.dirty else "saved"
         saved = f"read-only, {saved}" if d.read_only else saved
         dim = theme(self.session.look.name).dim
-        self.name.setText(f"<b>{escape(d.project.name)}</b>&nbsp;&nbsp;<span style='color:{dim}'>{saved}</span>")
+        self.name.setText(
+            f"<b>{escape(d.project.name)}</b>&nbsp;&nbsp;<span style='color:{dim}'>{saved}</span>"
+        )
 
 
 def _stretch(parent: QWidget) -> QWidget:

@@ -1,4 +1,6 @@
-"""A word in the status bar that stays until it is looked at: something is worth reading, and stands in nobody's way."""
+"""A word in the status bar that stays until it is looked at: something is worth reading, and stands in
+nobody's way.
+"""
 
 from __future__ import annotations
 

@@ -23,9 +23,11 @@ ARRANGED = 5  # which docks there are; an arrangement of others, saved before, i
 
 
 class Places:
-    """The panels' docks and the centre. A dock is empty until its panel is made, so that a window can be shown before all are.
+    """The panels' docks and the centre. A dock is empty until its panel is made, so that a window can be
+    shown before all are.
 
-    centre: what stands in the middle, and beside it. docks: by the panel's id. ready: the late panels are made, too.
+    centre: what stands in the middle, and beside it. docks: by the panel's id. ready: the late panels are
+    made, too.
     """
 
     def __init__(self, window: QMainWindow, panels: Iterable[Panel], session: Session) -> None:
@@ -49,7 +51,11 @@ class Places:
         session.onstage.mode_changed.connect(self.follow_mode)
 
     def _docked(self, place: Place | None = None) -> list[Panel]:
-        return [p for p in self.panels.values() if p.place in AREAS and not p.instead_of and place in (None, p.place)]
+        return [
+            p
+            for p in self.panels.values()
+            if p.place in AREAS and not p.instead_of and place in (None, p.place)
+        ]
 
     # --- making
 
@@ -89,7 +95,9 @@ class Places:
     def _put(self, panel: Panel, widget: QWidget) -> None:
         if panel.place == "centre":
             before = sum(1 for i in self._made if i != panel.id and self.panels[i].place == "centre")
-            self.centre.insertWidget(before, widget)  # what stands beside them comes after all that take turns
+            self.centre.insertWidget(
+                before, widget
+            )  # what stands beside them comes after all that take turns
             widget.setVisible(panel.when in ("any", self.session.onstage.mode))
         elif panel.place == "beside":
             self.centre.addWidget(widget)
@@ -152,7 +160,10 @@ class Places:
                 self._made[ident].setVisible(self.shows(ident))
                 width = self.centre.width()
                 self.centre.setSizes(
-                    [width * 6 // 10 if i < self.centre.count() - 1 else width * 4 // 10 for i in range(self.centre.count())]
+                    [
+                        width * 6 // 10 if i < self.centre.count() - 1 else width * 4 // 10
+                        for i in range(self.centre.count())
+                    ]
                 )
             return
         dock = self.docks.get(panel.instead_of or ident)
@@ -190,7 +201,9 @@ class Places:
     # --- arranging
 
     def arrange(self) -> None:
-        """Put every dock where it belongs; the window stays as large as it is, though they stand side by side for a moment."""
+        """Put every dock where it belongs; the window stays as large as it is, though they stand side by side
+        for a moment.
+        """
         size = self.window.size()
         for ident, dock in self.docks.items():
             dock.setFloating(False)
@@ -215,10 +228,14 @@ class Places:
         """Give each dock its usual share of the window."""
         first = {place: self.docks[found[0].id] for place in AREAS if (found := self._docked(place))}
         across = [p for p in ("left", "right") if p in first]
-        self.window.resizeDocks([first[p] for p in across], [WIDTHS[p] for p in across], Qt.Orientation.Horizontal)
+        self.window.resizeDocks(
+            [first[p] for p in across], [WIDTHS[p] for p in across], Qt.Orientation.Horizontal
+        )
         for column in (("right", "right below"), ("bottom",)):
             there = [p for p in column if p in first]
-            self.window.resizeDocks([first[p] for p in there], [HEIGHTS[p] for p in there], Qt.Orientation.Vertical)
+            self.window.resizeDocks(
+                [first[p] for p in there], [HEIGHTS[p] for p in there], Qt.Orientation.Vertical
+            )
 
     # --- from one time to the next
 

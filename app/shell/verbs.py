@@ -1,4 +1,6 @@
-"""Verbs that mean something else wherever the hand is: remove, rename, copy, paste, select all. Features offer what they do."""
+"""Verbs that mean something else wherever the hand is: remove, rename, copy, paste, select all. Features
+offer what they do.
+"""
 
 from __future__ import annotations
 

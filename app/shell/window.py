@@ -35,7 +35,9 @@ LATE = 4000  # milliseconds after which the late panels are made whatever else i
 
 
 class WindowShell:
-    """The `Shell` that the features of a window are given; panels and actions are there once all have contributed."""
+    """The `Shell` that the features of a window are given; panels and actions are there once all have
+    contributed.
+    """
 
     places: Places
     actions: Actions
@@ -52,7 +54,9 @@ class WindowShell:
         self.learned = services.add(Learned(window))
         self.watcher = services.add(Watcher(self.document, self.jobs, window))
         self.compatibility = services.add(Compatibility(self.document, self.jobs, window))
-        self.problems = services.add(ProblemWatch(self.document, self.stage.session, self.jobs, self.compatibility, window))
+        self.problems = services.add(
+            ProblemWatch(self.document, self.stage.session, self.jobs, self.compatibility, window)
+        )
         self.notice = services.add(Notice(window))
         services.add(Verbs())
 
@@ -68,7 +72,9 @@ class WindowShell:
 
 
 class Window(QMainWindow):
-    """Owns the shell, and composes panels, menus, header and status bar of what the features contribute to it."""
+    """Owns the shell, and composes panels, menus, header and status bar of what the features contribute to
+    it.
+    """
 
     def __init__(self, features: Iterable[Contribute]) -> None:
         super().__init__()
@@ -80,7 +86,9 @@ class Window(QMainWindow):
             session.look.name = str(shell.settings.value("theme"))  # type: ignore[assignment]
         apply(_application(), theme(session.look.name))
         self.contributions = [*(contribute(shell) for contribute in features), self._own()]
-        self.places = shell.places = shell.services.add(Places(self, (p for c in self.contributions for p in c.panels), session))
+        self.places = shell.places = shell.services.add(
+            Places(self, (p for c in self.contributions for p in c.panels), session)
+        )
         shell.importing.drops = tuple(drop for c in self.contributions for drop in c.drops)
         commands = (command for c in self.contributions for command in c.commands)
         shell.actions = Actions(self, commands, lambda: session.onstage.mode)
@@ -110,10 +118,18 @@ class Window(QMainWindow):
             commands=(
                 Command("quit", "&File", "quit", "&Quit", self.close, (Standard.Quit, "Ctrl+Q"), study=True),
                 Command("arrange", "&View", "graph", "&Put the panels back", self.arrange, study=True),
-                Command("theme", "&View", "look", "&Light theme", lambda: session.look.choose("dark" if light() else "light"),
-                        checked=light, icon="theme", study=True),
+                Command(
+                    "theme",
+                    "&View",
+                    "look",
+                    "&Light theme",
+                    lambda: session.look.choose("dark" if light() else "light"),
+                    checked=light,
+                    icon="theme",
+                    study=True,
+                ),
             ),
-        )  # fmt: skip
+        )
 
     def _add_toggles(self) -> None:
         panels = self.menus["&View"].addMenu("Panels")
@@ -129,9 +145,17 @@ class Window(QMainWindow):
         shell.files.changed_outside.connect(shell.notice.tell)
         d.saved.connect(lambda: shell.learned.keep(d, shell.jobs))
         for signal in (
-            s.place.layer_changed, s.selection.changed, s.transport.show_changed, s.transport.playing_changed, s.place.stance_changed, s.onstage.performance_changed,
-            s.onstage.conversation_changed, s.onstage.mode_changed, shell.stage.performance.live.changed, shell.compatibility.changed,
-        ):  # fmt: skip
+            s.place.layer_changed,
+            s.selection.changed,
+            s.transport.show_changed,
+            s.transport.playing_changed,
+            s.place.stance_changed,
+            s.onstage.performance_changed,
+            s.onstage.conversation_changed,
+            s.onstage.mode_changed,
+            shell.stage.performance.live.changed,
+            shell.compatibility.changed,
+        ):
             signal.connect(self.refresh)
         s.look.changed.connect(self.restyle)
         for words in (
@@ -144,7 +168,9 @@ class Window(QMainWindow):
     # --- the late panels
 
     def load_late_panels_soon(self) -> None:
-        """Load them once the first picture is painted and the project is open, which must not wait for them."""
+        """Load them once the first picture is painted and the project is open, which must not wait for
+        them.
+        """
         self.shell.stage.painted.connect(self._late_now)
         QTimer.singleShot(LATE, self.load_late_panels)  # the character may be hidden
 
@@ -159,7 +185,12 @@ class Window(QMainWindow):
             return
         self._loading = True
         names = late_modules(self.contributions)
-        self.shell.jobs.start("panels", lambda _: [import_module(name) for name in names], lambda _: self.make_late_panels(), quick=True)
+        self.shell.jobs.start(
+            "panels",
+            lambda _: [import_module(name) for name in names],
+            lambda _: self.make_late_panels(),
+            quick=True,
+        )
 
     _loading = False
 
@@ -186,21 +217,27 @@ class Window(QMainWindow):
 
     def refresh(self) -> None:
         """Show the state of document and session in title, header and menus."""
+        document = self.shell.document
         self.shell.actions.refresh()
         self.setWindowTitle(
-            f"{self.shell.document.project.name}{'[*]'}{' (read-only)' if self.shell.document.read_only else ''} - Metagraph"
+            f"{document.project.name}{'[*]'}{' (read-only)' if document.read_only else ''} - Metagraph"
         )
-        self.setWindowModified(self.shell.document.dirty)
+        self.setWindowModified(document.dirty)
         self.header.refresh()
 
     def _edited(self, before: Project, after: Project) -> None:
-        if before.graphs is not after.graphs or before.name != after.name or before.character != after.character:
+        if (
+            before.graphs is not after.graphs
+            or before.name != after.name
+            or before.character != after.character
+        ):
             self.refresh()
 
     # --- the window itself
 
     def event(self, event: QEvent) -> bool:
-        # Asked last, when what has the keyboard does not want a key for itself: the space bar presses a focused button.
+        # Asked last, when what has the keyboard does not want a key for itself: the space bar presses a
+        # focused button.
         if event.type() == QEvent.Type.ShortcutOverride and event.key() == Qt.Key.Key_Space:  # type: ignore[attr-defined]
             focus = QApplication.focusWidget()
             if isinstance(focus, QAbstractButton | QComboBox) and not event.modifiers():  # type: ignore[attr-defined]

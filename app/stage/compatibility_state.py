@@ -1,6 +1,8 @@
-"""Keeps the statistics of visible jumps up to date with the project: on a thread, and only what an edit made stale.
+"""Keeps the statistics of visible jumps up to date with the project: on a thread, and only what an edit made
+stale.
 
-What is said about an action comes out as problems that can be mended with one press; curves and matrices are made when asked for.
+What is said about an action comes out as problems that can be mended with one press; curves and matrices are
+made when asked for.
 """
 
 from __future__ import annotations
@@ -23,13 +25,19 @@ if TYPE_CHECKING:  # their imports wait for the first job
     from metagraph.suggest.jumps import Curves, Jump, Measured
 
 AFTER = 400  # milliseconds of quiet after an edit
-EDGES = {"far-start": "begins", "far-end": "ends", "open-loop": "loops"}  # what `check` says of the same places, in rougher words
+EDGES = {
+    "far-start": "begins",
+    "far-end": "ends",
+    "open-loop": "loops",
+}  # what `check` says of the same places, in rougher words
 REASONS = {"begins": "jump-start", "ends": "jump-end", "loops": "jump-loop"}
 
 
 @dataclass(frozen=True)
 class Fix:
-    """One press that mends a problem. words: on the button. changes: fields of the action, as `edits.update_actions` takes them."""
+    """One press that mends a problem. words: on the button. changes: fields of the action, as
+    `edits.update_actions` takes them.
+    """
 
     words: str
     action: str
@@ -45,14 +53,18 @@ class Fix:
 
 @dataclass(frozen=True, eq=False)
 class Judged:
-    """What was found of a project. measured: its layers' statistics. known: what was found of each action. jumps: all of it."""
+    """What was found of a project. measured: its layers' statistics. known: what was found of each action.
+    jumps: all of it.
+    """
 
     measured: Mapping[Layer, Measured]
     known: Mapping[Layer, dict[Any, tuple[Jump, ...]]]
     jumps: tuple[Jump, ...]
 
 
-def judge(project: Project, before: Judged | None = None, cancelled: Callable[[], bool] | None = None) -> Judged:
+def judge(
+    project: Project, before: Judged | None = None, cancelled: Callable[[], bool] | None = None
+) -> Judged:
     """Return all jumps of a project, taking what still holds from an earlier judgement."""
     from metagraph.suggest.jumps import Measured, jumps
 
@@ -65,7 +77,11 @@ def judge(project: Project, before: Judged | None = None, cancelled: Callable[[]
         kept: dict[Any, tuple[Jump, ...]] = {}
         if before is not None and old is not None and new.same_as(old):
             new = old
-            kept = {a: before.known[layer][a] for a in project.graphs[layer].actions.values() if a in before.known[layer]}
+            kept = {
+                a: before.known[layer][a]
+                for a in project.graphs[layer].actions.values()
+                if a in before.known[layer]
+            }
         measured[layer], known[layer] = new, kept
         found += jumps(project, new, kept, cancelled)
     return Judged(measured, known, tuple(found))
@@ -81,9 +97,13 @@ def told(project: Project, judged: Judged) -> dict[Problem, Fix | None]:
         if jump.edge == "loops":
             words = f"'{action.name}' jumps where it repeats, {jump.cost:.1f} times what shows as a jump"
         else:
-            words = f"'{action.name}' {jump.edge} {jump.cost:.1f} times what shows as a jump from '{stance.name}'"
+            words = (
+                f"'{action.name}' {jump.edge} {jump.cost:.1f} times what shows as a jump from '{stance.name}'"
+            )
         remedy, fix = _remedy(project, action, jump)
-        problem = Problem("warning", REASONS[jump.edge], words, remedy, action.layer, action.stance, action.id, action.clip)
+        problem = Problem(
+            "warning", REASONS[jump.edge], words, remedy, action.layer, action.stance, action.id, action.clip
+        )
         out[problem] = fix
     for layer, measured in judged.measured.items():
         graph = project.graphs[layer]
@@ -100,18 +120,30 @@ def _few(layer: Layer, measured: Measured) -> Problem:
     if measured.labelled >= FEWEST_CLIPS:
         much += f" of together {measured.stats.count / RATE:.0f} s"
     words = f"jumps of the {layer} layer are not looked for: {much} cannot tell what is usual motion"
-    return Problem("hint", "few-clips", words, f"Place at least {FEWEST_CLIPS} clips, ten seconds in all, on this layer.", layer)
+    return Problem(
+        "hint",
+        "few-clips",
+        words,
+        f"Place at least {FEWEST_CLIPS} clips, ten seconds in all, on this layer.",
+        layer,
+    )
 
 
 def _remedy(project: Project, action: Action, jump: Jump) -> tuple[str, Fix | None]:
     fits = project.stance(jump.fits)
     if jump.better is not None:
-        return f"At {jump.better:.2f} s it would not.", Fix(f"Use {jump.better:.2f} s", action.id, {"timing": dict(jump.change)})
+        return f"At {jump.better:.2f} s it would not.", Fix(
+            f"Use {jump.better:.2f} s", action.id, {"timing": dict(jump.change)}
+        )
     if fits is not None and action.kind == "transition" and jump.edge == "ends" and fits.id != action.stance:
-        return f"It looks like '{fits.name}' there: end it in that stance.", Fix(f"End in '{fits.name}'", action.id, end=fits.id)
+        return f"It looks like '{fits.name}' there: end it in that stance.", Fix(
+            f"End in '{fits.name}'", action.id, end=fits.id
+        )
     if jump.change:
         seconds = next(iter(jump.change.values()))
-        return f"Blended over {seconds:.2f} s it would not.", Fix(f"Blend {seconds:.2f} s", action.id, {"timing": dict(jump.change)})
+        return f"Blended over {seconds:.2f} s it would not.", Fix(
+            f"Blend {seconds:.2f} s", action.id, {"timing": dict(jump.change)}
+        )
     if fits is not None:
         return f"It looks like '{fits.name}' there: place it on that stance.", None
     return "Trim it, blend it longer, or place it on a stance it fits.", None
@@ -132,12 +164,17 @@ def proposed_fields(action: Action, times: Times, duration: float) -> dict[str, 
     out: dict[str, Any] = {"start": round(times.start, 3), "end": end, "blend_in": round(times.blend_in, 3)}
     if action.kind != "stance":
         leave = times.earliest_exit
-        out |= {"blend_out": round(times.blend_out, 3), "earliest_exit": None if leave is None else round(leave, 3)}
+        out |= {
+            "blend_out": round(times.blend_out, 3),
+            "earliest_exit": None if leave is None else round(leave, 3),
+        }
     return out
 
 
 class Compatibility(QObject):
-    """changed: the project was judged anew. seen: curves of an action (id) are there. compared: a layer's matrix is there."""
+    """changed: the project was judged anew. seen: curves of an action (id) are there. compared: a layer's
+    matrix is there.
+    """
 
     changed = Signal()
     seen = Signal(str)
@@ -202,14 +239,18 @@ class Compatibility(QObject):
     def _done(self, result: tuple[Judged, dict[Problem, Fix | None]]) -> None:
         self._judging = False
         before, (self.judged, self.flags) = self.judged, result
-        self._curves = {i: (a, m, c) for i, (a, m, c) in self._curves.items() if self.judged.measured[a.layer] is m}
+        self._curves = {
+            i: (a, m, c) for i, (a, m, c) in self._curves.items() if self.judged.measured[a.layer] is m
+        }
         if before is None or before.measured != self.judged.measured or before.jumps != self.judged.jumps:
             self.changed.emit()
 
     # --- one action's curves
 
     def curves(self, action: Action) -> Curves | None:
-        """Return what is known of an action's clip beside its stances; what is not known yet is looked for, and `seen` told."""
+        """Return what is known of an action's clip beside its stances; what is not known yet is looked for,
+        and `seen` told.
+        """
         if self.judged is None:
             return None
         known = self._curves.get(action.id)
@@ -265,7 +306,9 @@ class Compatibility(QObject):
             if changes:
                 self.document.edit("Use proposed times", lambda p: edits.update_each(p, changes))
 
-        self.jobs.start("Proposing times", work, done, lambda e: self.failed.emit(str(e)), quick=len(chosen) < 20)
+        self.jobs.start(
+            "Proposing times", work, done, lambda e: self.failed.emit(str(e)), quick=len(chosen) < 20
+        )
 
     def mend(self, fixes: Iterable[Fix]) -> None:
         """Mend problems, in one step."""
@@ -283,13 +326,17 @@ class Compatibility(QObject):
     # --- matrices
 
     def matrix(self, layer: Layer) -> Matrix | None:
-        """Return clips against stances of a layer as last compared; what changed is compared anew, and `compared` told."""
+        """Return clips against stances of a layer as last compared; what changed is compared anew, and
+        `compared` told.
+        """
         known = self._matrices.get(layer)
         if self.judged is not None and layer not in self._comparing:
             project, measured = self.document.project, self.judged.measured[layer]
             whole = known is not None and known[0] is measured and known[1].clips == tuple(project.clips)
             if not whole:
-                self._compare(project, layer, measured, known[1] if known is not None and known[0] is measured else None)
+                self._compare(
+                    project, layer, measured, known[1] if known is not None and known[0] is measured else None
+                )
         return known[1] if known is not None else None
 
     def _compare(self, project: Project, layer: Layer, measured: Measured, before: Matrix | None) -> None:
@@ -318,25 +365,39 @@ def extended(
     cancelled: Callable[[], bool] | None = None,
     progress: Callable[[int, int], None] | None = None,
 ) -> Matrix:
-    """Return a layer's matrix; rows of clips that stand in an earlier one, of the same stances, are taken from there."""
+    """Return a layer's matrix; rows of clips that stand in an earlier one, of the same stances, are taken
+    from there.
+    """
     import numpy as np
 
     from metagraph.suggest.compatibility import Matrix, matrix
 
     clips = tuple(project.clips)
-    old = {} if before is None or before.stances != tuple(project.graphs[layer].stances) else {c: n for n, c in enumerate(before.clips)}
+    old = (
+        {}
+        if before is None or before.stances != tuple(project.graphs[layer].stances)
+        else {c: n for n, c in enumerate(before.clips)}
+    )
     fresh = [c for c in clips if c not in old]
     new = matrix(project, layer, clips=fresh, cancelled=cancelled, progress=progress)
     if before is None or not old:
         return new
     place = {c: len(before.clips) + n for n, c in enumerate(fresh)}
     rows = [old[c] if c in old else place[c] for c in clips]
-    parts = [np.concatenate([getattr(before, n), getattr(new, n)])[rows] for n in ("enter_cost", "leave_cost", "enter_at", "leave_at")]
+    parts = [
+        np.concatenate([getattr(before, n), getattr(new, n)])[rows]
+        for n in ("enter_cost", "leave_cost", "enter_at", "leave_at")
+    ]
     return Matrix(layer, clips, new.stances, *parts)
 
 
 def _alike(a: Action, b: Action) -> bool:
     """Whether curves of one hold for the other: all that its timing moves is where it is blended."""
-    return (a.clip, a.stance, a.end_stance, a.limb, a.joints, a.kind) == (b.clip, b.stance, b.end_stance, b.limb, b.joints, b.kind) and (
-        a.kind != "stance" or a.timing.start == b.timing.start
-    )
+    return (a.clip, a.stance, a.end_stance, a.limb, a.joints, a.kind) == (
+        b.clip,
+        b.stance,
+        b.end_stance,
+        b.limb,
+        b.joints,
+        b.kind,
+    ) and (a.kind != "stance" or a.timing.start == b.timing.start)

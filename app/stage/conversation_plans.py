@@ -1,4 +1,6 @@
-"""A conversation on stage: both characters' plans, made on a job's thread, with what was read for them kept at hand."""
+"""A conversation on stage: both characters' plans, made on a job's thread, with what was read for them kept
+at hand.
+"""
 
 from __future__ import annotations
 
@@ -18,7 +20,9 @@ Key = tuple[Any, ...]
 
 
 class ConversationPlans:
-    """Reads voices and other projects once. Used by one thread at a time: the performance plans one thing after another."""
+    """Reads voices and other projects once. Used by one thread at a time: the performance plans one thing
+    after another.
+    """
 
     def __init__(self) -> None:
         self._voices: dict[Key, Any] = {}
@@ -30,10 +34,17 @@ class ConversationPlans:
 
         conversation = project.conversations[ident]
         notes: list[str] = []
-        wanted = {(str(folder / s.project), _written(folder / s.project)) for s in conversation.sides if s.project is not None}
+        wanted = {
+            (str(folder / s.project), _written(folder / s.project))
+            for s in conversation.sides
+            if s.project is not None
+        }
         self._projects = {key: found for key, found in self._projects.items() if key in wanted}
         projects = [self._project(project, s.project, folder, notes) for s in conversation.sides]
-        key = tuple((s.audio, s.channel, s.words, _written(folder / s.audio) if s.audio else None) for s in conversation.sides)
+        key = tuple(
+            (s.audio, s.channel, s.words, _written(folder / s.audio) if s.audio else None)
+            for s in conversation.sides
+        )
         if key not in self._voices:
             self._voices = {key: voices(conversation, folder)}
         heard, told = self._voices[key]
@@ -41,15 +52,24 @@ class ConversationPlans:
         moved = [_motion(p.project, s, notes) for p, s in zip(made.parts, conversation.sides, strict=True)]
         both = tuple(
             Shown(
-                p.project, p.plan, made.length, side=n, stand=p.stand, motion=moved[n], asks=p.performance.asks, notes=(*notes, *told),
+                p.project,
+                p.plan,
+                made.length,
+                side=n,
+                stand=p.stand,
+                motion=moved[n],
+                asks=p.performance.asks,
+                notes=(*notes, *told),
                 folder=folder if s.project is None else (folder / s.project).parent,
             )
             for n, (p, s) in enumerate(zip(made.parts, conversation.sides, strict=True))
-        )  # fmt: skip
+        )
         return replace(both[side], partner=both[1 - side])
 
     def _project(self, project: Project, path: str | None, folder: Path, notes: list[str]) -> Project:
-        """Return the project whose graph moves a side: another one's, or the one at hand where that cannot be read."""
+        """Return the project whose graph moves a side: another one's, or the one at hand where that cannot be
+        read.
+        """
         if path is None:
             return project
         whole = folder / path
@@ -86,7 +106,8 @@ def _written(path: Path) -> int:
 
 
 def keep(project: Project, ident: str, shown: Shown) -> tuple[Project, tuple[str, ...]]:
-    """Keep what both sides of a conversation do as performances, each with the line it says; return the performances' ids.
+    """Keep what both sides of a conversation do as performances, each with the line it says; return the
+    performances' ids.
 
     A side that another project moves is left out: its asks would mean nothing to this one's graph.
     """
@@ -99,7 +120,9 @@ def keep(project: Project, ident: str, shown: Shown) -> tuple[Project, tuple[str
             project = staging.set_line(project, line, part.project.lines[line])
             project = replace(project, voices={**project.voices, line: part.project.voices[line]})
         name = f"{conversation.name}: {side.name}" if side.name else conversation.name
-        made = Performance(name=name[:200], asks=part.asks, seed=conversation.seed, length=conversation.length, idle=False)
+        made = Performance(
+            name=name[:200], asks=part.asks, seed=conversation.seed, length=conversation.length, idle=False
+        )
         project, new = staging.add_performance(project, made)
         kept.append(new)
     return project, tuple(kept)

@@ -1,4 +1,6 @@
-"""Where in the graph somebody works: the layer, its current stance, and the other stance, where transitions go."""
+"""Where in the graph somebody works: the layer, its current stance, and the other stance, where transitions
+go.
+"""
 
 from __future__ import annotations
 
@@ -9,7 +11,9 @@ from metagraph.graph.model import Layer
 
 
 class CurrentPlace(QObject):
-    """layer_changed: another layer's tab. stance_changed: another current stance, or another other stance for transitions."""
+    """layer_changed: another layer's tab. stance_changed: another current stance, or another other stance for
+    transitions.
+    """
 
     layer_changed = Signal()
     stance_changed = Signal()
@@ -52,7 +56,9 @@ class CurrentPlace(QObject):
             self.stance_changed.emit()
 
     def other(self, layer: Layer | None = None) -> str | None:
-        """Return where a dropped transition ends: the chosen other stance, else the first that is not the current one."""
+        """Return where a dropped transition ends: the chosen other stance, else the first that is not the
+        current one.
+        """
         layer = layer or self.layer
         stances = self.document.project.graphs[layer].stances
         current, chosen = self.stance(layer), self.others.get(layer)

@@ -67,7 +67,8 @@ class Figures(QObject):
             self.changed.emit()
 
     def figure(self, skeleton: Skeleton) -> Figure | None:
-        """Return the figure for a skeleton: the project's character on the project's skeleton, else a stick figure.
+        """Return the figure for a skeleton: the project's character on the project's skeleton, else a stick
+        figure.
 
         None while it is being made; `changed` tells when it is there.
         """
@@ -81,7 +82,9 @@ class Figures(QObject):
         return self._sticks[skeleton.fingerprint]
 
     def of(self, shown: Shown) -> Figure | None:
-        """Return the figure of who is shown: of another project's character that one's own. None while it is being made."""
+        """Return the figure of who is shown: of another project's character that one's own. None while it is
+        being made.
+        """
         skeleton, character = shown.skeleton, shown.project.character
         if skeleton is None:
             return None

@@ -1,6 +1,8 @@
-"""The picture of the character: one painter behind two hosts, an OpenGL widget and, where there is none, an image.
+"""The picture of the character: one painter behind two hosts, an OpenGL widget and, where there is none, an
+image.
 
-Left drag orbits, right or middle drag (or Shift + left) pans, the wheel zooms, a double click frames the character.
+Left drag orbits, right or middle drag (or Shift + left) pans, the wheel zooms, a double click frames the
+character.
 """
 
 from __future__ import annotations
@@ -158,7 +160,8 @@ class ImageView(CameraMouse, QWidget):
 def make_view(compose: Compose, parent: QWidget | None = None) -> GLView | ImageView:
     """Return the host that is right here: OpenGL in the widget on a graphics card, a drawn image elsewhere.
 
-    An OpenGL widget makes Qt compose the whole window through OpenGL; in software that costs more than the picture.
+    An OpenGL widget makes Qt compose the whole window through OpenGL; in software that costs more than the
+    picture.
     """
     without = {"offscreen", "minimal", "vnc", "linuxfb", "minimalegl", "eglfs"}
     image = QGuiApplication.platformName() in without or (sys.platform.startswith("linux") and _in_software())

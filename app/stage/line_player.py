@@ -1,7 +1,8 @@
 """What is said, heard in step with the picture.
 
-A thread of the sound library asks for samples; what it gets is mixed from the lines that the plan says. Without a sound
-device, or without the library, everything else works and the status bar says why it is silent.
+A thread of the sound library asks for samples; what it gets is mixed from the lines that the plan says.
+Without a sound device, or without the library, everything else works and the status bar says why it is
+silent.
 """
 
 from __future__ import annotations
@@ -27,11 +28,20 @@ EMPTY: list[tuple[float, np.ndarray]] = []
 
 
 class Sound(QObject):
-    """Plays the lines of what is on stage while the playhead runs at its own speed. told: why it is silent."""
+    """Plays the lines of what is on stage while the playhead runs at its own speed. told: why it is
+    silent.
+    """
 
     told = Signal(str)
 
-    def __init__(self, document: Document, session: Session, performance: Performance, jobs: Jobs, parent: QObject | None = None) -> None:
+    def __init__(
+        self,
+        document: Document,
+        session: Session,
+        performance: Performance,
+        jobs: Jobs,
+        parent: QObject | None = None,
+    ) -> None:
         super().__init__(parent)
         self.document, self.session, self.performance, self.jobs = document, session, performance, jobs
         self.muted = False
@@ -56,7 +66,12 @@ class Sound(QObject):
     def _said(self) -> dict[str, Line]:
         """Return the lines of a conversation on stage: they are in no project."""
         both = self.performance.shown.both if self.performance.shown.partner is not None else ()
-        return {s.line: one.project.lines[s.line] for one in both for s in one.plan.track.speeches if s.line in one.project.lines}
+        return {
+            s.line: one.project.lines[s.line]
+            for one in both
+            for s in one.plan.track.speeches
+            if s.line in one.project.lines
+        }
 
     def _want(self, lines: Mapping[str, Line]) -> None:
         files = {i: (x.audio, x.channel) for i, x in lines.items() if x.audio}
@@ -74,7 +89,9 @@ class Sound(QObject):
 
             return line_sounds(lines, folder)
 
-        self.jobs.start("Reading sounds", work, self._read, lambda error: self.told.emit(str(error)), quick=True)
+        self.jobs.start(
+            "Reading sounds", work, self._read, lambda error: self.told.emit(str(error)), quick=True
+        )
 
     def _read(self, made: tuple[dict[str, np.ndarray], tuple[str, ...]]) -> None:
         self.sounds, notes = made
@@ -88,7 +105,11 @@ class Sound(QObject):
         shown = self.performance.shown
         if not set(said := self._said()) <= set(self._files):
             self._want({**self.document.project.lines, **said})
-        if not self.sounds or shown.clip is not None or not any(one.plan.track.speeches for one in shown.both):
+        if (
+            not self.sounds
+            or shown.clip is not None
+            or not any(one.plan.track.speeches for one in shown.both)
+        ):
             self.parts = EMPTY
             return
         from metagraph.speech.soundtrack import placed
@@ -100,7 +121,13 @@ class Sound(QObject):
     def audible(self) -> bool:
         """Whether there is anything to be heard now."""
         s = self.session
-        return bool(self.parts) and s.transport.playing and s.transport.speed == 1.0 and s.transport.show == "plan" and not self.muted
+        return (
+            bool(self.parts)
+            and s.transport.playing
+            and s.transport.speed == 1.0
+            and s.transport.show == "plan"
+            and not self.muted
+        )
 
     def _moved(self, *_: object) -> None:
         """Follow the playhead: begin, go on, jump or fall silent with it."""
@@ -110,7 +137,9 @@ class Sound(QObject):
             return
         if self._stream is None and not self._open():
             return
-        at = round((self.session.transport.seconds + self._stream.latency) * RATE)  # what is mixed now is heard that much later
+        at = round(
+            (self.session.transport.seconds + self._stream.latency) * RATE
+        )  # what is mixed now is heard that much later
         if not self._stream.active:
             self.place = at
             self._stream.start()
@@ -123,13 +152,24 @@ class Sound(QObject):
         try:
             import sounddevice
 
-            self._stream = sounddevice.OutputStream(samplerate=RATE, channels=1, dtype="float32", callback=self.fill, latency=LATENCY)
-        except Exception as error:  # the library has errors of its own, and OSError where PortAudio is missing
+            self._stream = sounddevice.OutputStream(
+                samplerate=RATE, channels=1, dtype="float32", callback=self.fill, latency=LATENCY
+            )
+        except (
+            Exception
+        ) as error:  # the library has errors of its own, and OSError where PortAudio is missing
             self._silent = True
             cause = str(error).splitlines()[0].rstrip(".")
-            missing = isinstance(error, OSError) and "PortAudio" in cause  # the library itself; an own kind of error otherwise
+            missing = (
+                isinstance(error, OSError) and "PortAudio" in cause
+            )  # the library itself; an own kind of error otherwise
             self.told.emit(
-                f"No sound: {cause}. " + ("On Debian and Ubuntu: apt install libportaudio2" if missing else "Is a sound device there?")
+                f"No sound: {cause}. "
+                + (
+                    "On Debian and Ubuntu: apt install libportaudio2"
+                    if missing
+                    else "Is a sound device there?"
+                )
             )
             return False
         return True

@@ -17,7 +17,9 @@ if TYPE_CHECKING:
 
 
 class LiveControl(QObject):
-    """changed: live begins, ends, or is connected otherwise. ticked: the live plan went on. stage: while it is on."""
+    """changed: live begins, ends, or is connected otherwise. ticked: the live plan went on. stage: while it
+    is on.
+    """
 
     changed = Signal()
     ticked = Signal()

@@ -1,6 +1,7 @@
 """The stage played live: agents ask over WebSocket and OSC on this machine, the window shows what they get.
 
-The lines to clients are in a process of their own; here is one tick a frame, which answers what came in since the last.
+The lines to clients are in a process of their own; here is one tick a frame, which answers what came in since
+the last.
 """
 
 from __future__ import annotations
@@ -61,7 +62,9 @@ class LiveStage(QObject):
     ticked = Signal()
     told = Signal(str)
 
-    def __init__(self, project: Project, options: Options | None = None, parent: QObject | None = None) -> None:
+    def __init__(
+        self, project: Project, options: Options | None = None, parent: QObject | None = None
+    ) -> None:
         super().__init__(parent)
         self.session = _Counted(project)
         self.session.tape = self.tape = _Shown()
@@ -174,7 +177,11 @@ class LiveStage(QObject):
         if ready is None:
             return "Live, opening the lines…"
         clients = len(self.session.clients) - 1
-        who = "nobody is connected yet" if clients == 0 else f"{clients} client{'s' if clients != 1 else ''}, {self.rate:.0f} requests/s"
+        who = (
+            "nobody is connected yet"
+            if clients == 0
+            else f"{clients} client{'s' if clients != 1 else ''}, {self.rate:.0f} requests/s"
+        )
         return f"Live at {ready.websocket}: {who}"
 
     def performance(self) -> Performance:

@@ -1,4 +1,6 @@
-"""Who is on stage: the models that improvise, a kept performance or a conversation; and which of the two editors' graphs moves them."""
+"""Who is on stage: the models that improvise, a kept performance or a conversation; and which of the two
+editors' graphs moves them.
+"""
 
 from __future__ import annotations
 
@@ -12,8 +14,9 @@ Mode = Literal["meta", "manual"]
 
 
 class OnStage(QObject):
-    """performance_changed: another kept performance is on stage, or other requests of it are selected. mode_changed: the meta-graph or
-    the manual state machine is edited and played. conversation_changed: another conversation is on stage, or another side of it shown.
+    """performance_changed: another kept performance is on stage, or other requests of it are selected.
+    mode_changed: the meta-graph or the manual state machine is edited and played. conversation_changed:
+    another conversation is on stage, or another side of it shown.
     """
 
     performance_changed = Signal()
@@ -25,7 +28,9 @@ class OnStage(QObject):
         self.mode: Mode = "meta"
         self.performance: str | None = None  # the kept performance on stage, None while the models improvise
         self.requests: tuple[str, ...] = ()  # selected in the timeline
-        self.conversation: str | None = None  # the conversation on stage, None for none; never while a kept performance is
+        self.conversation: str | None = (
+            None  # the conversation on stage, None for none; never while a kept performance is
+        )
         self.side = 0  # of its two, whose plan the timeline shows
 
     def set_mode(self, mode: Mode) -> None:

@@ -1,7 +1,7 @@
 """The performance: the plan for the project as it is now, and the pose at the playhead. Derived, never saved.
 
-The plan is a pure function of (project, asks, seed, stances, length); it is made anew on a thread after each edit,
-and the old one plays until the new one is there.
+The plan is a pure function of (project, asks, seed, stances, length); it is made anew on a thread after each
+edit, and the old one plays until the new one is there.
 """
 
 from __future__ import annotations
@@ -31,11 +31,15 @@ AHEAD = 15.0  # seconds before the end at which more is planned
 
 
 class Performance(QObject):
-    """changed: something else plays, or the same was planned anew. requests: edits what is asked for. live: begins and ends live play."""
+    """changed: something else plays, or the same was planned anew. requests: edits what is asked for. live:
+    begins and ends live play.
+    """
 
     changed = Signal()
 
-    def __init__(self, document: Document, session: Session, jobs: Jobs, parent: QObject | None = None) -> None:
+    def __init__(
+        self, document: Document, session: Session, jobs: Jobs, parent: QObject | None = None
+    ) -> None:
         super().__init__(parent)
         self.document, self.session, self.jobs = document, session, jobs
         self.length = LENGTH
@@ -88,7 +92,11 @@ class Performance(QObject):
     @property
     def conversation(self) -> str | None:
         """The conversation on stage."""
-        found = self.session.onstage.conversation if self.session.onstage.mode == "meta" and self.live.stage is None else None
+        found = (
+            self.session.onstage.conversation
+            if self.session.onstage.mode == "meta" and self.live.stage is None
+            else None
+        )
         return found if found in self.document.project.conversations else None
 
     @property
@@ -154,7 +162,11 @@ class Performance(QObject):
         self._busy, self._again = True, False
         project, kept, length = self.document.project, self.requests.kept, self.length
         manual, fires = self.session.onstage.mode == "manual", self._fires
-        show, shown, anew = self.session.transport.show, self.session.transport.shown, self.session.transport.tried is not None
+        show, shown, anew = (
+            self.session.transport.show,
+            self.session.transport.shown,
+            self.session.transport.tried is not None,
+        )
         stances = {layer: s for layer in LAYERS if (s := self.session.place.stance(layer)) is not None}
         layer = self.session.place.layer
         talk, side, folder = self.conversation, self.session.onstage.side, self.document.folder or Path()
@@ -171,7 +183,9 @@ class Performance(QObject):
                 return self._conversations.show(project, talk, folder, side)
             if kept is None:
                 return Shown(project, make_plan(project, length), length)
-            return Shown(project, perform(project, kept.asks, length, kept.seed, dict(kept.stances), kept.idle), length)
+            return Shown(
+                project, perform(project, kept.asks, length, kept.seed, dict(kept.stances), kept.idle), length
+            )
 
         self.jobs.start("plan", work, self._planned, self._failed, quick=True)
 
@@ -198,7 +212,9 @@ class Performance(QObject):
         if live is None or self.session.transport.show != "plan":
             return
         # What lies farther back than the running plan reaches is kept in pieces.
-        plan = live.session.plan if self.live.following else live.session.plan_at(self.session.transport.seconds)
+        plan = (
+            live.session.plan if self.live.following else live.session.plan_at(self.session.transport.seconds)
+        )
         if plan is not self.shown.plan:
             self.shown = Shown(live.session.project, plan, plan.end)
             self.changed.emit()
@@ -225,7 +241,10 @@ class Performance(QObject):
         if self.live.stage is not None:
             return self.live.stage.answers()
         if self._answered is not self.shown:
-            self._answered, self._answers = self.shown, answers(self.shown.plan, (ask.id for ask in self.asks))
+            self._answered, self._answers = (
+                self.shown,
+                answers(self.shown.plan, (ask.id for ask in self.asks)),
+            )
         return self._answers
 
     # --- the pose

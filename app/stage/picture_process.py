@@ -1,4 +1,6 @@
-"""Draws thumbnails in a process of its own: compiling shaders and reading pixels back would hold up the window's thread."""
+"""Draws thumbnails in a process of its own: compiling shaders and reading pixels back would hold up the
+window's thread.
+"""
 
 from __future__ import annotations
 
@@ -17,12 +19,18 @@ from metagraph.motion.clip import Clip
 from metagraph.motion.skeleton import Skeleton
 
 SIZE, SCALE = 112, 2
-MOVING_SIZE, MOVING_RATE, MOVING_MOST = 180, 12, 72  # the loop in the stance card: pixels, pictures a second, at most
+MOVING_SIZE, MOVING_RATE, MOVING_MOST = (
+    180,
+    12,
+    72,
+)  # the loop in the stance card: pixels, pictures a second, at most
 
 
 @dataclass(frozen=True)
 class Order:
-    """what: "card", "bare" or "moving". paper: sRGB 0..1 behind the figure, None for transparent. character: its file."""
+    """what: "card", "bare" or "moving". paper: sRGB 0..1 behind the figure, None for transparent. character:
+    its file.
+    """
 
     number: int
     clip: Clip
@@ -49,13 +57,17 @@ def draw(offscreen: Any, figure: Any, order: Order) -> list[np.ndarray]:
     size = MOVING_SIZE if order.what == "moving" else SIZE
     rotations, positions = motion.skeleton.globals(motion.poses()[frames])
     return [
-        thumbnail(offscreen, figure, r, p, size=size, scale=SCALE, paper=order.paper, theme=THEMES[order.theme])
+        thumbnail(
+            offscreen, figure, r, p, size=size, scale=SCALE, paper=order.paper, theme=THEMES[order.theme]
+        )
         for r, p in zip(rotations, positions, strict=True)
     ]
 
 
 def serve(orders: BinaryIO, results: BinaryIO) -> None:
-    """Answer pickled orders with pickled (number, None) when one is begun and (number, pictures) when it is drawn, until the other side is gone: stills before loops, the latest first."""
+    """Answer pickled orders with pickled (number, None) when one is begun and (number, pictures) when it is
+    drawn, until the other side is gone: stills before loops, the latest first.
+    """
     from preview.offscreen import Offscreen, OpenGLError
 
     waiting: _Waiting = queue.PriorityQueue()
@@ -67,7 +79,9 @@ def serve(orders: BinaryIO, results: BinaryIO) -> None:
     figures: dict[tuple[str, Path | None], Any] = {}
     with offscreen:
         while (order := waiting.get()[2]) is not None:
-            pickle.dump((order.number, None), results)  # begun: whoever waits knows what it was if this process ends
+            pickle.dump(
+                (order.number, None), results
+            )  # begun: whoever waits knows what it was if this process ends
             results.flush()
             key = (order.clip.skeleton.fingerprint, order.character)
             if key not in figures:

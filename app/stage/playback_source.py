@@ -1,4 +1,6 @@
-"""What plays: a plan on the project it was made for, or a clip alone; whoever shows it asks for the pose at a time."""
+"""What plays: a plan on the project it was made for, or a clip alone; whoever shows it asks for the pose at a
+time.
+"""
 
 from __future__ import annotations
 
@@ -14,7 +16,15 @@ from metagraph.graph.edits import EditError, place
 from metagraph.graph.model import Layer, Project
 from metagraph.motion.skeleton import Pose, Skeleton
 from metagraph.playback.life.evaluate import enliven
-from metagraph.playback.manual import Fire, ManualPlan, link_alone, make_manual_plan, manual_morphs_at, manual_pose_at, state_alone
+from metagraph.playback.manual import (
+    Fire,
+    ManualPlan,
+    link_alone,
+    make_manual_plan,
+    manual_morphs_at,
+    manual_pose_at,
+    state_alone,
+)
 from metagraph.playback.plan import Plan, Request
 from metagraph.playback.planner import make_plan
 from metagraph.playback.player import morphs_at, pose_at
@@ -22,18 +32,20 @@ from metagraph.playback.player import morphs_at, pose_at
 if TYPE_CHECKING:
     from metagraph.speech.duet import Stand
 
-ASIDE = -0.35  # radians the camera goes round two who talk, to see them from the side and not one of them from behind
+ASIDE = (
+    -0.35
+)  # radians the camera goes round two who talk, to see them from the side and not one of them from behind
 LEAD = 0.8  # seconds of stance before and after a clip shown in context
 
 
 @dataclass(frozen=True)
 class Shown:
-    """project: the one the plan was made for. length: seconds. clip: the one that plays alone, then without a plan. manual: what the manual
-    state machines play, where they do; `plan` then only shows it.
+    """project: the one the plan was made for. length: seconds. clip: the one that plays alone, then without a
+    plan. manual: what the manual state machines play, where they do; `plan` then only shows it.
 
-    Of a conversation: partner: the other one. side: 0 or 1, which of the two this is. stand: where it stands. asks: what it is asked.
-    notes: what could not be read. folder: what paths in its project begin at. motion: the clip it moves with instead of its plan, which
-    still says where it looks and what it says.
+    Of a conversation: partner: the other one. side: 0 or 1, which of the two this is. stand: where it stands.
+    asks: what it is asked. notes: what could not be read. folder: what paths in its project begin at. motion:
+    the clip it moves with instead of its plan, which still says where it looks and what it says.
     """
 
     project: Project
@@ -113,16 +125,20 @@ def by_hand(project: Project, length: float, fires: Iterable[Fire] = (), only: s
     return Shown(project, plan.plan, length, manual=plan)
 
 
-def in_context(project: Project, ident: str, layer: Layer, stances: dict[Layer, str], anew: bool = False) -> Shown:
+def in_context(
+    project: Project, ident: str, layer: Layer, stances: dict[Layer, str], anew: bool = False
+) -> Shown:
     """Return stance, action, back to the stance, the other layers resting in theirs.
 
-    ident: an action, or a clip; a clip that was not placed yet is tried as a gesture of the current stance. anew: one that was, too,
-    unless it is placed on that very stance.
+    ident: an action, or a clip; a clip that was not placed yet is tried as a gesture of the current stance.
+    anew: one that was, too, unless it is placed on that very stance.
     """
     action = project.action(ident)
     if action is None and ident in project.clips:
         uses = project.uses.get(ident, ())
-        action = next((a for a in uses if a.stance == stances.get(layer)), uses[0] if uses and not anew else None)
+        action = next(
+            (a for a in uses if a.stance == stances.get(layer)), uses[0] if uses and not anew else None
+        )
     scratch = project
     if action is None:
         try:
@@ -138,7 +154,9 @@ def in_context(project: Project, ident: str, layer: Layer, stances: dict[Layer, 
         graph = scratch.graphs[action.layer]
         only = {a.id: None for a in graph.of(action.stance, "stance") if a.id != action.id}
         scratch = scratch.with_graph(graph.with_actions(only))
-        return Shown(scratch, make_plan(scratch, end - start, (), stances=begin, idle=False), max(1.0, end - start))
+        return Shown(
+            scratch, make_plan(scratch, end - start, (), stances=begin, idle=False), max(1.0, end - start)
+        )
     request = Request("shown", action.layer, action.kind, LEAD, action=action.id)
     start, end = scratch.span(action)
     length = LEAD + max(0.0, end - start) + LEAD

@@ -1,4 +1,6 @@
-"""The problems of the project as it is now: found on a thread after each edit, merged with what the statistics of jumps flag."""
+"""The problems of the project as it is now: found on a thread after each edit, merged with what the
+statistics of jumps flag.
+"""
 
 from __future__ import annotations
 
@@ -14,12 +16,19 @@ AFTER = 250  # milliseconds of quiet after an edit before problems are looked fo
 
 
 class ProblemWatch(QObject):
-    """changed: `problems` and `misfits` are of the project as it is now. misfits: action id -> words, of the actions with problems."""
+    """changed: `problems` and `misfits` are of the project as it is now. misfits: action id -> words, of the
+    actions with problems.
+    """
 
     changed = Signal()
 
     def __init__(
-        self, document: Document, session: Session, jobs: Jobs, compatibility: Compatibility, parent: QObject | None = None
+        self,
+        document: Document,
+        session: Session,
+        jobs: Jobs,
+        compatibility: Compatibility,
+        parent: QObject | None = None,
     ) -> None:
         super().__init__(parent)
         self.document, self.session, self.jobs, self.compatibility = document, session, jobs, compatibility
@@ -42,7 +51,9 @@ class ProblemWatch(QObject):
             return
         self._busy = True
         project = self.document.project
-        self.jobs.start("check", lambda _: check(project), self._checked, lambda e: self._checked([]), quick=True)
+        self.jobs.start(
+            "check", lambda _: check(project), self._checked, lambda e: self._checked([]), quick=True
+        )
 
     def _checked(self, problems: list[Problem]) -> None:
         self._busy = False
@@ -54,5 +65,7 @@ class ProblemWatch(QObject):
         meta = self.session.onstage.mode == "meta"
         found = tuple(p for p in self._found if not (p.state or p.link if meta else p.stance or p.action))
         self.problems = merged(found, self.compatibility.flags if meta else {})
-        self.misfits = {p.action: f"{p.message}. {p.remedy}" for p in self.problems if p.action and p.severity != "hint"}
+        self.misfits = {
+            p.action: f"{p.message}. {p.remedy}" for p in self.problems if p.action and p.severity != "hint"
+        }
         self.changed.emit()

@@ -1,4 +1,6 @@
-"""A performance written as a video, a contact sheet or plain motion, by a process of its own: it draws without disturbing the window."""
+"""A performance written as a video, a contact sheet or plain motion, by a process of its own: it draws
+without disturbing the window.
+"""
 
 from __future__ import annotations
 
@@ -14,13 +16,19 @@ from app.project.jobs import Job
 from metagraph.formats.store import absolute, save_project
 from metagraph.graph.model import Project
 
-SUFFIXES = {".mp4": "Video with sound", ".png": "Contact sheet", ".glb": "Motion (GLB)", ".bvh": "Motion (BVH)"}
+SUFFIXES = {
+    ".mp4": "Video with sound",
+    ".png": "Contact sheet",
+    ".glb": "Motion (GLB)",
+    ".bvh": "Motion (BVH)",
+}
 
 
 @dataclass(frozen=True)
 class Wanted:
-    """What to write. performance: id of a kept one, None to improvise. conversation: id of one, then of both. size: width and height in
-    pixels."""
+    """What to write. performance: id of a kept one, None to improvise. conversation: id of one, then of both.
+    size: width and height in pixels.
+    """
 
     out: Path
     performance: str | None
@@ -32,14 +40,30 @@ class Wanted:
 
 
 def write(project: Project, folder: Path, wanted: Wanted, job: Job) -> Path:
-    """Write it; runs on a job's thread. Raises RuntimeError with the reason; a cancelled job leaves nothing behind."""
+    """Write it; runs on a job's thread. Raises RuntimeError with the reason; a cancelled job leaves nothing
+    behind.
+    """
     with tempfile.TemporaryDirectory() as scratch:
         copy = Path(scratch) / "project.metagraph.yaml"
         save_project(absolute(project, folder), copy)
         words = [
-            sys.executable, "-m", "app.cli", "render", str(copy), "-o", str(wanted.out), "-s", f"{wanted.seconds:.6f}",
-            "--size", f"{wanted.size[0]}x{wanted.size[1]}", "--fps", f"{wanted.fps:g}", "--theme", wanted.theme, "--progress",
-        ]  # fmt: skip
+            sys.executable,
+            "-m",
+            "app.cli",
+            "render",
+            str(copy),
+            "-o",
+            str(wanted.out),
+            "-s",
+            f"{wanted.seconds:.6f}",
+            "--size",
+            f"{wanted.size[0]}x{wanted.size[1]}",
+            "--fps",
+            f"{wanted.fps:g}",
+            "--theme",
+            wanted.theme,
+            "--progress",
+        ]
         if wanted.performance is not None:
             words += ["--performance", wanted.performance]
         if wanted.conversation is not None:
@@ -68,7 +92,9 @@ def write(project: Project, folder: Path, wanted: Wanted, job: Job) -> Path:
         if process.stderr is not None:
             process.stderr.close()
         if not job.cancelled and process.returncode != 0:
-            raise RuntimeError(said[-1].removeprefix("metagraph: ") if said else "the drawing process ended without a word")
+            raise RuntimeError(
+                said[-1].removeprefix("metagraph: ") if said else "the drawing process ended without a word"
+            )
     return wanted.out
 
 

@@ -18,9 +18,13 @@ SOON = 0.15  # seconds from now at which "now" is: the plan needs a moment
 
 
 class RequestEdits:
-    """Edits the requests of what is on stage; each is one step to undo. length: seconds that are planned, which a new performance gets."""
+    """Edits the requests of what is on stage; each is one step to undo. length: seconds that are planned,
+    which a new performance gets.
+    """
 
-    def __init__(self, document: Document, session: Session, live: LiveControl, length: Callable[[], float]) -> None:
+    def __init__(
+        self, document: Document, session: Session, live: LiveControl, length: Callable[[], float]
+    ) -> None:
         self.document, self.session, self.live, self._length = document, session, live, length
 
     @property
@@ -35,7 +39,9 @@ class RequestEdits:
         return self.live.stage is None and self.kept is not None and self.session.transport.show == "plan"
 
     def ask(self, ask: AnyAsk, text: str = "Ask for something") -> None:
-        """Ask for one thing more, in the performance on stage or a new one; without a time it is wanted as soon as can be."""
+        """Ask for one thing more, in the performance on stage or a new one; without a time it is wanted as
+        soon as can be.
+        """
         if self.live.stage is not None:
             if ask.at is not None and ask.at <= self.live.stage.now:
                 ask = msgspec.structs.replace(ask, at=None)
@@ -63,7 +69,9 @@ class RequestEdits:
         """Set fields of an ask of the performance on stage. Raises EditError."""
         stage = self.session.onstage.performance
         if stage is not None:
-            self.document.edit("Change request", lambda p: staging.change_ask(p, stage, ident, **changes), merge)
+            self.document.edit(
+                "Change request", lambda p: staging.change_ask(p, stage, ident, **changes), merge
+            )
 
     def move(self, idents: tuple[str, ...], by: float, merge: str | None = None) -> None:
         """Move asks in time."""
@@ -80,8 +88,12 @@ class RequestEdits:
         copies = tuple(msgspec.structs.replace(x, id="", told=None) for x in kept.asks if x.id in idents)
 
         def edit(project: Project) -> Project:
-            project = staging.change_performance(project, stage, asks=(*project.performances[stage].asks, *copies))
-            return staging.move_asks(project, stage, {x.id for x in project.performances[stage].asks[number:]}, by)
+            project = staging.change_performance(
+                project, stage, asks=(*project.performances[stage].asks, *copies)
+            )
+            return staging.move_asks(
+                project, stage, {x.id for x in project.performances[stage].asks[number:]}, by
+            )
 
         self.document.edit("Copy request" if len(copies) == 1 else f"Copy {len(copies)} requests", edit)
         self.session.onstage.select_requests(tuple(x.id for x in (self.kept or kept).asks[number:]))

@@ -1,4 +1,6 @@
-"""What is selected: clips in the library, actions in the graph, or states and links of the manual state machine."""
+"""What is selected: clips in the library, actions in the graph, or states and links of the manual state
+machine.
+"""
 
 from __future__ import annotations
 
@@ -39,7 +41,11 @@ class Selection(QObject):
         self._select()
 
     def _select(
-        self, clips: tuple[str, ...] = (), actions: tuple[str, ...] = (), states: tuple[str, ...] = (), links: tuple[str, ...] = ()
+        self,
+        clips: tuple[str, ...] = (),
+        actions: tuple[str, ...] = (),
+        states: tuple[str, ...] = (),
+        links: tuple[str, ...] = (),
     ) -> None:
         if (clips, actions, states, links) != (self.clips, self.actions, self.states, self.links):
             self.clips, self.actions, self.states, self.links = clips, actions, states, links

@@ -1,4 +1,6 @@
-"""The session: what the user looks at. Never saved with the project. Its parts are values of their own; here is what joins them."""
+"""The session: what the user looks at. Never saved with the project. Its parts are values of their own; here
+is what joins them.
+"""
 
 from __future__ import annotations
 
@@ -17,7 +19,9 @@ OPENED_ON: tuple[Layer, ...] = ("arms", "body", "head")
 
 
 class Session(QObject):
-    """place: layer and stance. selection. onstage: who is on stage, and in which mode. transport: the playhead. look: the theme."""
+    """place: layer and stance. selection. onstage: who is on stage, and in which mode. transport: the
+    playhead. look: the theme.
+    """
 
     def __init__(self, document: Document, parent: QObject | None = None) -> None:
         super().__init__(parent)
@@ -38,7 +42,9 @@ class Session(QObject):
             self.transport.seek(0.0)
 
     def show_context(self, ident: str, tried: str | None = None) -> None:
-        """Play a clip or an action in context. tried: the stance, current from then on, that a clip is shown on as if it were there."""
+        """Play a clip or an action in context. tried: the stance, current from then on, that a clip is shown
+        on as if it were there.
+        """
         if tried is not None:
             self.place.set_stance(tried)
         self.transport.show_context(ident, tried)
@@ -63,7 +69,13 @@ class Session(QObject):
         self.transport.show_plan()
         self.transport.seek(0.0)
 
-    def jump(self, layer: Layer | None = None, stance: str | None = None, action: str | None = None, clip: str | None = None) -> None:
+    def jump(
+        self,
+        layer: Layer | None = None,
+        stance: str | None = None,
+        action: str | None = None,
+        clip: str | None = None,
+    ) -> None:
         """Go to a place of the project: what the problems panel and the timeline call."""
         project = self.document.project
         found = project.action(action) if action else None

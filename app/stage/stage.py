@@ -1,4 +1,6 @@
-"""The stage: what is looked at and what plays, with its pictures and its sound, as one value that features are given."""
+"""The stage: what is looked at and what plays, with its pictures and its sound, as one value that features
+are given.
+"""
 
 from __future__ import annotations
 
@@ -15,7 +17,9 @@ from app.stage.thumbnails import Thumbnails
 
 
 class Stage(QObject):
-    """painted: the character was drawn. refused: what a hand tried and cannot be done, in words. scrolled: an editor shows another part."""
+    """painted: the character was drawn. refused: what a hand tried and cannot be done, in words. scrolled: an
+    editor shows another part.
+    """
 
     painted = Signal()
     refused = Signal(str)

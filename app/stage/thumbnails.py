@@ -24,18 +24,24 @@ from metagraph.graph.model import Project
 from metagraph.motion.clip import Clip
 
 Key = tuple[str, str, str]  # clip id, what, theme
-MOST = 128 * 1024 * 1024  # bytes of pictures that are kept; those not seen for longest go, and are drawn again when they are
+MOST = (
+    128 * 1024 * 1024
+)  # bytes of pictures that are kept; those not seen for longest go, and are drawn again when they are
 TRIES = 3  # times the process is started without drawing anything before it is given up
 
 
 class Thumbnails(QObject):
-    """ready: clip id; a picture that was asked for is there. Without OpenGL no picture ever comes, and none is missed."""
+    """ready: clip id; a picture that was asked for is there. Without OpenGL no picture ever comes, and none
+    is missed.
+    """
 
     ready = Signal(str)
     _drawn = Signal(int, object)
     _ended = Signal(object)  # the process
 
-    def __init__(self, document: Document, session: Session, figures: Figures, parent: QObject | None = None) -> None:
+    def __init__(
+        self, document: Document, session: Session, figures: Figures, parent: QObject | None = None
+    ) -> None:
         super().__init__(parent)
         self.document, self.session, self.figures = document, session, figures
         self._pictures: OrderedDict[Key, tuple[Clip, list[QImage]]] = OrderedDict()
@@ -60,7 +66,9 @@ class Thumbnails(QObject):
         return found[0] if found else None
 
     def moving(self, clip: str, beat: int) -> QImage | None:
-        """Return one picture of a clip's loop, the `beat`-th of 12 a second; a still until the loop is drawn."""
+        """Return one picture of a clip's loop, the `beat`-th of 12 a second; a still until the loop is
+        drawn.
+        """
         found = self._get(clip, "moving")
         return found[beat % len(found)] if found else self.picture(clip, bare=True)
 
@@ -132,7 +140,9 @@ class Thumbnails(QObject):
         r, g, b = (int(card[i : i + 2], 16) / 255 for i in (1, 3, 5))
         self._number += 1
         self._orders[self._number] = (key, motion)
-        self._queue.put(Order(self._number, motion, key[1], key[2], (r, g, b) if key[1] == "card" else None, character))
+        self._queue.put(
+            Order(self._number, motion, key[1], key[2], (r, g, b) if key[1] == "card" else None, character)
+        )
 
     def _start(self) -> None:
         """Start the process; what goes out and what comes in have a thread each, since a full pipe blocks."""
@@ -143,21 +153,29 @@ class Thumbnails(QObject):
         )  # fmt: skip
         self._threads = [t for t in self._threads if t.is_alive()]
         for work, more in ((self._send, (self._queue,)), (self._listen, ())):
-            thread = threading.Thread(target=work, args=(self._process, *more), name="thumbnails", daemon=True)
+            thread = threading.Thread(
+                target=work, args=(self._process, *more), name="thumbnails", daemon=True
+            )
             thread.start()
             self._threads.append(thread)
 
     @staticmethod
     def _send(process: subprocess.Popen[bytes], orders: queue.SimpleQueue[Order | None]) -> None:
         assert process.stdin is not None
-        with contextlib.suppress(OSError, ValueError), process.stdin as pipe:  # it ended; there are no pictures then
+        with (
+            contextlib.suppress(OSError, ValueError),
+            process.stdin as pipe,
+        ):  # it ended; there are no pictures then
             while (order := orders.get()) is not None:
                 pickle.dump(order, pipe)
                 pipe.flush()
 
     def _listen(self, process: subprocess.Popen[bytes]) -> None:
         assert process.stdout is not None
-        with contextlib.suppress(EOFError, OSError, RuntimeError, pickle.UnpicklingError), process.stdout as pipe:
+        with (
+            contextlib.suppress(EOFError, OSError, RuntimeError, pickle.UnpicklingError),
+            process.stdout as pipe,
+        ):
             while True:
                 number, pictures = pickle.load(pipe)
                 self._drawn.emit(number, None if pictures is None else [to_image(p) for p in pictures])
@@ -189,7 +207,9 @@ class Thumbnails(QObject):
             self._process.kill()
             self._process.wait(5)
             self._process = None
-        for thread in self._threads:  # both end with the process; one that still made pictures would outlive Qt
+        for (
+            thread
+        ) in self._threads:  # both end with the process; one that still made pictures would outlive Qt
             thread.join(5)
 
 

@@ -1,4 +1,6 @@
-"""The playhead and what moves it: playing, speed, loop; and what it runs through, the whole performance or a clip looked at."""
+"""The playhead and what moves it: playing, speed, loop; and what it runs through, the whole performance or a
+clip looked at.
+"""
 
 from __future__ import annotations
 
@@ -12,7 +14,9 @@ Show = Literal["plan", "clip", "context"]
 
 
 class Transport(QObject):
-    """playing_changed, moved: the playhead; seconds. show_changed: the preview shows something else (see `show`)."""
+    """playing_changed, moved: the playhead; seconds. show_changed: the preview shows something else (see
+    `show`).
+    """
 
     playing_changed = Signal()
     moved = Signal(float)
@@ -48,8 +52,9 @@ class Transport(QObject):
         self._show("clip", clip)
 
     def show_context(self, ident: str, tried: str | None = None) -> None:
-        """Play a clip or an action in context: stance, clip, back to the stance, the other layers on. tried: the stance that a clip is
-        shown on as if it were placed there."""
+        """Play a clip or an action in context: stance, clip, back to the stance, the other layers on. tried:
+        the stance that a clip is shown on as if it were placed there.
+        """
         self._show("context", ident, tried)
 
     def _show(self, show: Show, shown: str | None, tried: str | None = None) -> None:

@@ -1,4 +1,6 @@
-"""Acts in time: a strip for each layer, the left arm above, the right below, both across. Shows what was seen and what a model makes."""
+"""Acts in time: a strip for each layer, the left arm above, the right below, both across. Shows what was seen
+and what a model makes.
+"""
 
 from __future__ import annotations
 
@@ -52,7 +54,11 @@ class Strip(QWidget):
 
     def show_acts(self, acts: Mapping[Layer, Sequence[Act]], seconds: float | None = None) -> None:
         """Show acts by layer; seconds: how long the strip is, None for as long as it takes."""
-        whole = seconds if seconds is not None else max((a.end for some in acts.values() for a in some), default=0.0) or 60.0
+        whole = (
+            seconds
+            if seconds is not None
+            else max((a.end for some in acts.values() for a in some), default=0.0) or 60.0
+        )
         if whole != self.seconds:
             self.first, self.zoom = 0.0, 1.0
         self.acts, self.seconds = acts, whole
@@ -94,7 +100,11 @@ class Strip(QWidget):
             lane = self.lane(row)
             if self.left >= LEFT:
                 painter.setPen(QColor(t.dim))
-                painter.drawText(QRectF(2, lane.top(), LEFT - 8, lane.height()), Qt.AlignmentFlag.AlignVCenter, layer.capitalize())
+                painter.drawText(
+                    QRectF(2, lane.top(), LEFT - 8, lane.height()),
+                    Qt.AlignmentFlag.AlignVCenter,
+                    layer.capitalize(),
+                )
             painter.setPen(Qt.PenStyle.NoPen)
             painter.setBrush(QColor(t.field))
             painter.drawRoundedRect(lane, 4, 4)
@@ -120,7 +130,11 @@ class Strip(QWidget):
         while (x := self.x(n * step)) < self.width() - 4:
             if x >= self.left - 1:
                 width = 80.0
-                box = QRectF(x - 2, 0, width, RULER) if x < self.left + 2 else QRectF(x - width / 2, 0, width, RULER)
+                box = (
+                    QRectF(x - 2, 0, width, RULER)
+                    if x < self.left + 2
+                    else QRectF(x - width / 2, 0, width, RULER)
+                )
                 side = Qt.AlignmentFlag.AlignLeft if x < self.left + 2 else Qt.AlignmentFlag.AlignHCenter
                 if x + width / 4 < self.width():
                     painter.drawText(box, side | Qt.AlignmentFlag.AlignVCenter, clock(n * step))
@@ -133,7 +147,9 @@ class Strip(QWidget):
         sign = {"positive": "+", "negative": "−"}.get(act.tags[0] if act.tags else "", "")
         if rect.width() > 12 and rect.height() > 12:
             metrics, mark = QFontMetricsF(painter.font()), KIND_MARKS[act.kind]
-            words = next((w for w in (mark + sign, mark) if metrics.horizontalAdvance(w) + 3 < rect.width()), "")
+            words = next(
+                (w for w in (mark + sign, mark) if metrics.horizontalAdvance(w) + 3 < rect.width()), ""
+            )
             painter.setPen(QColor("#17181b"))
             painter.drawText(rect, Qt.AlignmentFlag.AlignCenter, words)
 
@@ -141,7 +157,9 @@ class Strip(QWidget):
 
     def wheelEvent(self, event: QWheelEvent) -> None:
         at = self.first + (event.position().x() - self.left) / self.each()
-        self.zoom = min(max(1.0, self.seconds / 4), max(1.0, self.zoom * 1.2 ** (event.angleDelta().y() / 120)))
+        self.zoom = min(
+            max(1.0, self.seconds / 4), max(1.0, self.zoom * 1.2 ** (event.angleDelta().y() / 120))
+        )
         self._move_to(at - (event.position().x() - self.left) / self.each())
         event.accept()
 
@@ -166,7 +184,10 @@ class Strip(QWidget):
             words = ""
             if found is not None:
                 layer, act = found
-                words = f"{state_words(state_of(act, True), layer)}\n{act.start:.2f} to {act.end:.2f} s, {act.length:.2f} s long"
+                words = (
+                    f"{state_words(state_of(act, True), layer)}\n{act.start:.2f} to {act.end:.2f} s, "
+                    f"{act.length:.2f} s long"
+                )
             QToolTip.showText(event.globalPos(), words, self)
             return True
         return super().event(event)  # type: ignore[arg-type]

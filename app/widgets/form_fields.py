@@ -1,4 +1,6 @@
-"""Controls of the panels: numbers and texts that can show "mixed", give keys back when they are done, and drop what was typed on Esc."""
+"""Controls of the panels: numbers and texts that can show "mixed", give keys back when they are done, and
+drop what was typed on Esc.
+"""
 
 from __future__ import annotations
 
@@ -29,9 +31,11 @@ def common(values: Sequence[Any]) -> Any:
 
 
 def _yields(event: QEvent, edit: QLineEdit) -> bool | None:
-    """Say for a ShortcutOverride whether a field lets the window have the key; None when the field may decide as usual.
+    """Say for a ShortcutOverride whether a field lets the window have the key; None when the field may decide
+    as usual.
 
-    Once what was typed is taken over, undo and redo are the window's again; Esc is the field's while something was typed.
+    Once what was typed is taken over, undo and redo are the window's again; Esc is the field's while
+    something was typed.
     """
     if event.type() != QEvent.Type.ShortcutOverride or not isinstance(event, QKeyEvent):
         return None
@@ -77,7 +81,15 @@ class Field(QLineEdit):
 class Seconds(DoubleSpinBox):
     """A number that can also show that many values differ; typing or stepping then sets all."""
 
-    def __init__(self, parent: QWidget, tip: str, most: float = 1e4, suffix: str = " s", step: float = 0.05, decimals: int = 2) -> None:
+    def __init__(
+        self,
+        parent: QWidget,
+        tip: str,
+        most: float = 1e4,
+        suffix: str = " s",
+        step: float = 0.05,
+        decimals: int = 2,
+    ) -> None:
         super().__init__(parent, toolTip=tip)
         self.setRange(-step, most)
         self.setSpecialValueText(MIXED)
@@ -125,8 +137,12 @@ class Chooser(ComboBox):
         self.setAccessibleName(toolTip)
         self._entries: list[tuple[str, object]] = []
 
-    def show_entries(self, entries: Sequence[tuple[str, object]], chosen: object, otherwise: str = "") -> None:
-        """Show (text, data) entries with the one of data `chosen`, or the words `otherwise` when it is none of them."""
+    def show_entries(
+        self, entries: Sequence[tuple[str, object]], chosen: object, otherwise: str = ""
+    ) -> None:
+        """Show (text, data) entries with the one of data `chosen`, or the words `otherwise` when it is none
+        of them.
+        """
         entries = list(entries)
         self.blockSignals(True)
         if entries != self._entries:  # thousands of entries are filled in when they change, not at each edit

@@ -13,9 +13,9 @@ Reason = Literal["escape", "replaced", "taken over", "lost"]
 class Gesture(Protocol):
     """One drag. Points are the widget's, in pixels. Only `finish` changes the project for good, in one step.
 
-    begun: the mouse has moved far enough for it to be a drag and no click. free: nothing is to snap, or the key for another way is held.
-    reason, of being broken off: "escape" was pressed, another gesture "replaced" it, a drag of the system has "taken over", or what it
-    was about was "lost".
+    begun: the mouse has moved far enough for it to be a drag and no click. free: nothing is to snap, or the
+    key for another way is held. reason, of being broken off: "escape" was pressed, another gesture "replaced"
+    it, a drag of the system has "taken over", or what it was about was "lost".
     """
 
     begun: bool
@@ -27,7 +27,9 @@ class Gesture(Protocol):
 
 
 class PressDrag:
-    """What drags share that begin once the mouse has moved far enough. catch: pixels; None for the system's own distance."""
+    """What drags share that begin once the mouse has moved far enough. catch: pixels; None for the system's
+    own distance.
+    """
 
     catch: float | None = None
 

@@ -52,7 +52,9 @@ class MaskDialog(QDialog):
         self.resize(440, 620)
         layout = QVBoxLayout(self)
         words = QLabel(
-            "Only ticked joints move; the others keep to the stance. Ticking a joint ticks what hangs on it.", self, wordWrap=True
+            "Only ticked joints move; the others keep to the stance. Ticking a joint ticks what hangs on it.",
+            self,
+            wordWrap=True,
         )
         layout.addWidget(words)
         self.tree = QTreeWidget(self)
@@ -62,7 +64,9 @@ class MaskDialog(QDialog):
         actions = session.selection.selected_actions()
         masked = set(actions[0].joints) if actions else set()
         for name, item in self.items.items():
-            item.setCheckState(0, Qt.CheckState.Checked if not masked or name in masked else Qt.CheckState.Unchecked)
+            item.setCheckState(
+                0, Qt.CheckState.Checked if not masked or name in masked else Qt.CheckState.Unchecked
+            )
         self.tree.itemChanged.connect(self._ticked)
         row = QHBoxLayout()
         for text, on in (("All", True), ("None", False)):
@@ -70,7 +74,9 @@ class MaskDialog(QDialog):
             button.clicked.connect(lambda _=False, o=on: self._all(o))
             row.addWidget(button)
         row.addStretch(1)
-        box = QDialogButtonBox(QDialogButtonBox.StandardButton.Ok | QDialogButtonBox.StandardButton.Cancel, self)
+        box = QDialogButtonBox(
+            QDialogButtonBox.StandardButton.Ok | QDialogButtonBox.StandardButton.Cancel, self
+        )
         box.accepted.connect(self.accept)
         box.rejected.connect(self.reject)
         row.addWidget(box)

@@ -1,4 +1,5 @@
-"""The timeline's lanes: for each layer what was asked for above and what plays below, and a lane for speech and gaze.
+"""The timeline's lanes: for each layer what was asked for above and what plays below, and a lane for speech
+and gaze.
 
 Geometry and hit-testing are functions of values; the widget paints, and turns the mouse into edits.
 """
@@ -56,7 +57,9 @@ def rows(lane: QRectF) -> tuple[QRectF, QRectF]:
     """Return a lane's upper row, what was asked, and its lower, what plays."""
     lower = min(PLAYS, lane.height() * 0.55)
     upper = lane.height() - lower
-    return QRectF(lane.left(), lane.top() + 2, lane.width(), upper - 3), QRectF(lane.left(), lane.top() + upper, lane.width(), lower - 3)
+    return QRectF(lane.left(), lane.top() + 2, lane.width(), upper - 3), QRectF(
+        lane.left(), lane.top() + upper, lane.width(), lower - 3
+    )
 
 
 def lane_at(height: float, at: QPointF) -> str | None:
@@ -76,7 +79,9 @@ def cue_at(shown: Shown, scale: Scale, height: float, at: QPointF) -> tuple[Laye
 
 @dataclass(frozen=True)
 class Mark:
-    """An ask as it is drawn. at: the seconds it asks for. lost: it will not play. late: by how many seconds."""
+    """An ask as it is drawn. at: the seconds it asks for. lost: it will not play. late: by how many
+    seconds.
+    """
 
     ask: AnyAsk
     rect: QRectF
@@ -122,13 +127,18 @@ def marks(
     font: QFont,
     shift: Mapping[str, float] | None = None,
 ) -> list[Mark]:
-    """Return what stands in the upper rows, the later on top. shift: seconds by which some are being dragged."""
+    """Return what stands in the upper rows, the later on top. shift: seconds by which some are being
+    dragged.
+    """
     places, key = lanes(height), font.toString()
     areas = {name: rows(lane)[0] for name, lane in places.items()}
     count = max(1, int((next(iter(areas.values())).height() + 1) // ROW))
     lasts: dict[tuple[str, int], int] = {}  # of each row its last mark, by its place in `out`
     out: list[Mark] = []
-    timed = sorted(((time_of(x, answers.get(x.id)) + (shift or {}).get(x.id, 0.0), n, x) for n, x in enumerate(asks)), key=lambda t: t[:2])
+    timed = sorted(
+        ((time_of(x, answers.get(x.id)) + (shift or {}).get(x.id, 0.0), n, x) for n, x in enumerate(asks)),
+        key=lambda t: t[:2],
+    )
     for at, _, ask in timed:
         lane, words, left = lane_of(ask, project), ask_words(ask, project), scale.x(at)
         area = areas[lane]
@@ -144,7 +154,10 @@ def marks(
         rect = QRectF(
             left,
             area.top() + row * (tall + 1),
-            max(NARROWEST, min(260.0, advance(f"⚠ {words}" if is_lost(answers.get(ask.id)) else words, key) + 16)),
+            max(
+                NARROWEST,
+                min(260.0, advance(f"⚠ {words}" if is_lost(answers.get(ask.id)) else words, key) + 16),
+            ),
             tall,
         )
         lasts[lane, row] = len(out)
@@ -177,7 +190,11 @@ def outcome(ask: AnyAsk, answer: Answer | None) -> str:
 
 def wanted(mark: Mark) -> str:
     """Return what was asked for, and when."""
-    when = f"at {mark.at:.2f} s" if getattr(mark.ask, "stroke", None) is None else f"its stroke at {mark.at:.2f} s"
+    when = (
+        f"at {mark.at:.2f} s"
+        if getattr(mark.ask, "stroke", None) is None
+        else f"its stroke at {mark.at:.2f} s"
+    )
     return f"{mark.words}, {when}" + (f", priority {mark.ask.priority}" if mark.ask.priority != 1 else "")
 
 

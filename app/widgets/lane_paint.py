@@ -1,4 +1,6 @@
-"""Paints the timeline: ruler, lanes, what plays, what was asked for, the playhead. Only what is in sight is gone through."""
+"""Paints the timeline: ruler, lanes, what plays, what was asked for, the playhead. Only what is in sight is
+gone through.
+"""
 
 from __future__ import annotations
 
@@ -23,7 +25,9 @@ MIDDLE = Qt.AlignmentFlag.AlignVCenter
 
 @dataclass(frozen=True)
 class Scene:
-    """All that is painted. ends: seconds at which a kept performance ends. actions, asks: ids of what is selected."""
+    """All that is painted. ends: seconds at which a kept performance ends. actions, asks: ids of what is
+    selected.
+    """
 
     shown: Shown
     marks: Sequence[Mark]
@@ -58,7 +62,9 @@ def paint(painter: QPainter, t: Theme, scene: Scene) -> None:
     else:
         entry = scene.shown.project.clips[scene.shown.clip]
         area = rows(lanes(scene.height)["body"])[1]
-        rect = QRectF(scene.scale.x(0), area.top(), max(2.0, entry.duration * scene.scale.each), area.height())
+        rect = QRectF(
+            scene.scale.x(0), area.top(), max(2.0, entry.duration * scene.scale.each), area.height()
+        )
         _bar(painter, t, rect, QColor(t.line), entry.name, t.text, False)
     if scene.ends is not None and (x := scene.scale.x(scene.ends)) < scene.width:
         veil = QColor(t.ground)
@@ -110,7 +116,9 @@ def _stage(painter: QPainter, t: Theme, scene: Scene) -> None:
         left, right = scale.x(look.start), scale.x(until)
         if right > LEFT and left < scene.width:
             painter.setPen(QPen(QColor(t.dim), 1.4, Qt.PenStyle.DotLine))
-            painter.drawLine(QPointF(max(left, LEFT), area.bottom()), QPointF(min(right, scene.width), area.bottom()))
+            painter.drawLine(
+                QPointF(max(left, LEFT), area.bottom()), QPointF(min(right, scene.width), area.bottom())
+            )
     for speech in track.speeches:
         left, right = scale.x(speech.start), scale.x(speech.end)
         if right > LEFT and left < scene.width:
@@ -123,7 +131,11 @@ def _layer(painter: QPainter, t: Theme, scene: Scene, layer: Layer) -> None:
     scale, shown = scene.scale, scene.shown
     plan, area = shown.plan.layers[layer], rows(lanes(scene.height)[layer])[1]
     begin, end = scale.first, scale.seconds(scene.width)
-    edges = [plan.past.free, *(cue.end for cue in plan.cues if cue.then != cue.stance), max(shown.length, end)]
+    edges = [
+        plan.past.free,
+        *(cue.end for cue in plan.cues if cue.then != cue.stance),
+        max(shown.length, end),
+    ]
     first = plan.stance_at(-1.0) if plan.rests else None
     stances = [first or "", *(cue.then for cue in plan.cues if cue.then != cue.stance)] if plan.rests else []
     fill = t.fill("stance")
@@ -145,7 +157,9 @@ def _layer(painter: QPainter, t: Theme, scene: Scene, layer: Layer) -> None:
         _bar(painter, t, rect, t.fill(cue.action.kind), words, INK, cue.action.id in scene.actions)
 
 
-def _bar(painter: QPainter, t: Theme, rect: QRectF, fill: QColor, words: str, ink: str, selected: bool) -> None:
+def _bar(
+    painter: QPainter, t: Theme, rect: QRectF, fill: QColor, words: str, ink: str, selected: bool
+) -> None:
     if rect.width() <= PLAIN and not selected:
         painter.fillRect(rect, fill)
         return
@@ -160,7 +174,9 @@ def _bar(painter: QPainter, t: Theme, rect: QRectF, fill: QColor, words: str, in
 
 
 def _fitting(painter: QPainter, words: str, width: float) -> str:
-    """Return as much of the words as there is room for; where there is none to speak of, the sign in front of them alone."""
+    """Return as much of the words as there is room for; where there is none to speak of, the sign in front of
+    them alone.
+    """
     out = elided(words, painter.font().toString(), int(width))
     return out if len(out) > 3 or out == words else words[:1]
 
@@ -184,7 +200,9 @@ def _mark(painter: QPainter, t: Theme, mark: Mark, selected: bool) -> None:
     if mark.rect.width() <= NARROW and not selected:
         painter.fillRect(mark.rect.adjusted(0, 1, -1, -1), color)
         return
-    painter.setPen(QPen(color, 2.0 if selected else 1.2, Qt.PenStyle.DashLine if mark.lost else Qt.PenStyle.SolidLine))
+    painter.setPen(
+        QPen(color, 2.0 if selected else 1.2, Qt.PenStyle.DashLine if mark.lost else Qt.PenStyle.SolidLine)
+    )
     painter.setBrush(QColor(t.hover if selected else t.card))
     painter.drawRoundedRect(mark.rect.adjusted(0, 0.5, 0, -0.5), 4, 4)
     inner = mark.rect.adjusted(6, 0, -4, 0)

@@ -9,7 +9,9 @@ T = TypeVar("T")
 
 
 class Once(Generic[T]):
-    """What was made of some values and objects, as long as the values are equal and no object was replaced."""
+    """What was made of some values and objects, as long as the values are equal and no object was
+    replaced.
+    """
 
     def __init__(self) -> None:
         self._made: T | None = None

@@ -33,11 +33,15 @@ def load_of(data: QMimeData) -> Load:
     actions = tuple(bytes(data.data(ACTIONS).data()).decode().split("\n")) if data.hasFormat(ACTIONS) else ()
     files = tuple(u.toLocalFile() for u in data.urls() if u.isLocalFile()) if data.hasUrls() else ()
     ends = (*SUFFIXES, ANNOTATIONS)
-    return Load(clips, actions, tuple(f for f in files if "." not in f.rsplit("/", 1)[-1] or f.lower().endswith(ends)))
+    return Load(
+        clips, actions, tuple(f for f in files if "." not in f.rsplit("/", 1)[-1] or f.lower().endswith(ends))
+    )
 
 
 def sounds_of(data: QMimeData) -> tuple[Path, ...]:
-    """Return the sounds that mime data carries, and their transcripts after them; nothing where no sound is among them."""
+    """Return the sounds that mime data carries, and their transcripts after them; nothing where no sound is
+    among them.
+    """
     sounds, transcripts = kinds_of([Path(u.toLocalFile()) for u in data.urls() if u.isLocalFile()])
     return (*sounds, *transcripts) if sounds else ()
 

@@ -5,7 +5,16 @@ from __future__ import annotations
 from collections.abc import Callable
 
 from PySide6.QtCore import Qt
-from PySide6.QtWidgets import QDialog, QDialogButtonBox, QDoubleSpinBox, QFormLayout, QLabel, QLineEdit, QVBoxLayout, QWidget
+from PySide6.QtWidgets import (
+    QDialog,
+    QDialogButtonBox,
+    QDoubleSpinBox,
+    QFormLayout,
+    QLabel,
+    QLineEdit,
+    QVBoxLayout,
+    QWidget,
+)
 
 from app.project.document import Document
 from app.widgets.quiet_fields import DoubleSpinBox
@@ -21,7 +30,9 @@ AXES = (
 class PointEditor(QDialog):
     """Puts a point under a name, or moves the one that bears it; then calls `then` with the name."""
 
-    def __init__(self, document: Document, then: Callable[[str], object], parent: QWidget | None = None) -> None:
+    def __init__(
+        self, document: Document, then: Callable[[str], object], parent: QWidget | None = None
+    ) -> None:
         super().__init__(parent)
         self.document, self.then = document, then
         self.setAttribute(Qt.WidgetAttribute.WA_DeleteOnClose)
@@ -35,16 +46,22 @@ class PointEditor(QDialog):
         form.addRow("Name", self.name)
         self.axes: list[QDoubleSpinBox] = []
         for (words, tip), value in zip(AXES, (0.6, 1.5, 1.2), strict=True):
-            box = DoubleSpinBox(self, minimum=-1000.0, maximum=1000.0, decimals=2, singleStep=0.1, suffix=" m")
+            box = DoubleSpinBox(
+                self, minimum=-1000.0, maximum=1000.0, decimals=2, singleStep=0.1, suffix=" m"
+            )
             box.setValue(value)
             box.setToolTip(tip)
             box.setAccessibleName(words)
             self.axes.append(box)
             form.addRow(words, box)
-        self.words = QLabel("Agents call it by this name, and may move it while they play.", self, wordWrap=True)
+        self.words = QLabel(
+            "Agents call it by this name, and may move it while they play.", self, wordWrap=True
+        )
         self.words.setProperty("dim", True)
         layout.addWidget(self.words)
-        self.buttons = QDialogButtonBox(QDialogButtonBox.StandardButton.Ok | QDialogButtonBox.StandardButton.Cancel, self)
+        self.buttons = QDialogButtonBox(
+            QDialogButtonBox.StandardButton.Ok | QDialogButtonBox.StandardButton.Cancel, self
+        )
         self.buttons.accepted.connect(self._put)
         self.buttons.rejected.connect(self.reject)
         layout.addWidget(self.buttons)

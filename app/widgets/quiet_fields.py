@@ -1,6 +1,8 @@
-"""Numbers, choices and sliders that scrolling passes by, and whose holding and scrolling is one step: every field of the window is one.
+"""Numbers, choices and sliders that scrolling passes by, and whose holding and scrolling is one step: every
+field of the window is one.
 
-Qt's own take the wheel, and with it the focus, wherever the mouse happens to be; scrolling a panel changed what stood under it.
+Qt's own take the wheel, and with it the focus, wherever the mouse happens to be; scrolling a panel changed
+what stood under it.
 """
 
 from __future__ import annotations
@@ -16,7 +18,8 @@ _Base: Any = QWidget if TYPE_CHECKING else object
 
 
 class OneStep(_Base):
-    """Before a field of numbers: its value is told once, when what changes it is over: a key or a button held down, a run of the wheel.
+    """Before a field of numbers: its value is told once, when what changes it is over: a key or a button held
+    down, a run of the wheel.
 
     Without the focus it lets the wheel pass.
     """

@@ -14,7 +14,12 @@ from metagraph.graph import asks as a
 from metagraph.graph.model import LAYERS, MODES, Layer, Project
 
 STAGE = "stage"  # the lane of what no layer plays: speech, gaze, modes
-DIRECTIONS = {"Left": (0.9, 1.6, 0.9), "Right": (-0.9, 1.6, 0.9), "Up": (0.0, 2.4, 1.0), "Down": (0.0, 0.6, 1.0)}
+DIRECTIONS = {
+    "Left": (0.9, 1.6, 0.9),
+    "Right": (-0.9, 1.6, 0.9),
+    "Up": (0.0, 2.4, 1.0),
+    "Down": (0.0, 0.6, 1.0),
+}
 MODE_WORDS = {"idle": "Idle", "listening": "Listen", "talking": "Talk"}
 
 
@@ -26,7 +31,9 @@ def lane_of(ask: a.AnyAsk, project: Project) -> str:
         case a.Nod() | a.Shake():
             return "head"
         case a.Play():
-            found = project.action(ask.action) or next((x for x in project.actions() if x.name == ask.action), None)
+            found = project.action(ask.action) or next(
+                (x for x in project.actions() if x.name == ask.action), None
+            )
             return ask.layer or (found.layer if found else "arms")
         case a.Go():
             stances = ((layer, s) for layer in LAYERS for s in project.graphs[layer].stances.values())
@@ -80,7 +87,9 @@ def ask_words(ask: a.AnyAsk, project: Project) -> str:
 Ask = Callable[[a.AnyAsk, str], object]
 
 
-def ask_menu(parent: QWidget, performance: Performance, seconds: float | None, lane: str | None = None) -> QMenu:
+def ask_menu(
+    parent: QWidget, performance: Performance, seconds: float | None, lane: str | None = None
+) -> QMenu:
     """Return a menu of everything that can be asked for at a time (None: now), of one lane or all."""
     menu = QMenu(parent)
     project = performance.document.project
@@ -115,13 +124,18 @@ def _layer_items(menu: QMenu, project: Project, layer: Layer, at: float | None, 
     if tags:
         tagged = menu.addMenu("A gesture that is …")
         for tag in tags:
-            tagged.addAction(tag, lambda tag=tag: ask(a.Gesture(layer=layer, at=at, tags=(tag,)), "Ask for a gesture"))
+            tagged.addAction(
+                tag, lambda tag=tag: ask(a.Gesture(layer=layer, at=at, tags=(tag,)), "Ask for a gesture")
+            )
     certain = menu.addMenu("A certain one …")
     for stance in graph.stances.values():
         some = [x for k in ("gesture", "fidget") for x in graph.of(stance.id, k)]  # type: ignore[arg-type]
         inner = certain.addMenu(stance.name) if some else None
         for x in some:
-            inner.addAction(f"{KIND_MARKS[x.kind]} {x.name}", lambda x=x: ask(a.Play(action=x.id, at=at), f"Ask for {x.name}"))  # type: ignore[union-attr]
+            inner.addAction(
+                f"{KIND_MARKS[x.kind]} {x.name}",
+                lambda x=x: ask(a.Play(action=x.id, at=at), f"Ask for {x.name}"),
+            )  # type: ignore[union-attr]
     certain.menuAction().setVisible(not certain.isEmpty())
     if layer == "head":
         menu.addSeparator()
@@ -129,9 +143,13 @@ def _layer_items(menu: QMenu, project: Project, layer: Layer, at: float | None, 
         menu.addAction("Shake the head", lambda: ask(a.Shake(at=at), "Ask for a shake of the head"))
     menu.addSeparator()
     for stance in graph.stances.values():
-        menu.addAction(f"Go to {stance.name}", lambda s=stance: ask(a.Go(stance=s.id, at=at), f"Ask for {s.name}"))
+        menu.addAction(
+            f"Go to {stance.name}", lambda s=stance: ask(a.Go(stance=s.id, at=at), f"Ask for {s.name}")
+        )
     if graph.into:
-        menu.addAction("Change to another stance", lambda: ask(a.Change(layer=layer, at=at), "Ask for another stance"))
+        menu.addAction(
+            "Change to another stance", lambda: ask(a.Change(layer=layer, at=at), "Ask for another stance")
+        )
 
 
 def _stage_items(menu: QMenu, parent: QWidget, document: Document, at: float | None, ask: Ask) -> None:
@@ -145,7 +163,10 @@ def _stage_items(menu: QMenu, parent: QWidget, document: Document, at: float | N
     said.addAction("Other words…", lambda: _say(parent, at, ask))
     looks = menu.addMenu("Look at")
     for name in dict.fromkeys(("user", *project.points)):
-        looks.addAction(name.capitalize() if name == "user" else name, lambda n=name: ask(a.Look(to=n, at=at), "Ask for a look"))
+        looks.addAction(
+            name.capitalize() if name == "user" else name,
+            lambda n=name: ask(a.Look(to=n, at=at), "Ask for a look"),
+        )
     looks.addAction("Ahead", lambda: ask(a.Look(to="ahead", at=at), "Ask for a look"))
     looks.addSeparator()
     for word, point in DIRECTIONS.items():

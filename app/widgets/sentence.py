@@ -8,7 +8,9 @@ from PySide6.QtWidgets import QLabel, QSizePolicy, QWidget
 
 
 class Sentence(QLabel):
-    """A line, or two where it is narrow, that gives way where there is no room for it, and then tells all of it in a tooltip."""
+    """A line, or two where it is narrow, that gives way where there is no room for it, and then tells all of
+    it in a tooltip.
+    """
 
     def __init__(self, parent: QWidget) -> None:
         super().__init__(parent)

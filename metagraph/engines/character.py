@@ -5,7 +5,8 @@
     while running:
         pose = character.update(seconds)
 
-It is the desktop's planner and composer, as the runtimes for engines are theirs; all of them make the same of the same.
+It is the desktop's planner and composer, as the runtimes for engines are theirs; all of them make the same of
+the same.
 """
 
 from __future__ import annotations
@@ -28,13 +29,16 @@ from metagraph.playback.player import morphs_at, pose_at
 from metagraph.playback.running_plan import CUT, RunningPlan
 
 LEAP = 3600.0  # seconds an update may move on: all that lies between is planned
-REMEMBERED = 1000  # answers that are kept after what they tell of was forgotten, and happenings nobody asked for
+REMEMBERED = (
+    1000  # answers that are kept after what they tell of was forgotten, and happenings nobody asked for
+)
 
 
 @dataclass(frozen=True, slots=True)
 class Happening:
-    """What began or ended. at: seconds. layer: "speech" for what is said. action: its name; of what is said the line's id, else the
-    text. meta: the id that was asked with, or the model's."""
+    """What began or ended. at: seconds. layer: "speech" for what is said. action: its name; of what is said
+    the line's id, else the text. meta: the id that was asked with, or the model's.
+    """
 
     kind: Literal["begin", "end"]
     at: float
@@ -44,8 +48,9 @@ class Happening:
 
 
 class Character:
-    """One character, played live. export: path of an exported JSON, its GLB beside it, or a project. seed: 32-bit, the project's when
-    None. idle: the models fill the time nobody asks for. stances: where layers begin. ahead: seconds of plan; recent: of past.
+    """One character, played live. export: path of an exported JSON, its GLB beside it, or a project. seed:
+    32-bit, the project's when None. idle: the models fill the time nobody asks for. stances: where layers
+    begin. ahead: seconds of plan; recent: of past.
 
     Raises FileError when the export cannot be read.
     """
@@ -69,7 +74,9 @@ class Character:
         self._count = 0
         self._cut = 0.0
         self._seen = -inf  # when the update before was
-        self._running = RunningPlan(self.project, None if seed is None else seed & 0xFFFFFFFF, stances, idle, ahead)
+        self._running = RunningPlan(
+            self.project, None if seed is None else seed & 0xFFFFFFFF, stances, idle, ahead
+        )
 
     @property
     def plan(self) -> Plan:
@@ -79,12 +86,16 @@ class Character:
     @property
     def problems(self) -> tuple[str, ...]:
         """What the export lacks, in words; actions without a clip show their stance."""
-        return tuple(f"clip '{clip.name}' is missing" for clip in self.project.clips.values() if clip.motion is None)
+        return tuple(
+            f"clip '{clip.name}' is missing" for clip in self.project.clips.values() if clip.motion is None
+        )
 
     def ask(self, request: Mapping[str, Any] | a.AnyAsk) -> str:
-        """Ask for something; return the id it goes by, made where there is none. It is worked in at the next update.
+        """Ask for something; return the id it goes by, made where there is none. It is worked in at the next
+        update.
 
-        `after`: seconds from now; it wins over `at`. What cannot be read is refused, as `answer` tells; nothing is raised.
+        `after`: seconds from now; it wins over `at`. What cannot be read is refused, as `answer` tells;
+        nothing is raised.
         """
         self._count += 1
         made = f"#{self._count}"
@@ -125,14 +136,17 @@ class Character:
     def update(self, now: float) -> Pose:
         """Move on to `now` and return the pose there (rotations `[J, 4]`, translations `[J, 3]`).
 
-        Seconds of the character's own time, which begins at 0, never goes backwards, and leaps an hour at most.
+        Seconds of the character's own time, which begins at 0, never goes backwards, and leaps an hour at
+        most.
         """
         seconds = _seconds(now)
         if seconds is not None and seconds > self.now:
             self.now = min(seconds, self.now + LEAP)
         try:
             self._plan_on()
-        except Exception as error:  # a fault of our own must not stop the game: the character goes on with the plan it has
+        except (
+            Exception
+        ) as error:  # a fault of our own must not stop the game: the character goes on with the plan it has
             for ask in self._queue:
                 self._refuse(ask.id, f"the planner failed: {error}")
             self._queue = []
@@ -156,7 +170,8 @@ class Character:
         self._running.forget(over)
         left = answers(self.plan, self._asked)
         for ident, told in known.items():
-            # What the plan no longer knows was played; so was a look without an end that another has replaced.
+            # What the plan no longer knows was played; so was a look without an end that another has
+            # replaced.
             if told.until is not None and (told.until < over or left[ident].until is None):
                 self._settle(replace(told, state="done"))
             elif told.state in ("refused", "done"):
@@ -174,7 +189,9 @@ class Character:
 
         for layer in LAYERS:
             for cue in self.plan.layers[layer].cues:
-                note(cue.start, cue.end, layer, cue.action.name, cue.meta.partition("+")[0])  # what goes on after a cut is the same
+                note(
+                    cue.start, cue.end, layer, cue.action.name, cue.meta.partition("+")[0]
+                )  # what goes on after a cut is the same
         for speech in self.plan.track.speeches:
             note(speech.start, speech.end, "speech", speech.line or speech.text, speech.id)
         self._seen = self.now
@@ -182,7 +199,9 @@ class Character:
             self._happened = [*self._happened, *sorted(found, key=lambda event: event.at)][-REMEMBERED:]
 
     def events(self) -> tuple[Happening, ...]:
-        """Return what began and ended since this was last asked for, in order of time; of more than 1000 the latest."""
+        """Return what began and ended since this was last asked for, in order of time; of more than 1000 the
+        latest.
+        """
         happened, self._happened = self._happened, []
         return tuple(happened)
 

@@ -1,6 +1,8 @@
-"""The exported JSON, field by field. These types write it, read it and publish its JSON Schema (draft 2020-12).
+"""The exported JSON, field by field. These types write it, read it and publish its JSON Schema (draft
+2020-12).
 
-Times are seconds, lengths metres, Y up, right-handed; quaternions xyzw. An id is never a name and never changes.
+Times are seconds, lengths metres, Y up, right-handed; quaternions xyzw. An id is never a name and never
+changes.
 """
 
 from __future__ import annotations
@@ -19,8 +21,13 @@ Id = Annotated[str, Meta(min_length=1)]
 Seconds = Annotated[float, Meta(ge=0, le=1e9)]
 Number = Annotated[float, Meta(ge=-1e15, le=1e15)]
 Count = Annotated[int, Meta(ge=0, le=1_000_000_000)]
-Quaternion = Annotated[list[Annotated[float, Meta(ge=-2, le=2)]], Meta(min_length=4, max_length=4, description="xyzw, unit length")]
-Vector = Annotated[list[Annotated[float, Meta(ge=-1e6, le=1e6)]], Meta(min_length=3, max_length=3, description="metres")]
+Quaternion = Annotated[
+    list[Annotated[float, Meta(ge=-2, le=2)]],
+    Meta(min_length=4, max_length=4, description="xyzw, unit length"),
+]
+Vector = Annotated[
+    list[Annotated[float, Meta(ge=-1e6, le=1e6)]], Meta(min_length=3, max_length=3, description="metres")
+]
 LayerName = Literal["body", "arms", "head"]
 KindName = Literal["stance", "gesture", "fidget", "transition"]
 LimbName = Literal["left", "right", "both"]
@@ -39,7 +46,9 @@ class Joint(Struct, omit_defaults=True, forbid_unknown_fields=True):
 
 
 class ExportedClip(Struct, forbid_unknown_fields=True):
-    """A clip. animation: its place in the GLB's list of animations, where it bears the same name. sha256: of the file it came from."""
+    """A clip. animation: its place in the GLB's list of animations, where it bears the same name. sha256: of
+    the file it came from.
+    """
 
     id: Id
     name: str
@@ -58,11 +67,13 @@ class ExportedStance(Struct, forbid_unknown_fields=True):
 
 
 class ExportedAction(Struct, forbid_unknown_fields=True):
-    """One use of a clip. start, end: the part of the clip that plays (whole_end: the end is the clip's own). blend_in and
-    blend_out lie inside it; a stance's blend_in is the overlap at its loop's seam. earliest_exit: clip time from which it
-    may be left, or null. joints: the only ones it moves, all when empty. phases: of a gesture, clip seconds of ready, stroke,
-    stroke end and relax; own_phases: ready, stroke_end, relax as the user set them, null where found. cooldown: seconds in
-    which it is not drawn again; spacing: how many others come between, null as never_twice says."""
+    """One use of a clip. start, end: the part of the clip that plays (whole_end: the end is the clip's own).
+    blend_in and blend_out lie inside it; a stance's blend_in is the overlap at its loop's seam.
+    earliest_exit: clip time from which it may be left, or null. joints: the only ones it moves, all when
+    empty. phases: of a gesture, clip seconds of ready, stroke, stroke end and relax; own_phases: ready,
+    stroke_end, relax as the user set them, null where found. cooldown: seconds in which it is not drawn
+    again; spacing: how many others come between, null as never_twice says.
+    """
 
     id: Id
     name: str
@@ -97,9 +108,11 @@ class Transition(Struct, rename={"source": "from", "target": "to"}, forbid_unkno
 
 
 class ExportedMarkov(Struct, forbid_unknown_fields=True):
-    """states: (limb, kind). matrix: rows of probabilities. gap: mean seconds of rest between meta actions. positive,
-    negative: the share of gestures asked for with that tag. tags: for each state the tags it asks for, blanks between them;
-    empty when no state asks for any. lengths: for each state mean and standard deviation of its seconds, or empty."""
+    """states: (limb, kind). matrix: rows of probabilities. gap: mean seconds of rest between meta actions.
+    positive, negative: the share of gestures asked for with that tag. tags: for each state the tags it asks
+    for, blanks between them; empty when no state asks for any. lengths: for each state mean and standard
+    deviation of its seconds, or empty.
+    """
 
     states: list[tuple[LimbName, KindName]]
     matrix: list[list[Annotated[float, Meta(ge=0, le=1)]]]
@@ -107,12 +120,16 @@ class ExportedMarkov(Struct, forbid_unknown_fields=True):
     positive: Annotated[float, Meta(ge=0, le=1)]
     negative: Annotated[float, Meta(ge=0, le=1)]
     tags: list[str] = []
-    lengths: list[Annotated[list[Annotated[float, Meta(ge=0, le=1e6)]], Meta(min_length=2, max_length=2)]] = []
+    lengths: list[
+        Annotated[list[Annotated[float, Meta(ge=0, le=1e6)]], Meta(min_length=2, max_length=2)]
+    ] = []
 
 
 class ExportedLayer(Struct, forbid_unknown_fields=True):
-    """One layer's meta-graph. weights: how strongly it moves each body part. index: the multi-index, stance -> kind -> action
-    ids in the order they were placed. own_markov: the model was edited; otherwise it is the default."""
+    """One layer's meta-graph. weights: how strongly it moves each body part. index: the multi-index, stance
+    -> kind -> action ids in the order they were placed. own_markov: the model was edited; otherwise it is the
+    default.
+    """
 
     start: str | None
     weights: dict[PartName, Annotated[float, Meta(ge=0, le=2)]]
@@ -126,8 +143,9 @@ class ExportedLayer(Struct, forbid_unknown_fields=True):
 
 
 class Base(Struct, forbid_unknown_fields=True):
-    """The pose all offsets are taken against. clip, frame: where it came from; null for the rest pose. rotations and
-    translations: local, one per joint."""
+    """The pose all offsets are taken against. clip, frame: where it came from; null for the rest pose.
+    rotations and translations: local, one per joint.
+    """
 
     clip: str | None
     frame: Count
@@ -136,13 +154,15 @@ class Base(Struct, forbid_unknown_fields=True):
 
 
 class Planner(Struct, forbid_unknown_fields=True):
-    """Constants of planning. alpha: added to an action's count when it is used; an action is drawn with probability
-    likelihood / max(count, 1). never_twice: not the same in a row where there is another. shortest: seconds below which what is
-    left of a cut request is dropped. wait: how late a request may start. window: seconds a request may use that does
-    not say how long. blend: the curve of a blend's weight over its time x. memory: seconds after which a use no longer counts, 0
-    for never. rest: least seconds between two actions of a layer. lookahead: seconds ahead of now that stay as planned.
-    hurry: how many times as fast as made a hold plays at most. least_blend: seconds in which an action comes in that skips
-    its preparation."""
+    """Constants of planning. alpha: added to an action's count when it is used; an action is drawn with
+    probability likelihood / max(count, 1). never_twice: not the same in a row where there is another.
+    shortest: seconds below which what is left of a cut request is dropped. wait: how late a request may
+    start. window: seconds a request may use that does not say how long. blend: the curve of a blend's weight
+    over its time x. memory: seconds after which a use no longer counts, 0 for never. rest: least seconds
+    between two actions of a layer. lookahead: seconds ahead of now that stay as planned. hurry: how many
+    times as fast as made a hold plays at most. least_blend: seconds in which an action comes in that skips
+    its preparation.
+    """
 
     seed: Annotated[int, Meta(ge=0, le=0xFFFFFFFF)]
     alpha: Annotated[float, Meta(ge=0, le=1e15)]
@@ -160,9 +180,11 @@ class Planner(Struct, forbid_unknown_fields=True):
 
 
 class Randomness(Struct, forbid_unknown_fields=True):
-    """How draws are keyed. hash: FNV-1a over the words' UTF-8 bytes, each word closed by a zero byte, begun at
-    offset xor mix(seed), then mixed; all in 32 bits. uniform: (hash + 0.5) / 2^32. pick: the candidate with the smallest
-    -ln(uniform(seed, key, purpose, id)) / weight. test: the hash of seed 1 and the words "a", "b"."""
+    """How draws are keyed. hash: FNV-1a over the words' UTF-8 bytes, each word closed by a zero byte, begun
+    at offset xor mix(seed), then mixed; all in 32 bits. uniform: (hash + 0.5) / 2^32. pick: the candidate
+    with the smallest -ln(uniform(seed, key, purpose, id)) / weight. test: the hash of seed 1 and the words
+    "a", "b".
+    """
 
     hash: Literal["fnv1a32-mix"]
     offset: int
@@ -172,8 +194,9 @@ class Randomness(Struct, forbid_unknown_fields=True):
 
 
 class Expanded(Struct, rename={"targets": "to", "sources": "from"}, forbid_unknown_fields=True):
-    """The ordinary state machine of a layer, in columns: connection n leads from `states[from[n]]` to `states[to[n]]`.
-    leave: clip seconds at which the source may be left, -1 for at any time. blend: seconds."""
+    """The ordinary state machine of a layer, in columns: connection n leads from `states[from[n]]` to
+    `states[to[n]]`. leave: clip seconds at which the source may be left, -1 for at any time. blend: seconds.
+    """
 
     states: list[Id]
     sources: list[int]
@@ -182,16 +205,21 @@ class Expanded(Struct, rename={"targets": "to", "sources": "from"}, forbid_unkno
     blend: list[float]
 
 
-Radians = Annotated[list[Annotated[float, Meta(ge=-100, le=100)]], Meta(min_length=3, max_length=3, description="rotation vector, radians")]
+Radians = Annotated[
+    list[Annotated[float, Meta(ge=-100, le=100)]],
+    Meta(min_length=3, max_length=3, description="rotation vector, radians"),
+]
 Direction = Annotated[list[Annotated[float, Meta(ge=-2, le=2)]], Meta(min_length=3, max_length=3)]
 Place = Annotated[int, Meta(ge=-1, le=1_000_000)]
 Four = Annotated[list[Number], Meta(min_length=4, max_length=4)]
 
 
 class RigEye(Struct, forbid_unknown_fields=True):
-    """An eye, or where one would be, in the head's own space: where it is, and its directions to the left, up and ahead.
-    joint: -1 where none is. turn_left, turn_up: rotation vectors in the joint's own space that turn it a radian. down: the product
-    of these four with the joint's own rotation is how far down it looks already, radians."""
+    """An eye, or where one would be, in the head's own space: where it is, and its directions to the left, up
+    and ahead. joint: -1 where none is. turn_left, turn_up: rotation vectors in the joint's own space that
+    turn it a radian. down: the product of these four with the joint's own rotation is how far down it looks
+    already, radians.
+    """
 
     at: Vector
     left: Direction
@@ -211,18 +239,22 @@ class RigShoulder(Struct, forbid_unknown_fields=True):
 
 
 class RigLooker(Struct, forbid_unknown_fields=True):
-    """A joint that takes part in turning the head: its place in the chain, and its share; all shares together are 1."""
+    """A joint that takes part in turning the head: its place in the chain, and its share; all shares together
+    are 1.
+    """
 
     place: Count
     share: Annotated[float, Meta(ge=0, le=1)]
 
 
 class RigFace(Struct, forbid_unknown_fields=True):
-    """What moves the face. joints: those its channels move. turns: for each channel and joint a rotation vector in the joint's own
-    space, multiplied on the right; shifts: metres in its parent's space; both at 1. The channels: upper_lid_left, upper_lid_right,
-    lower_lid_left, lower_lid_right, blink, jaw_open, then the visemes but silence. follows: how far each lid shuts for an eye that
-    looks down by a radian. lid_joints: the joint of each lid, -1 for none. shut_by: the product of these four with a lid's own
-    rotation is how far it is shut already. morphs: channel -> morph target -> its weight at 1."""
+    """What moves the face. joints: those its channels move. turns: for each channel and joint a rotation
+    vector in the joint's own space, multiplied on the right; shifts: metres in its parent's space; both at 1.
+    The channels: upper_lid_left, upper_lid_right, lower_lid_left, lower_lid_right, blink, jaw_open, then the
+    visemes but silence. follows: how far each lid shuts for an eye that looks down by a radian. lid_joints:
+    the joint of each lid, -1 for none. shut_by: the product of these four with a lid's own rotation is how
+    far it is shut already. morphs: channel -> morph target -> its weight at 1.
+    """
 
     joints: list[Count]
     turns: list[list[Radians]]
@@ -234,10 +266,12 @@ class RigFace(Struct, forbid_unknown_fields=True):
 
 
 class Rig(Struct, forbid_unknown_fields=True):
-    """What of the body breathes and looks. left, up, ahead: the character's directions. chain: the joints from the root to the head.
-    breath: for each of them the axis it turns about in its own space, and the radians at the top of a breath. trunk: its place in
-    the chain; trunk_ahead, head_ahead: ahead in their own space. eyes: left, right. partner: where "user" is unless a point of that
-    name says otherwise, metres; eyes_at_rest: between the eyes in the base pose."""
+    """What of the body breathes and looks. left, up, ahead: the character's directions. chain: the joints
+    from the root to the head. breath: for each of them the axis it turns about in its own space, and the
+    radians at the top of a breath. trunk: its place in the chain; trunk_ahead, head_ahead: ahead in their own
+    space. eyes: left, right. partner: where "user" is unless a point of that name says otherwise, metres;
+    eyes_at_rest: between the eyes in the base pose.
+    """
 
     left: Direction
     up: Direction
@@ -256,12 +290,17 @@ class Rig(Struct, forbid_unknown_fields=True):
 
 
 class ExportedVoice(Struct, forbid_unknown_fields=True):
-    """A line's analysed sound. accents: times of its stressed syllables. weights: how much of each of the 15 visemes (sil, PP, FF,
-    TH, DD, kk, CH, SS, nn, RR, aa, E, I, O, U) the mouth shows, rows evenly spaced from 0 to the duration (at least 1 ms)."""
+    """A line's analysed sound. accents: times of its stressed syllables. weights: how much of each of the 15
+    visemes (sil, PP, FF, TH, DD, kk, CH, SS, nn, RR, aa, E, I, O, U) the mouth shows, rows evenly spaced from
+    0 to the duration (at least 1 ms).
+    """
 
     duration: Seconds
     accents: list[Seconds]
-    weights: Annotated[list[Annotated[list[Annotated[float, Meta(ge=0, le=1)]], Meta(min_length=15, max_length=15)]], Meta(min_length=2)]
+    weights: Annotated[
+        list[Annotated[list[Annotated[float, Meta(ge=0, le=1)]], Meta(min_length=15, max_length=15)]],
+        Meta(min_length=2),
+    ]
 
 
 class Export(Struct, omit_defaults=True, forbid_unknown_fields=True):
@@ -271,7 +310,10 @@ class Export(Struct, omit_defaults=True, forbid_unknown_fields=True):
     name: str
     glb: str
     height: Annotated[float, Meta(gt=0, description="of the skeleton's rest pose, metres")]
-    order: Annotated[list[LayerName], Meta(description="in which layers' offsets are multiplied onto the base pose, from the left")]
+    order: Annotated[
+        list[LayerName],
+        Meta(description="in which layers' offsets are multiplied onto the base pose, from the left"),
+    ]
     joints: list[Joint]
     base: Base
     clips: list[ExportedClip]

@@ -60,8 +60,9 @@ def export(
 ) -> Exported:
     """Write `<name>.json` and `<name>.glb` into a folder.
 
-    expanded: list the expanded state machine as well. mesh: put the character's mesh into the GLB; `character` is it,
-    or its file. Raises ExportError while the project has errors, FileError when a file cannot be written.
+    expanded: list the expanded state machine as well. mesh: put the character's mesh into the GLB;
+    `character` is it, or its file. Raises ExportError while the project has errors, FileError when a file
+    cannot be written.
     """
     warnings = sound(project)
     made = write(project, folder, expanded, character if mesh else None, progress)
@@ -69,7 +70,9 @@ def export(
 
 
 def sound(project: Project) -> tuple[str, ...]:
-    """Return the warnings about a project that can be exported, in words. Raises ExportError with what must be mended first."""
+    """Return the warnings about a project that can be exported, in words. Raises ExportError with what must
+    be mended first.
+    """
     problems = check(project)
     errors = [p for p in problems if p.severity == "error"]
     if errors:
@@ -93,8 +96,8 @@ def write(
     progress: Callable[[int, int, str], None] | None = None,
     base: Path | None = None,
 ) -> Exported:
-    """Write a project that has clips without asking whether it is sound. Arguments as for `export`. base: the folder its lines' sounds are
-    relative to; they are copied into `lines/`, where it is given.
+    """Write a project that has clips without asking whether it is sound. Arguments as for `export`. base: the
+    folder its lines' sounds are relative to; they are copied into `lines/`, where it is given.
     """
     tell = progress or (lambda done, total, words: None)
     assert project.skeleton is not None
@@ -115,7 +118,9 @@ def write(
 
 
 def _sounds(document: c.Export, folder: Path, base: Path) -> tuple[tuple[Path, ...], tuple[str, ...]]:
-    """Copy the sounds of a document's lines beside it, and name them there; return the files, and what is missing, in words."""
+    """Copy the sounds of a document's lines beside it, and name them there; return the files, and what is
+    missing, in words.
+    """
     lines = [(ident, line) for ident, line in document.lines.items() if line.audio]
     names = unique_names([Path(str(line.audio)).stem for _, line in lines])
     files, missing = [], []
@@ -125,7 +130,11 @@ def _sounds(document: c.Export, folder: Path, base: Path) -> tuple[tuple[Path, .
         try:
             content = source.read_bytes() if line.channel is None else _channel(source, line.channel)
         except (OSError, FileError) as error:
-            cause = f"{source.name} cannot be read ({error.strerror})" if isinstance(error, OSError) else str(error)
+            cause = (
+                f"{source.name} cannot be read ({error.strerror})"
+                if isinstance(error, OSError)
+                else str(error)
+            )
             missing.append(f"the sound of line '{ident}' is left out: {cause}")
             continue
         write_atomically(folder / inside, content)
@@ -135,7 +144,9 @@ def _sounds(document: c.Export, folder: Path, base: Path) -> tuple[tuple[Path, .
 
 
 def _channel(source: Path, channel: int) -> bytes:
-    """Return one channel of a sound as a WAV file of its own: what engines play have no channels to choose. Raises FileError."""
+    """Return one channel of a sound as a WAV file of its own: what engines play have no channels to choose.
+    Raises FileError.
+    """
     import io
 
     import soundfile
@@ -148,7 +159,9 @@ def _channel(source: Path, channel: int) -> bytes:
     return out.getvalue()
 
 
-def _write_glb(path: Path, clips: list[Clip], skeleton: Skeleton, character: Path | Character | None) -> list[str]:
+def _write_glb(
+    path: Path, clips: list[Clip], skeleton: Skeleton, character: Path | Character | None
+) -> list[str]:
     """Write the GLB; return what is not in it, in words."""
     from metagraph.formats.gltf import read_character
     from metagraph.formats.gltf_writer import write_glb
@@ -157,7 +170,10 @@ def _write_glb(path: Path, clips: list[Clip], skeleton: Skeleton, character: Pat
         path.parent.mkdir(parents=True, exist_ok=True)
     except OSError as error:
         raise FileError(
-            path.parent, f"cannot be made ({error.strerror})", "on making the folder", "Choose a folder you may write to."
+            path.parent,
+            f"cannot be made ({error.strerror})",
+            "on making the folder",
+            "Choose a folder you may write to.",
         ) from None
     notes = []
     body = read_character(character) if isinstance(character, Path) else character
@@ -207,7 +223,11 @@ def to_document(project: Project, glb: str, names: tuple[str, ...], expanded: bo
         layers={layer: _layer(project, project.graphs[layer]) for layer in LAYERS},
         planner=_planner(project.settings),
         randomness=c.Randomness(
-            "fnv1a32-mix", choice.OFFSET, choice.PRIME, [16, choice.MIX[0], 13, choice.MIX[1], 16], choice.key32(1, "a", "b")
+            "fnv1a32-mix",
+            choice.OFFSET,
+            choice.PRIME,
+            [16, choice.MIX[0], 13, choice.MIX[1], 16],
+            choice.key32(1, "a", "b"),
         ),
         roles=dict(project.roles),
         parts=dict(project.parts),
@@ -295,7 +315,9 @@ def _phases(project: Project, action: Action) -> tuple[list[float], list[float |
         return [], []
     found, t = phases(project, action), action.timing
     own = [t.ready, t.stroke_end, t.relax]
-    return [found.ready, found.stroke, found.stroke_end, found.relax], own if any(x is not None for x in own) else []
+    return [found.ready, found.stroke, found.stroke_end, found.relax], own if any(
+        x is not None for x in own
+    ) else []
 
 
 def _expanded(project: Project, graph: MetaGraph) -> c.Expanded:

@@ -1,6 +1,7 @@
 """The expanded machine with names, numbers and conditions, as engines' own state machines want it.
 
-Every layer becomes one machine: a state for each action, an arrow for each implied connection. What asks for an arrow:
+Every layer becomes one machine: a state for each action, an arrow for each implied connection. What asks for
+an arrow:
 
     "done"    the source has come to its end (or to where it may be left)
     "action"  the layer's number `<layer>_action` is the target's, and the trigger `<layer>_play` was pulled
@@ -31,8 +32,10 @@ Array = NDArray[Any]
 
 @dataclass(frozen=True, slots=True)
 class State:
-    """An action as a state. number: from 1 on, unique in its layer. name: unique in the whole export, letters, digits and "_";
-    its animation bears it, too. seconds: how long it plays. loop: whether it repeats until something else is asked."""
+    """An action as a state. number: from 1 on, unique in its layer. name: unique in the whole export,
+    letters, digits and "_"; its animation bears it, too. seconds: how long it plays. loop: whether it repeats
+    until something else is asked.
+    """
 
     number: int
     name: str
@@ -43,8 +46,10 @@ class State:
 
 @dataclass(frozen=True, slots=True)
 class Arrow:
-    """A connection between states `source` and `target`. leave: seconds of the source's animation from which it may be taken,
-    None for at any time. blend: seconds. values: of `<layer>_action` or `<layer>_stance`, one of which must be set."""
+    """A connection between states `source` and `target`. leave: seconds of the source's animation from which
+    it may be taken, None for at any time. blend: seconds. values: of `<layer>_action` or `<layer>_stance`,
+    one of which must be set.
+    """
 
     source: State
     target: State
@@ -115,7 +120,11 @@ def _machine(project: Project, graph: MetaGraph, named: Mapping[str, str]) -> Ma
         start, end = project.span(action)
         states[action.id] = State(number, named[action.id], action, end - start, action.kind == "stance")
     part = anatomy.parts(project)
-    joints = tuple(n for n, p in zip(project.skeleton.names, part, strict=True) if p in REACH[graph.layer] and graph.weight(p) > 0)
+    joints = tuple(
+        n
+        for n, p in zip(project.skeleton.names, part, strict=True)
+        if p in REACH[graph.layer] and graph.weight(p) > 0
+    )
     machine = Machine(graph.layer, graph, tuple(states.values()), (), stances, joints)
     arrows = tuple(arrow for arrow in _arrows(project, machine, states))
     return replace(machine, arrows=arrows)
@@ -139,8 +148,14 @@ def _arrows(project: Project, machine: Machine, states: Mapping[str, State]) -> 
         source, target = states[row.source], states[row.target]
         begin = project.span(source.action)[0]
         leave = None if row.leave is None else min(max(0.0, row.leave - begin), source.seconds)
-        if target.action.kind == "stance" and source.action.kind != "stance" and target is machine.rest(target.action.stance):
-            last = max(0.0, source.seconds - source.action.timing.blend_out)  # so that the blend ends with the action
+        if (
+            target.action.kind == "stance"
+            and source.action.kind != "stance"
+            and target is machine.rest(target.action.stance)
+        ):
+            last = max(
+                0.0, source.seconds - source.action.timing.blend_out
+            )  # so that the blend ends with the action
             yield Arrow(source, target, last, row.blend, "done")
             continue
         ends = (target.action.stance, str(target.action.end_stance))
@@ -150,8 +165,9 @@ def _arrows(project: Project, machine: Machine, states: Mapping[str, State]) -> 
 
 
 def animations(project: Project, machines: tuple[Machine, ...]) -> list[Clip]:
-    """Return an animation for every state: the part of its clip that plays; joints that the action does not move stand as its
-    stance begins. Actions whose clip is missing stand in it, too."""
+    """Return an animation for every state: the part of its clip that plays; joints that the action does not
+    move stand as its stance begins. Actions whose clip is missing stand in it, too.
+    """
     return [_animation(project, machine, state) for machine in machines for state in machine.states]
 
 
@@ -179,9 +195,12 @@ def _animation(project: Project, machine: Machine, state: State) -> Clip:
     return Clip(state.name, project.skeleton, fps, rotations, translations[:, list(translated)], translated)
 
 
-def write_machine_glb(project: Project, machines: tuple[Machine, ...], path: Path, character: Character | None) -> None:
-    """Write the GLB engines' own state machines play: the joints' nodes stand in the base pose, against which additive layers are
-    taken, and every state has an animation of its name. Raises FileError."""
+def write_machine_glb(
+    project: Project, machines: tuple[Machine, ...], path: Path, character: Character | None
+) -> None:
+    """Write the GLB engines' own state machines play: the joints' nodes stand in the base pose, against which
+    additive layers are taken, and every state has an animation of its name. Raises FileError.
+    """
     from metagraph.formats.gltf_writer import write_glb
 
     assert project.skeleton is not None

@@ -33,8 +33,9 @@ from metagraph.playback.life.body import Body
 
 
 def read_export(path: str | Path, motions: bool = True, resolved: bool = False) -> Project:
-    """Read an export back into a project with the same graph, ids and constants. motions: load the clips from its GLB. resolved: take
-    gestures' phases, the base pose and the rig as the export has them, as a runtime does, instead of finding them anew.
+    """Read an export back into a project with the same graph, ids and constants. motions: load the clips from
+    its GLB. resolved: take gestures' phases, the base pose and the rig as the export has them, as a runtime
+    does, instead of finding them anew.
 
     Raises FileError naming the field that is wrong as a path into the JSON.
     """
@@ -42,7 +43,9 @@ def read_export(path: str | Path, motions: bool = True, resolved: bool = False) 
     try:
         document = msgspec.json.decode(path.read_bytes(), type=c.Export)
     except OSError as error:
-        raise FileError(path, f"cannot be read ({error.strerror})", "on opening it", "Check that it is there.") from None
+        raise FileError(
+            path, f"cannot be read ({error.strerror})", "on opening it", "Check that it is there."
+        ) from None
     except (msgspec.MsgspecError, RecursionError, UnicodeDecodeError) as error:
         cause, _, where = str(error).partition(" - at ")
         where = where.strip("`") or "$"
@@ -67,17 +70,27 @@ def _project(path: Path, document: c.Export, motions: bool, resolved: bool) -> P
 
         takes = read_gltf_clips(path.parent / document.glb)
     # Clips of one frame are passed over where a file has longer ones, so they do not count as takes.
-    longer = sorted(x.animation for x in document.clips if x.frames > 1) or [x.animation for x in document.clips]
+    longer = sorted(x.animation for x in document.clips if x.frames > 1) or [
+        x.animation for x in document.clips
+    ]
     clips: dict[str, ClipEntry] = {}
     for n, clip in enumerate(document.clips):
         if clip.id in clips:
             raise DataError(f"$.clips[{n}].id", f"'{clip.id}' is used twice")
         if motions and clip.animation >= len(takes):
-            raise DataError(f"$.clips[{n}].animation", f"the GLB has {len(takes)} animations, no number {clip.animation}")
+            raise DataError(
+                f"$.clips[{n}].animation", f"the GLB has {len(takes)} animations, no number {clip.animation}"
+            )
         motion = takes[clip.animation] if motions else None
-        motion = replace(motion, skeleton=skeleton) if motion is not None and motion.skeleton.names == skeleton.names else motion
+        motion = (
+            replace(motion, skeleton=skeleton)
+            if motion is not None and motion.skeleton.names == skeleton.names
+            else motion
+        )
         take = longer.index(clip.animation) if clip.animation in longer else len(longer) + n
-        clips[clip.id] = ClipEntry(clip.id, clip.name, document.glb, take, clip.sha256, clip.frames, clip.fps, motion)
+        clips[clip.id] = ClipEntry(
+            clip.id, clip.name, document.glb, take, clip.sha256, clip.frames, clip.fps, motion
+        )
     p = document.planner
     base = BasePose(document.base.clip, document.base.frame)
     body = None
@@ -85,7 +98,9 @@ def _project(path: Path, document: c.Export, motions: bool, resolved: bool) -> P
         clips[BASE] = _base(document, skeleton)
         base = BasePose(BASE)
         body = _body(document.rig, skeleton) if document.rig is not None else LIFELESS
-    graphs: dict[Layer, MetaGraph] = {layer: _graph(layer, document.layers[layer], resolved) for layer in LAYERS}
+    graphs: dict[Layer, MetaGraph] = {
+        layer: _graph(layer, document.layers[layer], resolved) for layer in LAYERS
+    }
     return Project(
         name=document.name,
         skeleton=skeleton,
@@ -94,7 +109,11 @@ def _project(path: Path, document: c.Export, motions: bool, resolved: bool) -> P
         base=base,
         roles=dict(document.roles),
         parts=dict(document.parts),
-        markov={layer: _markov(layer, document.layers[layer].markov) for layer in LAYERS if document.layers[layer].own_markov},
+        markov={
+            layer: _markov(layer, document.layers[layer].markov)
+            for layer in LAYERS
+            if document.layers[layer].own_markov
+        },
         settings=Settings(p.alpha, p.seed, p.never_twice, p.shortest, p.wait, p.memory, p.rest, p.lookahead),
         life=document.life,
         body=body,
@@ -116,16 +135,29 @@ def _base(document: c.Export, skeleton: Skeleton) -> ClipEntry:
     for field, rows in (("rotations", base.rotations), ("translations", base.translations)):
         if len(rows) != joints:
             raise DataError(f"$.base.{field}", f"should be {joints} rows, one for each joint")
-    motion = Clip(BASE, skeleton, 30.0, np.array([base.rotations]), np.array([base.translations]), tuple(range(joints)))
+    motion = Clip(
+        BASE, skeleton, 30.0, np.array([base.rotations]), np.array([base.translations]), tuple(range(joints))
+    )
     return ClipEntry(BASE, BASE, document.glb, 0, "", 1, 30.0, motion)
 
 
 def _body(rig: c.Rig, skeleton: Skeleton) -> Body:
     """Return the body of an export's rig. Raises DataError where it does not fit the joints."""
     faces = {len(rig.face.joints)} | {len(row) for row in (*rig.face.turns, *rig.face.shifts)}
-    joints = [*rig.chain, *rig.face.joints, *rig.face.lid_joints, *(s.joint for s in rig.shoulders), *(e.joint for e in rig.eyes)]
+    joints = [
+        *rig.chain,
+        *rig.face.joints,
+        *rig.face.lid_joints,
+        *(s.joint for s in rig.shoulders),
+        *(e.joint for e in rig.eyes),
+    ]
     places = [rig.trunk, *(x.place for x in rig.lookers)]
-    fits = rig.chain and len(rig.breath) == len(rig.chain) and max(joints) < len(skeleton) and max(places) < len(rig.chain)
+    fits = (
+        rig.chain
+        and len(rig.breath) == len(rig.chain)
+        and max(joints) < len(skeleton)
+        and max(places) < len(rig.chain)
+    )
     if not fits or len(faces) > 1 or {len(rig.face.turns), len(rig.face.shifts)} != {len(CHANNELS)}:
         raise DataError("$.rig", "does not fit the joints")
     return read_rig(rig)
@@ -145,11 +177,19 @@ def _skeleton(joints: list[c.Joint]) -> Skeleton:
 
 def _markov(layer: Layer, model: c.ExportedMarkov) -> Markov:
     if model.tags and len(model.tags) != len(model.states):
-        raise DataError(f"$.layers.{layer}.markov.tags", f"should be {len(model.states)} texts, one for each state")
+        raise DataError(
+            f"$.layers.{layer}.markov.tags", f"should be {len(model.states)} texts, one for each state"
+        )
     states = [
-        f"{limb} {kind} {tag}".rstrip() for (limb, kind), tag in zip(model.states, model.tags or [""] * len(model.states), strict=True)
+        f"{limb} {kind} {tag}".rstrip()
+        for (limb, kind), tag in zip(model.states, model.tags or [""] * len(model.states), strict=True)
     ]
-    more = {"gap": model.gap, "positive": model.positive, "negative": model.negative, "lengths": model.lengths}
+    more = {
+        "gap": model.gap,
+        "positive": model.positive,
+        "negative": model.negative,
+        "lengths": model.lengths,
+    }
     return markov_from(layer, {"states": states, "matrix": model.matrix, **more}, f"$.layers.{layer}.markov")
 
 
@@ -171,11 +211,34 @@ def _graph(layer: Layer, data: c.ExportedLayer, resolved: bool) -> MetaGraph:
         elif resolved and a.kind == "gesture":  # an export that does not tell them yet
             stroke = (a.start + a.end) / 2 if stroke is None else stroke
             own = [stroke] * 3
-        timing = Timing(a.start, None if a.whole_end else a.end, a.blend_in, a.blend_out, a.loop, a.earliest_exit, stroke, *own)
+        timing = Timing(
+            a.start,
+            None if a.whole_end else a.end,
+            a.blend_in,
+            a.blend_out,
+            a.loop,
+            a.earliest_exit,
+            stroke,
+            *own,
+        )
         actions[a.id] = Action(
-            a.id, a.clip, a.kind, layer, a.stance, a.name, a.end_stance, timing, a.limb, tuple(a.joints), tuple(a.tags), a.likelihood,
-            a.cooldown, a.spacing,
-        )  # fmt: skip
+            a.id,
+            a.clip,
+            a.kind,
+            layer,
+            a.stance,
+            a.name,
+            a.end_stance,
+            timing,
+            a.limb,
+            tuple(a.joints),
+            tuple(a.tags),
+            a.likelihood,
+            a.cooldown,
+            a.spacing,
+        )
     if unknown := [part for part in data.own_weights if part not in data.weights]:
         raise DataError(f"{where}.own_weights", f"weights say nothing of '{unknown[0]}'")
-    return MetaGraph(layer, stances, actions, data.start, {part: data.weights[part] for part in data.own_weights})
+    return MetaGraph(
+        layer, stances, actions, data.start, {part: data.weights[part] for part in data.own_weights}
+    )

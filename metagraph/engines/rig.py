@@ -1,4 +1,6 @@
-"""What the life layers need of a character, resolved for runtimes: they need not find faces, nor analyse sound."""
+"""What the life layers need of a character, resolved for runtimes: they need not find faces, nor analyse
+sound.
+"""
 
 from __future__ import annotations
 
@@ -30,7 +32,9 @@ def rig_of(project: Project) -> c.Rig | None:
         ahead=list(body.ahead),
         chain=body.chain.tolist(),
         breath=[[*axis, angle] for axis, angle in body.breath],
-        shoulders=[c.RigShoulder(joint, list(turn)) for joint, turn in zip(shoulders, body.shoulders, strict=True)],
+        shoulders=[
+            c.RigShoulder(joint, list(turn)) for joint, turn in zip(shoulders, body.shoulders, strict=True)
+        ],
         lookers=[c.RigLooker(x.place, x.share) for x in body.lookers],
         trunk=body.trunk,
         trunk_ahead=list(body.trunk_ahead),
@@ -52,7 +56,14 @@ def rig_of(project: Project) -> c.Rig | None:
 
 def _eye(eye: EyeAt, joint: int) -> c.RigEye:
     return c.RigEye(
-        list(eye.at), list(eye.left), list(eye.up), list(eye.ahead), joint, list(eye.turn_left), list(eye.turn_up), list(eye.down)
+        list(eye.at),
+        list(eye.left),
+        list(eye.up),
+        list(eye.ahead),
+        joint,
+        list(eye.turn_left),
+        list(eye.turn_up),
+        list(eye.down),
     )
 
 
@@ -60,7 +71,14 @@ def read_rig(rig: c.Rig) -> Body:
     """Return an exported body as the life layers take it."""
     eyes = tuple(
         EyeAt(
-            _three(e.at), _three(e.left), _three(e.up), _three(e.ahead), e.joint >= 0, _three(e.turn_left), _three(e.turn_up), _four(e.down)
+            _three(e.at),
+            _three(e.left),
+            _three(e.up),
+            _three(e.ahead),
+            e.joint >= 0,
+            _three(e.turn_left),
+            _three(e.turn_up),
+            _four(e.down),
         )
         for e in rig.eyes
     )
@@ -107,7 +125,9 @@ def _lifeless() -> Body:
     shapes, first = np.zeros((len(CHANNELS), 0, 3)), np.zeros(1, int)
     face = FaceRig((), np.zeros(0, int), shapes, shapes, np.zeros(4), np.full(4, -1), np.zeros((4, 4)), {})
     breath = ((axes[0], 0.0),)
-    return Body(*axes, first, breath, first, first, (), (), 0, axes[2], axes[2], (eye, eye), axes[2], none, face)
+    return Body(
+        *axes, first, breath, first, first, (), (), 0, axes[2], axes[2], (eye, eye), axes[2], none, face
+    )
 
 
 LIFELESS = _lifeless()  # of an export without a rig
@@ -125,7 +145,11 @@ def _four(values: Sequence[float]) -> Quaternion:
 
 def voices_of(project: Project) -> dict[str, c.ExportedVoice]:
     """Return the voices of a project's lines, as far as their sound was read."""
-    return {line: _voice(voice) for line, voice in project.voices.items() if line in project.lines and isinstance(voice, Voice)}
+    return {
+        line: _voice(voice)
+        for line, voice in project.voices.items()
+        if line in project.lines and isinstance(voice, Voice)
+    }
 
 
 def _voice(voice: Voice) -> c.ExportedVoice:

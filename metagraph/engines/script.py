@@ -1,4 +1,6 @@
-"""What conformance asks: scripts of requests over time for whatever a project has, one for each rule of planner and life."""
+"""What conformance asks: scripts of requests over time for whatever a project has, one for each rule of
+planner and life.
+"""
 
 from __future__ import annotations
 
@@ -16,7 +18,9 @@ Ask = Mapping[str, Any]
 
 @dataclass(frozen=True)
 class Step:
-    """At `now`, `asks` become known and the plan is extended to `end` seconds; then what ended before `forget` is forgotten."""
+    """At `now`, `asks` become known and the plan is extended to `end` seconds; then what ended before
+    `forget` is forgotten.
+    """
 
     now: float
     end: float
@@ -26,7 +30,9 @@ class Step:
 
 @dataclass(frozen=True)
 class Case:
-    """One script. times: at which poses are compared, the most telling ones where empty. alive: with the life layers, without, both."""
+    """One script. times: at which poses are compared, the most telling ones where empty. alive: with the life
+    layers, without, both.
+    """
 
     name: str
     about: str
@@ -61,13 +67,29 @@ def _some(project: Project, layer: Layer, *kinds: Kind) -> list[Action]:
 
 
 def _alone(project: Project) -> Iterator[Case]:
-    yield _once("nothing is asked", "no requests and no models: every layer rests in its stance", [], alive=(False, True))
-    yield _once("the models alone", "the Markov models fill half a minute", [], 30.0, idle=True, alive=(False, True))
-    yield _once("the models with another seed", "every draw is another one", [], 30.0, idle=True, seed=0xFFFFFFFF)
+    yield _once(
+        "nothing is asked",
+        "no requests and no models: every layer rests in its stance",
+        [],
+        alive=(False, True),
+    )
+    yield _once(
+        "the models alone", "the Markov models fill half a minute", [], 30.0, idle=True, alive=(False, True)
+    )
+    yield _once(
+        "the models with another seed", "every draw is another one", [], 30.0, idle=True, seed=0xFFFFFFFF
+    )
     yield _once("no time at all", "a plan of 0 seconds", [], 0.0, idle=True)
     for layer in LAYERS:
         for stance in list(project.graphs[layer].stances)[1:3]:
-            yield _once(f"the {layer} begin in {stance}", "a start stance that was chosen", [], 8.0, idle=True, stances={layer: stance})
+            yield _once(
+                f"the {layer} begin in {stance}",
+                "a start stance that was chosen",
+                [],
+                8.0,
+                idle=True,
+                stances={layer: stance},
+            )
 
 
 def _layers(project: Project) -> Iterator[Case]:
@@ -78,7 +100,13 @@ def _layers(project: Project) -> Iterator[Case]:
                 found = _some(project, layer, "gesture", "fidget", "transition")
                 asks += [_ask(f"{layer}1", "action", 1.0, action=found[0].id)] if found else []
             if len(asks) == count:
-                yield _once(f"layers {' '.join(layers)}", "their offsets add up", asks, 6.0, times=(1.1, 1.4, 1.8, 2.5, 5.9))
+                yield _once(
+                    f"layers {' '.join(layers)}",
+                    "their offsets add up",
+                    asks,
+                    6.0,
+                    times=(1.1, 1.4, 1.8, 2.5, 5.9),
+                )
 
 
 def _requests(project: Project) -> Iterator[Case]:
@@ -88,10 +116,20 @@ def _requests(project: Project) -> Iterator[Case]:
             continue
         one = gestures[0]
         asks = [_ask(f"g{n}", "gesture", 0.5 + 3 * n, layer=layer) for n in range(12)]
-        yield _once(f"{layer}: the same asked over and over", "counts make used actions rarer; never twice, spacing, cooldown", asks, 40.0)
+        yield _once(
+            f"{layer}: the same asked over and over",
+            "counts make used actions rarer; never twice, spacing, cooldown",
+            asks,
+            40.0,
+        )
         tags = sorted({t for a in gestures for t in a.tags})[:3]
-        asks = [_ask(f"t{tag}", "gesture", 0.5 + 3 * n, layer=layer, tags=[tag]) for n, tag in enumerate(tags)]
-        asks += [_ask(f"l{limb}", "gesture", 10.0 + 3 * n, layer=layer, limb=limb) for n, limb in enumerate(("left", "right", "both"))]
+        asks = [
+            _ask(f"t{tag}", "gesture", 0.5 + 3 * n, layer=layer, tags=[tag]) for n, tag in enumerate(tags)
+        ]
+        asks += [
+            _ask(f"l{limb}", "gesture", 10.0 + 3 * n, layer=layer, limb=limb)
+            for n, limb in enumerate(("left", "right", "both"))
+        ]
         yield _once(f"{layer}: tags and limbs", "all tags must be there; the limb is an order", asks, 24.0)
         asks = [
             _ask("early", "gesture", layer=layer, stroke=0.05),
@@ -109,26 +147,46 @@ def _requests(project: Project) -> Iterator[Case]:
             _ask("bare", "action", 16.0, action=one.id, prepare=False),
             _ask("all", "gesture", layer=layer, stroke=24.0, hold=1.2, prepare=False),
         ]
-        yield _once(f"{layer}: holds and preparations", "holds stretch and hurry; preparations skip", asks, 30.0)
-        asks = [_ask("wanted", "gesture", 1.0, layer=layer, duration=0.6), _ask("while", "gesture", 6.0, layer=layer, duration=5.0)]
+        yield _once(
+            f"{layer}: holds and preparations", "holds stretch and hurry; preparations skip", asks, 30.0
+        )
+        asks = [
+            _ask("wanted", "gesture", 1.0, layer=layer, duration=0.6),
+            _ask("while", "gesture", 6.0, layer=layer, duration=5.0),
+        ]
         yield _once(f"{layer}: for a certain time", "a window, and one action in it", asks)
     for layer in LAYERS:
         fidgets = _some(project, layer, "fidget")
         if fidgets:
-            asks = [_ask("f1", "fidget", 1.0, layer=layer), _ask("f2", "fidget", 1.0, layer=layer, priority=2)]
+            asks = [
+                _ask("f1", "fidget", 1.0, layer=layer),
+                _ask("f2", "fidget", 1.0, layer=layer, priority=2),
+            ]
             yield _once(f"{layer}: fidgets", "two at once, one more important", asks)
 
 
 def _conflicts(project: Project) -> Iterator[Case]:
-    layer: Layer = "arms" if _some(project, "arms", "gesture") else next((x for x in LAYERS if _some(project, x, "gesture")), "arms")
+    layer: Layer = (
+        "arms"
+        if _some(project, "arms", "gesture")
+        else next((x for x in LAYERS if _some(project, x, "gesture")), "arms")
+    )
     if not _some(project, layer, "gesture"):
         return
 
     def g(ident: str, at: float, **more: Any) -> Ask:
         return _ask(ident, "gesture", at, layer=layer, **more)
 
-    yield _once("ties of start and priority", "of two alike, the id that sorts first goes first", [g("b", 2.0), g("a", 2.0), g("C", 2.0)])
-    yield _once("ties of start", "the more important goes first", [g("low", 2.0, priority=1), g("high", 2.0, priority=5)])
+    yield _once(
+        "ties of start and priority",
+        "of two alike, the id that sorts first goes first",
+        [g("b", 2.0), g("a", 2.0), g("C", 2.0)],
+    )
+    yield _once(
+        "ties of start",
+        "the more important goes first",
+        [g("low", 2.0, priority=1), g("high", 2.0, priority=5)],
+    )
     asks = [g("long", 1.0, duration=8.0, resume=True), g("urgent", 3.0, priority=3)]
     yield _once("cut and resumed", "what is cut goes on with its remainder", asks)
     asks = [g("long", 1.0, duration=8.0), g("urgent", 3.0, priority=3)]
@@ -137,18 +195,31 @@ def _conflicts(project: Project) -> Iterator[Case]:
     yield _once("a queue", "what cannot begin waits, at most so long", asks, 24.0)
     asks = [g("long", 1.0, duration=6.0), g("lesser", 2.0, priority=0)]
     yield _once("covered", "a lesser one waits too long", asks)
-    asks = [g("r", 1.0, duration=10.0, resume=True), g("u1", 3.0, priority=2), g("u2", 6.0, priority=3), g("u3", 6.1, priority=3)]
+    asks = [
+        g("r", 1.0, duration=10.0, resume=True),
+        g("u1", 3.0, priority=2),
+        g("u2", 6.0, priority=3),
+        g("u3", 6.1, priority=3),
+    ]
     yield _once("cut again and again", "each remainder has a key of its own", asks, 24.0)
     asks = [g("close", 1.0), g("soon", 1.3, priority=9)]
     yield _once("no room", "nothing fits before something more important", asks)
     asks = [g("p1", 4.0, priority=2), g("p2", 9.0, priority=2)]
-    yield _once("asked amid what the models do", "all that is asked for goes before all that models write", asks, 24.0, idle=True)
+    yield _once(
+        "asked amid what the models do",
+        "all that is asked for goes before all that models write",
+        asks,
+        24.0,
+        idle=True,
+    )
 
 
 def _stances(project: Project) -> Iterator[Case]:
     for layer in LAYERS:
         graph = project.graphs[layer]
-        begin = next((s for s in (graph.start, *graph.stances) if s is not None and graph.of(s, "stance")), None)
+        begin = next(
+            (s for s in (graph.start, *graph.stances) if s is not None and graph.of(s, "stance")), None
+        )
         if begin is None:
             continue
         lost = [s for s in graph.stances if s != begin and chain(graph, begin, s) is None]
@@ -157,31 +228,64 @@ def _stances(project: Project) -> Iterator[Case]:
             there = [a for a in graph.actions.values() if a.stance == stance or a.end_stance == stance]
             asks = [_ask("there", "stance", 1.0, layer=layer, stance=stance)]
             asks += [_ask(f"p{n}", "action", 2.0 + 3 * n, action=a.id) for n, a in enumerate(there[:2])]
-            yield _once(f"{layer}: no way to {stance}", "what cannot be reached, or could not rest, is refused", asks)
+            yield _once(
+                f"{layer}: no way to {stance}", "what cannot be reached, or could not rest, is refused", asks
+            )
         ways = {s: way for s in graph.stances if s != begin and (way := chain(graph, begin, s))}
         if not ways:
             continue
         far = max(ways, key=lambda s: len(ways[s]))
-        asks = [_ask("there", "stance", 1.0, layer=layer, stance=far), _ask("again", "stance", 8.0, layer=layer, stance=far)]
+        asks = [
+            _ask("there", "stance", 1.0, layer=layer, stance=far),
+            _ask("again", "stance", 8.0, layer=layer, stance=far),
+        ]
         asks += [_ask("back", "stance", 9.0, layer=layer, stance=begin)]
-        asks += [_ask(f"hop{n}", "stance", 20.0 + 5 * n, layer=layer, stance=far if n % 2 == 0 else begin) for n in range(8)]
-        yield _once(f"{layer}: to a stance and back", "the shortest chain of transitions; already there", asks, 64.0, alive=(False, True))
-        asks = [_ask("stay", "stance", 1.0, layer=layer, stance=far, stay=True), _ask("leave", "withdraw", 30.0, what="stay")]
+        asks += [
+            _ask(f"hop{n}", "stance", 20.0 + 5 * n, layer=layer, stance=far if n % 2 == 0 else begin)
+            for n in range(8)
+        ]
+        yield _once(
+            f"{layer}: to a stance and back",
+            "the shortest chain of transitions; already there",
+            asks,
+            64.0,
+            alive=(False, True),
+        )
+        asks = [
+            _ask("stay", "stance", 1.0, layer=layer, stance=far, stay=True),
+            _ask("leave", "withdraw", 30.0, what="stay"),
+        ]
         steps = (Step(0.0, 40.0, (asks[0],)), Step(20.0, 40.0, (asks[1],)))
-        yield Case(f"{layer}: to stay", "the models do not leave a stance that was asked to stay", steps, idle=True)
+        yield Case(
+            f"{layer}: to stay", "the models do not leave a stance that was asked to stay", steps, idle=True
+        )
         asks = [_ask("c1", "change", 1.0, layer=layer), _ask("c2", "change", 6.0, layer=layer)]
         yield _once(f"{layer}: any other stance", "a transition drawn among those there are", asks)
         there = [a for a in _some(project, layer, "gesture", "fidget") if a.stance == far]
         if there:
-            asks = [_ask("p", "action", 1.0, action=there[0].id), _ask("q", "action", 12.0, action=graph.of(begin, "stance")[0].id)]
+            asks = [
+                _ask("p", "action", 1.0, action=there[0].id),
+                _ask("q", "action", 12.0, action=graph.of(begin, "stance")[0].id),
+            ]
             yield _once(
-                f"{layer}: an action of another stance", "transitions lead there first; playing a loop means to go there", asks, 24.0
+                f"{layer}: an action of another stance",
+                "transitions lead there first; playing a loop means to go there",
+                asks,
+                24.0,
             )
             hops: tuple[Step, ...] = (Step(0.0, 20.0, (_ask("p", "action", 1.0, action=there[0].id),)),)
-            hops += (Step(1.2, 20.0, (_ask("u", "stance", layer=layer, stance=begin, priority=4),)), Step(3.0, 22.0))
-            yield Case(f"{layer}: a way that is interrupted", "something more important comes while on the way", hops)
+            hops += (
+                Step(1.2, 20.0, (_ask("u", "stance", layer=layer, stance=begin, priority=4),)),
+                Step(3.0, 22.0),
+            )
+            yield Case(
+                f"{layer}: a way that is interrupted", "something more important comes while on the way", hops
+            )
         hop = _some(project, layer, "transition")[0]
-        asks = [_ask("t", "action", 1.0, action=hop.id), _ask("t2", "action", 6.0, action=hop.name, layer=layer)]
+        asks = [
+            _ask("t", "action", 1.0, action=hop.id),
+            _ask("t2", "action", 6.0, action=hop.name, layer=layer),
+        ]
         yield _once(f"{layer}: a transition by name", "found by its id and by its name", asks)
 
 
@@ -198,7 +302,11 @@ def _refused(project: Project) -> Iterator[Case]:
     ]
     yield _once("what cannot be had", "each is refused, and nothing else suffers", asks, 6.0, idle=True)
     layer: Layer = next((x for x in LAYERS if _some(project, x, "gesture")), "arms")
-    asks = [_ask("past", "gesture", 1.0, layer=layer), _ask("nearly", "gesture", 9.5, layer=layer), _ask("now", "gesture", layer=layer)]
+    asks = [
+        _ask("past", "gesture", 1.0, layer=layer),
+        _ask("nearly", "gesture", 9.5, layer=layer),
+        _ask("now", "gesture", layer=layer),
+    ]
     steps = (Step(0.0, 20.0), Step(10.0, 20.0, tuple(asks)))
     yield Case("asked in the past", "too late is past, a little late waits", steps, idle=True)
     yield Case("asked in the past, at rest", "no model plays meanwhile", steps)
@@ -226,13 +334,27 @@ def _over_time(project: Project) -> Iterator[Case]:
     )
     busy = [Step(0.0, 12.0)]
     for n in range(1, 25):
-        asked = tuple(_ask(f"n{n}.{x}x", "gesture", layer=x, duration=0.5) for x in LAYERS if _some(project, x, "gesture"))
+        asked = tuple(
+            _ask(f"n{n}.{x}x", "gesture", layer=x, duration=0.5)
+            for x in LAYERS
+            if _some(project, x, "gesture")
+        )
         busy.append(Step(n * 3.0, 12.0 + n * 3.0, asked, max(0.0, n * 3.0 - 1.0)))
-    late = [_ask(f"z{n}{x}x", "gesture", 76.0 + 3 * n, layer=x, duration=0.5) for n in range(16) for x in LAYERS]
+    late = [
+        _ask(f"z{n}{x}x", "gesture", 76.0 + 3 * n, layer=x, duration=0.5) for n in range(16) for x in LAYERS
+    ]
     busy.append(Step(75.0, 130.0, tuple(ask for ask in late if _some(project, ask["layer"], "gesture"))))
-    yield Case("much that is forgotten", "counts, spacing and cooldown reach back over what is forgotten", tuple(busy), idle=True)
+    yield Case(
+        "much that is forgotten",
+        "counts, spacing and cooldown reach back over what is forgotten",
+        tuple(busy),
+        idle=True,
+    )
     steps: tuple[Step, ...]
-    asks: tuple[Ask, ...] = (_ask("keep", "gesture", 4.0, layer=layer), _ask("gone", "gesture", 9.0, layer=layer))
+    asks: tuple[Ask, ...] = (
+        _ask("keep", "gesture", 4.0, layer=layer),
+        _ask("gone", "gesture", 9.0, layer=layer),
+    )
     steps = (
         Step(0.0, 20.0, asks),
         Step(2.0, 20.0, (_ask("w", "withdraw", what="gone"),)),
@@ -244,7 +366,11 @@ def _over_time(project: Project) -> Iterator[Case]:
     steps = (Step(0.0, 20.0, asks), Step(2.0, 20.0, (_ask("keep", "gesture", 7.0, layer=layer),)))
     yield Case("asked again under the same id", "the later one counts", steps)
     asks = (_ask("long", "gesture", 1.0, layer=layer, duration=9.0, resume=True),)
-    steps = (Step(0.0, 24.0, asks), Step(3.0, 24.0, (_ask("now", "gesture", layer=layer, priority=3),)), Step(6.0, 30.0))
+    steps = (
+        Step(0.0, 24.0, asks),
+        Step(3.0, 24.0, (_ask("now", "gesture", layer=layer, priority=3),)),
+        Step(6.0, 30.0),
+    )
     yield Case("interrupted live", "the running action is never touched", steps)
 
 
@@ -258,13 +384,41 @@ def _life(project: Project) -> Iterator[Case]:
         _ask("l2", "look", 5.0, to="ahead", duration=1.5),
         _ask("l3", "look", 7.0, to=[-1.0, 0.6, 0.2], amount=0.5),
     ]
-    yield _once("looks", "eyes first, the head after; back when a look ends", asks, idle=False, times=times, alive=both)
-    near = [_ask("l4", "look", 1.0, to=[0.06, 1.58, 0.2]), _ask("l5", "look", 4.0, to=[0.0, 3.0, 0.4], duration=2.0)]
-    yield _once("something near", "what is nearer than a hand is looked at as if it were farther", near, times=times, alive=both)
-    asks = [_ask("s1", "look", 1.0, to="thing", strict=True), _ask("p1", "place", 0.0, name="thing", point=[0.5, 1.0, 1.0])]
-    asks += [_ask(f"m{n}", "place", 2.0 + 0.25 * n, name="thing", point=[0.5 - 0.1 * n, 1.0 + 0.05 * n, 1.0]) for n in range(8)]
+    yield _once(
+        "looks",
+        "eyes first, the head after; back when a look ends",
+        asks,
+        idle=False,
+        times=times,
+        alive=both,
+    )
+    near = [
+        _ask("l4", "look", 1.0, to=[0.06, 1.58, 0.2]),
+        _ask("l5", "look", 4.0, to=[0.0, 3.0, 0.4], duration=2.0),
+    ]
+    yield _once(
+        "something near",
+        "what is nearer than a hand is looked at as if it were farther",
+        near,
+        times=times,
+        alive=both,
+    )
+    asks = [
+        _ask("s1", "look", 1.0, to="thing", strict=True),
+        _ask("p1", "place", 0.0, name="thing", point=[0.5, 1.0, 1.0]),
+    ]
+    asks += [
+        _ask(f"m{n}", "place", 2.0 + 0.25 * n, name="thing", point=[0.5 - 0.1 * n, 1.0 + 0.05 * n, 1.0])
+        for n in range(8)
+    ]
     asks += [_ask("s2", "look", 6.0, to=[0.0, 1.5, -2.0], priority=0), _ask("s3", "look", 8.0, to="user")]
-    yield _once("a thing that moves", "strict looks do not avert; the gaze follows a named point", asks, times=times, alive=both)
+    yield _once(
+        "a thing that moves",
+        "strict looks do not avert; the gaze follows a named point",
+        asks,
+        times=times,
+        alive=both,
+    )
     asks = [
         _ask("b1", "blink", 1.0),
         _ask("b2", "blink", 1.05),
@@ -272,7 +426,14 @@ def _life(project: Project) -> Iterator[Case]:
         _ask("m2", "mode", 8.0, mode="talking"),
         _ask("m3", "mode", 11.0, mode=None),
     ]
-    yield _once("blinks and modes", "blinks asked for; modes change rates", asks, 60.0, times=(0.9, 1.03, 1.1, 9.0, 33.3), alive=both)
+    yield _once(
+        "blinks and modes",
+        "blinks asked for; modes change rates",
+        asks,
+        60.0,
+        times=(0.9, 1.03, 1.1, 9.0, 33.3),
+        alive=both,
+    )
     asks = [
         _ask("t1", "say", 1.0, text="Hello there, nice to see you!"),
         _ask("t2", "say", 4.0, text="Größe, naïve Straße: 42", duration=2.0),
@@ -290,9 +451,13 @@ def _life(project: Project) -> Iterator[Case]:
         alive=both,
     )
     long = (
-        "This is a rather long sentence, which goes on and on, so that many of its syllables are stressed, and nobody stops it for a while."
+        "This is a rather long sentence, which goes on and on, so that many of its syllables are "
+        "stressed, and nobody stops it for a while."
     )
-    asks = [_ask("long", "say", 1.0, text=long), _ask("cut", "say", 14.0, text="Nobody hears the end of this one, ever, at all.")]
+    asks = [
+        _ask("long", "say", 1.0, text=long),
+        _ask("cut", "say", 14.0, text="Nobody hears the end of this one, ever, at all."),
+    ]
     steps = (Step(0.0, 24.0, tuple(asks)), Step(15.0, 24.0, (_ask("w", "withdraw", what="cut"),)))
     yield Case(
         "stressed syllables",
@@ -307,12 +472,25 @@ def _life(project: Project) -> Iterator[Case]:
             _ask("bare", "say", 14.0, line=said[0], gestures=False)
         ]
         yield _once(
-            "lines", "their sound's mouth shapes and their own requests", asks, 24.0, times=(1.3, 1.9, 2.6, 7.4, 14.5, 15.2), alive=both
+            "lines",
+            "their sound's mouth shapes and their own requests",
+            asks,
+            24.0,
+            times=(1.3, 1.9, 2.6, 7.4, 14.5, 15.2),
+            alive=both,
         )
     if any(a.kind == "gesture" for a in project.graphs["head"].actions.values()):
         asks = [_ask("n1", "nod", 1.0), _ask("n2", "shake", 5.0), _ask("n3", "nod", 9.0, priority=2)]
         yield _once("nods", "gestures of the head tagged so, or called so", asks, alive=both)
-    yield _once("two minutes", "what is drawn goes on being drawn", [], 120.0, idle=True, times=(61.3, 99.9, 119.5), alive=both)
+    yield _once(
+        "two minutes",
+        "what is drawn goes on being drawn",
+        [],
+        120.0,
+        idle=True,
+        times=(61.3, 99.9, 119.5),
+        alive=both,
+    )
 
 
 def _chatter(project: Project) -> Iterator[Case]:
@@ -320,13 +498,23 @@ def _chatter(project: Project) -> Iterator[Case]:
         chance = Random(seed)
         now, steps = 0.0, []
         for n in range(24):
-            asks = tuple(_random(project, chance, f"r{n}.{k}x", now) for k in range(chance.choice((0, 1, 1, 2))))
+            asks = tuple(
+                _random(project, chance, f"r{n}.{k}x", now) for k in range(chance.choice((0, 1, 1, 2)))
+            )
             forget = max(0.0, now - 12.0) if n % 6 == 5 else None
             steps.append(Step(round(now, 3), round(now + 14.0, 3), asks, forget))
             now += chance.choice((0.016, 0.2, 1.0, 2.5))
         last = steps[-1].now
         times = tuple(round(last + x, 3) for x in (-4.0, -1.7, 0.1, 0.9, 3.3, 8.0))
-        yield Case(f"chatter {seed}", "asked this and that while it plays", tuple(steps), seed, True, times=times, alive=(True, False))
+        yield Case(
+            f"chatter {seed}",
+            "asked this and that while it plays",
+            tuple(steps),
+            seed,
+            True,
+            times=times,
+            alive=(True, False),
+        )
 
 
 def _random(project: Project, chance: Random, ident: str, now: float) -> Ask:
@@ -335,7 +523,9 @@ def _random(project: Project, chance: Random, ident: str, now: float) -> Ask:
     at = None if chance.random() < 0.4 else round(now + chance.uniform(-1.0, 6.0), 3)
     at = None if at is not None and at < 0 else at
     more: dict[str, Any] = {"priority": chance.choice((1, 1, 1, 2, 3))}
-    match chance.choice(("gesture", "gesture", "fidget", "stance", "action", "change", "look", "say", "blink", "mode")):
+    match chance.choice(
+        ("gesture", "gesture", "fidget", "stance", "action", "change", "look", "say", "blink", "mode")
+    ):
         case "gesture":
             more |= {"layer": layer, "resume": chance.random() < 0.3}
             if chance.random() < 0.3:
@@ -348,15 +538,34 @@ def _random(project: Project, chance: Random, ident: str, now: float) -> Ask:
         case "fidget":
             return _ask(ident, "fidget", at, layer=layer, **more)
         case "stance" if graph.stances:
-            return _ask(ident, "stance", at, layer=layer, stance=chance.choice([*graph.stances]), stay=chance.random() < 0.3, **more)
+            return _ask(
+                ident,
+                "stance",
+                at,
+                layer=layer,
+                stance=chance.choice([*graph.stances]),
+                stay=chance.random() < 0.3,
+                **more,
+            )
         case "action" if graph.actions:
             return _ask(ident, "action", at, action=chance.choice([*graph.actions]), **more)
         case "look":
             return _ask(
-                ident, "look", at, to=chance.choice(("user", "ahead", [0.4, 1.2, 0.8])), duration=chance.choice((None, 1.5)), **more
+                ident,
+                "look",
+                at,
+                to=chance.choice(("user", "ahead", [0.4, 1.2, 0.8])),
+                duration=chance.choice((None, 1.5)),
+                **more,
             )
         case "say":
-            return _ask(ident, "say", at, text=chance.choice(("Well, yes.", "I really do not think so at all.", "Hm")), **more)
+            return _ask(
+                ident,
+                "say",
+                at,
+                text=chance.choice(("Well, yes.", "I really do not think so at all.", "Hm")),
+                **more,
+            )
         case "blink":
             return _ask(ident, "blink", at)
         case "mode":

@@ -34,10 +34,14 @@ class Served:
     def __init__(self, folder: str | Path, port: int = 0) -> None:
         """port: 0 for any that is free. Raises OSError when it is taken."""
         self.folder = Path(folder).resolve()
-        self._server = ThreadingHTTPServer(("127.0.0.1", port), functools.partial(_Quiet, directory=str(self.folder)))
+        self._server = ThreadingHTTPServer(
+            ("127.0.0.1", port), functools.partial(_Quiet, directory=str(self.folder))
+        )
         self._server.daemon_threads = True
         self.url = f"http://127.0.0.1:{self._server.server_address[1]}/"
-        self._thread = threading.Thread(target=self._server.serve_forever, args=(0.1,), name="web page", daemon=True)
+        self._thread = threading.Thread(
+            target=self._server.serve_forever, args=(0.1,), name="web page", daemon=True
+        )
         self._thread.start()
 
     def close(self) -> None:

@@ -1,8 +1,8 @@
 """Conformance vectors: what is asked of a graph over time, and the plan and the poses that must come of it.
 
-A runtime conforms when it makes the same plans, ids and order alike and times within `SECONDS`, and when every joint agrees
-within `METRES` in the character's space and within `DEGREES` in its parent's. The cases are scripts over whatever a
-project has; a project without, say, transitions has no cases of transitions.
+A runtime conforms when it makes the same plans, ids and order alike and times within `SECONDS`, and when
+every joint agrees within `METRES` in the character's space and within `DEGREES` in its parent's. The cases
+are scripts over whatever a project has; a project without, say, transitions has no cases of transitions.
 """
 
 from __future__ import annotations
@@ -59,7 +59,8 @@ def follow(project: Project, case: Case) -> Plan:
 
 
 def write_vectors(export: Path, chosen: Iterable[Case] | None = None) -> Path:
-    """Write the vectors of an export beside its JSON; return the file. chosen: the cases, all that suit it when None.
+    """Write the vectors of an export beside its JSON; return the file. chosen: the cases, all that suit it
+    when None.
 
     Raises FileError when the export cannot be read or the file cannot be written.
     """
@@ -106,23 +107,44 @@ def _layer(plan: LayerPlan) -> dict[str, Any]:
         "metas": [[m.key, _time(m.start), _time(m.end), m.written] for m in plan.metas],
         "cues": [
             {
-                "action": c.action.id, "start": _time(c.start), "end": _time(c.end), "entry": _time(c.entry), "blend_in": _time(c.blend_in),
-                "blend_out": _time(c.blend_out), "stance": c.stance, "then": c.then, "meta": c.meta, "hold_from": _time(c.hold_from),
-                "hold_to": _time(c.hold_to), "hold": _time(c.hold),
+                "action": c.action.id,
+                "start": _time(c.start),
+                "end": _time(c.end),
+                "entry": _time(c.entry),
+                "blend_in": _time(c.blend_in),
+                "blend_out": _time(c.blend_out),
+                "stance": c.stance,
+                "then": c.then,
+                "meta": c.meta,
+                "hold_from": _time(c.hold_from),
+                "hold_to": _time(c.hold_to),
+                "hold": _time(c.hold),
             }
             for c in plan.cues
         ],
-        "rests": [[r.stance, r.action.id, _time(r.start), _time(r.fade_start), _time(r.fade)] for r in plan.rests],
-    }  # fmt: skip
+        "rests": [
+            [r.stance, r.action.id, _time(r.start), _time(r.fade_start), _time(r.fade)] for r in plan.rests
+        ],
+    }
 
 
 def life_data(plan: Plan) -> dict[str, Any]:
     """Return what the life layers were drawn to do, as plain data."""
     life = plan.life
     targets = [
-        [_time(t.start), t.to if isinstance(t.to, str) else list(t.to), _time(t.since), t.amount, t.strict, t.asked] for t in life.targets
+        [
+            _time(t.start),
+            t.to if isinstance(t.to, str) else list(t.to),
+            _time(t.since),
+            t.amount,
+            t.strict,
+            t.asked,
+        ]
+        for t in life.targets
     ]
-    lanes = {name: _lane(getattr(life, name)) for name in ("modes", "breaths", "aversions", "saccades", "blinks")}
+    lanes = {
+        name: _lane(getattr(life, name)) for name in ("modes", "breaths", "aversions", "saccades", "blinks")
+    }
     return {**lanes, "targets": targets}
 
 
@@ -137,13 +159,19 @@ def _time(seconds: float) -> float:
 def _pose(project: Project, plan: Plan, time: float, alive: bool) -> dict[str, Any]:
     pose = pose_at(plan, project, time, alive)
     assert project.skeleton is not None
-    _, positions = project.skeleton.globals(Pose(pose.rotations.astype(float), pose.translations.astype(float)))
+    _, positions = project.skeleton.globals(
+        Pose(pose.rotations.astype(float), pose.translations.astype(float))
+    )
     return {
         "time": time,
         "alive": alive,
         "rotations": np.round(pose.rotations.astype(float), 5).tolist(),
         "positions": np.round(positions, 5).tolist(),
-        "morphs": {name: round(value, 5) for name, value in sorted(morphs_at(plan, project, time, alive).items()) if value > 1e-5},
+        "morphs": {
+            name: round(value, 5)
+            for name, value in sorted(morphs_at(plan, project, time, alive).items())
+            if value > 1e-5
+        },
     }
 
 
@@ -151,11 +179,17 @@ MOST = 6  # times at which a case is looked at
 
 
 def _telling(plan: Plan) -> tuple[float, ...]:
-    """Return times at which most can go wrong: in blends, holds and seams, between cues, before the beginning and after the end."""
+    """Return times at which most can go wrong: in blends, holds and seams, between cues, before the beginning
+    and after the end.
+    """
     found: list[float] = []
     for of in plan.layers.values():
         for cue in of.cues:
-            found += [cue.start + 0.4 * cue.blend_in, (cue.start + cue.end) / 2, cue.end - 0.3 * cue.blend_out]
+            found += [
+                cue.start + 0.4 * cue.blend_in,
+                (cue.start + cue.end) / 2,
+                cue.end - 0.3 * cue.blend_out,
+            ]
         found += [rest.fade_start + 0.6 * rest.fade for rest in of.rests[1:]]
     found = sorted(found)
     chosen = found[:: max(1, len(found) // (MOST - 2))][: MOST - 2]
@@ -183,13 +217,21 @@ def check_vectors(folder: Path, project: Project | None = None) -> Outcome:
         data = json.loads(path.read_bytes())
     except OSError as error:
         raise FileError(
-            path, f"cannot be read ({error.strerror})", "on opening it", "Write vectors with metagraph export --vectors."
+            path,
+            f"cannot be read ({error.strerror})",
+            "on opening it",
+            "Write vectors with metagraph export --vectors.",
         ) from None
     except ValueError as error:
-        raise FileError(path, f"is not JSON ({error})", "on reading it", "Write vectors with metagraph export --vectors.") from None
+        raise FileError(
+            path, f"is not JSON ({error})", "on reading it", "Write vectors with metagraph export --vectors."
+        ) from None
     if data.get("vectors") != VERSION:
         raise FileError(
-            path, f"has version {data.get('vectors')}, this is {VERSION}", "$.vectors", "Update Metagraph, or write them again."
+            path,
+            f"has version {data.get('vectors')}, this is {VERSION}",
+            "$.vectors",
+            "Update Metagraph, or write them again.",
         )
     if project is None:
         project = read_export(folder / data["export"], resolved=True)
@@ -216,7 +258,11 @@ def _unlike(ours: Any, theirs: Any, where: str) -> list[str]:
     if isinstance(theirs, Mapping) and isinstance(ours, Mapping) and ours.keys() == theirs.keys():
         return [words for key in theirs for words in _unlike(ours[key], theirs[key], f"{where}.{key}")]
     if isinstance(theirs, list) and isinstance(ours, Sequence) and len(ours) == len(theirs):
-        return [words for n, (a, b) in enumerate(zip(ours, theirs, strict=True)) for words in _unlike(a, b, f"{where}[{n}]")]
+        return [
+            words
+            for n, (a, b) in enumerate(zip(ours, theirs, strict=True))
+            for words in _unlike(a, b, f"{where}[{n}]")
+        ]
     number = isinstance(theirs, int | float) and isinstance(ours, int | float)
     alike = abs(ours - theirs) <= SECONDS if number else ours == theirs
     return [] if alike else [f"{where}: {str(ours)[:80]} instead of {str(theirs)[:80]}"]
@@ -225,8 +271,16 @@ def _unlike(ours: Any, theirs: Any, where: str) -> list[str]:
 def _apart(project: Project, plan: Plan, expected: Mapping[str, Any]) -> list[str]:
     ours = _pose(project, plan, expected["time"], expected["alive"])
     far = float(np.linalg.norm(np.array(ours["positions"]) - np.array(expected["positions"]), axis=-1).max())
-    turn = float(degrees(rotation.angle_between(np.array(ours["rotations"]), np.array(expected["rotations"])).max()))
+    turn = float(
+        degrees(rotation.angle_between(np.array(ours["rotations"]), np.array(expected["rotations"])).max())
+    )
     names = ours["morphs"].keys() | expected["morphs"].keys()
-    weight = max((abs(ours["morphs"].get(n, 0.0) - expected["morphs"].get(n, 0.0)) for n in names), default=0.0)
+    weight = max(
+        (abs(ours["morphs"].get(n, 0.0) - expected["morphs"].get(n, 0.0)) for n in names), default=0.0
+    )
     wrong = [(far, METRES, "m"), (turn, DEGREES, "degrees"), (weight, WEIGHT, "of a morph target")]
-    return [f"pose at {expected['time']} s: {value:.2g} {unit} apart" for value, most, unit in wrong if value > most]
+    return [
+        f"pose at {expected['time']} s: {value:.2g} {unit} apart"
+        for value, most, unit in wrong
+        if value > most
+    ]

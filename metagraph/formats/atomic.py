@@ -32,7 +32,10 @@ def write_atomically(path: Path, content: bytes) -> None:
         temporary = None
     except OSError as error:
         raise FileError(
-            path, f"cannot be written ({error.strerror or error})", "on saving it", "Choose a place you may write to, with space left."
+            path,
+            f"cannot be written ({error.strerror or error})",
+            "on saving it",
+            "Choose a place you may write to, with space left.",
         ) from None
     finally:
         if temporary is not None:

@@ -26,8 +26,9 @@ from metagraph.motion.skeleton import Skeleton, unique_names
 
 Array = NDArray[Any]
 
-# Where compiling pays: numba takes 0.6 s to import, numpy reads 30 MB/s, the compiled loops 330 MB/s. Many small files
-# count as one large one. Installing numba takes as long as reading some hundred megabytes without it.
+# Where compiling pays: numba takes 0.6 s to import, numpy reads 30 MB/s, the compiled loops 330 MB/s. Many
+# small files count as one large one. Installing numba takes as long as reading some hundred megabytes without
+# it.
 _COMPILED_FROM, _INSTALLED_FROM = 24 << 20, 240 << 20
 _read_so_far = [0]  # bytes of motion this process has read
 _loops: list[Any] = []  # the module of compiled loops, once it is whole; None where it cannot be had
@@ -48,18 +49,21 @@ class _Joint:
 def read_bvh(path: str | Path, scale: float | None = None, as_is: Collection[str] = ()) -> Clip:
     """Return the motion of a BVH file in metres, Y up.
 
-    scale: metres per unit of the file. BVH states no unit: without `scale` the one that makes the skeleton a human
-    between 1.2 and 2.5 m is taken (centimetres when none does) and named in the notes. A file with Z up is turned.
-    as_is: repairs (`takes.REPAIRS`) not to make; the unit is then centimetres, as in most files.
-    Positions replace a joint's OFFSET. The rest pose has all rotations zero and stands on the ground over the origin.
-    Raises FileError with the line.
+    scale: metres per unit of the file. BVH states no unit: without `scale` the one that makes the skeleton a
+    human between 1.2 and 2.5 m is taken (centimetres when none does) and named in the notes. A file with Z up
+    is turned. as_is: repairs (`takes.REPAIRS`) not to make; the unit is then centimetres, as in most files.
+    Positions replace a joint's OFFSET. The rest pose has all rotations zero and stands on the ground over the
+    origin. Raises FileError with the line.
     """
     path = Path(path)
     try:
         data = path.read_bytes()
     except OSError as error:
         raise FileError(
-            path, f"it cannot be read ({error.strerror})", "on opening it", "Check that it exists and that you may read it."
+            path,
+            f"it cannot be read ({error.strerror})",
+            "on opening it",
+            "Check that it exists and that you may read it.",
         ) from error
     head = data[:4096].lstrip(b"\xef\xbb\xbf \t\r\n")
     if head[:9].upper() != b"HIERARCHY":
@@ -147,7 +151,9 @@ class _Header:
             else:
                 self.fail(f"'{word[:40]}' is not expected here", line)
         if len(out) > MOST_JOINTS:
-            self.fail(f"{len(out)} joints are more than the {MOST_JOINTS} of any character", out[MOST_JOINTS].line)
+            self.fail(
+                f"{len(out)} joints are more than the {MOST_JOINTS} of any character", out[MOST_JOINTS].line
+            )
         if stack:
             self.fail(f"{len(stack)} '}}' are missing", self.words[-1][1])
         if not out:
@@ -168,7 +174,11 @@ class _Header:
         for _ in range(int(word)):
             channel, at = self.next()
             if not re.fullmatch(r"(?i)[xyz](position|rotation|scale)", channel):
-                self.fail(f"'{channel[:40]}' is not a channel", at, "Make the number after CHANNELS fit the names that follow.")
+                self.fail(
+                    f"'{channel[:40]}' is not a channel",
+                    at,
+                    "Make the number after CHANNELS fit the names that follow.",
+                )
             if channel.lower() in out[stack[-1]].channels and channel[1].lower() == "p":
                 self.fail(f"channel {channel} comes twice", at)
             out[stack[-1]].channels.append(channel.lower())
@@ -176,9 +186,13 @@ class _Header:
 
 def _motion(path: Path, data: bytes, at: int, channels: int, notes: list[str]) -> tuple[Array, float]:
     """Return the rows `[F, C]` and frames per second."""
-    head = re.compile(rb"\s*Frames[ \t]*:[ \t]*(\S*)\s*Frame[ \t]*Time[ \t]*:[ \t]*(\S*)", re.IGNORECASE).match(data, at)
+    head = re.compile(
+        rb"\s*Frames[ \t]*:[ \t]*(\S*)\s*Frame[ \t]*Time[ \t]*:[ \t]*(\S*)", re.IGNORECASE
+    ).match(data, at)
     if head is None:
-        raise FileError(path, "'Frames:' and 'Frame Time:' do not follow MOTION", f"line {_line(data, at)}", _DAMAGED)
+        raise FileError(
+            path, "'Frames:' and 'Frame Time:' do not follow MOTION", f"line {_line(data, at)}", _DAMAGED
+        )
     where = f"line {_line(data, head.start(1))}"
     try:
         promised, step = int(head[1]), float(head[2])
@@ -192,7 +206,9 @@ def _motion(path: Path, data: bytes, at: int, channels: int, notes: list[str]) -
             "Write the seconds per frame, such as 0.0333333.",
         )
     if channels == 0:
-        raise FileError(path, "no joint has any CHANNELS", "its HIERARCHY", "Export it with rotation channels.")
+        raise FileError(
+            path, "no joint has any CHANNELS", "its HIERARCHY", "Export it with rotation channels."
+        )
     start = head.end()
     numbers = _numbers(path, data, start, channels)
     rows, rest = divmod(len(numbers), channels)
@@ -207,7 +223,10 @@ def _motion(path: Path, data: bytes, at: int, channels: int, notes: list[str]) -
             else f"'Frames:' says {promised} but {rows} rows of {channels} numbers follow"
         )
         raise FileError(
-            path, cause, f"line {line}" if line else where, f"Make it say {rows}, or export the file again." if not line else _DAMAGED
+            path,
+            cause,
+            f"line {line}" if line else where,
+            f"Make it say {rows}, or export the file again." if not line else _DAMAGED,
         )
     if rest:
         line = _uneven_row(data, start, channels)
@@ -237,14 +256,25 @@ def _fps(text: str, step: float) -> float:
     """Return frames per second; whole where the frame time says so within its last written digit."""
     digits = re.fullmatch(r"\d*\.?(\d*)", text)
     whole = float(round(1 / step))
-    if digits and whole and abs(1 / whole - step) <= 1.001 * 10.0 ** -len(digits[1]) and abs(whole * step - 1) < 0.02:
+    if (
+        digits
+        and whole
+        and abs(1 / whole - step) <= 1.001 * 10.0 ** -len(digits[1])
+        and abs(whole * step - 1) < 0.02
+    ):
         return whole
     return 1 / step
 
 
 def _kernels() -> Any:
-    """Return the module of compiled loops where it pays and is there; None otherwise, and while another thread imports it."""
-    if not _loops and _read_so_far[0] >= (_COMPILED_FROM if there() else _INSTALLED_FROM) and _importing.acquire(blocking=False):
+    """Return the module of compiled loops where it pays and is there; None otherwise, and while another
+    thread imports it.
+    """
+    if (
+        not _loops
+        and _read_so_far[0] >= (_COMPILED_FROM if there() else _INSTALLED_FROM)
+        and _importing.acquire(blocking=False)
+    ):
         try:
             from metagraph.formats import bvh_kernels
 
@@ -296,7 +326,9 @@ def _compiled_numbers(parse: Any, data: bytes, start: int) -> tuple[Array, int]:
         with ThreadPoolExecutor(2) as pool:
             results = list(pool.map(lambda p, o: parse(whole, p[0], p[1], o), pieces, outs))
     numbers = (
-        np.concatenate([out[:count] for out, (count, _) in zip(outs, results, strict=True)]) if len(outs) > 1 else outs[0][: results[0][0]]
+        np.concatenate([out[:count] for out, (count, _) in zip(outs, results, strict=True)])
+        if len(outs) > 1
+        else outs[0][: results[0][0]]
     )
     for (_, stop), (_, stopped) in zip(pieces, results, strict=True):
         if stopped != stop:
@@ -307,7 +339,10 @@ def _compiled_numbers(parse: Any, data: bytes, start: int) -> tuple[Array, int]:
 def _rotations(values: Array, joints: list[_Joint], columns: list[list[int]]) -> Array:
     """Return local rotations `[F, J, 4]` float32, neighbours on the same side."""
     frames = len(values)
-    turns = [[c for c, name in zip(own, joint.channels, strict=True) if name[1] == "r"] for joint, own in zip(joints, columns, strict=True)]
+    turns = [
+        [c for c, name in zip(own, joint.channels, strict=True) if name[1] == "r"]
+        for joint, own in zip(joints, columns, strict=True)
+    ]
     orders = ["".join(name[0] for name in joint.channels if name[1] == "r") for joint in joints]
     kernels = _kernels()
     if kernels is None:
@@ -326,7 +361,11 @@ def _rotations(values: Array, joints: list[_Joint], columns: list[list[int]]) ->
         return result
     half = frames // 2
     with ThreadPoolExecutor(2) as pool:
-        list(pool.map(lambda a, b: kernels.turn(values, a, b, starts, axes, flat, result), (0, half), (half, frames)))
+        list(
+            pool.map(
+                lambda a, b: kernels.turn(values, a, b, starts, axes, flat, result), (0, half), (half, frames)
+            )
+        )
     other = np.einsum("ji,ji->j", result[half - 1], result[half]) < 0
     if other.any():
         result[half:, other] *= -1
@@ -334,7 +373,13 @@ def _rotations(values: Array, joints: list[_Joint], columns: list[list[int]]) ->
 
 
 def _clip(
-    path: Path, joints: list[_Joint], values: Array, fps: float, scale: float | None, notes: list[str], as_is: Collection[str]
+    path: Path,
+    joints: list[_Joint],
+    values: Array,
+    fps: float,
+    scale: float | None,
+    notes: list[str],
+    as_is: Collection[str],
 ) -> Clip:
     """Put channels, units and axes together."""
     names = unique_names([j.name for j in joints])
@@ -385,7 +430,12 @@ def _clip(
                 placed[i] = rotation.rotate(turn, placed[i])
         if rest_too:
             rest_rotations[roots] = turn
-    stand(offsets, parents, rest_rotations, {i for i, p in placed.items() if i == 0 or np.abs(p - offsets[i]).max() > 1e-4})
+    stand(
+        offsets,
+        parents,
+        rest_rotations,
+        {i for i, p in placed.items() if i == 0 or np.abs(p - offsets[i]).max() > 1e-4},
+    )
     skeleton = Skeleton(names, parents, rest_rotations, offsets)
     moving = [i for i, p in sorted(placed.items()) if i == 0 or np.abs(p - offsets[i]).max() > 1e-5]
     translations = np.stack([placed[i] for i in moving], 1)
@@ -396,7 +446,8 @@ def _clip(
 
 
 def write_bvh(clip: Clip, path: str | Path) -> None:
-    """Write a clip as BVH in centimetres: rotations in ZXY order, positions for every joint that has translations.
+    """Write a clip as BVH in centimetres: rotations in ZXY order, positions for every joint that has
+    translations.
 
     BVH has no rest rotations and no morph targets: they are lost, the motion is not. Raises FileError.
     """
@@ -406,7 +457,10 @@ def write_bvh(clip: Clip, path: str | Path) -> None:
     def describe(joint: int, depth: int) -> None:
         tab = "\t" * depth
         offset = skeleton.rest_translations[joint] * 100
-        lines.append(f"{tab}{'ROOT' if skeleton.parents[joint] < 0 else 'JOINT'} {skeleton.names[joint].replace(' ', '_')}")
+        lines.append(
+            f"{tab}{'ROOT' if skeleton.parents[joint] < 0 else 'JOINT'} "
+            f"{skeleton.names[joint].replace(' ', '_')}"
+        )
         lines.extend((f"{tab}{{", f"{tab}\tOFFSET {offset[0]:.6f} {offset[1]:.6f} {offset[2]:.6f}"))
         position = "6 Xposition Yposition Zposition" if joint in clip.translated else "3"
         lines.append(f"{tab}\tCHANNELS {position} Zrotation Xrotation Yrotation")
@@ -425,7 +479,14 @@ def write_bvh(clip: Clip, path: str | Path) -> None:
         stack.extend((child, depth + 1) for child in reversed(skeleton.children[joint]))
         if not skeleton.children[joint]:
             tip = skeleton.rest_translations[joint] * (50 if skeleton.parents[joint] >= 0 else 0)
-            lines.extend((f"{tab}\tEnd Site", f"{tab}\t{{", f"{tab}\t\tOFFSET {tip[0]:.6f} {tip[1]:.6f} {tip[2]:.6f}", f"{tab}\t}}"))
+            lines.extend(
+                (
+                    f"{tab}\tEnd Site",
+                    f"{tab}\t{{",
+                    f"{tab}\t\tOFFSET {tip[0]:.6f} {tip[1]:.6f} {tip[2]:.6f}",
+                    f"{tab}\t}}",
+                )
+            )
     lines.extend(("MOTION", f"Frames: {clip.frames}", f"Frame Time: {1 / clip.fps:.12f}"))
     angles = np.degrees(rotation.to_euler(clip.rotations.astype(np.float64), "ZXY"))
     blocks = []

@@ -17,8 +17,8 @@ _compiled = compiler(nogil=True, fastmath={"contract", "arcp", "nsz"})
 def parse(data: Any, at: int, end: int, out: Any) -> tuple[int, int]:
     """Read decimal numbers between white space from bytes `data[at:end]` into `out`.
 
-    Returns how many there were, and where reading stopped: `end`, or the first byte of what is not a number, or the
-    first number that no longer fits.
+    Returns how many there were, and where reading stopped: `end`, or the first byte of what is not a number,
+    or the first number that no longer fits.
     """
     count = 0
     while True:
@@ -120,6 +120,10 @@ def turn(values: Any, first: int, last: int, starts: Any, axes: Any, columns: An
                     x, y, z, w = x * c - z * s, y * c + w * s, z * c + x * s, w * c - y * s
                 else:
                     x, y, z, w = x * c + y * s, y * c - x * s, z * c + w * s, w * c - z * s
-            if f > first and x * out[f - 1, j, 0] + y * out[f - 1, j, 1] + z * out[f - 1, j, 2] + w * out[f - 1, j, 3] < 0:
+            if (
+                f > first
+                and x * out[f - 1, j, 0] + y * out[f - 1, j, 1] + z * out[f - 1, j, 2] + w * out[f - 1, j, 3]
+                < 0
+            ):
                 x, y, z, w = -x, -y, -z, -w
             out[f, j, 0], out[f, j, 1], out[f, j, 2], out[f, j, 3] = x, y, z, w

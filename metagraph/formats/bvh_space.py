@@ -27,8 +27,8 @@ _UNITS = (
 def stand(offsets: Array, parents: Array, rest_rotations: Array, placed: set[int]) -> None:
     """Give the rest pose a place of its own, in place: over the origin, its lowest joint on the ground.
 
-    Exporters leave the first frame's position in the OFFSET of a root, so that files of one actor would all seem to
-    have different skeletons.
+    Exporters leave the first frame's position in the OFFSET of a root, so that files of one actor would all
+    seem to have different skeletons.
     """
     line, joint = [0], 0
     while True:
@@ -40,11 +40,16 @@ def stand(offsets: Array, parents: Array, rest_rotations: Array, placed: set[int
     if (parents < 0).sum() > 1:
         return
     offsets[line] = 0
-    unplaced = Skeleton(tuple(map(str, range(len(parents)))), parents.copy(), rest_rotations.copy(), offsets.copy())
+    unplaced = Skeleton(
+        tuple(map(str, range(len(parents)))), parents.copy(), rest_rotations.copy(), offsets.copy()
+    )
     _, positions = unplaced.globals(unplaced.rest)
-    # The lift must survive the turns above the last joint of the line, which are the rest rotation of the root.
+    # The lift must survive the turns above the last joint of the line, which are the rest rotation of the
+    # root.
     lift = np.array([0.0, -float(positions[:, 1].min()), 0.0])
-    offsets[line[-1]] = rotation.rotate(rotation.conjugate(rest_rotations[0]), lift) if len(line) > 1 else lift
+    offsets[line[-1]] = (
+        rotation.rotate(rotation.conjugate(rest_rotations[0]), lift) if len(line) > 1 else lift
+    )
 
 
 def unit(skeleton: Skeleton, roles: dict[str, int]) -> tuple[float, str]:
@@ -59,16 +64,28 @@ def unit(skeleton: Skeleton, roles: dict[str, int]) -> tuple[float, str]:
     if "hips" in roles and "head" in roles:
         legs = [length(roles["hips"], roles[r]) for r in ("left_foot", "right_foot") if r in roles]
         if legs:
-            tall = (max(legs) + length(roles["hips"], roles["head"])) * 1.12  # soles and the top of the head lie beyond
+            tall = (
+                max(legs) + length(roles["hips"], roles["head"])
+            ) * 1.12  # soles and the top of the head lie beyond
     known = tall > 0
     tall = tall or skeleton.height
     for scale, name in _UNITS if known else _UNITS[:4]:
         if _HUMAN[0] <= tall * scale <= _HUMAN[1]:
-            return scale, f"units taken for {name}: the {'figure' if known else 'skeleton'} is then {tall * scale:.2f} m tall"
-    return USUAL, f"units taken for centimetres, though the skeleton is then {tall * 0.01:.3g} m tall; give the scale to change it"
+            return (
+                scale,
+                f"units taken for {name}: the {'figure' if known else 'skeleton'} is then {tall * scale:.2f} "
+                "m tall",
+            )
+    return (
+        USUAL,
+        f"units taken for centimetres, though the skeleton is then {tall * 0.01:.3g} m tall; give the scale "
+        "to change it",
+    )
 
 
-def z_up(skeleton: Skeleton, roles: dict[str, int], rotations: Array, placed: dict[int, Array], offsets: Array) -> tuple[bool, bool]:
+def z_up(
+    skeleton: Skeleton, roles: dict[str, int], rotations: Array, placed: dict[int, Array], offsets: Array
+) -> tuple[bool, bool]:
     """Return whether Z points up, and whether it does so in the rest pose too. offsets, placed: metres."""
     feet = [roles[r] for r in ("left_foot", "right_foot") if r in roles]
     if "head" not in roles or not feet:
@@ -90,7 +107,8 @@ def z_up(skeleton: Skeleton, roles: dict[str, int], rotations: Array, placed: di
         return False, bool(rest[2] > 0.8)
     if rest[2] > 0.8:
         return True, True
-    # A Y-up figure whose head lies towards Z: either it lies on its back, or the world has Z up. Standing hips tell.
+    # A Y-up figure whose head lies towards Z: either it lies on its back, or the world has Z up. Standing
+    # hips tell.
     tall = float(np.linalg.norm(resting[roles["head"]] - resting[feet].mean(0)))
     hips = moving[:, roles.get("hips", 0)]
     ground = hips[:, 2].mean() / max(tall, 1e-9)

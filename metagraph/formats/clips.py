@@ -23,8 +23,9 @@ _REMEDY = f"Clips are read from {', '.join(SUFFIXES)}."
 class ImportReport:
     """What came of importing many files.
 
-    clips: (file, take's number in the file, clip). failures: one error per file that could not be read. notes:
-    what the user should know, each naming its file. cancelled: whether the user stopped before the end.
+    clips: (file, take's number in the file, clip). failures: one error per file that could not be read.
+    notes: what the user should know, each naming its file. cancelled: whether the user stopped before the
+    end.
     """
 
     clips: tuple[tuple[Path, int, Clip], ...]
@@ -34,21 +35,30 @@ class ImportReport:
 
 
 def read_clips(path: str | Path, as_is: Collection[str] = ()) -> list[Clip]:
-    """Return all takes of a file. Takes of one frame are skipped where others are longer, with a note on those.
+    """Return all takes of a file. Takes of one frame are skipped where others are longer, with a note on
+    those.
 
-    The content decides what the file is, and must agree with its ending. as_is: repairs (`takes.REPAIRS`) not to make; takes of
-    one frame that are then not skipped stand behind the others, whose numbers stay. Raises FileError.
+    The content decides what the file is, and must agree with its ending. as_is: repairs (`takes.REPAIRS`) not
+    to make; takes of one frame that are then not skipped stand behind the others, whose numbers stay. Raises
+    FileError.
     """
     path = Path(path)
     suffix = path.suffix.lower()
     kind = _content(path)
     wanted = {".bvh": "bvh", ".fbx": "fbx", **dict.fromkeys(_GLTF, "gltf")}.get(suffix)
     if wanted is None:
-        raise FileError(path, f"'{path.suffix or path.name}' is not an ending of a clip file", "its name", _REMEDY)
+        raise FileError(
+            path, f"'{path.suffix or path.name}' is not an ending of a clip file", "its name", _REMEDY
+        )
     if kind != wanted:
         names = {"bvh": "a BVH file", "gltf": "a glTF file", "fbx": "an FBX file"}
         if kind in names:
-            raise FileError(path, f"it is {names[kind]} in spite of its ending", "its first bytes", "Rename it to match its content.")
+            raise FileError(
+                path,
+                f"it is {names[kind]} in spite of its ending",
+                "its first bytes",
+                "Rename it to match its content.",
+            )
         raise FileError(path, f"it is {kind}, not {names[wanted]}", "its first bytes", _REMEDY)
     try:
         if wanted == "bvh":
@@ -75,7 +85,10 @@ def _without_junk(clips: list[Clip], as_is: Collection[str]) -> list[Clip]:
         return clips
     kept = [clip for clip in clips if clip.frames > 1]
     made = ONE_FRAME not in as_is
-    skipped = tuple(Repair(ONE_FRAME, f"skipped {c.name!r}: one frame only", made, n) for n, c in enumerate(junk, len(kept)))
+    skipped = tuple(
+        Repair(ONE_FRAME, f"skipped {c.name!r}: one frame only", made, n)
+        for n, c in enumerate(junk, len(kept))
+    )
     if not made:
         return [*kept, *(repaired(clip, repair) for clip, repair in zip(junk, skipped, strict=True))]
     told = f"skipped {', '.join(repr(clip.name) for clip in junk)}: one frame only"
@@ -84,13 +97,18 @@ def _without_junk(clips: list[Clip], as_is: Collection[str]) -> list[Clip]:
 
 
 def _content(path: Path) -> str:
-    """Return "bvh", "gltf", "fbx", or a description of something else. Raises FileError when it cannot be read."""
+    """Return "bvh", "gltf", "fbx", or a description of something else. Raises FileError when it cannot be
+    read.
+    """
     try:
         with path.open("rb") as file:
             head = file.read(4096)
     except OSError as error:
         raise FileError(
-            path, f"it cannot be read ({error.strerror})", "on opening it", "Check that it exists and that you may read it."
+            path,
+            f"it cannot be read ({error.strerror})",
+            "on opening it",
+            "Check that it exists and that you may read it.",
         ) from error
     start = head.lstrip(b"\xef\xbb\xbf \t\r\n")
     if not head:
@@ -109,12 +127,16 @@ def _content(path: Path) -> str:
 
 
 def find_clip_files(folder: str | Path) -> list[Path]:
-    """Return every clip file in a folder and below, sorted by path without regard to case; hidden ones are skipped."""
+    """Return every clip file in a folder and below, sorted by path without regard to case; hidden ones are
+    skipped.
+    """
     folder = Path(folder)
     found = [
         p
         for p in folder.rglob("*")
-        if p.suffix.lower() in SUFFIXES and p.is_file() and not any(part.startswith(".") for part in p.relative_to(folder).parts)
+        if p.suffix.lower() in SUFFIXES
+        and p.is_file()
+        and not any(part.startswith(".") for part in p.relative_to(folder).parts)
     ]
     return sorted(found, key=lambda p: (str(p).casefold(), str(p)))
 
@@ -126,10 +148,10 @@ def import_clips(
 ) -> ImportReport:
     """Read many files; a bad one fails alone.
 
-    progress: called before each file with how many are done, how many there are, and the file. cancelled: asked before
-    each file. Files whose skeletons are the same share one Skeleton object. FBX files are read a few at a time, each
-    being 0.3 s of another process's work; the other formats take a few milliseconds of Python's own, where threads gain
-    nothing.
+    progress: called before each file with how many are done, how many there are, and the file. cancelled:
+    asked before each file. Files whose skeletons are the same share one Skeleton object. FBX files are read a
+    few at a time, each being 0.3 s of another process's work; the other formats take a few milliseconds of
+    Python's own, where threads gain nothing.
     """
     files = [Path(p) for p in paths]
     clips: list[tuple[Path, int, Clip]] = []
@@ -153,12 +175,23 @@ def import_clips(
             continue
         except MemoryError:
             failures.append(
-                FileError(path, "there is not enough memory for it", "on reading it", "Close other programs, or split the file.")
+                FileError(
+                    path,
+                    "there is not enough memory for it",
+                    "on reading it",
+                    "Close other programs, or split the file.",
+                )
             )
             continue
         for number, clip in enumerate(takes):
             known = skeletons.setdefault(clip.skeleton.fingerprint, clip)
-            clips.append((path, number, clip if known.skeleton is clip.skeleton else replace(clip, skeleton=known.skeleton)))
+            clips.append(
+                (
+                    path,
+                    number,
+                    clip if known.skeleton is clip.skeleton else replace(clip, skeleton=known.skeleton),
+                )
+            )
             notes += [f"{path.name}: {note}" for note in clip.notes]
     if pool is not None:
         pool.shutdown(cancel_futures=True)
@@ -175,5 +208,8 @@ def digest(path: str | Path) -> str:
             return hashlib.file_digest(file, "sha256").hexdigest()
     except OSError as error:
         raise FileError(
-            path, f"it cannot be read ({error.strerror})", "on opening it", "Check that it exists and that you may read it."
+            path,
+            f"it cannot be read ({error.strerror})",
+            "on opening it",
+            "Check that it exists and that you may read it.",
         ) from error

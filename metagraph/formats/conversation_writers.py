@@ -1,4 +1,5 @@
-"""Conversations written for ELAN and Praat, and as JSON: for each side its words, its segments and their peaks.
+"""Conversations written for ELAN and Praat, and as JSON: for each side its words, its segments and their
+peaks.
 
 What is written here, `transcripts.read_transcript` reads back whole.
 """
@@ -27,8 +28,9 @@ Row = tuple[float, float, str]  # start, end (seconds), text
 
 
 def write_elan(conversation: Conversation, path: str | Path, folder: Path | None = None) -> None:
-    """Write an ELAN annotation (.eaf, format 3.0), times in milliseconds. folder: what the sides' sounds are relative to, None where they
-    are absolute. Raises FileError."""
+    """Write an ELAN annotation (.eaf, format 3.0), times in milliseconds. folder: what the sides' sounds are
+    relative to, None where they are absolute. Raises FileError.
+    """
     path = Path(path)
     out = io.StringIO()
     date = datetime.now(UTC).isoformat(timespec="seconds")
@@ -44,15 +46,27 @@ def write_elan(conversation: Conversation, path: str | Path, folder: Path | None
         kind = _MEDIA.get(place.suffix.lower(), "audio/x-wav")
         near = _near(place, path.parent)
         beside = f" RELATIVE_MEDIA_URL={quoteattr(near)}" if near else ""
-        out.write(f'        <MEDIA_DESCRIPTOR MEDIA_URL={quoteattr(_url(place))} MIME_TYPE="{kind}"{beside}/>\n')
-    tiers = [(f"{what}@{name}", name, _in_milliseconds(rows)) for name, what, rows in _tiers(conversation, _PEAK)]
+        out.write(
+            f'        <MEDIA_DESCRIPTOR MEDIA_URL={quoteattr(_url(place))} MIME_TYPE="{kind}"{beside}/>\n'
+        )
+    tiers = [
+        (f"{what}@{name}", name, _in_milliseconds(rows)) for name, what, rows in _tiers(conversation, _PEAK)
+    ]
     # Each end has a slot of its own, as ELAN gives them: shared ones would move together there.
-    moments = sorted((t, n, m, end) for n, (_, _, rows) in enumerate(tiers) for m, row in enumerate(rows) for end, t in enumerate(row[:2]))
+    moments = sorted(
+        (t, n, m, end)
+        for n, (_, _, rows) in enumerate(tiers)
+        for m, row in enumerate(rows)
+        for end, t in enumerate(row[:2])
+    )
     slot = {(n, m, end): f"ts{k}" for k, (_, n, m, end) in enumerate(moments, 1)}
     count = sum(len(rows) for _, _, rows in tiers)
-    out.write(f'        <PROPERTY NAME="lastUsedAnnotationId">{count}</PROPERTY>\n    </HEADER>\n    <TIME_ORDER>\n')
+    out.write(
+        f'        <PROPERTY NAME="lastUsedAnnotationId">{count}</PROPERTY>\n    </HEADER>\n    <TIME_ORDER>\n'
+    )
     out.writelines(
-        f'        <TIME_SLOT TIME_SLOT_ID="{ident}" TIME_VALUE="{t}"/>\n' for (t, *_), ident in zip(moments, slot.values(), strict=True)
+        f'        <TIME_SLOT TIME_SLOT_ID="{ident}" TIME_VALUE="{t}"/>\n'
+        for (t, *_), ident in zip(moments, slot.values(), strict=True)
     )
     out.write("    </TIME_ORDER>\n")
     number = 0
@@ -62,12 +76,17 @@ def write_elan(conversation: Conversation, path: str | Path, folder: Path | None
         for m, (_, _, text) in enumerate(rows):
             number += 1
             out.write(
-                f'        <ANNOTATION>\n            <ALIGNABLE_ANNOTATION ANNOTATION_ID="a{number}" TIME_SLOT_REF1="{slot[n, m, 0]}" '
-                f'TIME_SLOT_REF2="{slot[n, m, 1]}">\n                <ANNOTATION_VALUE>{escape(_printable(text))}</ANNOTATION_VALUE>\n'
+                f'        <ANNOTATION>\n            <ALIGNABLE_ANNOTATION ANNOTATION_ID="a{number}" '
+                f'TIME_SLOT_REF1="{slot[n, m, 0]}" '
+                f'TIME_SLOT_REF2="{slot[n, m, 1]}">\n                '
+                f"<ANNOTATION_VALUE>{escape(_printable(text))}</ANNOTATION_VALUE>\n"
                 "            </ALIGNABLE_ANNOTATION>\n        </ANNOTATION>\n"
             )
         out.write("    </TIER>\n")
-    out.write('    <LINGUISTIC_TYPE GRAPHIC_REFERENCES="false" LINGUISTIC_TYPE_ID="speech" TIME_ALIGNABLE="true"/>\n')
+    out.write(
+        '    <LINGUISTIC_TYPE GRAPHIC_REFERENCES="false" LINGUISTIC_TYPE_ID="speech" '
+        'TIME_ALIGNABLE="true"/>\n'
+    )
     out.write("</ANNOTATION_DOCUMENT>\n")
     write_atomically(path, out.getvalue().encode())
 
@@ -75,21 +94,40 @@ def write_elan(conversation: Conversation, path: str | Path, folder: Path | None
 def write_textgrid(conversation: Conversation, path: str | Path) -> None:
     """Write a Praat TextGrid (long text format, UTF-8): peaks are points. Raises FileError."""
     length = max(conversation.length, *(_last(s) for s in conversation.sides))
-    out = ['File type = "ooTextFile"', 'Object class = "TextGrid"', "", "xmin = 0", f"xmax = {length!r}", "tiers? <exists>"]
+    out = [
+        'File type = "ooTextFile"',
+        'Object class = "TextGrid"',
+        "",
+        "xmin = 0",
+        f"xmax = {length!r}",
+        "tiers? <exists>",
+    ]
     tiers = _tiers(conversation, 0.0)
     out += [f"size = {len(tiers)}", "item []:"]
     for n, (name, what, rows) in enumerate(tiers, 1):
         points = what == "peaks"
         filled = rows if points else _filled(rows, length)
         kind = "TextTier" if points else "IntervalTier"
-        out += [f"    item [{n}]:", f'        class = "{kind}"', f"        name = {_quoted(f'{name} - {what}')}"]
-        out += ["        xmin = 0", f"        xmax = {length!r}", f"        {'points' if points else 'intervals'}: size = {len(filled)}"]
+        out += [
+            f"    item [{n}]:",
+            f'        class = "{kind}"',
+            f"        name = {_quoted(f'{name} - {what}')}",
+        ]
+        out += [
+            "        xmin = 0",
+            f"        xmax = {length!r}",
+            f"        {'points' if points else 'intervals'}: size = {len(filled)}",
+        ]
         for m, (start, end, text) in enumerate(filled, 1):
             out.append(f"        {'points' if points else 'intervals'} [{m}]:")
             if points:
                 out += [f"            number = {start!r}", f"            mark = {_quoted(text)}"]
             else:
-                out += [f"            xmin = {start!r}", f"            xmax = {end!r}", f"            text = {_quoted(text)}"]
+                out += [
+                    f"            xmin = {start!r}",
+                    f"            xmax = {end!r}",
+                    f"            text = {_quoted(text)}",
+                ]
     write_atomically(Path(path), ("\n".join(out) + "\n").encode())
 
 
@@ -99,14 +137,22 @@ def write_json(conversation: Conversation, path: str | Path) -> None:
 
 
 def _tiers(conversation: Conversation, peak: float) -> list[tuple[str, str, list[Row]]]:
-    """Return name, what it holds and rows by start, none overlapping, of each tier. peak: seconds a peak lasts."""
+    """Return name, what it holds and rows by start, none overlapping, of each tier. peak: seconds a peak
+    lasts.
+    """
     out: list[tuple[str, str, list[Row]]] = []
     for name, side in zip(_names(conversation.sides), conversation.sides, strict=True):
         out.append((name, "words", _apart([(w.start, w.end, w.text) for w in side.words])))
         rows = [(s.start, s.end, f"{s.kind}: {s.text}" if s.text else s.kind) for s in side.segments]
         out.append((name, "segments", rows))
         peaks = [s.peak for s in side.segments if s.kind == "clause" and s.peak is not None]
-        out.append((name, "peaks", _apart([(p, p + peak, "peak") for p in peaks]) if peak else [(p, p, "peak") for p in peaks]))
+        out.append(
+            (
+                name,
+                "peaks",
+                _apart([(p, p + peak, "peak") for p in peaks]) if peak else [(p, p, "peak") for p in peaks],
+            )
+        )
     return out
 
 
@@ -118,7 +164,10 @@ def _names(sides: Sequence[Side]) -> tuple[str, str]:
 def _apart(rows: Sequence[Row]) -> list[Row]:
     """Return rows by start, each ending where the next begins at the latest; those left without length go."""
     ordered = sorted(rows)
-    out = [(a, min(b, after[0]) if after else b, text) for (a, b, text), after in zip_longest(ordered, ordered[1:])]
+    out = [
+        (a, min(b, after[0]) if after else b, text)
+        for (a, b, text), after in zip_longest(ordered, ordered[1:])
+    ]
     return [r for r in out if r[0] < r[1]]
 
 
@@ -153,7 +202,9 @@ def _printable(text: str) -> str:
 
 
 def _url(place: Path) -> str:
-    return "file://" + quote(("" if place.resolve().as_posix().startswith("/") else "/") + place.resolve().as_posix())
+    return "file://" + quote(
+        ("" if place.resolve().as_posix().startswith("/") else "/") + place.resolve().as_posix()
+    )
 
 
 def _near(place: Path, folder: Path) -> str:

@@ -61,10 +61,11 @@ def read_conversation(
 ) -> Read:
     """Read a conversation of two.
 
-    audio: one file with two channels, the left one side 0's; or two files, one a side; or one with both mixed, when a transcript names the
-    speakers. transcripts: one for both sides, or one a side, in the sides' order; without any, what is loud tells clauses and pauses.
-    folder: what paths are kept relative to, None for absolute ones. name: the conversation's, else the first file's. responses,
-    hesitations: words and phrases that make a segment one. Where a transcript holds segments, as our exports do, those are kept.
+    audio: one file with two channels, the left one side 0's; or two files, one a side; or one with both
+    mixed, when a transcript names the speakers. transcripts: one for both sides, or one a side, in the sides'
+    order; without any, what is loud tells clauses and pauses. folder: what paths are kept relative to, None
+    for absolute ones. name: the conversation's, else the first file's. responses, hesitations: words and
+    phrases that make a segment one. Where a transcript holds segments, as our exports do, those are kept.
 
     Raises FileError, and CancelledError once `cancelled` says so.
     """
@@ -91,7 +92,8 @@ def read_conversation(
     return Read(made_of, tuple(dict.fromkeys(reading.notes)))
 
 
-# --- the sound -------------------------------------------------------------------------------------------------------
+# --- the sound
+# --------------------------------------------------------------------------------------------------
 
 
 def _voices(reading: _Reading, audio: list[Path], worded: bool) -> tuple[Voice, Voice]:
@@ -118,16 +120,28 @@ def _voices(reading: _Reading, audio: list[Path], worded: bool) -> tuple[Voice, 
     if channels == 2 and one is not None and one >= 0:
         silent = _SIDES[1 - one]
         reading.notes.append(
-            f"{path.name}: the {silent} channel is silent. If both speak in the {_SIDES[one]} one, save that alone and add a transcript "
+            f"{path.name}: the {silent} channel is silent. If both speak in the {_SIDES[one]} one, save that "
+            "alone and add a transcript "
             "that names the speakers; else check the microphone."
         )
-        pair = [_voice(reading, path, n, f"{path.name}, {_SIDES[n]} channel", read.samples[n], read.rate) for n in (0, 1)]
+        pair = [
+            _voice(reading, path, n, f"{path.name}, {_SIDES[n]} channel", read.samples[n], read.rate)
+            for n in (0, 1)
+        ]
         _tell_clipped(reading, pair[one].called, read.clipped[one])
         return pair[0], pair[1]
     hushed = float(np.abs(read.samples).max()) <= 10 ** (HUSH / 20)
     if hushed and not worded:
-        raise FileError(path, "is silent", remedy="Check the microphone, or what was exported, and save the sound anew.")
-    why = "is silent" if hushed else "has one channel" if channels == 1 else "has the same sound in both channels"
+        raise FileError(
+            path, "is silent", remedy="Check the microphone, or what was exported, and save the sound anew."
+        )
+    why = (
+        "is silent"
+        if hushed
+        else "has one channel"
+        if channels == 1
+        else "has the same sound in both channels"
+    )
     if not worded:
         raise FileError(
             path,
@@ -141,7 +155,9 @@ def _voices(reading: _Reading, audio: list[Path], worded: bool) -> tuple[Voice, 
 
 
 def _one_sounds(samples: Array) -> int | None:
-    """Return which of two channels has all the sound, -1 where both have the same, None where each has its own."""
+    """Return which of two channels has all the sound, -1 where both have the same, None where each has its
+    own.
+    """
     loud = np.abs(samples).max(1)
     if np.abs(samples[0] - samples[1]).max() < SAME * max(float(loud.max()), 1e-9):
         return -1
@@ -156,26 +172,34 @@ def _two_files(reading: _Reading, audio: list[Path]) -> tuple[Voice, Voice]:
         read = read_recording(path, LONGEST, RATE)
         channels = len(read.samples)
         if channels > 1:
-            reading.notes.append(f"{path.name} has {channels} channels; as it is one of two files, they are mixed.")
+            reading.notes.append(
+                f"{path.name} has {channels} channels; as it is one of two files, they are mixed."
+            )
         _tell_clipped(reading, path.name, max(read.clipped))
-        out.append(_voice(reading, path, None if channels > 1 else 0, path.name, read.samples.mean(0), read.rate))
+        out.append(
+            _voice(reading, path, None if channels > 1 else 0, path.name, read.samples.mean(0), read.rate)
+        )
         rates.append(read.original)
     if rates[0] != rates[1]:
         reading.notes.append(
-            f"{audio[0].name} has {rates[0]} samples a second and {audio[1].name} {rates[1]}; each is read at its own. If one runs "
+            f"{audio[0].name} has {rates[0]} samples a second and {audio[1].name} {rates[1]}; each is read "
+            "at its own. If one runs "
             "away from the other, record both at the same rate."
         )
     lengths = [v.heard.duration for v in out]
     if abs(lengths[0] - lengths[1]) > UNLIKE:
         longer = int(lengths[1] > lengths[0])
         reading.notes.append(
-            f"{audio[longer].name} lasts {lengths[longer]:.1f} s and {audio[1 - longer].name} {lengths[1 - longer]:.1f} s; the "
+            f"{audio[longer].name} lasts {lengths[longer]:.1f} s and {audio[1 - longer].name} "
+            f"{lengths[1 - longer]:.1f} s; the "
             "shorter one is silent then. Check that both begin at the same moment."
         )
     return out[0], out[1]
 
 
-def _voice(reading: _Reading, path: Path, channel: int | None, called: str, samples: Array, rate: int) -> Voice:
+def _voice(
+    reading: _Reading, path: Path, channel: int | None, called: str, samples: Array, rate: int
+) -> Voice:
     reading.go_on()
     heard = hear(samples, rate)
     reading.go_on()
@@ -185,11 +209,13 @@ def _voice(reading: _Reading, path: Path, channel: int | None, called: str, samp
 def _tell_clipped(reading: _Reading, called: str, clipped: float) -> None:
     if clipped > CLIPPED:
         reading.notes.append(
-            f"{called}: {100 * clipped:.2g} % of the samples are cut off at full scale; loudness and pitch are less sure. Record softer."
+            f"{called}: {100 * clipped:.2g} % of the samples are cut off at full scale; loudness and pitch "
+            "are less sure. Record softer."
         )
 
 
-# --- one side --------------------------------------------------------------------------------------------------------
+# --- one side
+# --------------------------------------------------------------------------------------------------
 
 
 def _side(
@@ -209,7 +235,9 @@ def _side(
     if told.segments is not None:
         found = _kept(reading, called, told.segments, voice)
     elif words or not mixed:
-        found = segments(words, voice.pitch, voice.heard, responses, hesitations, None if mixed else other.heard)
+        found = segments(
+            words, voice.pitch, voice.heard, responses, hesitations, None if mixed else other.heard
+        )
     else:
         found = ()
     if not words and told.segments is None:
@@ -233,17 +261,26 @@ def _kept(reading: _Reading, called: str, given: Sequence[Segment], voice: Voice
             peak = peak_of(voice.pitch, tones, voice.heard, s.start, end) if peak is None else min(peak, end)
         out.append(Segment(s.kind, s.start, end, peak, s.text))
     if len(out) < len(given):
-        reading.notes.append(f"{called}: {count(len(given) - len(out), 'segment')} left out, past the end of the sound at {length:.1f} s.")
+        reading.notes.append(
+            f"{called}: {count(len(given) - len(out), 'segment')} left out, past the end of the sound at "
+            f"{length:.1f} s."
+        )
     return tuple(out)
 
 
-def _tell_wordless(reading: _Reading, called: str, voice: Voice, other: Voice | None, found: Sequence[Segment]) -> None:
+def _tell_wordless(
+    reading: _Reading, called: str, voice: Voice, other: Voice | None, found: Sequence[Segment]
+) -> None:
     if other is None:
-        reading.notes.append(f"{called}: no words are known of this side, so it says nothing. Add a transcript that names both speakers.")
+        reading.notes.append(
+            f"{called}: no words are known of this side, so it says nothing. Add a transcript that names "
+            "both speakers."
+        )
         return
     if found:
         reading.notes.append(
-            f"{called}: no words, so loudness tells: {count(len(found), 'segment')} between pauses; short sounds while the partner talks "
+            f"{called}: no words, so loudness tells: {count(len(found), 'segment')} between pauses; short "
+            "sounds while the partner talks "
             "count as responses, and hesitations are not found. Add a transcript to tell them apart."
         )
         return

@@ -1,4 +1,5 @@
-"""A project as plain data - dicts, lists, strings, numbers - and back. What project files and the journal hold.
+"""A project as plain data - dicts, lists, strings, numbers - and back. What project files and the journal
+hold.
 
 Fields at their default are left out, floats are rounded to microseconds, so that one edit changes few lines.
 """
@@ -14,7 +15,19 @@ from typing import Any
 import msgspec
 import numpy as np
 
-from metagraph.formats.fields import Data, DataError, fill, floats, get, items, known, number, one_of, plain, sparse
+from metagraph.formats.fields import (
+    Data,
+    DataError,
+    fill,
+    floats,
+    get,
+    items,
+    known,
+    number,
+    one_of,
+    plain,
+    sparse,
+)
 from metagraph.formats.manual_data import manual_data, manual_from
 from metagraph.formats.takes import REPAIRS
 from metagraph.graph.asks import words_of
@@ -59,9 +72,11 @@ def clip_data(entry: ClipEntry) -> Data:
 
 
 def skeleton_data(skeleton: Skeleton) -> list[Data]:
-    """Return one dict a joint: name, parent (its name), at (local rest translation, metres), turn (local rest rotation, xyzw).
+    """Return one dict a joint: name, parent (its name), at (local rest translation, metres), turn (local rest
+    rotation, xyzw).
 
-    These numbers are not rounded: skeletons are compared to 0.1 mm, and a rounded one may fall on the other side.
+    These numbers are not rounded: skeletons are compared to 0.1 mm, and a rounded one may fall on the other
+    side.
     """
     out: list[Data] = []
     for i, name in enumerate(skeleton.names):
@@ -88,7 +103,8 @@ def weights_data(graph: MetaGraph) -> Data:
 
 
 def to_data(project: Project) -> Data:
-    """Return the whole project; inverse of `from_data` but for the motion of clips and what lies below a microsecond.
+    """Return the whole project; inverse of `from_data` but for the motion of clips and what lies below a
+    microsecond.
 
     Raises DataError when a number is not finite.
     """
@@ -114,7 +130,11 @@ def to_data(project: Project) -> Data:
         "layers": layers,
         "markov": {layer: markov_data(project.markov[layer]) for layer in LAYERS if layer in project.markov},
         **{key: data for key in STRUCTS if (data := struct_data(getattr(project, key)))},
-        **({"manual": {x: manual_data(project.manual[x]) for x in LAYERS if x in project.manual}} if project.manual else {}),
+        **(
+            {"manual": {x: manual_data(project.manual[x]) for x in LAYERS if x in project.manual}}
+            if project.manual
+            else {}
+        ),
         "skeleton": skeleton_data(project.skeleton) if project.skeleton is not None else [],
     }
 
@@ -130,20 +150,31 @@ def markov_data(model: Markov) -> Data:
 
 # What the life layers, asks and performances are made of describes itself; written and read by type.
 STRUCTS: dict[str, Any] = {
-    "life": Life, "face": Face, "points": dict[str, Point], "lines": dict[str, Line], "performances": dict[str, Performance],
-    "conversations": dict[str, Conversation], "tiers": dict[str, str], "labels": dict[str, str], "joint_maps": dict[str, JointMap],
-}  # fmt: skip
+    "life": Life,
+    "face": Face,
+    "points": dict[str, Point],
+    "lines": dict[str, Line],
+    "performances": dict[str, Performance],
+    "conversations": dict[str, Conversation],
+    "tiers": dict[str, str],
+    "labels": dict[str, str],
+    "joint_maps": dict[str, JointMap],
+}
 
 
 def struct_data(value: Any) -> Any:
-    """Return what one of `STRUCTS` holds, fields at their default left out. It is not to be changed in place."""
+    """Return what one of `STRUCTS` holds, fields at their default left out. It is not to be changed in
+    place.
+    """
     if isinstance(value, Mapping) and any(isinstance(v, Conversation) for v in value.values()):
         return {key: _conversation_data(v) for key, v in value.items()}
     return _rounded(msgspec.to_builtins(value))
 
 
 def _conversation_data(conversation: Conversation) -> Data:
-    """Return a conversation; what most edits leave as it was, thousands of words of each side, is not worked out anew."""
+    """Return a conversation; what most edits leave as it was, thousands of words of each side, is not worked
+    out anew.
+    """
     short = tuple(msgspec.structs.replace(side, words=(), segments=()) for side in conversation.sides)
     out: Data = _rounded(msgspec.to_builtins(msgspec.structs.replace(conversation, sides=short)))
     for n, side in enumerate(conversation.sides):
@@ -173,7 +204,8 @@ def struct_from(data: Any, kind: Any, where: str) -> Any:
         raise DataError(f"{where}.{field}" if field else where, rest) from None
 
 
-# --- reading ---------------------------------------------------------------------------------------------------------
+# --- reading
+# --------------------------------------------------------------------------------------------------
 
 _ACTION_FIELDS = ({f.name for f in fields(Action)} | {f.name for f in fields(Timing)}) - {"layer", "timing"}
 _CLIP_FIELDS = ({f.name for f in fields(ClipEntry)} | {"sha256"}) - {"motion", "digest"}
@@ -238,7 +270,10 @@ def _graph_from(layer: Layer, data: Any, stance_ids: set[str], action_ids: set[s
     for place, item in items(data, "stances", where, stance_ids):
         known(item, ("id", "name"), place)
         stances[item["id"]] = Stance(item["id"], layer, get(item, "name", str, place))
-    actions = {item["id"]: action_from(item, layer, place) for place, item in items(data, "actions", where, action_ids)}
+    actions = {
+        item["id"]: action_from(item, layer, place)
+        for place, item in items(data, "actions", where, action_ids)
+    }
     weights = get(data, "weights", dict, where, {})
     for part in weights:
         one_of(part, PARTS, f"{where}.weights")
@@ -249,7 +284,8 @@ def _graph_from(layer: Layer, data: Any, stance_ids: set[str], action_ids: set[s
 def from_data(data: Any, notes: list[str] | None = None) -> Project:
     """Return the project, its clips without motion. Raises DataError naming the first field that is wrong.
 
-    notes: where given, a joint map that is wrong is left out, and said there: nothing but its clips depends on it.
+    notes: where given, a joint map that is wrong is left out, and said there: nothing but its clips depends
+    on it.
     """
     if not isinstance(data, Mapping) or "metagraph" not in data:
         raise DataError("metagraph", "is missing: this is not a Metagraph project")
@@ -260,11 +296,16 @@ def from_data(data: Any, notes: list[str] | None = None) -> Project:
     known(layers, LAYERS, "layers")
     stance_ids: set[str] = set()
     action_ids: set[str] = set()
-    graphs = {layer: _graph_from(layer, get(layers, layer, dict, "layers", {}), stance_ids, action_ids) for layer in LAYERS}
+    graphs = {
+        layer: _graph_from(layer, get(layers, layer, dict, "layers", {}), stance_ids, action_ids)
+        for layer in LAYERS
+    }
     machines = get(data, "manual", dict, "", {})
     known(machines, LAYERS, "manual")
     manual_ids: set[str] = set()
-    manual = {x: manual_from(x, get(machines, x, dict, "manual"), manual_ids) for x in LAYERS if x in machines}
+    manual = {
+        x: manual_from(x, get(machines, x, dict, "manual"), manual_ids) for x in LAYERS if x in machines
+    }
     parts, roles = get(data, "parts", dict, "", {}), get(data, "roles", dict, "", {})
     for joint, part in parts.items():
         one_of(part, PARTS, f"parts.{joint}")
@@ -281,9 +322,15 @@ def from_data(data: Any, notes: list[str] | None = None) -> Project:
         base=BasePose(**fill(BasePose, base, "base")),
         roles={r: get(roles, r, str, "roles") for r in roles},
         parts=dict(parts),
-        markov={layer: markov_from(layer, models[layer], f"markov.{layer}") for layer in LAYERS if layer in models},
+        markov={
+            layer: markov_from(layer, models[layer], f"markov.{layer}") for layer in LAYERS if layer in models
+        },
         settings=Settings(**fill(Settings, settings, "settings")),
-        **{key: struct_from(data[key], kind, key) for key, kind in STRUCTS.items() if data.get(key) is not None and key != "joint_maps"},
+        **{
+            key: struct_from(data[key], kind, key)
+            for key, kind in STRUCTS.items()
+            if data.get(key) is not None and key != "joint_maps"
+        },
         joint_maps=_joint_maps_from(data, notes),
         manual=manual,
         character=get(data, "character", str, "", None),
@@ -310,7 +357,9 @@ def _joint_maps_from(data: Data, notes: list[str] | None) -> dict[str, JointMap]
 
 
 def _left_out(error: DataError) -> str:
-    return f"{error.where} {error}; that joint map is left out. Import its clips again to map their joints anew."
+    return (
+        f"{error.where} {error}; that joint map is left out. Import its clips again to map their joints anew."
+    )
 
 
 def above(*idents: str) -> int:
@@ -329,14 +378,27 @@ def markov_from(layer: Layer, data: Any, where: str) -> Markov:
     rows = get(data, "matrix", list, where)
     if not rows or len(rows) != len(states):
         raise DataError(f"{where}.matrix", f"should have {max(1, len(states))} rows, one for each state")
-    matrix = tuple(tuple(floats(row if isinstance(row, list) else [], len(states), f"{where}.matrix[{n}]")) for n, row in enumerate(rows))
+    matrix = tuple(
+        tuple(floats(row if isinstance(row, list) else [], len(states), f"{where}.matrix[{n}]"))
+        for n, row in enumerate(rows)
+    )
     for n, row in enumerate(matrix):
         if min(row) < 0 or not 0.99 < sum(row) < 1.01:
             raise DataError(f"{where}.matrix[{n}]", "should be probabilities that sum to 1")
-    lengths = [floats(x if isinstance(x, list) else [], 2, f"{where}.lengths", 1e6) for x in get(data, "lengths", list, where, [])]
+    lengths = [
+        floats(x if isinstance(x, list) else [], 2, f"{where}.lengths", 1e6)
+        for x in get(data, "lengths", list, where, [])
+    ]
     if lengths and len(lengths) != len(states):
         raise DataError(f"{where}.lengths", f"should be {len(states)} pairs of seconds, one for each state")
     if any(mean < 1e-3 or deviation < 0 for mean, deviation in lengths):
         raise DataError(f"{where}.lengths", "should be means above 0 and deviations of 0 or more")
     more = fill(Markov, data, where, ("layer", "states", "matrix", "tags", "lengths"))
-    return Markov(layer, tuple(states), matrix, **more, tags=tuple(tags) if any(tags) else (), lengths=tuple((a, b) for a, b in lengths))
+    return Markov(
+        layer,
+        tuple(states),
+        matrix,
+        **more,
+        tags=tuple(tags) if any(tags) else (),
+        lengths=tuple((a, b) for a, b in lengths),
+    )

@@ -1,7 +1,7 @@
 """ELAN annotations (.eaf): tiers of intervals with times in seconds.
 
-Read with Expat rather than pympi-ling, which ends in a KeyError where annotations refer to others that refer to others, and cannot say
-in which line a broken file is broken. Nothing is fetched that a file names.
+Read with Expat rather than pympi-ling, which ends in a KeyError where annotations refer to others that refer
+to others, and cannot say in which line a broken file is broken. Nothing is fetched that a file names.
 """
 
 from __future__ import annotations
@@ -17,14 +17,21 @@ from metagraph.playback.annotation import Annotation, Interval, Tier
 
 DEEPEST = 64  # levels of elements; ELAN writes 5
 LONGEST = 1e7  # seconds, four months
-UNITS: Mapping[str, float] = {"milliseconds": 1e-3, "PAL-frames": 1 / 25, "PAL-50-frames": 1 / 50, "NTSC-frames": 1001 / 30000}
+UNITS: Mapping[str, float] = {
+    "milliseconds": 1e-3,
+    "PAL-frames": 1 / 25,
+    "PAL-50-frames": 1 / 50,
+    "NTSC-frames": 1001 / 30000,
+}
 _AGAIN = "Open it in ELAN and save it again."
 _NOT = "Choose a file that ELAN saved (.eaf)."
 
 
 @dataclass
 class _Mark:
-    """An annotation while it is being read. slots: its two time slots, or else `of`: the annotation it refers to."""
+    """An annotation while it is being read. slots: its two time slots, or else `of`: the annotation it refers
+    to.
+    """
 
     ident: str
     line: int
@@ -75,7 +82,11 @@ class _Reader:
     def _begin(self, name: str, at: dict[str, str]) -> None:
         self.depth += 1
         if self.depth == 1 and name != "ANNOTATION_DOCUMENT":
-            raise self.fail(f"its outermost element is '{name}', not 'ANNOTATION_DOCUMENT': this is not an ELAN annotation", remedy=_NOT)
+            raise self.fail(
+                f"its outermost element is '{name}', not 'ANNOTATION_DOCUMENT': this is not an ELAN "
+                "annotation",
+                remedy=_NOT,
+            )
         if self.depth > DEEPEST:
             raise self.fail(f"elements lie more than {DEEPEST} deep")
         if name == "HEADER":
@@ -94,7 +105,9 @@ class _Reader:
             self._mark(name, at)
         elif name == "CONTROLLED_VOCABULARY":
             self.vocabulary = self.vocabularies.setdefault(self._need(at, "CV_ID", name), [])
-        elif name == "ANNOTATION_VALUE" or (name in ("CV_ENTRY", "CVE_VALUE") and self.vocabulary is not None):
+        elif name == "ANNOTATION_VALUE" or (
+            name in ("CV_ENTRY", "CVE_VALUE") and self.vocabulary is not None
+        ):
             self.words = []
 
     def _need(self, at: Mapping[str, str], key: str, element: str) -> str:
@@ -123,7 +136,9 @@ class _Reader:
         name = self._need(at, "TIER_ID", "TIER")
         if name in self.tiers:
             raise self.fail(f"tier '{name}' is there twice", remedy="Rename one of them in ELAN.")
-        self.tier = self.tiers[name] = _Tier(name, at.get("PARTICIPANT", "").strip(), at.get("PARENT_REF", ""))
+        self.tier = self.tiers[name] = _Tier(
+            name, at.get("PARTICIPANT", "").strip(), at.get("PARENT_REF", "")
+        )
 
     def _mark(self, name: str, at: Mapping[str, str]) -> None:
         if self.tier is None:
@@ -135,10 +150,18 @@ class _Reader:
             slots = self._need(at, "TIME_SLOT_REF1", name), self._need(at, "TIME_SLOT_REF2", name)
             unknown = next((s for s in slots if s not in self.slots), None)
             if unknown is not None:
-                raise self.fail(f"annotation '{ident}' begins or ends at time slot '{unknown}', which is not there")
+                raise self.fail(
+                    f"annotation '{ident}' begins or ends at time slot '{unknown}', which is not there"
+                )
             self.mark = _Mark(ident, self.line, slots)
         else:
-            self.mark = _Mark(ident, self.line, None, self._need(at, "ANNOTATION_REF", name), at.get("PREVIOUS_ANNOTATION", ""))
+            self.mark = _Mark(
+                ident,
+                self.line,
+                None,
+                self._need(at, "ANNOTATION_REF", name),
+                at.get("PREVIOUS_ANNOTATION", ""),
+            )
         self.marks[ident] = self.mark
         self.tier.marks.append(self.mark)
 
@@ -167,8 +190,9 @@ class _Reader:
 def read_elan(path: str | Path) -> Annotation:
     """Read an .eaf file (format 2.x or 3.0).
 
-    Annotations without times of their own share their parent's evenly with those beside them; time slots that were never aligned are
-    spread evenly between those that were. What lasts no time at all is left out, and noted. Raises FileError.
+    Annotations without times of their own share their parent's evenly with those beside them; time slots that
+    were never aligned are spread evenly between those that were. What lasts no time at all is left out, and
+    noted. Raises FileError.
     """
     path = Path(path)
     reader = _Reader(path)
@@ -176,11 +200,18 @@ def read_elan(path: str | Path) -> Annotation:
         with path.open("rb") as file:
             reader.parser.ParseFile(file)
     except OSError as error:
-        raise FileError(path, f"cannot be read ({error.strerror})", "on opening it", "Check that it is there.") from None
+        raise FileError(
+            path, f"cannot be read ({error.strerror})", "on opening it", "Check that it is there."
+        ) from None
     except expat.ExpatError as error:
         empty = path.stat().st_size == 0
         cause = "it is empty" if empty else f"it is not well-formed XML ({expat.errors.messages[error.code]})"
-        raise FileError(path, cause, f"line {error.lineno}, column {error.offset + 1}", _NOT if not reader.tiers else _AGAIN) from None
+        raise FileError(
+            path,
+            cause,
+            f"line {error.lineno}, column {error.offset + 1}",
+            _NOT if not reader.tiers else _AGAIN,
+        ) from None
     except (LookupError, ValueError) as error:  # an encoding nobody knows
         raise FileError(path, f"its text cannot be decoded ({error})", "line 1", _AGAIN) from None
     return _annotation(reader)
@@ -189,7 +220,9 @@ def read_elan(path: str | Path) -> Annotation:
 def _annotation(reader: _Reader) -> Annotation:
     aligned = _aligned(reader)
     spans: dict[str, tuple[float, float]] = {
-        m.ident: (aligned[m.slots[0]], aligned[m.slots[1]]) for m in reader.marks.values() if m.slots is not None
+        m.ident: (aligned[m.slots[0]], aligned[m.slots[1]])
+        for m in reader.marks.values()
+        if m.slots is not None
     }
     _refer(reader, spans)
     tiers, lost = [], Counter[str]()
@@ -206,14 +239,24 @@ def _annotation(reader: _Reader) -> Annotation:
         intervals.sort(key=lambda i: (i.start, i.end))
         tiers.append(Tier(tier.name, tuple(intervals), tier.participant, tier.parent))
     notes = [
-        x if "refers" in x else f"{x}: {n} annotation{'s' if n > 1 else ''} left out that end before they begin" for x, n in lost.items()
+        x
+        if "refers" in x
+        else f"{x}: {n} annotation{'s' if n > 1 else ''} left out that end before they begin"
+        for x, n in lost.items()
     ]
     vocabularies = {name: tuple(dict.fromkeys(words)) for name, words in reader.vocabularies.items()}
-    return Annotation(tuple(tiers), tuple(dict.fromkeys(m for m in reader.media or [reader.old_media] if m)), vocabularies, tuple(notes))
+    return Annotation(
+        tuple(tiers),
+        tuple(dict.fromkeys(m for m in reader.media or [reader.old_media] if m)),
+        vocabularies,
+        tuple(notes),
+    )
 
 
 def _aligned(reader: _Reader) -> dict[str, float]:
-    """Return the seconds of every time slot. Those never aligned lie evenly along the run of annotations that share them."""
+    """Return the seconds of every time slot. Those never aligned lie evenly along the run of annotations that
+    share them.
+    """
     out = {ident: seconds for ident, seconds in reader.slots.items() if seconds is not None}
     for tier in reader.tiers.values():
         run: list[str] = []
@@ -242,14 +285,18 @@ def _spread(order: list[str], known: dict[str, float]) -> None:
 
 
 def _refer(reader: _Reader, spans: dict[str, tuple[float, float]]) -> None:
-    """Work out the spans of annotations that refer to others: those of one tier with one parent share its span evenly, in their order."""
+    """Work out the spans of annotations that refer to others: those of one tier with one parent share its
+    span evenly, in their order.
+    """
     waiting: list[tuple[str, list[_Mark]]] = []
     for tier in reader.tiers.values():
         siblings: dict[str, list[_Mark]] = {}
         for mark in tier.marks:
             if mark.slots is None:
                 if mark.of not in reader.marks:
-                    raise reader.fail(f"annotation '{mark.ident}' refers to '{mark.of}', which is not there", mark.line)
+                    raise reader.fail(
+                        f"annotation '{mark.ident}' refers to '{mark.of}', which is not there", mark.line
+                    )
                 siblings.setdefault(mark.of, []).append(mark)
         waiting += siblings.items()
     while waiting:
@@ -260,7 +307,10 @@ def _refer(reader: _Reader, spans: dict[str, tuple[float, float]]) -> None:
                 continue
             start, end = spans[parent]
             for n, mark in enumerate(_ordered(marks)):
-                spans[mark.ident] = start + (end - start) * n / len(marks), start + (end - start) * (n + 1) / len(marks)
+                spans[mark.ident] = (
+                    start + (end - start) * n / len(marks),
+                    start + (end - start) * (n + 1) / len(marks),
+                )
         if len(left) == len(waiting):
             mark = left[0][1][0]
             raise reader.fail(f"annotation '{mark.ident}' refers to itself by way of '{mark.of}'", mark.line)

@@ -1,7 +1,8 @@
 """Run as a process of its own: read one FBX file with ufbx and write it to standard output as binary glTF.
 
-A broken file, or a slip in the use of the library's handles, ends this process and nothing else. ufbx frees a scene
-while its nodes are still in use unless every list is kept, so all of them are made at once and held to the end.
+A broken file, or a slip in the use of the library's handles, ends this process and nothing else. ufbx frees a
+scene while its nodes are still in use unless every list is kept, so all of them are made at once and held to
+the end.
 """
 
 from __future__ import annotations
@@ -83,11 +84,14 @@ def _convert(ufbx: Any, scene: Any) -> bytes:
             if cluster.bone_node is not None:
                 bind.setdefault(cluster.bone_node.typed_id, _matrix(cluster.bind_to_world))
         for i in bones:
-            if i not in bind:  # a bone that moves no vertex stands as it does in the scene, on its parent's bind pose
+            if (
+                i not in bind
+            ):  # a bone that moves no vertex stands as it does in the scene, on its parent's bind pose
                 own = _matrix(nodes[i].node_to_parent)
                 bind[i] = bind[parents[i]] @ own if parents[i] in bind else _matrix(nodes[i].node_to_world)
         if not clusters:
-            # Nothing tells the bind pose; the root's own place is that of the first frame, so stand it over the origin.
+            # Nothing tells the bind pose; the root's own place is that of the first frame, so stand it over
+            # the origin.
             away = bind[bones[0]][[0, 2], 3].copy()
             for i in bones:
                 bind[i][[0, 2], 3] -= away
@@ -96,7 +100,9 @@ def _convert(ufbx: Any, scene: Any) -> bytes:
         document["skins"] = [{"joints": bones, "inverseBindMatrices": inverse}]
 
     animations = []
-    carrying = set(bones)  # bones and what carries them; lights, targets and footprints beside them do not matter
+    carrying = set(
+        bones
+    )  # bones and what carries them; lights, targets and footprints beside them do not matter
     for i in bones:
         while parents[i] >= 0 and parents[i] not in carrying:
             i = parents[i]
@@ -114,7 +120,11 @@ def _convert(ufbx: Any, scene: Any) -> bytes:
         for i in moving:
             node = nodes[i]
             values = np.array([_transform(node.evaluate_transform(anim, t)) for t in times])
-            for name, columns in (("translation", slice(0, 3)), ("rotation", slice(3, 7)), ("scale", slice(7, 10))):
+            for name, columns in (
+                ("translation", slice(0, 3)),
+                ("rotation", slice(3, 7)),
+                ("scale", slice(7, 10)),
+            ):
                 own = values[:, columns]
                 steady = np.abs(own - own[:1]).max() < 1e-7
                 if steady and np.abs(own[0] - still[i, columns]).max() < 1e-7 and i not in bones[:1]:
@@ -124,7 +134,9 @@ def _convert(ufbx: Any, scene: Any) -> bytes:
                 samplers.append({"input": source, "output": body.array(own[:kept], 5126)})
                 channels.append({"sampler": len(samplers) - 1, "target": {"node": i, "path": name}})
         if channels:
-            animations.append({"name": stack.name, "samplers": samplers, "channels": channels, "extras": {"fps": FPS}})
+            animations.append(
+                {"name": stack.name, "samplers": samplers, "channels": channels, "extras": {"fps": FPS}}
+            )
     if animations:
         document["animations"] = animations
     return glb_bytes(document, body)

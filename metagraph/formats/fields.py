@@ -1,4 +1,6 @@
-"""Plain data field by field: written without defaults, read with types, ranges and known names, and an error that names the place."""
+"""Plain data field by field: written without defaults, read with types, ranges and known names, and an error
+that names the place.
+"""
 
 from __future__ import annotations
 
@@ -19,11 +21,14 @@ class DataError(ValueError):
         super().__init__(message)
 
 
-# --- writing ---------------------------------------------------------------------------------------------------------
+# --- writing
+# --------------------------------------------------------------------------------------------------
 
 
 def number(value: float) -> float | int:
-    """Return a number rounded to six decimals, or to six digits where nothing else would be left. Raises ValueError."""
+    """Return a number rounded to six decimals, or to six digits where nothing else would be left. Raises
+    ValueError.
+    """
     if not abs(value) <= LARGEST:
         raise ValueError(f"{value!r} is not a number that can be saved")
     rounded = round(float(value), 6) or float(f"{value:.6g}")
@@ -54,13 +59,23 @@ def sparse(value: Any, skip: tuple[str, ...] = ()) -> Data:
             try:
                 out[f.name] = plain(v)
             except ValueError as error:
-                raise DataError(f"{type(value).__name__.lower()} {getattr(value, 'name', '')!r}, {f.name}", str(error)) from None
+                raise DataError(
+                    f"{type(value).__name__.lower()} {getattr(value, 'name', '')!r}, {f.name}", str(error)
+                ) from None
     return out
 
 
-# --- reading ---------------------------------------------------------------------------------------------------------
+# --- reading
+# --------------------------------------------------------------------------------------------------
 
-_WORDS = {str: "text", int: "a whole number", float: "a number", bool: "true or false", list: "a list", dict: "fields"}
+_WORDS = {
+    str: "text",
+    int: "a whole number",
+    float: "a number",
+    bool: "true or false",
+    list: "a list",
+    dict: "fields",
+}
 
 
 def named(value: Any) -> str:
@@ -75,7 +90,9 @@ def named(value: Any) -> str:
 
 
 def get(data: Any, key: str, kind: Any, where: str, default: Any = MISSING) -> Any:
-    """Return a field checked for its type, `default` where it is missing or empty; numbers are finite and not beyond `LARGEST`."""
+    """Return a field checked for its type, `default` where it is missing or empty; numbers are finite and not
+    beyond `LARGEST`.
+    """
     if not isinstance(data, Mapping):
         raise DataError(where, f"should be fields, found {named(data)}")
     value = data.get(key, MISSING)
@@ -112,10 +129,22 @@ def one_of(value: Any, allowed: tuple[str, ...], where: str) -> Any:
 
 
 _RANGES = {  # field -> least and greatest value of what no check of the graph looks at
-    "fps": (1e-3, 1e6), "frames": (0, 1e9), "take": (0, 1e6), "frame": (0, 1e9), "seed": (0, 0xFFFFFFFF), "alpha": (0, LARGEST),
-    "shortest": (0, LARGEST), "wait": (0, LARGEST), "gap": (1e-3, LARGEST), "positive": (0, 1), "negative": (0, 1),
-    "memory": (0, 600), "rest": (0, 600), "lookahead": (0, 10), "cooldown": (0, LARGEST),
-}  # fmt: skip
+    "fps": (1e-3, 1e6),
+    "frames": (0, 1e9),
+    "take": (0, 1e6),
+    "frame": (0, 1e9),
+    "seed": (0, 0xFFFFFFFF),
+    "alpha": (0, LARGEST),
+    "shortest": (0, LARGEST),
+    "wait": (0, LARGEST),
+    "gap": (1e-3, LARGEST),
+    "positive": (0, 1),
+    "negative": (0, 1),
+    "memory": (0, 600),
+    "rest": (0, 600),
+    "lookahead": (0, 10),
+    "cooldown": (0, LARGEST),
+}
 
 
 def fill(cls: Any, data: Data, where: str, skip: tuple[str, ...] = ()) -> dict[str, Any]:
@@ -167,7 +196,9 @@ def items(data: Data, key: str, where: str, seen: set[str]) -> list[tuple[str, D
 
 
 def floats(values: list[Any], count: int, where: str, largest: float = LARGEST) -> list[float]:
-    numbers = [x for x in values if isinstance(x, int | float) and not isinstance(x, bool) and abs(x) <= largest]
+    numbers = [
+        x for x in values if isinstance(x, int | float) and not isinstance(x, bool) and abs(x) <= largest
+    ]
     if not len(numbers) == len(values) == count:
         raise DataError(where, f"should be {count} numbers")
     return [float(x) for x in values]

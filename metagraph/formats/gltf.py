@@ -1,4 +1,6 @@
-"""Read and write glTF 2.0: .glb, .gltf, .vrm. Everything comes out in metres, Y up, on one skeleton per file."""
+"""Read and write glTF 2.0: .glb, .gltf, .vrm. Everything comes out in metres, Y up, on one skeleton per
+file.
+"""
 
 from __future__ import annotations
 
@@ -17,7 +19,8 @@ from metagraph.formats.takes import unique_takes
 from metagraph.motion.character import Character
 from metagraph.motion.clip import Clip
 
-# Numbers out of a broken file overflow on their way to the check that refuses them; that is no reason to warn.
+# Numbers out of a broken file overflow on their way to the check that refuses them; that is no reason to
+# warn.
 _QUIET = np.errstate(all="ignore")
 
 __all__ = ["has_skinned_mesh", "read_character", "read_gltf_clips", "vrm_roles", "write_glb"]
@@ -27,23 +30,37 @@ __all__ = ["has_skinned_mesh", "read_character", "read_gltf_clips", "vrm_roles",
 def read_gltf_clips(path: str | Path, as_is: Collection[str] = ()) -> list[Clip]:
     """Return every animation of a file as a clip; all share one Skeleton.
 
-    Keys are resampled to the constant frame rate they lie on (30 when any would do). The rest pose comes from the
-    skin's inverse bind matrices where they are sound, else from the nodes. Raises FileError, also when there is no
-    animation of the skeleton. as_is: repairs (`takes.REPAIRS`) not to make.
+    Keys are resampled to the constant frame rate they lie on (30 when any would do). The rest pose comes from
+    the skin's inverse bind matrices where they are sound, else from the nodes. Raises FileError, also when
+    there is no animation of the skeleton. as_is: repairs (`takes.REPAIRS`) not to make.
     """
     gltf = open_gltf(path)
     if not gltf.json.animations:
-        raise FileError(path, "it holds no animation", "its animations", "Export it with its animation, or open it as a character.")
+        raise FileError(
+            path,
+            "it holds no animation",
+            "its animations",
+            "Export it with its animation, or open it as a character.",
+        )
     rig = build_rig(gltf, as_is)
-    clips = [clip for i in range(len(gltf.json.animations)) if (clip := read_clip(gltf, rig, i, as_is)) is not None]
+    clips = [
+        clip for i in range(len(gltf.json.animations)) if (clip := read_clip(gltf, rig, i, as_is)) is not None
+    ]
     if not clips:
-        raise FileError(path, "none of its animations moves the skeleton", "its animations", "Export it with its animation.")
+        raise FileError(
+            path,
+            "none of its animations moves the skeleton",
+            "its animations",
+            "Export it with its animation.",
+        )
     return unique_takes(clips)
 
 
 @_QUIET
 def read_character(path: str | Path) -> Character:
-    """Return all meshes of the default scene as one skinned character in its skeleton's rest pose. Raises FileError."""
+    """Return all meshes of the default scene as one skinned character in its skeleton's rest pose. Raises
+    FileError.
+    """
     gltf = open_gltf(path)
     return character_of(gltf, build_rig(gltf))
 
@@ -63,7 +80,9 @@ def morph_targets(path: str | Path) -> tuple[str, ...]:
 
 @_QUIET
 def vrm_roles(path: str | Path) -> dict[str, int]:
-    """Return role -> joint as a VRM 0.x, VRM 1.0 or VRMA file states it; empty for other files. Raises FileError."""
+    """Return role -> joint as a VRM 0.x, VRM 1.0 or VRMA file states it; empty for other files. Raises
+    FileError.
+    """
     gltf = open_gltf(path)
     stated = extras(gltf.json.extensions)
     bones: dict[str, object] = {}
@@ -73,7 +92,9 @@ def vrm_roles(path: str | Path) -> dict[str, int]:
         if isinstance(found, list):  # VRM 0.x
             found = {b.get("bone"): b for b in found if isinstance(b, dict)}
         if isinstance(found, dict):
-            bones.update({k: v.get("node") for k, v in found.items() if isinstance(k, str) and isinstance(v, dict)})
+            bones.update(
+                {k: v.get("node") for k, v in found.items() if isinstance(k, str) and isinstance(v, dict)}
+            )
     if not bones:
         return {}
     places = build_rig(gltf).places

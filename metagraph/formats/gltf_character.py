@@ -33,7 +33,9 @@ def character_of(gltf: Gltf, rig: Rig) -> Character:
     doc = gltf.json
     notes = [*rig.notes, *(repair.words for repair in rig.repairs)]
     parts: list[_Part] = []
-    runs: list[tuple[int, Array, int]] = []  # (part, triangles, material): primitives may share their vertices
+    runs: list[
+        tuple[int, Array, int]
+    ] = []  # (part, triangles, material): primitives may share their vertices
     for node in _scene_nodes(gltf, rig):
         index = doc.nodes[node].mesh
         if index is None:
@@ -49,7 +51,10 @@ def character_of(gltf: Gltf, rig: Rig) -> Character:
             triangles = _triangles(gltf, primitive, count, where)
             if not len(triangles):
                 continue
-            key = (*sorted(primitive.attributes.items()), *(tuple(sorted(t.items())) for t in primitive.targets))
+            key = (
+                *sorted(primitive.attributes.items()),
+                *(tuple(sorted(t.items())) for t in primitive.targets),
+            )
             if key not in shared or "NORMAL" not in primitive.attributes:
                 part = _part(gltf, rig, node, primitive, triangles, where, notes)
                 shared[key] = None if part is None else len(parts)
@@ -60,7 +65,9 @@ def character_of(gltf: Gltf, rig: Rig) -> Character:
                 turned = triangles[:, ::-1] if parts[place].mirrored else triangles
                 runs.append((place, turned, -1 if primitive.material is None else primitive.material))
     if not parts:
-        gltf.fail("it holds no mesh", "its meshes", "Choose a file with a character, or import this one as clips.")
+        gltf.fail(
+            "it holds no mesh", "its meshes", "Choose a file with a character, or import this one as clips."
+        )
     names = tuple(dict.fromkeys(name for part in parts for name in part.morphs))
     starts = np.cumsum([0] + [len(p.positions) for p in parts])
     morphs = None
@@ -113,13 +120,21 @@ def _scene_nodes(gltf: Gltf, rig: Rig) -> list[int]:
     return out
 
 
-def _part(gltf: Gltf, rig: Rig, node: int, primitive: Primitive, triangles: Array, where: str, notes: list[str]) -> _Part | None:
-    """Return one primitive's vertices in the rest pose, in metres, or None when they are scaled to nothing."""
+def _part(
+    gltf: Gltf, rig: Rig, node: int, primitive: Primitive, triangles: Array, where: str, notes: list[str]
+) -> _Part | None:
+    """Return one primitive's vertices in the rest pose, in metres, or None when they are scaled to
+    nothing.
+    """
     attributes = primitive.attributes
     positions = _floats(gltf, attributes["POSITION"], "VEC3", None, where)
     count = len(positions)
     normals = _floats(gltf, attributes["NORMAL"], "VEC3", count, where) if "NORMAL" in attributes else None
-    uvs = _floats(gltf, attributes["TEXCOORD_0"], "VEC2", count, where) if "TEXCOORD_0" in attributes else np.zeros((count, 2))
+    uvs = (
+        _floats(gltf, attributes["TEXCOORD_0"], "VEC2", count, where)
+        if "TEXCOORD_0" in attributes
+        else np.zeros((count, 2))
+    )
     skin = gltf.json.nodes[node].skin
     if skin is not None and "JOINTS_0" in attributes and "WEIGHTS_0" in attributes:
         matrices, joints, weights = _skinned(gltf, rig, skin, attributes, count, where)
@@ -150,7 +165,10 @@ def _part(gltf: Gltf, rig: Rig, node: int, primitive: Primitive, triangles: Arra
         normals = np.einsum("vab,vb->va", cofactor, normals) * (-1 if mirrored else 1)
         length = np.linalg.norm(normals, axis=-1, keepdims=True)
         normals = np.where(length > 1e-30, normals / np.maximum(length, 1e-30), [0.0, 1.0, 0.0])
-    if not all(np.isfinite(a).all() for a in (moved, normals, uvs, weights, *morphs.values())) or np.abs(moved).max() > 1e9:
+    if (
+        not all(np.isfinite(a).all() for a in (moved, normals, uvs, weights, *morphs.values()))
+        or np.abs(moved).max() > 1e9
+    ):
         gltf.fail("it holds a value that is not a sensible number", where)
     return _Part(moved, normals, uvs, joints, weights, mirrored, morphs)
 
@@ -184,7 +202,9 @@ def _triangles(gltf: Gltf, primitive: Primitive, count: int, where: str) -> Arra
     return strip
 
 
-def _skinned(gltf: Gltf, rig: Rig, skin_index: int, attributes: dict[str, int], count: int, where: str) -> tuple[Array, Array, Array]:
+def _skinned(
+    gltf: Gltf, rig: Rig, skin_index: int, attributes: dict[str, int], count: int, where: str
+) -> tuple[Array, Array, Array]:
     """Return per vertex its matrix to the rest pose `[V, 4, 4]`, its joints and its weights `[V, 4]`."""
     skin = gltf.item(gltf.json.skins, skin_index, "skin", where)
     own = np.array([rig.places[j] for j in skin.joints], np.int64)
@@ -192,7 +212,9 @@ def _skinned(gltf: Gltf, rig: Rig, skin_index: int, attributes: dict[str, int], 
         gltf.fail(f"skin {skin_index} has no joints", where)
     bind = rig.rest_matrices[own]
     if skin.inverse_bind_matrices is not None:
-        inverse = np.asarray(gltf.array(skin.inverse_bind_matrices, f"skin {skin_index}", "MAT4"), np.float64)[: len(own)]
+        inverse = np.asarray(
+            gltf.array(skin.inverse_bind_matrices, f"skin {skin_index}", "MAT4"), np.float64
+        )[: len(own)]
         if len(inverse) < len(own):
             gltf.fail(f"{len(inverse)} inverse bind matrices for {len(own)} joints", f"skin {skin_index}")
         bind = bind @ inverse.reshape(-1, 4, 4).transpose(0, 2, 1)
@@ -219,7 +241,9 @@ def _skinned(gltf: Gltf, rig: Rig, skin_index: int, attributes: dict[str, int], 
 
 
 def _attached(gltf: Gltf, rig: Rig, node: int) -> tuple[Array, int] | None:
-    """Return the matrix of a mesh without a skin and the joint that carries it, or None when it is scaled to nothing."""
+    """Return the matrix of a mesh without a skin and the joint that carries it, or None when it is scaled to
+    nothing.
+    """
     at = node
     while at >= 0 and at not in rig.places:
         at = rig.parents[at]
@@ -266,7 +290,9 @@ def _materials(gltf: Gltf, used: list[int], notes: list[str]) -> tuple[tuple[Mat
             continue
         image = None
         if pbr.base_color_texture is not None:
-            texture = gltf.item(gltf.json.textures, pbr.base_color_texture.index, "texture", f"material '{name}'")
+            texture = gltf.item(
+                gltf.json.textures, pbr.base_color_texture.index, "texture", f"material '{name}'"
+            )
             if texture.source is not None:
                 if texture.source not in images:
                     images[texture.source] = _image(gltf, texture.source, notes)
@@ -275,7 +301,13 @@ def _materials(gltf: Gltf, used: list[int], notes: list[str]) -> tuple[tuple[Mat
                 notes.append(f"the texture of material '{name}' is in a format that is not read")
         color = tuple(float(np.clip(c, 0, 1)) for c in pbr.base_color_factor)
         out.append(
-            Material(name, (color[0], color[1], color[2], color[3]), image, float(np.clip(pbr.roughness_factor, 0, 1)), value.double_sided)
+            Material(
+                name,
+                (color[0], color[1], color[2], color[3]),
+                image,
+                float(np.clip(pbr.roughness_factor, 0, 1)),
+                value.double_sided,
+            )
         )
     return tuple(out), places
 

@@ -46,7 +46,10 @@ def read_clip(gltf: Gltf, rig: Rig, number: int, as_is: Collection[str] = ()) ->
     if not end - start <= _LONGEST:
         gltf.fail(f"it lasts {end - start:.3g} s", where)
     wanted = extras(animation.extras).get("fps")
-    fps = frame_rate(list(keys.values()), float(wanted) if isinstance(wanted, int | float) and 1 <= wanted <= 1000 else None)
+    fps = frame_rate(
+        list(keys.values()),
+        float(wanted) if isinstance(wanted, int | float) and 1 <= wanted <= 1000 else None,
+    )
     frames = max(1, round((end - start) * fps) + 1)
     joints = len(rig.nodes)
     gltf.spend(frames * joints * 32, where)
@@ -58,12 +61,21 @@ def read_clip(gltf: Gltf, rig: Rig, number: int, as_is: Collection[str] = ()) ->
     rotations[:] = rig.still_rotations
     rest = np.asarray(rig.skeleton.rest_translations)
     still = np.einsum("jab,jb->ja", rig.lift, rig.still_translations) + rig.shift
-    moved = {j: np.broadcast_to(still[j], (frames, 3)) for j in np.flatnonzero(np.abs(still - rest).max(-1) > STILL).tolist()}
+    moved = {
+        j: np.broadcast_to(still[j], (frames, 3))
+        for j in np.flatnonzero(np.abs(still - rest).max(-1) > STILL).tolist()
+    }
     scaled = 0
     for (source, mode, path), targets in groups.items():
         places = np.array([t[0] for t in targets])
         width = 4 if path == "rotation" else 3
-        values = _stack(gltf, [t[1] for t in targets], len(keys[source]) * (3 if mode == "CUBICSPLINE" else 1), width, where)
+        values = _stack(
+            gltf,
+            [t[1] for t in targets],
+            len(keys[source]) * (3 if mode == "CUBICSPLINE" else 1),
+            width,
+            where,
+        )
         if path == "rotation":
             rotations[:, places] = _sample(keys[source], values, grid, mode, True).transpose(1, 0, 2)
         elif path == "translation":
@@ -91,7 +103,9 @@ def read_clip(gltf: Gltf, rig: Rig, number: int, as_is: Collection[str] = ()) ->
     if not (np.isfinite(rotations).all() and np.isfinite(translations).all()):
         bad = np.flatnonzero(~np.isfinite(rotations).all((0, 2)))
         name = (
-            rig.skeleton.names[int(bad[0])] if len(bad) else rig.skeleton.names[next(j for j in moved if not np.isfinite(moved[j]).all())]
+            rig.skeleton.names[int(bad[0])]
+            if len(bad)
+            else rig.skeleton.names[next(j for j in moved if not np.isfinite(moved[j]).all())]
         )
         gltf.fail("a key is not a number", f"{where}, node '{name}'")
     if np.abs(translations).max() > 1e7:
@@ -121,7 +135,9 @@ _Group = tuple[int, str, str]
 def _channels(
     gltf: Gltf, rig: Rig, animation: Animation, where: str
 ) -> tuple[dict[_Group, list[tuple[int, int]]], list[tuple[int, str, int, int]], list[str]]:
-    """Sort channels into groups that share key times: (input, mode, path) -> [(joint, output)], and the morph channels."""
+    """Sort channels into groups that share key times: (input, mode, path) -> [(joint, output)], and the morph
+    channels.
+    """
     groups: dict[_Group, list[tuple[int, int]]] = defaultdict(list)
     morphs: list[tuple[int, str, int, int]] = []
     unknown: set[str] = set()
@@ -163,7 +179,11 @@ def _stack(gltf: Gltf, outputs: list[int], count: int, width: int, where: str) -
     for output in outputs:
         values = gltf.array(output, where)
         if values.ndim != 2 or values.shape[1] != width or len(values) < count:
-            gltf.fail(f"accessor {output} holds {'x'.join(map(str, values.shape))} values, expected {count}x{width}", where)
+            gltf.fail(
+                f"accessor {output} holds {'x'.join(map(str, values.shape))} values, expected "
+                f"{count}x{width}",
+                where,
+            )
         arrays.append(values if len(values) == count else values[:count])
     if sum(a.nbytes for a in arrays) > 1 << 20:
         gltf.spend(sum(a.nbytes for a in arrays), where)
@@ -191,7 +211,12 @@ def _sample(times: Array, values: Array, grid: _Grid, mode: str, turning: bool) 
     if spline:
         gap, u2, u3 = gap[None, :, None], u * u, u * u * u
         leave, arrive = values[:, 2::3][:, low], values[:, 0::3][:, low + 1]
-        out = (2 * u3 - 3 * u2 + 1) * a + gap * (u3 - 2 * u2 + u) * leave + (3 * u2 - 2 * u3) * b + gap * (u3 - u2) * arrive
+        out = (
+            (2 * u3 - 3 * u2 + 1) * a
+            + gap * (u3 - 2 * u2 + u) * leave
+            + (3 * u2 - 2 * u3) * b
+            + gap * (u3 - u2) * arrive
+        )
         return np.asarray(rotation.normalize(out) if turning else out)
     if not turning:
         return np.asarray(a + (b - a) * u)
@@ -202,11 +227,16 @@ def _sample(times: Array, values: Array, grid: _Grid, mode: str, turning: bool) 
     sine = np.sin(angle)
     close = sine < 1e-3
     sine = np.where(close, 1, sine)
-    return np.asarray(a * np.where(close, 1 - u, np.sin((1 - u) * angle) / sine) + b * np.where(close, u, np.sin(u * angle) / sine))
+    return np.asarray(
+        a * np.where(close, 1 - u, np.sin((1 - u) * angle) / sine)
+        + b * np.where(close, u, np.sin(u * angle) / sine)
+    )
 
 
 def morph_names(gltf: Gltf, node: int) -> tuple[str, ...]:
-    """Return the names of the morph targets of a node's mesh: from `targetNames`, else made from the mesh's name."""
+    """Return the names of the morph targets of a node's mesh: from `targetNames`, else made from the mesh's
+    name.
+    """
     mesh_index = gltf.json.nodes[node].mesh
     if mesh_index is None:
         return ()
@@ -217,7 +247,11 @@ def morph_names(gltf: Gltf, node: int) -> tuple[str, ...]:
     first = mesh.primitives[0]
     for raw in (mesh.extras, gltf.json.nodes[node].extras, first.extras):
         names = extras(raw).get("targetNames")
-        if isinstance(names, list) and len(names) >= count and all(isinstance(n, str) and n for n in names[:count]):
+        if (
+            isinstance(names, list)
+            and len(names) >= count
+            and all(isinstance(n, str) and n for n in names[:count])
+        ):
             return tuple(names[:count])
     return tuple(f"{mesh.name or 'mesh'}_morph_{k}" for k in range(count))
 
@@ -236,7 +270,9 @@ def _morphs(
         if not names:
             continue
         if len(values) != count * len(names):
-            gltf.fail(f"accessor {output} holds {len(values)} weights, expected {count} x {len(names)}", where)
+            gltf.fail(
+                f"accessor {output} holds {len(values)} weights, expected {count} x {len(names)}", where
+            )
         gltf.spend(len(grid.times) * len(names) * 8, where)
         tracks = np.asarray(values, np.float64).reshape(count, len(names)).T[..., None]
         for name, track in zip(names, _sample(keys[source], tracks, grid, mode, False)[..., 0], strict=True):

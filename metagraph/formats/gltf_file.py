@@ -1,7 +1,7 @@
 """A glTF 2.0 file opened and checked: its JSON as typed values, its buffers, and accessors as arrays.
 
-Nothing in the file is believed: every index, length and range is checked before use, and the memory that a small
-file may ask for (zero-filled accessors, long resampled clips) is bounded by `Gltf.spend`.
+Nothing in the file is believed: every index, length and range is checked before use, and the memory that a
+small file may ask for (zero-filled accessors, long resampled clips) is bounded by `Gltf.spend`.
 """
 
 from __future__ import annotations
@@ -28,10 +28,21 @@ _COMPONENTS = {5120: "<i1", 5121: "<u1", 5122: "<i2", 5123: "<u2", 5125: "<u4", 
 _DTYPES = {code: np.dtype(name) for code, name in _COMPONENTS.items()}
 _WIDTHS = {"SCALAR": 1, "VEC2": 2, "VEC3": 3, "VEC4": 4, "MAT4": 16}
 # Required extensions that change nothing we read, or that the reader understands.
-_KNOWN = ("KHR_mesh_quantization", "KHR_materials_", "KHR_texture_", "EXT_texture_", "KHR_lights_", "KHR_xmp", "VRM", "KHR_node_visibility")
+_KNOWN = (
+    "KHR_mesh_quantization",
+    "KHR_materials_",
+    "KHR_texture_",
+    "EXT_texture_",
+    "KHR_lights_",
+    "KHR_xmp",
+    "VRM",
+    "KHR_node_visibility",
+)
 _REMEDIES = {
-    "EXT_meshopt_compression": "Export it again without meshopt compression, or unpack it with 'gltf-transform copy'.",
-    "KHR_draco_mesh_compression": "Export it again without Draco compression, or unpack it with 'gltf-transform copy'.",
+    "EXT_meshopt_compression": "Export it again without meshopt compression, or unpack it with "
+    "'gltf-transform copy'.",
+    "KHR_draco_mesh_compression": "Export it again without Draco compression, or unpack it with "
+    "'gltf-transform copy'.",
 }
 _FREE_BYTES = 64 << 20  # what a file of any size may ask for
 _BYTES_PER_BYTE = 64  # and what each of its bytes adds
@@ -208,7 +219,9 @@ class Gltf:
         raise FileError(self.path, cause, where, remedy)
 
     def spend(self, size: int, where: str) -> None:
-        """Count `size` bytes that the file asks for beyond its own; FileError once it is out of all proportion."""
+        """Count `size` bytes that the file asks for beyond its own; FileError once it is out of all
+        proportion.
+        """
         self._left -= size
         if self._left < 0:
             self.fail("it asks for far more memory than its size warrants", where)
@@ -233,11 +246,17 @@ class Gltf:
         return self._buffers[index]
 
     def resource(self, uri: str, where: str) -> bytes:
-        """Return the bytes of a data URI or of a file beside this one. Raises FileError when it is absent or elsewhere."""
+        """Return the bytes of a data URI or of a file beside this one. Raises FileError when it is absent or
+        elsewhere.
+        """
         if uri.startswith("data:"):
             head, comma, body = uri.partition(",")
             try:
-                return base64.b64decode(body, validate=True) if head.endswith(";base64") and comma else unquote(body).encode("latin-1")
+                return (
+                    base64.b64decode(body, validate=True)
+                    if head.endswith(";base64") and comma
+                    else unquote(body).encode("latin-1")
+                )
             except (binascii.Error, ValueError) as error:
                 self.fail(f"its data URI cannot be decoded ({error})", where)
         name = unquote(uri)
@@ -245,28 +264,41 @@ class Gltf:
         try:
             target = (folder / name).resolve()
             if "://" in name or not target.is_relative_to(folder):
-                self.fail(f"it points to '{name[:80]}', outside the file's own folder", where, "Put that file beside the glTF file.")
+                self.fail(
+                    f"it points to '{name[:80]}', outside the file's own folder",
+                    where,
+                    "Put that file beside the glTF file.",
+                )
             return target.read_bytes()
         except (OSError, ValueError):
-            self.fail(f"'{name[:80]}' is not there", where, "Put it beside the glTF file, or export one .glb file.")
+            self.fail(
+                f"'{name[:80]}' is not there", where, "Put it beside the glTF file, or export one .glb file."
+            )
 
     def view(self, index: int, where: str) -> tuple[memoryview, BufferView]:
         """Return the bytes of a buffer view and its description."""
         view: BufferView = self.item(self.json.buffer_views, index, "buffer view", where)
         data = self.buffer(view.buffer, f"buffer view {index}")
         if view.byte_offset + view.byte_length > len(data):
-            self.fail(f"buffer view {index} ends at byte {view.byte_offset + view.byte_length} of {len(data)}", where)
+            self.fail(
+                f"buffer view {index} ends at byte {view.byte_offset + view.byte_length} of {len(data)}",
+                where,
+            )
         return data[view.byte_offset : view.byte_offset + view.byte_length], view
 
     def array(self, index: int, where: str, kind: str = "") -> Array:
         """Return accessor `index` as `[count, n]`, or `[count]` for scalars; normalised integers as float32.
 
-        kind: the type it must have ("VEC3"), if any. The array may be a view of the file's bytes: do not write to it.
+        kind: the type it must have ("VEC3"), if any. The array may be a view of the file's bytes: do not
+        write to it.
         """
         accessor: Accessor = self.item(self.json.accessors, index, "accessor", where)
         dtype, width = _DTYPES.get(accessor.component_type), _WIDTHS.get(accessor.type)
         if dtype is None or width is None or (width == 16 and accessor.component_type != 5126):
-            self.fail(f"accessor {index} has component type {accessor.component_type} and type '{accessor.type}'", where)
+            self.fail(
+                f"accessor {index} has component type {accessor.component_type} and type '{accessor.type}'",
+                where,
+            )
         if kind and accessor.type != kind:
             self.fail(f"accessor {index} holds {accessor.type}, expected {kind}", where)
         if accessor.buffer_view is None:
@@ -289,9 +321,17 @@ class Gltf:
         end = accessor.byte_offset + stride * (accessor.count - 1) + item if accessor.count else 0
         if stride < item or end > len(data):
             self.fail(f"accessor {index} ends at byte {end} of a buffer view of {len(data)}", where)
-        return np.ndarray((accessor.count, width), dtype, data, accessor.byte_offset if accessor.count else 0, (stride, dtype.itemsize))
+        return np.ndarray(
+            (accessor.count, width),
+            dtype,
+            data,
+            accessor.byte_offset if accessor.count else 0,
+            (stride, dtype.itemsize),
+        )
 
-    def _with_sparse(self, base: Array, sparse: Sparse, dtype: np.dtype[Any], width: int, where: str) -> Array:
+    def _with_sparse(
+        self, base: Array, sparse: Sparse, dtype: np.dtype[Any], width: int, where: str
+    ) -> Array:
         places_type = _DTYPES.get(sparse.indices.component_type)
         if places_type is None or places_type.kind != "u":
             self.fail("its sparse indices are not unsigned integers", where)
@@ -305,7 +345,9 @@ class Gltf:
         if sparse.count and int(places.max()) >= len(base):
             self.fail(f"its sparse index {int(places.max())} is beyond its {len(base)} elements", where)
         out = base.copy()
-        out[places] = np.frombuffer(values, dtype, sparse.count * width, sparse.values.byte_offset).reshape(-1, width)
+        out[places] = np.frombuffer(values, dtype, sparse.count * width, sparse.values.byte_offset).reshape(
+            -1, width
+        )
         return out
 
 
@@ -316,7 +358,10 @@ def open_gltf(path: str | Path) -> Gltf:
         data = path.read_bytes()
     except OSError as error:
         raise FileError(
-            path, f"it cannot be read ({error.strerror})", "on opening it", "Check that it exists and that you may read it."
+            path,
+            f"it cannot be read ({error.strerror})",
+            "on opening it",
+            "Check that it exists and that you may read it.",
         ) from error
     return parse_gltf(path, data)
 
@@ -330,11 +375,18 @@ def parse_gltf(path: Path, data: bytes) -> Gltf:
     elif data[:3] == b"\xef\xbb\xbf":
         text = data[3:]
     elif data.lstrip()[:1] != b"{":
-        raise FileError(path, "it is neither a binary nor a text glTF file", "its first bytes", "Check that the file has the right ending.")
+        raise FileError(
+            path,
+            "it is neither a binary nor a text glTF file",
+            "its first bytes",
+            "Check that the file has the right ending.",
+        )
     try:
         document = _decoder.decode(text)
     except (msgspec.MsgspecError, RecursionError, ValueError) as error:
-        raise FileError(path, f"its JSON does not describe a glTF scene ({error})", "its header", "Export it again.") from error
+        raise FileError(
+            path, f"its JSON does not describe a glTF scene ({error})", "its header", "Export it again."
+        ) from error
     return Gltf(path, document, binary, len(data))
 
 
@@ -347,7 +399,9 @@ def _chunks(path: Path, data: bytes) -> tuple[memoryview, memoryview | None]:
     if version != 2:
         raise FileError(path, f"it is glTF version {version}", "its header", "Export it as glTF 2.0.")
     if kind != 0x4E4F534A or 20 + size > len(data):
-        raise FileError(path, f"its JSON chunk of {size} bytes does not fit its {len(data)} bytes", "its header", remedy)
+        raise FileError(
+            path, f"its JSON chunk of {size} bytes does not fit its {len(data)} bytes", "its header", remedy
+        )
     whole = memoryview(data)
     at, binary = 20 + size, None
     while at + 8 <= len(data):
@@ -355,7 +409,10 @@ def _chunks(path: Path, data: bytes) -> tuple[memoryview, memoryview | None]:
         if kind == 0x004E4942:
             if at + 8 + length > len(data):
                 raise FileError(
-                    path, f"its binary chunk of {length} bytes is cut off after {len(data) - at - 8}", "its binary chunk", remedy
+                    path,
+                    f"its binary chunk of {length} bytes is cut off after {len(data) - at - 8}",
+                    "its binary chunk",
+                    remedy,
                 )
             binary = whole[at + 8 : at + 8 + length]
             break

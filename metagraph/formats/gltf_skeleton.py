@@ -28,10 +28,11 @@ _LARGEST = 1e7  # a translation or scale beyond this is damage
 class Rig:
     """A skeleton and how the file's nodes map onto it.
 
-    nodes: the node of each joint. places: node -> joint. parents: the parent of every node. A joint's translation is
-    `lift [J, 3, 3] @ file value + shift [J, 3]`, its rotation `turn [J, 4] * file value`. still_rotations,
-    still_translations, still_scales: the nodes' own values, what a joint without channels keeps, in the file's terms.
-    rest_matrices: `[J, 4, 4]`, the full rest transforms with scale, metres. worlds: `[N, 4, 4]` of every node as saved.
+    nodes: the node of each joint. places: node -> joint. parents: the parent of every node. A joint's
+    translation is `lift [J, 3, 3] @ file value + shift [J, 3]`, its rotation `turn [J, 4] * file value`.
+    still_rotations, still_translations, still_scales: the nodes' own values, what a joint without channels
+    keeps, in the file's terms. rest_matrices: `[J, 4, 4]`, the full rest transforms with scale, metres.
+    worlds: `[N, 4, 4]` of every node as saved.
     """
 
     skeleton: Skeleton
@@ -61,7 +62,9 @@ def compose(translations: Array, rotations: Array, scales: Array) -> Array:
 
 
 def decompose(matrices: Array) -> tuple[Array, Array, Array]:
-    """Return translations, rotations (xyzw) and scales of matrices `[..., 4, 4]`; a mirror shows as a negative x scale."""
+    """Return translations, rotations (xyzw) and scales of matrices `[..., 4, 4]`; a mirror shows as a
+    negative x scale.
+    """
     linear = matrices[..., :3, :3]
     scales = np.linalg.norm(linear, axis=-2)
     scales[..., 0] *= np.where(np.linalg.det(linear) < 0, -1, 1)
@@ -74,7 +77,8 @@ _rigs: dict[bytes, Rig] = {}
 
 
 def build_rig(gltf: Gltf, as_is: Collection[str] = ()) -> Rig:
-    """Return the one skeleton of the file; the same object for files whose nodes and skins are the same. Raises FileError.
+    """Return the one skeleton of the file; the same object for files whose nodes and skins are the same.
+    Raises FileError.
 
     as_is: repairs (`takes.REPAIRS`) not to make.
     """
@@ -96,11 +100,22 @@ def build_rig(gltf: Gltf, as_is: Collection[str] = ()) -> Rig:
     return found
 
 
-def _build(gltf: Gltf, nodes: list[Node], parents: list[int], order: list[int], members: set[int], as_is: Collection[str]) -> Rig:
+def _build(
+    gltf: Gltf,
+    nodes: list[Node],
+    parents: list[int],
+    order: list[int],
+    members: set[int],
+    as_is: Collection[str],
+) -> Rig:
     translations, rotations, scales = _transforms(gltf, nodes)
     joints = _in_order(gltf, members, parents, order)
     if len(joints) > MOST_JOINTS:
-        gltf.fail(f"it has {len(joints)} joints, more than the {MOST_JOINTS} of any character", "its nodes", "Export the character alone.")
+        gltf.fail(
+            f"it has {len(joints)} joints, more than the {MOST_JOINTS} of any character",
+            "its nodes",
+            "Export the character alone.",
+        )
     places = {node: i for i, node in enumerate(joints)}
     above = np.array([places.get(parents[n], -1) for n in joints])
     locals_ = compose(translations, rotations, scales)
@@ -118,9 +133,15 @@ def _build(gltf: Gltf, nodes: list[Node], parents: list[int], order: list[int], 
 
     spread = np.abs(rest_s).max(-1) > np.abs(rest_s).min(-1) * 1.01
     if spread.any():
-        notes.append(f"{int(spread.sum())} joints are scaled unevenly; their rotation is kept, their scale is not")
+        notes.append(
+            f"{int(spread.sum())} joints are scaled unevenly; their rotation is kept, their scale is not"
+        )
     size = np.abs(np.cbrt(np.prod(rest_s, -1)))
-    lift, shift, turn = np.zeros((len(joints), 3, 3)), np.zeros((len(joints), 3)), rotation.identity((len(joints),))
+    lift, shift, turn = (
+        np.zeros((len(joints), 3, 3)),
+        np.zeros((len(joints), 3)),
+        rotation.identity((len(joints),)),
+    )
     _, base_r, base_s = decompose(base[roots])
     carrying = [int(p) for p in above if p >= 0]  # a mirrored tip changes nothing
     if (base_s[:, 0] < 0).any() or (rest_s[carrying] < 0).any():
@@ -133,7 +154,9 @@ def _build(gltf: Gltf, nodes: list[Node], parents: list[int], order: list[int], 
     for joint, parent in zip(inner.tolist(), above[inner].tolist(), strict=True):
         total[joint] *= total[parent]
     own = above[inner]
-    lift[inner[:, None], range(3), range(3)] = rest_s[own] * (np.array(total)[own] / np.where(size[own] > 0, size[own], 1))[:, None]
+    lift[inner[:, None], range(3), range(3)] = (
+        rest_s[own] * (np.array(total)[own] / np.where(size[own] > 0, size[own], 1))[:, None]
+    )
     rest_translations = np.einsum("jab,jb->ja", lift, rest_t) + shift
     rest_rotations = rotation.normalize(rotation.multiply(turn, rest_r))
     names = unique_names([nodes[n].name or f"node_{n}" for n in joints])
@@ -143,7 +166,11 @@ def _build(gltf: Gltf, nodes: list[Node], parents: list[int], order: list[int], 
     rest_locals = compose(rest_t, rest_r, rest_s)
     rest_locals[roots] = base[roots] @ rest_locals[roots]
     rest_matrices = _globals(rest_locals, above, range(len(joints)))
-    if not (np.isfinite(rest_matrices).all() and np.isfinite(rest_translations).all() and np.abs(rest_translations).max() < 1e9):
+    if not (
+        np.isfinite(rest_matrices).all()
+        and np.isfinite(rest_translations).all()
+        and np.abs(rest_translations).max() < 1e9
+    ):
         gltf.fail("its joints are scaled beyond all bounds", "its nodes")
     height = float(np.ptp(rest_matrices[:, :3, 3], axis=0).max())
     unit = 0.01 if height > _TALL else 100.0 if 1e-3 < height < _TINY and len(joints) > 3 else 1.0
@@ -157,9 +184,20 @@ def _build(gltf: Gltf, nodes: list[Node], parents: list[int], order: list[int], 
         rest_matrices[:, :3] *= unit
     skeleton = Skeleton(names, above, rest_rotations, rest_translations)
     return Rig(
-        skeleton, tuple(joints), places, tuple(parents), lift, shift, turn, *still, rest_matrices, worlds, unit, tuple(notes),
+        skeleton,
+        tuple(joints),
+        places,
+        tuple(parents),
+        lift,
+        shift,
+        turn,
+        *still,
+        rest_matrices,
+        worlds,
+        unit,
+        tuple(notes),
         tuple(repairs),
-    )  # fmt: skip
+    )
 
 
 def _tree(gltf: Gltf, nodes: list[Node]) -> tuple[list[int], list[int]]:
@@ -191,10 +229,18 @@ def _transforms(gltf: Gltf, nodes: list[Node]) -> tuple[Array, Array, Array]:
     scales = np.array([n.scale or (1.0, 1.0, 1.0) for n in nodes])
     for i, node in enumerate(nodes):
         if node.matrix is not None:
-            if len(node.matrix) != 16 or not np.isfinite(node.matrix).all() or np.abs(node.matrix).max() > _LARGEST:
+            if (
+                len(node.matrix) != 16
+                or not np.isfinite(node.matrix).all()
+                or np.abs(node.matrix).max() > _LARGEST
+            ):
                 gltf.fail("its matrix is not 16 sensible numbers", f"node {i} '{node.name}'")
             translations[i], rotations[i], scales[i] = decompose(np.array(node.matrix).reshape(4, 4).T)
-    wild = (np.abs(translations).max(-1) > _LARGEST) | (np.abs(scales).max(-1) > _LARGEST) | (np.abs(rotations).max(-1) > _LARGEST)
+    wild = (
+        (np.abs(translations).max(-1) > _LARGEST)
+        | (np.abs(scales).max(-1) > _LARGEST)
+        | (np.abs(rotations).max(-1) > _LARGEST)
+    )
     if wild.any():
         i = int(np.flatnonzero(wild)[0])
         gltf.fail("its translation, rotation or scale is out of range", f"node {i} '{nodes[i].name}'")
@@ -218,10 +264,14 @@ def _members(gltf: Gltf, nodes: list[Node], parents: list[int], order: list[int]
                 continue
             if node >= len(nodes):
                 gltf.fail(f"its target node {node} does not exist", f"animation {a} '{animation.name}'")
-            sampler = gltf.item(animation.samplers, channel.sampler, "sampler", f"animation {a} '{animation.name}'")
+            sampler = gltf.item(
+                animation.samplers, channel.sampler, "sampler", f"animation {a} '{animation.name}'"
+            )
             animated.setdefault(node, []).append((channel.target.path, sampler.output))
     if skinned:
-        moving = {n for n, outputs in animated.items() if n not in skinned and _moves(gltf, nodes[n], outputs)}
+        moving = {
+            n for n, outputs in animated.items() if n not in skinned and _moves(gltf, nodes[n], outputs)
+        }
         members = skinned | moving
     else:
         members = _without_skin(nodes, parents, order, set(animated))
@@ -258,7 +308,9 @@ def _moves(gltf: Gltf, node: Node, outputs: list[tuple[str, int]]) -> bool:
 
 
 def _without_skin(nodes: list[Node], parents: list[int], order: list[int], animated: set[int]) -> set[int]:
-    """Joints of a file that has no skin: the trees with animation in them, less scenery and less a wrapper on top."""
+    """Joints of a file that has no skin: the trees with animation in them, less scenery and less a wrapper on
+    top.
+    """
     kept: set[int] = set()
     for i in reversed(order):
         below = any(c in kept for c in nodes[i].children)
@@ -279,7 +331,9 @@ def _without_skin(nodes: list[Node], parents: list[int], order: list[int], anima
     for top in tops:
         while top in inside and top not in animated:
             children = [c for c in nodes[top].children if c in inside]
-            wrapper = not any(nodes[top].translation or ()) or nodes[top].scale is not None  # a bone has a place of its own
+            wrapper = (
+                not any(nodes[top].translation or ()) or nodes[top].scale is not None
+            )  # a bone has a place of its own
             if len(children) != 1 or not animated or not wrapper:
                 break
             inside.discard(top)
@@ -320,13 +374,19 @@ def _globals(locals_: Array, parents: Array, order: Sequence[int]) -> Array:
 
 
 def _rest_pose(
-    gltf: Gltf, places: dict[int, int], above: Array, base: Array, locals_: Array, worlds: Array, still: tuple[Array, Array, Array]
+    gltf: Gltf,
+    places: dict[int, int],
+    above: Array,
+    base: Array,
+    locals_: Array,
+    worlds: Array,
+    still: tuple[Array, Array, Array],
 ) -> tuple[Array, Array, Array]:
     """Return the rest translations, rotations and scales of the joints, in the file's own local terms.
 
-    Exporters save nodes in whatever pose was on the screen, so the inverse bind matrices are the better witness. They
-    are believed when they describe rigid bones in the same frame as the nodes; where both agree the nodes' numbers
-    win, being exact.
+    Exporters save nodes in whatever pose was on the screen, so the inverse bind matrices are the better
+    witness. They are believed when they describe rigid bones in the same frame as the nodes; where both agree
+    the nodes' numbers win, being exact.
     """
     rotations, translations, scales = (a.copy() for a in still)
     differs = False
@@ -337,7 +397,11 @@ def _rest_pose(
         if len(inverse) < len(skin.joints):
             gltf.fail(f"{len(inverse)} inverse bind matrices for {len(skin.joints)} joints", f"skin {s}")
         inverse = inverse[: len(skin.joints)].reshape(-1, 4, 4).transpose(0, 2, 1)
-        if not np.isfinite(inverse).all() or np.abs(inverse).max() > _LARGEST or (np.abs(np.linalg.det(inverse[:, :3, :3])) < 1e-15).any():
+        if (
+            not np.isfinite(inverse).all()
+            or np.abs(inverse).max() > _LARGEST
+            or (np.abs(np.linalg.det(inverse[:, :3, :3])) < 1e-15).any()
+        ):
             continue
         bind = np.linalg.inv(inverse)
         own = np.array([places[j] for j in skin.joints])
@@ -350,14 +414,20 @@ def _rest_pose(
         seen = np.array(skin.joints)
         apart = [local[inner] - locals_[seen[inner]], bind[free] - worlds[seen[free]]]
         reach = max(1e-9, float(np.abs(translations[own]).max()))
-        if all(not len(d) or (np.abs(d[:, :3, 3]).max() < 2e-6 * reach and np.abs(d[:, :3, :3]).max() < 1e-5) for d in apart):
+        if all(
+            not len(d) or (np.abs(d[:, :3, 3]).max() < 2e-6 * reach and np.abs(d[:, :3, :3]).max() < 1e-5)
+            for d in apart
+        ):
             continue  # as in most files, nodes and bind matrices agree
         believable = True
         for k in free:
             world, j = worlds[skin.joints[k]], own[k]
             _, world_r, world_s = decompose(world)
             where, bind_r, bind_s = decompose(bind[k])
-            if rotation.angle_between(world_r, bind_r) > np.radians(60) or abs(np.linalg.det(base[j, :3, :3])) < 1e-15:
+            if (
+                rotation.angle_between(world_r, bind_r) > np.radians(60)
+                or abs(np.linalg.det(base[j, :3, :3])) < 1e-15
+            ):
                 believable = False
                 break
             ratio = np.cbrt(abs(np.prod(world_s))) / np.cbrt(abs(np.prod(bind_s)))
@@ -365,12 +435,16 @@ def _rest_pose(
             local[k] = np.linalg.inv(base[j]) @ placed
         t, r, size = decompose(local)
         use = np.concatenate([inner, np.array(free, int)])
-        rigid = np.abs(rotation.to_matrix(r) * size[:, None, :] - local[:, :3, :3]).max((-1, -2)) < 0.02 * np.abs(size).max(-1)
+        rigid = np.abs(rotation.to_matrix(r) * size[:, None, :] - local[:, :3, :3]).max(
+            (-1, -2)
+        ) < 0.02 * np.abs(size).max(-1)
         ratio_s = size[use] / np.where(np.abs(scales[own[use]]) > 1e-9, scales[own[use]], 1)
         if not believable or not rigid[use].all() or (ratio_s < 0.5).any() or (ratio_s > 2).any():
             continue
         differs |= bool(np.abs(t[use] - still[1][own[use]]).max() > 2e-6 * reach) if len(use) else False
-        differs |= bool(rotation.angle_between(r[use], still[0][own[use]]).max() > 1e-4) if len(use) else False
+        differs |= (
+            bool(rotation.angle_between(r[use], still[0][own[use]]).max() > 1e-4) if len(use) else False
+        )
         translations[own[use]], rotations[own[use]], scales[own[use]] = t[use], r[use], size[use]
     if not differs:
         rotations, translations, scales = still

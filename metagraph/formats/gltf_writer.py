@@ -45,7 +45,15 @@ class Body:
         self.views.append(view)
         return len(self.views) - 1
 
-    def array(self, values: Array, component: int, *, target: int | None = None, normalized: bool = False, bounds: bool = False) -> int:
+    def array(
+        self,
+        values: Array,
+        component: int,
+        *,
+        target: int | None = None,
+        normalized: bool = False,
+        bounds: bool = False,
+    ) -> int:
         """Add `[count]` or `[count, n]` values and return the accessor's index."""
         dtype = {_FLOAT: "<f4", _SHORT: "<i2", _USHORT: "<u2", _UBYTE: "<u1", _UINT: "<u4"}[component]
         values = np.ascontiguousarray(values, dtype)
@@ -92,14 +100,15 @@ def write_glb(
 ) -> None:
     """Write one skeleton, its skin and every clip as an animation.
 
-    clips: all on the same skeleton, which is also the character's. quantize: store rotations as normalised 16-bit
-    integers (error below 0.003 degrees). tolerance: how far keys may be thinned out: the largest change of a
-    quaternion component or, in metres, of a translation; by default 5e-5 when quantizing, else 0. A rotation that
-    stays the same keeps one key. pose_nodes: joints that stand still, alike in every clip, are posed by their nodes and
-    cost no key at all; the rest pose is then only in the inverse bind matrices, as in many exporters' files. stand: the pose the
-    joints' nodes have, the rest pose when None; the skin stays bound to the rest pose, and the scene gets a name, with which
-    some engines' paths begin. moved: clip name -> the joints it moves, all where None. extensions: of the document, by name. Raises
-    FileError when the file cannot be written, ValueError for mixed skeletons.
+    clips: all on the same skeleton, which is also the character's. quantize: store rotations as normalised
+    16-bit integers (error below 0.003 degrees). tolerance: how far keys may be thinned out: the largest
+    change of a quaternion component or, in metres, of a translation; by default 5e-5 when quantizing, else 0.
+    A rotation that stays the same keeps one key. pose_nodes: joints that stand still, alike in every clip,
+    are posed by their nodes and cost no key at all; the rest pose is then only in the inverse bind matrices,
+    as in many exporters' files. stand: the pose the joints' nodes have, the rest pose when None; the skin
+    stays bound to the rest pose, and the scene gets a name, with which some engines' paths begin. moved: clip
+    name -> the joints it moves, all where None. extensions: of the document, by name. Raises FileError when
+    the file cannot be written, ValueError for mixed skeletons.
     """
     path = Path(path)
     if not clips and character is None:
@@ -137,7 +146,9 @@ def write_glb(
         roots = [*roots, mesh_node]
     document["scenes"] = [{"nodes": roots} if stand is None else {"name": SCENE, "nodes": roots}]
     posed = _pose_still_nodes(nodes, clips, tolerance) if pose_nodes and clips else frozenset()
-    animations = [_animation(body, clip, quantize, tolerance, morphs, mesh_node, posed, moved) for clip in clips]
+    animations = [
+        _animation(body, clip, quantize, tolerance, morphs, mesh_node, posed, moved) for clip in clips
+    ]
     if animations:
         document["animations"] = animations
     if extensions:
@@ -147,7 +158,9 @@ def write_glb(
 
 
 def glb_bytes(document: dict[str, Any], body: Body) -> bytes:
-    """Return the file: header, JSON and binary chunk. Adds the accessors, views and buffer of `body` to `document`."""
+    """Return the file: header, JSON and binary chunk. Adds the accessors, views and buffer of `body` to
+    `document`.
+    """
     document["accessors"], document["bufferViews"] = body.accessors, body.views
     document["buffers"] = [{"byteLength": len(body.data)}]
     head = msgspec.json.encode(document)
@@ -176,7 +189,9 @@ def _add_character(document: dict[str, Any], body: Body, character: Character) -
     """Add mesh, materials and images; return the node that carries the mesh."""
     weights = np.maximum(np.asarray(character.weights, np.float32), 0)
     total = weights.sum(1, keepdims=True)
-    weights = np.where(total > 0, weights / np.where(total > 0, total, 1), np.array([1, 0, 0, 0], np.float32)).astype(np.float32)
+    weights = np.where(
+        total > 0, weights / np.where(total > 0, total, 1), np.array([1, 0, 0, 0], np.float32)
+    ).astype(np.float32)
     joints = np.where(weights > 0, character.joints, 0)
     normals = np.asarray(character.normals, np.float64)
     length = np.linalg.norm(normals, axis=1, keepdims=True)
@@ -185,12 +200,17 @@ def _add_character(document: dict[str, Any], body: Body, character: Character) -
         "POSITION": body.array(character.positions, _FLOAT, target=_ARRAY_BUFFER, bounds=True),
         "NORMAL": body.array(normals, _FLOAT, target=_ARRAY_BUFFER),
         "TEXCOORD_0": body.array(character.uvs, _FLOAT, target=_ARRAY_BUFFER),
-        "JOINTS_0": body.array(joints, _UBYTE if len(character.skeleton) <= 255 else _USHORT, target=_ARRAY_BUFFER),
+        "JOINTS_0": body.array(
+            joints, _UBYTE if len(character.skeleton) <= 255 else _USHORT, target=_ARRAY_BUFFER
+        ),
         "WEIGHTS_0": body.array(weights, _FLOAT, target=_ARRAY_BUFFER),
     }
     targets = []
     if character.morph_positions is not None:
-        targets = [{"POSITION": body.array(offsets, _FLOAT, target=_ARRAY_BUFFER, bounds=True)} for offsets in character.morph_positions]
+        targets = [
+            {"POSITION": body.array(offsets, _FLOAT, target=_ARRAY_BUFFER, bounds=True)}
+            for offsets in character.morph_positions
+        ]
     primitives = []
     for surface in character.surfaces:
         if not surface.count:
@@ -198,7 +218,9 @@ def _add_character(document: dict[str, Any], body: Body, character: Character) -
         order = np.asarray(character.triangles[surface.first : surface.first + surface.count]).reshape(-1)
         primitive: dict[str, Any] = {
             "attributes": attributes,
-            "indices": body.array(order, _USHORT if int(order.max()) < 65535 else _UINT, target=_ELEMENT_BUFFER),
+            "indices": body.array(
+                order, _USHORT if int(order.max()) < 65535 else _UINT, target=_ELEMENT_BUFFER
+            ),
             "material": surface.material,
         }
         if targets:
@@ -212,7 +234,11 @@ def _add_character(document: dict[str, Any], body: Body, character: Character) -
     known: dict[bytes, int] = {}
     materials = []
     for material in character.materials:
-        pbr: dict[str, Any] = {"baseColorFactor": list(material.color), "metallicFactor": 0.0, "roughnessFactor": material.roughness}
+        pbr: dict[str, Any] = {
+            "baseColorFactor": list(material.color),
+            "metallicFactor": 0.0,
+            "roughnessFactor": material.roughness,
+        }
         if material.image is not None:
             if material.image not in known:
                 known[material.image] = len(images)
@@ -244,9 +270,15 @@ def _pose_still_nodes(nodes: list[dict[str, Any]], clips: Sequence[Clip], tolera
 
 
 def _animation(
-    body: Body, clip: Clip, quantize: bool, tolerance: float, morphs: tuple[str, ...], mesh_node: int | None, posed: frozenset[int],
+    body: Body,
+    clip: Clip,
+    quantize: bool,
+    tolerance: float,
+    morphs: tuple[str, ...],
+    mesh_node: int | None,
+    posed: frozenset[int],
     moved: Mapping[str, Collection[int]] | None,
-) -> dict[str, Any]:  # fmt: skip
+) -> dict[str, Any]:
     chosen = range(len(clip.skeleton)) if moved is None else moved[clip.name]
     times = np.arange(clip.frames) / clip.fps
     samplers: list[dict[str, Any]] = []
@@ -285,14 +317,20 @@ def _animation(
     return {"name": clip.name, "samplers": samplers, "channels": channels, "extras": {"fps": clip.fps}}
 
 
-# Which frames to keep is most of the time of an export, and the same when it is written again, or for another engine.
+# Which frames to keep is most of the time of an export, and the same when it is written again, or for another
+# engine.
 _KNOWN: dict[tuple[bytes, tuple[int, ...], float, bool], list[Array]] = {}
 _MOST = 1000  # tracks of clips that are remembered, some 10 kB each
 
 
 def _keys(values: Array, tolerance: float, turning: bool) -> list[Array]:
     """Return what `_thinned` does, as it was found the first time."""
-    key = (hashlib.blake2b(np.ascontiguousarray(values).data, digest_size=16).digest(), values.shape, tolerance, turning)
+    key = (
+        hashlib.blake2b(np.ascontiguousarray(values).data, digest_size=16).digest(),
+        values.shape,
+        tolerance,
+        turning,
+    )
     found = _KNOWN.pop(key, None) or _thinned(values, tolerance, turning)
     _KNOWN[key] = found  # the last used last
     if len(_KNOWN) > _MOST:
@@ -301,9 +339,11 @@ def _keys(values: Array, tolerance: float, turning: bool) -> list[Array]:
 
 
 def _thinned(values: Array, tolerance: float, turning: bool) -> list[Array]:
-    """Return for each track of `values [F, C, n]` the frames to keep so that what lies between is within tolerance.
+    """Return for each track of `values [F, C, n]` the frames to keep so that what lies between is within
+    tolerance.
 
-    Every track starts with its ends and is split at its worst frame until none is too far off, all tracks at once.
+    Every track starts with its ends and is split at its worst frame until none is too far off, all tracks at
+    once.
     """
     frames, tracks = values.shape[:2]
     still = np.abs(values - values[:1]).max((0, 2)) <= tolerance

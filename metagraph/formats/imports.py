@@ -1,4 +1,6 @@
-"""Importing into a project: files and folders in, clips on the project's skeleton out, one bad file failing alone."""
+"""Importing into a project: files and folders in, clips on the project's skeleton out, one bad file failing
+alone.
+"""
 
 from __future__ import annotations
 
@@ -21,7 +23,9 @@ from metagraph.motion.joint_map import JointMap, RetargetError, fingerprint
 from metagraph.motion.skeleton import Skeleton
 
 Loaded = tuple[str, int, str, Clip]  # path as the project keeps it, take, digest, clip
-Maps = Callable[[str, str], JointMap | None]  # fingerprints of a source and a target skeleton -> the map kept for them
+Maps = Callable[
+    [str, str], JointMap | None
+]  # fingerprints of a source and a target skeleton -> the map kept for them
 _ALONE = "Import it into a project of its own."
 
 
@@ -29,8 +33,8 @@ _ALONE = "Import it into a project of its own."
 class Strangers:
     """Clips of one other skeleton, which can be retargeted.
 
-    clips: on their own skeleton. why: how it differs, in words. joint_map: what is proposed, or what the user made of the same two
-    skeletons before (`remembered`).
+    clips: on their own skeleton. why: how it differs, in words. joint_map: what is proposed, or what the user
+    made of the same two skeletons before (`remembered`).
     """
 
     clips: tuple[Loaded, ...]
@@ -52,20 +56,29 @@ class Strangers:
         files: dict[str, int] = {}
         for path, *_ in self.clips:
             files[path] = files.get(path, 0) + 1
-        remedy = _ALONE if self.joint_map.missing else f"Retarget it (import it with --retarget), or {_ALONE[0].lower()}{_ALONE[1:]}"
+        remedy = (
+            _ALONE
+            if self.joint_map.missing
+            else f"Retarget it (import it with --retarget), or {_ALONE[0].lower()}{_ALONE[1:]}"
+        )
         return tuple(
-            f"{Path(path).name}: {f'{count} clips are' if count > 1 else 'its clip is'} of another character: {self.why}. {remedy}"
+            (
+                f"{Path(path).name}: {f'{count} clips are' if count > 1 else 'its clip is'} of another "
+                f"character: {self.why}. {remedy}"
+            )
             for path, count in files.items()
         )
 
 
 @dataclass(frozen=True)
 class Imported:
-    """loaded: what `add_clips` takes. failures: why files were left out, in words. notes: what readers changed.
+    """loaded: what `add_clips` takes. failures: why files were left out, in words. notes: what readers
+    changed.
 
-    character: the first of the files that also holds a mesh, written as clip paths are, for a project that draws none yet.
-    morphs: its morph targets. strangers: clips of other skeletons that wait to be retargeted. joint_maps: those by which clips
-    were retargeted, to be kept in the project. retargeted: how many of the loaded clips were. left: how many the user left out.
+    character: the first of the files that also holds a mesh, written as clip paths are, for a project that
+    draws none yet. morphs: its morph targets. strangers: clips of other skeletons that wait to be retargeted.
+    joint_maps: those by which clips were retargeted, to be kept in the project. retargeted: how many of the
+    loaded clips were. left: how many the user left out.
     """
 
     loaded: tuple[Loaded, ...]
@@ -80,7 +93,9 @@ class Imported:
     left: int = 0
 
     def into(self, project: Project) -> Project:
-        """The edit: `project` with the clips added, and with the character that came with them if it had none."""
+        """The edit: `project` with the clips added, and with the character that came with them if it had
+        none.
+        """
         project = add_clips(project, self.loaded)
         if any(project.joint_maps.get(key) != value for key, value in self.joint_maps.items()):
             project = replace(project, joint_maps={**project.joint_maps, **self.joint_maps})
@@ -109,10 +124,11 @@ def import_files(
 ) -> Imported:
     """Read files and folders for a project; nothing is changed yet.
 
-    folder: what paths are made relative to, None for absolute ones. The project's skeleton decides what fits; in an
-    empty project the skeleton on which most of the clips can play does. A clip of another skeleton is retargeted when the project
-    has a joint map for that; else `retarget` says: it is left out with its reason, handed back among the `strangers`, or retargeted
-    by the remembered or proposed map. remembered: the user's maps from other projects.
+    folder: what paths are made relative to, None for absolute ones. The project's skeleton decides what fits;
+    in an empty project the skeleton on which most of the clips can play does. A clip of another skeleton is
+    retargeted when the project has a joint map for that; else `retarget` says: it is left out with its
+    reason, handed back among the `strangers`, or retargeted by the remembered or proposed map. remembered:
+    the user's maps from other projects.
     """
     report = import_clips(gather(paths), progress, cancelled)
     failures = [str(error) for error in report.failures]
@@ -142,11 +158,18 @@ def import_files(
             reasons.setdefault(key, str(error))
     character = _character(loaded, folder) if project.character is None else None
     morphs = _morphs(character, folder)
-    result = Imported(tuple(loaded), tuple(failures), _together(report.clips), report.cancelled, character, morphs)
+    result = Imported(
+        tuple(loaded), tuple(failures), _together(report.clips), report.cancelled, character, morphs
+    )
     if foreign:
         bringing = Bringing(add_clips(project, loaded))
         for key, clips in foreign.items():
-            result = _with_strangers(result, bringing, Strangers(tuple(clips), reasons[key], *_map(bringing, clips, remembered)), retarget)
+            result = _with_strangers(
+                result,
+                bringing,
+                Strangers(tuple(clips), reasons[key], *_map(bringing, clips, remembered)),
+                retarget,
+            )
     return replace(result, failures=tuple(dict.fromkeys(result.failures)))
 
 
@@ -154,7 +177,11 @@ def _map(bringing: Bringing, clips: Sequence[Loaded], remembered: Maps | None) -
     """Return the joint map that is offered for clips of one skeleton, and whether it was made before."""
     source = clips[0][3].skeleton
     assert bringing.project.skeleton is not None
-    found = remembered(fingerprint(source), fingerprint(bringing.project.skeleton)) if remembered is not None else None
+    found = (
+        remembered(fingerprint(source), fingerprint(bringing.project.skeleton))
+        if remembered is not None
+        else None
+    )
     return (found, True) if found is not None else (bringing.propose(source), False)
 
 
@@ -178,7 +205,8 @@ def _with_strangers(result: Imported, bringing: Bringing, strangers: Strangers, 
     failures = strangers.failures
     if retarget == "yes":
         failures = tuple(
-            f"{text[: text.index(_ALONE)]}It cannot be retargeted: {strangers.joint_map.missing[0]}. {_ALONE}" for text in failures
+            f"{text[: text.index(_ALONE)]}It cannot be retargeted: {strangers.joint_map.missing[0]}. {_ALONE}"
+            for text in failures
         )
     return replace(result, failures=(*result.failures, *failures))
 
@@ -205,13 +233,17 @@ def bring_over(
         except (RetargetError, ClipError) as error:
             failures.append(f"{Path(path).name}: {error}. {_ALONE}")
     maps = {strangers.fingerprint: joint_map} if loaded else {}
-    return Imported(tuple(loaded), tuple(failures), cancelled=stopped, joint_maps=maps, retargeted=len(loaded))
+    return Imported(
+        tuple(loaded), tuple(failures), cancelled=stopped, joint_maps=maps, retargeted=len(loaded)
+    )
 
 
 def strangers_of(project: Project, folder: Path | None, clips: Iterable[str] = ()) -> tuple[Strangers, ...]:
-    """Return the project's retargeted clips as they are in their files, by skeleton, with the joint maps they were brought by.
+    """Return the project's retargeted clips as they are in their files, by skeleton, with the joint maps they
+    were brought by.
 
-    clips: only the skeletons of these; of all without. What cannot be read, or has the project's skeleton by now, is left out.
+    clips: only the skeletons of these; of all without. What cannot be read, or has the project's skeleton by
+    now, is left out.
     """
     chosen = {project.clips[i].brought_from for i in clips if i in project.clips}
     groups: dict[str, list[Loaded]] = {}
@@ -223,7 +255,9 @@ def strangers_of(project: Project, folder: Path | None, clips: Iterable[str] = (
                 continue  # that it is missing or broken is told elsewhere
             if entry.take < len(takes) and fingerprint(takes[entry.take].skeleton) == entry.brought_from:
                 found = takes[entry.take].renamed(entry.name)
-                groups.setdefault(entry.brought_from, []).append((entry.path, entry.take, entry.digest, found))
+                groups.setdefault(entry.brought_from, []).append(
+                    (entry.path, entry.take, entry.digest, found)
+                )
     return tuple(Strangers(tuple(g), "", project.joint_maps[key], True) for key, g in groups.items())
 
 
@@ -231,7 +265,9 @@ def _name(path: Path, folder: Path | None) -> str:
     return relative(path, folder) if folder is not None else path.as_posix()
 
 
-def _as_known(clips: Sequence[tuple[Path, int, Clip]], project: Project, folder: Path | None) -> list[tuple[Path, int, Clip]]:
+def _as_known(
+    clips: Sequence[tuple[Path, int, Clip]], project: Project, folder: Path | None
+) -> list[tuple[Path, int, Clip]]:
     """Return the clips, those of which the project left a repair out read that way again."""
     kept: dict[str, dict[int, tuple[str, ...]]] = {}
     for entry in project.clips.values():
@@ -275,7 +311,8 @@ def _character(loaded: Sequence[tuple[str, int, str, Clip]], folder: Path | None
                 if has_skinned_mesh(path):
                     return name
             except FileError:
-                continue  # its clips were read; what is wrong with its meshes the preview says if it is chosen
+                # its clips were read; what is wrong with its meshes the preview says if it is chosen
+                continue
     return None
 
 
@@ -284,15 +321,21 @@ def _morphs(character: str | None, folder: Path | None) -> tuple[str, ...]:
 
 
 def _skeleton_of_most(clips: Sequence[Clip]) -> Skeleton | None:
-    """Return the skeleton that most clips can play on; of equal ones the one with most joints, then the first."""
-    groups: dict[tuple[str, ...], list[Clip]] = {}  # files of one character seldom differ in more than bone lengths
+    """Return the skeleton that most clips can play on; of equal ones the one with most joints, then the
+    first.
+    """
+    groups: dict[
+        tuple[str, ...], list[Clip]
+    ] = {}  # files of one character seldom differ in more than bone lengths
     for clip in clips:
         groups.setdefault(clip.skeleton.names, []).append(clip)
     best: tuple[int, int] = (0, 0)
     found = None
     for group in groups.values():
         skeleton = group[0].skeleton
-        fitting = sum(len(g) for g in groups.values() if g is group or difference(g[0].skeleton, skeleton) is None)
+        fitting = sum(
+            len(g) for g in groups.values() if g is group or difference(g[0].skeleton, skeleton) is None
+        )
         if (fitting, len(skeleton)) > best:
             best, found = (fitting, len(skeleton)), skeleton
     return found

@@ -1,10 +1,10 @@
 """The autosave journal: every finished edit is appended at once, so a crash loses nothing that was finished.
 
-A journal belongs to one sitting at a saved project file (or at none, for a project never saved) and begins with the file's
-SHA-256. Each line after that is one edit as JSON: what changed in the project's plain data. A torn last line is ignored.
-While the project is saved, edits go on: a `mark` stands where the saved project was, and once more, with the SHA-256 of the file
-that is about to be written, before it is. So whichever of the two files a crash leaves, the edits after it are known.
-`recovery` reads journals.
+A journal belongs to one sitting at a saved project file (or at none, for a project never saved) and begins
+with the file's SHA-256. Each line after that is one edit as JSON: what changed in the project's plain data. A
+torn last line is ignored. While the project is saved, edits go on: a `mark` stands where the saved project
+was, and once more, with the SHA-256 of the file that is about to be written, before it is. So whichever of
+the two files a crash leaves, the edits after it are known. `recovery` reads journals.
 """
 
 from __future__ import annotations
@@ -41,7 +41,8 @@ from metagraph.graph.model import LAYERS, Layer, MetaGraph, Project
 KEYED = ("clips", "stances", "actions", "states", "links")
 
 
-# --- what changed ----------------------------------------------------------------------------------------------------
+# --- what changed
+# --------------------------------------------------------------------------------------------------
 
 
 def changes(before: Project, after: Project) -> Data:
@@ -87,7 +88,11 @@ def _manual(before: Mapping[Layer, Manual], after: Mapping[Layer, Manual]) -> Da
         if old is None:
             out[layer] = manual_data(new)
         elif old is not new:
-            part: Data = {name: getattr(new, name) for name in ("start", "any_x", "any_y") if getattr(old, name) != getattr(new, name)}
+            part: Data = {
+                name: getattr(new, name)
+                for name in ("start", "any_x", "any_y")
+                if getattr(old, name) != getattr(new, name)
+            }
             _keyed(part, "states", old.states, new.states, state_data)
             _keyed(part, "links", old.links, new.links, link_data)
             if part:
@@ -108,8 +113,12 @@ def _bare(project: Project) -> Project:
     )
 
 
-def _keyed(out: Data, key: str, before: Mapping[str, Any], after: Mapping[str, Any], data: Callable[[Any], Data]) -> None:
-    """Note what was added, changed and (as None) removed; `<key>_after`: what stands before those not added at the end."""
+def _keyed(
+    out: Data, key: str, before: Mapping[str, Any], after: Mapping[str, Any], data: Callable[[Any], Data]
+) -> None:
+    """Note what was added, changed and (as None) removed; `<key>_after`: what stands before those not added
+    at the end.
+    """
     if before is after:
         return
     part: Data = {i: data(v) for i, v in after.items() if before.get(i) is not v and before.get(i) != v}
@@ -124,17 +133,21 @@ def _keyed(out: Data, key: str, before: Mapping[str, Any], after: Mapping[str, A
         out[f"{key}_after"] = {i: order[n - 1] if n else None for n, i in enumerate(order) if i not in before}
 
 
-# --- the file --------------------------------------------------------------------------------------------------------
+# --- the file
+# --------------------------------------------------------------------------------------------------
 
 
 class Journal:
-    """Appends edits to a file, begun with the first. Beginning replaces what was in it: whoever does has taken that over, or declined it.
+    """Appends edits to a file, begun with the first. Beginning replaces what was in it: whoever does has
+    taken that over, or declined it.
 
-    saved: the project file that the edits build on; digest: its SHA-256, where it was another one than it is now. owner: whose
-    sitting it is, so that others leave it alone while that goes on.
+    saved: the project file that the edits build on; digest: its SHA-256, where it was another one than it is
+    now. owner: whose sitting it is, so that others leave it alone while that goes on.
     """
 
-    def __init__(self, path: Path, saved: Path | None, owner: Owner | None = None, digest: str | None = None) -> None:
+    def __init__(
+        self, path: Path, saved: Path | None, owner: Owner | None = None, digest: str | None = None
+    ) -> None:
         self.path = path
         self._file: BinaryIO | None = None
         self._head: Data = {"saved": digest or file_digest(saved), "file": str(saved) if saved else None}
@@ -145,14 +158,17 @@ class Journal:
         self._turn = threading.RLock()  # a thread that saves writes, too
 
     def begin(self, base: Project | None = None, unsaved: int = 0) -> None:
-        """Start anew from the saved file, or from `base` written into the journal when there is none. Raises FileError.
+        """Start anew from the saved file, or from `base` written into the journal when there is none. Raises
+        FileError.
 
         unsaved: how many edits of `base` are in no file.
         """
         try:
             head = self._head if base is None else {**self._head, "unsaved": unsaved, "base": to_data(base)}
         except DataError as error:
-            raise FileError(self.path, f"cannot be written ({error})", error.where, "Correct that value.") from None
+            raise FileError(
+                self.path, f"cannot be written ({error})", error.where, "Correct that value."
+            ) from None
         with self._turn:
             self.close()
             part = self.path.with_name(f"{self.path.name}.new")
@@ -166,17 +182,24 @@ class Journal:
                 with suppress(OSError):
                     part.unlink(missing_ok=True)
                 raise FileError(
-                    self.path, f"cannot be written ({error.strerror})", "on beginning it", "Save the project now and then."
+                    self.path,
+                    f"cannot be written ({error.strerror})",
+                    "on beginning it",
+                    "Save the project now and then.",
                 ) from None
 
     def edit(self, before: Project, after: Project) -> None:
-        """Append one finished edit. Raises FileError when it cannot be written; the edit itself stands, and is written with the next."""
+        """Append one finished edit. Raises FileError when it cannot be written; the edit itself stands, and
+        is written with the next.
+        """
         before = self._behind or before
         self._behind = before
         try:
             change = changes(before, after)
         except DataError as error:
-            raise FileError(self.path, f"cannot be written ({error})", error.where, "Correct that value.") from None
+            raise FileError(
+                self.path, f"cannot be written ({error})", error.where, "Correct that value."
+            ) from None
         if change:
             if self._file is None:
                 self.begin()
@@ -184,7 +207,9 @@ class Journal:
         self._behind = None
 
     def mark(self) -> int | None:
-        """Write that the project as it is now is being saved; return the mark's number, None without an edit. Raises FileError."""
+        """Write that the project as it is now is being saved; return the mark's number, None without an edit.
+        Raises FileError.
+        """
         if self._file is None or self._behind is not None:
             return None
         self._marks += 1
@@ -214,7 +239,10 @@ class Journal:
         except OSError as error:
             self._cut(start)
             raise FileError(
-                self.path, f"cannot be written ({error.strerror})", "on adding to it", "Make room on the disk and save the project."
+                self.path,
+                f"cannot be written ({error.strerror})",
+                "on adding to it",
+                "Make room on the disk and save the project.",
             ) from None
 
     def _cut(self, size: int) -> None:
@@ -247,5 +275,7 @@ def _encoded(record: Data) -> bytes:
 
 
 def journal_path(saved: Path, sitting: str = "") -> Path:
-    """Return where the journal of a sitting at a project file lies: beside it, hidden. Without a sitting: as it was called at first."""
+    """Return where the journal of a sitting at a project file lies: beside it, hidden. Without a sitting: as
+    it was called at first.
+    """
     return saved.with_name(f".{saved.name}.{sitting}.journal" if sitting else f".{saved.name}.journal")

@@ -31,7 +31,9 @@ REMEDY = "Choose what OpenPose writes with --write_json, or MediaPipe's pose lan
 
 @dataclass
 class Frame:
-    """A frame while it is being read. where: for messages. time: seconds; number: of the frame; either may be unknown."""
+    """A frame while it is being read. where: for messages. time: seconds; number: of the frame; either may be
+    unknown.
+    """
 
     where: str
     time: float | None = None
@@ -53,13 +55,19 @@ def is_number(value: Any) -> bool:
 
 
 def is_person(value: Any) -> bool:
-    """Whether a list is somebody's points: objects or rows, as many as a layout has, or all numbers of such."""
+    """Whether a list is somebody's points: objects or rows, as many as a layout has, or all numbers of
+    such.
+    """
     if not isinstance(value, list) or not value:
         return False
     if is_number(value[0]):
-        return (len(value) % 3 == 0 and len(value) // 3 in BY_COUNT) or (len(value) % 4 == 0 and len(value) // 4 in BY_COUNT)
+        return (len(value) % 3 == 0 and len(value) // 3 in BY_COUNT) or (
+            len(value) % 4 == 0 and len(value) // 4 in BY_COUNT
+        )
     first = value[0]
-    point = (isinstance(first, dict) and "x" in first) or (isinstance(first, list) and 2 <= len(first) <= 5 and is_number(first[0]))
+    point = (isinstance(first, dict) and "x" in first) or (
+        isinstance(first, list) and 2 <= len(first) <= 5 and is_number(first[0])
+    )
     return len(value) in BY_COUNT and point
 
 
@@ -92,7 +100,12 @@ def _when(path: Path, said: Mapping[str, Any], out: Frame) -> None:
         value = next((said[k] for k in keys if k in said), None)
         if value is not None:
             if not is_number(value) or not abs(value) <= 1e18:
-                raise FileError(path, f"its time is {str(value)[:40]!r}, not a number", out.where, "Correct it, or leave times out.")
+                raise FileError(
+                    path,
+                    f"its time is {str(value)[:40]!r}, not a number",
+                    out.where,
+                    "Correct it, or leave times out.",
+                )
             out.time = float(value) * unit
             return
     value = next((said[k] for k in _NUMBER if k in said), None)
@@ -110,11 +123,22 @@ def _take(path: Path, said: Mapping[str, Any], out: Frame) -> None:
     for keys, people, space in ((_SPACE, out.space, True), (_FLAT, out.flat, False)):
         value = next((said[k] for k in keys if said.get(k)), None)
         if value is not None:
-            people += _people(path, value, out.where, space, number, said_sure="posekeypoints2d" in said or "keypoints" in said)
+            people += _people(
+                path,
+                value,
+                out.where,
+                space,
+                number,
+                said_sure="posekeypoints2d" in said or "keypoints" in said,
+            )
 
 
-def _people(path: Path, value: Any, where: str, space: bool, ident: int | None = None, said_sure: bool = False) -> Iterator[Person]:
-    """Yield the people of a list of points, or of a list of such lists. said_sure: rows of three end in the confidence."""
+def _people(
+    path: Path, value: Any, where: str, space: bool, ident: int | None = None, said_sure: bool = False
+) -> Iterator[Person]:
+    """Yield the people of a list of points, or of a list of such lists. said_sure: rows of three end in the
+    confidence.
+    """
     if isinstance(value, dict):
         value = value.get("landmark", value.get("landmarks"))
     if isinstance(value, list) and not value:
@@ -125,7 +149,9 @@ def _people(path: Path, value: Any, where: str, space: bool, ident: int | None =
         points, confidence = _points(path, value, where, space, said_sure)
         yield Person(points, confidence, ident)
         return
-    several = [v.get("landmark", v.get("landmarks")) if isinstance(v, dict) and "x" not in v else v for v in value]
+    several = [
+        v.get("landmark", v.get("landmarks")) if isinstance(v, dict) and "x" not in v else v for v in value
+    ]
     if several and all(is_person(v) or v == [] for v in several):
         for one in several[:MOST_PEOPLE]:
             if one:
@@ -133,11 +159,15 @@ def _people(path: Path, value: Any, where: str, space: bool, ident: int | None =
                 yield Person(points, confidence)
         return
     numbers = len(value) // 3 if value and is_number(value[0]) else len(value)
-    raise FileError(path, f"{numbers} points are none of the layouts that are known: {describe_layouts()}", where, REMEDY)
+    raise FileError(
+        path, f"{numbers} points are none of the layouts that are known: {describe_layouts()}", where, REMEDY
+    )
 
 
 def _points(path: Path, value: list[Any], where: str, space: bool, said_sure: bool) -> tuple[Array, Array]:
-    """Return somebody's points `[K, 3]` and confidence `[K]`; what is null or not a number that could be was not found."""
+    """Return somebody's points `[K, 3]` and confidence `[K]`; what is null or not a number that could be was
+    not found.
+    """
     if is_number(value[0]):
         size = 4 if space and len(value) % 4 == 0 and len(value) // 4 in BY_COUNT else 3
         value = [value[n : n + size] for n in range(0, len(value), size)]
@@ -157,7 +187,9 @@ def _points(path: Path, value: list[Any], where: str, space: bool, said_sure: bo
         if len(numbers) < 3 or any(n is None for n in (*numbers, sure)):
             continue
         if not all(map(is_number, (*numbers, sure))):
-            raise FileError(path, f"a point holds {str(point)[:60]}, which are not all numbers", where, "Correct it.")
+            raise FileError(
+                path, f"a point holds {str(point)[:60]}, which are not all numbers", where, "Correct it."
+            )
         if max(map(abs, numbers)) <= FARTHEST:
             row[:3], row[3] = numbers, min(1.0, max(0.0, sure))
     out[~out[:, :3].any(1), 3] = 0.0  # zeros stand for what was not found

@@ -1,8 +1,10 @@
-"""Keypoints that a pose estimator found in a video: OpenPose's and MediaPipe's JSON, in the ways in which programs write it.
+"""Keypoints that a pose estimator found in a video: OpenPose's and MediaPipe's JSON, in the ways in which
+programs write it.
 
-Read: a folder of OpenPose frames (`video_000000000012_keypoints.json`), or one file: a list of frames, an object that holds one, or one
-object a line. A frame is OpenPose's (`people`, each with `pose_keypoints_2d` or `_3d`) or MediaPipe's (33 landmarks of one person or
-several, however `worldLandmarks`, `poseLandmarks`, `pose_landmarks` ... is spelt), or COCO's (`keypoints`). Points count 17, 18, 25 or 33.
+Read: a folder of OpenPose frames (`video_000000000012_keypoints.json`), or one file: a list of frames, an
+object that holds one, or one object a line. A frame is OpenPose's (`people`, each with `pose_keypoints_2d` or
+`_3d`) or MediaPipe's (33 landmarks of one person or several, however `worldLandmarks`, `poseLandmarks`,
+`pose_landmarks` ... is spelt), or COCO's (`keypoints`). Points count 17, 18, 25 or 33.
 """
 
 from __future__ import annotations
@@ -18,7 +20,15 @@ import numpy as np
 from numpy.typing import NDArray
 
 from metagraph.errors import FileError
-from metagraph.formats.keypoint_frames import REMEDY, Frame, has_people, is_number, is_person, read_frame, spelt
+from metagraph.formats.keypoint_frames import (
+    REMEDY,
+    Frame,
+    has_people,
+    is_number,
+    is_person,
+    read_frame,
+    spelt,
+)
 from metagraph.mimicry.people import Person, follow
 from metagraph.mimicry.points import BY_COUNT, LAYOUTS, PLACE, Keypoints, choose
 
@@ -40,11 +50,14 @@ class _Head:
     height: float | None = None
 
 
-def read_keypoints(path: str | Path, fps: float | None = None, picture: tuple[float, float] | None = None) -> Keypoints:
+def read_keypoints(
+    path: str | Path, fps: float | None = None, picture: tuple[float, float] | None = None
+) -> Keypoints:
     """Read the keypoints of a file, or of a folder of OpenPose frames, and follow one person through them.
 
-    fps: frames a second, where the file gives no times. picture: width and height, for coordinates given as shares of them.
-    Times begin at 0. Points come in three dimensions where the file has them. Raises FileError.
+    fps: frames a second, where the file gives no times. picture: width and height, for coordinates given as
+    shares of them. Times begin at 0. Points come in three dimensions where the file has them. Raises
+    FileError.
     """
     path = Path(path)
     head = _Head()
@@ -60,7 +73,9 @@ def read_keypoints(path: str | Path, fps: float | None = None, picture: tuple[fl
     times = _times(frames, fps or head.fps, notes)
     kept = np.flatnonzero(np.concatenate([[True], np.diff(np.maximum.accumulate(times)) > 0]))
     if len(kept) < len(times):
-        notes.append(f"{_many(len(times) - len(kept), 'frame')} left out that came no later than the one before")
+        notes.append(
+            f"{_many(len(times) - len(kept), 'frame')} left out that came no later than the one before"
+        )
     times, frames = times[kept], [frames[n] for n in kept]
     return _gathered(path, times, frames, picture or _size(head), notes)
 
@@ -76,9 +91,13 @@ def _folder(path: Path) -> Iterator[Frame]:
             if match is not None:
                 found.append((int(match[1][-15:]), file))
     except OSError as error:
-        raise FileError(path, f"cannot be read ({error.strerror})", "on opening it", "Check that it is there.") from None
+        raise FileError(
+            path, f"cannot be read ({error.strerror})", "on opening it", "Check that it is there."
+        ) from None
     if not found:
-        raise FileError(path, "it holds no frames called ..._000000000012_keypoints.json", "in the folder", REMEDY)
+        raise FileError(
+            path, "it holds no frames called ..._000000000012_keypoints.json", "in the folder", REMEDY
+        )
     for number, file in sorted(found):
         data = _decoded(file, _bytes(file))
         if not isinstance(data, dict):
@@ -128,10 +147,17 @@ def _lines(path: Path, lines: Sequence[tuple[int, bytes]], head: _Head) -> Itera
 def _bytes(path: Path) -> bytes:
     try:
         if path.stat().st_size > LARGEST:
-            raise FileError(path, f"it is larger than {LARGEST // 1024 // 1024} MiB", "on opening it", "Cut the recording into pieces.")
+            raise FileError(
+                path,
+                f"it is larger than {LARGEST // 1024 // 1024} MiB",
+                "on opening it",
+                "Cut the recording into pieces.",
+            )
         return path.read_bytes()
     except OSError as error:
-        raise FileError(path, f"cannot be read ({error.strerror})", "on opening it", "Check that it is there.") from None
+        raise FileError(
+            path, f"cannot be read ({error.strerror})", "on opening it", "Check that it is there."
+        ) from None
 
 
 def _decoded(path: Path, text: bytes) -> Any:
@@ -155,11 +181,20 @@ def _is_json(line: bytes) -> bool:
 
 def _heading(path: Path, data: Mapping[str, Any], head: _Head) -> None:
     said = {spelt(k): v for k, v in data.items()}
-    for name, keys in {"fps": ("fps", "framerate"), "width": ("width", "imagewidth"), "height": ("height", "imageheight")}.items():
+    for name, keys in {
+        "fps": ("fps", "framerate"),
+        "width": ("width", "imagewidth"),
+        "height": ("height", "imageheight"),
+    }.items():
         value = next((said[k] for k in keys if k in said), None)
         if value is not None:
             if not is_number(value) or not 0 < value <= (1000 if name == "fps" else 1e6):
-                raise FileError(path, f"{name} is {str(value)[:40]!r}, not a number that could be", "at its beginning", "Correct it.")
+                raise FileError(
+                    path,
+                    f"{name} is {str(value)[:40]!r}, not a number that could be",
+                    "at its beginning",
+                    "Correct it.",
+                )
             setattr(head, name, float(value))
 
 
@@ -186,15 +221,24 @@ def _size(head: _Head) -> tuple[float, float] | None:
     return (head.width, head.height) if head.width and head.height else None
 
 
-def _gathered(path: Path, times: Array, frames: Sequence[Frame], picture: tuple[float, float] | None, notes: list[str]) -> Keypoints:
+def _gathered(
+    path: Path, times: Array, frames: Sequence[Frame], picture: tuple[float, float] | None, notes: list[str]
+) -> Keypoints:
     """Follow one person and bring them into our axes."""
-    deep = sum(bool(f.space) for f in frames) * 2 >= sum(bool(f.space or f.flat) for f in frames) and any(f.space for f in frames)
+    deep = sum(bool(f.space) for f in frames) * 2 >= sum(bool(f.space or f.flat) for f in frames) and any(
+        f.space for f in frames
+    )
     people = [f.space if deep else f.flat for f in frames]
     counts = {len(p.points) for some in people for p in some}
     if not counts:
         raise FileError(path, "nobody is in any of its frames", f"{_many(len(frames), 'frame')}", REMEDY)
     if len(counts) > 1:
-        raise FileError(path, f"people have {' and '.join(map(str, sorted(counts)))} points", "in its frames", "Keep to one layout.")
+        raise FileError(
+            path,
+            f"people have {' and '.join(map(str, sorted(counts)))} points",
+            "in its frames",
+            "Keep to one layout.",
+        )
     count = counts.pop()
     scale = np.ones(3) if deep else _stretch(people, picture, notes)
     middle = picture[0] / 2 if picture and not deep else None
@@ -206,12 +250,20 @@ def _gathered(path: Path, times: Array, frames: Sequence[Frame], picture: tuple[
     if max(map(len, people)) > 1:
         notes.append("several people are seen; the one who is largest and nearest to the middle is followed")
     names = LAYOUTS[BY_COUNT[count]]
-    return Keypoints(times, _upright(points, confidence, deep, notes), confidence, names, 3 if deep else 2, tuple(notes))
+    return Keypoints(
+        times, _upright(points, confidence, deep, notes), confidence, names, 3 if deep else 2, tuple(notes)
+    )
 
 
-def _stretch(people: Sequence[Sequence[Person]], picture: tuple[float, float] | None, notes: list[str]) -> Array:
-    """Return what to multiply points by: shares of a picture become lengths that are as long down as across."""
-    found = [np.abs(p.points[p.confidence > 0, :2]) for some in people for p in some if (p.confidence > 0).any()]
+def _stretch(
+    people: Sequence[Sequence[Person]], picture: tuple[float, float] | None, notes: list[str]
+) -> Array:
+    """Return what to multiply points by: shares of a picture become lengths that are as long down as
+    across.
+    """
+    found = [
+        np.abs(p.points[p.confidence > 0, :2]) for some in people for p in some if (p.confidence > 0).any()
+    ]
     if not found or float(np.quantile(np.concatenate(found), 0.9)) > 2.0:
         return np.ones(3)
     if picture is None:
@@ -221,7 +273,9 @@ def _stretch(people: Sequence[Sequence[Person]], picture: tuple[float, float] | 
 
 
 def _upright(points: Array, confidence: Array, deep: bool, notes: list[str]) -> Array:
-    """Return points with y up and z towards the camera, whichever way the file has them: heads are above hips, noses before ears."""
+    """Return points with y up and z towards the camera, whichever way the file has them: heads are above
+    hips, noses before ears.
+    """
     where, sure = zip(*(choose(p, c) for p, c in zip(points, confidence, strict=True)), strict=True)
     at, seen = np.array(where), np.array(sure) > 0.2
 

@@ -1,8 +1,10 @@
-"""Who has a project open: a lock file beside it, for windows on one computer and on several that share a drive.
+"""Who has a project open: a lock file beside it, for windows on one computer and on several that share a
+drive.
 
-The file is made by O_EXCL, which network drives keep too, and no lock of the system's is asked for. It says who made it; while
-its window is open it is touched every `REFRESH` seconds. A process that is gone is known at once on its own computer, and
-elsewhere by a file that was not touched for `STALE` seconds by the drive's own clock.
+The file is made by O_EXCL, which network drives keep too, and no lock of the system's is asked for. It says
+who made it; while its window is open it is touched every `REFRESH` seconds. A process that is gone is known
+at once on its own computer, and elsewhere by a file that was not touched for `STALE` seconds by the drive's
+own clock.
 """
 
 from __future__ import annotations
@@ -27,9 +29,11 @@ STALE = 150.0  # seconds; a computer may be busy, and a drive away for a while
 
 
 class Owner(msgspec.Struct, frozen=True):
-    """One sitting: a document in a process. machine: what else tells computers and containers of one name apart, "" if unknown.
+    """One sitting: a document in a process. machine: what else tells computers and containers of one name
+    apart, "" if unknown.
 
-    started: when the process began, in the system's own terms, since numbers of processes come again. since: seconds since 1970.
+    started: when the process began, in the system's own terms, since numbers of processes come again. since:
+    seconds since 1970.
     """
 
     host: str
@@ -44,7 +48,9 @@ class Owner(msgspec.Struct, frozen=True):
 def new_owner() -> Owner:
     """Return a new sitting of this process."""
     pid = os.getpid()
-    return Owner(socket.gethostname(), _machine(), _user(), pid, _started(pid), uuid.uuid4().hex[:12], time.time())
+    return Owner(
+        socket.gethostname(), _machine(), _user(), pid, _started(pid), uuid.uuid4().hex[:12], time.time()
+    )
 
 
 def _user() -> str:
@@ -56,7 +62,9 @@ def _user() -> str:
 
 @cache
 def _machine() -> str:
-    """Return what numbers of processes are valid in: a boot of Linux and its namespace; elsewhere the host's name has to do."""
+    """Return what numbers of processes are valid in: a boot of Linux and its namespace; elsewhere the host's
+    name has to do.
+    """
     try:
         boot = Path("/proc/sys/kernel/random/boot_id").read_text(encoding="ascii").strip()
         return f"{boot} {Path('/proc/self/ns/pid').readlink()}"
@@ -65,7 +73,9 @@ def _machine() -> str:
 
 
 def _started(pid: int) -> str:
-    """Return when a process began, "" where that is not known. Raises ProcessLookupError when there is none."""
+    """Return when a process began, "" where that is not known. Raises ProcessLookupError when there is
+    none.
+    """
     if pid <= 0:
         raise ProcessLookupError(pid)
     if os.name == "nt":
@@ -102,7 +112,9 @@ def _started_on_windows(pid: int) -> str:
         if not kernel.GetProcessTimes(ctypes.c_void_p(handle), *map(ctypes.byref, times)):
             return ""
         code = ctypes.c_uint32()
-        if kernel.GetExitCodeProcess(ctypes.c_void_p(handle), ctypes.byref(code)) and code.value != 259:  # STILL_ACTIVE
+        if (
+            kernel.GetExitCodeProcess(ctypes.c_void_p(handle), ctypes.byref(code)) and code.value != 259
+        ):  # STILL_ACTIVE
             raise ProcessLookupError(pid)
         return str(times[0].value)
     finally:
@@ -115,7 +127,8 @@ def is_here(owner: Owner) -> bool:
 
 
 def is_gone(owner: Owner | None, file: Path) -> bool:
-    """Return whether nobody writes to a lock or journal any more. owner: as the file says; None where it says nothing.
+    """Return whether nobody writes to a lock or journal any more. owner: as the file says; None where it says
+    nothing.
 
     On this computer that is certain; for another one it means that the file was not touched for long.
     """
@@ -129,7 +142,9 @@ def is_gone(owner: Owner | None, file: Path) -> bool:
 
 
 def _untouched(file: Path) -> float:
-    """Return for how many seconds a file was not touched, by the clock of the drive where one may write there."""
+    """Return for how many seconds a file was not touched, by the clock of the drive where one may write
+    there.
+    """
     try:
         touched = file.stat().st_mtime
     except OSError:
@@ -145,7 +160,9 @@ def _untouched(file: Path) -> float:
 
 @dataclass(frozen=True)
 class Holder:
-    """Who has a lock. owner: None where its file cannot be read. gone: see `is_gone`; sure: and it is certain."""
+    """Who has a lock. owner: None where its file cannot be read. gone: see `is_gone`; sure: and it is
+    certain.
+    """
 
     owner: Owner | None
     gone: bool
@@ -177,7 +194,9 @@ def holder(path: Path) -> Holder | None:
 
 
 class Lock:
-    """The lock of one project file for one sitting. held: whether it is ours; it may be that the folder takes none."""
+    """The lock of one project file for one sitting. held: whether it is ours; it may be that the folder takes
+    none.
+    """
 
     def __init__(self, saved: Path, owner: Owner) -> None:
         self.saved = saved.resolve()  # the file that a link means
@@ -193,7 +212,9 @@ class Lock:
         found: Holder | None = None
         for _ in range(5):
             try:
-                handle = os.open(self.path, os.O_CREAT | os.O_EXCL | os.O_WRONLY | getattr(os, "O_BINARY", 0), 0o666)
+                handle = os.open(
+                    self.path, os.O_CREAT | os.O_EXCL | os.O_WRONLY | getattr(os, "O_BINARY", 0), 0o666
+                )
             except FileExistsError:
                 found = holder(self.path)
                 if found is None:
@@ -219,7 +240,9 @@ class Lock:
         return found
 
     def _put_aside(self, found: Holder) -> None:
-        """Remove a lock that was left behind, but not the one that somebody else has made in its place meanwhile."""
+        """Remove a lock that was left behind, but not the one that somebody else has made in its place
+        meanwhile.
+        """
         aside = self.path.with_name(f"{self.path.name}.{self.owner.sitting}")
         with contextlib.suppress(OSError):
             self.path.replace(aside)
@@ -229,7 +252,9 @@ class Lock:
                 aside.unlink()
 
     def refresh(self) -> bool:
-        """Say that it is still held; return False when somebody has taken it over, and it is not held any more."""
+        """Say that it is still held; return False when somebody has taken it over, and it is not held any
+        more.
+        """
         if not self.held:
             return True
         try:

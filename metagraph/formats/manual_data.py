@@ -34,7 +34,9 @@ def manual_data(manual: Manual) -> Data:
 
 
 def manual_from(layer: Layer, data: Any, ids: set[str]) -> Manual:
-    """Return a layer's manual state machine from data. ids: those taken already, added to. Raises DataError."""
+    """Return a layer's manual state machine from data. ids: those taken already, added to. Raises
+    DataError.
+    """
     where = f"manual.{layer}"
     known(data, [f.name for f in fields(Manual) if f.name != "layer"], where)
     states: dict[str, State] = {}

@@ -1,4 +1,6 @@
-"""What a journal gives back after a crash: whose sittings are over, and the projects with the edits worked in."""
+"""What a journal gives back after a crash: whose sittings are over, and the projects with the edits worked
+in.
+"""
 
 from __future__ import annotations
 
@@ -22,11 +24,14 @@ _KEPT = "It is kept; rename it to look into it."
 _ANOTHER = "belongs to another state of the project file"
 
 
-# --- changes worked in --------------------------------------------------------------------------------------------------------
+# --- changes worked in
+# --------------------------------------------------------------------------------------------------
 
 
 class _Replay:
-    """Project data that changes are worked into; lists are held by id, so that a change costs what it is large."""
+    """Project data that changes are worked into; lists are held by id, so that a change costs what it is
+    large.
+    """
 
     def __init__(self, data: Data) -> None:
         self.top = _opened({key: value for key, value in data.items() if key != "manual"})
@@ -47,11 +52,17 @@ class _Replay:
 
     def data(self) -> Data:
         out = {**_closed(self.top), "layers": {layer: _closed(part) for layer, part in self.layers.items()}}
-        return {**out, "manual": {layer: _closed(part) for layer, part in self.manual.items()}} if self.manual else out
+        return (
+            {**out, "manual": {layer: _closed(part) for layer, part in self.manual.items()}}
+            if self.manual
+            else out
+        )
 
 
 def _opened(data: Data) -> Data:
-    return {key: {item["id"]: item for item in value} if key in KEYED else value for key, value in data.items()}
+    return {
+        key: {item["id"]: item for item in value} if key in KEYED else value for key, value in data.items()
+    }
 
 
 def _closed(data: Data) -> Data:
@@ -77,7 +88,9 @@ def _work_in(data: Data, change: Data) -> None:
 
 
 def _inserted(items: Data, places: Mapping[str, str | None]) -> Data:
-    """Return items in the order that puts each of `places` right behind another item, None being the beginning."""
+    """Return items in the order that puts each of `places` right behind another item, None being the
+    beginning.
+    """
     following: dict[str | None, list[str]] = {}
     for ident, before in places.items():
         following.setdefault(before, []).append(ident)
@@ -97,20 +110,23 @@ def _inserted(items: Data, places: Mapping[str, str | None]) -> Data:
 
 
 def apply(data: Data, change: Data) -> Data:
-    """Return project data with one change worked in. Raises KeyError, TypeError or AttributeError when they do not fit."""
+    """Return project data with one change worked in. Raises KeyError, TypeError or AttributeError when they
+    do not fit.
+    """
     replay = _Replay(data)
     replay.apply(change)
     return replay.data()
 
 
-# --- files -----------------------------------------------------------------------------------------------------------
+# --- files
+# --------------------------------------------------------------------------------------------------
 
 
 @dataclass(frozen=True)
 class Left:
-    """A journal somebody left. project: with its edits worked in, without motion; edits: how many. written: when the last one was,
-    in seconds since 1970. digest: of the file the edits build on. behind: the project file has changed since; the edits are whole, but
-    not in step with it.
+    """A journal somebody left. project: with its edits worked in, without motion; edits: how many. written:
+    when the last one was, in seconds since 1970. digest: of the file the edits build on. behind: the project
+    file has changed since; the edits are whole, but not in step with it.
     """
 
     path: Path
@@ -123,7 +139,8 @@ class Left:
 
 
 def recover(journal: Path, saved: Path | None) -> tuple[Project, int] | None:
-    """Return the project with the journal's edits worked in, without motion, and how many there were; None if there is nothing.
+    """Return the project with the journal's edits worked in, without motion, and how many there were; None if
+    there is nothing.
 
     Raises FileError when the journal belongs to another state of the file, or nothing in it can be used.
     """
@@ -182,12 +199,18 @@ def read_journal(journal: Path, saved: Path | None) -> Left | None:
         count = (good + bad) // 2
     if found is None:
         raise FileError(journal, "is damaged", "line 2", _KEPT)
-    return Left(journal, found, good + before, _owner(head), written, head["saved"] if behind else now, behind)
+    return Left(
+        journal, found, good + before, _owner(head), written, head["saved"] if behind else now, behind
+    )
 
 
 def _settled(records: Sequence[Data], digest: str | None) -> int:
     """Return the number of the first record that the file of a digest does not have."""
-    marks = {record["mark"]: n for n, record in reversed(list(enumerate(records))) if "mark" in record and _is_number(record["mark"])}
+    marks = {
+        record["mark"]: n
+        for n, record in reversed(list(enumerate(records)))
+        if "mark" in record and _is_number(record["mark"])
+    }
     for record in reversed(records):
         if digest is not None and record.get("saved") == digest and record.get("mark") in marks:
             return marks[record["mark"]] + 1
@@ -221,7 +244,9 @@ def left_journals(saved: Path) -> list[Path]:
 
 
 def journals_in(folder: Path, names: str) -> list[Path]:
-    """Return the journals in a folder whose names a regular expression matches and whose sittings are over, the latest last."""
+    """Return the journals in a folder whose names a regular expression matches and whose sittings are over,
+    the latest last.
+    """
     wanted = re.compile(names)
     found: list[tuple[float, Path]] = []
     try:
@@ -234,7 +259,9 @@ def journals_in(folder: Path, names: str) -> list[Path]:
 
 
 def _is_left(path: Path) -> bool:
-    """Return whether nobody writes to a journal any more; one that does not say whose it is was written before they did."""
+    """Return whether nobody writes to a journal any more; one that does not say whose it is was written
+    before they did.
+    """
     try:
         with path.open("rb") as file:
             head = msgspec.json.decode(file.readline())

@@ -1,4 +1,6 @@
-"""Leaving out, one by one, what readers repair: clips read again with or without a repair, and the edit that takes them up."""
+"""Leaving out, one by one, what readers repair: clips read again with or without a repair, and the edit that
+takes them up.
+"""
 
 from __future__ import annotations
 
@@ -18,7 +20,9 @@ from metagraph.motion.skeleton import Skeleton
 
 @dataclass(frozen=True)
 class Repaired:
-    """A repair of a clip in the project: `clip` is the entry's id. For a skipped take, that of a clip of its file."""
+    """A repair of a clip in the project: `clip` is the entry's id. For a skipped take, that of a clip of its
+    file.
+    """
 
     clip: str
     repair: Repair
@@ -26,7 +30,8 @@ class Repaired:
 
 @dataclass(frozen=True)
 class Reread:
-    """What came of reading clips again. entries: by id. new: takes brought in. gone: clips of takes that are skipped again.
+    """What came of reading clips again. entries: by id. new: takes brought in. gone: clips of takes that are
+    skipped again.
 
     skeleton: the project's from now on. failures: what could not be done, in words.
     """
@@ -46,14 +51,22 @@ class Reread:
         """The edit. Raises EditError when a clip that would go is placed."""
         for ident in self.gone:
             if ident in project.uses:
-                raise EditError(f"'{project.clips[ident].name}' is placed; take it off the graph before it is skipped again")
+                raise EditError(
+                    f"'{project.clips[ident].name}' is placed; take it off the graph before it is skipped "
+                    "again"
+                )
         clips = {i: self.entries.get(i, entry) for i, entry in project.clips.items()}
         project = replace(project, clips=clips, skeleton=self.skeleton or project.skeleton)
         known = {(e.path, e.take) for e in clips.values()}
         fresh = [e for e in self.new if (e.path, e.take) not in known and e.motion is not None]
-        project = add_clips(project, [(e.path, e.take, e.digest, e.motion) for e in fresh if e.motion is not None])
+        project = add_clips(
+            project, [(e.path, e.take, e.digest, e.motion) for e in fresh if e.motion is not None]
+        )
         kept = {(e.path, e.take): e.as_is for e in fresh}
-        clips = {i: replace(e, as_is=kept[e.path, e.take]) if (e.path, e.take) in kept else e for i, e in project.clips.items()}
+        clips = {
+            i: replace(e, as_is=kept[e.path, e.take]) if (e.path, e.take) in kept else e
+            for i, e in project.clips.items()
+        }
         return remove_clips(replace(project, clips=clips), self.gone)
 
 
@@ -82,8 +95,9 @@ def reread(
 ) -> Reread:
     """Read clips again, each repair of `changes` made (True) or left out (False). Nothing is changed yet.
 
-    folder: what clip paths are relative to, None when they are absolute. Clips that would no longer fit the project's skeleton keep
-    the repair, unless all clips of the project change alike: then theirs becomes the project's. Raises FileError.
+    folder: what clip paths are relative to, None when they are absolute. Clips that would no longer fit the
+    project's skeleton keep the repair, unless all clips of the project change alike: then theirs becomes the
+    project's. Raises FileError.
     """
     wanted: dict[str, set[str]] = {}
     brought: list[tuple[str, int]] = []
@@ -98,27 +112,44 @@ def reread(
             gone.append(places[entry.path, repair.take])
         elif not made:
             brought.append((entry.id, repair.take))
-    changed = {i: replace(project.clips[i], as_is=tuple(sorted(names)), motion=None) for i, names in wanted.items()}
+    changed = {
+        i: replace(project.clips[i], as_is=tuple(sorted(names)), motion=None) for i, names in wanted.items()
+    }
     entries, failures = _loaded(project, changed, folder, progress)
     entries = {i: _named(project.clips[i], e, folder) for i, e in entries.items()}
     fitting, skeleton = _fitting(project, entries, failures)
-    return Reread(fitting, tuple(_brought(project, folder, brought, failures)), tuple(gone), skeleton, tuple(dict.fromkeys(failures)))
+    return Reread(
+        fitting,
+        tuple(_brought(project, folder, brought, failures)),
+        tuple(gone),
+        skeleton,
+        tuple(dict.fromkeys(failures)),
+    )
 
 
 def _loaded(
-    project: Project, entries: Mapping[str, ClipEntry], folder: Path | None, progress: Callable[[int, int], None] | None = None
+    project: Project,
+    entries: Mapping[str, ClipEntry],
+    folder: Path | None,
+    progress: Callable[[int, int], None] | None = None,
 ) -> tuple[dict[str, ClipEntry], list[str]]:
-    """Return entries with their motion, on the project's skeleton where that can be, and what there is to say."""
+    """Return entries with their motion, on the project's skeleton where that can be, and what there is to
+    say.
+    """
     if not entries:
         return {}, []
-    clips = {i: e for i, e in project.clips.items() if e.motion is not None and i not in entries}  # no missing file is looked for
+    clips = {
+        i: e for i, e in project.clips.items() if e.motion is not None and i not in entries
+    }  # no missing file is looked for
     opened = load_motions(replace(project, clips={**clips, **entries}), folder, progress)
     found = opened.project.clips
     return {i: found[i] for i in entries if found[i].motion is not None}, list(opened.notes)
 
 
 def _named(before: ClipEntry, after: ClipEntry, folder: Path | None) -> ClipEntry:
-    """Return the entry with the name its file gives it, where that was asked for and nobody has named it otherwise."""
+    """Return the entry with the name its file gives it, where that was asked for and nobody has named it
+    otherwise.
+    """
     if (NAME in before.as_is) == (NAME in after.as_is) or after.motion is None:
         return after
     place = (folder or Path()) / after.path
@@ -126,7 +157,9 @@ def _named(before: ClipEntry, after: ClipEntry, folder: Path | None) -> ClipEntr
     return replace(after, name=new, motion=after.motion.renamed(new)) if before.name == old else after
 
 
-def _fitting(project: Project, entries: Mapping[str, ClipEntry], failures: list[str]) -> tuple[dict[str, ClipEntry], Skeleton | None]:
+def _fitting(
+    project: Project, entries: Mapping[str, ClipEntry], failures: list[str]
+) -> tuple[dict[str, ClipEntry], Skeleton | None]:
     """Return the clips that fit a skeleton, and that skeleton where it is another than before."""
     odd = [e for e in entries.values() if e.motion is not None and e.motion.skeleton != project.skeleton]
     if not odd or odd[0].motion is None:
@@ -135,7 +168,11 @@ def _fitting(project: Project, entries: Mapping[str, ClipEntry], failures: list[
     if not others:
         skeleton = odd[0].motion.skeleton
         try:
-            return {i: replace(e, motion=adopt(e.motion, skeleton)) for i, e in entries.items() if e.motion is not None}, skeleton
+            return {
+                i: replace(e, motion=adopt(e.motion, skeleton))
+                for i, e in entries.items()
+                if e.motion is not None
+            }, skeleton
         except SkeletonMismatchError:
             pass
     for entry in odd:
@@ -143,7 +180,9 @@ def _fitting(project: Project, entries: Mapping[str, ClipEntry], failures: list[
     return {i: e for i, e in entries.items() if e not in odd}, None
 
 
-def _brought(project: Project, folder: Path | None, takes: Iterable[tuple[str, int]], failures: list[str]) -> list[ClipEntry]:
+def _brought(
+    project: Project, folder: Path | None, takes: Iterable[tuple[str, int]], failures: list[str]
+) -> list[ClipEntry]:
     """Return entries, without ids, of takes that were skipped."""
     out = []
     for ident, take in takes:
@@ -154,7 +193,9 @@ def _brought(project: Project, folder: Path | None, takes: Iterable[tuple[str, i
             failures.append(f"'{beside.path}' no longer has take {take + 1}")
             continue
         clip = clips[take]
-        entry = ClipEntry("", clip.name, beside.path, take, digest(place), clip.frames, clip.fps, as_is=(ONE_FRAME,))
+        entry = ClipEntry(
+            "", clip.name, beside.path, take, digest(place), clip.frames, clip.fps, as_is=(ONE_FRAME,)
+        )
         found, notes = _loaded(project, {"": entry}, folder)
         failures.extend(notes)
         motion = found[""].motion if found else None

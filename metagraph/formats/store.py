@@ -1,6 +1,7 @@
 """Project files: YAML, one line a clip, stance or action, in a stable order; written whole or not at all.
 
-Clip paths are relative to the project file and carry the file's SHA-256, so a moved or renamed file is found again.
+Clip paths are relative to the project file and carry the file's SHA-256, so a moved or renamed file is found
+again.
 """
 
 from __future__ import annotations
@@ -39,18 +40,22 @@ UPGRADES: dict[int, Callable[[Data], Data]] = {}
 
 @dataclass(frozen=True)
 class Opened:
-    """A project read from a file. notes: what was repaired or is worth knowing, in words. digest: of the file, SHA-256 in hex."""
+    """A project read from a file. notes: what was repaired or is worth knowing, in words. digest: of the
+    file, SHA-256 in hex.
+    """
 
     project: Project
     notes: tuple[str, ...] = ()
     digest: str | None = None
 
 
-# --- text ------------------------------------------------------------------------------------------------------------
+# --- text
+# --------------------------------------------------------------------------------------------------
 
 
 def from_text(text: str, path: Path, notes: list[str] | None = None) -> Project:
-    """Return the project written in a file's text, its clips without motion. Raises FileError with the line and the field.
+    """Return the project written in a file's text, its clips without motion. Raises FileError with the line
+    and the field.
 
     notes: see `data.from_data`.
     """
@@ -58,12 +63,16 @@ def from_text(text: str, path: Path, notes: list[str] | None = None) -> Project:
         data, lines = parse(text)
     except TextError as error:
         line = f"line {error.line}" if error.line else "its text"
-        raise FileError(path, f"not valid YAML ({error})", line, "Undo the last change made by hand, or restore a backup.") from None
+        raise FileError(
+            path, f"not valid YAML ({error})", line, "Undo the last change made by hand, or restore a backup."
+        ) from None
     try:
         return from_data(_upgraded(data, path), notes)
     except DataError as error:
         cause = f"{error.where} {error}".strip()
-        raise FileError(path, cause, _line_of(lines, error.where), "Correct it, or restore a backup.") from None
+        raise FileError(
+            path, cause, _line_of(lines, error.where), "Correct it, or restore a backup."
+        ) from None
 
 
 def _upgraded(data: Any, path: Path) -> Any:
@@ -88,13 +97,15 @@ def _line_of(lines: Mapping[str, int], where: str) -> str:
     return f"line {lines.get(where, 1)}"
 
 
-# --- files -----------------------------------------------------------------------------------------------------------
+# --- files
+# --------------------------------------------------------------------------------------------------
 
 
 def save_project(project: Project, path: str | Path, was_at: Path | None = None) -> Project:
     """Save; return the project as it was saved. Raises FileError.
 
-    was_at: the project file its paths are relative to, when that is another one; they are then made relative to `path`.
+    was_at: the project file its paths are relative to, when that is another one; they are then made relative
+    to `path`.
     """
     path = Path(path)
     if was_at is not None:
@@ -112,7 +123,9 @@ def encoded(project: Project, path: Path) -> bytes:
 
 
 def file_digest(path: Path | None) -> str | None:
-    """Return the SHA-256 of a project file, hex, by which it is known to have changed; None where there is no file."""
+    """Return the SHA-256 of a project file, hex, by which it is known to have changed; None where there is no
+    file.
+    """
     if path is None or not path.is_file():
         return None
     return content_digest(path.read_bytes())
@@ -123,7 +136,9 @@ def content_digest(content: bytes) -> str:
 
 
 def moved(project: Project, old: Path | None, new: Path) -> Project:
-    """Return the project with paths relative to `old` made relative to `new`. Both are project files; None means absolute paths."""
+    """Return the project with paths relative to `old` made relative to `new`. Both are project files; None
+    means absolute paths.
+    """
     source = old.parent if old is not None else None
 
     def renew(text: str) -> str:
@@ -132,39 +147,65 @@ def moved(project: Project, old: Path | None, new: Path) -> Project:
 
     clips = {i: replace(e, path=renew(e.path)) for i, e in project.clips.items()}
     character = renew(project.character) if project.character else None
-    return replace(project, clips=clips, character=character, lines=_lines(project, renew), conversations=_conversations(project, renew))
+    return replace(
+        project,
+        clips=clips,
+        character=character,
+        lines=_lines(project, renew),
+        conversations=_conversations(project, renew),
+    )
 
 
 def _conversations(project: Project, renew: Callable[[str], str]) -> Mapping[str, Conversation]:
-    """Return the project's conversations with other paths to their sounds and to the projects that move their sides."""
+    """Return the project's conversations with other paths to their sounds and to the projects that move their
+    sides.
+    """
 
     def moved(side: Side) -> Side:
-        return msgspec.structs.replace(side, audio=side.audio and renew(side.audio), project=side.project and renew(side.project))
+        return msgspec.structs.replace(
+            side, audio=side.audio and renew(side.audio), project=side.project and renew(side.project)
+        )
 
-    return {i: msgspec.structs.replace(c, sides=tuple(map(moved, c.sides))) for i, c in project.conversations.items()}
+    return {
+        i: msgspec.structs.replace(c, sides=tuple(map(moved, c.sides)))
+        for i, c in project.conversations.items()
+    }
 
 
 def _lines(project: Project, renew: Callable[[str], str]) -> Mapping[str, Line]:
     """Return the project's lines with other paths to their sounds and phones."""
     found = project.lines.items()
-    return {i: msgspec.structs.replace(x, audio=x.audio and renew(x.audio), phones=x.phones and renew(x.phones)) for i, x in found}
+    return {
+        i: msgspec.structs.replace(x, audio=x.audio and renew(x.audio), phones=x.phones and renew(x.phones))
+        for i, x in found
+    }
 
 
 def absolute(project: Project, folder: Path) -> Project:
-    """Return the project with its paths, relative to `folder`, made absolute: for a project without a file."""
+    """Return the project with its paths, relative to `folder`, made absolute: for a project without a
+    file.
+    """
 
     def renew(text: str) -> str:
         return (folder / text).resolve().as_posix()
 
     clips = {i: replace(e, path=renew(e.path)) for i, e in project.clips.items()}
     character = renew(project.character) if project.character else None
-    return replace(project, clips=clips, character=character, lines=_lines(project, renew), conversations=_conversations(project, renew))
+    return replace(
+        project,
+        clips=clips,
+        character=character,
+        lines=_lines(project, renew),
+        conversations=_conversations(project, renew),
+    )
 
 
 def relative(path: Path, folder: Path) -> str:
-    """Return `path` relative to `folder` with `/` between parts; absolute where there is no way (another drive).
+    """Return `path` relative to `folder` with `/` between parts; absolute where there is no way (another
+    drive).
 
-    Links among the folders are followed first, since `..` out of a linked folder leads elsewhere; a linked file keeps its name.
+    Links among the folders are followed first, since `..` out of a linked folder leads elsewhere; a linked
+    file keeps its name.
     """
     path = path.parent.resolve() / path.name
     try:
@@ -183,24 +224,32 @@ def _content(path: Path) -> bytes:
     try:
         return path.read_bytes()
     except OSError as error:
-        raise FileError(path, f"cannot be read ({error.strerror or error})", "on opening it", "Check that it is there.") from None
+        raise FileError(
+            path, f"cannot be read ({error.strerror or error})", "on opening it", "Check that it is there."
+        ) from None
 
 
 def _decoded(content: bytes, path: Path, notes: list[str] | None = None) -> Project:
     try:
         return from_text(content.decode("utf-8-sig"), path, notes)
     except UnicodeDecodeError as error:
-        raise FileError(path, "is not text", f"byte {error.start}", "Choose a Metagraph project file.") from None
+        raise FileError(
+            path, "is not text", f"byte {error.start}", "Choose a Metagraph project file."
+        ) from None
 
 
 def read_with_digest(path: Path, notes: list[str] | None = None) -> tuple[Project, str]:
-    """Read a project file without loading its clips; return with it the digest of just what was read. Raises FileError."""
+    """Read a project file without loading its clips; return with it the digest of just what was read. Raises
+    FileError.
+    """
     content = _content(path)
     return _decoded(content, path, notes), content_digest(content)
 
 
 def open_project(path: str | Path, progress: Callable[[int, int], None] | None = None) -> Opened:
-    """Read a project file and load its clips; missing or broken clip files leave their clips without motion, with a note."""
+    """Read a project file and load its clips; missing or broken clip files leave their clips without motion,
+    with a note.
+    """
     path = Path(path)
     notes: list[str] = []
     project, found = read_with_digest(path, notes)
@@ -208,30 +257,47 @@ def open_project(path: str | Path, progress: Callable[[int, int], None] | None =
     return replace(opened, notes=(*notes, *opened.notes), digest=found)
 
 
-def load_motions(project: Project, folder: Path | None, progress: Callable[[int, int], None] | None = None) -> Opened:
-    """Load the motion of every clip that has none. folder: what paths are relative to, None when all are absolute."""
+def load_motions(
+    project: Project, folder: Path | None, progress: Callable[[int, int], None] | None = None
+) -> Opened:
+    """Load the motion of every clip that has none. folder: what paths are relative to, None when all are
+    absolute.
+    """
     if folder is not None and folder.parent == folder:
         folder = None  # the root of all files is nobody's project: nothing is searched there
-    return _load(project, folder, _find(_lost(project, folder), folder) if folder is not None else {}, progress)
+    return _load(
+        project, folder, _find(_lost(project, folder), folder) if folder is not None else {}, progress
+    )
 
 
-def relocate(project: Project, folder: Path | None, where: Path, progress: Callable[[int, int], None] | None = None) -> Project:
+def relocate(
+    project: Project, folder: Path | None, where: Path, progress: Callable[[int, int], None] | None = None
+) -> Project:
     """Return the project with missing clips loaded from anywhere below `where`, their paths corrected.
 
-    They are found by content, or by name where the content has changed; those that are at their places again are read there.
+    They are found by content, or by name where the content has changed; those that are at their places again
+    are read there.
     """
     return _load(project, folder, _find(_lost(project, folder), where, by_name=True), progress).project
 
 
-def load_returned(project: Project, folder: Path | None, progress: Callable[[int, int], None] | None = None) -> Opened:
-    """Load the motion of the clips that have none and whose files are at their places; nothing is searched."""
+def load_returned(
+    project: Project, folder: Path | None, progress: Callable[[int, int], None] | None = None
+) -> Opened:
+    """Load the motion of the clips that have none and whose files are at their places; nothing is
+    searched.
+    """
     return _load(project, folder, {}, progress)
 
 
 def _place(entry: ClipEntry, folder: Path | None) -> Path:
     """Return where a clip's file should be. Paths written on Windows by hand are understood, too."""
     place = (folder or Path()) / entry.path
-    return place if "\\" not in entry.path or place.is_file() else (folder or Path()) / entry.path.replace("\\", "/")
+    return (
+        place
+        if "\\" not in entry.path or place.is_file()
+        else (folder or Path()) / entry.path.replace("\\", "/")
+    )
 
 
 def _lost(project: Project, folder: Path | None) -> dict[str, list[ClipEntry]]:
@@ -291,13 +357,17 @@ def _load(
                 motion = adopt(motion, skeleton)
             except SkeletonMismatchError:
                 strangers.append(entry.id)
-            clips[entry.id] = replace(entry, path=path, digest=now, frames=motion.frames, fps=motion.fps, motion=motion)
+            clips[entry.id] = replace(
+                entry, path=path, digest=now, frames=motion.frames, fps=motion.fps, motion=motion
+            )
     project = replace(project, clips=clips, skeleton=skeleton)
     return Opened(_brought(project, strangers, notes) if strangers else project, tuple(dict.fromkeys(notes)))
 
 
 def _brought(project: Project, strangers: Iterable[str], notes: list[str]) -> Project:
-    """Return the project with those clips retargeted for whose skeleton it has a joint map; `check` tells of the others."""
+    """Return the project with those clips retargeted for whose skeleton it has a joint map; `check` tells of
+    the others.
+    """
     bringing = Bringing(project)
     clips = dict(project.clips)
     for ident in strangers:
@@ -306,12 +376,16 @@ def _brought(project: Project, strangers: Iterable[str], notes: list[str]) -> Pr
         joint_map = bringing.known(motion)
         if joint_map is None:
             if entry.brought_from:
-                notes.append(f"'{entry.path}' was retargeted, but its joint map is not in the project: import it again")
+                notes.append(
+                    f"'{entry.path}' was retargeted, but its joint map is not in the project: import it again"
+                )
             continue
         try:
             motion = bringing.bring(motion, joint_map)
         except (RetargetError, ClipError) as error:
-            notes.append(f"'{entry.path}' could not be retargeted: {error}. Import it again to map its joints anew.")
+            notes.append(
+                f"'{entry.path}' could not be retargeted: {error}. Import it again to map its joints anew."
+            )
             continue
         clips[ident] = replace(entry, motion=motion, brought_from=motion.brought_from)
     return replace(project, clips=clips)
@@ -320,7 +394,8 @@ def _brought(project: Project, strangers: Iterable[str], notes: list[str]) -> Pr
 def _find(lost: Mapping[str, Iterable[ClipEntry]], folder: Path, by_name: bool = False) -> dict[str, Path]:
     """Look below a folder for files with the content of lost ones, those of the same name first.
 
-    by_name: take a file of the same name where none has the content; of several the one whose folders agree longest.
+    by_name: take a file of the same name where none has the content; of several the one whose folders agree
+    longest.
     """
     paths: dict[str, list[str]] = {}  # by content
     names: dict[str, list[str]] = {}

@@ -20,26 +20,54 @@ BIND_POSE, UNIT, UP, NAME, ONE_FRAME = "bind_pose", "unit", "up_axis", "name", "
 REPAIRS = (BIND_POSE, UNIT, UP, NAME, ONE_FRAME)
 
 # Names that tools give on their own; the file's name says more.
-_GENERIC = re.compile(r"(?i)(take|untitled|animation|anim|action|default|scene|clip|unreal take|mixamo\.com|bindpose|animstack)[ _.:]*\d*")
-_RATES = (30.0, 24.0, 25.0, 60.0, 50.0, 48.0, 30000 / 1001, 24000 / 1001, 60000 / 1001, 120.0, 100.0, 240.0, 90.0, 72.0)
+_GENERIC = re.compile(
+    r"(?i)(take|untitled|animation|anim|action|default|scene|clip|unreal "
+    r"take|mixamo\.com|bindpose|animstack)[ _.:]*\d*"
+)
+_RATES = (
+    30.0,
+    24.0,
+    25.0,
+    60.0,
+    50.0,
+    48.0,
+    30000 / 1001,
+    24000 / 1001,
+    60000 / 1001,
+    120.0,
+    100.0,
+    240.0,
+    90.0,
+    72.0,
+)
 
 
 def take_name(raw: str, stem: str) -> str:
     """Return a take's name, or the file's stem where the take has none or a tool's default ("Take 001")."""
     parts = [part.strip() for part in raw.split("|") if part.strip()]
-    parts = [part for part in parts if not re.fullmatch(r"(?i)armature(\.\d+)?|base ?layer|layer ?\d*|root|rig", part)]
+    parts = [
+        part
+        for part in parts
+        if not re.fullmatch(r"(?i)armature(\.\d+)?|base ?layer|layer ?\d*|root|rig", part)
+    ]
     if not parts or any(_GENERIC.fullmatch(part) for part in parts):
         return stem
     return " ".join(dict.fromkeys(parts))
 
 
 def take_repair(raw: str, name: str, stem: str, as_is: Collection[str]) -> tuple[str, Repair | None]:
-    """Return what a take called `raw` in its file is called, `name` being what `take_name` makes of it, and the repair that is."""
+    """Return what a take called `raw` in its file is called, `name` being what `take_name` makes of it, and
+    the repair that is.
+    """
     raw = raw.strip()
     if not raw or raw == name:
         return name, None
     made = NAME not in as_is
-    words = f"named after its file instead of '{raw}'" if name == stem else "the rig's and layer's names were taken out of its name"
+    words = (
+        f"named after its file instead of '{raw}'"
+        if name == stem
+        else "the rig's and layer's names were taken out of its name"
+    )
     return name if made else raw, Repair(NAME, words, made)
 
 
@@ -52,7 +80,8 @@ def repaired(clip: Clip, repair: Repair | None) -> Clip:
 
 
 def frame_rate(keys: Sequence[Array], wanted: float | None = None) -> float:
-    """Return the frames per second on which key times (seconds, each array ascending) lie; 30 when any would do.
+    """Return the frames per second on which key times (seconds, each array ascending) lie; 30 when any would
+    do.
 
     wanted: a rate to prefer when the keys lie on it.
     """
@@ -75,10 +104,11 @@ def frame_rate(keys: Sequence[Array], wanted: float | None = None) -> float:
 
 
 def without_bind_pose(clip: Clip, as_is: Collection[str] = ()) -> Clip:
-    """Drop a first frame that is plainly the rest pose left there by a tool, and say so; only say so where `as_is` names it.
+    """Drop a first frame that is plainly the rest pose left there by a tool, and say so; only say so where
+    `as_is` names it.
 
-    Plainly: in that frame at least 60 % of the joints are in the rest pose within 0.5 degrees and all within 30, and
-    the jump from it is over 15 degrees and over 8 times any other jump within the next second.
+    Plainly: in that frame at least 60 % of the joints are in the rest pose within 0.5 degrees and all within
+    30, and the jump from it is over 15 degrees and over 8 times any other jump within the next second.
     """
     if clip.frames < 4:
         return clip

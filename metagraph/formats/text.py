@@ -1,7 +1,7 @@
 """Plain data as YAML text and back: one line a clip, stance or action.
 
-Reading builds the data from libyaml's events: no anchors, tags or depth that a hostile file could hide in, every field's
-line is known, and it takes less than half the time of PyYAML's own loader.
+Reading builds the data from libyaml's events: no anchors, tags or depth that a hostile file could hide in,
+every field's line is known, and it takes less than half the time of PyYAML's own loader.
 """
 
 from __future__ import annotations
@@ -28,17 +28,33 @@ class TextError(ValueError):
         super().__init__(message)
 
 
-# --- writing ---------------------------------------------------------------------------------------------------------
+# --- writing
+# --------------------------------------------------------------------------------------------------
 
 _PLAIN = re.compile(r"[A-Za-z_](?:[A-Za-z0-9_ ./()+-]*[A-Za-z0-9_./()+-])?\Z")
-_WORDS = {"y", "n", "yes", "no", "on", "off", "true", "false", "null", "none", "nan", "inf"}  # YAML 1.1 readers take them for values
+_WORDS = {
+    "y",
+    "n",
+    "yes",
+    "no",
+    "on",
+    "off",
+    "true",
+    "false",
+    "null",
+    "none",
+    "nan",
+    "inf",
+}  # YAML 1.1 readers take them for values
 _ODD = re.compile("[\x7f-\x9f\u2028\u2029\ud800-\udfff\ufeff\ufffe\uffff]")
 
 
 def _quoted(value: str) -> str:
     def escape(found: re.Match[str]) -> str:
         code = ord(found[0])
-        return "\ufffd" if 0xD800 <= code < 0xE000 else f"\\u{code:04x}"  # half a surrogate pair is no character
+        return (
+            "\ufffd" if 0xD800 <= code < 0xE000 else f"\\u{code:04x}"
+        )  # half a surrogate pair is no character
 
     return _ODD.sub(escape, json.dumps(value, ensure_ascii=False))
 
@@ -68,7 +84,14 @@ def to_text(data: Data) -> str:
         elif isinstance(value, dict) and value and indent == "":
             lines.append(f"{_scalar(key)}:")
             for inner, content in value.items():
-                if isinstance(content, dict) and key in ("layers", "markov", "performances", "conversations", "joint_maps", "manual"):
+                if isinstance(content, dict) and key in (
+                    "layers",
+                    "markov",
+                    "performances",
+                    "conversations",
+                    "joint_maps",
+                    "manual",
+                ):
                     lines.append(f"  {_scalar(inner)}:")
                     for name, part in content.items():
                         section(name, part, "    ")
@@ -82,7 +105,8 @@ def to_text(data: Data) -> str:
     return "\n".join(lines) + "\n"
 
 
-# --- reading ---------------------------------------------------------------------------------------------------------
+# --- reading
+# --------------------------------------------------------------------------------------------------
 
 _VALUES: dict[str, Any] = dict.fromkeys(("", "~", "null", "Null", "NULL"))
 _VALUES |= {"true": True, "True": True, "TRUE": True, "false": False, "False": False, "FALSE": False}
@@ -143,7 +167,9 @@ def _events(text: str) -> Iterator[Any]:
     try:
         yield from yaml.parse(text, Loader=loader)
     except yaml.MarkedYAMLError as error:
-        raise TextError(error.problem_mark.line + 1 if error.problem_mark else 0, str(error.problem)) from None
+        raise TextError(
+            error.problem_mark.line + 1 if error.problem_mark else 0, str(error.problem)
+        ) from None
     except yaml.reader.ReaderError as error:
         at = error.position if isinstance(error.position, int) else 0
         raise TextError(text.encode(errors="replace")[:at].count(b"\n") + 1, str(error.reason)) from None

@@ -1,6 +1,8 @@
-"""Transcripts: who says which word when, from TextGrid, ELAN, WebVTT, SRT, CTM and the JSON of Whisper's kin and of IBM.
+"""Transcripts: who says which word when, from TextGrid, ELAN, WebVTT, SRT, CTM and the JSON of Whisper's kin
+and of IBM.
 
-What a file is, its content says. Our own exports are read back whole: words and segments, as corrected by hand.
+What a file is, its content says. Our own exports are read back whole: words and segments, as corrected by
+hand.
 """
 
 from __future__ import annotations
@@ -25,23 +27,73 @@ MOST = 1_000_000  # words
 LATEST = 1e6  # seconds
 _TEXT = 1000  # characters of a word
 _REMEDY = f"Known are {', '.join(SUFFIXES)}: TextGrid, ELAN, WebVTT, SRT, Whisper's and IBM's JSON, CTM."
-_SILENT = frozenset(("", "sil", "sp", "spn", "pau", "#", "_", "-", "<p:>", "<p>", "<sil>", "<eps>", "<unk>", "xxx", "...", "…"))
+_SILENT = frozenset(
+    (
+        "",
+        "sil",
+        "sp",
+        "spn",
+        "pau",
+        "#",
+        "_",
+        "-",
+        "<p:>",
+        "<p>",
+        "<sil>",
+        "<eps>",
+        "<unk>",
+        "xxx",
+        "...",
+        "…",
+    )
+)
 _NOISE = re.compile(r"[\[(<{*♪#].*[\])>}*♪#]|[♪♫\W_]+")  # [laughter], (coughs), <noise>: no words
 _ROLES = {
-    "word": "words", "words": "words", "ort": "words", "orthography": "words", "token": "words", "tokens": "words", "mots": "words",
-    "wörter": "words", "palabras": "words", "transcript": "phrases", "transcription": "phrases", "text": "phrases", "speech": "phrases",
-    "utterance": "phrases", "utterances": "phrases", "phrase": "phrases", "phrases": "phrases", "sentence": "phrases",
-    "sentences": "phrases", "segments": "segments", "peaks": "peaks",
-    "phone": "other", "phones": "other", "phonemes": "other", "phoneme": "other", "mau": "other", "kan": "other", "sampa": "other",
-    "ipa": "other", "syllable": "other", "syllables": "other", "pos": "other", "notes": "other", "comments": "other", "silences": "other",
-}  # fmt: skip
+    "word": "words",
+    "words": "words",
+    "ort": "words",
+    "orthography": "words",
+    "token": "words",
+    "tokens": "words",
+    "mots": "words",
+    "wörter": "words",
+    "palabras": "words",
+    "transcript": "phrases",
+    "transcription": "phrases",
+    "text": "phrases",
+    "speech": "phrases",
+    "utterance": "phrases",
+    "utterances": "phrases",
+    "phrase": "phrases",
+    "phrases": "phrases",
+    "sentence": "phrases",
+    "sentences": "phrases",
+    "segments": "segments",
+    "peaks": "peaks",
+    "phone": "other",
+    "phones": "other",
+    "phonemes": "other",
+    "phoneme": "other",
+    "mau": "other",
+    "kan": "other",
+    "sampa": "other",
+    "ipa": "other",
+    "syllable": "other",
+    "syllables": "other",
+    "pos": "other",
+    "notes": "other",
+    "comments": "other",
+    "silences": "other",
+}
 _PARTED = re.compile(r"\s*[-_@:/|.()\[\]\s]+\s*")
 
 
 @dataclass(frozen=True)
 class Transcript:
-    """speakers: name -> words by start, in the file's order; "" where it names nobody. segments: name -> what the file says of clauses,
-    responses and hesitations, for those it does. notes: what was left out or settled, in words."""
+    """speakers: name -> words by start, in the file's order; "" where it names nobody. segments: name -> what
+    the file says of clauses, responses and hesitations, for those it does. notes: what was left out or
+    settled, in words.
+    """
 
     speakers: Mapping[str, tuple[Word, ...]]
     segments: Mapping[str, tuple[Segment, ...]] = field(default_factory=dict)
@@ -50,7 +102,9 @@ class Transcript:
 
 @dataclass
 class Collected:
-    """Words while a file is being read. spread: texts of several words whose times were shared out; wrong: those out of order."""
+    """Words while a file is being read. spread: texts of several words whose times were shared out; wrong:
+    those out of order.
+    """
 
     path: Path
     speakers: dict[str, list[Word]] = field(default_factory=dict)
@@ -59,12 +113,17 @@ class Collected:
     wrong: int = 0
     count: int = 0
 
-    def fail(self, cause: str, where: str = "", remedy: str = "Correct it there, or save the transcript anew.") -> FileError:
+    def fail(
+        self, cause: str, where: str = "", remedy: str = "Correct it there, or save the transcript anew."
+    ) -> FileError:
         return FileError(self.path, cause, where, remedy)
 
-    def add(self, speaker: str, text: str, start: float, end: float, where: str = "", whole: bool = False) -> None:
-        """Add a text, of one word or of several, which share its time by their letters unless it is `whole`. start, end: seconds. Raises
-        FileError."""
+    def add(
+        self, speaker: str, text: str, start: float, end: float, where: str = "", whole: bool = False
+    ) -> None:
+        """Add a text, of one word or of several, which share its time by their letters unless it is `whole`.
+        start, end: seconds. Raises FileError.
+        """
         if not (abs(start) <= LATEST and abs(end) <= LATEST):
             raise self.fail(f"a word's time is {start:g} to {end:g} s", where)
         words = self.speakers.setdefault(speaker[:200], [])
@@ -86,7 +145,9 @@ class Collected:
         sizes = [len(t) + 1 for t in texts]
         at, total = start, sum(sizes)
         for word, size in zip(texts, sizes, strict=True):
-            words.append(Word(text=word[:_TEXT], start=round(at, 4), end=round(at + (end - start) * size / total, 4)))
+            words.append(
+                Word(text=word[:_TEXT], start=round(at, 4), end=round(at + (end - start) * size / total, 4))
+            )
             at += (end - start) * size / total
 
     def finished(self, segments: Mapping[str, tuple[Segment, ...]] | None = None) -> Transcript:
@@ -97,9 +158,14 @@ class Collected:
             whose = f"'{name}': " if name else ""
             notes += [whose + t for t in told]
         if self.wrong:
-            notes.append(f"{count(self.wrong, 'word')} ended before beginning; so long as letters take is kept")
+            notes.append(
+                f"{count(self.wrong, 'word')} ended before beginning; so long as letters take is kept"
+            )
         if self.spread:
-            notes.append(f"{count(self.spread, 'word')} had no times of their own; they share those of their sentence by their letters")
+            notes.append(
+                f"{count(self.spread, 'word')} had no times of their own; they share those of their sentence "
+                "by their letters"
+            )
         if not any(out.values()):
             notes.append("it holds no words")
         return Transcript(out, dict(segments or {}), tuple(notes))
@@ -116,7 +182,9 @@ def is_silent(text: str) -> bool:
 
 
 def settled(words: Iterable[Word]) -> tuple[tuple[Word, ...], list[str]]:
-    """Return words by start, each ending where the next begins at the latest, and what had to be done for that, in words."""
+    """Return words by start, each ending where the next begins at the latest, and what had to be done for
+    that, in words.
+    """
     given = list(words)
     ordered = sorted(given, key=lambda w: (w.start, w.end))
     moved = sum(a.start > b.start for a, b in pairwise(given))
@@ -134,7 +202,9 @@ def settled(words: Iterable[Word]) -> tuple[tuple[Word, ...], list[str]]:
                 gone += 1
                 continue
         if word.end - word.start < SHORTEST / 2:
-            word = Word(text=word.text, start=word.start, end=word.start + SHORTEST / 2)  # a word takes time, whatever was written
+            word = Word(
+                text=word.text, start=word.start, end=word.start + SHORTEST / 2
+            )  # a word takes time, whatever was written
         out.append(word)
     for n in range(len(out) - 1):  # what was made longer ends where the next begins
         if out[n].end > out[n + 1].start > out[n].start:
@@ -156,7 +226,9 @@ def text_of(path: Path) -> str:
             raise FileError(path, f"is larger than {LARGEST >> 20} MiB, no transcript is", remedy=_REMEDY)
         data = path.read_bytes()
     except OSError as error:
-        raise FileError(path, f"cannot be read ({error.strerror or error})", remedy="Check that it is there.") from None
+        raise FileError(
+            path, f"cannot be read ({error.strerror or error})", remedy="Check that it is there."
+        ) from None
     if data.startswith((codecs.BOM_UTF16_LE, codecs.BOM_UTF16_BE)):
         return data.decode("utf-16", "replace").replace("\r\n", "\n").replace("\r", "\n")
     try:
@@ -192,7 +264,8 @@ def read_transcript(path: str | Path) -> Transcript:
     raise FileError(path, "is none of the transcripts that can be read", "its beginning", _REMEDY)
 
 
-# --- tiers -----------------------------------------------------------------------------------------------------------
+# --- tiers
+# --------------------------------------------------------------------------------------------------
 
 
 @dataclass(frozen=True)
@@ -232,7 +305,9 @@ def _tier(name: str, participant: str, rows: Sequence[tuple[str, float, float]])
 
 
 def _role(name: str) -> tuple[str, str]:
-    """Return whose a tier is and what it holds, by its name: "Ann - words", "words@Ann", "Ann" -> "Ann", "words" (or "", not said)."""
+    """Return whose a tier is and what it holds, by its name: "Ann - words", "words@Ann", "Ann" -> "Ann",
+    "words" (or "", not said).
+    """
     name = name.strip().strip('"').strip()
     parts = _PARTED.split(name)
     for n in (-1, 0):
@@ -252,7 +327,9 @@ def _role(name: str) -> tuple[str, str]:
 
 
 def _from_tiers(path: Path, tiers: Sequence[_Tier], notes: Iterable[str]) -> Transcript:
-    """Return words of the tiers that hold some: those named so; without any, those whose labels are not as short as phones."""
+    """Return words of the tiers that hold some: those named so; without any, those whose labels are not as
+    short as phones.
+    """
     out = Collected(path, notes=list(notes))
     worded = [t for t in tiers if t.role == "words" and any(not is_silent(x) for x, *_ in t.rows)]
     have = {t.whose for t in worded}
@@ -263,10 +340,16 @@ def _from_tiers(path: Path, tiers: Sequence[_Tier], notes: Iterable[str]) -> Tra
         worded = [t for t in tiers if t.role in ("words", "phrases", "")]
     if not worded and not any(t.role == "segments" for t in tiers):
         if not tiers:
-            raise out.fail("it has no tiers", "", "Save it anew with a tier of words for each speaker, or go on without words.")
+            raise out.fail(
+                "it has no tiers",
+                "",
+                "Save it anew with a tier of words for each speaker, or go on without words.",
+            )
         names = ", ".join(f"'{t.name[:40]}'" for t in tiers[:8])
         raise out.fail(
-            f"no tier holds words; its tiers are {names}", "", "Name the tier that does 'words', or 'Ann - words' of two speakers."
+            f"no tier holds words; its tiers are {names}",
+            "",
+            "Name the tier that does 'words', or 'Ann - words' of two speakers.",
         )
     worded = _one_each(out, worded)
     ours = {t.whose for t in tiers if t.role == "segments"}
@@ -284,7 +367,9 @@ def _from_tiers(path: Path, tiers: Sequence[_Tier], notes: Iterable[str]) -> Tra
 
 
 def _one_each(out: Collected, tiers: Sequence[_Tier]) -> list[_Tier]:
-    """Return one tier a speaker: of several, as of words and their translation, the one with most words, or else most intervals."""
+    """Return one tier a speaker: of several, as of words and their translation, the one with most words, or
+    else most intervals.
+    """
     best: dict[str, _Tier] = {}
 
     def much(tier: _Tier) -> tuple[int, int]:
@@ -295,7 +380,10 @@ def _one_each(out: Collected, tiers: Sequence[_Tier]) -> list[_Tier]:
             best[tier.whose] = tier
     for tier in tiers:
         if tier is not best[tier.whose] and any(not is_silent(x) for x, *_ in tier.rows):
-            out.notes.append(f"tier '{tier.name}' left out, as '{best[tier.whose].name}' holds more words of the same speaker")
+            out.notes.append(
+                f"tier '{tier.name}' left out, as '{best[tier.whose].name}' holds more words of the same "
+                "speaker"
+            )
     return list(best.values())
 
 
@@ -305,8 +393,12 @@ def _wordy(tier: _Tier) -> bool:
 
 
 def _segments(out: Collected, tier: _Tier, tiers: Sequence[_Tier]) -> tuple[Segment, ...] | None:
-    """Return what a tier of segments holds, with peaks from the tier beside it; None where its labels are not of ours."""
-    peaks = sorted(start for t in tiers if t.role == "peaks" and t.whose == tier.whose for _, start, _ in t.rows)
+    """Return what a tier of segments holds, with peaks from the tier beside it; None where its labels are not
+    of ours.
+    """
+    peaks = sorted(
+        start for t in tiers if t.role == "peaks" and t.whose == tier.whose for _, start, _ in t.rows
+    )
     found: list[Segment] = []
     unknown: list[str] = []
     over = 0
@@ -326,12 +418,25 @@ def _segments(out: Collected, tier: _Tier, tiers: Sequence[_Tier]) -> tuple[Segm
             continue
         peak = next((p for p in peaks if start - 1e-3 <= p <= end + 1e-3), None) if kind == "clause" else None
         spoken: Spoken = next(k for k in SPOKEN if k == kind)
-        found.append(Segment(spoken, start, end, None if peak is None else min(max(peak, start), end), " ".join(words.split())))
+        found.append(
+            Segment(
+                spoken,
+                start,
+                end,
+                None if peak is None else min(max(peak, start), end),
+                " ".join(words.split()),
+            )
+        )
     if unknown and not found:
         return None
     if unknown:
         kinds = ", ".join(SPOKEN)
-        out.notes.append(f"tier '{tier.name}': {count(len(unknown), 'segment')} left out, as '{unknown[0]}' is none of {kinds}")
+        out.notes.append(
+            f"tier '{tier.name}': {count(len(unknown), 'segment')} left out, as '{unknown[0]}' is none of "
+            f"{kinds}"
+        )
     if over:
-        out.notes.append(f"tier '{tier.name}': {count(over, 'segment')} overlapped the one before and were cut or left out")
+        out.notes.append(
+            f"tier '{tier.name}': {count(over, 'segment')} overlapped the one before and were cut or left out"
+        )
     return tuple(found)

@@ -1,5 +1,6 @@
-"""JSON transcripts: those of Whisper and its kin (openai-whisper, faster-whisper, WhisperX, the API's verbose JSON), of IBM Speech to Text,
-and what `metagraph speech` writes."""
+"""JSON transcripts: those of Whisper and its kin (openai-whisper, faster-whisper, WhisperX, the API's verbose
+JSON), of IBM Speech to Text, and what `metagraph speech` writes.
+"""
 
 from __future__ import annotations
 
@@ -12,7 +13,10 @@ from typing import Any
 from metagraph.errors import FileError
 from metagraph.formats.transcripts import Collected, Transcript
 
-_REMEDY = "Whisper writes 'segments', with 'words' where word timestamps were asked for; IBM writes 'results' with 'timestamps'."
+_REMEDY = (
+    "Whisper writes 'segments', with 'words' where word timestamps were asked for; IBM writes "
+    "'results' with 'timestamps'."
+)
 
 
 def read_json(path: Path, text: str) -> Transcript:
@@ -21,7 +25,10 @@ def read_json(path: Path, text: str) -> Transcript:
         data = json.loads(text)
     except json.JSONDecodeError as error:
         raise FileError(
-            path, f"is not JSON ({error.msg})", f"line {error.lineno}, column {error.colno}", "Save the transcript anew."
+            path,
+            f"is not JSON ({error.msg})",
+            f"line {error.lineno}, column {error.colno}",
+            "Save the transcript anew.",
         ) from None
     except (RecursionError, ValueError):
         raise FileError(path, "lists lie too deep in it, or its numbers are too long", "", _REMEDY) from None
@@ -30,10 +37,18 @@ def read_json(path: Path, text: str) -> Transcript:
         return _ours(out, text)
     if isinstance(data, list):
         if all(isinstance(x, dict) and "results" in x for x in data) and data:
-            data = {"results": [r for x in data for r in _list(out, x["results"], "results")],
-                    "speaker_labels": [s for x in data for s in _list(out, x.get("speaker_labels") or [], "speaker_labels")]}  # fmt: skip
+            data = {
+                "results": [r for x in data for r in _list(out, x["results"], "results")],
+                "speaker_labels": [
+                    s for x in data for s in _list(out, x.get("speaker_labels") or [], "speaker_labels")
+                ],
+            }
         else:
-            data = {"segments": data} if any(isinstance(x, dict) and "text" in x for x in data) else {"words": data}
+            data = (
+                {"segments": data}
+                if any(isinstance(x, dict) and "text" in x for x in data)
+                else {"words": data}
+            )
     if "results" in data:
         _ibm(out, data)
     elif "segments" in data:
@@ -79,7 +94,14 @@ def _dict(out: Collected, value: Any, where: str) -> Mapping[str, Any]:
 
 
 def _kind(value: Any) -> str:
-    names = {dict: "an object", list: "a list", str: "a text", bool: "true or false", int: "a number", float: "a number"}
+    names = {
+        dict: "an object",
+        list: "a list",
+        str: "a text",
+        bool: "true or false",
+        int: "a number",
+        float: "a number",
+    }
     return names.get(type(value), "nothing")
 
 
@@ -106,7 +128,8 @@ def _name(value: Any) -> str:
     return str(value).strip() if isinstance(value, str | int | float) and not isinstance(value, bool) else ""
 
 
-# --- Whisper ---------------------------------------------------------------------------------------------------------
+# --- Whisper
+# --------------------------------------------------------------------------------------------------
 
 
 def _whisper(out: Collected, data: Mapping[str, Any]) -> None:
@@ -129,7 +152,13 @@ def _whisper(out: Collected, data: Mapping[str, Any]) -> None:
             out.add(speaker, _text(one.get("text")), start, end, where)
 
 
-def _words(out: Collected, rows: Sequence[Any], speaker: str, where: str, span: tuple[float | None, float | None] | None) -> None:
+def _words(
+    out: Collected,
+    rows: Sequence[Any],
+    speaker: str,
+    where: str,
+    span: tuple[float | None, float | None] | None,
+) -> None:
     """Add words; those without times (WhisperX gives numbers none) share what is between their neighbours."""
     read: list[tuple[str, str, float | None, float | None]] = []
     for n, row in enumerate(rows):
@@ -137,7 +166,12 @@ def _words(out: Collected, rows: Sequence[Any], speaker: str, where: str, span: 
         text = _text(one.get("word", one.get("text", one.get("punctuated_word"))))
         place = f"{where}[{n}]"
         read.append(
-            (_name(one.get("speaker", "")) or speaker, text, _time(out, one.get("start"), place), _time(out, one.get("end"), place))
+            (
+                _name(one.get("speaker", "")) or speaker,
+                text,
+                _time(out, one.get("start"), place),
+                _time(out, one.get("end"), place),
+            )
         )
     timed = [r for r in read if r[2] is not None and r[3] is not None]
     if read and not timed and (span is None or None in span):
@@ -158,12 +192,15 @@ def _words(out: Collected, rows: Sequence[Any], speaker: str, where: str, span: 
         until = (read[behind][2] if behind < len(read) else last) or begin
         step = max(until - begin, 0.0) / (behind - n)
         for m in range(n, behind):
-            out.add(read[m][0], read[m][1], begin + step * (m - n), begin + step * (m - n + 1), f"{where}[{m}]")
+            out.add(
+                read[m][0], read[m][1], begin + step * (m - n), begin + step * (m - n + 1), f"{where}[{m}]"
+            )
         out.spread += behind - n
         n = behind
 
 
-# --- IBM -------------------------------------------------------------------------------------------------------------
+# --- IBM
+# --------------------------------------------------------------------------------------------------
 
 
 def _ibm(out: Collected, data: Mapping[str, Any]) -> None:
@@ -194,6 +231,8 @@ def _ibm(out: Collected, data: Mapping[str, Any]) -> None:
             out.add(labels.get(round(start, 2), next(iter(labels.values()), "")), stamp[0], start, end, place)
             words += 1
     if untimed and not words:
-        raise out.fail("its words have no times", "'results'", "Ask the service for timestamps (timestamps=true).")
+        raise out.fail(
+            "its words have no times", "'results'", "Ask the service for timestamps (timestamps=true)."
+        )
     if untimed:
         out.notes.append(f"{untimed} results have no times and were left out")

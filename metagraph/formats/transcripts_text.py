@@ -1,7 +1,8 @@
 """Subtitles, WebVTT and SubRip (SRT), and NIST's CTM, as transcripts.
 
-Cues hold sentences: their words share the cue's time by their letters, unless WebVTT gives words times of their own. Who speaks, a voice
-tag (`<v Ann>`) or a name before a colon tells; cues that name nobody go on with who spoke before.
+Cues hold sentences: their words share the cue's time by their letters, unless WebVTT gives words times of
+their own. Who speaks, a voice tag (`<v Ann>`) or a name before a colon tells; cues that name nobody go on
+with who spoke before.
 """
 
 from __future__ import annotations
@@ -67,11 +68,16 @@ def _cues(out: Collected, text: str) -> Iterator[_Cue]:
             continue
         found = _CUE.match(lines[n])
         if found is None:
-            raise out.fail(f"'{lines[n].strip()[:60]}' are not the times of a cue, as 00:00:01.500 --> 00:00:04.000", f"line {n + 1}")
+            raise out.fail(
+                f"'{lines[n].strip()[:60]}' are not the times of a cue, as 00:00:01.500 --> 00:00:04.000",
+                f"line {n + 1}",
+            )
         times = found.groups()
         cue = _Cue(n + 1, _seconds(*times[:4]), _seconds(*times[4:]), [])
         if cue.end < cue.start:
-            raise out.fail(f"a cue ends at {cue.end:g} s, before it starts at {cue.start:g} s", f"line {n + 1}")
+            raise out.fail(
+                f"a cue ends at {cue.end:g} s, before it starts at {cue.start:g} s", f"line {n + 1}"
+            )
         n += 1
         while n < len(lines) and lines[n].strip() and "-->" not in lines[n]:
             cue.text.append(lines[n])
@@ -90,13 +96,19 @@ def _plain(text: str) -> str:
 
 
 def _names(cues: list[_Cue]) -> frozenset[str]:
-    """Return the names that stand before a colon: those that come again, or beside others; a single "Note: ..." is none."""
+    """Return the names that stand before a colon: those that come again, or beside others; a single "Note:
+    ..." is none.
+    """
     found = Counter(m.group(1) for cue in cues for line in cue.text if (m := _NAME.match(_TAG.sub("", line))))
-    return frozenset(found if len(found) > 1 and len(found) <= 12 else (name for name, times in found.items() if times > 1))
+    return frozenset(
+        found if len(found) > 1 and len(found) <= 12 else (name for name, times in found.items() if times > 1)
+    )
 
 
 def _shared(cue: _Cue, lines: list[str]) -> list[tuple[float, float, str]]:
-    """Return the lines of a cue, each with its share of the cue's time by its letters; lines with times inside go on from those."""
+    """Return the lines of a cue, each with its share of the cue's time by its letters; lines with times
+    inside go on from those.
+    """
     sizes = [len(_plain(x)) + 1 for x in lines]
     timed = any(_INSIDE.search(x) for x in lines)
     if timed or len(lines) < 2:
@@ -136,7 +148,8 @@ def _add(out: Collected, speaker: str, text: str, start: float, end: float, wher
             out.add(speaker, said, begin, max(until, begin), where)
 
 
-# --- CTM -------------------------------------------------------------------------------------------------------------
+# --- CTM
+# --------------------------------------------------------------------------------------------------
 
 
 def is_ctm(text: str) -> bool:

@@ -1,4 +1,6 @@
-"""A project's skeleton as the graph sees it: roles and body parts with the user's corrections, and the base pose."""
+"""A project's skeleton as the graph sees it: roles and body parts with the user's corrections, and the base
+pose.
+"""
 
 from __future__ import annotations
 
@@ -28,7 +30,9 @@ def _roles(skeleton: Skeleton, corrections: tuple[tuple[str, str], ...]) -> Mapp
 
 
 @lru_cache(maxsize=32)
-def _parts(skeleton: Skeleton, roles: tuple[tuple[str, str], ...], corrections: tuple[tuple[str, Part], ...]) -> tuple[Part, ...]:
+def _parts(
+    skeleton: Skeleton, roles: tuple[tuple[str, str], ...], corrections: tuple[tuple[str, Part], ...]
+) -> tuple[Part, ...]:
     found = list(body_parts(skeleton, dict(_roles(skeleton, roles))))
     for joint, part in corrections:
         if joint in skeleton:
@@ -50,7 +54,9 @@ def parts(project: Project) -> tuple[Part, ...]:
     """Return each joint's body part."""
     if project.skeleton is None:
         return ()
-    return _parts(project.skeleton, tuple(sorted(project.roles.items())), tuple(sorted(project.parts.items())))
+    return _parts(
+        project.skeleton, tuple(sorted(project.roles.items())), tuple(sorted(project.parts.items()))
+    )
 
 
 def sides(project: Project) -> tuple[str, ...]:
@@ -59,7 +65,8 @@ def sides(project: Project) -> tuple[str, ...]:
 
 
 def mask(project: Project, action: Action) -> Array | None:
-    """Return `[J]` float32, 1 where the action moves a joint and 0 where its stance shows; None when it moves all.
+    """Return `[J]` float32, 1 where the action moves a joint and 0 where its stance shows; None when it moves
+    all.
 
     A one-armed action leaves the other arm alone; `joints`, if any, names the only joints it moves.
     """
@@ -69,7 +76,9 @@ def mask(project: Project, action: Action) -> Array | None:
 
 
 @lru_cache(maxsize=4096)
-def _mask(skeleton: Skeleton, part: tuple[Part, ...], side: tuple[str, ...], limb: str, joints: tuple[str, ...]) -> Array:
+def _mask(
+    skeleton: Skeleton, part: tuple[Part, ...], side: tuple[str, ...], limb: str, joints: tuple[str, ...]
+) -> Array:
     out = np.ones(len(skeleton), np.float32)
     if limb != "both":
         other = "right" if limb == "left" else "left"
@@ -82,7 +91,9 @@ def _mask(skeleton: Skeleton, part: tuple[Part, ...], side: tuple[str, ...], lim
 
 
 def base_pose(project: Project) -> Pose:
-    """Return the base pose `[J, ...]`, float32; the rest pose while its clip is missing. Raises ValueError without a skeleton."""
+    """Return the base pose `[J, ...]`, float32; the rest pose while its clip is missing. Raises ValueError
+    without a skeleton.
+    """
     if project.skeleton is None:
         raise ValueError("a project without clips has no base pose")
     entry = project.clips.get(project.base.clip) if project.base.clip else None

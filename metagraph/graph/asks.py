@@ -1,8 +1,10 @@
-"""What can be asked of a character, at any level of abstraction, and what is made of it: lines and performances.
+"""What can be asked of a character, at any level of abstraction, and what is made of it: lines and
+performances.
 
-An ask is what an agent sends, what a performance saves and what the timeline edits; the same fields everywhere. In JSON
-`do` says which it is: {"do": "gesture", "layer": "arms", "tags": ["positive"], "at": 2.1, "priority": 3}. Times are
-seconds of the performance, lengths seconds, points metres in the character's space (Y up, the character looks along +Z).
+An ask is what an agent sends, what a performance saves and what the timeline edits; the same fields
+everywhere. In JSON `do` says which it is: {"do": "gesture", "layer": "arms", "tags": ["positive"], "at": 2.1,
+"priority": 3}. Times are seconds of the performance, lengths seconds, points metres in the character's space
+(Y up, the character looks along +Z).
 """
 
 from __future__ import annotations
@@ -16,15 +18,21 @@ from metagraph.graph.words import Layer, Limb, Mode
 
 Id = Annotated[str, Meta(min_length=1, max_length=200)]
 Seconds = Annotated[float, Meta(ge=0, le=1e6, description="seconds")]
-# Of any length by type, since msgspec mistakes a text of limited length beside a tuple of fixed length, and crashes.
-Point = Annotated[tuple[Annotated[float, Meta(ge=-1e6, le=1e6)], ...], Meta(min_length=3, max_length=3, description="x, y, z; metres")]
+# Of any length by type, since msgspec mistakes a text of limited length beside a tuple of fixed length, and
+# crashes.
+Point = Annotated[
+    tuple[Annotated[float, Meta(ge=-1e6, le=1e6)], ...],
+    Meta(min_length=3, max_length=3, description="x, y, z; metres"),
+]
 Tags = tuple[Annotated[str, Meta(max_length=200)], ...]
 
 
 class Ask(Struct, frozen=True, kw_only=True, omit_defaults=True, forbid_unknown_fields=True, tag_field="do"):
-    """What all asks have. id: made up where it is empty; the same id again replaces what was asked before. at: when it should
-    begin, null for as soon as can be. told: when it became known, null for from the start; a planner that acts
-    before then has not heard of it. priority: higher wins over lower; what a model writes gives way to all."""
+    """What all asks have. id: made up where it is empty; the same id again replaces what was asked before.
+    at: when it should begin, null for as soon as can be. told: when it became known, null for from the start;
+    a planner that acts before then has not heard of it. priority: higher wins over lower; what a model writes
+    gives way to all.
+    """
 
     id: Annotated[str, Meta(max_length=200)] = ""
     at: Seconds | None = None
@@ -33,9 +41,11 @@ class Ask(Struct, frozen=True, kw_only=True, omit_defaults=True, forbid_unknown_
 
 
 class Gesture(Ask, frozen=True, tag="gesture"):
-    """A gesture of the stance the layer is in. tags: all of them must fit. duration: how long the activity is wanted.
-    stroke: when its most telling moment should come, instead of `at`. hold: seconds its hold should last. prepare: whether the
-    preparation plays. resume: whether its rest goes on after something more important has cut it."""
+    """A gesture of the stance the layer is in. tags: all of them must fit. duration: how long the activity is
+    wanted. stroke: when its most telling moment should come, instead of `at`. hold: seconds its hold should
+    last. prepare: whether the preparation plays. resume: whether its rest goes on after something more
+    important has cut it.
+    """
 
     layer: Layer = "arms"
     tags: Tags = ()
@@ -58,7 +68,9 @@ class Fidget(Ask, frozen=True, tag="fidget"):
 
 
 class Play(Ask, frozen=True, tag="action"):
-    """One action, by id or name; the layer goes to its stance first. stroke, hold, prepare: as for a gesture."""
+    """One action, by id or name; the layer goes to its stance first. stroke, hold, prepare: as for a
+    gesture.
+    """
 
     action: Id
     layer: Layer | None = None
@@ -68,8 +80,9 @@ class Play(Ask, frozen=True, tag="action"):
 
 
 class Go(Ask, frozen=True, tag="stance"):
-    """Go to a stance, by id or name, by the shortest chain of transitions. stay: the models do not leave it of their own accord,
-    until another stance is asked for or this is taken back."""
+    """Go to a stance, by id or name, by the shortest chain of transitions. stay: the models do not leave it
+    of their own accord, until another stance is asked for or this is taken back.
+    """
 
     stance: Id
     layer: Layer | None = None
@@ -77,8 +90,10 @@ class Go(Ask, frozen=True, tag="stance"):
 
 
 class Change(Ask, frozen=True, tag="change"):
-    """Change to another stance, whichever: a transition drawn among those of the stance the layer is in. limb, duration: which
-    arm was seen to move, and for how long; any transition will do, and takes its own time."""
+    """Change to another stance, whichever: a transition drawn among those of the stance the layer is in.
+    limb, duration: which arm was seen to move, and for how long; any transition will do, and takes its own
+    time.
+    """
 
     layer: Layer = "arms"
     limb: Limb | None = None
@@ -98,8 +113,9 @@ class Shake(Ask, frozen=True, tag="shake"):
 
 
 class Look(Ask, frozen=True, tag="look"):
-    """Look at a point, a named point ("user", another character), or "ahead". duration: null until the next look.
-    amount: 0 turns nothing, 1 all the way. strict: without averting the gaze meanwhile."""
+    """Look at a point, a named point ("user", another character), or "ahead". duration: null until the next
+    look. amount: 0 turns nothing, 1 all the way. strict: without averting the gaze meanwhile.
+    """
 
     to: Annotated[str, Meta(min_length=1, max_length=200)] | Point = "user"
     duration: Seconds | None = None
@@ -112,8 +128,9 @@ class Blink(Ask, frozen=True, tag="blink"):
 
 
 class Say(Ask, frozen=True, tag="say"):
-    """Say a line of the project's list, its audio, its lip sync and its own asks with it; or other words with `text`,
-    whose length is guessed from them, or `duration`. gestures: whether the line's own asks are made."""
+    """Say a line of the project's list, its audio, its lip sync and its own asks with it; or other words with
+    `text`, whose length is guessed from them, or `duration`. gestures: whether the line's own asks are made.
+    """
 
     line: Annotated[str, Meta(min_length=1, max_length=200)] | int | None = None
     text: Annotated[str, Meta(max_length=20000)] = ""
@@ -122,7 +139,9 @@ class Say(Ask, frozen=True, tag="say"):
 
 
 class Behave(Ask, frozen=True, tag="mode"):
-    """Idle, listen or talk from now on; null goes back to talking while something is said and idling otherwise."""
+    """Idle, listen or talk from now on; null goes back to talking while something is said and idling
+    otherwise.
+    """
 
     mode: Mode | None = None
 
@@ -150,9 +169,11 @@ AnyAsk = Union[Gesture, Fidget, Play, Go, Change, Nod, Shake, Look, Blink, Say, 
 
 
 class Line(Struct, frozen=True, kw_only=True, omit_defaults=True, forbid_unknown_fields=True):
-    """A line of dialogue, which an agent calls by its id. audio, phones: paths relative to the project file of a sound file and
-    of a Praat TextGrid with phones or words. channel: which of the sound's channels is the line's, from 0; null for all mixed.
-    duration: seconds, where there is no audio. asks: times from the line's start."""
+    """A line of dialogue, which an agent calls by its id. audio, phones: paths relative to the project file
+    of a sound file and of a Praat TextGrid with phones or words. channel: which of the sound's channels is
+    the line's, from 0; null for all mixed. duration: seconds, where there is no audio. asks: times from the
+    line's start.
+    """
 
     text: Annotated[str, Meta(max_length=20000)] = ""
     audio: str | None = None
@@ -163,8 +184,10 @@ class Line(Struct, frozen=True, kw_only=True, omit_defaults=True, forbid_unknown
 
 
 class Performance(Struct, frozen=True, kw_only=True, omit_defaults=True, forbid_unknown_fields=True):
-    """A performance that is kept: what was asked for and what chance it was played with. seed: null for the project's.
-    length: seconds. idle: whether the models fill the time nobody asks for. stances: layer -> the stance it begins in."""
+    """A performance that is kept: what was asked for and what chance it was played with. seed: null for the
+    project's. length: seconds. idle: whether the models fill the time nobody asks for. stances: layer -> the
+    stance it begins in.
+    """
 
     name: Annotated[str, Meta(max_length=200)]
     asks: tuple[AnyAsk, ...] = ()
@@ -218,6 +241,7 @@ def schema() -> dict[str, Any]:
     return {
         "$schema": "https://json-schema.org/draft/2020-12/schema",
         "title": "Metagraph request",
-        "description": "What can be asked of a character, at any level. Times are seconds, points metres, Y up.",
+        "description": "What can be asked of a character, at any level. Times are seconds, points metres, Y "
+        "up.",
         **msgspec.json.schema(AnyAsk),
     }

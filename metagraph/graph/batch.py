@@ -11,7 +11,8 @@ from metagraph.graph import edits
 from metagraph.graph.edits import EditError
 from metagraph.graph.model import Action, Project, Timing
 
-# What can be pasted from one action to many: group -> the fields it stands for; those with a dot are of its timing.
+# What can be pasted from one action to many: group -> the fields it stands for; those with a dot are of its
+# timing.
 PROPERTIES: Mapping[str, tuple[str, ...]] = {
     "blends": ("timing.blend_in", "timing.blend_out"),
     "part": ("timing.start", "timing.end"),
@@ -27,7 +28,8 @@ FIELDS = ("name", "clip", "kind", "layer", "stance", "end", "limb", "n")
 
 
 def paste(project: Project, source: str, targets: Collection[str], groups: Collection[str]) -> Project:
-    """Give actions the chosen properties of one. groups: of `PROPERTIES`. Times are cut to each target's clip.
+    """Give actions the chosen properties of one. groups: of `PROPERTIES`. Times are cut to each target's
+    clip.
 
     Raises EditError for a group that does not exist or a source that is gone.
     """
@@ -38,7 +40,11 @@ def paste(project: Project, source: str, targets: Collection[str], groups: Colle
     if unknown:
         raise EditError(f"there is nothing called '{unknown[0]}' to paste; there are {', '.join(PROPERTIES)}")
     wanted = [field for group in groups for field in PROPERTIES[group]]
-    changes = {i: _given(project, given, action, wanted) for i in targets if i != source and (action := project.action(i)) is not None}
+    changes = {
+        i: _given(project, given, action, wanted)
+        for i in targets
+        if i != source and (action := project.action(i)) is not None
+    }
     return edits.update_each(project, changes)
 
 
@@ -52,19 +58,26 @@ def _given(project: Project, source: Action, target: Action, fields: Sequence[st
         inside, dot, name = field.partition(".")
         if dot:
             value = getattr(source.timing, name)
-            times[name] = min(value, length) if isinstance(value, float) and name not in ("blend_in", "blend_out") else value
+            times[name] = (
+                min(value, length)
+                if isinstance(value, float) and name not in ("blend_in", "blend_out")
+                else value
+            )
         else:
             out[inside] = getattr(source, inside)
     if times:
         timing: Timing = replace(target.timing, **times)
         if timing.end is not None and timing.end <= timing.start:
-            timing = replace(timing, start=target.timing.start, end=target.timing.end)  # nothing of it would be left
+            timing = replace(
+                timing, start=target.timing.start, end=target.timing.end
+            )  # nothing of it would be left
         out["timing"] = timing
     return out
 
 
 def names_by_pattern(project: Project, actions: Sequence[str], pattern: str) -> dict[str, str]:
-    """Return new names from a pattern: "{stance} {name} {n:02}", with `FIELDS` in braces; n counts from 1 in the order given.
+    """Return new names from a pattern: "{stance} {name} {n:02}", with `FIELDS` in braces; n counts from 1 in
+    the order given.
 
     Raises EditError for a field that does not exist, or a pattern that gives an empty name.
     """
@@ -78,20 +91,32 @@ def names_by_pattern(project: Project, actions: Sequence[str], pattern: str) -> 
         stance, end = project.stance(action.stance), project.stance(action.end_stance)
         clip = project.clips.get(action.clip)
         words = {
-            "name": action.name, "clip": clip.name if clip is not None else "", "kind": action.kind, "layer": action.layer,
-            "stance": stance.name if stance is not None else "", "end": end.name if end is not None else "", "limb": action.limb,
-        }  # fmt: skip
+            "name": action.name,
+            "clip": clip.name if clip is not None else "",
+            "kind": action.kind,
+            "layer": action.layer,
+            "stance": stance.name if stance is not None else "",
+            "end": end.name if end is not None else "",
+            "limb": action.limb,
+        }
         try:
             name = pattern.format(n=number, **words)
         except (KeyError, IndexError, ValueError, AttributeError):
-            raise EditError(f"'{pattern}' cannot be read; in braces there may be {', '.join(FIELDS)}, as in {{name}} {{n:02}}") from None
+            raise EditError(
+                f"'{pattern}' cannot be read; in braces there may be {', '.join(FIELDS)}, as in {{name}} "
+                f"{{n:02}}"
+            ) from None
         out[ident] = _named(name, pattern)
     return out
 
 
-def names_replaced(project: Project, actions: Sequence[str], find: str, put: str, regex: bool = False) -> dict[str, str]:
-    """Return new names with a text replaced wherever it stands; only of actions whose name has it. regex: `find` is a regular expression,
-    and `put` may name its groups (\\1). Raises EditError for one that cannot be read, or names that would be empty."""
+def names_replaced(
+    project: Project, actions: Sequence[str], find: str, put: str, regex: bool = False
+) -> dict[str, str]:
+    """Return new names with a text replaced wherever it stands; only of actions whose name has it. regex:
+    `find` is a regular expression, and `put` may name its groups (\\1). Raises EditError for one that cannot
+    be read, or names that would be empty.
+    """
     if not find:
         raise EditError("say what to look for")
     try:
@@ -135,7 +160,9 @@ def replace_clip(project: Project, actions: Collection[str], clip: str) -> Proje
 
 
 def _within(timing: Timing, length: float) -> Timing:
-    """Return timing cut to a clip of some length; a part of which nothing would be left becomes the whole clip."""
+    """Return timing cut to a clip of some length; a part of which nothing would be left becomes the whole
+    clip.
+    """
 
     def cut(value: float | None) -> float | None:
         return None if value is None else min(value, length)
@@ -144,6 +171,12 @@ def _within(timing: Timing, length: float) -> Timing:
     if start >= (length if end is None else end):
         start, end = 0.0, None
     return replace(
-        timing, start=start, end=end, earliest_exit=cut(timing.earliest_exit), stroke=cut(timing.stroke), ready=cut(timing.ready),
-        stroke_end=cut(timing.stroke_end), relax=cut(timing.relax),
-    )  # fmt: skip
+        timing,
+        start=start,
+        end=end,
+        earliest_exit=cut(timing.earliest_exit),
+        stroke=cut(timing.stroke),
+        ready=cut(timing.ready),
+        stroke_end=cut(timing.stroke_end),
+        relax=cut(timing.relax),
+    )

@@ -1,4 +1,6 @@
-"""Clips of other skeletons in a project: which joint map would fit, and bringing them over as the project knows its own figure."""
+"""Clips of other skeletons in a project: which joint map would fit, and bringing them over as the project
+knows its own figure.
+"""
 
 from __future__ import annotations
 
@@ -13,7 +15,9 @@ from metagraph.motion.skeleton import Pose, Skeleton
 
 
 class Bringing:
-    """Brings clips onto a project's skeleton. Where its rest pose does not stand, the first of its own clips says how it stands."""
+    """Brings clips onto a project's skeleton. Where its rest pose does not stand, the first of its own clips
+    says how it stands.
+    """
 
     def __init__(self, project: Project) -> None:
         self.project = project

@@ -1,4 +1,6 @@
-"""Problems of a project: where they are, what they are, what to do about them. `check` never changes anything."""
+"""Problems of a project: where they are, what they are, what to do about them. `check` never changes
+anything.
+"""
 
 from __future__ import annotations
 
@@ -28,7 +30,9 @@ TWISTED = np.radians(50)  # how far the base pose's hips may be turned from the 
 
 @dataclass(frozen=True)
 class Problem:
-    """code: stable word for programs. message: what is wrong; remedy: what to do. The ids say where to jump to."""
+    """code: stable word for programs. message: what is wrong; remedy: what to do. The ids say where to jump
+    to.
+    """
 
     severity: Severity
     code: str
@@ -53,7 +57,12 @@ def check(project: Project) -> list[Problem]:
         found += check_manual(project)
     elif project.clips and not any(project.graphs[layer].stances for layer in LAYERS):
         found.append(
-            Problem("hint", "no-stance", "nothing plays yet", "Drop a resting clip on the middle of a layer to make its first stance.")
+            Problem(
+                "hint",
+                "no-stance",
+                "nothing plays yet",
+                "Drop a resting clip on the middle of a layer to make its first stance.",
+            )
         )
     order = {"error": 0, "warning": 1, "hint": 2}
     return sorted(found, key=lambda p: order[p.severity])
@@ -74,7 +83,8 @@ def _clips(project: Project) -> Iterator[Problem]:
             yield Problem(
                 "error" if project.uses.get(entry.id) else "warning",
                 "other-skeleton",
-                f"clip '{entry.name}' has another skeleton ({len(entry.motion.skeleton)} joints, the project has {len(project.skeleton)})",
+                f"clip '{entry.name}' has another skeleton ({len(entry.motion.skeleton)} joints, the project "
+                f"has {len(project.skeleton)})",
                 "Import its file again to retarget it, or remove it.",
                 clip=entry.id,
             )
@@ -87,7 +97,11 @@ def _base(project: Project) -> Iterator[Problem]:
         entry = project.clips.get(project.base.clip)
         if entry is None or entry.motion is None:
             yield Problem(
-                "error", "base-missing", "the clip of the base pose is missing", "Choose another base pose.", clip=project.base.clip
+                "error",
+                "base-missing",
+                "the clip of the base pose is missing",
+                "Choose another base pose.",
+                clip=project.base.clip,
             )
             return
         if project.base.frame >= entry.frames:
@@ -101,12 +115,18 @@ def _base(project: Project) -> Iterator[Problem]:
             )
     elif any(project.graphs[layer].actions for layer in LAYERS):
         first = _first_pose(project, _start_loop(project, "body") or _start_loop(project, "arms"))
-        if first is not None and float(pose_distance(project.skeleton, first, anatomy.base_pose(project))) > 0.25 * project.skeleton.height:
+        if (
+            first is not None
+            and float(pose_distance(project.skeleton, first, anatomy.base_pose(project)))
+            > 0.25 * project.skeleton.height
+        ):
             yield Problem(
                 "warning",
                 "base-rest",
-                "the base pose is the skeleton's rest pose, far from how the character stands; layers will add up to a twisted pose",
-                "Take the base pose from a frame with the hands at the sides: right-click a clip, 'Use this frame as base pose'.",
+                "the base pose is the skeleton's rest pose, far from how the character stands; layers will "
+                "add up to a twisted pose",
+                "Take the base pose from a frame with the hands at the sides: right-click a clip, 'Use this "
+                "frame as base pose'.",
             )
     loop = _start_loop(project, "body")
     stance = _first_pose(project, loop)
@@ -125,7 +145,8 @@ def _base(project: Project) -> Iterator[Problem]:
         yield Problem(
             "warning",
             "base-floats",
-            f"the base pose stands {abs(lift) * 100:.0f} cm {way} stance '{rests}'; the character will leave the ground",
+            f"the base pose stands {abs(lift) * 100:.0f} cm {way} stance '{rests}'; the character will leave "
+            "the ground",
             "Take the base pose from a clip in which the character stands as in its stances.",
             clip=project.base.clip,
         )
@@ -135,7 +156,8 @@ def _base(project: Project) -> Iterator[Problem]:
         yield Problem(
             "warning",
             "base-twisted",
-            f"the base pose's hips are turned {np.degrees(turn):.0f} degrees from stance '{rests}'; the character will twist",
+            f"the base pose's hips are turned {np.degrees(turn):.0f} degrees from stance '{rests}'; the "
+            "character will twist",
             "Take the base pose from a clip facing the same way.",
             clip=project.base.clip,
         )
@@ -148,7 +170,10 @@ def _character(project: Project) -> Iterator[Problem]:
     for part in ("arms", "head", "legs", "spine"):
         if part not in found:
             yield Problem(
-                "warning", "no-part", f"no joint of the skeleton was recognised as {part}", "Open 'Skeleton' and say which joints they are."
+                "warning",
+                "no-part",
+                f"no joint of the skeleton was recognised as {part}",
+                "Open 'Skeleton' and say which joints they are.",
             )
 
 
@@ -156,16 +181,35 @@ def _graph(project: Project, graph: MetaGraph) -> Iterator[Problem]:
     layer = graph.layer
     for stance in graph.stances.values():
 
-        def at(severity: Severity, code: str, message: str, remedy: str, stance_id: str = stance.id) -> Problem:
+        def at(
+            severity: Severity, code: str, message: str, remedy: str, stance_id: str = stance.id
+        ) -> Problem:
             return Problem(severity, code, message, remedy, layer, stance_id)
 
         if not graph.of(stance.id, "stance"):
-            yield at("error", "no-loop", f"stance '{stance.name}' has no loop to rest in", "Drop a resting clip on the middle node.")
+            yield at(
+                "error",
+                "no-loop",
+                f"stance '{stance.name}' has no loop to rest in",
+                "Drop a resting clip on the middle node.",
+            )
         for kind in KINDS[1:3]:
             if not graph.of(stance.id, kind):
-                yield at("hint", f"no-{kind}s", f"stance '{stance.name}' has no {kind}s", f"Drop clips on its {kind} node.")
-        if len(graph.stances) > 1 and not any(a.end_stance in graph.stances for a in graph.of(stance.id, "transition")):
-            yield at("warning", "dead-end", f"stance '{stance.name}' cannot be left", "Drop a clip on its transition node.")
+                yield at(
+                    "hint",
+                    f"no-{kind}s",
+                    f"stance '{stance.name}' has no {kind}s",
+                    f"Drop clips on its {kind} node.",
+                )
+        if len(graph.stances) > 1 and not any(
+            a.end_stance in graph.stances for a in graph.of(stance.id, "transition")
+        ):
+            yield at(
+                "warning",
+                "dead-end",
+                f"stance '{stance.name}' cannot be left",
+                "Drop a clip on its transition node.",
+            )
         if graph.start in graph.stances and stance.id not in reachable(graph, graph.start or ""):
             yield at(
                 "warning",
@@ -174,34 +218,80 @@ def _graph(project: Project, graph: MetaGraph) -> Iterator[Problem]:
                 "Drop a transition that ends in it on another stance.",
             )
     if graph.actions and graph.start not in graph.stances:
-        yield Problem("error", "no-start", f"the {layer} layer has no stance to begin in", "Choose a stance and 'Start here'.", layer)
+        yield Problem(
+            "error",
+            "no-start",
+            f"the {layer} layer has no stance to begin in",
+            "Choose a stance and 'Start here'.",
+            layer,
+        )
     for part, weight in graph.weights.items():
         if not 0 <= weight <= 2:
-            yield Problem("error", "weight", f"the {layer} layer's weight on {part} is {weight:g}", "Set it between 0 and 2.", layer)
+            yield Problem(
+                "error",
+                "weight",
+                f"the {layer} layer's weight on {part} is {weight:g}",
+                "Set it between 0 and 2.",
+                layer,
+            )
     for action in graph.actions.values():
         yield from _action(project, graph, action)
 
 
 def _action(project: Project, graph: MetaGraph, action: Action) -> Iterator[Problem]:
     def at(severity: Severity, code: str, message: str, remedy: str) -> Problem:
-        return Problem(severity, code, f"'{action.name}' {message}", remedy, graph.layer, action.stance, action.id, action.clip)
+        return Problem(
+            severity,
+            code,
+            f"'{action.name}' {message}",
+            remedy,
+            graph.layer,
+            action.stance,
+            action.id,
+            action.clip,
+        )
 
     timing, entry = action.timing, project.clips.get(action.clip)
     if action.stance not in graph.stances:
-        yield at("error", "lost-stance", "belongs to a stance that is not there", "Move it to a stance, or remove it.")
+        yield at(
+            "error",
+            "lost-stance",
+            "belongs to a stance that is not there",
+            "Move it to a stance, or remove it.",
+        )
     if action.kind == "transition":
         if action.end_stance is None:
             yield at("error", "no-end", "is a transition that ends nowhere", "Choose its end stance.")
         elif action.end_stance not in graph.stances:
             yield at("error", "lost-end", "ends in a stance that is not there", "Choose another end stance.")
         elif action.end_stance == action.stance:
-            yield at("warning", "circle", "ends in the stance it starts from", "Choose another end stance, or make it a gesture.")
+            yield at(
+                "warning",
+                "circle",
+                "ends in the stance it starts from",
+                "Choose another end stance, or make it a gesture.",
+            )
     if not (np.isfinite(action.likelihood) and action.likelihood > 0):
-        yield at("error", "likelihood", f"has the likelihood {action.likelihood:g} and can never be chosen", "Set it above 0.")
+        yield at(
+            "error",
+            "likelihood",
+            f"has the likelihood {action.likelihood:g} and can never be chosen",
+            "Set it above 0.",
+        )
     if project.skeleton is not None and (unknown := [j for j in action.joints if j not in project.skeleton]):
-        yield at("error", "mask", f"moves joint '{unknown[0]}', which the skeleton does not have", "Correct its joints.")
+        yield at(
+            "error",
+            "mask",
+            f"moves joint '{unknown[0]}', which the skeleton does not have",
+            "Correct its joints.",
+        )
     if entry is None:
-        yield at("error", "lost-clip", "uses a clip that is not in the project", "Remove it, or import the clip again.")
+        yield at(
+            "error",
+            "lost-clip",
+            "uses a clip that is not in the project",
+            "Remove it, or import the clip again.",
+        )
         return
     end = entry.duration if timing.end is None else timing.end
     tolerance = 0.5 / entry.fps
@@ -214,7 +304,12 @@ def _action(project: Project, graph: MetaGraph, action: Action) -> Iterator[Prob
             "Bring start and end inside the clip.",
         )
     elif end <= timing.start and entry.frames > 1:
-        yield at("error", "empty", f"ends at {end:.2f} s, not after its start at {timing.start:.2f} s", "Move its end behind its start.")
+        yield at(
+            "error",
+            "empty",
+            f"ends at {end:.2f} s, not after its start at {timing.start:.2f} s",
+            "Move its end behind its start.",
+        )
     elif not (timing.blend_in >= 0 and timing.blend_out >= 0) or (
         action.kind != "stance" and timing.blend_in + timing.blend_out > end - timing.start + tolerance
     ):
@@ -225,11 +320,18 @@ def _action(project: Project, graph: MetaGraph, action: Action) -> Iterator[Prob
             "Shorten its blends.",
         )
     if timing.earliest_exit is not None and not timing.start <= timing.earliest_exit <= end:
-        yield at("warning", "exit", f"may be left at {timing.earliest_exit:.2f} s, outside what plays", "Bring the earliest exit inside.")
+        yield at(
+            "warning",
+            "exit",
+            f"may be left at {timing.earliest_exit:.2f} s, outside what plays",
+            "Bring the earliest exit inside.",
+        )
     yield from _ends(project, graph, action, at)
 
 
-def _ends(project: Project, graph: MetaGraph, action: Action, at: Callable[[Severity, str, str, str], Problem]) -> Iterator[Problem]:
+def _ends(
+    project: Project, graph: MetaGraph, action: Action, at: Callable[[Severity, str, str, str], Problem]
+) -> Iterator[Problem]:
     """Compare a clip's ends with the stances it leaves and enters, on the joints its layer moves."""
     motion = _motion(project, action)
     if motion is None or project.skeleton is None:
@@ -268,13 +370,17 @@ def _reached(project: Project, graph: MetaGraph, action: Action) -> tuple[int, .
     return tuple(
         j
         for j, part in enumerate(parts)
-        if graph.weights.get(part, REACH[graph.layer][part]) > 0 and part != "face" and (moved is None or moved[j] > 0)
+        if graph.weights.get(part, REACH[graph.layer][part]) > 0
+        and part != "face"
+        and (moved is None or moved[j] > 0)
     )
 
 
 @lru_cache(maxsize=65536)
 def _gap(a: Clip, seconds_a: float, b: Clip, seconds_b: float, joints: tuple[int, ...]) -> float:
-    """Largest distance in metres of the joints, root aside. Clips compare by identity, so edits elsewhere cost nothing."""
+    """Largest distance in metres of the joints, root aside. Clips compare by identity, so edits elsewhere
+    cost nothing.
+    """
     return float(pose_distance(a.skeleton, a.pose_at(seconds_a), b.pose_at(seconds_b), joints))
 
 

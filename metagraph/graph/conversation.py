@@ -1,7 +1,9 @@
-"""A conversation of two: what each says and when, in segments that the body answers to (Yang et al. 2020, section 4.2).
+"""A conversation of two: what each says and when, in segments that the body answers to (Yang et al. 2020,
+section 4.2).
 
-A side keeps what its own speech is made of: phonemic clauses, listener responses and its own hesitation pauses, one after another.
-What a character moves with is another thing, `heard_by`: its own clauses and responses, and the hesitations of its partner.
+A side keeps what its own speech is made of: phonemic clauses, listener responses and its own hesitation
+pauses, one after another. What a character moves with is another thing, `heard_by`: its own clauses and
+responses, and the hesitations of its partner.
 """
 
 from __future__ import annotations
@@ -32,8 +34,10 @@ class Word(Struct, frozen=True, kw_only=True, omit_defaults=True, forbid_unknown
 
 
 class Segment(Struct, frozen=True, omit_defaults=True, forbid_unknown_fields=True):
-    """A stretch of a conversation. kind: a phonemic clause, a listener response, a hesitation pause, or idle, which is never kept: it is
-    what lies between. start, end: seconds. peak: of a clause, where its stress is, seconds; None where there is none. text: its words."""
+    """A stretch of a conversation. kind: a phonemic clause, a listener response, a hesitation pause, or idle,
+    which is never kept: it is what lies between. start, end: seconds. peak: of a clause, where its stress is,
+    seconds; None where there is none. text: its words.
+    """
 
     kind: Sound
     start: float
@@ -43,8 +47,10 @@ class Segment(Struct, frozen=True, omit_defaults=True, forbid_unknown_fields=Tru
 
 
 class Rates(Struct, frozen=True, kw_only=True, omit_defaults=True, forbid_unknown_fields=True):
-    """How often a movement goes with what is said, 0..1: a gesture of the hands with a clause, a nod with a response, a nod with the
-    partner's hesitation. The defaults are what the female actor of Yang et al. did (table 1)."""
+    """How often a movement goes with what is said, 0..1: a gesture of the hands with a clause, a nod with a
+    response, a nod with the partner's hesitation. The defaults are what the female actor of Yang et al. did
+    (table 1).
+    """
 
     clause: _Share = 0.75
     response: _Share = 0.58
@@ -52,11 +58,13 @@ class Rates(Struct, frozen=True, kw_only=True, omit_defaults=True, forbid_unknow
 
 
 class Side(Struct, frozen=True, kw_only=True, omit_defaults=True, forbid_unknown_fields=True):
-    """One of the two. audio: path of its sound, relative to the project file; channel: which of that file's channels is its own, from 0;
-    None for all of them mixed. project: path of another project whose graph moves this side, None for this one. take: id of the clip
-    that was recorded along with it, from the same moment. motion: id of the clip it moves with from the beginning on, instead of a
-    graph: new motion of a motion graph. words: as transcribed, by start. segments: of its own speech, by start, never overlapping, none
-    idle."""
+    """One of the two. audio: path of its sound, relative to the project file; channel: which of that file's
+    channels is its own, from 0; None for all of them mixed. project: path of another project whose graph
+    moves this side, None for this one. take: id of the clip that was recorded along with it, from the same
+    moment. motion: id of the clip it moves with from the beginning on, instead of a graph: new motion of a
+    motion graph. words: as transcribed, by start. segments: of its own speech, by start, never overlapping,
+    none idle.
+    """
 
     name: _Name = ""
     audio: str | None = None
@@ -71,27 +79,79 @@ class Side(Struct, frozen=True, kw_only=True, omit_defaults=True, forbid_unknown
     def __post_init__(self) -> None:
         end = 0.0
         for s in self.segments:
-            if s.kind == "idle" or not end <= s.start < s.end <= 1e6 or not s.start <= (s.start if s.peak is None else s.peak) <= s.end:
+            if (
+                s.kind == "idle"
+                or not end <= s.start < s.end <= 1e6
+                or not s.start <= (s.start if s.peak is None else s.peak) <= s.end
+            ):
                 raise ValueError(
-                    f"segment '{s.kind}' at {s.start:g} s: segments follow each other, end after they start, and have their peak inside"
+                    f"segment '{s.kind}' at {s.start:g} s: segments follow each other, end after they start, "
+                    "and have their peak inside"
                 )
             end = s.end
 
 
-# What short sounds mean; compared without case and punctuation. "%hesitation" is what IBM's transcripts write.
+# What short sounds mean; compared without case and punctuation. "%hesitation" is what IBM's transcripts
+# write.
 RESPONSES = (
-    "yes", "yeah", "yep", "yup", "mhm", "mm-hmm", "mm", "uh-huh", "um-hmm", "um hum", "ah", "ah ha", "aha", "oh", "okay", "ok", "right",
-    "sure", "wow", "really", "exactly", "absolutely", "totally", "i see", "i know", "of course", "got it", "cool", "great", "nice", "true",
-)  # fmt: skip
+    "yes",
+    "yeah",
+    "yep",
+    "yup",
+    "mhm",
+    "mm-hmm",
+    "mm",
+    "uh-huh",
+    "um-hmm",
+    "um hum",
+    "ah",
+    "ah ha",
+    "aha",
+    "oh",
+    "okay",
+    "ok",
+    "right",
+    "sure",
+    "wow",
+    "really",
+    "exactly",
+    "absolutely",
+    "totally",
+    "i see",
+    "i know",
+    "of course",
+    "got it",
+    "cool",
+    "great",
+    "nice",
+    "true",
+)
 HESITATIONS = (
-    "%hesitation", "uh", "uhh", "um", "umm", "er", "erm", "ehm", "eh", "hm", "hmm", "huh", "well", "you know", "i mean", "like",
+    "%hesitation",
+    "uh",
+    "uhh",
+    "um",
+    "umm",
+    "er",
+    "erm",
+    "ehm",
+    "eh",
+    "hm",
+    "hmm",
+    "huh",
+    "well",
+    "you know",
+    "i mean",
+    "like",
     "let me see",
-)  # fmt: skip
+)
 
 
 class Conversation(Struct, frozen=True, kw_only=True, omit_defaults=True, forbid_unknown_fields=True):
-    """Two who talk with each other. length: seconds. responses, hesitations: words and short phrases that make a segment one. distance:
-    metres between the two, who face each other. seed: of which clauses get a gesture."""
+    """Two who talk with each other. length: seconds. responses, hesitations: words and short phrases that
+    make a segment one. distance: metres between the two, who face each other. seed: of which clauses get a
+    gesture.
+    """
 
     name: _Name
     length: Annotated[float, Meta(gt=0, le=36000)]
@@ -108,8 +168,10 @@ def side_name(conversation: Conversation, side: int) -> str:
 
 
 def heard_by(conversation: Conversation, side: int) -> tuple[Segment, ...]:
-    """Return what a side moves with, by start and never overlapping: its own clauses and responses, and what is left of the partner's
-    hesitations where it does not speak itself. Its own hesitations are idle. kind "hesitation" here is the partner's."""
+    """Return what a side moves with, by start and never overlapping: its own clauses and responses, and what
+    is left of the partner's hesitations where it does not speak itself. Its own hesitations are idle. kind
+    "hesitation" here is the partner's.
+    """
     own = [s for s in conversation.sides[side].segments if s.kind != "hesitation"]
     out = list(own)
     for s in conversation.sides[1 - side].segments:

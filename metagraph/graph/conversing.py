@@ -1,7 +1,9 @@
-"""Edits of conversations: kept ones, their sides, and the segments of what is said. Pure functions Project -> Project.
+"""Edits of conversations: kept ones, their sides, and the segments of what is said. Pure functions Project ->
+Project.
 
-A segment is meant by its place among its side's segments, from 0. Times are seconds; what would reach over a neighbour, or out of the
-conversation, is held there. A segment's peak goes with it and stays inside, whatever it is labelled: labelled back, nothing is lost.
+A segment is meant by its place among its side's segments, from 0. Times are seconds; what would reach over a
+neighbour, or out of the conversation, is held there. A segment's peak goes with it and stays inside, whatever
+it is labelled: labelled back, nothing is lost.
 """
 
 from __future__ import annotations
@@ -21,15 +23,20 @@ _DIGITS = 3  # of seconds: what is dragged lands on milliseconds
 Place = tuple[int, int]  # side, and the place among its segments
 
 
-# --- conversations ---------------------------------------------------------------------------------------------------
+# --- conversations
+# --------------------------------------------------------------------------------------------------
 
 
 def add_conversation(project: Project, conversation: Conversation) -> tuple[Project, str]:
     """Keep a conversation under a name of its own; return the project and the conversation's id."""
     ident = f"v{project.next_id}"
     taken = {c.name for c in project.conversations.values()}
-    named = msgspec.structs.replace(conversation, name=free_name(_clean(conversation.name) or "Conversation", taken))
-    return replace(project, conversations={**project.conversations, ident: named}, next_id=project.next_id + 1), ident
+    named = msgspec.structs.replace(
+        conversation, name=free_name(_clean(conversation.name) or "Conversation", taken)
+    )
+    return replace(
+        project, conversations={**project.conversations, ident: named}, next_id=project.next_id + 1
+    ), ident
 
 
 def remove_conversation(project: Project, ident: str) -> Project:
@@ -47,7 +54,9 @@ def change_conversation(project: Project, ident: str, **changes: Any) -> Project
 
 
 def change_side(project: Project, ident: str, side: int, /, **changes: Any) -> Project:
-    """Set fields of one of the two: name, audio, channel, project, take, motion, rates. Raises EditError, also for values out of range."""
+    """Set fields of one of the two: name, audio, channel, project, take, motion, rates. Raises EditError,
+    also for values out of range.
+    """
     of = _conversation(project, ident)
     if "name" in changes:
         changes["name"] = _clean(str(changes["name"]))
@@ -55,16 +64,20 @@ def change_side(project: Project, ident: str, side: int, /, **changes: Any) -> P
 
 
 def set_rates(project: Project, ident: str, side: int, **rates: float) -> Project:
-    """Set how often one of the two moves with what is said: clause, response, hesitation, 0..1. Raises EditError out of that range."""
+    """Set how often one of the two moves with what is said: clause, response, hesitation, 0..1. Raises
+    EditError out of that range.
+    """
     of = _conversation(project, ident).sides[side]
     return _with_side(project, ident, side, msgspec.structs.replace(of, rates=_valid(of.rates, rates)))
 
 
-def set_word_lists(project: Project, ident: str, responses: Iterable[str], hesitations: Iterable[str]) -> Project:
+def set_word_lists(
+    project: Project, ident: str, responses: Iterable[str], hesitations: Iterable[str]
+) -> Project:
     """Set which words make a segment a response or a hesitation, and label the segments anew by them.
 
-    What was labelled otherwise than the lists before would, was labelled by hand, and stays as it is; so does what has no words. Only
-    whole segments are labelled: none is parted or joined.
+    What was labelled otherwise than the lists before would, was labelled by hand, and stays as it is; so does
+    what has no words. Only whole segments are labelled: none is parted or joined.
     """
     of = _conversation(project, ident)
     lists = _listed(responses), _listed(hesitations)
@@ -80,8 +93,9 @@ def set_word_lists(project: Project, ident: str, responses: Iterable[str], hesit
 
 
 def kind_of(text: str, responses: Collection[str], hesitations: Collection[str]) -> Sound:
-    """Return what words are by two lists: a hesitation or a response where nothing else is said, else a clause. Said of both, it is a
-    response: the partner is answered."""
+    """Return what words are by two lists: a hesitation or a response where nothing else is said, else a
+    clause. Said of both, it is a response: the partner is answered.
+    """
     words = spoken_words(text)
     answers, pauses = ({spoken_words(x) for x in some} - {()} for some in (responses, hesitations))
     if not words or not _made_of(words, answers | pauses):
@@ -90,7 +104,9 @@ def kind_of(text: str, responses: Collection[str], hesitations: Collection[str])
 
 
 def spoken_words(text: str) -> tuple[str, ...]:
-    """Return words as they are compared: without case, hyphens and punctuation; "%" of "%hesitation" stays."""
+    """Return words as they are compared: without case, hyphens and punctuation; "%" of "%hesitation"
+    stays.
+    """
     return tuple(x for x in (re.sub(r"[^\w%']", "", w) for w in re.split(r"[\s\-‐‑]+", text.casefold())) if x)
 
 
@@ -107,7 +123,8 @@ def _listed(words: Iterable[str]) -> tuple[str, ...]:
     return tuple(dict.fromkeys(x for x in map(_clean, words) if x))
 
 
-# --- segments --------------------------------------------------------------------------------------------------------
+# --- segments
+# --------------------------------------------------------------------------------------------------
 
 
 def move_segment(project: Project, ident: str, side: int, at: int, by: float) -> Project:
@@ -120,11 +137,19 @@ def move_segment(project: Project, ident: str, side: int, at: int, by: float) ->
     return _set(project, ident, side, at, msgspec.structs.replace(of, start=start, end=end, peak=peak))
 
 
-def resize_segment(project: Project, ident: str, side: int, at: int, start: float | None = None, end: float | None = None) -> Project:
-    """Move an end of a segment, or both: to its neighbours at most, and never nearer to the other end than a segment lasts at least."""
+def resize_segment(
+    project: Project, ident: str, side: int, at: int, start: float | None = None, end: float | None = None
+) -> Project:
+    """Move an end of a segment, or both: to its neighbours at most, and never nearer to the other end than a
+    segment lasts at least.
+    """
     of, low, high = _room(project, ident, side, at)
     least = min(SHORTEST, of.end - of.start)  # one that was read may be shorter
-    first = of.start if start is None else min(max(low, round(start, _DIGITS)), (of.end if end is None else high) - least)
+    first = (
+        of.start
+        if start is None
+        else min(max(low, round(start, _DIGITS)), (of.end if end is None else high) - least)
+    )
     last = of.end if end is None else max(min(high, round(end, _DIGITS)), first + least)
     peak = None if of.peak is None else min(max(first, of.peak), last)
     return _set(project, ident, side, at, msgspec.structs.replace(of, start=first, end=last, peak=peak))
@@ -141,16 +166,24 @@ def relabel_segments(project: Project, ident: str, places: Collection[Place], ki
     """Say what segments are. Raises EditError for idle: what lies between segments is."""
     _spoken(kind)
     for side, at in places:
-        project = _set(project, ident, side, at, msgspec.structs.replace(_segment(project, ident, side, at), kind=kind))
+        project = _set(
+            project, ident, side, at, msgspec.structs.replace(_segment(project, ident, side, at), kind=kind)
+        )
     return project
 
 
-def split_segment(project: Project, ident: str, side: int, at: int, seconds: float, peak: float | None = None) -> Project:
-    """Part a segment in two, its words by their middles. peak: of the part the segment's own peak is not in. Raises EditError where a
-    part would be too short."""
+def split_segment(
+    project: Project, ident: str, side: int, at: int, seconds: float, peak: float | None = None
+) -> Project:
+    """Part a segment in two, its words by their middles. peak: of the part the segment's own peak is not in.
+    Raises EditError where a part would be too short.
+    """
     of, seconds = _segment(project, ident, side, at), round(seconds, _DIGITS)
     if not of.start + SHORTEST <= seconds <= of.end - SHORTEST:
-        raise EditError(f"a segment can be split between {of.start + SHORTEST:.2f} and {of.end - SHORTEST:.2f} s, inside it")
+        raise EditError(
+            f"a segment can be split between {of.start + SHORTEST:.2f} and {of.end - SHORTEST:.2f} s, "
+            "inside it"
+        )
     words = _conversation(project, ident).sides[side].words
     parts = []
     for start, end, first in ((of.start, seconds, True), (seconds, of.end, False)):
@@ -162,8 +195,10 @@ def split_segment(project: Project, ident: str, side: int, at: int, seconds: flo
 
 
 def merge_segments(project: Project, ident: str, side: int, first: int, last: int) -> Project:
-    """Make one of the segments from the first to the last, of what is between them, too. It is a clause if one of them was, else what
-    the first was; its peak is the first clause's, else the first there is. Raises EditError for fewer than two."""
+    """Make one of the segments from the first to the last, of what is between them, too. It is a clause if
+    one of them was, else what the first was; its peak is the first clause's, else the first there is. Raises
+    EditError for fewer than two.
+    """
     some = _conversation(project, ident).sides[side].segments[max(0, first) : last + 1]
     if first < 0 or len(some) < 2 or len(some) != last - first + 1:
         raise EditError("there is no segment after this one to merge it with")
@@ -177,8 +212,9 @@ def merge_segments(project: Project, ident: str, side: int, first: int, last: in
 def add_segment(
     project: Project, ident: str, side: int, kind: Sound, start: float, end: float, peak: float | None = None
 ) -> tuple[Project, int]:
-    """Add a segment where there is none, as far as the gap round its start reaches; its words are those that lie in it. Return the
-    project and its place. Raises EditError where there is no room."""
+    """Add a segment where there is none, as far as the gap round its start reaches; its words are those that
+    lie in it. Return the project and its place. Raises EditError where there is no room.
+    """
     _spoken(kind)
     of = _conversation(project, ident)
     segments, start, end = of.sides[side].segments, *sorted((round(start, _DIGITS), round(end, _DIGITS)))
@@ -203,7 +239,9 @@ def remove_segments(project: Project, ident: str, places: Collection[Place]) -> 
 
 
 def gap_at(conversation: Conversation, side: int, seconds: float) -> tuple[float, float] | None:
-    """Return from when to when nothing is segmented round a time; None where a segment is, and out of the conversation."""
+    """Return from when to when nothing is segmented round a time; None where a segment is, and out of the
+    conversation.
+    """
     low, high = 0.0, conversation.length
     for s in conversation.sides[side].segments:
         if s.start < seconds < s.end:
@@ -216,7 +254,8 @@ def gap_at(conversation: Conversation, side: int, seconds: float) -> tuple[float
     return (low, high) if low <= seconds <= high else None
 
 
-# --- what they share -------------------------------------------------------------------------------------------------
+# --- what they share
+# --------------------------------------------------------------------------------------------------
 
 
 def _conversation(project: Project, ident: str) -> Conversation:
@@ -257,10 +296,15 @@ def _clean(words: str) -> str:
 
 
 def _valid(before: Any, changes: dict[str, Any], **unchecked: Any) -> Any:
-    """Return a value with fields set, each as its type allows. Raises EditError. unchecked: fields that are known to be right."""
+    """Return a value with fields set, each as its type allows. Raises EditError. unchecked: fields that are
+    known to be right.
+    """
     types = {f.name: f.type for f in msgspec.structs.fields(type(before))}
     try:
-        made = {name: msgspec.convert(value, types[name], from_attributes=False) for name, value in changes.items()}
+        made = {
+            name: msgspec.convert(value, types[name], from_attributes=False)
+            for name, value in changes.items()
+        }
         return msgspec.structs.replace(before, **made, **unchecked)
     except KeyError as error:
         raise EditError(f"there is nothing called {error} to set") from None
@@ -284,7 +328,9 @@ def _set(project: Project, ident: str, side: int, at: int, segment: Segment) -> 
     return _replaced(project, ident, side, at, at + 1, (segment,))
 
 
-def _replaced(project: Project, ident: str, side: int, first: int, end: int, segments: Sequence[Segment]) -> Project:
+def _replaced(
+    project: Project, ident: str, side: int, first: int, end: int, segments: Sequence[Segment]
+) -> Project:
     """Put segments in the place of those from the first to before the end."""
     of = _conversation(project, ident).sides[side]
     try:
@@ -294,4 +340,7 @@ def _replaced(project: Project, ident: str, side: int, first: int, end: int, seg
     return _with_side(project, ident, side, after)
 
 
-PAPER = {"female": Rates(), "male": Rates(clause=0.62, response=0.53, hesitation=0.35)}  # the two actors of Yang et al., table 1
+PAPER = {
+    "female": Rates(),
+    "male": Rates(clause=0.62, response=0.53, hesitation=0.35),
+}  # the two actors of Yang et al., table 1

@@ -1,4 +1,6 @@
-"""What differs between two states of a project, as lines to read: clips, actions, stances and settings added, removed, changed."""
+"""What differs between two states of a project, as lines to read: clips, actions, stances and settings added,
+removed, changed.
+"""
 
 from __future__ import annotations
 
@@ -10,13 +12,35 @@ import msgspec
 
 from metagraph.graph.model import LAYERS, Project
 
-_NAMED = {"clips": "Clip", "lines": "Line", "points": "Point", "performances": "Performance", "conversations": "Conversation"}
-_REST = ("name", "character", "base", "roles", "parts", "markov", "settings", "life", "face", "tiers", "labels", "joint_maps", "skeleton")
+_NAMED = {
+    "clips": "Clip",
+    "lines": "Line",
+    "points": "Point",
+    "performances": "Performance",
+    "conversations": "Conversation",
+}
+_REST = (
+    "name",
+    "character",
+    "base",
+    "roles",
+    "parts",
+    "markov",
+    "settings",
+    "life",
+    "face",
+    "tiers",
+    "labels",
+    "joint_maps",
+    "skeleton",
+)
 _UNSEEN = ("id", "digest")  # of no use to a reader
 
 
 def differences(before: Project, after: Project) -> list[str]:
-    """Return what was done to `before` to make it `after`, one line a thing, in the order of the project file."""
+    """Return what was done to `before` to make it `after`, one line a thing, in the order of the project
+    file.
+    """
     if before is after:
         return []
     lines: list[str] = []
@@ -31,7 +55,10 @@ def differences(before: Project, after: Project) -> list[str]:
         lines += _keyed("Stance", old.stances, new.stances, f" ({layer})")
         lines += _keyed("", old.actions, new.actions, f" ({layer})")
         if old.start != new.start:
-            names = [f"'{g.stances[g.start].name}'" if g.start is not None and g.start in g.stances else "none" for g in (old, new)]
+            names = [
+                f"'{g.stances[g.start].name}'" if g.start is not None and g.start in g.stances else "none"
+                for g in (old, new)
+            ]
             lines.append(f"First stance of {layer}: {names[0]} → {names[1]}")
         if old.weights != new.weights:
             lines.append(f"Weights of {layer} changed{_what(old.weights, new.weights)}")
@@ -53,7 +80,10 @@ def _keyed(word: str, before: Mapping[str, Any], after: Mapping[str, Any], where
         if old is new or old == new:
             continue
         some: Any = old if new is None else new
-        title = f"{word or ('Stance loop' if some.kind == 'stance' else some.kind.capitalize())} '{_title(some, ident)}'{where}"
+        title = (
+            f"{word or ('Stance loop' if some.kind == 'stance' else some.kind.capitalize())} "
+            f"'{_title(some, ident)}'{where}"
+        )
         yield f"{title} {_fate(old, new)}{_what(old, new) if old is not None and new is not None else ''}"
 
 

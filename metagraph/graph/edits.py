@@ -1,6 +1,8 @@
-"""Edits: pure functions `Project -> Project`. Every way of changing a project, from a drop to a script, ends here.
+"""Edits: pure functions `Project -> Project`. Every way of changing a project, from a drop to a script, ends
+here.
 
-An edit that cannot be done raises EditError, whose words are meant for the user; the project is then unchanged.
+An edit that cannot be done raises EditError, whose words are meant for the user; the project is then
+unchanged.
 """
 
 from __future__ import annotations
@@ -42,7 +44,9 @@ class EditError(ValueError):
 
 
 def limb_of(name: str) -> Limb:
-    """Guess the limb from a clip's name: `_lf`, `_rt`, `_bt`, `Left`, `Right` and their like; both when it does not say."""
+    """Guess the limb from a clip's name: `_lf`, `_rt`, `_bt`, `Left`, `Right` and their like; both when it
+    does not say.
+    """
     words = re.sub(r"(?<=[a-z0-9])(?=[A-Z])", "_", name).lower()
     for limb, pattern in _LIMB_WORDS:
         if re.search(rf"(?:^|[^a-z]){pattern}(?:[^a-z]|$)", words):
@@ -50,11 +54,13 @@ def limb_of(name: str) -> Limb:
     return "both"
 
 
-# --- clips -----------------------------------------------------------------------------------------------------------
+# --- clips
+# --------------------------------------------------------------------------------------------------
 
 
 def add_clips(project: Project, loaded: Iterable[tuple[str, int, str, Clip]]) -> Project:
-    """Add clips given as (path, take, digest, clip); one that is already there (same path and take) is refreshed in place.
+    """Add clips given as (path, take, digest, clip); one that is already there (same path and take) is
+    refreshed in place.
 
     The first clip's skeleton becomes the project's.
     """
@@ -67,7 +73,14 @@ def add_clips(project: Project, loaded: Iterable[tuple[str, int, str, Clip]]) ->
         before = known.get((path, take))
         entry = before or ClipEntry(f"c{next_id}", clip.name, path, take)
         next_id += 0 if before else 1
-        clips[entry.id] = replace(entry, digest=digest, frames=clip.frames, fps=clip.fps, brought_from=clip.brought_from, motion=clip)
+        clips[entry.id] = replace(
+            entry,
+            digest=digest,
+            frames=clip.frames,
+            fps=clip.fps,
+            brought_from=clip.brought_from,
+            motion=clip,
+        )
     return replace(project, clips=clips, skeleton=skeleton, next_id=next_id)
 
 
@@ -84,7 +97,9 @@ def rename_clip(project: Project, clip: str, name: str) -> Project:
 
 
 def remove_clips(project: Project, clips: Collection[str]) -> Project:
-    """Remove clips and the actions and states that use them; a base pose taken from one falls back to the rest pose."""
+    """Remove clips and the actions and states that use them; a base pose taken from one falls back to the
+    rest pose.
+    """
     gone = [a.id for clip in clips for a in project.uses.get(clip, ())]
     project = remove_actions(project, gone)
     left = {i: e for i, e in project.clips.items() if i not in clips}
@@ -93,7 +108,8 @@ def remove_clips(project: Project, clips: Collection[str]) -> Project:
     return replace(project, clips=left, base=base, skeleton=project.skeleton if left else None, manual=manual)
 
 
-# --- stances ---------------------------------------------------------------------------------------------------------
+# --- stances
+# --------------------------------------------------------------------------------------------------
 
 
 def add_stance(project: Project, layer: Layer, name: str, clips: Sequence[str] = ()) -> Project:
@@ -129,11 +145,21 @@ def set_start(project: Project, stance: str) -> Project:
     return project.with_graph(project.graphs[found.layer].but(start=stance))
 
 
-# --- actions ---------------------------------------------------------------------------------------------------------
+# --- actions
+# --------------------------------------------------------------------------------------------------
 
 
-def refusal(project: Project, clips: Sequence[str], layer: Layer, kind: Kind, stance: str | None, end: str | None = None) -> str | None:
-    """Return in words why clips cannot be placed so, or None when they can. `stance` None asks for a new stance."""
+def refusal(
+    project: Project,
+    clips: Sequence[str],
+    layer: Layer,
+    kind: Kind,
+    stance: str | None,
+    end: str | None = None,
+) -> str | None:
+    """Return in words why clips cannot be placed so, or None when they can. `stance` None asks for a new
+    stance.
+    """
     if not clips:
         return "nothing to place"
     missing = [c for c in clips if c not in project.clips]
@@ -141,7 +167,11 @@ def refusal(project: Project, clips: Sequence[str], layer: Layer, kind: Kind, st
         return "a clip that is not in this project"
     for clip in clips:
         entry = project.clips[clip]
-        if entry.motion is not None and project.skeleton is not None and entry.motion.skeleton != project.skeleton:
+        if (
+            entry.motion is not None
+            and project.skeleton is not None
+            and entry.motion.skeleton != project.skeleton
+        ):
             return f"'{entry.name}' has another skeleton than this project"
     graph = project.graphs[layer]
     if kind == "stance":
@@ -156,11 +186,18 @@ def refusal(project: Project, clips: Sequence[str], layer: Layer, kind: Kind, st
     return None
 
 
-def place(project: Project, clips: Sequence[str], layer: Layer, kind: Kind, stance: str | None, end_stance: str | None = None) -> Project:
+def place(
+    project: Project,
+    clips: Sequence[str],
+    layer: Layer,
+    kind: Kind,
+    stance: str | None,
+    end_stance: str | None = None,
+) -> Project:
     """Drop clips on a meta node. Dropped on "stance" with no stance given, the first clip makes a new one.
 
-    The first loop of the whole project also gives the base pose, unless one was chosen: offsets taken against an
-    arms-out rest pose are what twists a character. Raises EditError with the words of `refusal`.
+    The first loop of the whole project also gives the base pose, unless one was chosen: offsets taken against
+    an arms-out rest pose are what twists a character. Raises EditError with the words of `refusal`.
     """
     why = refusal(project, clips, layer, kind, stance, end_stance)
     if why is not None:
@@ -186,13 +223,19 @@ def place(project: Project, clips: Sequence[str], layer: Layer, kind: Kind, stan
             timing=default_timing(entry, kind),
             limb=limb_of(entry.name) if layer == "arms" and kind in ("gesture", "fidget") else "both",
         )
-    first = kind == "stance" and project.base.clip is None and not any(k == "stance" for g in project.graphs.values() for _, k in g.index)
+    first = (
+        kind == "stance"
+        and project.base.clip is None
+        and not any(k == "stance" for g in project.graphs.values() for _, k in g.index)
+    )
     base = BasePose(clips[0], 0) if first else project.base
     return project.with_graph(graph.with_actions(changes), next_id=next_id, base=base)
 
 
 def default_timing(entry: ClipEntry, kind: Kind) -> Timing:
-    """Return the timing a clip gets when it is dropped: blends of at most a quarter of it, a blended seam where a loop is open."""
+    """Return the timing a clip gets when it is dropped: blends of at most a quarter of it, a blended seam
+    where a loop is open.
+    """
     quarter = round(entry.duration / 4, 3)
     if kind == "stance":
         open_by = loop_error(entry.motion) if entry.motion is not None and entry.frames > 1 else 0.0
@@ -228,7 +271,9 @@ def update_each(project: Project, changes: Mapping[str, Mapping[str, Any]]) -> P
     return project if graphs == project.graphs else replace(project, graphs=graphs)
 
 
-def move_actions(project: Project, actions: Collection[str], kind: Kind, stance: str, end_stance: str | None = None) -> Project:
+def move_actions(
+    project: Project, actions: Collection[str], kind: Kind, stance: str, end_stance: str | None = None
+) -> Project:
     """Put actions on another meta node or stance, also across layers, keeping their settings."""
     target = _stance(project, stance)
     moved = [a for i in actions if (a := project.action(i)) is not None]
@@ -242,7 +287,12 @@ def move_actions(project: Project, actions: Collection[str], kind: Kind, stance:
         if (kind == "stance") != (action.kind == "stance"):
             timing = default_timing(project.clips[action.clip], kind)
         changes[action.id] = replace(
-            action, kind=kind, layer=target.layer, stance=stance, end_stance=end_stance if kind == "transition" else None, timing=timing
+            action,
+            kind=kind,
+            layer=target.layer,
+            stance=stance,
+            end_stance=end_stance if kind == "transition" else None,
+            timing=timing,
         )
     return project.with_graph(project.graphs[target.layer].with_actions(changes))
 
@@ -260,7 +310,9 @@ def to_stance(project: Project, actions: Collection[str], stance: str) -> Projec
 
 
 def set_ends(project: Project, actions: Collection[str], end_stance: str) -> Project:
-    """Let transitions end in a stance; other kinds stay as they are. Raises EditError when one would end where it starts."""
+    """Let transitions end in a stance; other kinds stay as they are. Raises EditError when one would end
+    where it starts.
+    """
     groups: dict[str, list[str]] = {}
     for ident in actions:
         action = project.action(ident)
@@ -281,7 +333,8 @@ def remove_actions(project: Project, actions: Collection[str]) -> Project:
     return project if graphs == project.graphs else replace(project, graphs=graphs)
 
 
-# --- the rest --------------------------------------------------------------------------------------------------------
+# --- the rest
+# --------------------------------------------------------------------------------------------------
 
 
 def set_base(project: Project, clip: str | None, frame: int = 0) -> Project:

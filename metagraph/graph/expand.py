@@ -1,7 +1,7 @@
 """The ordinary state machine a meta-graph stands for: what an animator would have had to draw by hand.
 
-A state is an action. An action that ends in a stance connects to every action that starts in it: to its loops, its
-gestures and fidgets, and the transitions that leave it.
+A state is an action. An action that ends in a stance connects to every action that starts in it: to its
+loops, its gestures and fidgets, and the transitions that leave it.
 """
 
 from __future__ import annotations
@@ -15,7 +15,9 @@ from metagraph.graph.model import LAYERS, Action, Layer, MetaGraph, Project
 
 @dataclass(frozen=True, slots=True)
 class Connection:
-    """source, target: action ids. leave: clip seconds of the source at which it may be left, None for at any time. blend: seconds."""
+    """source, target: action ids. leave: clip seconds of the source at which it may be left, None for at any
+    time. blend: seconds.
+    """
 
     source: str
     target: str
@@ -38,7 +40,9 @@ def ends_in(action: Action) -> str | None:
 
 
 def size(project: Project, layer: Layer | None = None, stance: str | None = None) -> Size:
-    """Count states and connections without listing them; for one layer, or for what starts or ends in one stance."""
+    """Count states and connections without listing them; for one layer, or for what starts or ends in one
+    stance.
+    """
     clips: set[str] = set()
     states = connections = 0
     for graph in (project.graphs[layer],) if layer else tuple(project.graphs[x] for x in LAYERS):
@@ -53,7 +57,11 @@ def size(project: Project, layer: Layer | None = None, stance: str | None = None
                 clips.update(a.clip for a in bucket)
             states += len(bucket)
             leaving[start] += len(bucket)
-            ends = Counter(e for a in bucket if (e := ends_in(a)) is not None) if kind == "transition" else Counter({start: len(bucket)})
+            ends = (
+                Counter(e for a in bucket if (e := ends_in(a)) is not None)
+                if kind == "transition"
+                else Counter({start: len(bucket)})
+            )
             for end, count in ends.items():
                 if end in graph.stances:
                     arriving[end] += count
@@ -65,13 +73,21 @@ def size(project: Project, layer: Layer | None = None, stance: str | None = None
 
 
 def connections(project: Project, graph: MetaGraph) -> Iterator[Connection]:
-    """Yield every connection of a layer: sources in the order they were placed, each with its targets in that order."""
+    """Yield every connection of a layer: sources in the order they were placed, each with its targets in that
+    order.
+    """
     for source in graph.actions.values():
         end = ends_in(source)
         if end is None or end not in graph.stances:
             continue
         _, last = project.span(source)
-        leave = None if source.kind == "stance" else source.timing.earliest_exit if source.timing.earliest_exit is not None else last
+        leave = (
+            None
+            if source.kind == "stance"
+            else source.timing.earliest_exit
+            if source.timing.earliest_exit is not None
+            else last
+        )
         for kind in ("stance", "gesture", "fidget", "transition"):
             for target in graph.of(end, kind):
                 if target.id != source.id:
@@ -80,7 +96,8 @@ def connections(project: Project, graph: MetaGraph) -> Iterator[Connection]:
 
 
 def chain(graph: MetaGraph, start: str, goal: str) -> tuple[str, ...] | None:
-    """Return the stances after `start` on the shortest way of transitions to `goal`; () if already there, None if there is no way.
+    """Return the stances after `start` on the shortest way of transitions to `goal`; () if already there,
+    None if there is no way.
 
     Among equally short ways the one whose transitions were placed first is taken.
     """

@@ -1,9 +1,9 @@
 """Finding the face: which joints, morph targets or frames of clips move eyes, lids and mouth.
 
-A face is worked by channels. Joints take part in a channel with the turn and the shift they have where it is at 1:
-`upper_lid_left` ... `lower_lid_right` (1 is shut), `blink` (what else moves in a blink), `jaw_open`, `viseme_PP` ... `viseme_U`.
-Morph targets have these and `blink_left`, `wide_left`, `look_up_left` ... `look_right_right` (direction, then eye).
-The project's `Face` settings correct what was found.
+A face is worked by channels. Joints take part in a channel with the turn and the shift they have where it is
+at 1: `upper_lid_left` ... `lower_lid_right` (1 is shut), `blink` (what else moves in a blink), `jaw_open`,
+`viseme_PP` ... `viseme_U`. Morph targets have these and `blink_left`, `wide_left`, `look_up_left` ...
+`look_right_right` (direction, then eye). The project's `Face` settings correct what was found.
 """
 
 from __future__ import annotations
@@ -40,7 +40,8 @@ MORPH_BOUND = (
 )  # fmt: skip
 POSE_BOUND = ("blink", *MOUTH)
 
-# Where nothing in the project shows it, lids turn about the eye and the jaw about its joint; degrees about the axis to the left.
+# Where nothing in the project shows it, lids turn about the eye and the jaw about its joint; degrees about
+# the axis to the left.
 UPPER_LID_SHUT, LOWER_LID_SHUT = 40.0, -15.0
 JAW_OPEN = 16.0
 # The jaw's part of each shape, of the widest opening. An open "ah" is 10 degrees.
@@ -66,11 +67,12 @@ class Eye:
 class FaceRig:
     """What moves a face.
 
-    joints: those that shapes move `[F]`. turns: rotation vectors `[C, F, 3]` in the joints' own space, radians, multiplied on the
-    right; shifts `[C, F, 3]`: metres in the parents' space; both at 1, in the order of `CHANNELS`. follows: how much each of
-    LIDS shuts for an eye that looks down by a radian `[4]`, 0 for one that no joint moves. shut_by: `[4, 4]`, what a
-    lid's own rotation `[4]` xyzw (relative to rest, real part positive) says about how far it is shut already.
-    lid_joints: the joint that stands for each lid `[4]`, -1 for none. morphs: channel -> (morph target, weight at 1).
+    joints: those that shapes move `[F]`. turns: rotation vectors `[C, F, 3]` in the joints' own space,
+    radians, multiplied on the right; shifts `[C, F, 3]`: metres in the parents' space; both at 1, in the
+    order of `CHANNELS`. follows: how much each of LIDS shuts for an eye that looks down by a radian `[4]`, 0
+    for one that no joint moves. shut_by: `[4, 4]`, what a lid's own rotation `[4]` xyzw (relative to rest,
+    real part positive) says about how far it is shut already. lid_joints: the joint that stands for each lid
+    `[4]`, -1 for none. morphs: channel -> (morph target, weight at 1).
     """
 
     eyes: tuple[Eye, ...]
@@ -98,7 +100,8 @@ class FaceRig:
 
 
 def axes_of(skeleton: Skeleton, roles: Mapping[str, int], positions: Array) -> Array:
-    """Return the directions to the left, up and ahead `[3, 3]` of a character whose joints are at `positions [J, 3]`.
+    """Return the directions to the left, up and ahead `[3, 3]` of a character whose joints are at `positions
+    [J, 3]`.
 
     From its eyes, hips or shoulders; a character without any looks along +Z.
     """
@@ -115,8 +118,8 @@ def axes_of(skeleton: Skeleton, roles: Mapping[str, int], positions: Array) -> A
 def find_face(project: Project, morphs: Sequence[str] = ()) -> FaceRig:
     """Return the face of a project's character; one without a face has an empty rig.
 
-    morphs: names of the character's morph targets beside those its clips move and the project remembers (`Face.morphs`).
-    What was found is kept for as long as nothing it depends on changes.
+    morphs: names of the character's morph targets beside those its clips move and the project remembers
+    (`Face.morphs`). What was found is kept for as long as nothing it depends on changes.
     """
     parts: tuple[Any, ...] = (project.skeleton, project.roles, project.parts, project.face, project.clips)
     key = (*map(id, parts), tuple(morphs))
@@ -128,7 +131,9 @@ def find_face(project: Project, morphs: Sequence[str] = ()) -> FaceRig:
     return known[1]
 
 
-_found: OrderedDict[tuple[Any, ...], tuple[tuple[Any, ...], FaceRig]] = OrderedDict()  # with what the ids in the key belong to
+_found: OrderedDict[tuple[Any, ...], tuple[tuple[Any, ...], FaceRig]] = (
+    OrderedDict()
+)  # with what the ids in the key belong to
 
 
 def morph_names(project: Project, morphs: Sequence[str] = ()) -> tuple[str, ...]:
@@ -141,7 +146,9 @@ def morph_names(project: Project, morphs: Sequence[str] = ()) -> tuple[str, ...]
 
 
 def with_morphs(project: Project, names: Iterable[str]) -> Project:
-    """Return the project remembering the morph targets of its character; the same one where it knows them already."""
+    """Return the project remembering the morph targets of its character; the same one where it knows them
+    already.
+    """
     found = tuple(names)
     if found == project.face.morphs:
         return project
@@ -165,7 +172,9 @@ def _find(project: Project, morphs: Sequence[str]) -> FaceRig:
         shapes |= reader.mouth()
     shapes |= reader.shown({c: p for c, p in project.face.poses.items() if c in POSE_BOUND})
     off = {c for c, name in bound.items() if not name}
-    return _rig(eyes, {c: s for c, s in shapes.items() if c not in off}, reader.lid_joints(off), targets, skeleton)
+    return _rig(
+        eyes, {c: s for c, s in shapes.items() if c not in off}, reader.lid_joints(off), targets, skeleton
+    )
 
 
 Shape = dict[int, tuple[Array, Array]]  # joint -> turn [3], shift [3]
@@ -183,7 +192,9 @@ class _Reader:
         self.bound = project.face.channels
 
     def joint(self, channel: str, role: str) -> int | None:
-        """Return the joint the user bound to a channel, else the one found in a role; None for a channel that is off."""
+        """Return the joint the user bound to a channel, else the one found in a role; None for a channel that
+        is off.
+        """
         name = self.bound.get(channel)
         if name is None:
             return self.roles.get(role)
@@ -194,10 +205,14 @@ class _Reader:
 
     def eyes(self) -> tuple[Eye, ...]:
         found = [(side, self.joint(f"eye_{side}", f"{side}_eye")) for side in SIDES]
-        return tuple(Eye(joint, side, self.local(joint, self.axes)) for side, joint in found if joint is not None)
+        return tuple(
+            Eye(joint, side, self.local(joint, self.axes)) for side, joint in found if joint is not None
+        )
 
     def lid_groups(self, helpers: bool = False) -> dict[str, list[int]]:
-        """Return the joints along each of LIDS, the one that stands for it first; helpers: also those that only serve the skin."""
+        """Return the joints along each of LIDS, the one that stands for it first; helpers: also those that
+        only serve the skin.
+        """
         out: dict[str, list[int]] = {}
         below = set(self.skeleton.descendants(self.roles["head"])) if "head" in self.roles else set()
         for channel in LIDS:
@@ -210,7 +225,13 @@ class _Reader:
                 words = take_apart(self.skeleton.names[j])
                 low = bool({"low", "lower", "bottom", "dwn", "down"} & set(words.words))
                 helper = bool({"adj", "adjust", "ctrl", "end"} & set(words.words))
-                if "lid" in words.joined and words.side == side and low == (level == "lower") and j != main and (helpers or not helper):
+                if (
+                    "lid" in words.joined
+                    and words.side == side
+                    and low == (level == "lower")
+                    and j != main
+                    and (helpers or not helper)
+                ):
                     group.append(j)
             out[channel] = group
         return out
@@ -260,7 +281,9 @@ class _Reader:
         return {**({} if any(c.startswith("viseme") for c in shown) else out), **shown}
 
     def shown(self, poses: Mapping[str, FacePose]) -> dict[str, Shape]:
-        """Return the shapes that frames of clips show. A blink is told apart by lids; what else moves in it is its own channel."""
+        """Return the shapes that frames of clips show. A blink is told apart by lids; what else moves in it
+        is its own channel.
+        """
         out: dict[str, Shape] = {}
         groups = self.lid_groups(helpers=True)
         for channel, pose in poses.items():
@@ -285,13 +308,19 @@ class _Reader:
             return {}
         joints = np.flatnonzero(self.face)
         neutral = min(pose.neutral, motion.frames - 1)
-        turns = rotation.log(rotation.multiply(rotation.conjugate(motion.rotations[neutral, joints]), motion.rotations[:, joints]))
+        turns = rotation.log(
+            rotation.multiply(
+                rotation.conjugate(motion.rotations[neutral, joints]), motion.rotations[:, joints]
+            )
+        )
         shifts = np.zeros_like(turns)
         for n, joint in enumerate(motion.translated):
             place = np.flatnonzero(joints == joint)
             if len(place):
                 shifts[:, place[0]] = motion.translations[:, n] - motion.translations[neutral, n]
-        size = np.square(turns).sum((1, 2)) + np.square(shifts / 0.02).sum((1, 2))  # 2 cm tell as much as a radian
+        size = np.square(turns).sum((1, 2)) + np.square(shifts / 0.02).sum(
+            (1, 2)
+        )  # 2 cm tell as much as a radian
         frame = int(size.argmax()) if pose.frame is None else min(pose.frame, motion.frames - 1)
         turn, shift = turns[frame].astype(float), shifts[frame].astype(float)
         moved = (np.linalg.norm(turn, axis=1) > _TURNED) | (np.linalg.norm(shift, axis=1) > _MOVED)
@@ -311,7 +340,9 @@ def _rig(
     for n, channel in enumerate(CHANNELS):
         for joint, (turn, shift) in shapes.get(channel, {}).items():
             turns[n, place[joint]], shifts[n, place[joint]] = turn, shift
-    main = np.array([j if c in shapes and j in shapes[c] else -1 for c, j in zip(LIDS, lid_joints, strict=True)])
+    main = np.array(
+        [j if c in shapes and j in shapes[c] else -1 for c, j in zip(LIDS, lid_joints, strict=True)]
+    )
     follows, shut_by = np.zeros(4), np.zeros((4, 4))
     for n, joint in enumerate(main.tolist()):
         if joint < 0 or skeleton is None:
@@ -322,7 +353,8 @@ def _rig(
         follows[n] = UPPER_FOLLOWS if upper else -LOWER_FOLLOWS
         follows[n] /= max(angle, np.radians(10.0)) if angle > np.radians(1.0) else np.radians(UPPER_LID_SHUT)
         if angle > np.radians(1.0):
-            # rest^-1 q is nearly 1 + half the turn, so its vector part along the shutting turn, doubled, is how far.
+            # rest^-1 q is nearly 1 + half the turn, so its vector part along the shutting turn, doubled, is
+            # how far.
             inverse = rotation.conjugate(skeleton.rest_rotations[joint])
             basis = rotation.multiply(inverse, np.eye(4))[:, :3]
             shut_by[n] = 2 * basis @ turn / angle**2

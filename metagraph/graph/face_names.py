@@ -1,4 +1,6 @@
-"""How faces name things: morph targets after ARKit, VRM, Oculus and others; clips that show blinks and mouth shapes."""
+"""How faces name things: morph targets after ARKit, VRM, Oculus and others; clips that show blinks and mouth
+shapes.
+"""
 
 from __future__ import annotations
 
@@ -9,15 +11,35 @@ from collections.abc import Iterable, Mapping
 from metagraph.graph.model import Project
 
 # The 15 mouth shapes most rigs and lip-sync tools share (Oculus), silence first.
-VISEMES: tuple[str, ...] = ("sil", "PP", "FF", "TH", "DD", "kk", "CH", "SS", "nn", "RR", "aa", "E", "I", "O", "U")
+VISEMES: tuple[str, ...] = (
+    "sil",
+    "PP",
+    "FF",
+    "TH",
+    "DD",
+    "kk",
+    "CH",
+    "SS",
+    "nn",
+    "RR",
+    "aa",
+    "E",
+    "I",
+    "O",
+    "U",
+)
 Weights = tuple[tuple[str, float], ...]
 
 _SIDES = {"left": ("left", "l"), "right": ("right", "r")}
-_PREFIX = re.compile(r"^(blendshapes?|blendshape\d+|morph(target)?s?|shapes?|bs|expressions?|exp|face|head|vrc|mth|fcl|[a-z]?\d+)")
+_PREFIX = re.compile(
+    r"^(blendshapes?|blendshape\d+|morph(target)?s?|shapes?|bs|expressions?|exp|face|head|vrc|mth|fcl|[a-z]?\d+)"
+)
 
 
 def plain(name: str) -> str:
-    """Return a name without what differs from tool to tool: case, separators, what stands before a dot ("eyeBlink.L" is whole)."""
+    """Return a name without what differs from tool to tool: case, separators, what stands before a dot
+    ("eyeBlink.L" is whole).
+    """
     before, _, last = name.lower().rpartition(".")
     if last in ("l", "r", "left", "right") or last.isdigit():
         last = before.rsplit(".", 1)[-1] + last
@@ -51,15 +73,44 @@ _ARKIT: dict[str, tuple[tuple[str, float], ...]] = {
 }  # fmt: skip
 # The five vowels of VRM and its kin that make each shape.
 _VOWELS: dict[str, tuple[tuple[str, float], ...]] = {
-    "PP": (), "FF": (("u", 0.15),), "TH": (("e", 0.25),), "DD": (("i", 0.25),), "kk": (("e", 0.3),), "CH": (("u", 0.45),),
-    "SS": (("i", 0.35),), "nn": (("i", 0.2),), "RR": (("o", 0.3),), "aa": (("a", 1.0),), "E": (("e", 1.0),), "I": (("i", 1.0),),
-    "O": (("o", 1.0),), "U": (("u", 1.0),),
-}  # fmt: skip
+    "PP": (),
+    "FF": (("u", 0.15),),
+    "TH": (("e", 0.25),),
+    "DD": (("i", 0.25),),
+    "kk": (("e", 0.3),),
+    "CH": (("u", 0.45),),
+    "SS": (("i", 0.35),),
+    "nn": (("i", 0.2),),
+    "RR": (("o", 0.3),),
+    "aa": (("a", 1.0),),
+    "E": (("e", 1.0),),
+    "I": (("i", 1.0),),
+    "O": (("o", 1.0),),
+    "U": (("u", 1.0),),
+}
 _VOWEL_NAMES = {"a": ("a", "aa"), "i": ("i", "ih"), "u": ("u", "ou"), "e": ("e", "ee"), "o": ("o", "oh")}
-_OCULUS = {v: (v.lower(),) for v in VISEMES[1:]} | {"E": ("e", "ee", "eh"), "I": ("i", "ih"), "O": ("o", "oh"), "U": ("u", "ou")}
+_OCULUS = {v: (v.lower(),) for v in VISEMES[1:]} | {
+    "E": ("e", "ee", "eh"),
+    "I": ("i", "ih"),
+    "O": ("o", "oh"),
+    "U": ("u", "ou"),
+}
 # Shares of one opening for mouths that can do no more.
-_OPEN = {"FF": 0.08, "TH": 0.3, "DD": 0.25, "kk": 0.35, "CH": 0.2, "SS": 0.15, "nn": 0.25, "RR": 0.3, "aa": 1.0, "E": 0.6, "I": 0.35,
-         "O": 0.7, "U": 0.35}  # fmt: skip
+_OPEN = {
+    "FF": 0.08,
+    "TH": 0.3,
+    "DD": 0.25,
+    "kk": 0.35,
+    "CH": 0.2,
+    "SS": 0.15,
+    "nn": 0.25,
+    "RR": 0.3,
+    "aa": 1.0,
+    "E": 0.6,
+    "I": 0.35,
+    "O": 0.7,
+    "U": 0.35,
+}
 
 
 class _Names:
@@ -87,7 +138,9 @@ class _Names:
 
 
 def find_morphs(names: Iterable[str], bound: Mapping[str, str] | None = None) -> dict[str, Weights]:
-    """Return channel -> ((morph target, weight at 1), ...) for a face's morph targets; bound: the user's corrections."""
+    """Return channel -> ((morph target, weight at 1), ...) for a face's morph targets; bound: the user's
+    corrections.
+    """
     bound = bound or {}
     all_names = tuple(names)
     have = _Names(all_names)
@@ -103,7 +156,9 @@ def find_morphs(names: Iterable[str], bound: Mapping[str, str] | None = None) ->
         take(f"wide_{side}", have.sided(side, "eyewide", "eyeswide"))
         for way, word in (("up", "up"), ("down", "down"), ("in", "in"), ("out", "out")):
             # "in" is towards the nose: to the right for the left eye.
-            where = way if way in ("up", "down") else ("right" if (side == "left") == (way == "in") else "left")
+            where = (
+                way if way in ("up", "down") else ("right" if (side == "left") == (way == "in") else "left")
+            )
             take(f"look_{where}_{side}", have.sided(side, f"eyelook{word}"))
         for way in ("up", "down", "left", "right"):
             if f"look_{way}_{side}" not in out and side == "left":  # one target for both eyes
@@ -122,7 +177,8 @@ def find_morphs(names: Iterable[str], bound: Mapping[str, str] | None = None) ->
 
 
 def _mouth(have: _Names, bound: str | None = None) -> dict[str, Weights]:
-    """Return the mouth's shapes from targets made for them, else from ARKit's, VRM's vowels, or a mouth that opens.
+    """Return the mouth's shapes from targets made for them, else from ARKit's, VRM's vowels, or a mouth that
+    opens.
 
     bound: the target that opens the mouth, where the user says so.
     """
@@ -151,9 +207,21 @@ def _mouth(have: _Names, bound: str | None = None) -> dict[str, Weights]:
 
 # Mouth shapes of speech services' marks; several may stand for one, the best first.
 _MARKS = {
-    "PP": ("p",), "FF": ("f",), "TH": ("T",), "DD": ("t",), "kk": ("k",), "CH": ("S",), "SS": ("s",), "nn": ("n", "t"), "RR": ("r",),
-    "aa": ("a",), "E": ("E", "e"), "I": ("i",), "O": ("o", "O"), "U": ("u", "w"),
-}  # fmt: skip
+    "PP": ("p",),
+    "FF": ("f",),
+    "TH": ("T",),
+    "DD": ("t",),
+    "kk": ("k",),
+    "CH": ("S",),
+    "SS": ("s",),
+    "nn": ("n", "t"),
+    "RR": ("r",),
+    "aa": ("a",),
+    "E": ("E", "e"),
+    "I": ("i",),
+    "O": ("o", "O"),
+    "U": ("u", "w"),
+}
 _SHORT = 0.6  # seconds; a clip that shows one shape is no longer
 _BLINK = 1.5
 
@@ -161,7 +229,8 @@ _BLINK = 1.5
 def clip_shapes(project: Project) -> dict[str, str]:
     """Return channel -> id of the clip that shows it, told by the clips' names.
 
-    A clip called like a mouth shape counts only among others of the same file, or with "viseme" or the like before it.
+    A clip called like a mouth shape counts only among others of the same file, or with "viseme" or the like
+    before it.
     """
     blinks: list[tuple[int, str, str]] = []
     named: dict[str, str] = {}
@@ -183,7 +252,11 @@ def clip_shapes(project: Project) -> dict[str, str]:
             named.setdefault("jaw_open", entry.id)
         files[entry.path].setdefault(entry.name.strip(), entry.id)
     for clips in files.values():
-        marks = {f"viseme_{v}": clips[m] for v, forms in _MARKS.items() if (m := next((f for f in forms if f in clips), None))}
+        marks = {
+            f"viseme_{v}": clips[m]
+            for v, forms in _MARKS.items()
+            if (m := next((f for f in forms if f in clips), None))
+        }
         oculus = {f"viseme_{v}": clips[v] for v in VISEMES[1:] if v in clips}
         best = max(marks, oculus, key=len)
         if len(best) >= 6:

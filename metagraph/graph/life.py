@@ -1,9 +1,10 @@
-"""How alive a character is when nothing is asked of it: the amounts and rates of breathing, gaze, blinks and lip sync.
+"""How alive a character is when nothing is asked of it: the amounts and rates of breathing, gaze, blinks and
+lip sync.
 
-Numbers of people, from the literature the defaults follow: 12 to 20 breaths a minute at rest; 17 blinks a minute at rest and
-26 in conversation (Bentivoglio et al. 1997); speaking, the partner is looked at for 3.1 s and then away for 0.9 s, listening
-for 7.9 s and away for 0.4 s, on average (Lee, Badler, Badler 2002, "Eyes Alive"); listeners look more than speakers (Argyle
-and Cook 1976).
+Numbers of people, from the literature the defaults follow: 12 to 20 breaths a minute at rest; 17 blinks a
+minute at rest and 26 in conversation (Bentivoglio et al. 1997); speaking, the partner is looked at for 3.1 s
+and then away for 0.9 s, listening for 7.9 s and away for 0.4 s, on average (Lee, Badler, Badler 2002, "Eyes
+Alive"); listeners look more than speakers (Argyle and Cook 1976).
 """
 
 from __future__ import annotations
@@ -34,8 +35,8 @@ class Manner(Struct, frozen=True, kw_only=True, omit_defaults=True, forbid_unkno
     blinks: Factor = 1.0
 
 
-# Talking: 15 aversions a minute of 0.93 s. Listening: 7.2 of 0.43 s. Both as "Eyes Alive" has them. Idle, ours: nobody speaks,
-# so the gaze wanders longer and farther, and away half of the time.
+# Talking: 15 aversions a minute of 0.93 s. Listening: 7.2 of 0.43 s. Both as "Eyes Alive" has them. Idle,
+# ours: nobody speaks, so the gaze wanders longer and farther, and away half of the time.
 MANNERS: Mapping[Mode, Manner] = MappingProxyType({
     "idle": Manner(aversion_rate=1.1, aversion_length=2.4, aversion_angle=1.4, saccade_rate=0.85),
     "listening": Manner(aversion_rate=0.6, aversion_length=0.46, aversion_angle=0.8, saccades=0.9),
@@ -46,8 +47,9 @@ MANNERS: Mapping[Mode, Manner] = MappingProxyType({
 class Life(Struct, frozen=True, kw_only=True, omit_defaults=True, forbid_unknown_fields=True):
     """The life layers' settings; what each means, and which value turns it off, says `DIALS`.
 
-    on: whether they play at all. stillness: multiplies every amount by 1 - stillness and stretches the time between events; at
-    1 nothing moves of itself, only lips and what is asked for. modes: changes to `MANNERS`, by mode.
+    on: whether they play at all. stillness: multiplies every amount by 1 - stillness and stretches the time
+    between events; at 1 nothing moves of itself, only lips and what is asked for. modes: changes to
+    `MANNERS`, by mode.
     """
 
     on: bool = True
@@ -73,8 +75,10 @@ class Life(Struct, frozen=True, kw_only=True, omit_defaults=True, forbid_unknown
 
 @dataclass(frozen=True)
 class Dial:
-    """One number of `Life` or `Manner` as animators see it. name: the field. off: the value that turns it off, None for a
-    number that is no amount. The ranges are the fields' own; the default is the field's (for a manner, `MANNERS`')."""
+    """One number of `Life` or `Manner` as animators see it. name: the field. off: the value that turns it
+    off, None for a number that is no amount. The ranges are the fields' own; the default is the field's (for
+    a manner, `MANNERS`').
+    """
 
     name: str
     group: str
@@ -88,28 +92,112 @@ class Dial:
 
 
 DIALS: tuple[Dial, ...] = (
-    Dial("stillness", "All", "Stillness", "", 0, 1, 0.01, 0, "Calms everything at once; at 1 only lips and what is asked for move."),
+    Dial(
+        "stillness",
+        "All",
+        "Stillness",
+        "",
+        0,
+        1,
+        0.01,
+        0,
+        "Calms everything at once; at 1 only lips and what is asked for move.",
+    ),
     Dial("breathing", "Breathing", "Depth", "×", 0, 2, 0.05, 0, "How far chest and shoulders rise."),
     Dial("breath_rate", "Breathing", "Breaths", "/ min", 0, 40, 0.5, 0, "People at rest: 12 to 20."),
     Dial("gaze", "Gaze", "Look-at", "", 0, 1, 0.01, 0, "How far eyes and head turn to what is looked at."),
-    Dial("head_share", "Gaze", "Head's share", "", 0, 1, 0.01, 0, "How much of a wide turn the head takes; the eyes do the rest."),
-    Dial("aversion_rate", "Gaze", "Looks away", "/ min", 0, 40, 0.5, 0, "How often the gaze leaves the partner for a moment."),
+    Dial(
+        "head_share",
+        "Gaze",
+        "Head's share",
+        "",
+        0,
+        1,
+        0.01,
+        0,
+        "How much of a wide turn the head takes; the eyes do the rest.",
+    ),
+    Dial(
+        "aversion_rate",
+        "Gaze",
+        "Looks away",
+        "/ min",
+        0,
+        40,
+        0.5,
+        0,
+        "How often the gaze leaves the partner for a moment.",
+    ),
     Dial("aversion_length", "Gaze", "Time away", "s", 0, 5, 0.05, 0, "How long it stays away."),
-    Dial("aversion_angle", "Gaze", "Angle away", "°", 0, 40, 0.5, 0, "How far beside the partner's face it goes."),
-    Dial("saccades", "Eyes", "Eye darts", "×", 0, 2, 0.05, 0, "Size of the small jumps that the eyes make while they look."),
+    Dial(
+        "aversion_angle",
+        "Gaze",
+        "Angle away",
+        "°",
+        0,
+        40,
+        0.5,
+        0,
+        "How far beside the partner's face it goes.",
+    ),
+    Dial(
+        "saccades",
+        "Eyes",
+        "Eye darts",
+        "×",
+        0,
+        2,
+        0.05,
+        0,
+        "Size of the small jumps that the eyes make while they look.",
+    ),
     Dial("saccade_rate", "Eyes", "Darts", "/ min", 0, 180, 1, 0, "How often the eyes jump."),
     Dial("lids", "Eyes", "Lids follow", "×", 0, 2, 0.05, 0, "How far the lids go down and up with the eyes."),
-    Dial("blinks", "Blinks", "Blinks", "/ min", 0, 60, 0.5, 0, "Those that come of themselves; people at rest: 17."),
-    Dial("accent_blinks", "Blinks", "On stressed words", "", 0, 1, 0.01, 0, "How many of the stressed syllables bring a blink."),
+    Dial(
+        "blinks",
+        "Blinks",
+        "Blinks",
+        "/ min",
+        0,
+        60,
+        0.5,
+        0,
+        "Those that come of themselves; people at rest: 17.",
+    ),
+    Dial(
+        "accent_blinks",
+        "Blinks",
+        "On stressed words",
+        "",
+        0,
+        1,
+        0.01,
+        0,
+        "How many of the stressed syllables bring a blink.",
+    ),
     Dial("blink_close", "Blinks", "Closing", "s", 0.02, 1, 0.01, None, "How long the lids take to close."),
-    Dial("blink_open", "Blinks", "Opening", "s", 0.02, 1, 0.01, None, "How long the lids take to open again."),
-    Dial("lips", "Lips", "Lip sync", "×", 0, 2, 0.05, 0, "How far the mouth opens and shapes itself in speech."),
+    Dial(
+        "blink_open", "Blinks", "Opening", "s", 0.02, 1, 0.01, None, "How long the lids take to open again."
+    ),
+    Dial(
+        "lips", "Lips", "Lip sync", "×", 0, 2, 0.05, 0, "How far the mouth opens and shapes itself in speech."
+    ),
     Dial("lip_smoothing", "Lips", "Smoothing", "s", 0, 0.2, 0.005, 0, "More is softer; too much mumbles."),
 )
 MANNER_DIALS: tuple[Dial, ...] = (
     Dial("breathing", "Breathing", "Depth", "×", 0, 4, 0.05, 0, "Depth of breath in this mode."),
     Dial("breath_rate", "Breathing", "Breaths", "×", 0, 4, 0.05, 0, "Breaths a minute in this mode."),
-    Dial("aversion_rate", "Gaze", "Looks away", "×", 0, 4, 0.05, 0, "How often the gaze leaves the partner in this mode."),
+    Dial(
+        "aversion_rate",
+        "Gaze",
+        "Looks away",
+        "×",
+        0,
+        4,
+        0.05,
+        0,
+        "How often the gaze leaves the partner in this mode.",
+    ),
     Dial("aversion_length", "Gaze", "Time away", "×", 0, 4, 0.05, 0, "How long it stays away in this mode."),
     Dial("aversion_angle", "Gaze", "Angle away", "×", 0, 4, 0.05, 0, "How far it goes in this mode."),
     Dial("saccades", "Eyes", "Eye darts", "×", 0, 4, 0.05, 0, "Size of the eyes' jumps in this mode."),
@@ -153,15 +241,18 @@ def _checked(value: Any, changes: Mapping[str, Any]) -> Any:
             raise ValueError(f"there is no dial '{name}'; dials are {', '.join(sorted(fields))}")
     whole = msgspec.structs.replace(value, **changes)
     try:
-        return msgspec.convert({name: msgspec.to_builtins(getattr(whole, name)) for name in fields}, type(value))
+        return msgspec.convert(
+            {name: msgspec.to_builtins(getattr(whole, name)) for name in fields}, type(value)
+        )
     except msgspec.ValidationError as error:
         text, _, where = str(error).partition(" - at ")
         raise ValueError(f"{where.strip('`$.')}: {text[:1].lower()}{text[1:]}") from None
 
 
 class FacePose(Struct, frozen=True, kw_only=True, omit_defaults=True, forbid_unknown_fields=True):
-    """A frame of a clip that shows a face's channel in full. clip: id. frame: null for the frame that differs most from
-    `neutral`, the frame that shows the face without it."""
+    """A frame of a clip that shows a face's channel in full. clip: id. frame: null for the frame that differs
+    most from `neutral`, the frame that shows the face without it.
+    """
 
     clip: str
     frame: Annotated[int, Meta(ge=0)] | None = None
@@ -169,9 +260,10 @@ class FacePose(Struct, frozen=True, kw_only=True, omit_defaults=True, forbid_unk
 
 
 class Face(Struct, frozen=True, kw_only=True, omit_defaults=True, forbid_unknown_fields=True):
-    """Corrections of what was found in the face (`metagraph.graph.face`). channels: channel -> name of the joint or morph target
-    that moves it, "" for nothing. poses: channel -> the frame of a clip that shows it. morphs: names of the character's morph
-    targets, as last read from its file."""
+    """Corrections of what was found in the face (`metagraph.graph.face`). channels: channel -> name of the
+    joint or morph target that moves it, "" for nothing. poses: channel -> the frame of a clip that shows it.
+    morphs: names of the character's morph targets, as last read from its file.
+    """
 
     channels: dict[str, str] = {}
     poses: dict[str, FacePose] = {}

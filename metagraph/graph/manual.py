@@ -1,7 +1,8 @@
-"""The manual state machine: states and links drawn one by one, as in the engines' editors. What the meta-graph is compared with.
+"""The manual state machine: states and links drawn one by one, as in the engines' editors. What the
+meta-graph is compared with.
 
-A state plays a part of a clip. A link leads from one state, or from any, to another; it is taken when its source has finished,
-or when its trigger is fired. One machine a layer; ids are never names and never change.
+A state plays a part of a clip. A link leads from one state, or from any, to another; it is taken when its
+source has finished, or when its trigger is fired. One machine a layer; ids are never names and never change.
 """
 
 from __future__ import annotations
@@ -35,8 +36,8 @@ class Condition:
 class State:
     """One use of a clip. start, end: the part that plays, seconds of the clip; `end` None is the clip's end.
 
-    loop: it repeats; else it holds its last frame. limb, joints: the only ones it moves (`joints` empty: all). x, y: where its
-    left upper corner stands in the editor.
+    loop: it repeats; else it holds its last frame. limb, joints: the only ones it moves (`joints` empty:
+    all). x, y: where its left upper corner stands in the editor.
     """
 
     id: str
@@ -54,10 +55,11 @@ class State:
 
 @dataclass(frozen=True, slots=True)
 class Link:
-    """source: a state's id, or ANY; target: a state's id. blend: seconds in which the target takes over, both running on.
+    """source: a state's id, or ANY; target: a state's id. blend: seconds in which the target takes over, both
+    running on.
 
-    exit_time: seconds of the source's clip at which it may be left, in a loop each time round. None: a finished link blends so that
-    the source ends with the blend, a requested one is taken at once.
+    exit_time: seconds of the source's clip at which it may be left, in a loop each time round. None: a
+    finished link blends so that the source ends with the blend, a requested one is taken at once.
     """
 
     id: str
@@ -70,7 +72,9 @@ class Link:
 
 @dataclass(frozen=True)
 class Manual:
-    """One layer's machine. start: the state it begins in. any_x, any_y: where the node for any state stands in the editor."""
+    """One layer's machine. start: the state it begins in. any_x, any_y: where the node for any state stands
+    in the editor.
+    """
 
     layer: Layer
     states: Mapping[str, State] = field(default_factory=dict)
@@ -92,7 +96,9 @@ class Manual:
     @cached_property
     def triggers(self) -> tuple[str, ...]:
         """Every trigger a link waits for, sorted."""
-        return tuple(sorted({x.condition.trigger for x in self.links.values() if x.condition.when == "request"}))
+        return tuple(
+            sorted({x.condition.trigger for x in self.links.values() if x.condition.when == "request"})
+        )
 
     def leaving(self, state: str) -> Iterator[Link]:
         """Yield the links by which a state can be left: its own, then those from any state to another one."""
@@ -123,7 +129,9 @@ def _by(links: Mapping[str, Link], field_name: str) -> Mapping[str, tuple[Link, 
 
 
 def links_expanded(manual: Manual) -> frozenset[tuple[str, str]]:
-    """Return every connection as (source state, target state): a link from any state stands for one from every other."""
+    """Return every connection as (source state, target state): a link from any state stands for one from
+    every other.
+    """
     states = manual.states
     out = {(x.source, x.target) for x in manual.links.values() if x.source in states and x.target in states}
     for link in manual.out.get(ANY, ()):
@@ -136,7 +144,11 @@ def without(manual: Manual, states: Collection[str] = (), links: Collection[str]
     """Return the machine without some states, the links that touch them, and some links."""
     gone = set(states)
     left = {i: s for i, s in manual.states.items() if i not in gone}
-    kept = {i: x for i, x in manual.links.items() if i not in links and x.source not in gone and x.target not in gone}
+    kept = {
+        i: x
+        for i, x in manual.links.items()
+        if i not in links and x.source not in gone and x.target not in gone
+    }
     start = manual.start if manual.start not in gone else next(iter(left), None)
     return replace(manual, states=left, links=kept, start=start)
 

@@ -1,4 +1,6 @@
-"""Problems of manual state machines: what cannot be reached or left, and numbers that do not fit their clips."""
+"""Problems of manual state machines: what cannot be reached or left, and numbers that do not fit their
+clips.
+"""
 
 from __future__ import annotations
 
@@ -21,22 +23,42 @@ def check_manual(project: Project) -> list[Problem]:
 def _machine(project: Project, manual: Manual) -> Iterator[Problem]:
     layer = manual.layer
     if manual.states and manual.start not in manual.states:
-        yield Problem("error", "no-start", f"the {layer} layer has no state to begin in", "Right-click a state and 'Start here'.", layer)
+        yield Problem(
+            "error",
+            "no-start",
+            f"the {layer} layer has no state to begin in",
+            "Right-click a state and 'Start here'.",
+            layer,
+        )
     reached = manual.reachable()
     for state in manual.states.values():
 
         def at(severity: Severity, code: str, message: str, remedy: str, of: State = state) -> Problem:
-            return Problem(severity, code, f"state '{of.name}' {message}", remedy, layer, clip=of.clip, state=of.id)
+            return Problem(
+                severity, code, f"state '{of.name}' {message}", remedy, layer, clip=of.clip, state=of.id
+            )
 
         yield from _state(project, state, at)
         if reached and state.id not in reached:
-            yield at("warning", "unreachable", "cannot be reached", "Draw a link to it from a state that can.")
+            yield at(
+                "warning", "unreachable", "cannot be reached", "Draw a link to it from a state that can."
+            )
         ways = [x for x in manual.leaving(state.id) if x.target in manual.states and x.target != state.id]
         if not ways and len(manual.states) > 1:
             if state.loop:
-                yield at("warning", "no-exit", "loops for ever: no link leads out of it", "Draw a link from it to another state.")
+                yield at(
+                    "warning",
+                    "no-exit",
+                    "loops for ever: no link leads out of it",
+                    "Draw a link from it to another state.",
+                )
             else:
-                yield at("warning", "dead-end", "cannot be left: it holds its last frame", "Draw a link from it to another state.")
+                yield at(
+                    "warning",
+                    "dead-end",
+                    "cannot be left: it holds its last frame",
+                    "Draw a link from it to another state.",
+                )
         elif ways and not state.loop and not any(x.condition.when == "finished" for x in ways):
             message = "holds its last frame until something is requested"
             yield at("hint", "waits", message, "Let one of its links be taken when it has finished.")
@@ -49,10 +71,17 @@ def _machine(project: Project, manual: Manual) -> Iterator[Problem]:
         seen.add(same)
 
 
-def _state(project: Project, state: State, at: Callable[[Severity, str, str, str], Problem]) -> Iterator[Problem]:
+def _state(
+    project: Project, state: State, at: Callable[[Severity, str, str, str], Problem]
+) -> Iterator[Problem]:
     entry = project.clips.get(state.clip)
     if entry is None:
-        yield at("error", "lost-clip", "uses a clip that is not in the project", "Remove it, or import the clip again.")
+        yield at(
+            "error",
+            "lost-clip",
+            "uses a clip that is not in the project",
+            "Remove it, or import the clip again.",
+        )
         return
     end = entry.duration if state.end is None else state.end
     latest = entry.duration + 0.5 / entry.fps
@@ -80,18 +109,33 @@ def _link(project: Project, manual: Manual, link: Link) -> Iterator[Problem]:
     if link.condition.when == "request" and not link.condition.trigger.strip():
         yield at("error", "no-trigger", "waits for a request without a name", "Name its trigger.")
     if not link.condition.weight > 0:
-        yield at("error", "weight", f"has the weight {link.condition.weight:g} and can never be drawn", "Set it above 0.")
+        yield at(
+            "error",
+            "weight",
+            f"has the weight {link.condition.weight:g} and can never be drawn",
+            "Set it above 0.",
+        )
     if not link.blend >= 0:
         yield at("error", "blend", f"blends for {link.blend:g} s", "Set its blend to 0 or more.")
     if link.source == ANY and link.condition.when == "finished":
-        yield at("warning", "any-finished", "is taken whenever any state has finished", "Let it wait for a request.")
+        yield at(
+            "warning",
+            "any-finished",
+            "is taken whenever any state has finished",
+            "Let it wait for a request.",
+        )
     source = manual.states.get(link.source)
     entry = project.clips.get(source.clip) if source is not None else None
     if source is None or entry is None:
         return
-    start, end = max(0.0, source.start), entry.duration if source.end is None else min(source.end, entry.duration)
+    start, end = (
+        max(0.0, source.start),
+        entry.duration if source.end is None else min(source.end, entry.duration),
+    )
     if link.exit_time is not None and not start <= link.exit_time <= end + 0.5 / entry.fps:
         message = f"may be taken at {link.exit_time:.2f} s, outside what '{source.name}' plays"
         yield at("warning", "exit", message, f"Bring it between {start:.2f} and {end:.2f} s.")
     elif link.blend > end - start > 0 and not source.loop:
-        yield at("warning", "blend", f"blends for {link.blend:.2f} s of {end - start:.2f} s", "Shorten its blend.")
+        yield at(
+            "warning", "blend", f"blends for {link.blend:.2f} s of {end - start:.2f} s", "Shorten its blend."
+        )

@@ -1,6 +1,8 @@
-"""Edits of manual state machines: pure functions `Project -> Project`, as `graph.edits` has for the meta-graph.
+"""Edits of manual state machines: pure functions `Project -> Project`, as `graph.edits` has for the
+meta-graph.
 
-An edit that cannot be done raises EditError, whose words are meant for the user; the project is then unchanged.
+An edit that cannot be done raises EditError, whose words are meant for the user; the project is then
+unchanged.
 """
 
 from __future__ import annotations
@@ -29,15 +31,23 @@ def refusal(project: Project, clips: Sequence[str]) -> str | None:
         entry = project.clips.get(clip)
         if entry is None:
             return "a clip that is not in this project"
-        if entry.motion is not None and project.skeleton is not None and entry.motion.skeleton != project.skeleton:
+        if (
+            entry.motion is not None
+            and project.skeleton is not None
+            and entry.motion.skeleton != project.skeleton
+        ):
             return f"'{entry.name}' has another skeleton than this project"
     return None
 
 
-def add_states(project: Project, clips: Sequence[str], layer: Layer, x: float = 0.0, y: float = 0.0) -> Project:
-    """Make a state of each clip, in a grid whose left upper corner is at x, y. The first state of a layer is its start.
+def add_states(
+    project: Project, clips: Sequence[str], layer: Layer, x: float = 0.0, y: float = 0.0
+) -> Project:
+    """Make a state of each clip, in a grid whose left upper corner is at x, y. The first state of a layer is
+    its start.
 
-    The first state of the whole project also gives the base pose, as the first stance does (`edits.place`). Raises EditError.
+    The first state of the whole project also gives the base pose, as the first stance does (`edits.place`).
+    Raises EditError.
     """
     why = refusal(project, clips)
     if why is not None:
@@ -49,11 +59,19 @@ def add_states(project: Project, clips: Sequence[str], layer: Layer, x: float = 
     for n, clip in enumerate(clips):
         ident, name = f"m{project.next_id + n}", free_name(project.clips[clip].name, taken)
         taken.add(name)
-        states[ident] = State(ident, clip, name, layer, x=_whole(x + n % columns * WIDE), y=_whole(y + n // columns * HIGH))
-    first = project.base.clip is None and not any(m.states for m in project.manual.values()) and not any(True for _ in project.actions())
+        states[ident] = State(
+            ident, clip, name, layer, x=_whole(x + n % columns * WIDE), y=_whole(y + n // columns * HIGH)
+        )
+    first = (
+        project.base.clip is None
+        and not any(m.states for m in project.manual.values())
+        and not any(True for _ in project.actions())
+    )
     base = BasePose(clips[0], 0) if first else project.base
     start = found.start or next(iter(states))
-    return project.with_manual(replace(found, states=states, start=start), next_id=project.next_id + len(clips), base=base)
+    return project.with_manual(
+        replace(found, states=states, start=start), next_id=project.next_id + len(clips), base=base
+    )
 
 
 def link_refusal(project: Project, layer: Layer, source: str, target: str) -> str | None:
@@ -67,7 +85,8 @@ def link_refusal(project: Project, layer: Layer, source: str, target: str) -> st
 
 
 def add_link(project: Project, layer: Layer, source: str, target: str) -> Project:
-    """Draw a link, taken when its source has finished; one from any state waits for a request named after its target.
+    """Draw a link, taken when its source has finished; one from any state waits for a request named after its
+    target.
 
     Raises EditError with the words of `link_refusal`.
     """
@@ -82,16 +101,20 @@ def add_link(project: Project, layer: Layer, source: str, target: str) -> Projec
 
 
 def update_states(project: Project, states: Collection[str], **changes: Any) -> Project:
-    """Set fields of states; the same project when nothing differs. Raises EditError for a name without a letter."""
+    """Set fields of states; the same project when nothing differs. Raises EditError for a name without a
+    letter.
+    """
     if "name" in changes:
         changes["name"] = _clean(changes["name"])
     return _updated(project, "states", dict.fromkeys(states, changes))
 
 
 def update_links(project: Project, links: Collection[str], **changes: Any) -> Project:
-    """Set fields of links; `condition` takes a mapping of the Condition fields to change, or a whole Condition.
+    """Set fields of links; `condition` takes a mapping of the Condition fields to change, or a whole
+    Condition.
 
-    A link that becomes a request is named after its target until it is told otherwise. Raises EditError for a trigger without a letter.
+    A link that becomes a request is named after its target until it is told otherwise. Raises EditError for a
+    trigger without a letter.
     """
     condition = changes.get("condition")
     if isinstance(condition, Mapping):
@@ -114,7 +137,11 @@ def move_nodes(project: Project, layer: Layer, places: Mapping[str, tuple[float,
     found = machine(project, layer)
     if ANY in places:
         found = replace(found, any_x=_whole(places[ANY][0]), any_y=_whole(places[ANY][1]))
-    moved = {i: replace(found.states[i], x=_whole(x), y=_whole(y)) for i, (x, y) in places.items() if i in found.states}
+    moved = {
+        i: replace(found.states[i], x=_whole(x), y=_whole(y))
+        for i, (x, y) in places.items()
+        if i in found.states
+    }
     states = {**found.states, **moved} if moved else found.states
     return project.with_manual(replace(found, states=states))
 
@@ -133,7 +160,11 @@ def remove(project: Project, states: Collection[str] = (), links: Collection[str
     for layer, found in project.manual.items():
         if any(i in found.states for i in states) or any(i in found.links for i in links):
             machines[layer] = without(found, states, links)
-    return replace(project, manual=machines) if any(machines[x] is not project.manual[x] for x in machines) else project
+    return (
+        replace(project, manual=machines)
+        if any(machines[x] is not project.manual[x] for x in machines)
+        else project
+    )
 
 
 @dataclass(frozen=True)
@@ -148,12 +179,20 @@ def copied(project: Project, states: Collection[str]) -> Piece:
     """Return states with the links among them, to be pasted. Their order is the machine's."""
     chosen = [s for m in project.manual.values() for s in m.states.values() if s.id in states]
     inside = {s.id for s in chosen}
-    links = [x for m in project.manual.values() for x in m.links.values() if x.target in inside and x.source in inside]
+    links = [
+        x
+        for m in project.manual.values()
+        for x in m.links.values()
+        if x.target in inside and x.source in inside
+    ]
     return Piece(tuple(chosen), tuple(links))
 
 
-def paste(project: Project, layer: Layer, piece: Piece, x: float, y: float) -> tuple[Project, tuple[str, ...]]:
-    """Return the project with copies of states and of the links among them, and the copies' ids. x, y: their left upper corner.
+def paste(
+    project: Project, layer: Layer, piece: Piece, x: float, y: float
+) -> tuple[Project, tuple[str, ...]]:
+    """Return the project with copies of states and of the links among them, and the copies' ids. x, y: their
+    left upper corner.
 
     Raises EditError when a clip is no longer there.
     """
@@ -172,21 +211,29 @@ def paste(project: Project, layer: Layer, piece: Piece, x: float, y: float) -> t
         number += 1
         name = free_name(state.name, taken)
         taken.add(name)
-        states[ident] = replace(state, id=ident, name=name, layer=layer, x=_whole(x + state.x - left), y=_whole(y + state.y - top))
+        states[ident] = replace(
+            state, id=ident, name=name, layer=layer, x=_whole(x + state.x - left), y=_whole(y + state.y - top)
+        )
     names = {s.id: s.name for s in piece.states}
     for link in piece.links:
         ident = f"l{number}"
         number += 1
         condition = link.condition
-        if condition.when == "request" and condition.trigger == names[link.target]:  # named after its target, as the copy's is
+        if (
+            condition.when == "request" and condition.trigger == names[link.target]
+        ):  # named after its target, as the copy's is
             condition = replace(condition, trigger=states[made[link.target]].name)
-        links[ident] = replace(link, id=ident, source=made[link.source], target=made[link.target], condition=condition)
+        links[ident] = replace(
+            link, id=ident, source=made[link.source], target=made[link.target], condition=condition
+        )
     after = replace(found, states=states, links=links, start=found.start or next(iter(states)))
     return project.with_manual(after, next_id=number), tuple(made.values())
 
 
 def paste_settings(project: Project, links: Collection[str], settings: Link) -> Project:
-    """Give links another one's condition, exit time and blend; where it waits for its target's name, they wait for theirs."""
+    """Give links another one's condition, exit time and blend; where it waits for its target's name, they
+    wait for theirs.
+    """
     target = project.state(settings.target)
     own = target is not None and settings.condition.trigger == target.name
     each: dict[str, Mapping[str, Any]] = {}
@@ -195,7 +242,9 @@ def paste_settings(project: Project, links: Collection[str], settings: Link) -> 
         if link is None:
             continue
         to = project.state(link.target)
-        condition = replace(settings.condition, trigger=to.name) if own and to is not None else settings.condition
+        condition = (
+            replace(settings.condition, trigger=to.name) if own and to is not None else settings.condition
+        )
         each[ident] = {"condition": condition, "exit_time": settings.exit_time, "blend": settings.blend}
     return _updated(project, "links", each)
 
@@ -204,11 +253,19 @@ def _updated(project: Project, what: str, changes: Mapping[str, Mapping[str, Any
     machines = dict(project.manual)
     for layer, found in project.manual.items():
         now = getattr(found, what)
-        edits = {i: after for i, fields in changes.items() if i in now and (after := replace(now[i], **fields)) != now[i]}
+        edits = {
+            i: after
+            for i, fields in changes.items()
+            if i in now and (after := replace(now[i], **fields)) != now[i]
+        }
         if edits:
             both: dict[str, Any] = {what: {**now, **edits}}
             machines[layer] = replace(found, **both)
-    return replace(project, manual=machines) if any(machines[x] is not project.manual[x] for x in machines) else project
+    return (
+        replace(project, manual=machines)
+        if any(machines[x] is not project.manual[x] for x in machines)
+        else project
+    )
 
 
 def _whole(place: float) -> float:

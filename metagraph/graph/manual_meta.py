@@ -1,4 +1,6 @@
-"""The meta-graph that a manual state machine amounts to, and how far the two differ: so that both export to the same files."""
+"""The meta-graph that a manual state machine amounts to, and how far the two differ: so that both export to
+the same files.
+"""
 
 from __future__ import annotations
 
@@ -15,12 +17,13 @@ ALIKE = 0.5  # share of what two loops lead to that must be the same for them to
 
 
 def as_meta(project: Project) -> tuple[Project, Pairs, Pairs]:
-    """Return the project with the meta-graphs its manual machines amount to, the connections those imply that were not drawn, and
-    the drawn ones they do not imply; both as (source state, target state).
+    """Return the project with the meta-graphs its manual machines amount to, the connections those imply that
+    were not drawn, and the drawn ones they do not imply; both as (source state, target state).
 
-    Loop states that lead to each other and to the same things are loops of one stance. A state entered from a stance and going
-    back to it is its gesture, or its fidget where it is only entered by finished links; one that goes to another stance is a
-    transition. States that nothing joins to a stance are left out. Layers without a manual machine stay as they are.
+    Loop states that lead to each other and to the same things are loops of one stance. A state entered from a
+    stance and going back to it is its gesture, or its fidget where it is only entered by finished links; one
+    that goes to another stance is a transition. States that nothing joins to a stance are left out. Layers
+    without a manual machine stay as they are.
     """
     missing: set[tuple[str, str]] = set()
     extra: set[tuple[str, str]] = set()
@@ -38,7 +41,9 @@ def as_meta(project: Project) -> tuple[Project, Pairs, Pairs]:
 
 
 def differences(project: Project) -> list[str]:
-    """Say in words how the meta-graph differs from the manual machines it is made of; nothing where it does not."""
+    """Say in words how the meta-graph differs from the manual machines it is made of; nothing where it does
+    not.
+    """
     made, missing, extra = as_meta(project)
     drawn = sum(len(m.states) for m in project.manual.values())
     left = drawn - sum(len(made.graphs[layer].actions) for layer, m in project.manual.items() if m.states)
@@ -46,9 +51,15 @@ def differences(project: Project) -> list[str]:
     if left:
         out.append(f"{_many(left, 'state')} that no link joins to a loop: left out")
     if missing:
-        out.append(f"{_many(len(missing), 'connection')} not drawn but possible there: the actions of a stance may follow each other")
+        out.append(
+            f"{_many(len(missing), 'connection')} not drawn but possible there: the actions of a stance may "
+            "follow each other"
+        )
     if extra:
-        out.append(f"{_many(len(extra), 'connection')} drawn but lost there: what ends in a stance leads to what begins in it, no further")
+        out.append(
+            f"{_many(len(extra), 'connection')} drawn but lost there: what ends in a stance leads to what "
+            "begins in it, no further"
+        )
     return out
 
 
@@ -81,13 +92,28 @@ def _graph(project: Project, manual: Manual) -> tuple[MetaGraph, Mapping[str, st
         number += 1
         names[ident] = state.id
         actions[ident] = Action(
-            ident, state.clip, kind, manual.layer, stances[start].id, state.name, stances[end].id if kind == "transition" else None,
-            _timing(manual, state, kind, of), state.limb, state.joints, _tags(manual, state), _likelihood(manual, state, kind),
-        )  # fmt: skip
+            ident,
+            state.clip,
+            kind,
+            manual.layer,
+            stances[start].id,
+            state.name,
+            stances[end].id if kind == "transition" else None,
+            _timing(manual, state, kind, of),
+            state.limb,
+            state.joints,
+            _tags(manual, state),
+            _likelihood(manual, state, kind),
+        )
     begin = of.get(manual.start or "")
     if begin is None and manual.start is not None:  # a start that is no loop leads to one
         begin = next(iter(out.get(manual.start, Counter())), 0 if stances else None)
-    graph = replace(project.graphs[manual.layer], stances={}, actions={}, start=stances[begin].id if begin is not None else None)
+    graph = replace(
+        project.graphs[manual.layer],
+        stances={},
+        actions={},
+        start=stances[begin].id if begin is not None else None,
+    )
     return replace(graph, stances={s.id: s for s in stances}, actions=actions), names, number
 
 
@@ -111,8 +137,11 @@ def _stances(loops: Sequence[str], pairs: Pairs) -> list[list[str]]:
     return groups
 
 
-def _ends(manual: Manual, pairs: Pairs, of: Mapping[str, int]) -> tuple[dict[str, Counter[int]], dict[str, Counter[int]]]:
-    """Return for each state that is no loop from how many loops of each stance it is entered, and to how many it leads.
+def _ends(
+    manual: Manual, pairs: Pairs, of: Mapping[str, int]
+) -> tuple[dict[str, Counter[int]], dict[str, Counter[int]]]:
+    """Return for each state that is no loop from how many loops of each stance it is entered, and to how many
+    it leads.
 
     States that only touch other such states take theirs from them, from near to far.
     """
@@ -122,7 +151,9 @@ def _ends(manual: Manual, pairs: Pairs, of: Mapping[str, int]) -> tuple[dict[str
     after: dict[str, list[str]] = {}
     drawn = {(x.source, x.target) for x in manual.links.values() if x.source != ANY}
     for source, target in sorted(pairs):
-        weight = len(of) + 1 if (source, target) in drawn else 1  # a link of its own says more than all from any state
+        weight = (
+            len(of) + 1 if (source, target) in drawn else 1
+        )  # a link of its own says more than all from any state
         if source in of and target not in of:
             into.setdefault(target, Counter())[of[source]] += weight
         elif source not in of and target in of:
@@ -133,13 +164,17 @@ def _ends(manual: Manual, pairs: Pairs, of: Mapping[str, int]) -> tuple[dict[str
     for known, neighbours in ((into, before), (out, after)):
         changed = True
         while changed:
-            found = {s: known[n] for s, near in neighbours.items() if s not in known for n in near if n in known}
+            found = {
+                s: known[n] for s, near in neighbours.items() if s not in known for n in near if n in known
+            }
             known.update({s: Counter(c) for s, c in found.items()})
             changed = bool(found)
     return into, out
 
 
-def _placed(manual: Manual, state: State, of: Mapping[str, int], into: Counter[int], out: Counter[int]) -> tuple[Kind, int, int] | None:
+def _placed(
+    manual: Manual, state: State, of: Mapping[str, int], into: Counter[int], out: Counter[int]
+) -> tuple[Kind, int, int] | None:
     """Return kind, stance and end stance of a state; None where no stance is joined to it."""
     if state.id in of:
         return "stance", of[state.id], of[state.id]
@@ -165,14 +200,22 @@ def _unasked(manual: Manual, state: State) -> bool:
 
 
 def _timing(manual: Manual, state: State, kind: Kind, of: Mapping[str, int]) -> Timing:
-    """Return an action's timing: blends and exit of the links that join it to its stances, the first of each."""
+    """Return an action's timing: blends and exit of the links that join it to its stances, the first of
+    each.
+    """
     if kind == "stance":
         return Timing(state.start, state.end, 0.0, 0.0, True)
     leaving = [*manual.out.get(state.id, ()), *manual.out.get(ANY, ())]
     first = _first(_entering(manual, state), lambda x: x.source in of)
     last = _first(leaving, lambda x: x.target in of)
     blends = [x.blend if x is not None else Timing().blend_in for x in (first, last)]
-    return Timing(state.start, state.end, blends[0], blends[1], earliest_exit=last.exit_time if last is not None else None)
+    return Timing(
+        state.start,
+        state.end,
+        blends[0],
+        blends[1],
+        earliest_exit=last.exit_time if last is not None else None,
+    )
 
 
 def _first(links: Sequence[Link], fits: Callable[[Link], bool]) -> Link | None:
@@ -182,12 +225,18 @@ def _first(links: Sequence[Link], fits: Callable[[Link], bool]) -> Link | None:
 
 def _tags(manual: Manual, state: State) -> tuple[str, ...]:
     """Return triggers that are not the state's name: what an agent asks for by it."""
-    asked = dict.fromkeys(x.condition.trigger for x in _entering(manual, state) if x.condition.when == "request")
+    asked = dict.fromkeys(
+        x.condition.trigger for x in _entering(manual, state) if x.condition.when == "request"
+    )
     return tuple(t for t in asked if t and t != state.name)
 
 
 def _likelihood(manual: Manual, state: State, kind: Kind) -> float:
-    weights = [x.condition.weight for x in _entering(manual, state) if x.condition.when == "finished" and x.condition.weight > 0]
+    weights = [
+        x.condition.weight
+        for x in _entering(manual, state)
+        if x.condition.when == "finished" and x.condition.weight > 0
+    ]
     return weights[0] if weights and kind == "fidget" else 1.0
 
 
@@ -199,7 +248,8 @@ def only_manual(project: Project) -> bool:
 def exportable(project: Project, manual: bool | None = None) -> tuple[Project, list[str]]:
     """Return what is exported of a project, and in words how far it differs from what was drawn.
 
-    manual: its manual machines, as what they amount to, rather than its meta-graph; None for where there is nothing else.
+    manual: its manual machines, as what they amount to, rather than its meta-graph; None for where there is
+    nothing else.
     """
     if only_manual(project) if manual is None else manual:
         return as_meta(project)[0], differences(project)

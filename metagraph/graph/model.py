@@ -21,11 +21,37 @@ from metagraph.motion.joint_map import JointMap
 from metagraph.motion.skeleton import Skeleton
 
 __all__ = [
-    "KINDS", "LAYERS", "LIMBS", "MODES", "PARTS", "REACH", "Action", "BasePose", "ClipEntry", "Face", "Index", "Kind", "Layer", "Life",
-    "Limb", "Line", "Markov", "MetaGraph", "Mode", "Part", "Performance", "Point", "Project", "Settings", "Stance", "Timing", "Uses",
-]  # fmt: skip
+    "KINDS",
+    "LAYERS",
+    "LIMBS",
+    "MODES",
+    "PARTS",
+    "REACH",
+    "Action",
+    "BasePose",
+    "ClipEntry",
+    "Face",
+    "Index",
+    "Kind",
+    "Layer",
+    "Life",
+    "Limb",
+    "Line",
+    "Markov",
+    "MetaGraph",
+    "Mode",
+    "Part",
+    "Performance",
+    "Point",
+    "Project",
+    "Settings",
+    "Stance",
+    "Timing",
+    "Uses",
+]
 
-# Which layer reaches which part, and how strongly: Borer et al., section 5 (weights of 1.0). The face moves with the head.
+# Which layer reaches which part, and how strongly: Borer et al., section 5 (weights of 1.0). The face moves
+# with the head.
 REACH: Mapping[Layer, Mapping[Part, float]] = {
     "body": {"legs": 1.0, "spine": 1.0, "arms": 0.0, "head": 1.0, "face": 1.0},
     "arms": {"legs": 0.0, "spine": 1.0, "arms": 1.0, "head": 1.0, "face": 1.0},
@@ -37,11 +63,11 @@ REACH: Mapping[Layer, Mapping[Part, float]] = {
 class Timing:
     """When an action plays within its clip; seconds of the clip.
 
-    start, end: the part that plays; `end` None is the clip's end. blend_in, blend_out: seconds of blending from and to
-    the stance, within start..end (for a looping stance, blend_in is the overlap at the loop's seam). loop: repeats.
-    earliest_exit: from here on the action may be left, or None to play it through. stroke: its most telling moment.
-    ready, stroke_end, relax: where a gesture's preparation, stroke and hold end (its retraction ends with it); None as found
-    from the motion (`playback.phases`).
+    start, end: the part that plays; `end` None is the clip's end. blend_in, blend_out: seconds of blending
+    from and to the stance, within start..end (for a looping stance, blend_in is the overlap at the loop's
+    seam). loop: repeats. earliest_exit: from here on the action may be left, or None to play it through.
+    stroke: its most telling moment. ready, stroke_end, relax: where a gesture's preparation, stroke and hold
+    end (its retraction ends with it); None as found from the motion (`playback.phases`).
     """
 
     start: float = 0.0
@@ -60,11 +86,11 @@ class Timing:
 class Action:
     """One use of a clip in the graph.
 
-    stance: id of the stance it starts from (for kind "stance", the stance whose loop it is). end_stance: only for
-    transitions. limb: which arm it needs; the other keeps to the stance. joints: names of the only joints it moves;
-    empty means all. tags: free words, "positive" and "negative" among them. likelihood: relative, > 0.
-    cooldown: seconds after it has ended in which it is not drawn again. spacing: how many other actions of its kind and stance
-    are drawn before it may be drawn again; None as the settings' never_twice says.
+    stance: id of the stance it starts from (for kind "stance", the stance whose loop it is). end_stance: only
+    for transitions. limb: which arm it needs; the other keeps to the stance. joints: names of the only joints
+    it moves; empty means all. tags: free words, "positive" and "negative" among them. likelihood: relative, >
+    0. cooldown: seconds after it has ended in which it is not drawn again. spacing: how many other actions of
+    its kind and stance are drawn before it may be drawn again; None as the settings' never_twice says.
     """
 
     id: str
@@ -95,7 +121,9 @@ Index = Mapping[tuple[str, Kind], tuple[Action, ...]]
 
 @dataclass(frozen=True)
 class MetaGraph:
-    """One layer: its stances and actions. start: the stance a performance begins in. weights: part -> 0..2."""
+    """One layer: its stances and actions. start: the stance a performance begins in. weights: part ->
+    0..2.
+    """
 
     layer: Layer
     stances: Mapping[str, Stance] = field(default_factory=dict)
@@ -128,15 +156,20 @@ class MetaGraph:
         return _grouped(arriving, lambda a: a.end_stance)
 
     def but(self, **changes: Any) -> MetaGraph:
-        """Return the graph with fields other than its actions replaced, keeping what was derived from the actions."""
+        """Return the graph with fields other than its actions replaced, keeping what was derived from the
+        actions.
+        """
         out = replace(self, **changes)
-        out.__dict__.update({name: self.__dict__[name] for name in ("index", "uses", "into") if name in self.__dict__})
+        out.__dict__.update(
+            {name: self.__dict__[name] for name in ("index", "uses", "into") if name in self.__dict__}
+        )
         return out
 
     def with_actions(self, changes: Mapping[str, Action | None]) -> MetaGraph:
         """Return the graph with actions added, replaced (in place) or, for None, removed.
 
-        Index and uses are patched rather than rebuilt, so that an edit costs the same in a graph of ten thousand.
+        Index and uses are patched rather than rebuilt, so that an edit costs the same in a graph of ten
+        thousand.
         """
         actions = dict(self.actions)
         for ident, action in changes.items():
@@ -221,11 +254,12 @@ class Uses(Mapping[str, tuple[Action, ...]]):
 
 @dataclass(frozen=True)
 class ClipEntry:
-    """A clip the project knows. path: relative to the project file, `/` between folders. take: which animation in the file.
+    """A clip the project knows. path: relative to the project file, `/` between folders. take: which
+    animation in the file.
 
-    digest: SHA-256 of the file, hex. frames, fps: as last read. as_is: names of repairs that are not made when it is read
-    (`formats.takes.REPAIRS`). brought_from: fingerprint of the skeleton it is retargeted from, "" where the file has the project's
-    own. motion: the loaded clip, None while the file is missing.
+    digest: SHA-256 of the file, hex. frames, fps: as last read. as_is: names of repairs that are not made
+    when it is read (`formats.takes.REPAIRS`). brought_from: fingerprint of the skeleton it is retargeted
+    from, "" where the file has the project's own. motion: the loaded clip, None while the file is missing.
     """
 
     id: str
@@ -247,7 +281,9 @@ class ClipEntry:
 
 @dataclass(frozen=True)
 class BasePose:
-    """The pose all offsets are taken against: a frame of a clip, or the skeleton's rest pose when clip is None."""
+    """The pose all offsets are taken against: a frame of a clip, or the skeleton's rest pose when clip is
+    None.
+    """
 
     clip: str | None = None
     frame: int = 0
@@ -255,12 +291,13 @@ class BasePose:
 
 @dataclass(frozen=True)
 class Markov:
-    """A first-order model over (limb, kind) that writes meta actions when nobody asks for any (Borer et al., 7.3).
+    """A first-order model over (limb, kind) that writes meta actions when nobody asks for any (Borer et al.,
+    7.3).
 
-    matrix: rows of probabilities, each summing to 1. gap: mean seconds of rest between two actions.
-    positive, negative: share of gestures asked for with that tag, where tags are not part of the states.
-    tags: one text a state, the tags (blanks between them) it asks for; empty when tags are not part of the states.
-    lengths: (mean, standard deviation) seconds of each state's actions; empty where that is not known.
+    matrix: rows of probabilities, each summing to 1. gap: mean seconds of rest between two actions. positive,
+    negative: share of gestures asked for with that tag, where tags are not part of the states. tags: one text
+    a state, the tags (blanks between them) it asks for; empty when tags are not part of the states. lengths:
+    (mean, standard deviation) seconds of each state's actions; empty where that is not known.
     """
 
     layer: Layer
@@ -283,8 +320,9 @@ class Settings:
 
     never_twice: an action is not played twice in a row where there is another. shortest: seconds below which
     the remainder of a cut meta action is not worth keeping. wait: how late, in seconds, a request may start.
-    memory: seconds after which a use no longer counts, 0 for never (as in the paper). rest: least seconds in the stance
-    between two actions of a layer. lookahead: seconds ahead of now in which a running plan is not changed any more.
+    memory: seconds after which a use no longer counts, 0 for never (as in the paper). rest: least seconds in
+    the stance between two actions of a layer. lookahead: seconds ahead of now in which a running plan is not
+    changed any more.
     """
 
     alpha: float = 4.0
@@ -303,14 +341,16 @@ def _empty_graphs() -> dict[Layer, MetaGraph]:
 
 @dataclass(frozen=True)
 class Project:
-    """Everything that is saved. roles: corrections, role -> joint name. parts: corrections, joint name -> body part.
+    """Everything that is saved. roles: corrections, role -> joint name. parts: corrections, joint name ->
+    body part.
 
-    character: path of the GLB to draw, relative to the project file, or None for a stick figure. points: named places to look
-    at, metres. lines: the dialogue an agent calls by id. performances, conversations: those kept, by id. tiers: annotation
-    tier -> what it was last read as. joint_maps: how clips of other skeletons are retargeted, by `joint_map.fingerprint` of
-    theirs. manual: state machines drawn by hand, of the layers that have one.
-    voices: line -> its analysed sound (`playback.life.voice.Voice`), as far as read; never saved.
-    body: what of it breathes and looks (`playback.life.body.Body`) as an export says; None to find it. Never saved.
+    character: path of the GLB to draw, relative to the project file, or None for a stick figure. points:
+    named places to look at, metres. lines: the dialogue an agent calls by id. performances, conversations:
+    those kept, by id. tiers: annotation tier -> what it was last read as. joint_maps: how clips of other
+    skeletons are retargeted, by `joint_map.fingerprint` of theirs. manual: state machines drawn by hand, of
+    the layers that have one. voices: line -> its analysed sound (`playback.life.voice.Voice`), as far as
+    read; never saved. body: what of it breathes and looks (`playback.life.body.Body`) as an export says; None
+    to find it. Never saved.
     """
 
     name: str = "untitled"
@@ -358,7 +398,9 @@ class Project:
         return None
 
     def span(self, action: Action) -> tuple[float, float]:
-        """Return start and end of the part that plays, seconds of its clip; the end is never before the start."""
+        """Return start and end of the part that plays, seconds of its clip; the end is never before the
+        start.
+        """
         entry = self.clips.get(action.clip)
         length = entry.duration if entry else 0.0
         start = min(max(0.0, action.timing.start), length)
@@ -372,11 +414,19 @@ class Project:
 
     def state(self, ident: str | None) -> State | None:
         """Return the state of a manual machine of that id, whatever its layer."""
-        return next((m.states[ident] for m in self.manual.values() if ident in m.states), None) if ident is not None else None
+        return (
+            next((m.states[ident] for m in self.manual.values() if ident in m.states), None)
+            if ident is not None
+            else None
+        )
 
     def link(self, ident: str | None) -> Link | None:
         """Return the link of a manual machine of that id, whatever its layer."""
-        return next((m.links[ident] for m in self.manual.values() if ident in m.links), None) if ident is not None else None
+        return (
+            next((m.links[ident] for m in self.manual.values() if ident in m.links), None)
+            if ident is not None
+            else None
+        )
 
     def with_manual(self, manual: Manual, **more: Any) -> Project:
         """Return the project with one layer's manual machine replaced."""

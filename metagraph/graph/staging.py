@@ -1,4 +1,6 @@
-"""Edits of what a character performs: kept performances and their asks, lines, points, life. Pure functions Project -> Project."""
+"""Edits of what a character performs: kept performances and their asks, lines, points, life. Pure functions
+Project -> Project.
+"""
 
 from __future__ import annotations
 
@@ -44,7 +46,9 @@ def _numbered(asks: Collection[AnyAsk]) -> tuple[AnyAsk, ...]:
 
 
 def change_performance(project: Project, ident: str, **changes: Any) -> Project:
-    """Set a performance's fields: name, seed, length, idle, stances, asks. Raises EditError, also for values out of range."""
+    """Set a performance's fields: name, seed, length, idle, stances, asks. Raises EditError, also for values
+    out of range.
+    """
     before = _performance(project, ident)
     if "name" in changes:
         changes["name"] = " ".join(str(changes["name"]).split())
@@ -56,7 +60,9 @@ def change_performance(project: Project, ident: str, **changes: Any) -> Project:
         after = msgspec.convert(msgspec.to_builtins(msgspec.structs.replace(before, **changes)), Performance)
     except msgspec.ValidationError as error:
         raise EditError(str(error)) from None
-    return project if after == before else replace(project, performances={**project.performances, ident: after})
+    return (
+        project if after == before else replace(project, performances={**project.performances, ident: after})
+    )
 
 
 def remove_performance(project: Project, ident: str) -> Project:
@@ -102,7 +108,9 @@ def move_asks(project: Project, performance: str, asks: Collection[str], by: flo
     def moved(ask: AnyAsk) -> AnyAsk:
         if ask.id not in asks:
             return ask
-        fields = {f: round(getattr(ask, f) + by, 3) for f in ("at", "stroke") if getattr(ask, f, None) is not None}
+        fields = {
+            f: round(getattr(ask, f) + by, 3) for f in ("at", "stroke") if getattr(ask, f, None) is not None
+        }
         if not fields:  # it began as soon as could be: at 0
             fields = {"at": round(max(0.0, by), 3)}
         return msgspec.structs.replace(ask, **fields)
@@ -113,7 +121,9 @@ def move_asks(project: Project, performance: str, asks: Collection[str], by: flo
 def remove_asks(project: Project, performance: str, asks: Collection[str] | None = None) -> Project:
     """Take asks back, all where None is given."""
     of = _performance(project, performance)
-    return change_performance(project, performance, asks=() if asks is None else tuple(x for x in of.asks if x.id not in asks))
+    return change_performance(
+        project, performance, asks=() if asks is None else tuple(x for x in of.asks if x.id not in asks)
+    )
 
 
 def set_line(project: Project, ident: str, line: Line | None) -> Project:
@@ -121,7 +131,11 @@ def set_line(project: Project, ident: str, line: Line | None) -> Project:
     ident = ident.strip()
     if not ident:
         raise EditError("a line needs an id to be called by")
-    lines = {i: x for i, x in project.lines.items() if i != ident} if line is None else {**project.lines, ident: line}
+    lines = (
+        {i: x for i, x in project.lines.items() if i != ident}
+        if line is None
+        else {**project.lines, ident: line}
+    )
     voices = project.voices
     if line is None or project.lines.get(ident) is None or line.audio != project.lines[ident].audio:
         voices = {i: v for i, v in voices.items() if i != ident}
@@ -129,7 +143,9 @@ def set_line(project: Project, ident: str, line: Line | None) -> Project:
 
 
 def rename_line(project: Project, ident: str, new: str) -> Project:
-    """Give a line another id, in the performances that call it, too. Raises EditError where the new one is taken."""
+    """Give a line another id, in the performances that call it, too. Raises EditError where the new one is
+    taken.
+    """
     new = new.strip()
     if new == ident:
         return project
@@ -142,7 +158,10 @@ def rename_line(project: Project, ident: str, new: str) -> Project:
         said = getattr(ask, "line", None)
         return msgspec.structs.replace(ask, line=new) if said is not None and str(said) == ident else ask
 
-    performances = {i: msgspec.structs.replace(p, asks=tuple(map(called, p.asks))) for i, p in project.performances.items()}
+    performances = {
+        i: msgspec.structs.replace(p, asks=tuple(map(called, p.asks)))
+        for i, p in project.performances.items()
+    }
     return replace(project, lines=lines, voices=voices, performances=performances)
 
 

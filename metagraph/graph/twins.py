@@ -1,7 +1,7 @@
 """Left/right twins of actions: which clips to mirror, and where their actions go.
 
-A mirrored clip must be written to a file before a project can keep it, so this comes in two halves: `twin_clips` gives the
-motion to write, `place_twins` the edit once those files are in the project's library.
+A mirrored clip must be written to a file before a project can keep it, so this comes in two halves:
+`twin_clips` gives the motion to write, `place_twins` the edit once those files are in the project's library.
 """
 
 from __future__ import annotations
@@ -30,9 +30,11 @@ class TwinClip:
 
 
 def twin_clips(project: Project, actions: Collection[str]) -> list[TwinClip]:
-    """Return the mirrored clips that twins of these actions need, one for each clip, with names no other clip has.
+    """Return the mirrored clips that twins of these actions need, one for each clip, with names no other clip
+    has.
 
-    Raises EditError, in words, when an action has no side to mirror, or when the skeleton is not the same on both sides.
+    Raises EditError, in words, when an action has no side to mirror, or when the skeleton is not the same on
+    both sides.
     """
     if not actions:
         raise EditError("nothing to mirror")
@@ -40,7 +42,9 @@ def twin_clips(project: Project, actions: Collection[str]) -> list[TwinClip]:
     for ident in dict.fromkeys(actions):
         action = _action(project, ident)
         groups.setdefault(action.clip, []).append(action)
-    return _mirrored(project, {clip: (used[0].name, tuple(a.id for a in used)) for clip, used in groups.items()})
+    return _mirrored(
+        project, {clip: (used[0].name, tuple(a.id for a in used)) for clip, used in groups.items()}
+    )
 
 
 def mirrored_clips(project: Project, clips: Collection[str]) -> list[TwinClip]:
@@ -67,7 +71,9 @@ def _mirrored(project: Project, wanted: Mapping[str, tuple[str, tuple[str, ...]]
             raise EditError(str(error)) from None
         distance = float(pose_distance(twin.skeleton, entry.motion.poses(), twin.poses()).max())
         if distance < SAME and not _faces_differ(entry.motion, twin):
-            raise EditError(f"'{called}' has no side: it is within {100 * distance:.1f} cm of its mirror image")
+            raise EditError(
+                f"'{called}' has no side: it is within {100 * distance:.1f} cm of its mirror image"
+            )
         name = free_name(twin_name(entry.name), taken)
         taken.add(name)
         out.append(TwinClip(name, twin.renamed(name), actions))
@@ -77,9 +83,9 @@ def _mirrored(project: Project, wanted: Mapping[str, tuple[str, tuple[str, ...]]
 def place_twins(project: Project, pairs: Mapping[str, str]) -> Project:
     """Place twins of actions (id -> id of the mirrored clip) beside them.
 
-    They keep kind, timing and likelihood; limb, tags, joints and name change sides. A stance or end stance that has a twin by
-    name on its layer ("weight left", "weight right") is exchanged for that; a loop keeps to its own stance only when it has none.
-    Raises EditError.
+    They keep kind, timing and likelihood; limb, tags, joints and name change sides. A stance or end stance
+    that has a twin by name on its layer ("weight left", "weight right") is exchanged for that; a loop keeps
+    to its own stance only when it has none. Raises EditError.
     """
     for ident, clip in pairs.items():
         action = _action(project, ident)
@@ -94,7 +100,9 @@ def place_twins(project: Project, pairs: Mapping[str, str]) -> Project:
         end = None if action.end_stance is None else _stance_twin(project, action.end_stance)
         stance = _stance_twin(project, action.stance)
         if action.kind == "transition" and end == stance:
-            raise EditError(f"the twin of '{action.name}' would end where it starts: the stances have no twins by name")
+            raise EditError(
+                f"the twin of '{action.name}' would end where it starts: the stances have no twins by name"
+            )
         twin = replace(
             action,
             id=f"a{project.next_id}",
@@ -111,7 +119,9 @@ def place_twins(project: Project, pairs: Mapping[str, str]) -> Project:
 
 
 def twin_name(name: str) -> str:
-    """Return the name with its sides exchanged, or "... mirrored" where it says none; the twin's twin has the first name again."""
+    """Return the name with its sides exchanged, or "... mirrored" where it says none; the twin's twin has the
+    first name again.
+    """
     swapped = swap_sides(name)
     if swapped != name:
         return swapped

@@ -1,3 +1,5 @@
-"""The live session: what agents and engines ask while the character plays, over JSON lines, WebSocket and OSC."""
+"""The live session: what agents and engines ask while the character plays, over JSON lines, WebSocket and
+OSC.
+"""
 
 PORT, OSC_PORT = 8765, 8766  # of WebSocket and of OSC, where none is given

@@ -1,4 +1,6 @@
-"""What a plan does about many asks at once: `metagraph.playback.hear.answer` for a whole tick, in one pass over what is near."""
+"""What a plan does about many asks at once: `metagraph.playback.hear.answer` for a whole tick, in one pass
+over what is near.
+"""
 
 from __future__ import annotations
 
@@ -14,7 +16,9 @@ ENDLESS = 1e8  # seconds; what ends later than this ends when something else beg
 
 @dataclass(slots=True)
 class Found:
-    """All that a plan holds of one ask. starts, ends: seconds. what: actions, or words for what the life layers do."""
+    """All that a plan holds of one ask. starts, ends: seconds. what: actions, or words for what the life
+    layers do.
+    """
 
     starts: list[float] = field(default_factory=list)
     ends: list[float] = field(default_factory=list)
@@ -26,7 +30,9 @@ class Found:
     @property
     def state(self) -> str:
         if self.starts:
-            return "late" if any(r.outcome in ("late", "queued", "resumed") for r in self.reports) else "planned"
+            return (
+                "late" if any(r.outcome in ("late", "queued", "resumed") for r in self.reports) else "planned"
+            )
         if any(r.outcome == "already-there" for r in self.reports):
             return "done"
         if self.waits is not None and all(r.played for r in self.reports):
@@ -58,7 +64,9 @@ WORDS = {"LookAt": "look", "Speech": "speech", "ModeFrom": "mode", "PlaceFrom": 
 
 
 def find(plan: Plan, wanted: Collection[str], since: float = -inf) -> dict[str, Found]:
-    """Return what a plan holds of asks, for those of which it holds anything. since: seconds before which nothing matters."""
+    """Return what a plan holds of asks, for those of which it holds anything. since: seconds before which
+    nothing matters.
+    """
     out: dict[str, Found] = {}
 
     def of(ident: str) -> Found | None:
@@ -96,7 +104,9 @@ def find(plan: Plan, wanted: Collection[str], since: float = -inf) -> dict[str, 
 
 
 def owner_of(ident: str, wanted: Collection[str]) -> str | None:
-    """Return which of the wanted asks a request belongs to: its own, or that of which it is a part (`ask.1`, `ask.1.2`)."""
+    """Return which of the wanted asks a request belongs to: its own, or that of which it is a part (`ask.1`,
+    `ask.1.2`).
+    """
     while ident not in wanted:
         ident, dot, number = ident.rpartition(".")
         if not dot or not number.isdigit():

@@ -26,10 +26,11 @@ class Camera:
 def see(
     camera: Camera | None, message: Keypoints, project: Project, plan: Plan, now: float, prefix: str
 ) -> tuple[Camera, list[AnyAsk], dict[Layer, str]]:
-    """Take a frame in; return the camera, what is asked for because of it, and layer -> name of the stance the person is in.
+    """Take a frame in; return the camera, what is asked for because of it, and layer -> name of the stance
+    the person is in.
 
-    prefix: of the ids that requests of this camera have in the plan. Raises ValueError for points that cannot be, and where the project
-    has nobody who could mimic.
+    prefix: of the ids that requests of this camera have in the plan. Raises ValueError for points that cannot
+    be, and where the project has nobody who could mimic.
     """
     from metagraph.mimicry.mimic import Mimic  # only sessions that have a camera pay for it
     from metagraph.mimicry.performing import goals
@@ -37,7 +38,9 @@ def see(
     wish = (message.mirror, message.gaze, message.layers)
     if camera is None or camera.wish != wish or camera.project is not project:
         count = camera.mimic.count if camera is not None else 0
-        camera = Camera(Mimic(project, message.mirror, message.layers, message.gaze, message.priority), wish, project)
+        camera = Camera(
+            Mimic(project, message.mirror, message.layers, message.gaze, message.priority), wish, project
+        )
         camera.mimic.count = count  # ids are not used twice
     size = {len(point) for point in message.points}
     if len(size) > 1:
@@ -45,5 +48,9 @@ def see(
     # Pictures and pose estimators count y downwards and z away from the camera.
     points = [(x, -y, *(-z for z in rest)) for x, y, *rest in message.points]
     asks = camera.mimic.feed(now, points, message.confidence, goals(plan, now, prefix))
-    seen = {layer: found.name for layer, ident in camera.mimic.seen.items() if (found := project.stance(ident)) is not None}
+    seen = {
+        layer: found.name
+        for layer, ident in camera.mimic.seen.items()
+        if (found := project.stance(ident)) is not None
+    }
     return camera, asks, seen

@@ -33,12 +33,19 @@ def greeting(session: LiveSession, stream: Stream | None, ident: str) -> bytes:
         "t": round(session.now, 4),
         "project": session.project.name,
         "limits": {
-            "bytes": messages.LONGEST, "bml": messages.LONGEST_BML, "list": messages.MOST, "pending": limits.PENDING,
+            "bytes": messages.LONGEST,
+            "bml": messages.LONGEST_BML,
+            "list": messages.MOST,
+            "pending": limits.PENDING,
             "seconds": limits.FARTHEST,
         },
-    }  # fmt: skip
+    }
     if stream is not None:
-        out["poses"] = msgspec.to_builtins(stream.wish) | {"rate": stream.wish.rate, "joints": stream.names, "morphs": stream.morphs}
+        out["poses"] = msgspec.to_builtins(stream.wish) | {
+            "rate": stream.wish.rate,
+            "joints": stream.names,
+            "morphs": stream.morphs,
+        }
     return named(messages.encode(out), ident)
 
 
@@ -51,13 +58,20 @@ def status(session: LiveSession) -> bytes:
         cue, stance = lane.cue_at(now), session.project.stance(lane.stance_at(now))
         playing[layer] = {"stance": stance.name if stance is not None else None}
         if cue is not None:
-            playing[layer] |= {"action": cue.action.name, "kind": cue.action.kind, "at": round(cue.start, 4), "until": round(cue.end, 4)}
+            playing[layer] |= {
+                "action": cue.action.name,
+                "kind": cue.action.kind,
+                "at": round(cue.start, 4),
+                "until": round(cue.end, 4),
+            }
     spoken = next((s for s in reversed(plan.track.speeches) if s.start <= now < s.end), None)
     out = {
         "state": "done",
         "t": round(now, 4),
         "playing": playing,
-        "speaking": None if spoken is None else {"line": spoken.line, "text": spoken.text, "until": round(spoken.end, 4)},
+        "speaking": None
+        if spoken is None
+        else {"line": spoken.line, "text": spoken.text, "until": round(spoken.end, 4)},
         "waiting": session.ledger.pending(now),
         "clients": len(session.clients),
     }
@@ -74,7 +88,9 @@ def describe(project: Project) -> bytes:
         layers[layer] = {
             "start": graph.start,
             "stances": [{"id": s.id, "name": s.name} for s in graph.stances.values()],
-            "actions": [_action(project, x) for x in list(graph.actions.values())[:ACTIONS] if x.kind != "stance"],
+            "actions": [
+                _action(project, x) for x in list(graph.actions.values())[:ACTIONS] if x.kind != "stance"
+            ],
             "tags": dict(tags),
         }
     out = {
@@ -95,7 +111,17 @@ def describe(project: Project) -> bytes:
 
 def _action(project: Project, action: Any) -> dict[str, Any]:
     start, end = project.span(action)
-    out = {"id": action.id, "name": action.name, "kind": action.kind, "stance": action.stance, "seconds": round(end - start, 3)}
+    out = {
+        "id": action.id,
+        "name": action.name,
+        "kind": action.kind,
+        "stance": action.stance,
+        "seconds": round(end - start, 3),
+    }
     if action.kind == "transition":
         out["to"] = action.end_stance
-    return out | ({"limb": action.limb} if action.limb != "both" else {}) | ({"tags": action.tags} if action.tags else {})
+    return (
+        out
+        | ({"limb": action.limb} if action.limb != "both" else {})
+        | ({"tags": action.tags} if action.tags else {})
+    )

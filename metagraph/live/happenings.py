@@ -20,7 +20,9 @@ class Listener(Protocol):
     events: str
 
 
-def happenings(plan: Plan, ledger: Ledger, before: float, now: float, clients: Collection[Listener]) -> Iterator[tuple[int, Event]]:
+def happenings(
+    plan: Plan, ledger: Ledger, before: float, now: float, clients: Collection[Listener]
+) -> Iterator[tuple[int, Event]]:
     """Yield whom to tell what: actions and speeches that started or ended after `before`, until `now`."""
     listening = [client for client in clients if client.events]
     for word, request, what in _changes(plan, before, now) if listening else ():
@@ -29,7 +31,15 @@ def happenings(plan: Plan, ledger: Ledger, before: float, now: float, clients: C
         for client in listening:
             own = ask is not None and ask.client == client.number
             if own or client.events == "all":
-                yield client.number, Event(event=word, t=rounded(now), id=ask.ident if ask is not None and own else None, **what)  # type: ignore[arg-type]
+                yield (
+                    client.number,
+                    Event(
+                        event=word,
+                        t=rounded(now),
+                        id=ask.ident if ask is not None and own else None,
+                        **what,  # type: ignore[arg-type]
+                    ),
+                )
 
 
 def _changes(plan: Plan, before: float, now: float) -> Iterator[tuple[str, str, dict[str, Any]]]:

@@ -1,4 +1,5 @@
-"""All clients of a session, whatever line they are on: what they send is gathered into batches, answers go back in order.
+"""All clients of a session, whatever line they are on: what they send is gathered into batches, answers go
+back in order.
 
 No sockets here, and no threads: lines call in, and are told what to send.
 """
@@ -25,7 +26,11 @@ PROVE = 5.0  # seconds within which a client has to show its token
 
 BUSY_WORDS = "too much at once; try again in a moment"
 BUSY = encode(Reply(state="refused", why=BUSY_WORDS))
-SLOW, TOO_FAST, STRANGER = "reads too slowly", "asks faster than it can be answered", "needs a token: say hello with it first"
+SLOW, TOO_FAST, STRANGER = (
+    "reads too slowly",
+    "asks faster than it can be answered",
+    "needs a token: say hello with it first",
+)
 POLICY, GOING, TRY_LATER = 1008, 1001, 1013  # reasons of closing, as WebSocket numbers them
 
 
@@ -60,7 +65,9 @@ class _Client:
 
 @dataclass(slots=True)
 class _Slot:
-    """One message: its requests' answers, None for those the session has to give. listed: whether it was a list."""
+    """One message: its requests' answers, None for those the session has to give. listed: whether it was a
+    list.
+    """
 
     client: int
     answers: list[bytes | None]
@@ -83,7 +90,9 @@ class Hub:
     _flying: tuple[int, list[_Slot]] | None = None
 
     def open(self, line: Line, now: float, proven: bool = False) -> int:
-        """Let a client in; return its number, 0 when there are too many. proven: it is known or has shown the token."""
+        """Let a client in; return its number, 0 when there are too many. proven: it is known or has shown the
+        token.
+        """
         if len(self.clients) >= CLIENTS:
             self.refused += 1
             line.close(TRY_LATER, f"{CLIENTS} clients are connected already")
@@ -133,7 +142,10 @@ class Hub:
     def _proves(self, item: Heard | Reply) -> bool:
         """Whether a request shows the token."""
         return (
-            self.token is not None and isinstance(item, Heard) and isinstance(item.message, Hello) and same(item.message.token, self.token)
+            self.token is not None
+            and isinstance(item, Heard)
+            and isinstance(item.message, Hello)
+            and same(item.message.token, self.token)
         )
 
     def _answered(self, number: int, reply: Reply) -> None:
@@ -148,7 +160,10 @@ class Hub:
         if isinstance(message, Hello):
             wish = message.poses
             if isinstance(wish, msgspec.Struct) and wish.format not in client.line.formats:
-                words = f"poses: this line carries them as {' or '.join(client.line.formats)}, not as {wish.format}"
+                words = (
+                    f"poses: this line carries them as {' or '.join(client.line.formats)}, not as "
+                    f"{wish.format}"
+                )
                 return encode(Reply(id=message.id or None, error=words))
             item = Heard(msgspec.structs.replace(message, token=""))
         if len(self._asked) >= PER_BATCH or client.taken >= PER_BATCH // 2:

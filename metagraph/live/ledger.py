@@ -1,4 +1,6 @@
-"""What a live session still owes an answer for: the asks that have not ended, and how many wait for which layer."""
+"""What a live session still owes an answer for: the asks that have not ended, and how many wait for which
+layer.
+"""
 
 from __future__ import annotations
 
@@ -17,21 +19,28 @@ _NAMED = re.compile(r"'c(\d+)/([^']*)'")
 
 
 def key_of(client: int, ident: str) -> str:
-    """Return what a client's id is called in the plan: apart from other clients', and free of what has a meaning there."""
+    """Return what a client's id is called in the plan: apart from other clients', and free of what has a
+    meaning there.
+    """
     if _SAFE.fullmatch(ident) or not ident:
         return f"c{client}/{ident}"
     return f"c{client}/~{hashlib.blake2s(ident.encode('utf-8', 'surrogatepass'), digest_size=12).hexdigest()}"
 
 
 def told(why: str, client: int) -> str:
-    """Return words about requests as a client may read them: its own ids as it says them, other clients' not at all."""
-    return _NAMED.sub(lambda m: f"'{m[2]}'" if int(m[1]) == client else "another client's request", why)[:1000]
+    """Return words about requests as a client may read them: its own ids as it says them, other clients' not
+    at all.
+    """
+    return _NAMED.sub(lambda m: f"'{m[2]}'" if int(m[1]) == client else "another client's request", why)[
+        :1000
+    ]
 
 
 @dataclass(slots=True)
 class Known:
-    """An ask that has not ended. ident: its id as its client says it. at: when it begins, as far as known. missed: seconds by
-    which it was asked for too late. settled: whether it was answered."""
+    """An ask that has not ended. ident: its id as its client says it. at: when it begins, as far as known.
+    missed: seconds by which it was asked for too late. settled: whether it was answered.
+    """
 
     client: int
     ident: str
@@ -128,5 +137,7 @@ class Ledger:
         over = [key for key, ask in self.known.items() if ask.settled and ask.at < now and ask.over(now)]
         for key in over:
             self.drop(key)
-        for key in [key for key, parts in self.blocks.items() if not any(part in self.known for part in parts)]:
+        for key in [
+            key for key, parts in self.blocks.items() if not any(part in self.known for part in parts)
+        ]:
             del self.blocks[key]

@@ -1,4 +1,6 @@
-"""How much a live session takes on, so that nobody can make it stall: what goes beyond is refused with the reason."""
+"""How much a live session takes on, so that nobody can make it stall: what goes beyond is refused with the
+reason.
+"""
 
 from __future__ import annotations
 
@@ -22,7 +24,15 @@ TAG = 200  # characters that a tag of it counts for besides its own
 HINTS = 4  # words nobody knows that are looked up among those known, in a second
 NAMES = 64  # points a session knows by name
 SPAN = 4.0  # seconds over which these rates are counted
-RATES = {"look": 60, "place": 500, "blink": 16, "say": 16, "mode": 16, "withdraw": 240, "keypoints": 960}  # in SPAN seconds
+RATES = {
+    "look": 60,
+    "place": 500,
+    "blink": 16,
+    "say": 16,
+    "mode": 16,
+    "withdraw": 240,
+    "keypoints": 960,
+}  # in SPAN seconds
 
 BUSY = "too much at once; try again in a moment"
 
@@ -126,7 +136,9 @@ class Limits:
                 return f"the {lane} layer is taken for the next {wait:g} s by what is as important"
             count = self.lanes[lane].before(at, wait, priority)
             if count >= WAITING:
-                return f"{count} requests as important wait for the {lane} layer within {wait:g} s of that time"
+                return (
+                    f"{count} requests as important wait for the {lane} layer within {wait:g} s of that time"
+                )
             return ""
         times = self.recent.setdefault(lane, deque())
         if lane in RATES and len(times) >= RATES[lane]:
@@ -139,7 +151,11 @@ def unknown(project: Project, ask: Any, limits: Limits) -> str:
     """Say that there is nothing of a name that an ask has; for a few asks a tick, which names there are."""
     limits.hints += 1
     what, name = (
-        ("line", ask.line) if isinstance(ask, a.Say) else ("action", ask.action) if isinstance(ask, a.Play) else ("stance", ask.stance)
+        ("line", ask.line)
+        if isinstance(ask, a.Say)
+        else ("action", ask.action)
+        if isinstance(ask, a.Play)
+        else ("stance", ask.stance)
     )
     if limits.hints <= HINTS:
         try:

@@ -1,7 +1,8 @@
 """What a client may send and what it gets back: JSON objects, one or a list of them to a message.
 
-A request is an ask (`metagraph.graph.asks`), which may say `in` seconds from now instead of `at`; or one of the session's own:
-hello, status, describe. Every request gets exactly one reply; what happens later is told as events to those who want them.
+A request is an ask (`metagraph.graph.asks`), which may say `in` seconds from now instead of `at`; or one of
+the session's own: hello, status, describe. Every request gets exactly one reply; what happens later is told
+as events to those who want them.
 """
 
 from __future__ import annotations
@@ -24,9 +25,10 @@ Space = Literal["local", "model"]
 
 
 class Poses(Struct, frozen=True, kw_only=True, omit_defaults=True, forbid_unknown_fields=True):
-    """How poses are streamed. rate: frames a second. format: "osc" for clients that speak it. joints: which, in which order;
-    all where it is null. space: rotations to the parent joint, or positions and rotations in the character's space.
-    translations: of all joints, not the root's alone."""
+    """How poses are streamed. rate: frames a second. format: "osc" for clients that speak it. joints: which,
+    in which order; all where it is null. space: rotations to the parent joint, or positions and rotations in
+    the character's space. translations: of all joints, not the root's alone.
+    """
 
     rate: Annotated[float, Meta(gt=0, le=FASTEST)] = 30.0
     format: Literal["json", "binary", "osc"] = "json"
@@ -40,9 +42,10 @@ class _Own(Struct, frozen=True, kw_only=True, omit_defaults=True, forbid_unknown
 
 
 class Hello(_Own, frozen=True, tag="hello"):
-    """Says who one is and what one wants to be told; may be sent again to change that. token: where the server asks for one.
-    poses: null for none. events: whether to be told when what one asked for changes, starts and ends; "all" for what plays of
-    itself and what others asked for, too."""
+    """Says who one is and what one wants to be told; may be sent again to change that. token: where the
+    server asks for one. poses: null for none. events: whether to be told when what one asked for changes,
+    starts and ends; "all" for what plays of itself and what others asked for, too.
+    """
 
     name: Annotated[str, Meta(max_length=200)] = ""
     token: Annotated[str, Meta(max_length=1000)] = ""
@@ -63,10 +66,12 @@ Share = Annotated[float, Meta(ge=0, le=1)]
 
 
 class Keypoints(_Own, frozen=True, tag="keypoints"):
-    """Somebody before a camera at this moment, who is mimicked. points: `[x, y]` of a picture or `[x, y, z]` of space, 17 (COCO),
-    18, 25 (OpenPose) or 33 (MediaPipe) of them, y downwards, z away from the camera. confidence: of each point; 0 for what was not
-    found. mirror: the character moves its right where the person moves the left. gaze: it looks where the head is turned,
-    too. layers: which mimic. priority: of what is asked for because of it."""
+    """Somebody before a camera at this moment, who is mimicked. points: `[x, y]` of a picture or `[x, y, z]`
+    of space, 17 (COCO), 18, 25 (OpenPose) or 33 (MediaPipe) of them, y downwards, z away from the camera.
+    confidence: of each point; 0 for what was not found. mirror: the character moves its right where the
+    person moves the left. gaze: it looks where the head is turned, too. layers: which mimic. priority: of
+    what is asked for because of it.
+    """
 
     points: Annotated[tuple[Place, ...], Meta(min_length=17, max_length=33)]
     confidence: Annotated[tuple[Share, ...], Meta(max_length=33)] | None = None
@@ -82,7 +87,9 @@ WORDS: tuple[str, ...] = (*a.WORDS, *(str(kind.__struct_config__.tag) for kind i
 
 
 class Heard(Struct, frozen=True, array_like=True):
-    """A request as it was understood. after: seconds from now at which it should begin, where it said `in`."""
+    """A request as it was understood. after: seconds from now at which it should begin, where it said
+    `in`.
+    """
 
     message: Message
     after: float | None = None
@@ -104,9 +111,10 @@ class Part(Struct, frozen=True, kw_only=True, omit_defaults=True):
 
 
 class Reply(Struct, frozen=True, kw_only=True, omit_defaults=True):
-    """What becomes of a request. at, until: seconds of the session at which it plays. actions: what plays. notes: what was
-    left out of it. seen: of keypoints, layer -> the stance somebody is in. error: what is wrong with it, where it could not be
-    understood; then nothing else is said."""
+    """What becomes of a request. at, until: seconds of the session at which it plays. actions: what plays.
+    notes: what was left out of it. seen: of keypoints, layer -> the stance somebody is in. error: what is
+    wrong with it, where it could not be understood; then nothing else is said.
+    """
 
     id: str | None = None
     state: State | None = None
@@ -122,8 +130,9 @@ class Reply(Struct, frozen=True, kw_only=True, omit_defaults=True):
 
 
 class Event(Struct, frozen=True, kw_only=True, omit_defaults=True):
-    """Something that happened. changed: what was planned is planned otherwise, state and times as in a reply. started,
-    ended: an action, or speech, with the words said."""
+    """Something that happened. changed: what was planned is planned otherwise, state and times as in a reply.
+    started, ended: an action, or speech, with the words said.
+    """
 
     event: Literal["changed", "started", "ended", "closed"]
     t: float
@@ -151,9 +160,13 @@ def rounded(seconds: float | None) -> float | None:
 
 
 def split(data: bytes | str) -> tuple[list[bytes | str | msgspec.Raw], bool]:
-    """Return the requests of a message, and whether it was a list. Raises AskError for one that is too long or no list."""
+    """Return the requests of a message, and whether it was a list. Raises AskError for one that is too long
+    or no list.
+    """
     if len(data) > LONGEST_MESSAGE:
-        raise a.AskError(f"a message has at most {LONGEST_MESSAGE // 1024} KiB, not {len(data) // 1024}; send several")
+        raise a.AskError(
+            f"a message has at most {LONGEST_MESSAGE // 1024} KiB, not {len(data) // 1024}; send several"
+        )
     if data.lstrip()[:1] not in ("[", b"["):
         return [data], False
     try:
@@ -169,7 +182,10 @@ def read(data: bytes | str | msgspec.Raw) -> Heard | Reply:
     """Return one request, or the reply that says what is wrong with it."""
     size = len(memoryview(data)) if isinstance(data, msgspec.Raw) else len(data)
     if size > LONGEST and not (size <= LONGEST_BML and _holds_bml(data)):
-        return Reply(error=f"a request has at most {LONGEST // 1024} KiB, a block of BML {LONGEST_BML // 1024}, not {size // 1024}")
+        return Reply(
+            error=f"a request has at most {LONGEST // 1024} KiB, a block of BML {LONGEST_BML // 1024}, not "
+            f"{size // 1024}"
+        )
     try:
         return Heard(_message.decode(data))
     except msgspec.ValidationError as error:
@@ -217,18 +233,32 @@ def _words(error: Exception) -> str:
 
 
 def schema() -> dict[str, Any]:
-    """Return the JSON Schema (draft 2020-12) of the live session: requests, lists of them, replies and events."""
+    """Return the JSON Schema (draft 2020-12) of the live session: requests, lists of them, replies and
+    events.
+    """
     asks = msgspec.json.schema_components([Message, Reply, Event], ref_template="#/$defs/{name}")
     (requests, reply, event), parts = asks
     for name, part in parts.items():
         if name in {kind.__name__ for kind in get_args(a.AnyAsk)}:
             part["properties"]["in"] = {
-                "type": "number", "minimum": 0, "maximum": 1e6, "description": "seconds from now, instead of `at`",
-            }  # fmt: skip
+                "type": "number",
+                "minimum": 0,
+                "maximum": 1e6,
+                "description": "seconds from now, instead of `at`",
+            }
     return {
         "$schema": "https://json-schema.org/draft/2020-12/schema",
         "title": "Metagraph live session",
-        "description": "What a client sends: a request or a list of them. Definitions Reply and Event are what it gets.",
-        "anyOf": [{"$ref": "#/$defs/Request"}, {"type": "array", "maxItems": MOST, "items": {"$ref": "#/$defs/Request"}}],
-        "$defs": {"Request": requests, **parts, "Reply": parts.get("Reply", reply), "Event": parts.get("Event", event)},
+        "description": "What a client sends: a request or a list of them. Definitions Reply and Event are "
+        "what it gets.",
+        "anyOf": [
+            {"$ref": "#/$defs/Request"},
+            {"type": "array", "maxItems": MOST, "items": {"$ref": "#/$defs/Request"}},
+        ],
+        "$defs": {
+            "Request": requests,
+            **parts,
+            "Reply": parts.get("Reply", reply),
+            "Event": parts.get("Event", event),
+        },
     }

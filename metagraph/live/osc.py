@@ -1,4 +1,6 @@
-"""OSC over UDP: messages in, and for those who ask replies, events and poses out. The addresses are listed in docs/live.md."""
+"""OSC over UDP: messages in, and for those who ask replies, events and poses out. The addresses are listed in
+docs/live.md.
+"""
 
 from __future__ import annotations
 
@@ -23,14 +25,18 @@ class OscError(ValueError):
 def request(address: str, values: Sequence[Any]) -> Mapping[str, Any]:
     """Return the request an OSC message says. Raises OscError with what would be right.
 
-    Texts like `priority=3` or `in=0.5` set fields of any request; the other values mean what the address says.
+    Texts like `priority=3` or `in=0.5` set fields of any request; the other values mean what the address
+    says.
     """
     word = address.removeprefix(ROOT)
     if word == address:
         raise OscError(f"addresses begin with {ROOT}")
     more = dict(_field(x) for x in values if isinstance(x, str) and "=" in x)
     plain = [x for x in values if not (isinstance(x, str) and "=" in x)]
-    texts, numbers = [x for x in plain if isinstance(x, str)], [float(x) for x in plain if isinstance(x, int | float)]
+    texts, numbers = (
+        [x for x in plain if isinstance(x, str)],
+        [float(x) for x in plain if isinstance(x, int | float)],
+    )
     match word:
         case "gesture" | "fidget":
             layer = {"layer": texts[0]} if texts and texts[0] in LAYERS else {}
@@ -80,7 +86,9 @@ def _field(text: str) -> tuple[str, Any]:
 
 
 def texts_of(datagram: bytes) -> Iterator[tuple[str, bytes | str | OscError | bool]]:
-    """Yield, for each message of a datagram, its address and the JSON it says, what is wrong, or whether replies are wanted."""
+    """Yield, for each message of a datagram, its address and the JSON it says, what is wrong, or whether
+    replies are wanted.
+    """
     from pythonosc.osc_packet import OscPacket  # only sessions that listen for OSC pay for it
 
     try:

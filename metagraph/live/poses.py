@@ -56,9 +56,16 @@ class Stream:
         if unknown:
             raise AskError(f"there is no joint '{unknown[0][:60]}'; 'describe' lists them")
         names = skeleton.names if wish.joints is None else wish.joints
-        morphs = dict.fromkeys(name for entry in project.clips.values() if entry.motion is not None for name in entry.motion.morphs)
+        morphs = dict.fromkeys(
+            name
+            for entry in project.clips.values()
+            if entry.motion is not None
+            for name in entry.motion.morphs
+        )
         places = np.array([skeleton.names.index(name) for name in names], np.int64)
-        return cls(wish, places, tuple(names), (*morphs, *(m for m in project.face.morphs if m not in morphs)), now)
+        return cls(
+            wish, places, tuple(names), (*morphs, *(m for m in project.face.morphs if m not in morphs)), now
+        )
 
     @property
     def key(self) -> Any:
@@ -71,7 +78,9 @@ def due(now: float, plan: Plan, project: Project, streams: Sequence[tuple[int, S
     groups: dict[Any, list[tuple[int, Stream]]] = {}
     for client, stream in streams:
         if stream.next <= now and project.skeleton is not None:
-            stream.next = (floor(now * stream.wish.rate + 1e-6) + 1) / stream.wish.rate  # those of one rate are due together
+            stream.next = (
+                floor(now * stream.wish.rate + 1e-6) + 1
+            ) / stream.wish.rate  # those of one rate are due together
             groups.setdefault(stream.key, []).append((client, stream))
     if not groups or project.skeleton is None:
         return []
@@ -86,8 +95,12 @@ def due(now: float, plan: Plan, project: Project, streams: Sequence[tuple[int, S
     return out
 
 
-def frame(stream: Stream, now: float, pose: Pose, turned: tuple[Array, Array] | None, weights: dict[str, float]) -> bytes:
-    """Return one pose as a client wants it. turned: rotations and positions in the character's space, where they are needed."""
+def frame(
+    stream: Stream, now: float, pose: Pose, turned: tuple[Array, Array] | None, weights: dict[str, float]
+) -> bytes:
+    """Return one pose as a client wants it. turned: rotations and positions in the character's space, where
+    they are needed.
+    """
     wish, joints = stream.wish, stream.joints
     root = pose.translations[0]
     rotations, places = pose.rotations[joints], pose.translations[joints] if wish.translations else None
@@ -96,7 +109,12 @@ def frame(stream: Stream, now: float, pose: Pose, turned: tuple[Array, Array] | 
     if wish.format == "binary":
         flags = (MODEL if wish.space == "model" else 0) | (TRANSLATIONS if places is not None else 0)
         head = HEADER.pack(MAGIC, flags, len(joints), len(stream.morphs), 0, now)
-        parts = [root, rotations, *([] if places is None else [places]), np.array([weights.get(m, 0.0) for m in stream.morphs])]
+        parts = [
+            root,
+            rotations,
+            *([] if places is None else [places]),
+            np.array([weights.get(m, 0.0) for m in stream.morphs]),
+        ]
         return head + b"".join(np.ascontiguousarray(part, "<f4").tobytes() for part in parts)
     if wish.format == "osc":
         return _osc(stream, now, root, rotations, places, weights)
@@ -112,14 +130,25 @@ def _plain(values: Array) -> Any:
     return np.round(values.astype(np.float64), 5).tolist()
 
 
-def _osc(stream: Stream, now: float, root: Array, rotations: Array, places: Array | None, weights: dict[str, float]) -> bytes:
-    """Return an OSC bundle: /metagraph/pose with the time, /metagraph/root, one /metagraph/joint each, one /metagraph/weight each."""
+def _osc(
+    stream: Stream, now: float, root: Array, rotations: Array, places: Array | None, weights: dict[str, float]
+) -> bytes:
+    """Return an OSC bundle: /metagraph/pose with the time, /metagraph/root, one /metagraph/joint each, one
+    /metagraph/weight each.
+    """
     if not stream.prefixes:
         tags = ",sffff" if places is None else ",sfffffff"
         stream.prefixes = [padded("/metagraph/joint") + padded(tags) + padded(name) for name in stream.names]
     numbers = rotations if places is None else np.concatenate([rotations, places], axis=1)
     parts = [padded("/metagraph/pose") + padded(",d") + struct.pack(">d", now)]
     parts.append(padded("/metagraph/root") + padded(",fff") + root.astype(">f4").tobytes())
-    parts += [prefix + row.tobytes() for prefix, row in zip(stream.prefixes, numbers.astype(">f4"), strict=True)]
-    parts += [padded("/metagraph/weight") + padded(",sf") + padded(name) + struct.pack(">f", x) for name, x in weights.items()]
-    return b"#bundle\0" + struct.pack(">Q", 1) + b"".join(struct.pack(">i", len(part)) + part for part in parts)
+    parts += [
+        prefix + row.tobytes() for prefix, row in zip(stream.prefixes, numbers.astype(">f4"), strict=True)
+    ]
+    parts += [
+        padded("/metagraph/weight") + padded(",sf") + padded(name) + struct.pack(">f", x)
+        for name, x in weights.items()
+    ]
+    return (
+        b"#bundle\0" + struct.pack(">Q", 1) + b"".join(struct.pack(">i", len(part)) + part for part in parts)
+    )

@@ -1,5 +1,6 @@
-"""A session's lines in a process of their own, for a window that must not wait: reading, checking, writing happen there, and
-what is left for the window's thread is one batch a tick."""
+"""A session's lines in a process of their own, for a window that must not wait: reading, checking, writing
+happen there, and what is left for the window's thread is one batch a tick.
+"""
 
 from __future__ import annotations
 
@@ -26,7 +27,9 @@ _ready = msgspec.msgpack.Decoder(Ready)
 
 
 class Relay:
-    """The window's end; nothing here waits. Raises LiveError for options that are not safe; what goes wrong later is in `error`."""
+    """The window's end; nothing here waits. Raises LiveError for options that are not safe; what goes wrong
+    later is in `error`.
+    """
 
     def __init__(self, options: Options) -> None:
         self.options = checked(options)
@@ -40,7 +43,9 @@ class Relay:
         """Start the child; `ready` is set by a later `tick`."""
         context = multiprocessing.get_context("spawn")
         ours, theirs = context.Pipe()
-        self._process = context.Process(target=serve, args=(theirs, pack(self.options)), name="metagraph live", daemon=True)
+        self._process = context.Process(
+            target=serve, args=(theirs, pack(self.options)), name="metagraph live", daemon=True
+        )
         self._process.start()
         theirs.close()
         threading.Thread(target=_receive, args=(ours, self._in), daemon=True).start()

@@ -1,4 +1,6 @@
-"""The published JSON Schemas of what can be asked: `python -m metagraph.live.schemas` writes them anew after a change."""
+"""The published JSON Schemas of what can be asked: `python -m metagraph.live.schemas` writes them anew after
+a change.
+"""
 
 from __future__ import annotations
 
@@ -14,7 +16,9 @@ GRAPH, LIVE = Path(asks.__file__).with_name("asks.schema.json"), Path(__file__).
 
 
 def texts() -> dict[Path, bytes]:
-    """Return the files: one ask as performances, lines and agents have it; all that a live session says and hears."""
+    """Return the files: one ask as performances, lines and agents have it; all that a live session says and
+    hears.
+    """
     return {GRAPH: _text(asks.schema()), LIVE: _text(messages.schema())}
 
 

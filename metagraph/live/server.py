@@ -25,9 +25,10 @@ CHECK = 1.0  # seconds between looks at who is still there
 
 
 class Options(Struct, frozen=True):
-    """Where to listen. host: loopback, on both IP versions, where it is empty. port, osc: 0 for any free one, None for none.
-    origins: web pages that may connect besides those of this machine, "null" for those from files. stdio: whether standard
-    input and output are a client."""
+    """Where to listen. host: loopback, on both IP versions, where it is empty. port, osc: 0 for any free one,
+    None for none. origins: web pages that may connect besides those of this machine, "null" for those from
+    files. stdio: whether standard input and output are a client.
+    """
 
     host: str = ""
     port: int | None = PORT
@@ -46,7 +47,10 @@ def checked(options: Options) -> Options:
     if options.token is not None and not options.token:
         raise LiveError("the token is empty; leave it out or give one")
     if not is_loopback(options.host) and options.token is None:
-        words = f"to listen on {options.host} a token is needed, so that not everyone there can move the character; "
+        words = (
+            f"to listen on {options.host} a token is needed, so that not everyone there can move the "
+            "character; "
+        )
         raise LiveError(words + f"choose one, for example --token {secrets.token_urlsafe(12)}")
     for port in (options.port, options.osc):
         if port is not None and not 0 <= port <= 65535:
@@ -65,7 +69,9 @@ def is_loopback(host: str) -> bool:
 
 
 class Server:
-    """Opens the lines and passes batches on. clock: seconds, of any beginning. pipes: what to read lines from and write them to."""
+    """Opens the lines and passes batches on. clock: seconds, of any beginning. pipes: what to read lines from
+    and write them to.
+    """
 
     def __init__(self, options: Options, clock: Callable[[], float], pipes: tuple[int, int] = (0, 1)) -> None:
         self.options, self.clock, self.pipes = checked(options), clock, pipes
@@ -89,7 +95,9 @@ class Server:
         except OSError as error:
             await self.close()
             words = error.strerror or str(error)
-            raise LiveError(f"cannot listen on {hosts[0]}: {words}. Choose another port, or 0 for any free one.") from None
+            raise LiveError(
+                f"cannot listen on {hosts[0]}: {words}. Choose another port, or 0 for any free one."
+            ) from None
         if options.stdio:
             self._stdio = StdioLine(asyncio.get_running_loop().call_soon_threadsafe, self._line, *self.pipes)
             self._stdio_number = self.hub.open(self._stdio, self.clock(), proven=True)
@@ -119,7 +127,9 @@ class Server:
         from metagraph.live.osc import OscLine
 
         loop = asyncio.get_running_loop()
-        transport, self._osc = await loop.create_datagram_endpoint(lambda: OscLine(self.hub, self.clock), (host, port))
+        transport, self._osc = await loop.create_datagram_endpoint(
+            lambda: OscLine(self.hub, self.clock), (host, port)
+        )
         return host, int(transport.get_extra_info("sockname")[1])
 
     def _line(self, line: bytes | None) -> None:
@@ -134,7 +144,9 @@ class Server:
             self._stdio.send([(data, False)])
 
     async def run(self, step: Callable[[Batch | None], Result | None]) -> None:
-        """Pass batches to `step` and its results on, every tick, until stopped; what was asked by then is answered first."""
+        """Pass batches to `step` and its results on, every tick, until stopped; what was asked by then is
+        answered first.
+        """
         checks, following, end = 0.0, self.clock(), float("inf")
         while True:
             last = self.stopped.is_set()

@@ -1,7 +1,9 @@
-"""The live session: requests come in between two ticks, are worked into the plan at once, and each is told what becomes of it.
+"""The live session: requests come in between two ticks, are worked into the plan at once, and each is told
+what becomes of it.
 
-No threads and no clock: time is passed in, seconds since the session began. The plan of a session is the plan of a performance
-(`metagraph.playback.hear`): what was asked, with when it became known, is kept and performs again as it was played.
+No threads and no clock: time is passed in, seconds since the session began. The plan of a session is the plan
+of a performance (`metagraph.playback.hear`): what was asked, with when it became known, is kept and performs
+again as it was played.
 """
 
 from __future__ import annotations
@@ -20,8 +22,32 @@ from metagraph.live.answers import Found, find, owner_of
 from metagraph.live.camera import see
 from metagraph.live.happenings import happenings
 from metagraph.live.ledger import Known, Ledger, key_of, told
-from metagraph.live.limits import BML_PER_TICK, BUSY, FARTHEST, NAMES, PENDING, PER_TICK, SPEECH, TAG, Words, unknown
-from metagraph.live.messages import Describe, Event, Heard, Hello, Keypoints, OwnMessage, Part, Reply, Status, read, rounded, split
+from metagraph.live.limits import (
+    BML_PER_TICK,
+    BUSY,
+    FARTHEST,
+    NAMES,
+    PENDING,
+    PER_TICK,
+    SPEECH,
+    TAG,
+    Words,
+    unknown,
+)
+from metagraph.live.messages import (
+    Describe,
+    Event,
+    Heard,
+    Hello,
+    Keypoints,
+    OwnMessage,
+    Part,
+    Reply,
+    Status,
+    read,
+    rounded,
+    split,
+)
 from metagraph.live.poses import Stream, due
 from metagraph.live.tape import Tape
 from metagraph.live.work import Client, Open, Out, Work, thinned
@@ -37,7 +63,9 @@ TOLD = 100  # of what was told to others than those who ask, the last are kept
 
 
 class LiveSession:
-    """One character, played live. Arguments as for `perform`; history: seconds of past that are kept; ahead: of plan."""
+    """One character, played live. Arguments as for `perform`; history: seconds of past that are kept; ahead:
+    of plan.
+    """
 
     def __init__(
         self,
@@ -88,8 +116,9 @@ class LiveSession:
         self._queue += [(client, read(request)) for request in requests]
 
     def warm(self, most: int | None = None) -> None:
-        """Work out beforehand what requests with a stroke or a hold need to know of gestures, a millisecond each; most: how many
-        now, all where None. Ticks do one each."""
+        """Work out beforehand what requests with a stroke or a hold need to know of gestures, a millisecond
+        each; most: how many now, all where None. Ticks do one each.
+        """
         while self._cold and most != 0:
             phases(self.project, self._cold.pop())
             most = None if most is None else most - 1
@@ -124,7 +153,12 @@ class LiveSession:
         out.events += happenings(self.plan, self.ledger, before, self.now, self.clients.values())
         self._tidy()
         self.warm(1)
-        out.frames = due(self.now, self.plan, self.project, [(c.number, c.stream) for c in self.clients.values() if c.stream])
+        out.frames = due(
+            self.now,
+            self.plan,
+            self.project,
+            [(c.number, c.stream) for c in self.clients.values() if c.stream],
+        )
         return out
 
     def _take(self, client: Client, heard: Heard, work: Work, place: int) -> Reply | bytes | None:
@@ -139,7 +173,9 @@ class LiveSession:
             client.count += 1
             ident = f"#{client.count}"
         key = key_of(client.number, ident)
-        ask: Any = msgspec.structs.replace(message, at=message.at if heard.after is None else self.now + heard.after, told=self.now)
+        ask: Any = msgspec.structs.replace(
+            message, at=message.at if heard.after is None else self.now + heard.after, told=self.now
+        )
         if isinstance(ask, a.Withdraw):
             return self._withdraw(client, ident, ask, work)
         if isinstance(ask, a.Bml):
@@ -168,7 +204,9 @@ class LiveSession:
             client.events = "all" if message.events == "all" else "own" if message.events else ""
         if message.poses is not msgspec.UNSET:
             try:
-                client.stream = None if message.poses is None else Stream.of(message.poses, self.project, self.now)
+                client.stream = (
+                    None if message.poses is None else Stream.of(message.poses, self.project, self.now)
+                )
             except a.AskError as error:
                 return Reply(id=message.id or None, error=str(error))
         return describe.greeting(self, client.stream, message.id)
@@ -182,7 +220,9 @@ class LiveSession:
         for name in ("at", "stroke", "duration"):
             value = getattr(ask, name, None)
             if value is not None and value > FARTHEST + (0.0 if name == "duration" else self.now):
-                return f"{name}: at most {FARTHEST:g} s" + (f" ahead; it is {self.now:.1f} s" if name != "duration" else "")
+                return f"{name}: at most {FARTHEST:g} s" + (
+                    f" ahead; it is {self.now:.1f} s" if name != "duration" else ""
+                )
         if isinstance(ask, a.Say) and len(ask.text) > SPEECH:
             return f"at most {SPEECH} characters can be said at once; say it in pieces"
         if ask.at is not None and ask.at < self.now:
@@ -220,10 +260,16 @@ class LiveSession:
         target, mine = key_of(client.number, ask.what), key_of(client.number, "")
         keys = self.ledger.belonging(target) if ask.what else list(self.ledger.of(client.number))
         # What has begun and lasts is not in the ledger any more, but can still be ended.
-        lasting = [x.id for x in self.plan.track.items if getattr(x, "end", 0.0) > self.now and x.id not in self.ledger.known]
+        lasting = [
+            x.id
+            for x in self.plan.track.items
+            if getattr(x, "end", 0.0) > self.now and x.id not in self.ledger.known
+        ]
         keys += [x for x in lasting if (owner_of(x, (target,)) if ask.what else x.startswith(mine))]
         if not keys:
-            return Reply(id=ident, state="done", why="nothing waits under that id" if ask.what else "nothing waits")
+            return Reply(
+                id=ident, state="done", why="nothing waits under that id" if ask.what else "nothing waits"
+            )
         self._take_back([target] if ask.what else keys, work)
         return Reply(id=ident, state="done", why=f"{len(keys)} taken back; what has begun plays on")
 
@@ -250,20 +296,31 @@ class LiveSession:
                 block = read_block(ask.bml, max(begin, *last, begin), ask.priority, self.project)
         except a.AskError as error:
             return Reply(id=open_.ident, error=str(error))
-        self._take_back([open_.key] if open_.key in self.ledger.blocks or open_.key in self.ledger.known else [], work)
-        open_.notes, open_.parts = block.notes, self._parts(client, open_, block, begin if ask.at is not None else None, work)
+        self._take_back(
+            [open_.key] if open_.key in self.ledger.blocks or open_.key in self.ledger.known else [], work
+        )
+        open_.notes, open_.parts = (
+            block.notes,
+            self._parts(client, open_, block, begin if ask.at is not None else None, work),
+        )
         self.ledger.blocks[open_.key] = tuple(key for key, _, _, why in open_.parts if not why)
         work.open[open_.key] = open_
         return None
 
-    def _parts(self, client: Client, open_: Open, block: Block, at: float | None, work: Work) -> list[tuple[str, str, str, str]]:
-        """Take on what a block asks for; return of each its key, what it is called, the ask, and why it was refused already."""
+    def _parts(
+        self, client: Client, open_: Open, block: Block, at: float | None, work: Work
+    ) -> list[tuple[str, str, str, str]]:
+        """Take on what a block asks for; return of each its key, what it is called, the ask, and why it was
+        refused already.
+        """
         out = []
         for n, ask in enumerate(block.asks):
             key, called = f"{open_.key}.{n + 1}", ask.id or f"{open_.ident}.{n + 1}"
             word = str(ask.__struct_config__.tag)
             if isinstance(ask, a.Withdraw):
-                self._take_back([key_of(client.number, ask.what)] if ask.what else [*self.ledger.of(client.number)], work)
+                self._take_back(
+                    [key_of(client.number, ask.what)] if ask.what else [*self.ledger.of(client.number)], work
+                )
                 continue
             timed: Any = msgspec.structs.replace(ask, at=at if ask.at is None else ask.at, told=self.now)
             out.append((key, called, word, self._admit(client, called, key, timed, work)))
@@ -275,7 +332,9 @@ class LiveSession:
         if self.ledger.limits.refusal("keypoints", self.now, 0.0, 0, self.now):
             return Reply(id=ident, state="refused", why=BUSY)
         try:
-            client.camera, asks, seen = see(client.camera, message, self.project, self.plan, self.now, key_of(client.number, "mimic"))
+            client.camera, asks, seen = see(
+                client.camera, message, self.project, self.plan, self.now, key_of(client.number, "mimic")
+            )
         except ValueError as error:
             return Reply(id=ident, error=str(error))
         if not asks:
@@ -289,7 +348,9 @@ class LiveSession:
     # --- the plan
 
     def _plan(self, work: Work, out: Out) -> None:
-        """Work a tick's asks in, answer them, and tell of others that are planned otherwise because of them."""
+        """Work a tick's asks in, answer them, and tell of others that are planned otherwise because of
+        them.
+        """
         now, ledger = self.now, self.ledger
         self.running.reach(now, self._edited)
         if work.asks:
@@ -324,9 +385,14 @@ class LiveSession:
             self.ledger.settle(key, found)
         why = f"asked for {ask.missed:.2f} s ago" if ask.missed > 0 and not found.why else found.why
         return Reply(
-            id=ask.ident, state=found.said(ask.missed), layer=found.layer, at=rounded(found.at), until=rounded(found.until),  # type: ignore[arg-type]
-            actions=tuple(found.what), why=told(why, ask.client),
-        )  # fmt: skip
+            id=ask.ident,
+            state=found.said(ask.missed),  # type: ignore[arg-type]
+            layer=found.layer,
+            at=rounded(found.at),
+            until=rounded(found.until),
+            actions=tuple(found.what),
+            why=told(why, ask.client),
+        )
 
     def _settle_block(self, open_: Open, found: Mapping[str, Found]) -> Reply:
         """Return the reply to a block of BML: of each behaviour, and of all of them."""
@@ -336,16 +402,32 @@ class LiveSession:
                 parts.append(Part(id=called, do=word, state="refused", why=why or "taken back"))
                 continue
             r = self._settle(key, found.get(key, Found()))
-            parts.append(Part(id=called, do=word, state=r.state or "refused", at=r.at, until=r.until, actions=r.actions, why=r.why))
+            parts.append(
+                Part(
+                    id=called,
+                    do=word,
+                    state=r.state or "refused",
+                    at=r.at,
+                    until=r.until,
+                    actions=r.actions,
+                    why=r.why,
+                )
+            )
         states = {part.state for part in parts}
         state = next((s for s in ("late", "planned", "done", "refused") if s in states), "done")
         starts = [p.at for p in parts if p.at is not None]
         ends = [p.until for p in parts if p.until is not None]
         return Reply(
-            id=open_.ident or None, state=state, at=min(starts, default=None), until=max(ends, default=None), notes=open_.notes,  # type: ignore[arg-type]
-            actions=tuple(x for p in parts for x in p.actions), parts=tuple(parts),
-            why="" if parts else "nothing in it was understood", seen=open_.seen,
-        )  # fmt: skip
+            id=open_.ident or None,
+            state=state,  # type: ignore[arg-type]
+            at=min(starts, default=None),
+            until=max(ends, default=None),
+            notes=open_.notes,
+            actions=tuple(x for p in parts for x in p.actions),
+            parts=tuple(parts),
+            why="" if parts else "nothing in it was understood",
+            seen=open_.seen,
+        )
 
     def _tell_changed(self, key: str, ask: Known, found: Found, out: Out) -> None:
         """Tell who asked that what was answered holds no longer."""
@@ -356,9 +438,16 @@ class LiveSession:
         client = self.clients.get(ask.client)
         if client is not None and client.events:
             event = Event(
-                event="changed", t=rounded(self.now), id=ask.ident, state=found.said(ask.missed), layer=found.layer,  # type: ignore[arg-type]
-                at=rounded(found.at), until=rounded(found.until), actions=tuple(found.what), why=told(found.why, ask.client),
-            )  # fmt: skip
+                event="changed",
+                t=rounded(self.now),  # type: ignore[arg-type]
+                id=ask.ident,
+                state=found.said(ask.missed),  # type: ignore[arg-type]
+                layer=found.layer,
+                at=rounded(found.at),
+                until=rounded(found.until),
+                actions=tuple(found.what),
+                why=told(found.why, ask.client),
+            )
             out.events.append((ask.client, event))
 
     # --- the past
@@ -379,17 +468,30 @@ class LiveSession:
         near = {m.request.id for layer in plan.layers.values() for m in layer.metas if m.end > now - KEPT}
         owner = self.ledger.owner
         last = len(plan.reports) - TOLD
-        reports = tuple(r for n, r in enumerate(plan.reports) if n >= last or (r.at > now - KEPT and owner(r.request)))
+        reports = tuple(
+            r for n, r in enumerate(plan.reports) if n >= last or (r.at > now - KEPT and owner(r.request))
+        )
         requests = tuple(r for r in plan.requests if r.id in near or owner(r.id))
         self.running.plan = replace(plan, reports=reports, requests=requests, track=thinned(plan, now))
 
     def plan_at(self, seconds: float) -> Plan:
-        """Return the plan that knows what was shown at a time: the running one, or for the past one of before."""
+        """Return the plan that knows what was shown at a time: the running one, or for the past one of
+        before.
+        """
         if seconds >= self._begin or not self._past:
             return self.plan
         return next((plan for begin, plan in reversed(self._past) if begin <= seconds), self._past[0][1])
 
     def performance(self, name: str) -> a.Performance:
-        """Return the session so far, to be kept: `perform` plays it as it was played. Raises AskError when it was too long."""
+        """Return the session so far, to be kept: `perform` plays it as it was played. Raises AskError when it
+        was too long.
+        """
         asks, length = self.tape.asks(), max(self.now, 0.1)
-        return a.Performance(name=name, asks=asks, seed=self.plan.seed, length=length, idle=self.running.idle, stances=self.running.stances)
+        return a.Performance(
+            name=name,
+            asks=asks,
+            seed=self.plan.seed,
+            length=length,
+            idle=self.running.idle,
+            stances=self.running.stances,
+        )

@@ -1,4 +1,6 @@
-"""JSON lines on standard input and output, read and written by threads, since neither can be waited for everywhere."""
+"""JSON lines on standard input and output, read and written by threads, since neither can be waited for
+everywhere.
+"""
 
 from __future__ import annotations
 
@@ -13,11 +15,19 @@ AHEAD = 900  # lines read but not answered; more wait in the pipe
 
 
 class StdioLine:
-    """The one client that started the session. take: called with each line, and None at the end, on the event loop."""
+    """The one client that started the session. take: called with each line, and None at the end, on the event
+    loop.
+    """
 
     formats = ("json",)
 
-    def __init__(self, call: Callable[..., object], take: Callable[[bytes | None], None], source: int = 0, target: int = 1) -> None:
+    def __init__(
+        self,
+        call: Callable[..., object],
+        take: Callable[[bytes | None], None],
+        source: int = 0,
+        target: int = 1,
+    ) -> None:
         self._call, self._take, self._source, self._target = call, take, source, target
         self._room = threading.Semaphore(AHEAD)
         self._out: queue.SimpleQueue[bytes | None] = queue.SimpleQueue()
@@ -35,7 +45,8 @@ class StdioLine:
         rest, skipping = b"", False
         while True:
             try:
-                # Not through sys.stdin, whose lock a thread that waits for ever would hold at the interpreter's end.
+                # Not through sys.stdin, whose lock a thread that waits for ever would hold at the
+                # interpreter's end.
                 data = os.read(self._source, 65536)
             except OSError:
                 data = b""

@@ -33,7 +33,10 @@ class Tape:
     def asks(self) -> tuple[a.AnyAsk, ...]:
         """Return all of it. Raises AskError when there was more than it could hold."""
         if not self.whole:
-            raise a.AskError(f"more was asked than is kept of a session, {self.most / 1024 / 1024:g} MiB; it cannot be replayed")
+            raise a.AskError(
+                f"more was asked than is kept of a session, {self.most / 1024 / 1024:g} MiB; it cannot be "
+                "replayed"
+            )
         out: list[a.AnyAsk] = []
         place = 0
         while place < len(self._data):

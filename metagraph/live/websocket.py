@@ -1,5 +1,6 @@
-"""WebSocket lines. The protocol is the `websockets` package's, without its tasks: a message costs microseconds, and writing
-never waits. What web pages may do is decided here."""
+"""WebSocket lines. The protocol is the `websockets` package's, without its tasks: a message costs
+microseconds, and writing never waits. What web pages may do is decided here.
+"""
 
 from __future__ import annotations
 
@@ -23,8 +24,9 @@ LOCAL = ("localhost", "127.0.0.1", "[::1]")
 
 
 class WebSocketLine(asyncio.Protocol):
-    """One connection. lines: all that are open. origins: web pages, besides those of this machine, that may connect. local:
-    whether only loopback is bound."""
+    """One connection. lines: all that are open. origins: web pages, besides those of this machine, that may
+    connect. local: whether only loopback is bound.
+    """
 
     formats = ("json", "binary")
 
@@ -87,14 +89,19 @@ class WebSocketLine(asyncio.Protocol):
             self.number = self.hub.open(self, self.heard, proven=token is not None)
 
     def _forbidden(self, request: Request) -> str:
-        """Return why a request is turned away: web pages of others must not drive the character behind somebody's back."""
+        """Return why a request is turned away: web pages of others must not drive the character behind
+        somebody's back.
+        """
         if self.hub.token is not None:
             return ""  # who knows the token may come from anywhere
         hosts, origins = request.headers.get_all("Host"), request.headers.get_all("Origin")
         if self.local and any(_name(host) not in LOCAL for host in hosts):
             return "this server is for this machine alone; connect to localhost"
         if any(o not in self.origins and _name(o.partition("://")[2]) not in LOCAL for o in origins):
-            return f"web pages of '{origins[0][:100]}' may not connect; start with --origin to let them, or with --token"
+            return (
+                f"web pages of '{origins[0][:100]}' may not connect; start with --origin to let them, or "
+                "with --token"
+            )
         return ""
 
     def _frame(self, frame: Frame) -> None:

@@ -1,4 +1,6 @@
-"""What goes between the side that talks to clients and the side that plans, once a tick; as values or as bytes for a pipe."""
+"""What goes between the side that talks to clients and the side that plans, once a tick; as values or as
+bytes for a pipe.
+"""
 
 from __future__ import annotations
 
@@ -14,7 +16,9 @@ if TYPE_CHECKING:
 
 
 class Batch(Struct, frozen=True, array_like=True):
-    """Requests that came in since the last. number: counts up. joined, left: clients. asked: client and request, in order."""
+    """Requests that came in since the last. number: counts up. joined, left: clients. asked: client and
+    request, in order.
+    """
 
     number: int = 0
     joined: tuple[int, ...] = ()
@@ -31,8 +35,9 @@ class Picture(Struct, frozen=True, array_like=True):
 
 
 class Result(Struct, frozen=True, array_like=True):
-    """What a batch is answered with. number: the batch's, 0 for none. replies: JSON, one to each request in order. events:
-    client and JSON."""
+    """What a batch is answered with. number: the batch's, 0 for none. replies: JSON, one to each request in
+    order. events: client and JSON.
+    """
 
     number: int = 0
     replies: tuple[bytes, ...] = ()
@@ -41,7 +46,9 @@ class Result(Struct, frozen=True, array_like=True):
 
 
 class Ready(Struct, frozen=True, omit_defaults=True):
-    """Where a server listens, or why it does not. websocket: an address; osc: host and port; token: whether one is asked for."""
+    """Where a server listens, or why it does not. websocket: an address; osc: host and port; token: whether
+    one is asked for.
+    """
 
     websocket: str | None = None
     osc: tuple[str, int] | None = None

@@ -30,7 +30,9 @@ class Client:
 
 @dataclass
 class Out:
-    """What a tick gives: a reply to each request in order, JSON where it is bytes; events and poses for clients."""
+    """What a tick gives: a reply to each request in order, JSON where it is bytes; events and poses for
+    clients.
+    """
 
     replies: list[Reply | bytes] = field(default_factory=list)
     events: list[tuple[int, Event]] = field(default_factory=list)
@@ -39,8 +41,10 @@ class Out:
 
 @dataclass(slots=True)
 class Open:
-    """A request that waits for the plan. place: among the replies. parts: of a block, or of keypoints: key, what it is called, ask,
-    why it was refused already. seen: of keypoints. why: what has become of it in the meantime."""
+    """A request that waits for the plan. place: among the replies. parts: of a block, or of keypoints: key,
+    what it is called, ask, why it was refused already. seen: of keypoints. why: what has become of it in the
+    meantime.
+    """
 
     place: int
     ident: str
@@ -68,7 +72,9 @@ class Work:
 
 
 def thinned(plan: Plan, now: float) -> Track:
-    """Return the track with fewer of the places a moving point had long ago; a stream of them would slow every plan down."""
+    """Return the track with fewer of the places a moving point had long ago; a stream of them would slow
+    every plan down.
+    """
     places = plan.track.places
     if len(places) < 100:
         return plan.track

@@ -14,7 +14,11 @@ Array = NDArray[Any]
 STEP = np.radians(8.0)  # by how much the head turns before the gaze follows
 EVERY = 0.3  # seconds between two looks, at least
 FAR = 2.0  # metres to what is looked at
-WIDE, LONG, LOW = 0.15, 0.125, 0.028  # metres: ear to ear, ears to nose, nose below the ears; of a usual face looking ahead
+WIDE, LONG, LOW = (
+    0.15,
+    0.125,
+    0.028,
+)  # metres: ear to ear, ears to nose, nose below the ears; of a usual face looking ahead
 MOST = np.radians(60.0)  # beyond which a head is not taken to be turned
 
 
@@ -25,8 +29,12 @@ class Gaze:
         self.eyes = (points[PLACE["left_eye"]] + points[PLACE["right_eye"]]) * 0.5
         self._last: tuple[float, float, float] | None = None  # seconds, turn, pitch
 
-    def feed(self, seconds: float, points: Array, trust: Array, dims: int) -> tuple[float, float, float] | None:
-        """Return the point to look at from now on, metres; None while the head stays as it was, or is not seen."""
+    def feed(
+        self, seconds: float, points: Array, trust: Array, dims: int
+    ) -> tuple[float, float, float] | None:
+        """Return the point to look at from now on, metres; None while the head stays as it was, or is not
+        seen.
+        """
         found = head_turn(points, trust, dims)
         if found is None:
             return None
@@ -42,13 +50,18 @@ class Gaze:
 
 
 def head_turn(points: Array, trust: Array, dims: int) -> tuple[float, float] | None:
-    """Return how far a head is turned to the picture's right and upwards, radians; None where ears or nose are not seen."""
+    """Return how far a head is turned to the picture's right and upwards, radians; None where ears or nose
+    are not seen.
+    """
     if min(trust[PLACE["nose"]], trust[PLACE["left_ear"]], trust[PLACE["right_ear"]]) <= 0:
         return None
     across = points[PLACE["left_ear"]] - points[PLACE["right_ear"]]
     ahead = points[PLACE["nose"]] - (points[PLACE["left_ear"]] + points[PLACE["right_ear"]]) * 0.5
     if dims == 3:
-        turn, pitch = np.arctan2(ahead[0], ahead[2]), np.arctan2(ahead[1], np.hypot(ahead[0], ahead[2])) + np.arctan2(LOW, LONG)
+        turn, pitch = (
+            np.arctan2(ahead[0], ahead[2]),
+            np.arctan2(ahead[1], np.hypot(ahead[0], ahead[2])) + np.arctan2(LOW, LONG),
+        )
     else:
         turn = np.arctan2(ahead[0] / LONG, max(across[0], 0.0) / WIDE)
         size = float(np.hypot(across[0] / WIDE, ahead[0] / LONG))

@@ -38,7 +38,9 @@ SIDEWAYS = np.array([1.0, 1.0, 0.3])  # how much speed counts along each axis; d
 
 
 class Mean:
-    """A running mean of POINTS by confidence; what is not seen stays where it was and is trusted less and less."""
+    """A running mean of POINTS by confidence; what is not seen stays where it was and is trusted less and
+    less.
+    """
 
     def __init__(self, constant: float) -> None:
         self.constant = constant
@@ -63,7 +65,9 @@ class Mean:
 
 @dataclass(slots=True)
 class View:
-    """A person as a layer sees them now: points `[17, 3]`, what they are trusted `[17]`, measures `[N, 3]` and their trust `[N, 1]`."""
+    """A person as a layer sees them now: points `[17, 3]`, what they are trusted `[17]`, measures `[N, 3]`
+    and their trust `[N, 1]`.
+    """
 
     points: Array
     trust: Array
@@ -75,12 +79,21 @@ class View:
 class Judge:
     """Tells a layer's stances apart. start: the stance the character is in before anything is known.
 
-    now: place of the stance the person is in, among the signature's; None where that is not known. distances: `[S]` from each stance,
-    None without evidence. bias `[N, 3]`: what of the person's difference from the character is got used to.
+    now: place of the stance the person is in, among the signature's; None where that is not known. distances:
+    `[S]` from each stance, None without evidence. bias `[N, 3]`: what of the person's difference from the
+    character is got used to.
     """
 
-    def __init__(self, layer: Layer, signature: Signature, tuning: Tuning, start: str | None, width: float) -> None:
-        self.layer, self.signature, self.tuning, self.how, self.width = layer, signature, tuning, tuning.layers[layer], width
+    def __init__(
+        self, layer: Layer, signature: Signature, tuning: Tuning, start: str | None, width: float
+    ) -> None:
+        self.layer, self.signature, self.tuning, self.how, self.width = (
+            layer,
+            signature,
+            tuning,
+            tuning.layers[layer],
+            width,
+        )
         self.start = signature.stances.index(start) if start in signature.stances else None
         self.now: int | None = None
         self.distances: Array | None = None
@@ -88,7 +101,9 @@ class Judge:
         self.bias = np.zeros(signature.measures.shape[1:])
         self.flat = np.stack([turned(signature.measures, angle)[..., :2] for angle in TURNS])
         self._alike = self._confused()
-        self._first = np.searchsorted(signature.of, np.arange(len(signature.stances)))  # looks of one stance stand together
+        self._first = np.searchsorted(
+            signature.of, np.arange(len(signature.stances))
+        )  # looks of one stance stand together
         self._known = 0.0  # seconds for which the person could be got used to
         self._coming: int | None = None
         self._since = 0.0
@@ -114,10 +129,14 @@ class Judge:
         frame = frame_of(points, trust, dims, self.width)
         if frame is None or (dims == 2 and frame.width < AWAY):
             return None
-        return View(points, trust, frame, measured(self.layer, points, frame), trusted(self.layer, trust)[:, None])
+        return View(
+            points, trust, frame, measured(self.layer, points, frame), trusted(self.layer, trust)[:, None]
+        )
 
     def misfits(self, view: View) -> Array | None:
-        """Return how badly the best stance fits a picture under each of the TURNS, a squared distance; None without evidence."""
+        """Return how badly the best stance fits a picture under each of the TURNS, a squared distance; None
+        without evidence.
+        """
         count = float((COUNT[self.layer][:, :2] * view.share).sum())
         if count <= 0:
             return None
@@ -125,9 +144,12 @@ class Judge:
         sharp = (SHARP[self.layer][:, :2] * view.share).reshape(-1)
         return np.asarray(((apart.reshape(*apart.shape[:2], -1) ** 2) @ sharp).min(1) / count)
 
-    def judge(self, seconds: float, elapsed: float, view: View, quick: Array, heading: float, dims: int) -> bool:
-        """Take a moment in; return whether the person is in another stance from now on. quick `[17, 3]`: the points, hardly smoothed.
-        heading: of somebody in a picture, radians."""
+    def judge(
+        self, seconds: float, elapsed: float, view: View, quick: Array, heading: float, dims: int
+    ) -> bool:
+        """Take a moment in; return whether the person is in another stance from now on. quick `[17, 3]`: the
+        points, hardly smoothed. heading: of somebody in a picture, radians.
+        """
         self.moving = self._moves(view, quick)
         found = self._measure(view, heading, dims)
         if found is None:
@@ -152,8 +174,9 @@ class Judge:
         return bool((((way * way).sum(1) > most) & known).any())
 
     def _measure(self, view: View, heading: float, dims: int) -> tuple[Array, Array, Array] | None:
-        """Return by how much the person differs from each look of a stance, `[T, N, dims]`, how far that is, `[T]`, and what squared
-        differences count for, `[N * dims]`; None without enough evidence."""
+        """Return by how much the person differs from each look of a stance, `[T, N, dims]`, how far that is,
+        `[T]`, and what squared differences count for, `[N * dims]`; None without enough evidence.
+        """
         every = COUNT[self.layer][:, :dims]
         count = float((every * view.share).sum())
         if count < LEAST_EVIDENCE * float(every.sum()):
@@ -169,7 +192,9 @@ class Judge:
         return apart, np.sqrt(off**2 @ sharp) + extra, sharp
 
     def _decide(self, seconds: float, near: Array, apart: Array, far: Array, sharp: Array) -> bool:
-        """Change over to the nearest stance once it has been nearest for long enough; return whether that is now."""
+        """Change over to the nearest stance once it has been nearest for long enough; return whether that is
+        now.
+        """
         best = int(near.argmin())
         here = self.now if self.now is not None else self.start
         if here is not None and here != best and near[here] < self.tuning.left:
@@ -187,7 +212,9 @@ class Judge:
         return True
 
     def _way(self, here: int, other: int, apart: Array, far: Array, sharp: Array) -> float:
-        """Return how much of the way from one stance to another somebody has gone, whatever they do beside it."""
+        """Return how much of the way from one stance to another somebody has gone, whatever they do beside
+        it.
+        """
         a, b = self._look(here, far), self._look(other, far)
         between = float(((apart[a] - apart[b]) ** 2).reshape(-1) @ sharp)
         return 0.5 + float(far[a] ** 2 - far[b] ** 2) / max(2.0 * between, 1e-9)
@@ -210,14 +237,18 @@ class Judge:
         np.minimum(np.maximum(bias, -most, out=bias), most, out=bias)
 
     def _confused(self) -> Array:
-        """Return `[H, T]` infinity where a picture under a heading cannot tell a stance from one before it, the start stance first."""
+        """Return `[H, T]` infinity where a picture under a heading cannot tell a stance from one before it,
+        the start stance first.
+        """
         signature = self.signature
         order = sorted(range(len(signature.stances)), key=lambda s: s != self.start)
         out = np.zeros((len(TURNS), len(signature.of)))
         for n, flat in enumerate(self.flat):
             near = self.flat[max(0, n - self.how.mistaken) : n + self.how.mistaken + 1]
             apart = flat[None, :, None] - near[:, None]
-            far = np.sqrt((apart**2 * SHARP[self.layer][:, :2]).sum((3, 4)).min(0) / COUNT[self.layer][:, :2].sum())
+            far = np.sqrt(
+                (apart**2 * SHARP[self.layer][:, :2]).sum((3, 4)).min(0) / COUNT[self.layer][:, :2].sum()
+            )
             for place, stance in enumerate(order):
                 mine = signature.of == stance
                 before = np.isin(signature.of, order[:place]) & (out[n] == 0)

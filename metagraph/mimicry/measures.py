@@ -1,8 +1,10 @@
-"""What tells stances apart: differences between keypoints, seen from the torso (arms) or upright (body, head), in torso lengths.
+"""What tells stances apart: differences between keypoints, seen from the torso (arms) or upright (body,
+head), in torso lengths.
 
-A measure is a weighted sum of points that adds up to a direction, so that neither place nor size nor picture matters. `scale` says how
-far it may be off, in torso lengths, before that counts as 1; they are ours: about twice what people of other proportions and
-the jitter of pose estimators make of it, `inf` where an axis says nothing.
+A measure is a weighted sum of points that adds up to a direction, so that neither place nor size nor picture
+matters. `scale` says how far it may be off, in torso lengths, before that counts as 1; they are ours: about
+twice what people of other proportions and the jitter of pose estimators make of it, `inf` where an axis says
+nothing.
 """
 
 from __future__ import annotations
@@ -32,8 +34,9 @@ LEAST_EVIDENCE = 0.4  # share of a layer's measures, by weight, without which no
 
 @dataclass(frozen=True)
 class Measure:
-    """plus - minus. scale: along x, y, z, see above. weight: how much it counts beside the others. slant: by how much perspective alone
-    may raise it in a picture of somebody seen from the side, torso lengths."""
+    """plus - minus. scale: along x, y, z, see above. weight: how much it counts beside the others. slant: by
+    how much perspective alone may raise it in a picture of somebody seen from the side, torso lengths.
+    """
 
     plus: Terms
     minus: Terms
@@ -47,8 +50,10 @@ def _one(name: str) -> Terms:
 
 
 def _beside_shoulders(part: str, share: float) -> tuple[Terms, Terms]:
-    """Return the line from right to left of the head beside a share of that of the shoulders. The share is three
-    quarters of what would make them as long: perspective slants both, but an arm in motion only that of the shoulders."""
+    """Return the line from right to left of the head beside a share of that of the shoulders. The share is
+    three quarters of what would make them as long: perspective slants both, but an arm in motion only that of
+    the shoulders.
+    """
     return {f"left_{part}": 1.0, "right_shoulder": share}, {f"right_{part}": 1.0, "left_shoulder": share}
 
 
@@ -93,24 +98,33 @@ def _rows(sums: Sequence[tuple[Terms, Terms]]) -> Array:
 
 
 # Layer -> `[N, 17]` what turns points into measures; `[N, 3]` weight / scale^2; `[N]` weight.
-ROWS: Mapping[Layer, Array] = {layer: _rows([(m.plus, m.minus) for m in some]) for layer, some in MEASURES.items()}
+ROWS: Mapping[Layer, Array] = {
+    layer: _rows([(m.plus, m.minus) for m in some]) for layer, some in MEASURES.items()
+}
 MOVING: Mapping[Layer, Array] = {layer: _rows(some) for layer, some in STILL.items()}
-SHARP: Mapping[Layer, Array] = {layer: np.array([[m.weight / s**2 for s in m.scale] for m in some]) for layer, some in MEASURES.items()}
+SHARP: Mapping[Layer, Array] = {
+    layer: np.array([[m.weight / s**2 for s in m.scale] for m in some]) for layer, some in MEASURES.items()
+}
 SCALE: Mapping[Layer, Array] = {
-    layer: np.array([[s if s < inf else 0.0 for s in m.scale] for m in some]) for layer, some in MEASURES.items()
+    layer: np.array([[s if s < inf else 0.0 for s in m.scale] for m in some])
+    for layer, some in MEASURES.items()
 }
 COUNT: Mapping[Layer, Array] = {
-    layer: np.array([[m.weight if s < inf else 0.0 for s in m.scale] for m in some]) for layer, some in MEASURES.items()
+    layer: np.array([[m.weight if s < inf else 0.0 for s in m.scale] for m in some])
+    for layer, some in MEASURES.items()
 }
 
 
 _SLANT: Mapping[Layer, Array] = {
-    layer: np.array([[m.weight, m.scale[1] ** 2, m.slant**2] for m in some]) for layer, some in MEASURES.items()
+    layer: np.array([[m.weight, m.scale[1] ** 2, m.slant**2] for m in some])
+    for layer, some in MEASURES.items()
 }
 
 
 def sharp_in_a_picture(layer: Layer, turn: float) -> Array:
-    """Return `[N, 2]` weight / scale^2 of measures in a picture of somebody turned by an angle from the camera."""
+    """Return `[N, 2]` weight / scale^2 of measures in a picture of somebody turned by an angle from the
+    camera.
+    """
     out = SHARP[layer][:, :2].copy()
     weight, scale, slant = _SLANT[layer].T
     out[:, 1] = weight / (scale + slant * sin(turn) ** 2)
@@ -124,14 +138,18 @@ MOVED: Mapping[Layer, Array] = {layer: rows != 0 for layer, rows in MOVING.items
 
 
 def trusted(layer: Layer, confidence: Array) -> Array:
-    """Return how far each measure `[N]` can be trusted: as far as the least certain of its points, of `confidence [17]`."""
+    """Return how far each measure `[N]` can be trusted: as far as the least certain of its points, of
+    `confidence [17]`.
+    """
     return np.asarray(np.where(USED[layer], confidence, 1.0).min(1))
 
 
 @dataclass(frozen=True, eq=False)
 class Frame:
-    """How a person stands in the picture: torso length in its units, its up in the picture `[3]`, heading in radians about y, 0 towards the
-    camera (known from three dimensions only), the shoulders' width in torso lengths. upright: of the whole figure, always (0, 1, 0)."""
+    """How a person stands in the picture: torso length in its units, its up in the picture `[3]`, heading in
+    radians about y, 0 towards the camera (known from three dimensions only), the shoulders' width in torso
+    lengths. upright: of the whole figure, always (0, 1, 0).
+    """
 
     size: float
     up: Array
@@ -139,7 +157,9 @@ class Frame:
     width: float
 
 
-_LS, _RS, _LH, _RH, _LE, _RE = (PLACE[f"{side}_{part}"] for part in ("shoulder", "hip", "ear") for side in ("left", "right"))
+_LS, _RS, _LH, _RH, _LE, _RE = (
+    PLACE[f"{side}_{part}"] for part in ("shoulder", "hip", "ear") for side in ("left", "right")
+)
 
 
 def turned(vectors: Array, angle: float) -> Array:
@@ -152,7 +172,9 @@ def turned(vectors: Array, angle: float) -> Array:
 
 
 def straightened(vectors: Array, up: Array) -> Array:
-    """Return `vectors [..., 3]` turned the shortest way that takes the direction `up [3]` (unit, not straight down) to y."""
+    """Return `vectors [..., 3]` turned the shortest way that takes the direction `up [3]` (unit, not straight
+    down) to y.
+    """
     x, y, z = up
     k = 1.0 / (1.0 + max(y, -0.99))
     m = np.array([[1 - k * x * x, -x, -k * x * z], [x, y, z], [-k * x * z, -z, 1 - k * z * z]])
@@ -162,8 +184,9 @@ def straightened(vectors: Array, up: Array) -> Array:
 def frame_of(points: Array, confidence: Array, dims: int, usual_width: float) -> Frame | None:
     """Return how a person stands whose POINTS are `points [17, 3]`; None where the shoulders do not say.
 
-    Without hips, as at a desk, the torso is taken to be upright, and its length is told from the shoulders' width, of which
-    `usual_width` torso lengths are usual, and the ears' height above them; the more of both, since turning away hides the first.
+    Without hips, as at a desk, the torso is taken to be upright, and its length is told from the shoulders'
+    width, of which `usual_width` torso lengths are usual, and the ears' height above them; the more of both,
+    since turning away hides the first.
     """
     sure = confidence.tolist()
     if min(sure[_LS], sure[_RS]) <= 0:
@@ -191,7 +214,9 @@ def frame_of(points: Array, confidence: Array, dims: int, usual_width: float) ->
 
 
 def measured(layer: Layer, points: Array, frame: Frame) -> Array:
-    """Return a layer's measures `[N, 3]` of a person, as if facing the camera; along x and y alone in two dimensions."""
+    """Return a layer's measures `[N, 3]` of a person, as if facing the camera; along x and y alone in two
+    dimensions.
+    """
     vectors = ROWS[layer] @ points / frame.size
     if frame.heading:
         vectors = turned(vectors, -frame.heading)

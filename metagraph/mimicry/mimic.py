@@ -1,4 +1,5 @@
-"""From keypoints, frame by frame, to requests: which stance a person is in, layer by layer, told once it is certain.
+"""From keypoints, frame by frame, to requests: which stance a person is in, layer by layer, told once it is
+certain.
 
 Nothing looks ahead, so that a camera and a file give the same.
 """
@@ -32,8 +33,9 @@ TURN_USUAL = np.radians(40.0)  # how far people turn away from a camera
 
 @dataclass(frozen=True, slots=True)
 class Sighting:
-    """A stance that was seen. at: seconds; distance: how far the person was from it; id: of the request it became. again: whether the
-    character had left it, or had not gone there when it was asked to."""
+    """A stance that was seen. at: seconds; distance: how far the person was from it; id: of the request it
+    became. again: whether the character had left it, or had not gone there when it was asked to.
+    """
 
     at: float
     layer: Layer
@@ -46,9 +48,9 @@ class Sighting:
 class Mimic:
     """One person, mimicked by a project's character.
 
-    mirror: as somebody face to face does: the character moves its right where the person moves the left. layers: those that
-    mimic. gaze: whether it looks where the person's head is turned, too. prefix: of the requests' ids.
-    Raises ValueError where the project has no humanoid character or no stance.
+    mirror: as somebody face to face does: the character moves its right where the person moves the left.
+    layers: those that mimic. gaze: whether it looks where the person's head is turned, too. prefix: of the
+    requests' ids. Raises ValueError where the project has no humanoid character or no stance.
     """
 
     def __init__(
@@ -66,11 +68,15 @@ class Mimic:
         found, self.width = signatures(project, body, layers)
         if not found:
             raise ValueError("the project has no stance that could be mimicked: no layer has one with a loop")
-        self.judges = {x: Judge(x, look, self.tuning, project.graphs[x].start, self.width) for x, look in found.items()}
+        self.judges = {
+            x: Judge(x, look, self.tuning, project.graphs[x].start, self.width) for x, look in found.items()
+        }
         self.sightings: list[Sighting] = []
         self.heading = 0.0  # how far the person is turned to the picture's right, radians
         self._gaze = Gaze(body.points(anatomy.base_pose(project))) if gaze else None
-        self._asked: dict[Layer, tuple[float, float]] = {}  # when each layer's stance was asked for, and how long until it may be again
+        self._asked: dict[
+            Layer, tuple[float, float]
+        ] = {}  # when each layer's stance was asked for, and how long until it may be again
         self._time: float | None = None
         self._dims = self.count = 0
         self._begin()
@@ -90,17 +96,26 @@ class Mimic:
     def distances(self, layer: Layer) -> dict[str, float]:
         """Stance -> how far the person is from it now; empty where there is no evidence."""
         judge = self.judges[layer]
-        return {} if judge.distances is None else dict(zip(judge.signature.stances, map(float, judge.distances), strict=True))
+        return (
+            {}
+            if judge.distances is None
+            else dict(zip(judge.signature.stances, map(float, judge.distances), strict=True))
+        )
 
     def feed(
-        self, seconds: float, points: ArrayLike, confidence: ArrayLike | None = None, goals: Mapping[Layer, str] | None = None
+        self,
+        seconds: float,
+        points: ArrayLike,
+        confidence: ArrayLike | None = None,
+        goals: Mapping[Layer, str] | None = None,
     ) -> list[AnyAsk]:
         """Take a frame in; return what is asked for because of it, mostly nothing.
 
-        seconds: of the frame; one that is not later than the last is passed over. points: `[K, 2]` or `[K, 3]` of a layout of K points
-        (17, 18, 25 or 33), x right, y up, z towards the camera. confidence: `[K]` 0..1, all 1 where it is None. goals: layer -> the
-        stance the character is in or goes to, where the caller knows; where it is another than the person's, that is asked for
-        anew. Raises ValueError for shapes that do not fit.
+        seconds: of the frame; one that is not later than the last is passed over. points: `[K, 2]` or `[K,
+        3]` of a layout of K points (17, 18, 25 or 33), x right, y up, z towards the camera. confidence: `[K]`
+        0..1, all 1 where it is None. goals: layer -> the stance the character is in or goes to, where the
+        caller knows; where it is another than the person's, that is asked for anew. Raises ValueError for
+        shapes that do not fit.
         """
         weighted, dims = self._weighted(points, confidence)
         if not isfinite(seconds) or (self._time is not None and seconds <= self._time):
@@ -135,7 +150,9 @@ class Mimic:
         if self.mirror:
             where, sure = swap(where, sure)
         good = (np.abs(where) <= FARTHEST).all(1) & (sure >= 0)  # what is not a number is neither
-        share = (np.where(good, np.minimum(sure, 1.0), 0.0) - self.tuning.seen) / (self.tuning.sure - self.tuning.seen)
+        share = (np.where(good, np.minimum(sure, 1.0), 0.0) - self.tuning.seen) / (
+            self.tuning.sure - self.tuning.seen
+        )
         weights = np.clip(share, 0.0, 1.0)
         dims = where.shape[1]
         out = np.zeros((len(POINTS), 4))
@@ -143,7 +160,14 @@ class Mimic:
         out[:, 3] = weights
         return out, dims
 
-    def _judge(self, seconds: float, elapsed: float, views: Mapping[Layer, View], dims: int, goals: Mapping[Layer, str]) -> list[AnyAsk]:
+    def _judge(
+        self,
+        seconds: float,
+        elapsed: float,
+        views: Mapping[Layer, View],
+        dims: int,
+        goals: Mapping[Layer, str],
+    ) -> list[AnyAsk]:
         if dims == 2:
             self._weigh_turns(elapsed, views)
         else:
@@ -168,12 +192,16 @@ class Mimic:
         return out
 
     def _weigh_turns(self, elapsed: float, views: Mapping[Layer, View]) -> None:
-        """In a picture, take the heading under which shoulders and stances have fitted best over the last second or so."""
+        """In a picture, take the heading under which shoulders and stances have fitted best over the last
+        second or so.
+        """
         self._weighed += elapsed
         if self._weighed < self.tuning.turned and self._turns.any():
             return
         width = next(iter(views.values())).frame.width
-        cost = ((width - self.width * np.cos(TURNS)) / (WIDTH_OFF * self.width)) ** 2 + (TURNS / TURN_USUAL) ** 2
+        cost = ((width - self.width * np.cos(TURNS)) / (WIDTH_OFF * self.width)) ** 2 + (
+            TURNS / TURN_USUAL
+        ) ** 2
         for layer, view in views.items():
             misfits = self.judges[layer].misfits(view) if layer != "head" else None  # heads turn on their own
             if misfits is not None:
@@ -188,20 +216,32 @@ class Mimic:
             self.heading += float((TURNS[1] - TURNS[0]) * 0.5 * (a - c) / max(a - 2 * b + c, 1e-9))
 
     def _nobody(self, seconds: float, elapsed: float) -> list[AnyAsk]:
-        """Nobody is there, or shows the back: what was seen holds; after a while the models may change the stances as they like."""
+        """Nobody is there, or shows the back: what was seen holds; after a while the models may change the
+        stances as they like.
+        """
         before, self._unseen = self._unseen, self._unseen + elapsed
         out: list[AnyAsk] = []
         if before <= self.tuning.lost < self._unseen:
             for layer, judge in self.judges.items():
                 if judge.stance is not None:
-                    out.append(Go(id=self._id(), stance=judge.stance, layer=layer, told=seconds, priority=self.priority))
+                    out.append(
+                        Go(
+                            id=self._id(),
+                            stance=judge.stance,
+                            layer=layer,
+                            told=seconds,
+                            priority=self.priority,
+                        )
+                    )
                 judge.now = None
         return out
 
     def _go(self, layer: Layer, stance: str, seconds: float, wait: float) -> Go:
         self._asked[layer] = (seconds, wait)
         ident, again = self._id(), wait > self.tuning.again
-        self.sightings.append(Sighting(seconds, layer, stance, self.distances(layer).get(stance, 0.0), ident, again))
+        self.sightings.append(
+            Sighting(seconds, layer, stance, self.distances(layer).get(stance, 0.0), ident, again)
+        )
         return Go(id=ident, stance=stance, layer=layer, told=seconds, priority=self.priority, stay=True)
 
     def _id(self) -> str:

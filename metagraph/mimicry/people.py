@@ -18,7 +18,9 @@ GROWTH = 1.6  # ratio of sizes up to which it may be the same person
 
 @dataclass(frozen=True, eq=False)
 class Person:
-    """Somebody in a frame. points `[K, 3]` in the file's own axes; confidence `[K]`; ident: the file's own number for them, if any."""
+    """Somebody in a frame. points `[K, 3]` in the file's own axes; confidence `[K]`; ident: the file's own
+    number for them, if any.
+    """
 
     points: Array
     confidence: Array
@@ -34,11 +36,14 @@ class Person:
         return ((low + high) / 2, size) if size > 0 else None
 
 
-def follow(times: Sequence[float], frames: Sequence[Sequence[Person]], middle: float | None = None) -> Iterator[Person | None]:
+def follow(
+    times: Sequence[float], frames: Sequence[Sequence[Person]], middle: float | None = None
+) -> Iterator[Person | None]:
     """Yield for each frame the person who is followed, None where they are not there.
 
-    The largest is followed, those in the picture's middle (x, where it is known) before those at its edge; then whoever is nearest to
-    where they were, or has their number. After PATIENCE seconds without them somebody is chosen anew.
+    The largest is followed, those in the picture's middle (x, where it is known) before those at its edge;
+    then whoever is nearest to where they were, or has their number. After PATIENCE seconds without them
+    somebody is chosen anew.
     """
     last: tuple[Array, float] | None = None
     ident, lost = None, 0.0
@@ -60,7 +65,11 @@ def follow(times: Sequence[float], frames: Sequence[Sequence[Person]], middle: f
 
 def _presence(place: tuple[Array, float], middle: float | None) -> float:
     where, size = place
-    return size if middle is None or middle <= 0 else size * (1.0 - 0.5 * min(1.0, abs(float(where[0]) - middle) / middle))
+    return (
+        size
+        if middle is None or middle <= 0
+        else size * (1.0 - 0.5 * min(1.0, abs(float(where[0]) - middle) / middle))
+    )
 
 
 def _again(
@@ -71,6 +80,10 @@ def _again(
     named = next((item for item in known if ident is not None and item[0].ident == ident), None)
     if named is not None:
         return named
-    near = [(float(np.hypot(*(place[0] - where))), n) for n, (_, place) in enumerate(known) if 1 / GROWTH < place[1] / size < GROWTH]
+    near = [
+        (float(np.hypot(*(place[0] - where))), n)
+        for n, (_, place) in enumerate(known)
+        if 1 / GROWTH < place[1] / size < GROWTH
+    ]
     best = min(near, default=None)
     return known[best[1]] if best is not None and best[0] < REACH * size else None

@@ -1,4 +1,6 @@
-"""A recorded person, mimicked: the requests a recording becomes, mixed with what else is asked for and what the models play."""
+"""A recorded person, mimicked: the requests a recording becomes, mixed with what else is asked for and what
+the models play.
+"""
 
 from __future__ import annotations
 
@@ -21,7 +23,9 @@ REST = 2.0  # seconds a performance goes on after the recording has ended
 
 @dataclass(frozen=True)
 class Mimicry:
-    """What became of a recording. performance: to keep, or to perform. sightings: what was seen, in its order."""
+    """What became of a recording. performance: to keep, or to perform. sightings: what was seen, in its
+    order.
+    """
 
     performance: Performance
     sightings: tuple[Sighting, ...]
@@ -36,11 +40,12 @@ def mimic_performance(
     into: Performance | None = None,
     progress: Callable[[int, int], object] | None = None,
 ) -> Mimicry:
-    """Return a performance that mimics a recording as it would have been mimicked live; the models do the rest, but change no stances.
+    """Return a performance that mimics a recording as it would have been mimicked live; the models do the
+    rest, but change no stances.
 
-    into: the performance that what is seen is mixed into: its requests, seed, stances and length; a new one where it is None.
-    progress: told how many frames are done, of how many; what it raises ends it. Other arguments as for `Mimic`. Raises ValueError
-    where there is no character, or nobody in the file.
+    into: the performance that what is seen is mixed into: its requests, seed, stances and length; a new one
+    where it is None. progress: told how many frames are done, of how many; what it raises ends it. Other
+    arguments as for `Mimic`. Raises ValueError where there is no character, or nobody in the file.
     """
     if not len(keypoints):
         raise ValueError("there is nobody in the keypoints to mimic")
@@ -48,20 +53,32 @@ def mimic_performance(
     mimic = Mimic(project, mirror, layers, gaze, prefix=_prefix(into.asks))
     asks = [ask for some in _steps(project, keypoints, mimic, into, progress) for ask in some]
     length = max(into.length, round(keypoints.seconds, 3))
-    return Mimicry(msgspec.structs.replace(into, asks=(*into.asks, *asks), length=length), tuple(mimic.sightings))
+    return Mimicry(
+        msgspec.structs.replace(into, asks=(*into.asks, *asks), length=length), tuple(mimic.sightings)
+    )
 
 
 def _prefix(asks: Collection[AnyAsk]) -> str:
     """Return what ids begin with that none of these do."""
     some = ("mimic" + "b" * n for n in count())
-    return next(p for p in some if not any(ask.id.removeprefix(p)[:1].isdigit() for ask in asks if ask.id.startswith(p)))
+    return next(
+        p
+        for p in some
+        if not any(ask.id.removeprefix(p)[:1].isdigit() for ask in asks if ask.id.startswith(p))
+    )
 
 
 def _steps(
-    project: Project, keypoints: Keypoints, mimic: Mimic, into: Performance, progress: Callable[[int, int], object] | None
+    project: Project,
+    keypoints: Keypoints,
+    mimic: Mimic,
+    into: Performance,
+    progress: Callable[[int, int], object] | None,
 ) -> Iterator[list[AnyAsk]]:
     """Yield what is asked for at each frame at which something is, planning along."""
-    named = [ask if ask.id else msgspec.structs.replace(ask, id=f"asked{n}") for n, ask in enumerate(into.asks)]
+    named = [
+        ask if ask.id else msgspec.structs.replace(ask, id=f"asked{n}") for n, ask in enumerate(into.asks)
+    ]
     waiting = sorted(named, key=lambda ask: ask.told or 0.0)
     plan = Plan(project.settings.seed if into.seed is None else into.seed, 0.0)
 
@@ -86,12 +103,18 @@ def _steps(
 
 
 def goals(plan: Plan, now: float, mine: str) -> dict[Layer, str]:
-    """Return which stance each layer is in or on its way to, and will be in when requests of ids that begin with `mine` have played."""
+    """Return which stance each layer is in or on its way to, and will be in when requests of ids that begin
+    with `mine` have played.
+    """
     out: dict[Layer, str] = {}
     for layer in LAYERS:
         of = plan.layers[layer]
         first = int(of.ends.searchsorted(now, "right"))
-        ahead = [cue.then for n, cue in enumerate(of.cues[first:]) if (n == 0 and cue.start <= now) or cue.meta.startswith(mine)]
+        ahead = [
+            cue.then
+            for n, cue in enumerate(of.cues[first:])
+            if (n == 0 and cue.start <= now) or cue.meta.startswith(mine)
+        ]
         stance = ahead[-1] if ahead else of.stance_at(now)
         if stance is not None:
             out[layer] = stance
@@ -102,7 +125,9 @@ def placed(project: Project, performance: Performance) -> Performance:
     """Return a performance whose requests say when they begin, so that they can be seen and moved in time."""
     ahead = project.settings.lookahead
     asks = tuple(
-        msgspec.structs.replace(ask, at=round((ask.told or 0.0) + ahead, 3)) if ask.at is None and ask.told else ask
+        msgspec.structs.replace(ask, at=round((ask.told or 0.0) + ahead, 3))
+        if ask.at is None and ask.told
+        else ask
         for ask in performance.asks
     )
     return msgspec.structs.replace(performance, asks=asks)

@@ -1,7 +1,7 @@
 """Keypoints of a person over time, whatever found them, and the layouts they come in.
 
-Everywhere: x to the right of the picture, y up, z towards the camera, so that who faces the camera looks along +z and has the
-left hand at larger x, as a character does. Units are the file's own.
+Everywhere: x to the right of the picture, y up, z towards the camera, so that who faces the camera looks
+along +z and has the left hand at larger x, as a character does. Units are the file's own.
 """
 
 from __future__ import annotations
@@ -32,26 +32,34 @@ def _named(text: str) -> tuple[str, ...]:
 LAYOUTS: Mapping[str, tuple[str, ...]] = {
     "coco": POINTS,
     "openpose coco": _named(
-        "nose neck r.shoulder r.elbow r.wrist l.shoulder l.elbow l.wrist r.hip r.knee r.ankle l.hip l.knee l.ankle r.eye l.eye r.ear l.ear"
+        "nose neck r.shoulder r.elbow r.wrist l.shoulder l.elbow l.wrist r.hip r.knee r.ankle l.hip l.knee "
+        "l.ankle r.eye l.eye r.ear l.ear"
     ),
     "openpose body_25": _named(
-        "nose neck r.shoulder r.elbow r.wrist l.shoulder l.elbow l.wrist hips r.hip r.knee r.ankle l.hip l.knee l.ankle"
+        "nose neck r.shoulder r.elbow r.wrist l.shoulder l.elbow l.wrist hips r.hip r.knee r.ankle l.hip "
+        "l.knee l.ankle"
         " r.eye l.eye r.ear l.ear l.big_toe l.small_toe l.heel r.big_toe r.small_toe r.heel"
     ),
     "mediapipe": _named(
-        "nose l.eye_inner l.eye l.eye_outer r.eye_inner r.eye r.eye_outer l.ear r.ear l.mouth r.mouth l.shoulder r.shoulder"
-        " l.elbow r.elbow l.wrist r.wrist l.pinky r.pinky l.index r.index l.thumb r.thumb l.hip r.hip l.knee r.knee l.ankle r.ankle"
+        "nose l.eye_inner l.eye l.eye_outer r.eye_inner r.eye r.eye_outer l.ear r.ear l.mouth r.mouth "
+        "l.shoulder r.shoulder"
+        " l.elbow r.elbow l.wrist r.wrist l.pinky r.pinky l.index r.index l.thumb r.thumb l.hip r.hip l.knee "
+        "r.knee l.ankle r.ankle"
         " l.heel r.heel l.toes r.toes"
     ),
 }
 BY_COUNT: Mapping[int, str] = {len(names): layout for layout, names in LAYOUTS.items()}
-_CHOSEN: Mapping[int, Array] = {len(names): np.array([names.index(p) for p in POINTS]) for names in LAYOUTS.values()}
+_CHOSEN: Mapping[int, Array] = {
+    len(names): np.array([names.index(p) for p in POINTS]) for names in LAYOUTS.values()
+}
 
 
 @dataclass(frozen=True, eq=False)
 class Keypoints:
-    """One person over time. times `[F]` seconds, ascending from 0 or later; points `[F, K, 3]`, z 0 where dims is 2;
-    confidence `[F, K]` 0..1, 0 for what was not found; names of the K points. notes: what was left out, in words."""
+    """One person over time. times `[F]` seconds, ascending from 0 or later; points `[F, K, 3]`, z 0 where
+    dims is 2; confidence `[F, K]` 0..1, 0 for what was not found; names of the K points. notes: what was left
+    out, in words.
+    """
 
     times: Array
     points: Array
@@ -91,7 +99,8 @@ def _other(name: str) -> str:
 
 
 def choose(points: Array, confidence: Array) -> tuple[Array, Array]:
-    """Return the POINTS `[17, D]` and their confidence `[17]` among `points [K, D]` of a layout, told by their number K.
+    """Return the POINTS `[17, D]` and their confidence `[17]` among `points [K, D]` of a layout, told by
+    their number K.
 
     Raises ValueError for a number no layout has.
     """

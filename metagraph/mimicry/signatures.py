@@ -1,4 +1,6 @@
-"""What each stance of a project looks like: its loops posed alone on the base pose, as keypoints, as measures."""
+"""What each stance of a project looks like: its loops posed alone on the base pose, as keypoints, as
+measures.
+"""
 
 from __future__ import annotations
 
@@ -22,17 +24,27 @@ Array = NDArray[Any]
 
 FRAMES = 9  # of each loop, averaged
 SWAPPED = 0.3  # what it costs a stance of the arms to be recognised with left and right changed over
-# Where ears, eyes and nose are beside the middle of the eyes: out, up, forwards; metres of a face on a torso of TORSO metres.
+# Where ears, eyes and nose are beside the middle of the eyes: out, up, forwards; metres of a face on a torso
+# of TORSO metres.
 FACE = {"ear": (0.075, -0.012, -0.1), "eye": (0.032, 0.0, 0.0), "nose": (0.0, -0.04, 0.025)}
 EYES = (0.0, 0.075, 0.085)  # the middle of the eyes beside the head's joint, where the character has none
 TORSO = 0.48  # metres from hips to shoulders of somebody 1.75 m tall
-_ROLES = {"shoulder": "upper_arm", "elbow": "lower_arm", "wrist": "hand", "hip": "upper_leg", "knee": "lower_leg", "ankle": "foot"}
+_ROLES = {
+    "shoulder": "upper_arm",
+    "elbow": "lower_arm",
+    "wrist": "hand",
+    "hip": "upper_leg",
+    "knee": "lower_leg",
+    "ankle": "foot",
+}
 
 
 @dataclass(frozen=True, eq=False)
 class Signature:
-    """A layer's stances. stances: their ids, S. measures `[T, N, 3]` of what they look like, of each loop, for the arms of its mirror
-    image, too; of `[T]` which stance it is; extra `[T]` how much farther it counts."""
+    """A layer's stances. stances: their ids, S. measures `[T, N, 3]` of what they look like, of each loop,
+    for the arms of its mirror image, too; of `[T]` which stance it is; extra `[T]` how much farther it
+    counts.
+    """
 
     stances: tuple[str, ...]
     measures: Array
@@ -47,10 +59,17 @@ class Body:
         if project.skeleton is None:
             raise ValueError("the project has no clips, so that there is no character to mimic with")
         roles = anatomy.roles(project)
-        needed = {f"{side}_{_ROLES[part]}" for part in ("shoulder", "elbow", "wrist", "hip") for side in ("left", "right")} | {"head"}
+        needed = {
+            f"{side}_{_ROLES[part]}"
+            for part in ("shoulder", "elbow", "wrist", "hip")
+            for side in ("left", "right")
+        } | {"head"}
         missing = sorted(needed - set(roles))
         if missing:
-            raise ValueError(f"the character cannot mimic: nothing is known to be its {', '.join(missing)}. Set the roles of its skeleton.")
+            raise ValueError(
+                f"the character cannot mimic: nothing is known to be its {', '.join(missing)}. Set the roles "
+                "of its skeleton."
+            )
         self.skeleton: Skeleton = project.skeleton
         self.head = roles["head"]
         self.places, self.joints = [], []
@@ -60,24 +79,37 @@ class Body:
                     self.places.append(PLACE[f"{side}_{part}"])
                     self.joints.append(roles[f"{side}_{role}"])
         self.confidence = np.zeros(len(POINTS))
-        self.confidence[[*self.places, *(n for n, name in enumerate(POINTS) if name == "nose" or name.endswith(("_eye", "_ear")))]] = 1.0
+        self.confidence[
+            [
+                *self.places,
+                *(n for n, name in enumerate(POINTS) if name == "nose" or name.endswith(("_eye", "_ear"))),
+            ]
+        ] = 1.0
         self._face = self._in_the_head(anatomy.base_pose(project), roles)
 
     def _in_the_head(self, base: Pose, roles: Mapping[str, int]) -> dict[int, Array]:
-        """Return where the points of the face are in the space of the head's joint, from a pose that looks ahead."""
+        """Return where the points of the face are in the space of the head's joint, from a pose that looks
+        ahead.
+        """
         turns, places = self.skeleton.globals(base)
         at = {name: places[j].astype(float) for name, j in roles.items()}
         across = (at["left_upper_arm"] - at["right_upper_arm"]) * [1, 0, 1]
         across /= max(float(np.linalg.norm(across)), 1e-9)
         ahead = np.array([-across[2], 0.0, across[0]])
-        torso = (at["left_upper_arm"] + at["right_upper_arm"] - at["left_upper_leg"] - at["right_upper_leg"]) / 2
+        torso = (
+            at["left_upper_arm"] + at["right_upper_arm"] - at["left_upper_leg"] - at["right_upper_leg"]
+        ) / 2
         scale = float(np.linalg.norm(torso)) / TORSO
 
         def away(out: float, up: float, forwards: float) -> Array:
             return np.asarray((across * out + np.array([0.0, up, 0.0]) + ahead * forwards) * scale)
 
         head = at["head"]
-        eyes = (at["left_eye"] + at["right_eye"]) / 2 if "left_eye" in at and "right_eye" in at else head + away(*EYES)
+        eyes = (
+            (at["left_eye"] + at["right_eye"]) / 2
+            if "left_eye" in at and "right_eye" in at
+            else head + away(*EYES)
+        )
         out = {}
         for name, place in PLACE.items():
             side, _, part = name.rpartition("_")
@@ -88,7 +120,9 @@ class Body:
         return {place: rotation.rotate(back, v) for place, v in out.items()}
 
     def points(self, pose: Pose) -> Array:
-        """Return the POINTS `[..., 17, 3]` of poses, metres; zeros where there is no such joint (`confidence [17]` says which)."""
+        """Return the POINTS `[..., 17, 3]` of poses, metres; zeros where there is no such joint (`confidence
+        [17]` says which).
+        """
         turns, places = self.skeleton.globals(pose)
         out = np.zeros((*places.shape[:-2], len(POINTS), 3))
         out[..., self.places, :] = places[..., self.joints, :]
@@ -97,9 +131,12 @@ class Body:
         return out
 
 
-def signatures(project: Project, body: Body, layers: Collection[Layer] = LAYERS) -> tuple[dict[Layer, Signature], float]:
-    """Return what the stances of each layer look like, and the shoulders' width in torso lengths. Stances whose clips are missing are
-    not among them, nor layers without any."""
+def signatures(
+    project: Project, body: Body, layers: Collection[Layer] = LAYERS
+) -> tuple[dict[Layer, Signature], float]:
+    """Return what the stances of each layer look like, and the shoulders' width in torso lengths. Stances
+    whose clips are missing are not among them, nor layers without any.
+    """
     width = _width(body, anatomy.base_pose(project))
     out = {}
     for layer in LAYERS:
@@ -108,8 +145,14 @@ def signatures(project: Project, body: Body, layers: Collection[Layer] = LAYERS)
         stances: list[str] = []
         rows, of, extra = [], [], []
         for stance in project.graphs[layer].stances.values():
-            loops = [x for x in project.graphs[layer].of(stance.id, "stance") if playable(project, x) is not None]
-            seen = [s for loop in loops if (s := _seen(project, body, layer, Rest(stance.id, loop, 0.0, 0.0, 0.0))) is not None]
+            loops = [
+                x for x in project.graphs[layer].of(stance.id, "stance") if playable(project, x) is not None
+            ]
+            seen = [
+                s
+                for loop in loops
+                if (s := _seen(project, body, layer, Rest(stance.id, loop, 0.0, 0.0, 0.0))) is not None
+            ]
             for points in seen:
                 for other, cost in ((False, 0.0), (True, SWAPPED)):
                     if other and layer != "arms":

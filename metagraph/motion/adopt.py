@@ -1,4 +1,6 @@
-"""Bring a clip onto the project's skeleton when both are the same character, and say why when they are not."""
+"""Bring a clip onto the project's skeleton when both are the same character, and say why when they are
+not.
+"""
 
 from __future__ import annotations
 
@@ -35,19 +37,27 @@ def difference(clip: Skeleton, project: Skeleton) -> str | None:
             continue
         above = project.parents[project.index(name)]
         if above < 0 or project.names[above] != clip.names[parent]:
-            return f"joint '{name}' hangs on '{clip.names[parent]}' instead of '{project.names[above] if above >= 0 else 'nothing'}'"
+            return (
+                f"joint '{name}' hangs on '{clip.names[parent]}' instead of "
+                f"'{project.names[above] if above >= 0 else 'nothing'}'"
+            )
     ours = np.linalg.norm(project.rest_translations[[project.index(n) for n in clip.names]], axis=-1)
     theirs = np.linalg.norm(clip.rest_translations, axis=-1)
     inner = clip.parents >= 0
     if inner.any():
-        ratio = np.median(theirs[inner & (ours > 1e-3)] / ours[inner & (ours > 1e-3)]) if (inner & (ours > 1e-3)).any() else 1.0
+        ratio = (
+            np.median(theirs[inner & (ours > 1e-3)] / ours[inner & (ours > 1e-3)])
+            if (inner & (ours > 1e-3)).any()
+            else 1.0
+        )
         if not 0.7 < ratio < 1.4:
             return f"its bones are {ratio:.3g} times as long"
     return None
 
 
 def adopt(clip: Clip, skeleton: Skeleton) -> Clip:
-    """Return the clip expressed on `skeleton`: joints reordered by name, missing ones at rest, bones as the clip has them.
+    """Return the clip expressed on `skeleton`: joints reordered by name, missing ones at rest, bones as the
+    clip has them.
 
     Raises SkeletonMismatchError when the skeletons are not of the same character.
     """
@@ -61,7 +71,9 @@ def adopt(clip: Clip, skeleton: Skeleton) -> Clip:
     places = np.array([skeleton.index(name) for name in clip.skeleton.names])
     source = clip.poses()
     rotations = np.broadcast_to(skeleton.rest_rotations, (clip.frames, len(skeleton), 4)).astype(np.float32)
-    translations = np.broadcast_to(skeleton.rest_translations, (clip.frames, len(skeleton), 3)).astype(np.float32)
+    translations = np.broadcast_to(skeleton.rest_translations, (clip.frames, len(skeleton), 3)).astype(
+        np.float32
+    )
     rotations[:, places] = source.rotations
     translations[:, places] = source.translations
     rest = skeleton.rest_translations.astype(np.float32)

@@ -56,11 +56,24 @@ class Character:
 
     def __post_init__(self) -> None:
         count = len(self.positions)
-        shapes = {"positions": (count, 3), "normals": (count, 3), "uvs": (count, 2), "joints": (count, 4), "weights": (count, 4)}
+        shapes = {
+            "positions": (count, 3),
+            "normals": (count, 3),
+            "uvs": (count, 2),
+            "joints": (count, 4),
+            "weights": (count, 4),
+        }
         for field, shape in shapes.items():
             if getattr(self, field).shape != shape:
-                raise ValueError(f"character '{self.name}': {field} are {getattr(self, field).shape}, expected {shape}")
+                raise ValueError(
+                    f"character '{self.name}': {field} are {getattr(self, field).shape}, expected {shape}"
+                )
         if len(self.triangles) and int(np.max(self.triangles)) >= count:
-            raise ValueError(f"character '{self.name}': a triangle names vertex {int(np.max(self.triangles))} of {count}")
+            raise ValueError(
+                f"character '{self.name}': a triangle names vertex {int(np.max(self.triangles))} of {count}"
+            )
         if count and int(np.max(self.joints)) >= len(self.skeleton):
-            raise ValueError(f"character '{self.name}': a vertex names joint {int(np.max(self.joints))} of {len(self.skeleton)}")
+            raise ValueError(
+                f"character '{self.name}': a vertex names joint {int(np.max(self.joints))} of "
+                f"{len(self.skeleton)}"
+            )

@@ -22,8 +22,8 @@ class ClipError(ValueError):
 class Repair:
     """Something of a file that was put right on reading it, and can be left as it is.
 
-    name: which repair. words: what was done. made: whether it was, or was left out because somebody said so. take: the number
-    of the take it left out, None where it changed the clip itself.
+    name: which repair. words: what was done. made: whether it was, or was left out because somebody said so.
+    take: the number of the take it left out, None where it changed the clip itself.
     """
 
     name: str
@@ -36,11 +36,11 @@ class Repair:
 class Clip:
     """Motion on a skeleton at a constant frame rate.
 
-    rotations: `[F, J, 4]` float32, local, xyzw, neighbours on the same side. translations: `[F, T, 3]` float32,
-    metres, local, for the joints listed in `translated` (ascending, always with joint 0 first); all other joints keep
-    their rest translation. weights: `[F, K]` morph target weights for `morphs`. notes: what the reader changed or
-    dropped, in words, for the user. repairs: those of the changes that can be left out. brought_from: fingerprint
-    of the skeleton it was retargeted from, "" where it never was.
+    rotations: `[F, J, 4]` float32, local, xyzw, neighbours on the same side. translations: `[F, T, 3]`
+    float32, metres, local, for the joints listed in `translated` (ascending, always with joint 0 first); all
+    other joints keep their rest translation. weights: `[F, K]` morph target weights for `morphs`. notes: what
+    the reader changed or dropped, in words, for the user. repairs: those of the changes that can be left out.
+    brought_from: fingerprint of the skeleton it was retargeted from, "" where it never was.
     """
 
     name: str
@@ -63,17 +63,31 @@ class Clip:
             raise ClipError(f"clip '{self.name}' has no frames")
         if r.shape != (count, joints, 4):
             raise ClipError(f"clip '{self.name}': rotations are {r.shape}, expected ({count}, {joints}, 4)")
-        if not self.translated or self.translated[0] != 0 or list(self.translated) != sorted(set(self.translated)):
+        if (
+            not self.translated
+            or self.translated[0] != 0
+            or list(self.translated) != sorted(set(self.translated))
+        ):
             raise ClipError(f"clip '{self.name}': translated joints must ascend and begin with joint 0")
         if t.shape != (count, len(self.translated), 3) or self.translated[-1] >= joints:
-            raise ClipError(f"clip '{self.name}': translations are {t.shape}, expected ({count}, {len(self.translated)}, 3)")
+            raise ClipError(
+                f"clip '{self.name}': translations are {t.shape}, expected ({count}, "
+                f"{len(self.translated)}, 3)"
+            )
         if not (self.fps > 0 and np.isfinite(self.fps)):
             raise ClipError(f"clip '{self.name}': {self.fps} frames per second")
         if not (np.isfinite(r).all() and np.isfinite(t).all()):
             raise ClipError(f"clip '{self.name}' holds a value that is not a number")
-        w = np.zeros((count, len(self.morphs)), np.float32) if self.weights is None else np.ascontiguousarray(self.weights, np.float32)
+        w = (
+            np.zeros((count, len(self.morphs)), np.float32)
+            if self.weights is None
+            else np.ascontiguousarray(self.weights, np.float32)
+        )
         if w.shape != (count, len(self.morphs)) or not np.isfinite(w).all():
-            raise ClipError(f"clip '{self.name}': morph weights are {w.shape}, expected ({count}, {len(self.morphs)}) finite numbers")
+            raise ClipError(
+                f"clip '{self.name}': morph weights are {w.shape}, expected ({count}, {len(self.morphs)}) "
+                "finite numbers"
+            )
         for field, array in (("rotations", r), ("translations", t), ("weights", w)):
             array.setflags(write=False)
             object.__setattr__(self, field, array)
@@ -94,7 +108,9 @@ class Clip:
 
     def poses(self) -> Pose:
         """Return every frame as poses `[F, J, ...]`."""
-        full = np.broadcast_to(self.skeleton.rest_translations.astype(np.float32), (self.frames, len(self.skeleton), 3)).copy()
+        full = np.broadcast_to(
+            self.skeleton.rest_translations.astype(np.float32), (self.frames, len(self.skeleton), 3)
+        ).copy()
         full[:, list(self.translated)] = self.translations
         return Pose(self.rotations, full)
 
@@ -106,13 +122,20 @@ class Clip:
             self.rotations[high],
             np.broadcast_to(part[..., None], (*low.shape, len(self.skeleton))),
         )
-        moved = self.translations[low] * (1 - part[..., None, None]) + self.translations[high] * part[..., None, None]
-        full = np.broadcast_to(self.skeleton.rest_translations.astype(np.float32), (*low.shape, len(self.skeleton), 3)).copy()
+        moved = (
+            self.translations[low] * (1 - part[..., None, None])
+            + self.translations[high] * part[..., None, None]
+        )
+        full = np.broadcast_to(
+            self.skeleton.rest_translations.astype(np.float32), (*low.shape, len(self.skeleton), 3)
+        ).copy()
         full[..., list(self.translated), :] = moved
         return Pose(rotations, full)
 
     def morphs_at(self, seconds: float) -> dict[str, float]:
-        """Return the morph target weights at one time, by name; linear between frames, clamped to the clip."""
+        """Return the morph target weights at one time, by name; linear between frames, clamped to the
+        clip.
+        """
         if self.weights is None or not self.morphs:
             return {}
         low, high, part = self.locate(seconds)
@@ -120,7 +143,9 @@ class Clip:
         return dict(zip(self.morphs, map(float, values), strict=True))
 
     def locate(self, seconds: ArrayLike) -> tuple[Array, Array, Array]:
-        """Return the frames before and after `seconds [...]` and the part of the way between them (float32, 0..1)."""
+        """Return the frames before and after `seconds [...]` and the part of the way between them (float32,
+        0..1).
+        """
         at = np.clip(np.asarray(seconds, np.float64) * self.fps, 0, self.frames - 1)
         low = np.minimum(at.astype(np.int64), max(0, self.frames - 2))
         high = np.minimum(low + 1, self.frames - 1)

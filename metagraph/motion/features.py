@@ -1,4 +1,6 @@
-"""What can be measured on a clip: speed of the hands and head, stroke, how well a loop closes, how far two poses are apart."""
+"""What can be measured on a clip: speed of the hands and head, stroke, how well a loop closes, how far two
+poses are apart.
+"""
 
 from __future__ import annotations
 
@@ -15,13 +17,16 @@ Array = NDArray[Any]
 
 
 def positions(clip: Clip, reference: int = 0) -> Array:
-    """Return joint positions `[F, J, 3]` in metres, with the first frame's `reference` joint above the origin."""
+    """Return joint positions `[F, J, 3]` in metres, with the first frame's `reference` joint above the
+    origin.
+    """
     _, out = clip.skeleton.globals(clip.poses())
     return np.asarray(out - out[:1, reference : reference + 1] * np.array([1, 0, 1], np.float32))
 
 
 def speed(clip: Clip, joints: Sequence[int], frame_of: int | None = None) -> Array:
-    """Return `[F]` the fastest of `joints`' speeds, metres a second, relative to joint `frame_of` (the shoulders' parent, say).
+    """Return `[F]` the fastest of `joints`' speeds, metres a second, relative to joint `frame_of` (the
+    shoulders' parent, say).
 
     Central differences; one-frame clips have speed 0.
     """
@@ -41,7 +46,9 @@ def stroke(speeds: Array, fps: float) -> float:
 
 
 def pose_distance(skeleton: Skeleton, a: Pose, b: Pose, joints: Sequence[int] | None = None) -> Array:
-    """Return `[...]` the largest distance in metres of any of `joints` between poses, both with joint 0 at the origin."""
+    """Return `[...]` the largest distance in metres of any of `joints` between poses, both with joint 0 at
+    the origin.
+    """
     _, pa = skeleton.globals(a)
     _, pb = skeleton.globals(b)
     chosen = list(range(len(skeleton))) if joints is None else list(joints)

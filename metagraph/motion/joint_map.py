@@ -1,4 +1,6 @@
-"""Which joint of one skeleton is which of another: by roles, by names taken apart, by hand; each pair with how sure it is."""
+"""Which joint of one skeleton is which of another: by roles, by names taken apart, by hand; each pair with
+how sure it is.
+"""
 
 from __future__ import annotations
 
@@ -19,12 +21,22 @@ Array = NDArray[Any]
 SIDES = ("left", "right")
 FINGERS = ("thumb", "index", "middle", "ring", "little")
 # The words for them, of which the first that fits counts: "RingPinky" is a little finger.
-_MARKS = {"thumb": ("thumb",), "index": ("index",), "middle": ("middle", "mid"), "little": ("little", "pinky"), "ring": ("ring",)}
+_MARKS = {
+    "thumb": ("thumb",),
+    "index": ("index",),
+    "middle": ("middle", "mid"),
+    "little": ("little", "pinky"),
+    "ring": ("ring",),
+}
 ARM, LEG = ("upper_arm", "lower_arm", "hand"), ("upper_leg", "lower_leg", "foot")
 TRUNK = ("hips", "spine", "chest", "upper_chest", "neck", "head")
 # Without these nothing sensible can be carried over.
 NEEDED = ("hips", "head", *(f"{side}_{part}" for side in SIDES for part in (*ARM, *LEG)))
-_PLAIN = (*TRUNK, "jaw", *(f"{side}_{part}" for side in SIDES for part in ("eye", "shoulder", *ARM, *LEG, "toes")))
+_PLAIN = (
+    *TRUNK,
+    "jaw",
+    *(f"{side}_{part}" for side in SIDES for part in ("eye", "shoulder", *ARM, *LEG, "toes")),
+)
 
 
 class RetargetError(ValueError):
@@ -32,7 +44,8 @@ class RetargetError(ValueError):
 
 
 def fingerprint(skeleton: Skeleton) -> str:
-    """Return what stays the same for a rig in every file and of every size: a short text, to remember maps by.
+    """Return what stays the same for a rig in every file and of every size: a short text, to remember maps
+    by.
 
     It is of the joints' names and parents, in any order: a map says nothing of lengths or rest poses.
     """
@@ -43,7 +56,8 @@ def fingerprint(skeleton: Skeleton) -> str:
 
 @dataclass(frozen=True, slots=True)
 class JointPair:
-    """role: what both do, as in `roles.ROLES`, `left_index_1`, `left_lower_arm_twist_1`, `root`, or "" for a pair by its name.
+    """role: what both do, as in `roles.ROLES`, `left_index_1`, `left_lower_arm_twist_1`, `root`, or "" for a
+    pair by its name.
 
     sure: 0..1. why: in words.
     """
@@ -57,7 +71,9 @@ class JointPair:
 
 @dataclass(frozen=True)
 class JointMap:
-    """Joints of one skeleton and those of another that follow them. source, target: the skeletons' fingerprints."""
+    """Joints of one skeleton and those of another that follow them. source, target: the skeletons'
+    fingerprints.
+    """
 
     source: str
     target: str
@@ -67,7 +83,9 @@ class JointMap:
         return next((p for p in self.pairs if p.source == source), None)
 
     def with_pair(self, source: str, target: str, role: str | None = None) -> JointMap:
-        """Return the map with `target` following `source`. Without a role it is that of the pair this one takes the place of."""
+        """Return the map with `target` following `source`. Without a role it is that of the pair this one
+        takes the place of.
+        """
         before = [p for p in self.pairs if p.source == source or p.target == target]
         if role is None:
             known = [p.role for p in before if p.source == source] + [p.role for p in before]
@@ -91,7 +109,10 @@ class JointMap:
         return tuple(f"no {role.replace('_', ' ')} in both" for role in NEEDED if role not in roles)
 
     def to_json(self) -> dict[str, Any]:
-        rows = [{"from": p.source, "to": p.target, "role": p.role, "sure": round(p.sure, 3), "why": p.why} for p in self.pairs]
+        rows = [
+            {"from": p.source, "to": p.target, "role": p.role, "sure": round(p.sure, 3), "why": p.why}
+            for p in self.pairs
+        ]
         return {"source": self.source, "target": self.target, "pairs": rows}
 
     @staticmethod
@@ -99,7 +120,13 @@ class JointMap:
         """Raises RetargetError when the data is no joint map."""
         try:
             pairs = tuple(
-                JointPair(str(p["from"]), str(p["to"]), str(p.get("role", "")), float(p.get("sure", 1)), str(p.get("why", "")))
+                JointPair(
+                    str(p["from"]),
+                    str(p["to"]),
+                    str(p.get("role", "")),
+                    float(p.get("sure", 1)),
+                    str(p.get("why", "")),
+                )
                 for p in data["pairs"]
             )
             return JointMap(str(data["source"]), str(data["target"]), pairs)
@@ -108,9 +135,14 @@ class JointMap:
 
 
 def proposed(
-    source: Skeleton, target: Skeleton, source_roles: Mapping[str, int] | None = None, target_roles: Mapping[str, int] | None = None
+    source: Skeleton,
+    target: Skeleton,
+    source_roles: Mapping[str, int] | None = None,
+    target_roles: Mapping[str, int] | None = None,
 ) -> JointMap:
-    """Propose which joint of `target` follows which of `source`: by roles, fingers and twists, then by names."""
+    """Propose which joint of `target` follows which of `source`: by roles, fingers and twists, then by
+    names.
+    """
     ours, theirs = known_roles(source, source_roles), known_roles(target, target_roles)
     pairs: dict[str, JointPair] = {}
     taken: set[str] = set()
@@ -125,9 +157,17 @@ def proposed(
         if role in theirs:
             other = theirs[role]
             same = take_apart(source.names[joint]).joined == take_apart(target.names[other]).joined
-            shaped = not role[-1].isdecimal() and _unnamed(source.names[joint], role) + _unnamed(target.names[other], role)
+            shaped = not role[-1].isdecimal() and _unnamed(source.names[joint], role) + _unnamed(
+                target.names[other], role
+            )
             sure = 1.0 if same else 0.9 - 0.15 * shaped
-            add(joint, other, role, sure, "same role and name" if same else f"both are the {role.replace('_', ' ')}")
+            add(
+                joint,
+                other,
+                role,
+                sure,
+                "same role and name" if same else f"both are the {role.replace('_', ' ')}",
+            )
     tops = [[roles[r] for r in ("spine", "chest", "upper_chest") if r in roles] for roles in (ours, theirs)]
     if all(tops):
         add(tops[0][-1], tops[1][-1], "upper_chest", 0.7, "both carry the arms")
@@ -186,7 +226,9 @@ def _twists(skeleton: Skeleton, roles: Mapping[str, int]) -> dict[str, int]:
         if role not in roles:
             continue
         found = [
-            c for c in skeleton.children[roles[role]] if c not in taken and {"twist", "roll"} & set(take_apart(skeleton.names[c]).words)
+            c
+            for c in skeleton.children[roles[role]]
+            if c not in taken and {"twist", "roll"} & set(take_apart(skeleton.names[c]).words)
         ]
         out.update({f"{role}_twist_{n}": c for n, c in enumerate(found, 1)})
     return out

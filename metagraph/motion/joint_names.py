@@ -12,19 +12,24 @@ def _words(text: str) -> frozenset[str]:
 
 _LEFT, _RIGHT = {"left", "l", "lft", "lf"}, {"right", "r", "rgt", "rt"}
 # Capture labs write small letters without a gap: lfemur, rhumerus.
-_BONES = re.compile(r"([lr])(hipjoint|femur|tibia|foot|toes|clavicle|humerus|radius|wrist|hand|fingers|thumb)")
+_BONES = re.compile(
+    r"([lr])(hipjoint|femur|tibia|foot|toes|clavicle|humerus|radius|wrist|hand|fingers|thumb)"
+)
 # Joints that serve the animator or the skin, not the body.
 HELPERS = _words(
-    "ik fk pole target ctrl control controller twist roll helper end nub effector goal slot aux adjust adj dummy socket prop"
+    "ik fk pole target ctrl control controller twist roll helper end nub effector goal slot aux adjust adj "
+    "dummy socket prop"
     " weapon mch org tweak mid handle locator footsteps offset driver jiggle volume corrective bulge muscle"
 )
 _FOUR_LEGGED = {"front", "hind", "rear", "back"}
 FACE = _words(
-    "eye eyes eyeball eyebrow brow lid eyelid lids jaw mouth lip lips tongue cheek nose nostril chin teeth tooth temple zygomatic"
+    "eye eyes eyeball eyebrow brow lid eyelid lids jaw mouth lip lips tongue cheek nose nostril chin teeth "
+    "tooth temple zygomatic"
     " squint sneer crease face facial corner gum forehead"
 )
 ARM = _words(
-    "hand wrist elbow arm forearm upperarm lowerarm shoulder clav clavicle collar thumb index middle ring pinky little"
+    "hand wrist elbow arm forearm upperarm lowerarm shoulder clav clavicle collar thumb index middle ring "
+    "pinky little"
     " finger fingers fng palm"
 )
 
@@ -42,7 +47,9 @@ class Words:
 def take_apart(name: str) -> Words:
     """Split a name at separators, capitals and digits, without its namespace."""
     bare = re.split(r"[:|]", name)[-1]
-    pieces = [p.lower() for p in re.findall(r"[A-Z]+(?=[A-Z][a-z])|[A-Z]?[a-z]+|[A-Z]+|\d+|[^\W\d_a-zA-Z]+", bare)]
+    pieces = [
+        p.lower() for p in re.findall(r"[A-Z]+(?=[A-Z][a-z])|[A-Z]?[a-z]+|[A-Z]+|\d+|[^\W\d_a-zA-Z]+", bare)
+    ]
     words: list[str] = []
     side, number = "centre", 0
     for piece in pieces:

@@ -1,4 +1,6 @@
-"""The left/right twin of a clip: reflected on the character's sagittal plane, the sides of skeleton and face swapped."""
+"""The left/right twin of a clip: reflected on the character's sagittal plane, the sides of skeleton and face
+swapped.
+"""
 
 from __future__ import annotations
 
@@ -18,7 +20,8 @@ from metagraph.motion.skeleton import Skeleton
 
 Array = NDArray[Any]
 
-# Of the skeleton's height: how far rest poses may be from even on both sides, and when a position alone makes twins.
+# Of the skeleton's height: how far rest poses may be from even on both sides, and when a position alone makes
+# twins.
 UNEVEN, ALIKE = 0.05, 0.01
 SKEWED = np.radians(120)  # by how much twins may point elsewhere at rest
 STILL = np.radians(0.1)  # below this turn a joint without a twin counts as unmoved
@@ -28,16 +31,23 @@ _PIECE = re.compile(r"[A-Z]+(?=[A-Z][a-z])|[A-Z]?[a-z]+|[A-Z]+|\d+|[^A-Za-z\d]+"
 
 
 def swap_sides(text: str) -> str:
-    """Return `text` with its words for left and right exchanged: left/right, lf/rt, L/R and their like, keeping their case."""
+    """Return `text` with its words for left and right exchanged: left/right, lf/rt, L/R and their like,
+    keeping their case.
+    """
     pieces = _PIECE.findall(text)
     out = []
     for i, piece in enumerate(pieces):
         word, rest = piece.lower(), ""
-        glued = re.fullmatch(r"(left|right)(arm|forearm|hand|leg|upleg|foot|toe|shoulder|eye|brow|knee|elbow|wrist|ankle|thumb)s?", word)
+        glued = re.fullmatch(
+            r"(left|right)(arm|forearm|hand|leg|upleg|foot|toe|shoulder|eye|brow|knee|elbow|wrist|ankle|thumb)s?",
+            word,
+        )
         if glued:
             word, rest = glued[1], piece[len(glued[1]) :]
         other = _SWAP.get(word)
-        numbered = len(word) == 1 and i + 1 < len(pieces) and pieces[i + 1].isdecimal()  # "R2" is a number of something
+        numbered = (
+            len(word) == 1 and i + 1 < len(pieces) and pieces[i + 1].isdecimal()
+        )  # "R2" is a number of something
         if other is None or numbered:
             out.append(piece)
             continue
@@ -48,7 +58,8 @@ def swap_sides(text: str) -> str:
 
 
 def pairs_of(skeleton: Skeleton, roles: Mapping[str, int] | None = None) -> tuple[int, ...]:
-    """Return each joint's twin on the other side, its own place for joints on the middle; -1 for a sided joint that has none.
+    """Return each joint's twin on the other side, its own place for joints on the middle; -1 for a sided
+    joint that has none.
 
     By the roles, then by the names, then by where the rest pose puts what names leave over.
     """
@@ -85,7 +96,11 @@ def pairs_of(skeleton: Skeleton, roles: Mapping[str, int] | None = None) -> tupl
         if twins[i] >= 0:
             continue
         above = int(skeleton.parents[i])
-        if words[i].side == "centre" and abs(positions[i] @ lateral - middle) < ALIKE * skeleton.height and sides[i] == "centre":
+        if (
+            words[i].side == "centre"
+            and abs(positions[i] @ lateral - middle) < ALIKE * skeleton.height
+            and sides[i] == "centre"
+        ):
             twins[i] = i
             continue
         beside = twins[above] if above >= 0 else -1
@@ -104,10 +119,11 @@ def pairs_of(skeleton: Skeleton, roles: Mapping[str, int] | None = None) -> tupl
 
 
 def mirror(clip: Clip, pairs: Sequence[int]) -> Clip:
-    """Return the clip with left and right exchanged. `pairs` are those of `pairs_of`; mirrored twice it is itself.
+    """Return the clip with left and right exchanged. `pairs` are those of `pairs_of`; mirrored twice it is
+    itself.
 
-    Turns are reflected relative to the rest pose, so bones may have any axes. Raises ValueError, in words, where the skeleton is
-    not the same on both sides.
+    Turns are reflected relative to the rest pose, so bones may have any axes. Raises ValueError, in words,
+    where the skeleton is not the same on both sides.
     """
     skeleton = clip.skeleton
     twins = _checked(clip, pairs)
@@ -126,7 +142,8 @@ def mirror(clip: Clip, pairs: Sequence[int]) -> Clip:
     rotations[:, inner] = rotation.multiply(rotation.conjugate(turned[:, parents[inner]]), turned[:, inner])
     alone = np.flatnonzero(np.array(pairs) < 0)
     rotations[:, alone] = rest.rotations[alone]
-    # What a joint is shifted by goes through model space, so that both sides may have different axes and lengths.
+    # What a joint is shifted by goes through model space, so that both sides may have different axes and
+    # lengths.
     shift = local_t - rest.translations
     shift[:, inner] = rotation.rotate(model_r[:, parents[inner]], shift[:, inner])
     shift = _reflect(shift, lateral, 0.0)[:, twins]
@@ -143,23 +160,32 @@ def mirror(clip: Clip, pairs: Sequence[int]) -> Clip:
 
 
 def _checked(clip: Clip, pairs: Sequence[int]) -> Array:
-    """Return the twins `[J]`, joints without one that do not move standing for themselves. Raises ValueError."""
+    """Return the twins `[J]`, joints without one that do not move standing for themselves. Raises
+    ValueError.
+    """
     skeleton, names = clip.skeleton, clip.skeleton.names
     twins = np.array(pairs, int)
     if twins.shape != (len(skeleton),) or twins.min() < -1 or twins.max() >= len(skeleton):
         raise ValueError(f"'{clip.name}' cannot be mirrored: the pairs are those of another skeleton")
     still = rotation.angle_between(clip.rotations, skeleton.rest_rotations.astype(np.float32)).max(0) < STILL
-    still[list(clip.translated)] &= np.abs(clip.translations - skeleton.rest_translations[list(clip.translated)]).max((0, 2)) < 1e-4
+    still[list(clip.translated)] &= (
+        np.abs(clip.translations - skeleton.rest_translations[list(clip.translated)]).max((0, 2)) < 1e-4
+    )
     alone = twins < 0
     if (alone & ~still).any():
-        raise ValueError(f"'{clip.name}' cannot be mirrored: joint '{names[int(np.argmax(alone & ~still))]}' has no twin on the other side")
+        raise ValueError(
+            f"'{clip.name}' cannot be mirrored: joint '{names[int(np.argmax(alone & ~still))]}' has no twin "
+            "on the other side"
+        )
     twins = np.where(alone, np.arange(len(twins)), twins)
     if (twins[twins] != np.arange(len(twins))).any():
         raise ValueError(f"'{clip.name}' cannot be mirrored: a joint is the twin of two others")
     for j in range(len(twins)):
         above, beside = int(skeleton.parents[j]), int(skeleton.parents[twins[j]])
         if not alone[j] and (beside != twins[above] if above >= 0 else beside >= 0):
-            raise ValueError(f"'{clip.name}' cannot be mirrored: '{names[j]}' and '{names[twins[j]]}' do not hang on twins")
+            raise ValueError(
+                f"'{clip.name}' cannot be mirrored: '{names[j]}' and '{names[twins[j]]}' do not hang on twins"
+            )
     _, positions = skeleton.globals(skeleton.rest)
     lateral, middle = _plane(skeleton, twins)
     middling = twins == np.arange(len(twins))
@@ -168,24 +194,33 @@ def _checked(clip: Clip, pairs: Sequence[int]) -> Array:
     uneven = np.abs(length - length[twins])
     skewed = rotation.angle_between(_held(skeleton, positions, twins, lateral), rotation.IDENTITY)
     for j, name in enumerate(names):
-        if alone[j] or HELPERS & set(take_apart(name).words):  # where an animator keeps a handle says nothing of the body
+        if alone[j] or HELPERS & set(
+            take_apart(name).words
+        ):  # where an animator keeps a handle says nothing of the body
             continue
         if off[j] > UNEVEN * skeleton.height:
-            raise ValueError(f"'{clip.name}' cannot be mirrored: at rest '{name}' is {100 * off[j]:.0f} cm beside the middle")
+            raise ValueError(
+                f"'{clip.name}' cannot be mirrored: at rest '{name}' is {100 * off[j]:.0f} cm beside the "
+                "middle"
+            )
         if uneven[j] > UNEVEN * skeleton.height:
             raise ValueError(
-                f"'{clip.name}' cannot be mirrored: '{name}' and '{names[twins[j]]}' differ in length by {100 * uneven[j]:.0f} cm"
+                f"'{clip.name}' cannot be mirrored: '{name}' and '{names[twins[j]]}' differ in length by "
+                f"{100 * uneven[j]:.0f} cm"
             )
         if skewed[j] > SKEWED:
             raise ValueError(
-                f"'{clip.name}' cannot be mirrored: at rest '{name}' points {np.degrees(skewed[j]):.0f} degrees away"
+                f"'{clip.name}' cannot be mirrored: at rest '{name}' points {np.degrees(skewed[j]):.0f} "
+                "degrees away"
                 f" from where '{names[twins[j]]}' is mirrored"
             )
     return twins
 
 
 def _held(skeleton: Skeleton, positions: Array, twins: Array, lateral: Array) -> Array:
-    """Return turns `[J, 4]` from each joint's rest pose to the mirror image of its twin's: by where the bone points, parents first."""
+    """Return turns `[J, 4]` from each joint's rest pose to the mirror image of its twin's: by where the bone
+    points, parents first.
+    """
     children = np.zeros((len(skeleton), 3))
     count = np.bincount(skeleton.parents[skeleton.parents >= 0], minlength=len(skeleton))
     np.add.at(children, skeleton.parents[skeleton.parents >= 0], positions[skeleton.parents >= 0])
@@ -211,7 +246,9 @@ def _plane(skeleton: Skeleton, twins: Sequence[int] | Array) -> tuple[Array, flo
     apart, between = (positions - positions[twin])[sided], (positions + positions[twin])[sided] / 2
 
     def misfit(lateral: Array) -> float:
-        """Sine of the angle by which the better placed twins are apart aslant; arms posed differently at rest must not count."""
+        """Sine of the angle by which the better placed twins are apart aslant; arms posed differently at rest
+        must not count.
+        """
         aside = np.linalg.norm(apart - np.outer(apart @ lateral, lateral), axis=-1)
         return float(np.quantile(aside / np.maximum(np.linalg.norm(apart, axis=-1), 1e-9), 0.25))
 

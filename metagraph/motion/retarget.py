@@ -1,9 +1,10 @@
 """Bring a clip onto a different character: turns carried over, hands and feet kept on height.
 
-Turns are taken relative to a standing pose of either figure, mostly the rest pose. Where these differ (arms out, arms down) the
-bones' directions reconcile them; the roll about a bone is the one the shortest way between them leaves, and hands with
-fingers have their own. Then two-bone limbs are solved, so that wrists and ankles come to the source's places, scaled.
-All is reckoned in the character's axes: +X to its left, +Y up, +Z ahead.
+Turns are taken relative to a standing pose of either figure, mostly the rest pose. Where these differ (arms
+out, arms down) the bones' directions reconcile them; the roll about a bone is the one the shortest way
+between them leaves, and hands with fingers have their own. Then two-bone limbs are solved, so that wrists and
+ankles come to the source's places, scaled. All is reckoned in the character's axes: +X to its left, +Y up, +Z
+ahead.
 """
 
 from __future__ import annotations
@@ -18,24 +19,42 @@ from numpy.typing import NDArray
 
 from metagraph.motion import rotation
 from metagraph.motion.clip import Clip
-from metagraph.motion.joint_map import ARM, FINGERS, LEG, NEEDED, SIDES, TRUNK, JointMap, JointPair, RetargetError, fingerprint
+from metagraph.motion.joint_map import (
+    ARM,
+    FINGERS,
+    LEG,
+    NEEDED,
+    SIDES,
+    TRUNK,
+    JointMap,
+    JointPair,
+    RetargetError,
+    fingerprint,
+)
 from metagraph.motion.roles import find_roles
 from metagraph.motion.skeleton import Pose, Skeleton
 
 Array = NDArray[Any]
 
 MOVED = 1e-4  # metres: below this a joint keeps its rest translation
-BACKWARD = np.radians(100)  # a neck or spine turned further than this in every frame does not start from its rest pose
+BACKWARD = np.radians(
+    100
+)  # a neck or spine turned further than this in every frame does not start from its rest pose
 LOWEST = 0.25  # of the leg: how far hips may be lowered so that legs of other proportions reach
-STRAIGHT = 0.9  # of the arm: from here on it stretches ever less for a place that only wider shoulders put so far
+STRAIGHT = (
+    0.9  # of the arm: from here on it stretches ever less for a place that only wider shoulders put so far
+)
 FLOATING = 0.25  # of the leg: a rest pose this far off the ground is not standing on it
 
 
-# --- standing poses --------------------------------------------------------------------------------------------------
+# --- standing poses
+# --------------------------------------------------------------------------------------------------
 
 
 def stands(skeleton: Skeleton, roles: Mapping[str, int] | None = None) -> bool:
-    """Whether the rest pose is a standing figure. In some files all bones lie along one axis, and only the motion stands up."""
+    """Whether the rest pose is a standing figure. In some files all bones lie along one axis, and only the
+    motion stands up.
+    """
     roles = find_roles(skeleton) if roles is None else roles
     _, p = skeleton.globals(skeleton.rest)
     return all(r in roles for r in NEEDED) and bool(_upright(p[None], roles)[0] > 0.5)
@@ -49,7 +68,8 @@ def _upright(p: Array, roles: Mapping[str, int]) -> Array:
 
 
 def standing_pose(clip: Clip, roles: Mapping[str, int] | None = None) -> Pose:
-    """Return the rest pose where it stands and looks ahead, else the clip's frame that stands best: upright, limbs straight, feet down.
+    """Return the rest pose where it stands and looks ahead, else the clip's frame that stands best: upright,
+    limbs straight, feet down.
 
     Some files rest with every bone along one axis, or with the head back to front; their motion tells.
     """
@@ -59,7 +79,9 @@ def standing_pose(clip: Clip, roles: Mapping[str, int] | None = None) -> Pose:
         return skeleton.rest
     if stands(skeleton, roles):
         trunk = [roles[r] for r in TRUNK[1:] if r in roles]
-        turned = rotation.angle_between(clip.rotations[:, trunk], skeleton.rest_rotations[trunk].astype(np.float32)).min(0)
+        turned = rotation.angle_between(
+            clip.rotations[:, trunk], skeleton.rest_rotations[trunk].astype(np.float32)
+        ).min(0)
         return _faced(skeleton, [j for j, angle in zip(trunk, turned, strict=True) if angle > BACKWARD])
     poses = clip.poses()
     _, p = skeleton.globals(poses)
@@ -83,28 +105,41 @@ def _faced(skeleton: Skeleton, joints: Sequence[int]) -> Pose:
     local = skeleton.rest_rotations.copy()
     for j in joints:
         above = model[skeleton.parents[j]]
-        local[j] = rotation.multiply(rotation.conjugate(above), rotation.multiply(np.array([0, 1.0, 0, 0]), model[j]))
+        local[j] = rotation.multiply(
+            rotation.conjugate(above), rotation.multiply(np.array([0, 1.0, 0, 0]), model[j])
+        )
         model, _ = skeleton.globals(Pose(local, skeleton.rest_translations))
     return Pose(local, skeleton.rest_translations)
 
 
 class _Figure:
-    """A skeleton in its standing pose, in the character's axes, by role. `ankle` is the ankles' height when it stands on the ground."""
+    """A skeleton in its standing pose, in the character's axes, by role. `ankle` is the ankles' height when
+    it stands on the ground.
+    """
 
     def __init__(self, skeleton: Skeleton, roles: Mapping[str, int], pose: Pose) -> None:
         self.skeleton, self.roles, self.pose = skeleton, roles, pose
         rotations, positions = skeleton.globals(pose)
-        across = sum(positions[roles[f"left_{r}"]] - positions[roles[f"right_{r}"]] for r in ("upper_leg", "upper_arm"))
-        limbs = [roles[f"{s}_{part}"] for s in SIDES for part in (*ARM, *LEG)]
-        self.natural = bool((rotation.angle_between(pose.rotations, skeleton.rest_rotations)[limbs] < 1e-3).all()) and stands(
-            skeleton, roles
+        across = sum(
+            positions[roles[f"left_{r}"]] - positions[roles[f"right_{r}"]] for r in ("upper_leg", "upper_arm")
         )
+        limbs = [roles[f"{s}_{part}"] for s in SIDES for part in (*ARM, *LEG)]
+        self.natural = bool(
+            (rotation.angle_between(pose.rotations, skeleton.rest_rotations)[limbs] < 1e-3).all()
+        ) and stands(skeleton, roles)
         # Axes are those of the file, turned by quarters: a figure that looks a little aside does look aside.
         quarter = np.round(np.arctan2(across[2], across[0]) / (np.pi / 2)) * np.pi / 2
         self.turn = rotation.from_axis_angle(np.array([0, 1.0, 0]), quarter)
-        self.rotations, self.positions = rotation.multiply(self.turn, rotations), rotation.rotate(self.turn, positions)
-        self.leg = float(np.mean([self.length(f"{s}_upper_leg", f"{s}_lower_leg", f"{s}_foot") for s in SIDES]))
-        self.arm = float(np.mean([self.length(f"{s}_upper_arm", f"{s}_lower_arm", f"{s}_hand") for s in SIDES]))
+        self.rotations, self.positions = (
+            rotation.multiply(self.turn, rotations),
+            rotation.rotate(self.turn, positions),
+        )
+        self.leg = float(
+            np.mean([self.length(f"{s}_upper_leg", f"{s}_lower_leg", f"{s}_foot") for s in SIDES])
+        )
+        self.arm = float(
+            np.mean([self.length(f"{s}_upper_arm", f"{s}_lower_arm", f"{s}_hand") for s in SIDES])
+        )
         self.hip = self.middle("upper_leg")
         self.ankle = float(self.middle("foot")[1])
         self.half_hips, self.half_shoulders = self.half("upper_leg"), self.half("upper_arm")
@@ -168,7 +203,10 @@ def _aligned(source: _Figure, target: _Figure, roles: Sequence[str]) -> dict[str
             knuckles = [f"{side}_{f}_1" for f in FINGERS[1:] if f"{side}_{f}_1" in known]
             turn = follow(f"{side}_{end}", turn, *knuckles)
             if len(knuckles) > 1:
-                a, b = (_turn_of(bone(f, f"{side}_{end}", *knuckles), f.at(knuckles[0]) - f.at(knuckles[-1])) for f in (source, target))
+                a, b = (
+                    _turn_of(bone(f, f"{side}_{end}", *knuckles), f.at(knuckles[0]) - f.at(knuckles[-1]))
+                    for f in (source, target)
+                )
                 turn = out[f"{side}_{end}"] = rotation.multiply(a, rotation.conjugate(b))
             for finger in FINGERS:
                 hand = turn
@@ -182,7 +220,9 @@ def _aligned(source: _Figure, target: _Figure, roles: Sequence[str]) -> dict[str
 
 
 def _heading(source: _Figure, target: _Figure, side: str) -> Array:
-    """Return the turn about the vertical from where the target's foot points to where the source's does; soles stay flat."""
+    """Return the turn about the vertical from where the target's foot points to where the source's does;
+    soles stay flat.
+    """
     angles = []
     for figure in (source, target):
         ahead = figure.at(f"{side}_toes") - figure.at(f"{side}_foot")
@@ -192,23 +232,32 @@ def _heading(source: _Figure, target: _Figure, side: str) -> Array:
     return rotation.from_axis_angle(np.array([0, 1.0, 0]), angles[0] - angles[1])
 
 
-# --- the motion ------------------------------------------------------------------------------------------------------
+# --- the motion
+# --------------------------------------------------------------------------------------------------
 
 
 def retarget(
-    clip: Clip, target: Skeleton, joint_map: JointMap, *, source_pose: Pose | None = None, target_pose: Pose | None = None
+    clip: Clip,
+    target: Skeleton,
+    joint_map: JointMap,
+    *,
+    source_pose: Pose | None = None,
+    target_pose: Pose | None = None,
 ) -> Clip:
     """Return the clip on `target`. Joints that nothing maps to keep their rest pose and follow their parents.
 
-    source_pose, target_pose: standing poses to take turns from, by default the rest poses (for a source whose rest pose does not
-    stand, the frame that does). Hips and feet are scaled by the legs' length, so planted feet stay planted; wrists by the arms'.
-    Raises RetargetError when too little is mapped.
+    source_pose, target_pose: standing poses to take turns from, by default the rest poses (for a source whose
+    rest pose does not stand, the frame that does). Hips and feet are scaled by the legs' length, so planted
+    feet stay planted; wrists by the arms'. Raises RetargetError when too little is mapped.
     """
     roles = _checked(clip, target, joint_map)
     ours = {role: clip.skeleton.index(pair.source) for role, pair in roles.items()}
     theirs = {role: target.index(pair.target) for role, pair in roles.items()}
     if target_pose is None and not stands(target, theirs):
-        raise RetargetError(f"'{clip.name}': the rest pose of the project's skeleton does not stand; give a pose of it that does")
+        raise RetargetError(
+            f"'{clip.name}': the rest pose of the project's skeleton does not stand; give a pose of it that "
+            "does"
+        )
     source = _Figure(clip.skeleton, ours, standing_pose(clip, ours) if source_pose is None else source_pose)
     figure = _Figure(target, theirs, target.rest if target_pose is None else target_pose)
     work = _Work(clip, source, figure, joint_map, roles)
@@ -225,18 +274,31 @@ def _checked(clip: Clip, target: Skeleton, joint_map: JointMap) -> dict[str, Joi
     for pair in joint_map.pairs:
         for name, skeleton, whose in ((pair.source, clip.skeleton, "clip"), (pair.target, target, "project")):
             if name not in skeleton:
-                raise RetargetError(f"'{clip.name}': the joint map names '{name}', which the {whose}'s skeleton does not have")
+                raise RetargetError(
+                    f"'{clip.name}': the joint map names '{name}', which the {whose}'s skeleton does not have"
+                )
     missing = joint_map.missing
     if missing:
         more = f" and {len(missing) - 3} more" if len(missing) > 3 else ""
-        raise RetargetError(f"'{clip.name}' cannot be brought onto this character: {', '.join(missing[:3])}{more}")
+        raise RetargetError(
+            f"'{clip.name}' cannot be brought onto this character: {', '.join(missing[:3])}{more}"
+        )
     return {pair.role: pair for pair in joint_map.pairs if pair.role}
 
 
 class _Work:
-    """One clip on its way: `turns [F, J, 4]` and `places [F, J, 3]` of the target's joints in the character's axes."""
+    """One clip on its way: `turns [F, J, 4]` and `places [F, J, 3]` of the target's joints in the character's
+    axes.
+    """
 
-    def __init__(self, clip: Clip, source: _Figure, target: _Figure, joint_map: JointMap, roles: Mapping[str, JointPair]) -> None:
+    def __init__(
+        self,
+        clip: Clip,
+        source: _Figure,
+        target: _Figure,
+        joint_map: JointMap,
+        roles: Mapping[str, JointPair],
+    ) -> None:
         self.clip, self.source, self.target, self.map, self.roles = clip, source, target, joint_map, roles
         turns, places = clip.skeleton.globals(clip.poses())
         self.from_turns = rotation.multiply(source.turn.astype(np.float32), turns)
@@ -258,20 +320,36 @@ class _Work:
         self.ground()
 
     def _parents(self) -> Array:
-        """Return the target's parents, with limbs that its file keeps apart (IK feet, several roots) hung on the body."""
+        """Return the target's parents, with limbs that its file keeps apart (IK feet, several roots) hung on
+        the body.
+        """
         skeleton, roles = self.target.skeleton, self.target.roles
         parents = np.array(skeleton.parents)
         for side in SIDES:
-            chains = ((f"{side}_upper_leg", "hips"), (f"{side}_lower_leg", f"{side}_upper_leg"), (f"{side}_foot", f"{side}_lower_leg"))
-            arms = ((f"{side}_upper_arm", "hips"), (f"{side}_lower_arm", f"{side}_upper_arm"), (f"{side}_hand", f"{side}_lower_arm"))
+            chains = (
+                (f"{side}_upper_leg", "hips"),
+                (f"{side}_lower_leg", f"{side}_upper_leg"),
+                (f"{side}_foot", f"{side}_lower_leg"),
+            )
+            arms = (
+                (f"{side}_upper_arm", "hips"),
+                (f"{side}_lower_arm", f"{side}_upper_arm"),
+                (f"{side}_hand", f"{side}_lower_arm"),
+            )
             for role, over in (*chains, *arms):
                 joint, wanted = roles[role], roles[over]
                 if wanted not in skeleton.chain(joint) and joint not in skeleton.chain(wanted):
-                    parents[joint] = wanted if not role.endswith("upper_arm") else roles.get("upper_chest", roles.get("spine", wanted))
+                    parents[joint] = (
+                        wanted
+                        if not role.endswith("upper_arm")
+                        else roles.get("upper_chest", roles.get("spine", wanted))
+                    )
         return parents
 
     def ground(self) -> None:
-        """Find the ankles' heights that correspond: those of figures standing on the ground, whatever height a rest pose has."""
+        """Find the ankles' heights that correspond: those of figures standing on the ground, whatever height
+        a rest pose has.
+        """
         ankles = self.from_places[:, [self.source.roles["left_foot"], self.source.roles["right_foot"]], 1]
         self.from_ankle = self.source.ankle
         if self.source.natural and abs(float(ankles.min()) - self.from_ankle) > FLOATING * self.source.leg:
@@ -283,12 +361,16 @@ class _Work:
             self.to_ankle -= low
 
     def turn_joints(self) -> None:
-        """Carry the turns of mapped joints over, spread them on joints between those of the trunk, let the others follow."""
+        """Carry the turns of mapped joints over, spread them on joints between those of the trunk, let the
+        others follow.
+        """
         source, target = self.source.skeleton, self.target.skeleton
         a = np.array([source.index(p.source) for p in self.map.pairs])
         b = np.array([target.index(p.target) for p in self.map.pairs])
         align = np.array([self.align.get(p.role, rotation.IDENTITY) for p in self.map.pairs])
-        fixed = rotation.multiply(rotation.multiply(rotation.conjugate(self.source.rotations[a]), align), self.target.rotations[b])
+        fixed = rotation.multiply(
+            rotation.multiply(rotation.conjugate(self.source.rotations[a]), align), self.target.rotations[b]
+        )
         given = rotation.multiply(self.from_turns[:, a], fixed.astype(np.float32))
         self.given = np.zeros(len(target), bool)
         self.given[b] = True
@@ -296,18 +378,28 @@ class _Work:
         line = [self.target.roles[r] for r in TRUNK if r in self.target.roles]
         for low, high in pairwise(line):
             chain = target.chain(high)
-            between = [j for j in chain[chain.index(low) + 1 : -1] if not self.given[j]] if low in chain else []
-            first = rotation.multiply(self.turns[:, low], rotation.conjugate(self.target.rotations[low]).astype(np.float32))
-            last = rotation.multiply(self.turns[:, high], rotation.conjugate(self.target.rotations[high]).astype(np.float32))
+            between = (
+                [j for j in chain[chain.index(low) + 1 : -1] if not self.given[j]] if low in chain else []
+            )
+            first = rotation.multiply(
+                self.turns[:, low], rotation.conjugate(self.target.rotations[low]).astype(np.float32)
+            )
+            last = rotation.multiply(
+                self.turns[:, high], rotation.conjugate(self.target.rotations[high]).astype(np.float32)
+            )
             for n, joint in enumerate(between, 1):
                 part = rotation.slerp(first, last, np.float32(n / (len(between) + 1)))
-                self.turns[:, joint] = rotation.multiply(part, self.target.rotations[joint].astype(np.float32))
+                self.turns[:, joint] = rotation.multiply(
+                    part, self.target.rotations[joint].astype(np.float32)
+                )
                 self.given[joint] = True
         self.shift_named()
         self.walk()
 
     def shift_named(self) -> None:
-        """Carry over what joints paired by name are shifted by, as faces are, scaled by the characters' heights."""
+        """Carry over what joints paired by name are shifted by, as faces are, scaled by the characters'
+        heights.
+        """
         moved = {self.clip.skeleton.names[j]: j for j in self.clip.translated}
         scale = self.target.skeleton.height / self.source.skeleton.height
         poses = None
@@ -321,7 +413,9 @@ class _Work:
             if poses is None:
                 poses = self.clip.poses()
             shift = poses.translations[:, a] - self.clip.skeleton.rest_translations[a]
-            turn = rotation.multiply(rotation.conjugate(self.target.rotations[over]), self.source.rotations[above])
+            turn = rotation.multiply(
+                rotation.conjugate(self.target.rotations[over]), self.source.rotations[above]
+            )
             self.shifted.add(b)
             self.local_t[:, b] += scale * rotation.rotate(turn.astype(np.float32), shift)
 
@@ -336,16 +430,22 @@ class _Work:
             above = self.parents[joints]
             free = joints[~self.given[joints]]
             self.turns[:, free] = rotation.multiply(self.turns[:, self.parents[free]], self.local_r[free])
-            self.places[:, joints] = self.places[:, above] + rotation.rotate(self.turns[:, above], self.local_t[:, joints])
+            self.places[:, joints] = self.places[:, above] + rotation.rotate(
+                self.turns[:, above], self.local_t[:, joints]
+            )
 
     def placed(self, points: Array) -> Array:
-        """Return where places `[F, 3]` near the source's legs come to: scaled, the ankles of a standing figure on the ground."""
+        """Return where places `[F, 3]` near the source's legs come to: scaled, the ankles of a standing
+        figure on the ground.
+        """
         origin = np.array([self.source.hip[0], self.from_ankle, self.source.hip[2]], np.float32)
         goal = np.array([self.target.hip[0], self.to_ankle, self.target.hip[2]], np.float32)
         return np.asarray(goal + np.float32(self.scale) * (points - origin))
 
     def move_hips(self) -> None:
-        """Put hips (and a root above them) where the source's are, scaled by leg length, as low as both legs need to reach."""
+        """Put hips (and a root above them) where the source's are, scaled by leg length, as low as both legs
+        need to reach.
+        """
         source, target = self.source.roles, self.target.roles
         if "root" in self.roles:
             root, above = target["root"], source["root"]
@@ -370,21 +470,31 @@ class _Work:
         self.walk()
 
     def foot_goal(self, side: str) -> Array:
-        """Return where an ankle goes, `[F, 3]`. Wider hips set it further out, as the foot itself points: a planted foot stays."""
+        """Return where an ankle goes, `[F, 3]`. Wider hips set it further out, as the foot itself points: a
+        planted foot stays.
+        """
         above = self.source.roles[f"{side}_foot"]
         wide = (1 if side == "left" else -1) * (self.target.half_hips - self.scale * self.source.half_hips)
-        turned = rotation.multiply(self.from_turns[:, above], rotation.conjugate(self.source.rotations[above]).astype(np.float32))
+        turned = rotation.multiply(
+            self.from_turns[:, above], rotation.conjugate(self.source.rotations[above]).astype(np.float32)
+        )
         heading = rotation.normalize(turned * np.array([0, 1, 0, 1], np.float32))
-        return self.placed(self.from_places[:, above]) + rotation.rotate(heading, np.array([wide, 0, 0], np.float32))
+        return self.placed(self.from_places[:, above]) + rotation.rotate(
+            heading, np.array([wide, 0, 0], np.float32)
+        )
 
     def reach_hand(self, side: str) -> None:
-        """Bring a wrist where it was from its shoulder, scaled by arm length; towards the middle by the shoulders' width."""
+        """Bring a wrist where it was from its shoulder, scaled by arm length; towards the middle by the
+        shoulders' width.
+        """
         upper, hand = self.source.roles[f"{side}_upper_arm"], self.source.roles[f"{side}_hand"]
         scale, sign = self.target.arm / self.source.arm, 1 if side == "left" else -1
         away = self.from_places[:, hand] - self.from_places[:, upper]
         chest = next(r for r in ("upper_chest", "chest", "spine", "hips") if r in self.roles)
         joint = self.source.roles[chest]
-        turned = rotation.multiply(self.from_turns[:, joint], rotation.conjugate(self.source.rotations[joint]).astype(np.float32))
+        turned = rotation.multiply(
+            self.from_turns[:, joint], rotation.conjugate(self.source.rotations[joint]).astype(np.float32)
+        )
         level = rotation.rotate(turned, np.array([1, 0, 0], np.float32)) * np.array([1, 0, 1], np.float32)
         length = np.linalg.norm(level, axis=-1, keepdims=True)
         level = level / np.maximum(length, 0.3)
@@ -398,13 +508,20 @@ class _Work:
         free = np.maximum(np.linalg.norm(away, axis=-1) / length, STRAIGHT)
         reach = _eased(np.linalg.norm(away + inwards, axis=-1) / length, free) * length
         room = reach**2 - np.einsum("fi,fi->f", away, away)
-        along, square = np.einsum("fi,fi->f", away, inwards), np.maximum(np.einsum("fi,fi->f", inwards, inwards), 1e-12)
-        most = np.clip((np.sqrt(np.maximum(0, along**2 + square * np.maximum(0, room))) - along) / square, 0, 1)
+        along, square = (
+            np.einsum("fi,fi->f", away, inwards),
+            np.maximum(np.einsum("fi,fi->f", inwards, inwards), 1e-12),
+        )
+        most = np.clip(
+            (np.sqrt(np.maximum(0, along**2 + square * np.maximum(0, room))) - along) / square, 0, 1
+        )
         goal = self.places[:, self.target.roles[f"{side}_upper_arm"]] + away + most[:, None] * inwards
         self.reach([f"{side}_{part}" for part in ARM], goal, np.array([0, 0, -1.0]))
 
     def reach(self, names: Sequence[str], goal: Array, side: Array) -> None:
-        """Turn the two bones of a limb so that its end comes to `goal [F, 3]`, bending where it bends, or towards `side` when straight."""
+        """Turn the two bones of a limb so that its end comes to `goal [F, 3]`, bending where it bends, or
+        towards `side` when straight.
+        """
         upper, lower, end = (self.target.roles[name] for name in names)
         root = self.places[:, upper].astype(np.float64)
         knee, tip = self.places[:, lower] - root, self.places[:, end] - root
@@ -416,7 +533,9 @@ class _Work:
         bent = rotation.rotate(rotation.between(tip, goal), knee)
         bent = bent - ahead * np.einsum("fi,fi->f", bent, ahead)[:, None]
         joint = self.source.roles[names[0]]
-        turned = rotation.multiply(self.from_turns[:, joint].astype(np.float64), rotation.conjugate(self.source.rotations[joint]))
+        turned = rotation.multiply(
+            self.from_turns[:, joint].astype(np.float64), rotation.conjugate(self.source.rotations[joint])
+        )
         pole = rotation.rotate(turned, side)
         pole = pole - ahead * np.einsum("fi,fi->f", pole, ahead)[:, None]
         straight = np.maximum(0, 0.02 * one - np.linalg.norm(bent, axis=-1, keepdims=True))
@@ -425,7 +544,9 @@ class _Work:
         along = (one**2 + far**2 - two**2) / (2 * far)
         new = ahead * along + bent * np.sqrt(np.maximum(0, one**2 - along**2))
         self.turns[:, upper] = rotation.multiply(rotation.between(knee, new), self.turns[:, upper])
-        self.turns[:, lower] = rotation.multiply(rotation.between(tip - knee, goal - new), self.turns[:, lower])
+        self.turns[:, lower] = rotation.multiply(
+            rotation.between(tip - knee, goal - new), self.turns[:, lower]
+        )
 
     def finished(self) -> Clip:
         """Return the clip in the target's own hierarchy and axes."""
@@ -438,7 +559,13 @@ class _Work:
         over = rotation.conjugate(rotations[:, above])
         rotations[:, inner] = rotation.multiply(over, rotations[:, inner])
         stay = np.abs(figure.pose.translations - target.rest_translations).max(-1) < MOVED
-        may = {0, figure.roles["hips"], *self.shifted, *np.flatnonzero(~stay), *np.flatnonzero(self.parents != target.parents)}
+        may = {
+            0,
+            figure.roles["hips"],
+            *self.shifted,
+            *np.flatnonzero(~stay),
+            *np.flatnonzero(self.parents != target.parents),
+        }
         joints = sorted(int(j) for j in may)
         places = rotation.rotate(back, self.places)
         moves = places[:, joints]
@@ -447,9 +574,17 @@ class _Work:
             if parent >= 0:
                 turn = rotation.conjugate(rotation.multiply(back, self.turns[:, parent]))
                 moves[:, n] = rotation.rotate(turn, moves[:, n] - places[:, parent])
-        kept = [n for n, j in enumerate(joints) if j == 0 or np.abs(moves[:, n] - target.rest_translations[j]).max() > MOVED]
+        kept = [
+            n
+            for n, j in enumerate(joints)
+            if j == 0 or np.abs(moves[:, n] - target.rest_translations[j]).max() > MOVED
+        ]
         idle = sum(1 for j in range(len(target)) if not self.given[j])
-        note = f"brought over from a skeleton of {len(self.clip.skeleton)} joints: {len(self.map.pairs)} are mapped"
+        note = (
+            f"brought over from a skeleton of {len(self.clip.skeleton)} joints: {len(self.map.pairs)} "
+            "are "
+            "mapped"
+        )
         return replace(
             self.clip,
             skeleton=target,
@@ -473,7 +608,9 @@ def _levels(parents: Array) -> list[Array]:
 
 
 def _eased(reach: Array, free: Array) -> Array:
-    """Return `reach [F]`, of a limb's length, slowed down from `free` on so that it never quite gets to 1: no elbow snaps straight."""
+    """Return `reach [F]`, of a limb's length, slowed down from `free` on so that it never quite gets to 1: no
+    elbow snaps straight.
+    """
     left = np.maximum(1 - free, 1e-6)
     return np.where(reach > free, free + left * (1 - np.exp(-np.maximum(0, reach - free) / left)), reach)
 

@@ -1,8 +1,8 @@
 """Which joint is the left hand: roles, body parts and sides of a skeleton, from its names and its hierarchy.
 
-Names say what a joint is about, the hierarchy decides between them: an arm is the line of joints above a hand, so
-`LeftShoulder` is a collar bone in one skeleton and an upper arm in the next, and a twist or IK helper beside that line
-never wins. Where names say nothing, the shape of the rest pose does.
+Names say what a joint is about, the hierarchy decides between them: an arm is the line of joints above a
+hand, so `LeftShoulder` is a collar bone in one skeleton and an upper arm in the next, and a twist or IK
+helper beside that line never wins. Where names say nothing, the shape of the rest pose does.
 """
 
 from __future__ import annotations
@@ -35,7 +35,11 @@ REQUIRED: tuple[str, ...] = (
     "hips",
     "spine",
     "head",
-    *(f"{s}_{r}" for s in ("left", "right") for r in ("upper_arm", "lower_arm", "hand", "upper_leg", "lower_leg", "foot")),
+    *(
+        f"{s}_{r}"
+        for s in ("left", "right")
+        for r in ("upper_arm", "lower_arm", "hand", "upper_leg", "lower_leg", "foot")
+    ),
 )
 
 
@@ -68,7 +72,11 @@ class _Reader:
     def called(self, *names: str, side: str = "centre") -> list[int]:
         """Return the joints with one of these words on this side, helpers excluded, topmost only."""
         wanted = set(names)
-        return self.topmost(i for i, w in enumerate(self.words) if w.side == side and wanted & set(w.words) and not self.helper[i])
+        return self.topmost(
+            i
+            for i, w in enumerate(self.words)
+            if w.side == side and wanted & set(w.words) and not self.helper[i]
+        )
 
     def ofkind_of(self, kind: str, side: str) -> list[int]:
         return self.topmost(i for i, k in enumerate(self.kinds) if k == kind and self.words[i].side == side)
@@ -81,7 +89,9 @@ class _Reader:
         """Name the joints of an arm or a leg from its end upwards."""
         ends = self.ofkind_of(end, side)
         if end == "hand" and len(ends) > 1:  # several palms: the one that carries the middle finger
-            middle = [e for e in ends if any("middle" in self.words[d].joined for d in self.skeleton.descendants(e))]
+            middle = [
+                e for e in ends if any("middle" in self.words[d].joined for d in self.skeleton.descendants(e))
+            ]
             ends = middle or ends
         line: list[int] = []
         if ends:
@@ -90,7 +100,14 @@ class _Reader:
             line = [j for j in reversed(self.above(tip)) if self.words[j].side == side and not self.helper[j]]
         elif self.ofkind_of(lower, side):
             line = [self.biggest(self.ofkind_of(lower, side))]
-            line = [*(j for j in reversed(self.above(line[0])) if self.words[j].side == side and not self.helper[j]), *line]
+            line = [
+                *(
+                    j
+                    for j in reversed(self.above(line[0]))
+                    if self.words[j].side == side and not self.helper[j]
+                ),
+                *line,
+            ]
             below = [c for c in self.skeleton.children[line[-1]] if not self.helper[c]]
             if below:
                 self.roles[f"{side}_{end}"] = self.biggest(below)
@@ -117,7 +134,9 @@ class _Reader:
             return
         below = set(self.skeleton.descendants(foot)) - {foot}
         named = [j for j in self.ofkind_of("toes", side) if j in below]
-        free = named or [c for c in self.skeleton.children[foot] if not self.helper[c] and self.words[c].side == side]
+        free = named or [
+            c for c in self.skeleton.children[foot] if not self.helper[c] and self.words[c].side == side
+        ]
         if free:
             self.roles[f"{side}_toes"] = self.biggest(free)
 
@@ -144,7 +163,11 @@ class _Reader:
             if "head" not in roles:  # the end of the neck, where the face hangs
                 line = [roles["neck"]]
                 while True:
-                    below = [c for c in self.skeleton.children[line[-1]] if "neck" in self.words[c].words and not self.helper[c]]
+                    below = [
+                        c
+                        for c in self.skeleton.children[line[-1]]
+                        if "neck" in self.words[c].words and not self.helper[c]
+                    ]
                     if not below:
                         break
                     line.append(below[0])
@@ -154,7 +177,11 @@ class _Reader:
         if "head" not in roles and len(arms) == 2 and (top := self.common(arms)) is not None:
             line = [top]
             while True:
-                below = [c for c in self.skeleton.children[line[-1]] if self.words[c].side == "centre" and not self.helper[c]]
+                below = [
+                    c
+                    for c in self.skeleton.children[line[-1]]
+                    if self.words[c].side == "centre" and not self.helper[c]
+                ]
                 if not below:
                     break
                 line.append(self.biggest(below))
@@ -214,7 +241,9 @@ class _Reader:
             eyes = [
                 j
                 for j in sorted(below)
-                if self.words[j].side == side and self.words[j].joined.endswith(("eye", "eyeball")) and "under" not in self.words[j].words
+                if self.words[j].side == side
+                and self.words[j].joined.endswith(("eye", "eyeball"))
+                and "under" not in self.words[j].words
             ]
             if eyes:
                 self.roles[f"{side}_eye"] = eyes[0]
@@ -223,11 +252,15 @@ class _Reader:
             high = [j for j in lids if j not in low]
             for role, found in (("upper_lid", high), ("lower_lid", low)):
                 if found:  # the middle one of several along the lid
-                    self.roles[f"{side}_{role}"] = sorted(found, key=lambda j: (self.words[j].number, j))[len(found) // 2]
+                    self.roles[f"{side}_{role}"] = sorted(found, key=lambda j: (self.words[j].number, j))[
+                        len(found) // 2
+                    ]
 
 
 def find_roles(skeleton: Skeleton) -> dict[str, int]:
-    """Return role -> joint for the ROLES that the skeleton has, by names first, by the rest pose's shape where those fail."""
+    """Return role -> joint for the ROLES that the skeleton has, by names first, by the rest pose's shape
+    where those fail.
+    """
     reader = _Reader(skeleton)
     for side in ("left", "right"):
         reader.limb(side, "hand", "lower_arm", "upper_arm", "shoulder")
@@ -247,7 +280,9 @@ def _ordered(roles: Mapping[str, int]) -> dict[str, int]:
 
 
 def _by_shape(skeleton: Skeleton) -> dict[str, int]:
-    """Find a standing figure in a rest pose whose names say nothing: two mirrored legs down, arms out, a head up."""
+    """Find a standing figure in a rest pose whose names say nothing: two mirrored legs down, arms out, a head
+    up.
+    """
     _, positions = skeleton.globals(skeleton.rest)
     children, height = skeleton.children, skeleton.height
 
@@ -264,7 +299,8 @@ def _by_shape(skeleton: Skeleton) -> dict[str, int]:
             for b in joints:
                 mirrored = positions[b] * [-1, 1, 1]
                 distance = float(
-                    np.linalg.norm(positions[line(a)[-1]] - positions[line(b)[-1]] * [-1, 1, 1]) + np.linalg.norm(positions[a] - mirrored)
+                    np.linalg.norm(positions[line(a)[-1]] - positions[line(b)[-1]] * [-1, 1, 1])
+                    + np.linalg.norm(positions[a] - mirrored)
                 )
                 if positions[a, 0] > positions[b, 0] + 0.01 * height and distance < best:
                     best, found = distance, (a, b)
@@ -295,7 +331,13 @@ def _by_shape(skeleton: Skeleton) -> dict[str, int]:
         ahead = positions[toe[min(3, len(toe) - 1)], 2] - positions[toe[2], 2]
         sides = ("left", "right") if ahead >= -1e-6 else ("right", "left")
         for k, side in enumerate(sides):
-            roles.update(zip((f"{side}_upper_leg", f"{side}_lower_leg", f"{side}_foot", f"{side}_toes"), line(legs[k]), strict=False))
+            roles.update(
+                zip(
+                    (f"{side}_upper_leg", f"{side}_lower_leg", f"{side}_foot", f"{side}_toes"),
+                    line(legs[k]),
+                    strict=False,
+                )
+            )
             arm = line(arms[k])
             names = [f"{side}_shoulder", f"{side}_upper_arm", f"{side}_lower_arm", f"{side}_hand"]
             roles.update(zip(names[-min(4, len(arm)) :], arm[:4], strict=False))
@@ -316,8 +358,9 @@ def is_humanoid(roles: Mapping[str, int]) -> bool:
 def body_parts(skeleton: Skeleton, roles: Mapping[str, int] | None = None) -> tuple[str, ...]:
     """Return for each joint one of PARTS.
 
-    Hips and what is above them are "legs", the line from there to the neck is "spine", neck and head are "head", what
-    hangs on the head by a facial name is "face", shoulders to fingers are "arms". Any other joint goes with its parent.
+    Hips and what is above them are "legs", the line from there to the neck is "spine", neck and head are
+    "head", what hangs on the head by a facial name is "face", shoulders to fingers are "arms". Any other
+    joint goes with its parent.
     """
     reader = _Reader(skeleton)
     roles = find_roles(skeleton) if roles is None else roles
@@ -332,7 +375,13 @@ def body_parts(skeleton: Skeleton, roles: Mapping[str, int] | None = None) -> tu
             high = joint in (head, neck) or (neck is not None and neck in reader.above(joint))
             known[joint] = "head" if high else "spine"
     for role, joint in roles.items():
-        part = {"spine": "spine", "chest": "spine", "upper_chest": "spine", "neck": "head", "head": "head"}.get(role)
+        part = {
+            "spine": "spine",
+            "chest": "spine",
+            "upper_chest": "spine",
+            "neck": "head",
+            "head": "head",
+        }.get(role)
         if role.endswith(("shoulder", "arm", "hand")):
             part = "arms"
         elif role.endswith(("leg", "foot", "toes")):
@@ -349,7 +398,12 @@ def body_parts(skeleton: Skeleton, roles: Mapping[str, int] | None = None) -> tu
         if part is None and i in inside:
             facial = FACE & set(words.words) or words.joined.endswith(("lip", "lid", "brow", "eye"))
             part = "face" if facial or out[parent] == "face" else "head"
-        if part is None and words.side != "centre" and ARM & set(words.words) and (parent < 0 or out[parent] in ("legs", "spine")):
+        if (
+            part is None
+            and words.side != "centre"
+            and ARM & set(words.words)
+            and (parent < 0 or out[parent] in ("legs", "spine"))
+        ):
             foot = {"foot", "toe", "leg"} & set(words.words)  # "LeftFootThumb" is a toe
             part = None if foot else "arms"
         out.append(part or (out[parent] if parent >= 0 else "legs"))
@@ -360,7 +414,9 @@ def joint_sides(skeleton: Skeleton, roles: Mapping[str, int] | None = None) -> t
     """Return for each joint "left", "right" or "centre": by role, by name, else as its parent."""
     reader = _Reader(skeleton)
     roles = find_roles(skeleton) if roles is None else roles
-    known = {joint: role.split("_")[0] for role, joint in roles.items() if role.startswith(("left_", "right_"))}
+    known = {
+        joint: role.split("_")[0] for role, joint in roles.items() if role.startswith(("left_", "right_"))
+    }
     known.update({joint: "centre" for role, joint in roles.items() if role in _CENTRE})
     out: list[str] = []
     for i, words in enumerate(reader.words):

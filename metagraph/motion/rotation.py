@@ -28,7 +28,9 @@ def normalize(q: Numbers) -> Array:
     q = np.asarray(q)
     length = np.sqrt(np.einsum("...i,...i->...", q, q))[..., None]
     safe = np.where(length > 1e-12, length, 1)
-    return np.asarray(np.where(length > 1e-12, q / safe, np.asarray(IDENTITY, q.dtype if q.dtype.kind == "f" else float)))
+    return np.asarray(
+        np.where(length > 1e-12, q / safe, np.asarray(IDENTITY, q.dtype if q.dtype.kind == "f" else float))
+    )
 
 
 def conjugate(q: Numbers) -> Array:
@@ -72,7 +74,9 @@ def from_axis_angle(axis: Numbers, angle: Numbers) -> Array:
 
 
 def from_euler(angles: Numbers, order: str) -> Array:
-    """Return rotations `[..., 4]` from intrinsic Euler `angles [..., 3]` (radians); `order` like "ZXY", first applied outermost."""
+    """Return rotations `[..., 4]` from intrinsic Euler `angles [..., 3]` (radians); `order` like "ZXY", first
+    applied outermost.
+    """
     angles = np.asarray(angles)
     half = angles * 0.5
     s, c = np.sin(half), np.cos(half)
@@ -87,13 +91,17 @@ def from_euler(angles: Numbers, order: str) -> Array:
 
 
 def to_euler(q: Numbers, order: str = "ZXY") -> Array:
-    """Return intrinsic Euler angles `[..., 3]` (radians) of unit `q [..., 4]` for an `order` of three different axes."""
+    """Return intrinsic Euler angles `[..., 3]` (radians) of unit `q [..., 4]` for an `order` of three
+    different axes.
+    """
     m = to_matrix(q)
     i, j, k = ("XYZ".index(a) for a in order.upper())
     sign = 1.0 if (i, j, k) in ((0, 1, 2), (1, 2, 0), (2, 0, 1)) else -1.0
     middle = np.arcsin(np.clip(sign * m[..., i, k], -1, 1))
     locked = np.abs(m[..., i, k]) > 1 - 1e-9
-    first = np.where(locked, np.arctan2(sign * m[..., k, j], m[..., j, j]), np.arctan2(-sign * m[..., j, k], m[..., k, k]))
+    first = np.where(
+        locked, np.arctan2(sign * m[..., k, j], m[..., j, j]), np.arctan2(-sign * m[..., j, k], m[..., k, k])
+    )
     last = np.where(locked, 0.0, np.arctan2(-sign * m[..., i, j], m[..., i, i]))
     return np.stack([first, middle, last], -1)
 
@@ -155,17 +163,23 @@ def exp(v: Numbers) -> Array:
 
 
 def power(q: Numbers, weight: Numbers) -> Array:
-    """Return `q [..., 4]` turned by `weight [...]` times its angle, the short way; 0 gives the identity, 1 gives `q`."""
+    """Return `q [..., 4]` turned by `weight [...]` times its angle, the short way; 0 gives the identity, 1
+    gives `q`.
+    """
     return exp(log(q) * np.asarray(weight)[..., None])
 
 
 def nlerp(a: Numbers, b: Numbers, weight: Numbers) -> Array:
-    """Blend `a` to `b [..., 4]` by `weight [...]` in 0..1 along the shorter arc: a normalised straight line."""
+    """Blend `a` to `b [..., 4]` by `weight [...]` in 0..1 along the shorter arc: a normalised straight
+    line.
+    """
     a, b = np.asarray(a), np.asarray(b)
     w = np.asarray(weight)[..., None].astype(a.dtype)
     dot = np.einsum("...i,...i->...", a, b)[..., None]
     mixed = a * (1 - w) + b * np.where(dot < 0, -w, w)
-    return np.asarray(mixed / np.sqrt(np.maximum(np.einsum("...i,...i->...", mixed, mixed), 1e-20))[..., None])
+    return np.asarray(
+        mixed / np.sqrt(np.maximum(np.einsum("...i,...i->...", mixed, mixed), 1e-20))[..., None]
+    )
 
 
 def slerp(a: Numbers, b: Numbers, weight: Numbers) -> Array:

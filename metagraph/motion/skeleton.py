@@ -1,4 +1,6 @@
-"""The skeleton: joints with names, parents and a rest pose; forward kinematics over any number of poses at once."""
+"""The skeleton: joints with names, parents and a rest pose; forward kinematics over any number of poses at
+once.
+"""
 
 from __future__ import annotations
 
@@ -36,13 +38,18 @@ class Skeleton:
         rotations = np.array(self.rest_rotations, np.float64)
         count = len(self.names)
         if rotations.shape == (count, 4):
-            unit = np.abs(np.einsum("ji,ji->j", rotations, rotations) - 1) <= 1e-12  # these stay as they are, to the bit
+            unit = (
+                np.abs(np.einsum("ji,ji->j", rotations, rotations) - 1) <= 1e-12
+            )  # these stay as they are, to the bit
             rotations[~unit] = rotation.normalize(rotations[~unit])
         translations = np.asarray(self.rest_translations, np.float64)
         if count == 0:
             raise ValueError("a skeleton needs at least one joint")
         if parents.shape != (count,) or rotations.shape != (count, 4) or translations.shape != (count, 3):
-            raise ValueError(f"a skeleton of {count} joints needs parents [{count}], rotations [{count}, 4] and translations [{count}, 3]")
+            raise ValueError(
+                f"a skeleton of {count} joints needs parents [{count}], rotations [{count}, 4] and "
+                f"translations [{count}, 3]"
+            )
         if len(set(self.names)) != count:
             raise ValueError("joint names must be unique")
         if parents[0] != -1 or np.any(parents >= np.arange(count)) or np.any(parents < -1):
@@ -77,7 +84,9 @@ class Skeleton:
 
     @cached_property
     def fingerprint(self) -> str:
-        """Hex digest of names, parents and rest translations rounded to 0.1 mm; what makes two skeletons the same."""
+        """Hex digest of names, parents and rest translations rounded to 0.1 mm; what makes two skeletons the
+        same.
+        """
         digest = hashlib.sha256("\n".join(self.names).encode())
         digest.update(self.parents.astype("<i4").tobytes())
         digest.update((np.round(self.rest_translations, 4) + 0.0).astype("<f4").tobytes())

@@ -1,8 +1,8 @@
 """What people were seen to do: tiers of intervals, and what tiers and labels are taken for.
 
-A tier is read as one of `ROLES` (Borer et al., section 7.2: a stance and an action layer for the head, one layer for each
-arm, one for the body), a label as one of `MEANINGS`, with tags behind it: "gesture positive". Both are guessed from words and can be
-said otherwise; what was said is remembered as plain texts.
+A tier is read as one of `ROLES` (Borer et al., section 7.2: a stance and an action layer for the head, one
+layer for each arm, one for the body), a label as one of `MEANINGS`, with tags behind it: "gesture positive".
+Both are guessed from words and can be said otherwise; what was said is remembered as plain texts.
 """
 
 from __future__ import annotations
@@ -23,7 +23,9 @@ ROLES: Mapping[str, tuple[Layer, Limb]] = {
 STANCES = ("head stance", "body")  # roles whose intervals are changes of stance, or the stances themselves
 PHASES = ("preparation", "stroke", "hold", "retraction")  # of one gesture
 MEANINGS = ("gesture", "fidget", "transition", "stance", *PHASES, IGNORE)
-COVERED = 0.6  # of its span that a tier covers when its intervals are the stances, not the changes between them
+COVERED = (
+    0.6  # of its span that a tier covers when its intervals are the stances, not the changes between them
+)
 
 
 @dataclass(frozen=True, slots=True)
@@ -37,7 +39,9 @@ class Interval:
 
 @dataclass(frozen=True)
 class Tier:
-    """intervals: ascending by start. participant: whose tier it is, "" where the file does not say. parent: the tier it refers to."""
+    """intervals: ascending by start. participant: whose tier it is, "" where the file does not say. parent:
+    the tier it refers to.
+    """
 
     name: str
     intervals: tuple[Interval, ...] = ()
@@ -57,7 +61,9 @@ class Tier:
 
 @dataclass(frozen=True)
 class Annotation:
-    """media: the sound and video files it is about, as named in it. vocabularies: name -> labels. notes: what was left out."""
+    """media: the sound and video files it is about, as named in it. vocabularies: name -> labels. notes: what
+    was left out.
+    """
 
     tiers: tuple[Tier, ...] = ()
     media: tuple[str, ...] = ()
@@ -85,7 +91,8 @@ def _set(text: str) -> frozenset[str]:
     return frozenset(text.split())
 
 
-# --- tiers -----------------------------------------------------------------------------------------------------------
+# --- tiers
+# --------------------------------------------------------------------------------------------------
 
 # English, German, French, Spanish and Italian, as tiers are named in published corpora of gesture.
 _LEFT = _set("left l lh la links linke linker linkehand gauche izquierda izq izquierdo sinistra sx")
@@ -135,10 +142,13 @@ def guess_role(tier: Tier) -> str:
 def guess_roles(annotation: Annotation, *remembered: Mapping[str, str]) -> dict[str, str]:
     """Return tier -> role for every tier: as remembered (the earlier mapping counts), else as guessed.
 
-    Of the people in an annotation only the one with most intervals is taken; of several tiers that would be the same to them, the one
-    whose labels are best known.
+    Of the people in an annotation only the one with most intervals is taken; of several tiers that would be
+    the same to them, the one whose labels are best known.
     """
-    said = {t.name: next((m[t.name] for m in remembered if m.get(t.name) in (*ROLES, IGNORE)), None) for t in annotation.tiers}
+    said = {
+        t.name: next((m[t.name] for m in remembered if m.get(t.name) in (*ROLES, IGNORE)), None)
+        for t in annotation.tiers
+    }
     guessed = {t.name: guess_role(t) for t in annotation.tiers}
     people = Counter[str]()
     for tier in annotation.tiers:
@@ -154,7 +164,9 @@ def guess_roles(annotation: Annotation, *remembered: Mapping[str, str]) -> dict[
     out = {}
     for tier in annotation.tiers:
         guess = guessed[tier.name]
-        out[tier.name] = said[tier.name] or (guess if best.get(guess) is tier and guess not in said.values() else IGNORE)
+        out[tier.name] = said[tier.name] or (
+            guess if best.get(guess) is tier and guess not in said.values() else IGNORE
+        )
     return out
 
 
@@ -162,26 +174,40 @@ def _clarity(tier: Tier) -> tuple[bool, float]:
     """Return how well a tier's labels say what was done: gestures as a whole come before their phases."""
     total = sum(tier.labels.values())
     known = [(_known(label), count) for label, count in tier.labels.items()]
-    return total > 0, round(sum(n * (1.0 if k not in PHASES else 0.9) for k, n in known if k) / max(1, total), 6)
+    return total > 0, round(
+        sum(n * (1.0 if k not in PHASES else 0.9) for k, n in known if k) / max(1, total), 6
+    )
 
 
-# --- labels ----------------------------------------------------------------------------------------------------------
+# --- labels
+# --------------------------------------------------------------------------------------------------
 
-_NOTHING = frozenset("""
+_NOTHING = frozenset(
+    """
     |rest|resting|rest position|rp|home|home position|still|none|no|no gesture|n a|na|xxx|x|idle|nothing|neutral|stance
     |ruhe|ruheposition|keine|repos|aucun|reposo|ninguno
-""".replace("\n", "").replace("    ", "").split("|"))  # fmt: skip
+""".replace("\n", "")
+    .replace("    ", "")
+    .split("|")
+)
 # The first that is found decides: a "pre-stroke hold" is a hold, a "stance-transition" a transition.
 _SIGNS: tuple[tuple[str, str], ...] = (
     ("transition", r"trans|chang(e|ing)|shift|switch|wechsel|verlagerung|cambio"),
-    ("fidget", r"fidget|scratch|adapt[oe]r|self ?touch|touch(es|ing)?|groom|rub(s|bing)?|fiddl|tics?|ticks?|kratz|nestel|autoadap"),
+    (
+        "fidget",
+        r"fidget|scratch|adapt[oe]r|self "
+        r"?touch|touch(es|ing)?|groom|rub(s|bing)?|fiddl|tics?|ticks?|kratz|nestel|autoadap",
+    ),
     ("hold", r"hold|holding|psh|halten|houd|tenue"),
     ("preparation", r"prep|vorb|anlauf"),
     ("retraction", r"retr|recover|relax|rück|terug|ritraz"),
     ("stroke", r"stroke|strk"),
-    ("gesture", r"gest|beats?|batons?|iconic|ikonisch|deictic|deiktisch|metaphori|emblem|pragmatic|point|wav(e|es|ing)|shrug|nod|nick"
-                r"|shak(e|es|ing)|schüttel|clap|thumb|illustrator|raise|count"),
-)  # fmt: skip
+    (
+        "gesture",
+        r"gest|beats?|batons?|iconic|ikonisch|deictic|deiktisch|metaphori|emblem|pragmatic|point|wav(e|es|ing)|shrug|nod|nick"
+        r"|shak(e|es|ing)|schüttel|clap|thumb|illustrator|raise|count",
+    ),
+)
 _POSITIVE = _set("positive pos yes ja oui sí agree agreement affirm affirmative affirmation nod nods nodding")
 _NEGATIVE = _set("negative neg no nein non disagree disagreement negation shake shakes shaking headshake")
 
@@ -200,8 +226,8 @@ def _known(label: str) -> str | None:
 def guess_meaning(label: str, role: str, stance: bool = False) -> str:
     """Return one of `MEANINGS`, tags behind it, for a label on a tier of a role.
 
-    stance: on a tier of stances, labels that name no change are the stances themselves. On tiers of arms and head actions any
-    other short label is a gesture; a long one is speech.
+    stance: on a tier of stances, labels that name no change are the stances themselves. On tiers of arms and
+    head actions any other short label is a gesture; a long one is speech.
     """
     words = _words(label)
     known = _known(label)
@@ -239,8 +265,12 @@ class Label:
         return f"{self.layer}: {self.text}"
 
 
-def labels(annotation: Annotation, roles: Mapping[str, str], *remembered: Mapping[str, str]) -> tuple[Label, ...]:
-    """Return the labels of every layer that is read, the most frequent first, each as remembered (by `layer: text` or text) or guessed."""
+def labels(
+    annotation: Annotation, roles: Mapping[str, str], *remembered: Mapping[str, str]
+) -> tuple[Label, ...]:
+    """Return the labels of every layer that is read, the most frequent first, each as remembered (by `layer:
+    text` or text) or guessed.
+    """
     found: dict[tuple[Layer, str], int] = {}
     guess: dict[tuple[Layer, str], str] = {}
     for tier in annotation.tiers:
@@ -252,8 +282,12 @@ def labels(annotation: Annotation, roles: Mapping[str, str], *remembered: Mappin
             found[layer, text] = found.get((layer, text), 0) + count
             guess.setdefault((layer, text), guess_meaning(text, role, stance))
     out = []
-    for (layer, text), count in sorted(found.items(), key=lambda x: (tuple(LAYER_ORDER).index(x[0][0]), -x[1])):
-        said = next((m[k] for m in remembered for k in (f"{layer}: {text}", text) if is_meaning(m.get(k, ""))), None)
+    for (layer, text), count in sorted(
+        found.items(), key=lambda x: (tuple(LAYER_ORDER).index(x[0][0]), -x[1])
+    ):
+        said = next(
+            (m[k] for m in remembered for k in (f"{layer}: {text}", text) if is_meaning(m.get(k, ""))), None
+        )
         out.append(Label(layer, text, count, said or guess[layer, text]))
     return tuple(out)
 
@@ -262,7 +296,9 @@ LAYER_ORDER: Sequence[Layer] = ("arms", "head", "body")
 
 
 def covers(tier: Tier) -> bool:
-    """Return whether a tier's intervals fill most of its span and say different things: they are stances, not changes."""
+    """Return whether a tier's intervals fill most of its span and say different things: they are stances, not
+    changes.
+    """
     if len(tier.labels) < 2:
         return False
     span = tier.intervals[-1].end - tier.intervals[0].start

@@ -19,7 +19,8 @@ STILL = 1e-6  # metres: a joint that moves less than this from its rest translat
 
 
 def bake(plan: Plan, project: Project, seconds: float, fps: float = 30.0) -> Clip:
-    """Return `seconds` of a plan as a clip on the project's skeleton, with the life layers and morph targets that move.
+    """Return `seconds` of a plan as a clip on the project's skeleton, with the life layers and morph targets
+    that move.
 
     Raises ValueError when the project has no skeleton.
     """
@@ -30,12 +31,24 @@ def bake(plan: Plan, project: Project, seconds: float, fps: float = 30.0) -> Cli
     away = np.abs(pose.translations - project.skeleton.rest_translations).max(axis=(0, 2))
     moved = (0, *(int(j) for j in np.flatnonzero(away > STILL) if j > 0))
     turned = rotation.continuous(pose.rotations)
-    return Clip(project.name, project.skeleton, fps, turned, pose.translations[:, list(moved)], moved, *_morphs(plan, project, times))
+    return Clip(
+        project.name,
+        project.skeleton,
+        fps,
+        turned,
+        pose.translations[:, list(moved)],
+        moved,
+        *_morphs(plan, project, times),
+    )
 
 
 def _morphs(plan: Plan, project: Project, times: Array) -> tuple[tuple[str, ...], Array]:
     """Return the names of morph targets that move, and their weights `[F, K]`."""
-    face = bool(project.face.morphs) or any(e.motion is not None and e.motion.morphs for e in project.clips.values())
+    face = bool(project.face.morphs) or any(
+        e.motion is not None and e.motion.morphs for e in project.clips.values()
+    )
     rows = [morphs_at(plan, project, float(t)) for t in times] if face else [{} for _ in times]
     names = tuple(sorted({name for row in rows for name, value in row.items() if value > 0}))
-    return names, np.array([[row.get(name, 0.0) for name in names] for row in rows], np.float32).reshape(len(times), len(names))
+    return names, np.array([[row.get(name, 0.0) for name in names] for row in rows], np.float32).reshape(
+        len(times), len(names)
+    )

@@ -1,9 +1,9 @@
 """Behaviour Markup Language in: a block of BML 1.0, or of a dialect near it, becomes asks.
 
-Read are gesture, pointing, head, posture, gaze, speech, face (blinks), wait, animation; constraints between their sync points;
-`composition`. What is not understood is left out with a note, never with an error: a block made for more than we can
-do still does what it can. Times BML leaves to the realiser (how long a gesture prepares) come from the project's clips where
-there is a project, and are guessed where there is none.
+Read are gesture, pointing, head, posture, gaze, speech, face (blinks), wait, animation; constraints between
+their sync points; `composition`. What is not understood is left out with a note, never with an error: a block
+made for more than we can do still does what it can. Times BML leaves to the realiser (how long a gesture
+prepares) come from the project's clips where there is a project, and are guessed where there is none.
 """
 
 from __future__ import annotations
@@ -27,7 +27,10 @@ __all__ = ["Block", "read_block", "read_bml", "write_bml"]
 MOST = 500  # behaviours of one block
 Composition = Literal["merge", "append", "replace"]
 BLINKS = ("blink", "blinkboth", "eyesclosed")
-INFLUENCE = {"eyes": 0.25, "head": 0.75}  # how far a gaze turns the head with the eyes; all else goes all the way
+INFLUENCE = {
+    "eyes": 0.25,
+    "head": 0.75,
+}  # how far a gaze turns the head with the eyes; all else goes all the way
 SAID = ("description", "lang", "voice")  # within a speech, but not spoken
 NOT_READ = {
     "event": "events are sent by 'metagraph live' itself, see its events",
@@ -38,8 +41,10 @@ NOT_READ = {
 
 @dataclass(frozen=True)
 class Block:
-    """What a block says. asks: `at` None for the block's beginning; ids are the behaviours' own, "" without. notes: what was
-    left out or guessed, with its line. composition: "replace" has withdrawn all else with its first ask."""
+    """What a block says. asks: `at` None for the block's beginning; ids are the behaviours' own, "" without.
+    notes: what was left out or guessed, with its line. composition: "replace" has withdrawn all else with its
+    first ask.
+    """
 
     asks: tuple[a.AnyAsk, ...]
     notes: tuple[str, ...] = ()
@@ -47,13 +52,19 @@ class Block:
     composition: Composition = "merge"
 
 
-def read_bml(text: str, at: float = 0.0, priority: int = 1, project: Project | None = None) -> tuple[a.AnyAsk, ...]:
-    """Return the asks of a block that begins at `at` seconds. Raises AskError with line, element and remedy."""
+def read_bml(
+    text: str, at: float = 0.0, priority: int = 1, project: Project | None = None
+) -> tuple[a.AnyAsk, ...]:
+    """Return the asks of a block that begins at `at` seconds. Raises AskError with line, element and
+    remedy.
+    """
     return read_block(text, at, priority, project).asks
 
 
 def read_block(text: str, at: float = 0.0, priority: int = 1, project: Project | None = None) -> Block:
-    """Return a block with what there is to say about it. project: whose tags, names and clips lexemes and lengths are taken from."""
+    """Return a block with what there is to say about it. project: whose tags, names and clips lexemes and
+    lengths are taken from.
+    """
     root = parse(text)
     if root.name.lower() == "act":
         root = next((e for e in root if e.name.lower() == "bml"), root)
@@ -61,13 +72,17 @@ def read_block(text: str, at: float = 0.0, priority: int = 1, project: Project |
         raise a.AskError(f"{root.place}: the first element must be <bml>")
     word = spelled(root.get("composition") or "merge").replace("appendafter", "append")
     if word not in ("merge", "append", "replace"):
-        raise a.AskError(f"{root.place}: composition is MERGE, APPEND or REPLACE, not '{root.get('composition')}'")
+        raise a.AskError(
+            f"{root.place}: composition is MERGE, APPEND or REPLACE, not '{root.get('composition')}'"
+        )
     reader = _Reader(Words(project), at, priority)
     reader.collect(root)
     try:
         asks = reader.timing.asks()
     except RecursionError:
-        raise a.AskError(f"{root.place}: too many behaviours wait for one another; give some of them times in seconds") from None
+        raise a.AskError(
+            f"{root.place}: too many behaviours wait for one another; give some of them times in seconds"
+        ) from None
     first: tuple[a.AnyAsk, ...] = (a.Withdraw(),) if word == "replace" else ()
     return Block(first + asks, tuple(reader.notes), root.get("id"), word)  # type: ignore[arg-type]
 
@@ -95,14 +110,23 @@ class _Reader:
 
     def _behaviour(self, kind: str, element: Element) -> None:
         asks, offsets = self._read(kind, element)
-        times = {sync: value for name, value in element.attributes.items() if (sync := spelled(name)) in SYNCS and value.strip()}
+        times = {
+            sync: value
+            for name, value in element.attributes.items()
+            if (sync := spelled(name)) in SYNCS and value.strip()
+        }
         if len(self.timing.behaviours) >= MOST:
             raise a.AskError(f"{element.place}: a block has at most {MOST} behaviours; send several")
         self.timing.add(Behaviour(element, element.get("id"), asks, offsets, times))
 
     def _read(self, kind: str, e: Element) -> tuple[list[Any], dict[str, float] | None]:
-        """Return an element's asks, still without times, and its sync points' seconds after its start; None for as its clip has."""
-        common: dict[str, Any] = {"id": e.get("id"), "priority": self._integer(e, "metagraph:priority", self.priority)}
+        """Return an element's asks, still without times, and its sync points' seconds after its start; None
+        for as its clip has.
+        """
+        common: dict[str, Any] = {
+            "id": e.get("id"),
+            "priority": self._integer(e, "metagraph:priority", self.priority),
+        }
         tags = self._tags(e)
         match kind:
             case "gesture" | "pointing":
@@ -115,7 +139,11 @@ class _Reader:
                 layer = e.get("metagraph:layer")
                 more = {"limb": limb, "resume": e.get("metagraph:resume") == "true"}
                 if e.get("name") and not lexeme:
-                    ask: Any = a.Play(action=self.words.action(e.get("name"), layer), layer=layer or None, **common)  # type: ignore[arg-type]
+                    ask: Any = a.Play(
+                        action=self.words.action(e.get("name"), layer),
+                        layer=layer or None,
+                        **common,  # type: ignore[arg-type]
+                    )
                 else:
                     ask = self._gesture(tags, lexeme, layer, common | more)
                 return [ask], None
@@ -125,7 +153,12 @@ class _Reader:
                 return [ask], None
             case "metagraph:fidget":
                 more = {"limb": e.get("mode").lower() or None, "resume": e.get("metagraph:resume") == "true"}
-                ask = a.Fidget(tags=tags or _listed(e.get("lexeme")), layer=e.get("metagraph:layer") or "arms", **more, **common)  # type: ignore[arg-type]
+                ask = a.Fidget(
+                    tags=tags or _listed(e.get("lexeme")),
+                    layer=e.get("metagraph:layer") or "arms",  # type: ignore[arg-type]
+                    **more,
+                    **common,
+                )
                 return [ask], None
             case "head":
                 return self._head(e, tags, common)
@@ -136,7 +169,12 @@ class _Reader:
                 if e.get("offsetangle") not in ("", "0", "0.0"):
                     self._note(e, "looks straight at its target, without the offset")
                 strict = e.get("metagraph:strict") == "true"
-                ask = a.Look(to=self._target(e), amount=self._number(e, "metagraph:amount", amount), strict=strict, **common)
+                ask = a.Look(
+                    to=self._target(e),
+                    amount=self._number(e, "metagraph:amount", amount),
+                    strict=strict,
+                    **common,
+                )
                 return [ask], {"ready": 0.3, "relax": 1.0, "end": 1.3}
             case "speech":
                 return self._speech(e, common)
@@ -148,19 +186,30 @@ class _Reader:
                 length = self._number(e, "duration", 0.0) or self._number(e, "max-wait", 0.0)
                 return [], {"end": length}
             case "metagraph:change":
-                change = a.Change(layer=e.get("metagraph:layer") or "arms", limb=e.get("mode").lower() or None, **common)  # type: ignore[arg-type]
+                change = a.Change(
+                    layer=e.get("metagraph:layer") or "arms",
+                    limb=e.get("mode").lower() or None,
+                    **common,  # type: ignore[arg-type]
+                )
                 return [change], {"end": 1.0}
             case "metagraph:mode":
                 return [a.Behave(mode=e.get("mode") or None, **common)], {"end": 0.0}  # type: ignore[arg-type]
             case "metagraph:place":
-                return [a.Place(name=e.get("name"), point=self._point(e, e.get("point")), **common)], {"end": 0.0}
+                return [a.Place(name=e.get("name"), point=self._point(e, e.get("point")), **common)], {
+                    "end": 0.0
+                }
             case "metagraph:withdraw":
                 return [a.Withdraw(what=e.get("what"), **common)], {"end": 0.0}
             case _:
-                self._note(e, f"is left out; {NOT_READ.get(kind, 'it is none of the behaviours that are understood')}")
+                self._note(
+                    e,
+                    f"is left out; {NOT_READ.get(kind, 'it is none of the behaviours that are understood')}",
+                )
         return [], {}
 
-    def _head(self, e: Element, tags: tuple[str, ...] | None, common: dict[str, Any]) -> tuple[list[Any], dict[str, float] | None]:
+    def _head(
+        self, e: Element, tags: tuple[str, ...] | None, common: dict[str, Any]
+    ) -> tuple[list[Any], dict[str, float] | None]:
         lexeme = e.get("lexeme", "type")
         if e.get("repetition", "repeats") not in ("", "1", "1.0"):
             self._note(e, "nods and shakes as often as its clip; the repetition is left out")
@@ -174,7 +223,9 @@ class _Reader:
         ask = self._gesture(tags, lexeme, e.get("metagraph:layer") or "head", common)
         return [ask], None
 
-    def _gesture(self, tags: tuple[str, ...] | None, lexeme: str, layer: str, fields: dict[str, Any]) -> a.Gesture | a.Play:
+    def _gesture(
+        self, tags: tuple[str, ...] | None, lexeme: str, layer: str, fields: dict[str, Any]
+    ) -> a.Gesture | a.Play:
         if tags is not None:  # said in our own words
             return a.Gesture(layer=layer or "arms", tags=tags, **fields)  # type: ignore[arg-type]
         return self.words.gesture(_listed(lexeme), layer, fields)
@@ -189,7 +240,11 @@ class _Reader:
         if kind == "posture" and e.get("end"):
             self._note(e, "lasts until another posture is asked for, not only until its end")
         layer, stay = e.get("metagraph:layer"), e.get("metagraph:stay") == "true"
-        asks = [a.Go(stance=s, layer=x or None, stay=stay, **common) for part, w in found for x, s in [self.words.stance(part, w, layer)]]  # type: ignore[arg-type]
+        asks = [
+            a.Go(stance=s, layer=x or None, stay=stay, **common)  # type: ignore[arg-type]
+            for part, w in found
+            for x, s in [self.words.stance(part, w, layer)]
+        ]
         return [msgspec.structs.replace(x, id=f"{x.id}{n or ''}") if x.id else x for n, x in enumerate(asks)]
 
     def _speech(self, e: Element, common: dict[str, Any]) -> tuple[list[Any], dict[str, float]]:
@@ -249,7 +304,11 @@ class _Reader:
         if e.get("metagraph:to"):
             return e.get("metagraph:to")
         target = e.get("target") or "user"
-        return self._point(e, target) if re.fullmatch(r"[-+.\deE]+[\s,]+[-+.\deE]+[\s,]+[-+.\deE]+", target) else target
+        return (
+            self._point(e, target)
+            if re.fullmatch(r"[-+.\deE]+[\s,]+[-+.\deE]+[\s,]+[-+.\deE]+", target)
+            else target
+        )
 
 
 def _spoken(e: Element) -> Iterable[str | Element]:

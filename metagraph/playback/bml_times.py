@@ -19,8 +19,9 @@ LONGEST = 250  # characters of a time
 
 @dataclass
 class Behaviour:
-    """An element on its way to an ask. times: sync -> what its attribute says. offsets: sync -> seconds after the start,
-    None for those of its ask's action. pinned: whether others are timed by its stroke."""
+    """An element on its way to an ask. times: sync -> what its attribute says. offsets: sync -> seconds after
+    the start, None for those of its ask's action. pinned: whether others are timed by its stroke.
+    """
 
     element: Element
     ident: str
@@ -34,8 +35,9 @@ class Behaviour:
 
 @dataclass
 class Timing:
-    """Works out all times of a block that begins at `at` seconds. note: takes an element and what to say of it. lengths: gives
-    the sync points of what an ask may get."""
+    """Works out all times of a block that begins at `at` seconds. note: takes an element and what to say of
+    it. lengths: gives the sync points of what an ask may get.
+    """
 
     at: float
     note: Callable[[Element, str], None]
@@ -48,7 +50,9 @@ class Timing:
     def add(self, found: Behaviour) -> None:
         """Take a behaviour in. Raises AskError for a second one of its id."""
         if found.ident and found.ident in self.named:
-            raise a.AskError(f"{found.element.place}: there are two behaviours '{found.ident}'; give each an id of its own")
+            raise a.AskError(
+                f"{found.element.place}: there are two behaviours '{found.ident}'; give each an id of its own"
+            )
         start = reference(found.times.get("start", ""))
         if start is not None and start[0] in ("this", found.ident) and start[1] != "start":
             found.prepare = False  # it begins where its preparation would have ended
@@ -85,14 +89,21 @@ class Timing:
                     continue
                 behaviour = self.named.get(found[0]) if found else None
                 if found is None or behaviour is None:
-                    raise a.AskError(f"{x.place}: '{ref}' is no sync point of a behaviour of this block; write it as id:stroke")
+                    raise a.AskError(
+                        f"{x.place}: '{ref}' is no sync point of a behaviour of this block; write it as "
+                        "id:stroke"
+                    )
                 if base is not None:
                     anchor = f"{base[0]}:{base[1]}{base[2] - found[2]:+}"
                 behaviour.times.setdefault(found[1], anchor)
 
     def _is_speech(self, ref: str) -> bool:
         found = reference(ref)
-        return found is not None and found[0] in self.named and self.named[found[0]].element.name.lower() == "speech"
+        return (
+            found is not None
+            and found[0] in self.named
+            and self.named[found[0]].element.name.lower() == "speech"
+        )
 
     def _time(self, b: Behaviour, sync: str) -> float:
         """Return when a sync point comes, seconds of the performance."""
@@ -100,13 +111,21 @@ class Timing:
             return b.known[sync]
         key = (id(b), sync)
         if key in self.resolving:
-            raise a.AskError(f"{b.element.place}: its {sync} waits for itself; give one of these behaviours a time in seconds")
+            raise a.AskError(
+                f"{b.element.place}: its {sync} waits for itself; give one of these behaviours a time in "
+                "seconds"
+            )
         self.resolving.add(key)
         if sync in b.times:
             value = self._said(b, sync, b.times[sync])
         elif sync == "start":
             given = next(
-                (s for s in ("ready", "strokestart", "stroke", "strokeend", "relax", "end") if s in b.times and not self._own(b, s)), None
+                (
+                    s
+                    for s in ("ready", "strokestart", "stroke", "strokeend", "relax", "end")
+                    if s in b.times and not self._own(b, s)
+                ),
+                None,
             )
             value = self.at if given is None else self._time(b, given) - self._offset(b, given)
         else:
@@ -119,7 +138,10 @@ class Timing:
         offsets = b.offsets if b.offsets is not None else self.lengths(b.asks[0])
         if sync not in offsets and sync not in SYNCS:
             known = ", ".join(s for s in offsets if s not in SYNCS)
-            raise a.AskError(f"{b.element.place}: it has no sync point '{sync}'" + (f"; its marks are {known}" if known else ""))
+            raise a.AskError(
+                f"{b.element.place}: it has no sync point '{sync}'"
+                + (f"; its marks are {known}" if known else "")
+            )
         if not b.prepare:
             return max(0.0, offsets.get(sync, 0.0) - offsets.get("ready", 0.0))
         return offsets.get(sync, offsets.get("end", 0.0) if sync in ("end", "relax", "strokeend") else 0.0)
@@ -135,14 +157,19 @@ class Timing:
             return self.at + value
         found = reference(text)
         if found is None:
-            raise a.AskError(f"{b.element.place}: {sync}=\"{text}\" is neither seconds nor 'behaviour:sync+seconds'")
+            raise a.AskError(
+                f"{b.element.place}: {sync}=\"{text}\" is neither seconds nor 'behaviour:sync+seconds'"
+            )
         ident, other, offset = found
         if ident == "bml":
             return self.at + offset
         behaviour = b if ident == "this" else self.named.get(ident) if ident else None
         if behaviour is None:
             known = ", ".join(list(filter(None, self.named))[:8]) or "none"
-            raise a.AskError(f"{b.element.place}: {sync}=\"{text}\": there is no behaviour '{ident}' in this block; there are {known}")
+            raise a.AskError(
+                f"{b.element.place}: {sync}=\"{text}\": there is no behaviour '{ident}' in this block; there "
+                f"are {known}"
+            )
         if behaviour is not b and other not in ("start", "end"):
             behaviour.pinned = True
         return self._time(behaviour, other) + offset
@@ -154,7 +181,8 @@ class Timing:
             free = {s for s in b.times if not self._own(b, s)}
             has = ask.__struct_fields__
             aimed = "stroke" in has and "stroke" in free
-            # A stroke says when; then only a start of its own, or where a gesture without preparation begins, says more.
+            # A stroke says when; then only a start of its own, or where a gesture without preparation begins,
+            # says more.
             if "start" in free or (not b.prepare and "ready" in free) or (free and not aimed):
                 changes["at"] = self._time(b, "start")
             if aimed or (b.pinned and "stroke" in has):
@@ -181,7 +209,9 @@ class Timing:
 
 
 SECONDS = re.compile(r"([+-]?(?:\d+\.?\d*|\.\d+)(?:[eE][+-]?\d+)?)\s*(s|ms)?")
-REFERENCE = re.compile(r"([^:]+)(?::([^:]+))?:([^:]+?)\s*([+-]\s*(?:\d+\.?\d*|\.\d+)(?:[eE][+-]?\d+)?\s*(?:s|ms)?)?")
+REFERENCE = re.compile(
+    r"([^:]+)(?::([^:]+))?:([^:]+?)\s*([+-]\s*(?:\d+\.?\d*|\.\d+)(?:[eE][+-]?\d+)?\s*(?:s|ms)?)?"
+)
 
 
 def seconds_of(text: str) -> float | None:
@@ -193,7 +223,9 @@ def seconds_of(text: str) -> float | None:
 
 
 def reference(text: str) -> tuple[str, str, float] | None:
-    """Return behaviour, sync point and seconds after it of a text like `s1:tm1+0.3` or `block:s1:tm1`; None of any other."""
+    """Return behaviour, sync point and seconds after it of a text like `s1:tm1+0.3` or `block:s1:tm1`; None
+    of any other.
+    """
     found = REFERENCE.fullmatch(text.strip()) if len(text) <= LONGEST else None
     if found is None or seconds_of(text) is not None:
         return None

@@ -1,4 +1,6 @@
-"""The words of a block of BML and those of a project: which tags, action or stance a lexeme means, and how long things take."""
+"""The words of a block of BML and those of a project: which tags, action or stance a lexeme means, and how
+long things take.
+"""
 
 from __future__ import annotations
 
@@ -33,7 +35,9 @@ def spelled(text: str) -> str:
 
 
 class Index:
-    """A project's actions and stances by their spelled words. called: layer -> word -> gestures that are, or begin, so."""
+    """A project's actions and stances by their spelled words. called: layer -> word -> gestures that are, or
+    begin, so.
+    """
 
     def __init__(self, project: Project) -> None:
         self.project = project
@@ -65,7 +69,9 @@ def index_of(project: Project) -> Index:
 
 
 class Words:
-    """What the words of a block mean in a project; without one they are taken as they are and lengths are guessed."""
+    """What the words of a block mean in a project; without one they are taken as they are and lengths are
+    guessed.
+    """
 
     def __init__(self, project: Project | None) -> None:
         self.project = project
@@ -73,7 +79,9 @@ class Words:
         self.lengths: dict[Any, dict[str, float]] = {}
 
     def gesture(self, words: Sequence[str], layer: str, fields: Mapping[str, Any]) -> a.Gesture | a.Play:
-        """Return what asks for a gesture with these tags, or called so; arms first, where no layer is said."""
+        """Return what asks for a gesture with these tags, or called so; arms first, where no layer is
+        said.
+        """
         wanted, index = {spelled(w) for w in words} - {""}, self.index
         if not wanted or index is None:
             return a.Gesture(layer=layer or "arms", tags=tuple(words), **fields)  # type: ignore[arg-type]
@@ -97,7 +105,9 @@ class Words:
         return next((x.name for x in self.index.names.get(spelled(name), ()) if layer in ("", x.layer)), name)
 
     def stance(self, part: str, word: str, layer: str) -> tuple[str, str]:
-        """Return layer ("" for any) and stance of a posture: `part` ARMS and `word` CROSSED find "arms crossed"."""
+        """Return layer ("" for any) and stance of a posture: `part` ARMS and `word` CROSSED find "arms
+        crossed".
+        """
         layer = layer or PARTS.get(spelled(part), "")
         if self.index is not None:
             stances = [s for s in self.index.stances if layer in ("", s.layer)]
@@ -115,7 +125,9 @@ class Words:
         """Return how long something takes to say; seconds."""
         if self.project is None:
             return len(text) / SPOKEN if text else UNSAID
-        from metagraph.playback.understand import spoken_seconds  # the planner, which reading alone does not need
+        from metagraph.playback.understand import (
+            spoken_seconds,
+        )  # the planner, which reading alone does not need
 
         known = self.project.lines.get(line)
         return spoken_seconds(self.project, line or None, text or (known.text if known is not None else ""))
@@ -131,11 +143,16 @@ class Words:
         if isinstance(ask, a.Nod | a.Shake):
             word = "nod" if isinstance(ask, a.Nod) else "shake"
             heads = self.project.graphs["head"].actions.values() if self.project is not None else ()
-            return self._phases([x for x in heads if x.kind == "gesture" and (word in x.tags or word in x.name.lower())], NODDED)
+            return self._phases(
+                [x for x in heads if x.kind == "gesture" and (word in x.tags or word in x.name.lower())],
+                NODDED,
+            )
         if self.project is None or self.index is None:
             return GUESSED
         if isinstance(ask, a.Play):
-            return self._phases([x for x in self.index.actions.get(ask.action, ()) if ask.layer in (None, x.layer)], GUESSED)
+            return self._phases(
+                [x for x in self.index.actions.get(ask.action, ()) if ask.layer in (None, x.layer)], GUESSED
+            )
         tags, limb = set(ask.tags), ask.limb
         kind = "gesture" if isinstance(ask, a.Gesture) else "fidget"
         actions = self.project.graphs[ask.layer].actions.values() if ask.layer in LAYERS else ()

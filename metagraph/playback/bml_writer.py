@@ -1,4 +1,6 @@
-"""Behaviour Markup Language out: asks as a block of BML 1.0. What BML has no word for goes into attributes of our own."""
+"""Behaviour Markup Language out: asks as a block of BML 1.0. What BML has no word for goes into attributes of
+our own.
+"""
 
 from __future__ import annotations
 
@@ -16,9 +18,11 @@ _POINT = re.compile(r"[-+.\deE]+[\s,]+[-+.\deE]+[\s,]+[-+.\deE]+")
 
 
 def write_bml(asks: Iterable[a.AnyAsk]) -> str:
-    """Return asks as a block which reads back to the same asks; lines' numbers come back as texts, `told` is not kept.
+    """Return asks as a block which reads back to the same asks; lines' numbers come back as texts, `told` is
+    not kept.
 
-    Raises AskError for what no block can hold: characters XML forbids, ids that are not unique, a block within a block.
+    Raises AskError for what no block can hold: characters XML forbids, ids that are not unique, a block
+    within a block.
     """
     rows, seen = [], set[str]()
     for ask in asks:
@@ -31,13 +35,21 @@ def write_bml(asks: Iterable[a.AnyAsk]) -> str:
 
 def _element(ask: a.AnyAsk) -> str:
     """Return one ask's element."""
-    own: dict[str, Any] = {"id": ask.id or None, "metagraph:priority": str(ask.priority) if ask.priority != 1 else None}
+    own: dict[str, Any] = {
+        "id": ask.id or None,
+        "metagraph:priority": str(ask.priority) if ask.priority != 1 else None,
+    }
     times: dict[str, Any] = {"start": _number(ask.at)}
     match ask:
         case a.Gesture():
             times |= _phased(ask)
-            own |= _tagged(ask.tags) | {"mode": f"{ask.limb.upper()}_HAND" if ask.limb in ("left", "right") else _upper(ask.limb)}
-            own |= {"metagraph:layer": ask.layer if ask.layer != "arms" else None, "metagraph:resume": _flag(ask.resume, False)}
+            own |= _tagged(ask.tags) | {
+                "mode": f"{ask.limb.upper()}_HAND" if ask.limb in ("left", "right") else _upper(ask.limb)
+            }
+            own |= {
+                "metagraph:layer": ask.layer if ask.layer != "arms" else None,
+                "metagraph:resume": _flag(ask.resume, False),
+            }
             times["end"] = _after("start", ask.duration)
             return _tag("gesture", own | times)
         case a.Fidget():
@@ -45,7 +57,9 @@ def _element(ask: a.AnyAsk) -> str:
             own |= {"metagraph:layer": ask.layer if ask.layer != "arms" else None}
             return _tag("metagraph:fidget", own | times | {"end": _after("start", ask.duration)})
         case a.Play():
-            return _tag("animation", own | {"name": ask.action, "metagraph:layer": ask.layer} | times | _phased(ask))
+            return _tag(
+                "animation", own | {"name": ask.action, "metagraph:layer": ask.layer} | times | _phased(ask)
+            )
         case a.Go():
             stance = _tag("stance", {"type": ask.stance})
             own |= {"metagraph:layer": ask.layer, "metagraph:stay": _flag(ask.stay, False)}
@@ -55,23 +69,44 @@ def _element(ask: a.AnyAsk) -> str:
             return _tag("metagraph:change", own | times | {"end": _after("start", ask.duration)})
         case a.Nod() | a.Shake():
             tags = msgspec.json.encode(ask.tags).decode() if ask.tags else None
-            return _tag("head", own | {"lexeme": "NOD" if isinstance(ask, a.Nod) else "SHAKE", "metagraph:tags": tags} | times)
+            return _tag(
+                "head",
+                own
+                | {"lexeme": "NOD" if isinstance(ask, a.Nod) else "SHAKE", "metagraph:tags": tags}
+                | times,
+            )
         case a.Look():
             plain = not isinstance(ask.to, str) or (ask.to == ask.to.strip() and not _POINT.fullmatch(ask.to))
             to = ask.to if isinstance(ask.to, str) else " ".join(map(_number, ask.to))  # type: ignore[arg-type]
-            own |= {"target" if plain else "metagraph:to": to, "metagraph:amount": _number(ask.amount) if ask.amount != 1 else None}
+            own |= {
+                "target" if plain else "metagraph:to": to,
+                "metagraph:amount": _number(ask.amount) if ask.amount != 1 else None,
+            }
             own |= {"metagraph:strict": _flag(ask.strict, False)}
-            return _tag("gazeShift" if ask.duration is None else "gaze", own | times | {"end": _after("start", ask.duration)})
+            return _tag(
+                "gazeShift" if ask.duration is None else "gaze",
+                own | times | {"end": _after("start", ask.duration)},
+            )
         case a.Blink():
             return _tag("faceLexeme", own | {"lexeme": "BLINK"} | times)
         case a.Say():
-            own |= {"ref": None if ask.line is None else str(ask.line), "metagraph:gestures": _flag(ask.gestures, True)}
+            own |= {
+                "ref": None if ask.line is None else str(ask.line),
+                "metagraph:gestures": _flag(ask.gestures, True),
+            }
             keep = {"xml:space": "preserve"} if ask.text != " ".join(ask.text.split()) else {}
-            return _tag("speech", own | times | {"end": _after("start", ask.duration)}, _tag("text", keep, _escaped(ask.text, False)))
+            return _tag(
+                "speech",
+                own | times | {"end": _after("start", ask.duration)},
+                _tag("text", keep, _escaped(ask.text, False)),
+            )
         case a.Behave():
             return _tag("metagraph:mode", own | {"mode": ask.mode} | times)
         case a.Place():
-            return _tag("metagraph:place", own | {"name": ask.name, "point": " ".join(map(_number, ask.point))} | times)  # type: ignore[arg-type]
+            return _tag(
+                "metagraph:place",
+                own | {"name": ask.name, "point": " ".join(map(_number, ask.point))} | times,  # type: ignore[arg-type]
+            )
         case a.Withdraw():
             return _tag("metagraph:withdraw", own | {"what": ask.what or None} | times)
         case _:
@@ -109,7 +144,9 @@ def _upper(text: str | None) -> str | None:
 
 
 def _tag(name: str, attributes: dict[str, Any], inner: str = "") -> str:
-    words = "".join(f' {key}="{_escaped(value, True)}"' for key, value in attributes.items() if value is not None)
+    words = "".join(
+        f' {key}="{_escaped(value, True)}"' for key, value in attributes.items() if value is not None
+    )
     return f"<{name}{words}>{inner}</{name}>" if inner else f"<{name}{words}/>"
 
 

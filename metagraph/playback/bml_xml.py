@@ -1,4 +1,6 @@
-"""XML read without what makes it dangerous: no document types, so no entities of one's own, no other files, no endless trees."""
+"""XML read without what makes it dangerous: no document types, so no entities of one's own, no other files,
+no endless trees.
+"""
 
 from __future__ import annotations
 
@@ -15,7 +17,9 @@ OURS = "metagraph:"  # the prefix of what BML has no word for
 
 @dataclass
 class Element:
-    """name: local name as written; only our own prefix is kept. attributes: lower case. parts: texts and elements in order."""
+    """name: local name as written; only our own prefix is kept. attributes: lower case. parts: texts and
+    elements in order.
+    """
 
     name: str
     attributes: dict[str, str]
@@ -59,7 +63,10 @@ def parse(text: str) -> Element:
             stack[-1].parts.append(data)
 
     def doctype(*_: object) -> None:
-        raise AskError(f"line {parser.CurrentLineNumber}: a block has no <!DOCTYPE ...> and no entities of its own; leave them out")
+        raise AskError(
+            f"line {parser.CurrentLineNumber}: a block has no <!DOCTYPE ...> and no entities of its own; "
+            "leave them out"
+        )
 
     parser.StartElementHandler = begin
     parser.EndElementHandler = lambda _: stack.pop()

@@ -1,4 +1,5 @@
-"""Keyed randomness: every draw is a hash of (seed, key, purpose), in 32-bit integers that any language can mix alike.
+"""Keyed randomness: every draw is a hash of (seed, key, purpose), in 32-bit integers that any language can
+mix alike.
 
 Nothing is remembered between draws, so changing one request leaves the draws of all others as they were.
 """
@@ -37,7 +38,8 @@ def _begin(seed: int, words: tuple[str, ...]) -> int:
 
 
 def key32(seed: int, *words: str) -> int:
-    """Return the 32-bit hash of a seed and words: FNV-1a over their UTF-8 bytes, each word closed by a zero byte, then mixed.
+    """Return the 32-bit hash of a seed and words: FNV-1a over their UTF-8 bytes, each word closed by a zero
+    byte, then mixed.
 
     The seed, mixed, is xored into FNV's offset basis.
     """
@@ -52,8 +54,9 @@ def uniform(seed: int, *words: str) -> float:
 def pick(seed: int, key: str, purpose: str, weights: Mapping[str, float]) -> str:
     """Return one of the ids, id k with probability weight_k / sum.
 
-    Each id runs its own race, the shortest of exponential times -log(u_k) / weight_k wins; so adding or removing one
-    candidate changes the choice only where that candidate wins. Raises ValueError when no weight is positive.
+    Each id runs its own race, the shortest of exponential times -log(u_k) / weight_k wins; so adding or
+    removing one candidate changes the choice only where that candidate wins. Raises ValueError when no weight
+    is positive.
     """
     best, shortest = "", math.inf
     begun = _begin(seed, (key, purpose))

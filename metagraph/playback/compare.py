@@ -1,8 +1,10 @@
-"""What was seen beside what a model makes of it: how often, what after what, how long; with what chance alone explains.
+"""What was seen beside what a model makes of it: how often, what after what, how long; with what chance alone
+explains.
 
-A model of n draws visits its states not quite as often as its matrix says. How far off is to be expected follows from the
-matrix itself: rows are drawn independently, so the transitions from a state are multinomial; visits are not independent, so
-their variance is the chain's own, from its fundamental matrix (Kemeny and Snell, Finite Markov Chains, section 4.6).
+A model of n draws visits its states not quite as often as its matrix says. How far off is to be expected
+follows from the matrix itself: rows are drawn independently, so the transitions from a state are multinomial;
+visits are not independent, so their variance is the chain's own, from its fundamental matrix (Kemeny and
+Snell, Finite Markov Chains, section 4.6).
 """
 
 from __future__ import annotations
@@ -27,8 +29,10 @@ SURE = 3.0  # deviations beyond which chance is no explanation
 
 @dataclass(frozen=True)
 class Tally:
-    """Counts of a layer's acts. states [n], visits [n], moves [n, n] (row: now, column: next), lengths: seconds of each
-    state's acts, rests: seconds between acts, seconds: from the first act's start to the last one's end."""
+    """Counts of a layer's acts. states [n], visits [n], moves [n, n] (row: now, column: next), lengths:
+    seconds of each state's acts, rests: seconds between acts, seconds: from the first act's start to the last
+    one's end.
+    """
 
     states: tuple[State, ...]
     visits: Array
@@ -66,13 +70,16 @@ def tally(observed: Sequence[Sequence[Act]], states: Sequence[State], tagged: bo
             if a is not None and b is not None:
                 moves[a, b] += 1
     seconds = sum(max(a.end for a in s) - s[0].start for s in observed if s)
-    return Tally(tuple(states), visits, moves, tuple(np.sort(x) for x in lengths), np.sort(rests(observed)), seconds)
+    return Tally(
+        tuple(states), visits, moves, tuple(np.sort(x) for x in lengths), np.sort(rests(observed)), seconds
+    )
 
 
 @dataclass(frozen=True)
 class Comparison:
-    """observed: None where nothing was; the matrix alone is compared with then. generated: by the model. expected [n]: how often each state
-    comes in the long run; deviation [n]: how far the generated shares may be off by chance alone, one standard deviation.
+    """observed: None where nothing was; the matrix alone is compared with then. generated: by the model.
+    expected [n]: how often each state comes in the long run; deviation [n]: how far the generated shares may
+    be off by chance alone, one standard deviation.
     """
 
     model: Markov
@@ -82,13 +89,17 @@ class Comparison:
     deviation: Array
 
     def surprises(self) -> Array:
-        """By how many standard deviations each state's generated share is off what the model expects, `[n]`."""
+        """By how many standard deviations each state's generated share is off what the model expects,
+        `[n]`.
+        """
         off = self.generated.shares() - self.expected
         with np.errstate(divide="ignore", invalid="ignore"):
             return np.where(np.abs(off) < 1e-9, 0.0, off / self.deviation)
 
     def apart(self) -> Array:
-        """By how many standard deviations what was seen is off what the model does in the long run, `[n]`; 0 where nothing was seen."""
+        """By how many standard deviations what was seen is off what the model does in the long run, `[n]`; 0
+        where nothing was seen.
+        """
         if self.observed is None or not self.observed.count:
             return np.zeros(len(self.expected))
         off = self.observed.shares() - self.expected
@@ -101,19 +112,27 @@ class Comparison:
         matrix, left = np.array(self.model.matrix), self.generated.moves.sum(axis=1, keepdims=True)
         with np.errstate(divide="ignore", invalid="ignore"):
             off = self.generated.moves / left - matrix
-            return np.where((left == 0) | (np.abs(off) < 1e-9), 0.0, off / np.sqrt(matrix * (1 - matrix) / left))
+            return np.where(
+                (left == 0) | (np.abs(off) < 1e-9), 0.0, off / np.sqrt(matrix * (1 - matrix) / left)
+            )
 
 
-def compare(model: Markov, observed: Sequence[Sequence[Act]] | None, seconds: float = 3600.0, seed: int = 1) -> Comparison:
+def compare(
+    model: Markov, observed: Sequence[Sequence[Act]] | None, seconds: float = 3600.0, seed: int = 1
+) -> Comparison:
     """Let a model write for some seconds, and put that beside what was observed."""
     states, tagged = states_of(model), bool(model.tags)
     generated = tally([generate(model, seconds, seed)], states, tagged)
     expected = stationary(model.matrix)
     seen = tally(observed, states, tagged) if observed is not None else None
-    return Comparison(model, seen, generated, expected, deviation(model.matrix, expected, max(1, generated.count)))
+    return Comparison(
+        model, seen, generated, expected, deviation(model.matrix, expected, max(1, generated.count))
+    )
 
 
-def generate(model: Markov, seconds: float, seed: int = 1, kinds: Sequence[Kind] | None = None) -> tuple[Act, ...]:
+def generate(
+    model: Markov, seconds: float, seed: int = 1, kinds: Sequence[Kind] | None = None
+) -> tuple[Act, ...]:
     """Return what a model does in some seconds when nobody asks for anything."""
     return acts_of_metas(write(model, seed, seconds, kinds)[0])
 
@@ -124,7 +143,8 @@ def quantiles(lengths: Array) -> Array:
 
 
 def stationary(matrix: Sequence[Sequence[float]]) -> Array:
-    """Return how large a part of its time a chain spends in each state in the long run, `[n]`, begun in any state alike.
+    """Return how large a part of its time a chain spends in each state in the long run, `[n]`, begun in any
+    state alike.
 
     The mean over time, so that chains that go in circles, or never leave some states, have one as well.
     """

@@ -1,7 +1,7 @@
 """The composer: layers add their offsets from the base pose (Borer et al., section 5).
 
-An offset of rotation is `base^-1 * q`, multiplied on the right; an offset of translation is a difference. A joint's pose
-is `base * body^w * arms^w * head^w` over the layers whose weight on its body part is not zero.
+An offset of rotation is `base^-1 * q`, multiplied on the right; an offset of translation is a difference. A
+joint's pose is `base * body^w * arms^w * head^w` over the layers whose weight on its body part is not zero.
 """
 
 from __future__ import annotations
@@ -28,7 +28,8 @@ Array = NDArray[Any]
 class Offsets:
     """A clip relative to the base pose, for the joints a layer reaches.
 
-    rotations `[F, n, 4]`, neighbours on the same side; translations `[F, m, 3]` for the places `moved` `[m]` among them; float32.
+    rotations `[F, n, 4]`, neighbours on the same side; translations `[F, m, 3]` for the places `moved` `[m]`
+    among them; float32.
     """
 
     rotations: Array
@@ -57,7 +58,9 @@ class Ground:
         self._offsets: WeakKeyDictionary[Clip, dict[bytes, Offsets]] = WeakKeyDictionary()
 
     def offsets(self, clip: Clip, reach: Reach) -> Offsets:
-        """Return a clip's offsets on the joints of a layer. Raises ValueError when the clip has another skeleton."""
+        """Return a clip's offsets on the joints of a layer. Raises ValueError when the clip has another
+        skeleton.
+        """
         known = self._offsets.get(clip)
         if known is None:
             if clip.skeleton != self.skeleton:
@@ -81,7 +84,9 @@ class Rig:
     reach: Mapping[Layer, Reach]
 
     def compose(self, layers: Mapping[Layer, tuple[Array, Array]], count: int) -> Pose:
-        """Add layers' offsets, each rotations `[count, n, 4]` and translations `[count, n, 3]`, to the base pose."""
+        """Add layers' offsets, each rotations `[count, n, 4]` and translations `[count, n, 3]`, to the base
+        pose.
+        """
         base = self.ground.base
         rotations = np.repeat(base.rotations[None], count, 0)
         translations = np.repeat(base.translations[None], count, 0)
@@ -106,7 +111,9 @@ def _ground(skeleton: Skeleton, clip: Clip | None, frame: int) -> Ground:
 
 
 @lru_cache(maxsize=16)
-def _rig(ground: Ground, parts: tuple[Part, ...], weights: tuple[tuple[float, ...], ...], order: tuple[Part, ...]) -> Rig:
+def _rig(
+    ground: Ground, parts: tuple[Part, ...], weights: tuple[tuple[float, ...], ...], order: tuple[Part, ...]
+) -> Rig:
     reach: dict[Layer, Reach] = {}
     for layer, row in zip(LAYERS, weights, strict=True):
         by_part = dict(zip(order, row, strict=True))
@@ -118,7 +125,9 @@ def _rig(ground: Ground, parts: tuple[Part, ...], weights: tuple[tuple[float, ..
 
 
 def rig(project: Project) -> Rig:
-    """Return the project's rig; the same object as long as skeleton, base pose, parts and weights stay as they are."""
+    """Return the project's rig; the same object as long as skeleton, base pose, parts and weights stay as
+    they are.
+    """
     if project.skeleton is None:
         raise ValueError("a project without clips cannot be posed")
     entry = project.clips.get(project.base.clip) if project.base.clip else None

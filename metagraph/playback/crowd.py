@@ -1,4 +1,6 @@
-"""Many characters at once: the player's poses for a crowd, each with a plan and a time of its own, in compiled loops."""
+"""Many characters at once: the player's poses for a crowd, each with a plan and a time of its own, in
+compiled loops.
+"""
 
 from __future__ import annotations
 
@@ -24,7 +26,10 @@ Array = NDArray[Any]
 
 # Records of what the loops read; a clip's `first` is its first row in the layer's tables.
 CLIP = np.dtype([("first", "i8"), ("frames", "i8"), ("fps", "f8")])
-REST = np.dtype([(n, "f8") for n in ("start", "fade_start", "fade", "first", "length", "seam", "period")] + [("clip", "i8")])
+REST = np.dtype(
+    [(n, "f8") for n in ("start", "fade_start", "fade", "first", "length", "seam", "period")]
+    + [("clip", "i8")]
+)
 _TIMES = ("start", "end", "entry", "blend_in", "blend_out", "held", "hold", "rate")
 CUE = np.dtype([(n, "f8") for n in _TIMES] + [("clip", "i8"), ("mask", "i8")])
 
@@ -33,10 +38,12 @@ SHARED = 128  # characters a thread should have at least, for a second thread to
 
 
 class Crowd:
-    """The characters of one project, one plan each; plans may be shared. Everything is laid out once, when it is made.
+    """The characters of one project, one plan each; plans may be shared. Everything is laid out once, when it
+    is made.
 
-    Poses agree with `pose_at` without life layers to 1e-5. The first call in a process imports numba, the first ever compiles (seconds).
-    A crowd is for one thread at a time. Raises ValueError when the project has no skeleton.
+    Poses agree with `pose_at` without life layers to 1e-5. The first call in a process imports numba, the
+    first ever compiles (seconds). A crowd is for one thread at a time. Raises ValueError when the project has
+    no skeleton.
     """
 
     def __init__(self, project: Project, plans: Sequence[Plan]) -> None:
@@ -47,7 +54,11 @@ class Crowd:
         self._plan_of = np.array([places[id(plan)] for plan in plans], np.int64)
         blocks = _Blocks(frame)
         self._tables = [_Tables(project, frame, layer, blocks).of(list(unique.values())) for layer in LAYERS]
-        self._base, self._places, self._travels = blocks.base(), blocks.places, frame.ground.base.translations.astype(np.float32)
+        self._base, self._places, self._travels = (
+            blocks.base(),
+            blocks.places,
+            frame.ground.base.translations.astype(np.float32),
+        )
         # Memory for what is worked out on the way.
         self._blocked = np.empty((len(plans), *self._base.shape), np.float32)
         self._local: Pose | None = None
@@ -56,9 +67,11 @@ class Crowd:
         return len(self._plan_of)
 
     def poses(self, seconds: Any, out: Pose | None = None) -> Pose:
-        """Return each character's pose at its time, `seconds [C]` or one for all: rotations `[C, J, 4]`, translations `[C, J, 3]`.
+        """Return each character's pose at its time, `seconds [C]` or one for all: rotations `[C, J, 4]`,
+        translations `[C, J, 3]`.
 
-        out: float32 poses to write into, such as an earlier frame's; new memory costs nearly as much as the poses do.
+        out: float32 poses to write into, such as an earlier frame's; new memory costs nearly as much as the
+        poses do.
         """
         from metagraph.playback.crowd_kernels import add_layer, to_joints
 
@@ -77,7 +90,9 @@ class Crowd:
         return pose
 
     def globals(self, seconds: Any, out: tuple[Array, Array] | None = None) -> tuple[Array, Array]:
-        """Return model-space rotations `[C, J, 4]` and positions `[C, J, 3]`, metres. out: float32 arrays to write into."""
+        """Return model-space rotations `[C, J, 4]` and positions `[C, J, 3]`, metres. out: float32 arrays to
+        write into.
+        """
         from metagraph.playback.crowd_kernels import to_globals
 
         pose = self._local = self.poses(seconds, self._local)
@@ -108,7 +123,9 @@ def _share(work: Callable[[int, int], None], count: int) -> None:
 
 
 class _Blocks:
-    """Joints in blocks of 16 that the same layers reach, so that a layer's joints are whole blocks. places `[J]`: of each joint's x."""
+    """Joints in blocks of 16 that the same layers reach, so that a layer's joints are whole blocks. places
+    `[J]`: of each joint's x.
+    """
 
     def __init__(self, frame: Rig) -> None:
         self.rotations = frame.ground.base.rotations
@@ -149,14 +166,24 @@ class _Blocks:
 
 def _held(cue: Cue) -> tuple[float, float, float]:
     """Return seconds before the hold, seconds of it, and clip seconds a second in it."""
-    return (cue.hold_from - cue.entry, cue.hold, (cue.hold_to - cue.hold_from) / cue.hold) if cue.hold > 0 else (0.0, 0.0, 1.0)
+    return (
+        (cue.hold_from - cue.entry, cue.hold, (cue.hold_to - cue.hold_from) / cue.hold)
+        if cue.hold > 0
+        else (0.0, 0.0, 1.0)
+    )
 
 
 class _Tables:
     """One layer of the plans, and the clips they play, laid out flat: what the loops read."""
 
     def __init__(self, project: Project, frame: Rig, layer: Layer, blocks: _Blocks) -> None:
-        self.project, self.ground, self.reach, self.layer, self.blocks = project, frame.ground, frame.reach[layer], layer, blocks
+        self.project, self.ground, self.reach, self.layer, self.blocks = (
+            project,
+            frame.ground,
+            frame.reach[layer],
+            layer,
+            blocks,
+        )
         self.known: dict[Clip, int] = {}
         self.clips: list[tuple[int, int, float]] = []
         self.offsets: list[Offsets] = []
@@ -174,7 +201,9 @@ class _Tables:
             rests += [self._rest(rest) for rest in lane.rests]
             for cue in lane.cues:
                 clip, mask = self._clip(cue.action), self._mask(cue.action)
-                cues.append((cue.start, cue.end, cue.entry, cue.blend_in, cue.blend_out, *_held(cue), clip, mask))
+                cues.append(
+                    (cue.start, cue.end, cue.entry, cue.blend_in, cue.blend_out, *_held(cue), clip, mask)
+                )
             rest_at.append(len(rests))
             cue_at.append(len(cues))
         rest_table, cue_table = np.array(rests, REST), np.array(cues, CUE)
@@ -198,7 +227,12 @@ class _Tables:
             masks[n] = self.blocks.lanes(mask, joints, 1)[own]
         return (
             *(np.array(self.clips, CLIP), turns, ways, own),
-            *(joints[moved], weights[moved], self.blocks.lanes(weights, joints, 1)[own], self.reach.weights is not None),
+            *(
+                joints[moved],
+                weights[moved],
+                self.blocks.lanes(weights, joints, 1)[own],
+                self.reach.weights is not None,
+            ),
             *(masks, np.array(self.masks, np.float32).reshape(-1, len(joints))[:, moved]),
         )
 
@@ -206,7 +240,16 @@ class _Tables:
         first, end = self.project.span(rest.action)
         length = end - first
         seam = min(max(0.0, rest.action.timing.blend_in), length / 2)
-        return (rest.start, rest.fade_start, rest.fade, first, length, seam, length - seam, self._clip(rest.action))
+        return (
+            rest.start,
+            rest.fade_start,
+            rest.fade,
+            first,
+            length,
+            seam,
+            length - seam,
+            self._clip(rest.action),
+        )
 
     def _clip(self, action: Action) -> int:
         motion = playable(self.project, action)

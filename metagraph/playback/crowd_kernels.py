@@ -1,8 +1,9 @@
-"""Compiled loops of the crowd: the player's rules (player.py), one character after another. Importing this imports numba.
+"""Compiled loops of the crowd: the player's rules (player.py), one character after another. Importing this
+imports numba.
 
-Rotations lie in blocks of 16 joints, `[x 16, y 16, z 16, w 16]`, so that each step below is a loop of fixed length over
-neighbours in memory, which compiles to vector instructions. Lengths of quaternions are mended only before a blend, where
-they count, and at the end; products do not mind.
+Rotations lie in blocks of 16 joints, `[x 16, y 16, z 16, w 16]`, so that each step below is a loop of fixed
+length over neighbours in memory, which compiles to vector instructions. Lengths of quaternions are mended
+only before a blend, where they count, and at the end; products do not mind.
 """
 
 from __future__ import annotations
@@ -15,8 +16,12 @@ from metagraph.compiling import compiler
 
 Array = Any
 Number = Any  # float32 throughout, except for times
-Spot = tuple[int, int, Number]  # a sample's two rows of a table, and how far it is from the first to the second
-Loop = tuple[Spot, Spot, Number]  # a stance loop, the other side of its seam, and how much of that shows: -1 without a clip
+Spot = tuple[
+    int, int, Number
+]  # a sample's two rows of a table, and how far it is from the first to the second
+Loop = tuple[
+    Spot, Spot, Number
+]  # a stance loop, the other side of its seam, and how much of that shows: -1 without a clip
 
 LANES = 16  # joints in a block
 
@@ -48,7 +53,12 @@ def _mix(a: Array, b: Array, weight: Number) -> None:
     _unit(b)
     v = np.float32(1) - weight
     for i in range(LANES):
-        dot = a[i] * b[i] + a[LANES + i] * b[LANES + i] + a[2 * LANES + i] * b[2 * LANES + i] + a[3 * LANES + i] * b[3 * LANES + i]
+        dot = (
+            a[i] * b[i]
+            + a[LANES + i] * b[LANES + i]
+            + a[2 * LANES + i] * b[2 * LANES + i]
+            + a[3 * LANES + i] * b[3 * LANES + i]
+        )
         u = -weight if dot < 0 else weight
         a[i] = a[i] * v + b[i] * u
         a[LANES + i] = a[LANES + i] * v + b[LANES + i] * u
@@ -79,7 +89,11 @@ def _lead(shown: Array, stance: Array, edge: Array, weight: Number) -> None:
     v = np.float32(1) - weight
     for i in range(LANES):
         u = -weight if edge[3 * LANES + i] < 0 else weight
-        edge[i], edge[LANES + i], edge[2 * LANES + i] = edge[i] * u, edge[LANES + i] * u, edge[2 * LANES + i] * u
+        edge[i], edge[LANES + i], edge[2 * LANES + i] = (
+            edge[i] * u,
+            edge[LANES + i] * u,
+            edge[2 * LANES + i] * u,
+        )
         edge[3 * LANES + i] = edge[3 * LANES + i] * u + v
     _append(shown, edge)
 
@@ -94,7 +108,12 @@ def _power(q: Array, weights: Array) -> None:
         sine = np.sqrt(x * x + y * y + z * z)
         half = np.arctan2(sine, w) * weights[i]
         factor = np.sin(half) / sine if sine > 1e-8 else weights[i]
-        q[i], q[LANES + i], q[2 * LANES + i], q[3 * LANES + i] = x * factor, y * factor, z * factor, np.cos(half)
+        q[i], q[LANES + i], q[2 * LANES + i], q[3 * LANES + i] = (
+            x * factor,
+            y * factor,
+            z * factor,
+            np.cos(half),
+        )
 
 
 # --- where samples lie
@@ -177,7 +196,10 @@ def _loop_way(table: Array, loop: Loop, i: int, axis: int) -> Number:
     here, other, seam = loop
     if seam < 0:
         return np.float32(0)
-    return _way(table, here, i, axis) * (np.float32(1) - max(seam, np.float32(0))) + _way(table, other, i, axis) * seam
+    return (
+        _way(table, here, i, axis) * (np.float32(1) - max(seam, np.float32(0)))
+        + _way(table, other, i, axis) * seam
+    )
 
 
 # --- characters
@@ -208,12 +230,18 @@ def add_layer(
     out: Array,
     out_t: Array,
 ) -> None:
-    """Add one layer's offsets for characters `first`..`last`: rotations to `out [C, B, 64]`, translations to `out_t [C, J, 3]`.
+    """Add one layer's offsets for characters `first`..`last`: rotations to `out [C, B, 64]`, translations to
+    `out_t [C, J, 3]`.
 
-    turns `[rows, b, 64]`: every clip's frames; blocks `[b]`: which of the B blocks they are. ways `[rows, m, 3]` of joints
-    `movers [m]`. weights `[b, 16]`. masks `[K, b, 16]`, mover_masks `[K, m]`: 0 where a masked action leaves a joint to its stance.
+    turns `[rows, b, 64]`: every clip's frames; blocks `[b]`: which of the B blocks they are. ways `[rows, m,
+    3]` of joints `movers [m]`. weights `[b, 16]`. masks `[K, b, 16]`, mover_masks `[K, m]`: 0 where a masked
+    action leaves a joint to its stance.
     """
-    shown, stance, other = np.empty(4 * LANES, np.float32), np.empty(4 * LANES, np.float32), np.empty(4 * LANES, np.float32)
+    shown, stance, other = (
+        np.empty(4 * LANES, np.float32),
+        np.empty(4 * LANES, np.float32),
+        np.empty(4 * LANES, np.float32),
+    )
     scratch = np.empty(4 * LANES, np.float32)
     for c in range(first, last):
         time, plan = seconds[c], plan_of[c]
@@ -262,7 +290,9 @@ def add_layer(
                     moves = masks[mask, b]
                     for k in range(4):
                         for i in range(LANES):
-                            shown[k * LANES + i] = shown[k * LANES + i] if moves[i] > 0 else stance[k * LANES + i]
+                            shown[k * LANES + i] = (
+                                shown[k * LANES + i] if moves[i] > 0 else stance[k * LANES + i]
+                            )
             if weighed:
                 _power(result, weights[b])
             _append(out[c, blocks[b]], result)
@@ -283,18 +313,27 @@ def add_layer(
 
 @_compiled
 def to_joints(first: int, last: int, blocked: Array, places: Array, out: Array) -> None:
-    """Scale characters' rotations to unit length and write them joint by joint: `out [C, J, 4]` from places `[J]` in their blocks."""
+    """Scale characters' rotations to unit length and write them joint by joint: `out [C, J, 4]` from places
+    `[J]` in their blocks.
+    """
     for c in range(first, last):
         for b in range(blocked.shape[1]):
             _unit(blocked[c, b])
         flat, pose = blocked[c].reshape(-1), out[c]
         for j in range(len(places)):
             p = places[j]
-            pose[j, 0], pose[j, 1], pose[j, 2], pose[j, 3] = flat[p], flat[p + LANES], flat[p + 2 * LANES], flat[p + 3 * LANES]
+            pose[j, 0], pose[j, 1], pose[j, 2], pose[j, 3] = (
+                flat[p],
+                flat[p + LANES],
+                flat[p + 2 * LANES],
+                flat[p + 3 * LANES],
+            )
 
 
 @_compiled
-def to_globals(first: int, last: int, parents: Array, local_r: Array, local_t: Array, out_r: Array, out_p: Array) -> None:
+def to_globals(
+    first: int, last: int, parents: Array, local_r: Array, local_t: Array, out_r: Array, out_p: Array
+) -> None:
     """Write model-space rotations `[C, J, 4]` and positions `[C, J, 3]` of characters `first`..`last`."""
     for c in range(first, last):
         local, v, r, o = local_r[c], local_t[c], out_r[c], out_p[c]

@@ -28,22 +28,36 @@ def hear(
 ) -> Plan:
     """Return the plan with asks worked in that became known at `now`, and the horizon moved to `end`.
 
-    What begins before now + the settings' lookahead stays as it was, but at the very beginning, when nothing has been shown.
-    Asks need ids; of two with one id the later counts.
+    What begins before now + the settings' lookahead stays as it was, but at the very beginning, when nothing
+    has been shown. Asks need ids; of two with one id the later counts.
     """
     fixed = now + project.settings.lookahead if now > 0 else 0.0
     meant = understand(project, asks, fixed)
     every = "" in meant.withdrawn
-    gone = meant.withdrawn | {r.id for r in meant.requests} | {i.id for i in meant.items} | {r.request for r in meant.refused}
+    gone = (
+        meant.withdrawn
+        | {r.id for r in meant.requests}
+        | {i.id for i in meant.items}
+        | {r.request for r in meant.refused}
+    )
     asked_before = {r.id for r in plan.requests} | {i.id for i in plan.track.items}
-    belonging = {i for i in asked_before if i in gone or ("." in i and any(owner in gone for owner in owners(i)))}
+    belonging = {
+        i for i in asked_before if i in gone or ("." in i and any(owner in gone for owner in owners(i)))
+    }
     withdrawn = asked_before if every else belonging
     staying = {s.layer for s in (*plan.track.stays, *meant.items) if isinstance(s, StayFrom) and s.on}
     items = [i for i in meant.items if not isinstance(i, StayFrom) or i.layer in staying]
     touched = {r.layer for r in meant.requests} | {r.layer for r in plan.requests if r.id in withdrawn}
-    touched |= {s.layer for s in (*plan.track.stays, *items) if isinstance(s, StayFrom) and (s.id in gone or s.id in withdrawn)}
-    # Without any asks everything is planned again, so that an edited project shows; with some, what they have to do with.
-    leave = [layer for layer in LAYERS if layer not in touched] if asks and now > 0 and end == plan.end else []
+    touched |= {
+        s.layer
+        for s in (*plan.track.stays, *items)
+        if isinstance(s, StayFrom) and (s.id in gone or s.id in withdrawn)
+    }
+    # Without any asks everything is planned again, so that an edited project shows; with some, what they have
+    # to do with.
+    leave = (
+        [layer for layer in LAYERS if layer not in touched] if asks and now > 0 and end == plan.end else []
+    )
     track = plan.track.without(withdrawn, fixed).plus(items)
     plan = replace(plan, track=track)
     after = extend(project, plan, fixed, meant.requests, end, stances, idle, frozenset(withdrawn), leave)
@@ -51,7 +65,9 @@ def hear(
 
 
 def owners(ident: str) -> Iterator[str]:
-    """Yield the asks a request may have been made by: that of its own id, and those of which it would be a part."""
+    """Yield the asks a request may have been made by: that of its own id, and those of which it would be a
+    part.
+    """
     yield ident
     while True:
         ident, dot, number = ident.rpartition(".")
@@ -62,7 +78,9 @@ def owners(ident: str) -> Iterator[str]:
 
 @dataclass(frozen=True, slots=True)
 class Answer:
-    """What became of an ask. at, until: seconds, when it plays; None when it will not. what: the actions or words."""
+    """What became of an ask. at, until: seconds, when it plays; None when it will not. what: the actions or
+    words.
+    """
 
     id: str
     state: State
@@ -124,19 +142,34 @@ def _answer(ident: str, found: _Found) -> Answer:
     if any(r.outcome == "already-there" for r in told):
         return Answer(ident, "done", None, None, (), why)
     if found.waiting and all(r.played for r in told):
-        return Answer(ident, "late" if told else "planned", found.waiting[0], None, (), why or "chosen when its time is nearer")
+        return Answer(
+            ident,
+            "late" if told else "planned",
+            found.waiting[0],
+            None,
+            (),
+            why or "chosen when its time is nearer",
+        )
     return Answer(ident, "refused", None, None, (), why or "nothing came of it")
 
 
 def _words(item: object) -> str:
     name = type(item).__name__
-    return {"LookAt": "look", "Speech": "speech", "ModeFrom": "mode", "PlaceFrom": "place", "BlinkAt": "blink"}[name]
+    return {
+        "LookAt": "look",
+        "Speech": "speech",
+        "ModeFrom": "mode",
+        "PlaceFrom": "place",
+        "BlinkAt": "blink",
+    }[name]
 
 
 def since(plan: Plan, seconds: float) -> Plan:
-    """Return a running plan without what ended before `seconds`; what is planned on from it stays as it would have been.
+    """Return a running plan without what ended before `seconds`; what is planned on from it stays as it would
+    have been.
 
-    Poses before `seconds` are lost. What must not be forgotten are the settings' memory (600 s at most) and the last draws.
+    Poses before `seconds` are lost. What must not be forgotten are the settings' memory (600 s at most) and
+    the last draws.
     """
     layers = {layer: _since(of, seconds) for layer, of in plan.layers.items()}
     known = {m.request.id for of in layers.values() for m in of.metas}

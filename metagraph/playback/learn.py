@@ -1,6 +1,8 @@
-"""From what people were seen to do to what a character does: sequences of acts, the model they give, and the same sequence performed.
+"""From what people were seen to do to what a character does: sequences of acts, the model they give, and the
+same sequence performed.
 
-Borer et al., sections 7.2 and 7.3: intervals of each layer become a sequence of abstract actions, whose transitions are counted.
+Borer et al., sections 7.2 and 7.3: intervals of each layer become a sequence of abstract actions, whose
+transitions are counted.
 """
 
 from __future__ import annotations
@@ -28,7 +30,9 @@ _WEIGHT: Mapping[Kind, int] = {"transition": 2, "gesture": 1, "fidget": 0, "stan
 
 @dataclass(frozen=True, slots=True)
 class Act:
-    """Something one layer was seen, or is made, to do. start, end: seconds. stroke: its most telling moment, where that is known."""
+    """Something one layer was seen, or is made, to do. start, end: seconds. stroke: its most telling moment,
+    where that is known.
+    """
 
     start: float
     end: float
@@ -42,15 +46,18 @@ class Act:
         return self.end - self.start
 
 
-# --- intervals to sequences ------------------------------------------------------------------------------------------
+# --- intervals to sequences
+# ------------------------------------------------------------------------------------------
 
 
-def sequences(annotation: Annotation, roles: Mapping[str, str], labels: Iterable[Label]) -> dict[Layer, tuple[Act, ...]]:
+def sequences(
+    annotation: Annotation, roles: Mapping[str, str], labels: Iterable[Label]
+) -> dict[Layer, tuple[Act, ...]]:
     """Return what each layer does that some tier is read as, ascending by start.
 
-    Phases become whole gestures, stances the changes between them. Acts of the left and right arm that share more than
-    `OVERLAP` of the shorter become one of both: the kind of the more important (transition, gesture, fidget), from the earlier
-    start to the later end.
+    Phases become whole gestures, stances the changes between them. Acts of the left and right arm that share
+    more than `OVERLAP` of the shorter become one of both: the kind of the more important (transition,
+    gesture, fidget), from the earlier start to the later end.
     """
     meant = {(label.layer, label.text): label.meaning for label in labels}
     out: dict[Layer, list[Act]] = {}
@@ -86,9 +93,16 @@ def _acts(named: Sequence[tuple[Interval, str]], limb: Limb) -> list[Act]:
 
 
 def _begins(phase: str, before: Sequence[str], gap: float) -> bool:
-    """Return whether a phase begins another gesture: each has one stroke, begins with its preparation and ends with its retraction."""
+    """Return whether a phase begins another gesture: each has one stroke, begins with its preparation and
+    ends with its retraction.
+    """
     another = phase == "stroke" and "stroke" in before
-    return another or gap > PHASE_GAP or before[-1] == "retraction" or (phase == "preparation" and before[-1] != "preparation")
+    return (
+        another
+        or gap > PHASE_GAP
+        or before[-1] == "retraction"
+        or (phase == "preparation" and before[-1] != "preparation")
+    )
 
 
 def _whole(phases: Sequence[tuple[Interval, str, tuple[str, ...]]], limb: Limb) -> Act:
@@ -102,7 +116,8 @@ def _kind(word: str) -> Kind:
 
 
 def merged(acts: Iterable[Act]) -> tuple[Act, ...]:
-    """Return acts in order, those of two arms that overlap by more than `OVERLAP` of the shorter as one of both.
+    """Return acts in order, those of two arms that overlap by more than `OVERLAP` of the shorter as one of
+    both.
 
     Where one arm's annotation overlaps itself (two tiers read as the same), that is one act, too.
     """
@@ -133,7 +148,8 @@ def _together(a: Act, b: Act) -> Act:
     return Act(min(a.start, b.start), max(a.end, b.end), limb, main.kind, tags, main.stroke)
 
 
-# --- sequences to models ---------------------------------------------------------------------------------------------
+# --- sequences to models
+# ---------------------------------------------------------------------------------------------
 
 
 def state_of(act: Act, tagged: bool) -> State:
@@ -152,19 +168,24 @@ def states_of(model: Markov) -> tuple[State, ...]:
 
 
 def _order(state: State) -> tuple[int, int, int, str]:
-    """As the paper's figure 11: left, right, both; gesture, fidget, transition; without tags, positive, negative, others."""
+    """As the paper's figure 11: left, right, both; gesture, fidget, transition; without tags, positive,
+    negative, others.
+    """
     limb, kind, tags = state
     rank = {"": 0, "positive": 1, "negative": 2}.get(tags, 3)
     return LIMBS.index(limb), ("gesture", "fidget", "transition", "stance").index(kind), rank, tags
 
 
-def learn(layer: Layer, observed: Sequence[Sequence[Act]], tagged: bool = False, smoothing: float = 0.0) -> Markov:
+def learn(
+    layer: Layer, observed: Sequence[Sequence[Act]], tagged: bool = False, smoothing: float = 0.0
+) -> Markov:
     """Return the first-order model of sequences of acts of one layer.
 
-    tagged: tags are part of the states; otherwise only the shares of positive and negative gestures are kept. smoothing: added
-    to every count before a row is evened to 1; 0 as in the paper. The row of a state that was never left (it only ended
-    sequences) has every state as often as it was seen at all. `gap` is the mean rest between acts, 0 where they overlap.
-    The deviation of a length seen only once is in proportion to the others'. Raises ValueError when nothing was observed.
+    tagged: tags are part of the states; otherwise only the shares of positive and negative gestures are kept.
+    smoothing: added to every count before a row is evened to 1; 0 as in the paper. The row of a state that
+    was never left (it only ended sequences) has every state as often as it was seen at all. `gap` is the mean
+    rest between acts, 0 where they overlap. The deviation of a length seen only once is in proportion to the
+    others'. Raises ValueError when nothing was observed.
     """
     acts = [act for sequence in observed for act in sequence]
     if not acts:
@@ -173,14 +194,19 @@ def learn(layer: Layer, observed: Sequence[Sequence[Act]], tagged: bool = False,
         raise ValueError("smoothing is 0 or more")
     seen = Counter(state_of(act, tagged) for act in acts)
     states = sorted(seen, key=_order)
-    counts = Counter(pair for sequence in observed for pair in pairwise(state_of(act, tagged) for act in sequence))
+    counts = Counter(
+        pair for sequence in observed for pair in pairwise(state_of(act, tagged) for act in sequence)
+    )
     matrix = []
     for source in states:
         row = [counts[source, target] + smoothing for target in states]
         row = row if sum(row) > 0 else [float(seen[target]) for target in states]
         matrix.append(tuple(x / sum(row) for x in row))
     gestures = [act for act in acts if act.kind == "gesture"]
-    share = {tag: sum(tag in act.tags for act in gestures) / len(gestures) if gestures else 0.0 for tag in ("positive", "negative")}
+    share = {
+        tag: sum(tag in act.tags for act in gestures) / len(gestures) if gestures else 0.0
+        for tag in ("positive", "negative")
+    }
     tags = tuple(tag for _, _, tag in states)
     return Markov(
         layer,
@@ -206,26 +232,38 @@ def _lengths(acts: Sequence[Act], states: Sequence[State], tagged: bool) -> tupl
     out = []
     for state in states:
         mean = max(1e-3, fmean(lengths[state]))
-        out.append((round(mean, 4), round(stdev(lengths[state]) if len(lengths[state]) > 1 else usual * mean, 4)))
+        out.append(
+            (round(mean, 4), round(stdev(lengths[state]) if len(lengths[state]) > 1 else usual * mean, 4))
+        )
     return tuple(out)
 
 
-# --- editing a model -------------------------------------------------------------------------------------------------
+# --- editing a model
+# --------------------------------------------------------------------------------------------------
 
 
 def with_cell(model: Markov, row: int, column: int, probability: float) -> Markov:
-    """Return the model with one probability set; the others of its row keep their proportions (where all were 0, they share evenly)."""
+    """Return the model with one probability set; the others of its row keep their proportions (where all were
+    0, they share evenly).
+    """
     p = min(1.0, max(0.0, probability))
     old = model.matrix[row]
     rest = sum(x for n, x in enumerate(old) if n != column)
     if len(old) == 1:
         p = 1.0
-    others = [(x / rest if rest > 0 else 1 / (len(old) - 1)) * (1 - p) if n != column else p for n, x in enumerate(old)]
-    return replace(model, matrix=tuple(tuple(others) if n == row else line for n, line in enumerate(model.matrix)))
+    others = [
+        (x / rest if rest > 0 else 1 / (len(old) - 1)) * (1 - p) if n != column else p
+        for n, x in enumerate(old)
+    ]
+    return replace(
+        model, matrix=tuple(tuple(others) if n == row else line for n, line in enumerate(model.matrix))
+    )
 
 
 def with_state(model: Markov, state: State) -> Markov:
-    """Return the model with another state, which nothing leads to yet and which leads to every state alike; as it is if it has it."""
+    """Return the model with another state, which nothing leads to yet and which leads to every state alike;
+    as it is if it has it.
+    """
     if state in states_of(model):
         return model
     count = len(model.states) + 1
@@ -247,7 +285,9 @@ def _typical(model: Markov) -> tuple[float, float]:
 
 
 def without_state(model: Markov, place: int) -> Markov:
-    """Return the model without a state; rows that led only there lead to every other state alike. The last state stays."""
+    """Return the model without a state; rows that led only there lead to every other state alike. The last
+    state stays.
+    """
     kept = [n for n in range(len(model.states)) if n != place]
     if not kept:
         return model
@@ -265,7 +305,8 @@ def without_state(model: Markov, place: int) -> Markov:
     )
 
 
-# --- performing what was seen ----------------------------------------------------------------------------------------
+# --- performing what was seen
+# ----------------------------------------------------------------------------------------
 
 
 def asks_of(layer: Layer, acts: Sequence[Act]) -> tuple[AnyAsk, ...]:
@@ -279,7 +320,11 @@ def asks_of(layer: Layer, acts: Sequence[Act]) -> tuple[AnyAsk, ...]:
         ident, at, seconds = f"{layer}{n + 1}", round(act.start, 3), round(act.length, 3)
         if act.kind == "gesture":
             stroke = None if act.stroke is None else round(act.stroke, 3)
-            out.append(Gesture(id=ident, at=at, layer=layer, tags=act.tags, limb=limb, duration=seconds, stroke=stroke))
+            out.append(
+                Gesture(
+                    id=ident, at=at, layer=layer, tags=act.tags, limb=limb, duration=seconds, stroke=stroke
+                )
+            )
         elif act.kind == "fidget":
             out.append(Fidget(id=ident, at=at, layer=layer, tags=act.tags, limb=limb, duration=seconds))
         elif act.kind == "transition":
@@ -288,23 +333,33 @@ def asks_of(layer: Layer, acts: Sequence[Act]) -> tuple[AnyAsk, ...]:
 
 
 def performance(name: str, observed: Mapping[Layer, Sequence[Act]], seconds: float = 0.0) -> Performance:
-    """Return what was seen as a performance to keep; other seeds perform it with other actions. Layers that were not seen rest.
+    """Return what was seen as a performance to keep; other seeds perform it with other actions. Layers that
+    were not seen rest.
 
     seconds: how long it was watched, at least; it lasts a second longer than the last act in any case.
     """
-    asks = sorted((ask for layer, acts in observed.items() for ask in asks_of(layer, acts)), key=lambda ask: ask.at or 0.0)
+    asks = sorted(
+        (ask for layer, acts in observed.items() for ask in asks_of(layer, acts)),
+        key=lambda ask: ask.at or 0.0,
+    )
     end = max((act.end for acts in observed.values() for act in acts), default=0.0)
-    return Performance(name=name, asks=tuple(asks), length=float(math.ceil(max(end + 1.0, seconds))), idle=False)
+    return Performance(
+        name=name, asks=tuple(asks), length=float(math.ceil(max(end + 1.0, seconds))), idle=False
+    )
 
 
 def acts_of_asks(layer: Layer, asks: Iterable[AnyAsk]) -> tuple[Act, ...]:
-    """Return the acts that a performance asks of a layer, as far as it asks for kinds and times: the inverse of `asks_of`."""
+    """Return the acts that a performance asks of a layer, as far as it asks for kinds and times: the inverse
+    of `asks_of`.
+    """
     out = []
     for ask in asks:
         if not isinstance(ask, Gesture | Fidget | Change) or ask.layer != layer or ask.at is None:
             continue
         seconds = STANCE_CHANGE if ask.duration is None else ask.duration
-        kind: Kind = "gesture" if isinstance(ask, Gesture) else "fidget" if isinstance(ask, Fidget) else "transition"
+        kind: Kind = (
+            "gesture" if isinstance(ask, Gesture) else "fidget" if isinstance(ask, Fidget) else "transition"
+        )
         stroke = ask.stroke if isinstance(ask, Gesture) else None
         tags = () if isinstance(ask, Change) else ask.tags
         out.append(Act(ask.at, ask.at + seconds, ask.limb or "both", kind, tags, stroke))

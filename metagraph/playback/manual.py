@@ -1,7 +1,7 @@
 """Playing manual state machines as engines do: which state when, and the pose at a time.
 
-A link is taken when its source has finished, drawn by weight with the project's keyed randomness, or when its trigger is
-fired; a fired trigger leads over the shortest way of links. While one blend runs no other begins.
+A link is taken when its source has finished, drawn by weight with the project's keyed randomness, or when its
+trigger is fired; a fired trigger leads over the shortest way of links. While one blend runs no other begins.
 """
 
 from __future__ import annotations
@@ -46,7 +46,8 @@ class Fire:
 
 @dataclass(frozen=True, slots=True)
 class Played:
-    """One state's turn: from `start` seconds on it takes over within `blend` seconds. action: what plays. entry: clip seconds at `start`.
+    """One state's turn: from `start` seconds on it takes over within `blend` seconds. action: what plays.
+    entry: clip seconds at `start`.
 
     link: id of the link that led here, None at the beginning.
     """
@@ -78,7 +79,9 @@ class ManualLayer:
 
 @dataclass(frozen=True)
 class ManualPlan:
-    """What the machines play from 0 to `end` seconds. reports: triggers that led nowhere. life: of the life layers."""
+    """What the machines play from 0 to `end` seconds. reports: triggers that led nowhere. life: of the life
+    layers.
+    """
 
     seed: int
     end: float
@@ -89,30 +92,49 @@ class ManualPlan:
     @cached_property
     def plan(self) -> Plan:
         """The same as cues, for what shows plans; `player` cannot pose them."""
-        layers = {x: LayerPlan(x, cues=_cues(self.layers[x].played, self.end) if x in self.layers else ()) for x in LAYERS}
+        layers = {
+            x: LayerPlan(x, cues=_cues(self.layers[x].played, self.end) if x in self.layers else ())
+            for x in LAYERS
+        }
         return Plan(self.seed, self.end, layers, self.reports, life=self.life)
 
 
 def _cues(played: tuple[Played, ...], end: float) -> tuple[Cue, ...]:
     ends = [*(p.start for p in played[1:]), end]
-    return tuple(Cue(p.action, p.start, e, p.entry, p.blend, 0.0, "", "", p.link or "") for p, e in zip(played, ends, strict=True))
+    return tuple(
+        Cue(p.action, p.start, e, p.entry, p.blend, 0.0, "", "", p.link or "")
+        for p, e in zip(played, ends, strict=True)
+    )
 
 
 def action_of(state: State) -> Action:
     """Return a state as the action it plays, under its own id."""
     timing = Timing(state.start, state.end, 0.0, 0.0, state.loop)
     kind: Kind = "stance" if state.loop else "gesture"
-    return Action(state.id, state.clip, kind, state.layer, "", state.name, timing=timing, limb=state.limb, joints=state.joints)
+    return Action(
+        state.id,
+        state.clip,
+        kind,
+        state.layer,
+        "",
+        state.name,
+        timing=timing,
+        limb=state.limb,
+        joints=state.joints,
+    )
 
 
-# --- which state when ------------------------------------------------------------------------------------------------
+# --- which state when
+# --------------------------------------------------------------------------------------------------
 
 
-def make_manual_plan(project: Project, end: float, fires: Iterable[Fire] = (), seed: int | None = None) -> ManualPlan:
+def make_manual_plan(
+    project: Project, end: float, fires: Iterable[Fire] = (), seed: int | None = None
+) -> ManualPlan:
     """Plan every layer's machine from 0 to `end` seconds. seed: 32-bit, the project's when None.
 
-    A longer plan begins as a shorter one, and firing something leaves what came before as it was. A layer without a machine or
-    without a start stays still.
+    A longer plan begins as a shorter one, and firing something leaves what came before as it was. A layer
+    without a machine or without a start stays still.
     """
     seed = project.settings.seed if seed is None else seed
     asked = sorted(fires, key=lambda f: f.at)
@@ -127,7 +149,9 @@ def make_manual_plan(project: Project, end: float, fires: Iterable[Fire] = (), s
     return ManualPlan(seed, end, layers, tuple(reports), life)
 
 
-def _perform(project: Project, manual: Manual, seed: int, end: float, fires: list[Fire]) -> tuple[tuple[Played, ...], list[Report]]:
+def _perform(
+    project: Project, manual: Manual, seed: int, end: float, fires: list[Fire]
+) -> tuple[tuple[Played, ...], list[Report]]:
     state = manual.states[manual.start or ""]
     out = [_turn(project, state, 0.0, None)]
     reports: list[Report] = []
@@ -166,14 +190,22 @@ def _turn(project: Project, state: State, start: float, link: Link | None) -> Pl
 
 
 def _drawn(manual: Manual, state: State, seed: int, visit: int) -> Link | None:
-    """Draw the finished link by which a state will be left at its `visit`-th turn, None where there is none."""
-    finished = {x.id: x for x in manual.leaving(state.id) if x.condition.when == "finished" and x.target in manual.states}
+    """Draw the finished link by which a state will be left at its `visit`-th turn, None where there is
+    none.
+    """
+    finished = {
+        x.id: x
+        for x in manual.leaving(state.id)
+        if x.condition.when == "finished" and x.target in manual.states
+    }
     weights = {i: x.condition.weight for i, x in finished.items() if x.condition.weight > 0}
     return finished[pick(seed, f"{state.id} {visit}", "link", weights)] if weights else None
 
 
 def leave_at(project: Project, state: State, link: Link) -> float | None:
-    """Return the clip seconds at which a link is taken, None for one that is taken as soon as it is asked for."""
+    """Return the clip seconds at which a link is taken, None for one that is taken as soon as it is asked
+    for.
+    """
     if link.exit_time is None and link.condition.when == "request":
         return None
     start, end = project.span(action_of(state))
@@ -185,7 +217,14 @@ def leave_at(project: Project, state: State, link: Link) -> float | None:
 def _moment(project: Project, here: Played, link: Link, ready: float) -> float:
     """Return when a link is taken, `ready` at the earliest; in a loop the next time round."""
     start, end = project.span(here.action)
-    state = State(here.action.id, here.action.clip, "", here.action.layer, start=here.action.timing.start, end=here.action.timing.end)
+    state = State(
+        here.action.id,
+        here.action.clip,
+        "",
+        here.action.layer,
+        start=here.action.timing.start,
+        end=here.action.timing.end,
+    )
     leave = leave_at(project, state, link)
     if leave is None:
         return ready
@@ -196,7 +235,9 @@ def _moment(project: Project, here: Played, link: Link, ready: float) -> float:
 
 
 def route(manual: Manual, state: str, trigger: str) -> tuple[Link, ...] | None:
-    """Return the fewest links from a state whose last waits for a trigger, None where there is no way. Of equals the first drawn."""
+    """Return the fewest links from a state whose last waits for a trigger, None where there is no way. Of
+    equals the first drawn.
+    """
     before: dict[str, tuple[str, Link] | None] = {state: None}
     queue = [state]
     for here in queue:
@@ -216,11 +257,14 @@ def route(manual: Manual, state: str, trigger: str) -> tuple[Link, ...] | None:
     return None
 
 
-# --- parts of a machine, looked at alone -----------------------------------------------------------------------------
+# --- parts of a machine, looked at alone
+# -----------------------------------------------------------------------------
 
 
 def state_alone(project: Project, ident: str) -> ManualPlan:
-    """Return a plan of one state as it plays in its layer, nothing else moving; it ends with the part that plays. Raises KeyError."""
+    """Return a plan of one state as it plays in its layer, nothing else moving; it ends with the part that
+    plays. Raises KeyError.
+    """
     state = project.state(ident)
     if state is None:
         raise KeyError(ident)
@@ -240,7 +284,10 @@ def link_alone(project: Project, ident: str) -> ManualPlan:
         raise KeyError(ident)
     manual = project.manual[target.layer]
     others = (manual.start, *manual.states)
-    source = project.state(link.source) or manual.states[next((s for s in others if s and s != target.id), target.id)]
+    source = (
+        project.state(link.source)
+        or manual.states[next((s for s in others if s and s != target.id), target.id)]
+    )
     first = _turn(project, source, 0.0, None)
     start, end = project.span(first.action)
     leave = leave_at(project, source, link)
@@ -253,14 +300,16 @@ def link_alone(project: Project, ident: str) -> ManualPlan:
     return ManualPlan(1, length, {target.layer: ManualLayer(target.layer, (first, second))})
 
 
-# --- the pose at a time ----------------------------------------------------------------------------------------------
+# --- the pose at a time
+# ----------------------------------------------------------------------------------------------
 
 
 def manual_pose_at(plan: ManualPlan, project: Project, seconds: Any, alive: bool = True) -> Pose:
-    """Return the composed pose at `seconds`, a number or an array `[...]`: rotations `[..., J, 4]`, translations `[..., J, 3]`.
+    """Return the composed pose at `seconds`, a number or an array `[...]`: rotations `[..., J, 4]`,
+    translations `[..., J, 3]`.
 
-    Layers add up as the meta-graph's do. alive: with the life layers, as far as the project has them on. Raises ValueError when
-    the project has no skeleton.
+    Layers add up as the meta-graph's do. alive: with the life layers, as far as the project has them on.
+    Raises ValueError when the project has no skeleton.
     """
     at = np.asarray(seconds, np.float64)
     times = at.reshape(-1)
@@ -288,13 +337,17 @@ def _layer(plan: ManualLayer, project: Project, ground: Ground, reach: Reach, ti
         fading = times[here] < turn.start + turn.blend
         if number > 0 and fading.any():
             before = _offsets(plan.played[number - 1], project, ground, reach, times[here])
-            shown = mix(before, shown, np.where(fading, ease((times[here] - turn.start) / max(turn.blend, 1e-9)), 1.0))
+            shown = mix(
+                before, shown, np.where(fading, ease((times[here] - turn.start) / max(turn.blend, 1e-9)), 1.0)
+            )
         rotations[here], translations[here] = shown
     return rotations, translations
 
 
 def clip_seconds(project: Project, turn: Played, times: Any) -> Any:
-    """Return the clip seconds a turn shows at `times [...]`: round and round in a loop, else up to the end, where it holds."""
+    """Return the clip seconds a turn shows at `times [...]`: round and round in a loop, else up to the end,
+    where it holds.
+    """
     start, end = project.span(turn.action)
     elapsed = turn.entry + np.maximum(times - turn.start, 0.0)
     if turn.action.timing.loop and end > start:
@@ -303,10 +356,14 @@ def clip_seconds(project: Project, turn: Played, times: Any) -> Any:
 
 
 def _offsets(turn: Played, project: Project, ground: Ground, reach: Reach, times: Array) -> Sample:
-    """Return what a state adds to the base pose; joints it does not move, and all where its clip is missing, add nothing."""
+    """Return what a state adds to the base pose; joints it does not move, and all where its clip is missing,
+    add nothing.
+    """
     motion = playable(project, turn.action)
     if motion is None:
-        return rotation.identity((len(times), len(reach.joints)), np.float32), np.zeros((len(times), len(reach.joints), 3), np.float32)
+        return rotation.identity((len(times), len(reach.joints)), np.float32), np.zeros(
+            (len(times), len(reach.joints), 3), np.float32
+        )
     shown = sample(ground, reach, motion, clip_seconds(project, turn, times))
     mask = anatomy.mask(project, turn.action)
     if mask is not None:
@@ -316,24 +373,38 @@ def _offsets(turn: Played, project: Project, ground: Ground, reach: Reach, times
     return shown
 
 
-def manual_morphs_at(plan: ManualPlan, project: Project, seconds: float, alive: bool = True) -> dict[str, float]:
-    """Return morph target weights, 0..1, at one time: the layers' sums, and with `alive` the life layers' on top."""
+def manual_morphs_at(
+    plan: ManualPlan, project: Project, seconds: float, alive: bool = True
+) -> dict[str, float]:
+    """Return morph target weights, 0..1, at one time: the layers' sums, and with `alive` the life layers' on
+    top.
+    """
     out: dict[str, float] = {}
     for of in plan.layers.values():
         turn = of.at(seconds)
         if turn is None:
             continue
-        share = float(ease(np.array((seconds - turn.start) / turn.blend))) if turn.blend > 0 and turn is not of.played[0] else 1.0
+        share = (
+            float(ease(np.array((seconds - turn.start) / turn.blend)))
+            if turn.blend > 0 and turn is not of.played[0]
+            else 1.0
+        )
         shares = [(turn, share)]
         if share < 1:
             shares.append((of.played[of.played.index(turn) - 1], 1 - share))
         for one, weight in shares:
             motion = playable(project, one.action)
-            for name, value in motion.morphs_at(float(clip_seconds(project, one, seconds))).items() if motion is not None else ():
+            for name, value in (
+                motion.morphs_at(float(clip_seconds(project, one, seconds))).items()
+                if motion is not None
+                else ()
+            ):
                 out[name] = out.get(name, 0.0) + weight * value
     if alive and project.life.on and plan.life.end > 0:
         by_morphs = project.skeleton is not None and bool(body_of(project).face.morphs)
-        composed = manual_pose_at(plan, project, seconds, alive=False) if by_morphs else None  # what the eyes hold against
+        composed = (
+            manual_pose_at(plan, project, seconds, alive=False) if by_morphs else None
+        )  # what the eyes hold against
         for name, value in face_weights(project, plan.life, Track(), seconds, composed).items():
             out[name] = out.get(name, 0.0) + value
     return {name: min(1.0, max(0.0, value)) for name, value in out.items()}

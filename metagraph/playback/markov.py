@@ -1,8 +1,8 @@
 """The Markov model that performs when nobody asks for anything: a first-order chain over (limb, kind).
 
-The arms matrix is the paper's (Borer et al., figure 11), learned from annotated casual conversation. Body and head
-have no published matrix; theirs are ours, shaped on the paper's labels: the head nods and now and then changes its tilt,
-the body mostly rests, shifts and fidgets.
+The arms matrix is the paper's (Borer et al., figure 11), learned from annotated casual conversation. Body and
+head have no published matrix; theirs are ours, shaped on the paper's labels: the head nods and now and then
+changes its tilt, the body mostly rests, shifts and fidgets.
 """
 
 from __future__ import annotations
@@ -44,7 +44,14 @@ ARMS = Markov(
     """),
     gap=1.6,
 )
-HEAD = Markov("head", _states("LR,G LR,F LR,T"), _rows("60 20 20\n60 15 25\n70 20 10"), gap=2.4, positive=0.2, negative=0.1)
+HEAD = Markov(
+    "head",
+    _states("LR,G LR,F LR,T"),
+    _rows("60 20 20\n60 15 25\n70 20 10"),
+    gap=2.4,
+    positive=0.2,
+    negative=0.1,
+)
 BODY = Markov("body", _states("LR,G LR,F LR,T"), _rows("10 40 50\n20 30 50\n25 45 30"), gap=6.0)
 DEFAULTS: Mapping[Layer, Markov] = {"body": BODY, "arms": ARMS, "head": HEAD}
 
@@ -62,20 +69,26 @@ BEGIN = Cursor()
 def write(
     chain: Markov, seed: int, until: float, kinds: Collection[Kind] | None = None, cursor: Cursor = BEGIN
 ) -> tuple[list[MetaAction], Cursor]:
-    """Return the meta actions that start before `until` seconds, from the cursor on, and the cursor before the first one left out.
+    """Return the meta actions that start before `until` seconds, from the cursor on, and the cursor before
+    the first one left out.
 
     Rests are drawn between 0.35 and 1.65 times the mean gap, windows as `length` says.
     kinds: what the graph has; states of other kinds are passed over, so that half-filled graphs perform too.
 
-    Each draw is keyed by the meta action's number, so a longer horizon only appends, and writing on from a cursor gives bit for
-    bit what writing in one go does. A chain that cannot leave a row of zeros starts again from any state.
+    Each draw is keyed by the meta action's number, so a longer horizon only appends, and writing on from a
+    cursor gives bit for bit what writing in one go does. A chain that cannot leave a row of zeros starts
+    again from any state.
     """
     number, state, time = cursor.number, cursor.state, cursor.time
     open_to = [1.0 if kinds is None or kind in kinds else 0.0 for _, kind in chain.states]
     out: list[MetaAction] = []
     while any(open_to):
         key = f"auto/{chain.layer}/{number}"
-        row = [p * may for p, may in zip(chain.matrix[state], open_to, strict=True)] if 0 <= state < len(open_to) else open_to
+        row = (
+            [p * may for p, may in zip(chain.matrix[state], open_to, strict=True)]
+            if 0 <= state < len(open_to)
+            else open_to
+        )
         weights = {str(i): p for i, p in enumerate(row if any(row) else open_to)}
         start = time + chain.gap * (0.35 + 1.3 * uniform(seed, key, "gap"))
         if start >= until:
@@ -99,8 +112,9 @@ def write(
 def length(chain: Markov, state: int, seed: int, key: str) -> float:
     """Return how many seconds meta action `key` lasts: 1 to 3, evenly, where the model has no lengths.
 
-    Else log-normal with the state's mean m and standard deviation s, from two uniform draws u, v in (0, 1) by Box and Muller,
-    which any language can do alike: `a = ln(1 + (s / m)^2)`, `z = sqrt(-2 ln u) cos(2 pi v)`, `m exp(sqrt(a) z - a / 2)`.
+    Else log-normal with the state's mean m and standard deviation s, from two uniform draws u, v in (0, 1) by
+    Box and Muller, which any language can do alike: `a = ln(1 + (s / m)^2)`, `z = sqrt(-2 ln u) cos(2 pi v)`,
+    `m exp(sqrt(a) z - a / 2)`.
     """
     u = uniform(seed, key, "length")
     if not chain.lengths:

@@ -1,8 +1,10 @@
-"""A gesture's phases: preparation, stroke, hold, retraction (Kendon; BML's ready, stroke-end and relax), found from its motion.
+"""A gesture's phases: preparation, stroke, hold, retraction (Kendon; BML's ready, stroke-end and relax),
+found from its motion.
 
-The speed of what moves - the hands seen from the chest, the head seen from the hips, the trunk - falls into bouts parted by
-rests and by clear slowings. The last bout is the retraction, the rest before it the hold, the first bout before the stroke
-the preparation. Where a gesture is one bout, it prepares until halfway out and retracts from where it is farthest.
+The speed of what moves - the hands seen from the chest, the head seen from the hips, the trunk - falls into
+bouts parted by rests and by clear slowings. The last bout is the retraction, the rest before it the hold, the
+first bout before the stroke the preparation. Where a gesture is one bout, it prepares until halfway out and
+retracts from where it is farthest.
 """
 
 from __future__ import annotations
@@ -30,8 +32,9 @@ LEAST_BLEND = 0.25  # seconds in which a gesture that skips its preparation come
 
 @dataclass(frozen=True, slots=True)
 class Phases:
-    """Clip seconds, ascending: start, ready (preparation ends), stroke (its peak), stroke_end (the hold begins), relax (the
-    hold ends), end."""
+    """Clip seconds, ascending: start, ready (preparation ends), stroke (its peak), stroke_end (the hold
+    begins), relax (the hold ends), end.
+    """
 
     start: float
     ready: float
@@ -41,12 +44,16 @@ class Phases:
     end: float
 
     def skip(self, blend_in: float) -> float:
-        """Return where a gesture begins that skips its preparation: as late as it can blend in and be ready."""
+        """Return where a gesture begins that skips its preparation: as late as it can blend in and be
+        ready.
+        """
         return max(self.start, self.ready - max(blend_in, LEAST_BLEND))
 
 
 def phases(project: Project, action: Action) -> Phases:
-    """Return an action's phases: what its timing says, and the rest as found; the middle of it where the clip is missing."""
+    """Return an action's phases: what its timing says, and the rest as found; the middle of it where the clip
+    is missing.
+    """
     start, end = project.span(action)
     timing = action.timing
     entry = project.clips.get(action.clip)
@@ -118,13 +125,17 @@ def _of(times: Array, start: float, end: float, ready: int, stroke: int, gone: i
 
 @lru_cache(maxsize=512)
 def _track(motion: Clip, movers: tuple[int, ...], seen_from: int) -> Array:
-    """Return where the joints are `[F, n, 3]`, metres, in the frame of the joint they are seen from, or of the clip."""
+    """Return where the joints are `[F, n, 3]`, metres, in the frame of the joint they are seen from, or of
+    the clip.
+    """
     from metagraph.motion import rotation
 
     turns, places = motion.skeleton.globals(motion.poses())
     chosen = places[:, list(movers)]
     if seen_from >= 0:
-        chosen = rotation.rotate(rotation.conjugate(turns[:, seen_from])[:, None], chosen - places[:, seen_from, None])
+        chosen = rotation.rotate(
+            rotation.conjugate(turns[:, seen_from])[:, None], chosen - places[:, seen_from, None]
+        )
     return np.asarray(chosen, np.float64)
 
 

@@ -1,4 +1,6 @@
-"""From a meta plan to specific actions: candidates, the three temporal cases, the draw (Borer et al., section 6.2)."""
+"""From a meta plan to specific actions: candidates, the three temporal cases, the draw (Borer et al., section
+6.2).
+"""
 
 from __future__ import annotations
 
@@ -28,7 +30,9 @@ class Step:
 
 @dataclass(frozen=True, slots=True)
 class Shape:
-    """How an action would play: from `start` on, `length` seconds, at least `shortest`; the rest as in a cue."""
+    """How an action would play: from `start` on, `length` seconds, at least `shortest`; the rest as in a
+    cue.
+    """
 
     start: float
     entry: float
@@ -43,8 +47,8 @@ class Shape:
 class Performer:
     """One layer being planned, cue after cue. Mutable while planning; nothing of it leaves the planner.
 
-    uses: how often each action was used. recent: the last draws of each (stance, kind). ended: when each action ended. begun:
-    keys of meta actions whose chain of transitions plays already.
+    uses: how often each action was used. recent: the last draws of each (stance, kind). ended: when each
+    action ended. begun: keys of meta actions whose chain of transitions plays already.
     """
 
     project: Project
@@ -61,10 +65,14 @@ class Performer:
     begun: frozenset[str] = frozenset()
 
     @classmethod
-    def after(cls, project: Project, graph: MetaGraph, seed: int, begin: str, past: Past, cues: Sequence[Cue]) -> Performer:
+    def after(
+        cls, project: Project, graph: MetaGraph, seed: int, begin: str, past: Past, cues: Sequence[Cue]
+    ) -> Performer:
         """Return the performer that stands where cues have been played after a past."""
         stance = past.stance if past.stance in graph.stances else begin
-        out = cls(project, graph, seed, stance, past.free, dict(past.uses), dict(past.recent), dict(past.ended))
+        out = cls(
+            project, graph, seed, stance, past.free, dict(past.uses), dict(past.recent), dict(past.ended)
+        )
         for cue in cues:
             out.note(cue, cue.then if cue.then in graph.stances else begin)
         return out
@@ -98,7 +106,9 @@ class Performer:
                 waits = self.ready - meta.request.start
                 # What is wanted for a certain time is over; what is wanted once may come late.
                 if meta.written or meta.request.duration is not None or waits > self.project.settings.wait:
-                    self._tell(meta, "covered", f"wholly covered by {running}, which plays until {self.free:.2f} s")
+                    self._tell(
+                        meta, "covered", f"wholly covered by {running}, which plays until {self.free:.2f} s"
+                    )
                     continue
                 self._tell(meta, "queued", f"waits {waits:.2f} s for {running}", played=True)
             self._realise(meta, max(self.ready, meta.start), limit, wish)
@@ -120,14 +130,29 @@ class Performer:
                 self._tell(meta, "no-room", f"nothing fits into the {max(0.0, limit - now):.2f} s{before}")
                 return
             if not step.hop and meta.request.action is None:
-                warm = [a for a in fitting if a.cooldown <= 0 or self._cooled(a, stance) <= self._shape(a, asked, now).start + FITS]
+                warm = [
+                    a
+                    for a in fitting
+                    if a.cooldown <= 0 or self._cooled(a, stance) <= self._shape(a, asked, now).start + FITS
+                ]
                 if not warm:
                     soonest = min(self._cooled(a, stance) for a in fitting)
-                    self._tell(meta, "cooling", f"all that fit are cooling down; the first may play again at {soonest:.2f} s")
+                    self._tell(
+                        meta,
+                        "cooling",
+                        f"all that fit are cooling down; the first may play again at {soonest:.2f} s",
+                    )
                     return
                 fitting = warm
             action = self._draw(fitting, f"{meta.key}/{step.hop}" if step.hop else meta.key, now)
-            cue = self._cue(action, self._shape(action, asked, now), limit, float("inf") if step.hop else wish, stance, meta.key)
+            cue = self._cue(
+                action,
+                self._shape(action, asked, now),
+                limit,
+                float("inf") if step.hop else wish,
+                stance,
+                meta.key,
+            )
             cues.append(cue)
             now, stance = cue.end, cue.then
         for cue in cues:
@@ -135,15 +160,25 @@ class Performer:
 
     def _cooled(self, action: Action, stance: str) -> float:
         """Return when an action may be drawn again."""
-        return self.ended[action.id] + action.cooldown if action.cooldown > 0 and action.id in self.ended else float("-inf")
+        return (
+            self.ended[action.id] + action.cooldown
+            if action.cooldown > 0 and action.id in self.ended
+            else float("-inf")
+        )
 
     def _steps(self, meta: MetaAction) -> list[Step] | None:
-        """Return each action in turn: the transitions to get there, then the action itself; None if impossible or needless."""
+        """Return each action in turn: the transitions to get there, then the action itself; None if
+        impossible or needless.
+        """
         request, graph = meta.request, self.graph
         if request.action is not None:
             action = graph.actions.get(request.action)
             if action is None or action.stance not in graph.stances:
-                self._tell(meta, "unknown-action", f"there is no action '{request.action}' in the {graph.layer} layer")
+                self._tell(
+                    meta,
+                    "unknown-action",
+                    f"there is no action '{request.action}' in the {graph.layer} layer",
+                )
                 return None
             if action.kind == "stance":
                 return self._way(meta, action.stance)
@@ -154,7 +189,9 @@ class Performer:
             return None if way is None else [*way, Step([action])]
         if request.stance is not None and request.kind in ("transition", "stance"):
             if request.stance not in graph.stances:
-                self._tell(meta, "no-stance", f"there is no stance '{request.stance}' in the {graph.layer} layer")
+                self._tell(
+                    meta, "no-stance", f"there is no stance '{request.stance}' in the {graph.layer} layer"
+                )
                 return None
             return self._way(meta, request.stance)
         every = [a for a in graph.of(self.stance, request.kind) if self._usable(a)]
@@ -176,7 +213,11 @@ class Performer:
 
     def _elsewhere(self, request: Request) -> str:
         for action in self.graph.actions.values():
-            fits = action.kind == request.kind and set(request.tags) <= set(action.tags) and request.limb in (None, action.limb)
+            fits = (
+                action.kind == request.kind
+                and set(request.tags) <= set(action.tags)
+                and request.limb in (None, action.limb)
+            )
             if fits and action.stance in self.graph.stances:
                 return f"; there is one in '{self.graph.stances[action.stance].name}'"
         return ""
@@ -184,7 +225,12 @@ class Performer:
     def _way(self, meta: MetaAction, goal: str) -> list[Step] | None:
         """Return the transitions hop by hop from the current stance to `goal`."""
         if goal == self.stance:
-            self._tell(meta, "already-there", f"the layer is in '{self.graph.stances[goal].name}' already", played=True)
+            self._tell(
+                meta,
+                "already-there",
+                f"the layer is in '{self.graph.stances[goal].name}' already",
+                played=True,
+            )
             return None
         stances = chain(_usable_graph(self.graph), self.stance, goal)
         if stances is None:
@@ -193,7 +239,9 @@ class Performer:
             return None
         steps, at = [], self.stance
         for following in stances:
-            hops = [a for a in self.graph.of(at, "transition") if a.end_stance == following and self._usable(a)]
+            hops = [
+                a for a in self.graph.of(at, "transition") if a.end_stance == following and self._usable(a)
+            ]
             steps.append(Step(hops, following))
             at = following
         return steps
@@ -201,7 +249,9 @@ class Performer:
     def _arrives(self, action: Action) -> bool:
         """Whether an action leaves the layer in a stance that can rest."""
         end = action.end_stance
-        return action.kind != "transition" or (end in self.graph.stances and bool(self.graph.of(end or "", "stance")))
+        return action.kind != "transition" or (
+            end in self.graph.stances and bool(self.graph.of(end or "", "stance"))
+        )
 
     def _usable(self, action: Action) -> bool:
         return action.likelihood > 0 and self._arrives(action)
@@ -210,12 +260,16 @@ class Performer:
         """Return how an action would play for a request from `now` on, or as a step on the way to it."""
         start, end = self.project.span(action)
         begin, entry, hold_from, hold_to, hold = now, start, 0.0, 0.0, 0.0
-        special = request is not None and (request.hold is not None or request.stroke is not None or not request.prepare)
+        special = request is not None and (
+            request.hold is not None or request.stroke is not None or not request.prepare
+        )
         if special and request is not None and action.kind == "gesture":
             found = phases(self.project, action)
             latest = found.skip(action.timing.blend_in)
             entry = start if request.prepare else latest
-            if request.stroke is not None:  # wait for the stroke, or catch up with it by cutting the preparation
+            if (
+                request.stroke is not None
+            ):  # wait for the stroke, or catch up with it by cutting the preparation
                 begin = max(now, request.stroke - (found.stroke - entry))
                 entry = min(max(entry, found.stroke - max(0.0, request.stroke - begin)), max(entry, latest))
             if request.hold is not None:
@@ -231,20 +285,30 @@ class Performer:
         return Shape(begin, entry, length, shortest, hold_from, hold_to, hold)
 
     def _draw(self, candidates: list[Action], key: str, now: float) -> Action:
-        """Draw with p_k ~ likelihood_k / max(c_k, 1), leaving out those used too recently as long as any others are left."""
+        """Draw with p_k ~ likelihood_k / max(c_k, 1), leaving out those used too recently as long as any
+        others are left.
+        """
         candidates = self._spaced(candidates)
         weights = {a.id: a.likelihood / max(self._count(a.id, now), 1.0) for a in candidates}
-        chosen = pick(self.seed, key, "action", weights) if any(w > 0 for w in weights.values()) else candidates[0].id
+        chosen = (
+            pick(self.seed, key, "action", weights)
+            if any(w > 0 for w in weights.values())
+            else candidates[0].id
+        )
         return next(a for a in candidates if a.id == chosen)
 
     def _spaced(self, candidates: list[Action]) -> list[Action]:
-        """Leave out what needs more other actions before it plays again; where that leaves nothing, all need one less, and so on."""
+        """Leave out what needs more other actions before it plays again; where that leaves nothing, all need
+        one less, and so on.
+        """
         default = 1 if self.project.settings.never_twice else 0
         first = candidates[0]
         before = self.recent.get((first.stance, first.kind), ())
         if len(candidates) < 2 or not before:
             return candidates
-        since = {ident: len(before) - 1 - place for place, ident in enumerate(before)}  # how many came after it
+        since = {
+            ident: len(before) - 1 - place for place, ident in enumerate(before)
+        }  # how many came after it
         needs = {a.id: default if a.spacing is None else a.spacing for a in candidates}
         for less in range(max(needs.values(), default=0) + 1):
             left = [a for a in candidates if since.get(a.id, REMEMBERED) >= needs[a.id] - less]
@@ -283,8 +347,9 @@ class Performer:
         self.note(cue, cue.then)
         loop = self._loop(cue.then, cue.meta)
         if loop is not None:
-            # The loop begins anew under the action, so that the action's last pose meets the loop's first. Where the
-            # action leaves joints alone the change shows, and takes its time: a transition all of its own.
+            # The loop begins anew under the action, so that the action's last pose meets the loop's first.
+            # Where the action leaves joints alone the change shows, and takes its time: a transition all of
+            # its own.
             partial = cue.action.limb != "both" or bool(cue.action.joints)
             begin, until = cue.start + cue.blend_in, cue.end - cue.blend_out
             fade = max(0.0, until - begin)
@@ -323,22 +388,33 @@ class Performer:
         self.rests = out
 
     def _tell(self, meta: MetaAction, outcome: Outcome, message: str, **more: Any) -> None:
-        self.reports.append(Report(meta.request.id, outcome, message, self.graph.layer, meta.start, written=meta.written, **more))
+        self.reports.append(
+            Report(
+                meta.request.id, outcome, message, self.graph.layer, meta.start, written=meta.written, **more
+            )
+        )
 
 
 def _bounds(metas: Sequence[MetaAction]) -> list[tuple[MetaAction, float, float]]:
-    """Return each meta action with when the next more important one begins, and the next as important that was asked for."""
+    """Return each meta action with when the next more important one begins, and the next as important that
+    was asked for.
+    """
     out = []
     first: dict[tuple[float, bool], float] = {}  # (rank, written) -> start of the next such
     for meta in reversed(metas):
         limit = min((t for (rank, _), t in first.items() if rank > meta.rank), default=float("inf"))
-        wish = min((t for (rank, written), t in first.items() if rank >= meta.rank and not written), default=float("inf"))
+        wish = min(
+            (t for (rank, written), t in first.items() if rank >= meta.rank and not written),
+            default=float("inf"),
+        )
         out.append((meta, limit, wish))
         first[(meta.rank, meta.written)] = meta.start
     return out[::-1]
 
 
-def remember(cue: Cue, uses: dict[str, int], recent: dict[tuple[str, str], tuple[str, ...]], ended: dict[str, float]) -> None:
+def remember(
+    cue: Cue, uses: dict[str, int], recent: dict[tuple[str, str], tuple[str, ...]], ended: dict[str, float]
+) -> None:
     """Note that a cue was played: how often its action was, lately, and until when."""
     ident, node = cue.action.id, (cue.stance, cue.action.kind)
     uses[ident] = uses.get(ident, 0) + 1
@@ -349,6 +425,9 @@ def remember(cue: Cue, uses: dict[str, int], recent: dict[tuple[str, str], tuple
 def _usable_graph(graph: MetaGraph) -> MetaGraph:
     """Return the graph without transitions that cannot play or lead into stances that have no loop."""
     lost: Mapping[str, None] = {
-        a.id: None for end, actions in graph.into.items() for a in actions if a.likelihood <= 0 or not graph.of(end, "stance")
+        a.id: None
+        for end, actions in graph.into.items()
+        for a in actions
+        if a.likelihood <= 0 or not graph.of(end, "stance")
     }
     return graph.with_actions(lost) if lost else graph

@@ -25,12 +25,13 @@ WRITTEN = 0  # priority of what the Markov model writes
 class Request:
     """What an agent or animator asks for, at any level of abstraction.
 
-    id: unique; it keys the random draws. start: seconds. duration: how long the activity is wanted, None for one action.
-    action: id of a specific action. tags: all of them must be on the action. limb: which arm. stance: id of the stance to
-    go to (kind "transition"). priority: higher wins. resume: whether, when something more important cuts it, its
-    remainder goes on afterwards. stroke: when a gesture's stroke should come; `start` is then the earliest it may begin.
-    hold: seconds its hold should last, None for as long as it was made. prepare: whether its preparation plays. among: ids
-    of the only actions it may be, any where empty.
+    id: unique; it keys the random draws. start: seconds. duration: how long the activity is wanted, None for
+    one action. action: id of a specific action. tags: all of them must be on the action. limb: which arm.
+    stance: id of the stance to go to (kind "transition"). priority: higher wins. resume: whether, when
+    something more important cuts it, its remainder goes on afterwards. stroke: when a gesture's stroke should
+    come; `start` is then the earliest it may begin. hold: seconds its hold should last, None for as long as
+    it was made. prepare: whether its preparation plays. among: ids of the only actions it may be, any where
+    empty.
     """
 
     id: str
@@ -56,7 +57,9 @@ class Request:
 
 @dataclass(frozen=True, slots=True)
 class Cursor:
-    """Where writing stands: before meta action `number`, in state number `state` (-1: none yet), which ended at `time` seconds."""
+    """Where writing stands: before meta action `number`, in state number `state` (-1: none yet), which ended
+    at `time` seconds.
+    """
 
     number: int = 0
     state: int = -1
@@ -65,8 +68,8 @@ class Cursor:
 
 @dataclass(frozen=True, slots=True)
 class MetaAction:
-    """A request placed in time: `start`..`end` is the window it may use. written: by the Markov model, not asked for.
-    part: 0 for the request itself, n for its n-th remainder after a cut.
+    """A request placed in time: `start`..`end` is the window it may use. written: by the Markov model, not
+    asked for. part: 0 for the request itself, n for its n-th remainder after a cut.
     """
 
     request: Request
@@ -77,7 +80,9 @@ class MetaAction:
 
     @property
     def rank(self) -> float:
-        """How important it is: its request's priority; what a model wrote gives way to all that is asked for."""
+        """How important it is: its request's priority; what a model wrote gives way to all that is asked
+        for.
+        """
         return float("-inf") if self.written else self.request.priority
 
     @property
@@ -88,11 +93,12 @@ class MetaAction:
 
 @dataclass(frozen=True, slots=True)
 class Cue:
-    """One action in the plan. It plays its clip from `entry` on during `start`..`end`, at its own speed but for its hold.
+    """One action in the plan. It plays its clip from `entry` on during `start`..`end`, at its own speed but
+    for its hold.
 
-    hold_from, hold_to: clip seconds of the hold, which takes `hold` seconds; 0, 0, 0 where it is not stretched. blend_in,
-    blend_out: seconds, fitting inside the cue. stance: before it; then: the stance it leaves the layer in. meta: key of the meta
-    action it realises.
+    hold_from, hold_to: clip seconds of the hold, which takes `hold` seconds; 0, 0, 0 where it is not
+    stretched. blend_in, blend_out: seconds, fitting inside the cue. stance: before it; then: the stance it
+    leaves the layer in. meta: key of the meta action it realises.
     """
 
     action: Action
@@ -154,12 +160,16 @@ Outcome = Literal[
     "not-understood",
     "withdrawn",
 ]
-TEMPORAL: frozenset[Outcome] = frozenset(("late", "cut", "resumed", "past"))  # told by temporal replanning, once
+TEMPORAL: frozenset[Outcome] = frozenset(
+    ("late", "cut", "resumed", "past")
+)  # told by temporal replanning, once
 
 
 @dataclass(frozen=True, slots=True)
 class Report:
-    """What became of a meta action that was not simply played as asked. played: whether something of it still plays."""
+    """What became of a meta action that was not simply played as asked. played: whether something of it still
+    plays.
+    """
 
     request: str
     outcome: Outcome
@@ -172,8 +182,10 @@ class Report:
 
 @dataclass(frozen=True, slots=True)
 class Past:
-    """What planning on needs of cues that were forgotten. free: when the last ended; stance: in which. uses: how often
-    each action was used. recent: the actions used last, by (stance, kind), the latest at the end. ended: when each ended last."""
+    """What planning on needs of cues that were forgotten. free: when the last ended; stance: in which. uses:
+    how often each action was used. recent: the actions used last, by (stance, kind), the latest at the end.
+    ended: when each ended last.
+    """
 
     free: float = 0.0
     stance: str = ""
@@ -186,8 +198,9 @@ class Past:
 class LayerPlan:
     """cues never overlap and ascend; rests ascend by fade_start, the first covering everything before.
 
-    past: what came before the first cue, where that was forgotten. cursor: where the Markov model writes on. written: what it
-    wrote for later, as it wrote it: each extension fits it in anew, so that it does not matter when it was first seen.
+    past: what came before the first cue, where that was forgotten. cursor: where the Markov model writes on.
+    written: what it wrote for later, as it wrote it: each extension fits it in anew, so that it does not
+    matter when it was first seen.
     """
 
     layer: Layer
@@ -248,9 +261,11 @@ def _empty() -> dict[Layer, LayerPlan]:
 
 @dataclass(frozen=True)
 class Plan:
-    """The specific actions of every layer from 0 to `end` seconds, and what became of requests that could not be met.
+    """The specific actions of every layer from 0 to `end` seconds, and what became of requests that could not
+    be met.
 
-    track: what was asked of the life layers; life: what they do. Both begin where the plan was last cut (`since`).
+    track: what was asked of the life layers; life: what they do. Both begin where the plan was last cut
+    (`since`).
     """
 
     seed: int

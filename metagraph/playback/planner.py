@@ -1,7 +1,7 @@
 """The planner: requests at any level in, a plan of specific actions out.
 
-Meta actions -> temporal replanning -> sampling, layer by layer (Borer et al., section 6). Planning from nothing and
-extending a running plan are the same function; `make_plan` extends an empty plan at time 0.
+Meta actions -> temporal replanning -> sampling, layer by layer (Borer et al., section 6). Planning from
+nothing and extending a running plan are the same function; `make_plan` extends an empty plan at time 0.
 """
 
 from __future__ import annotations
@@ -28,8 +28,9 @@ def make_plan(
 ) -> Plan:
     """Plan from 0 to `end` seconds.
 
-    seed: 32-bit, the project's when None. stances: where layers begin, each layer's start stance when not given.
-    idle: let the Markov model fill the time nobody asks for. A layer without a stance that has a loop stays still.
+    seed: 32-bit, the project's when None. stances: where layers begin, each layer's start stance when not
+    given. idle: let the Markov model fill the time nobody asks for. A layer without a stance that has a loop
+    stays still.
     """
     empty = Plan(project.settings.seed if seed is None else seed, 0.0)
     return extend(project, empty, 0.0, requests, end, stances, idle)
@@ -48,9 +49,10 @@ def extend(
 ) -> Plan:
     """Return the plan with new requests worked in, others withdrawn, and the horizon moved to `end`.
 
-    What starts before `now` stays exactly as it was. What was planned for later is taken back to its meta actions,
-    merged with the new ones and planned again. An extension in many steps gives what one in a single step does. leave: layers
-    that are planned to `end` already and that nothing new concerns; planning them again would change nothing.
+    What starts before `now` stays exactly as it was. What was planned for later is taken back to its meta
+    actions, merged with the new ones and planned again. An extension in many steps gives what one in a single
+    step does. leave: layers that are planned to `end` already and that nothing new concerns; planning them
+    again would change nothing.
     """
     fresh = tuple({r.id: r for r in requests}.values())  # of two with one id the later counts
     again = {r.id for r in fresh} | withdrawn
@@ -67,7 +69,9 @@ def extend(
         reports += told
     kept = tuple(r for r in plan.requests if r.id not in again)
     life = schedule(project.life, plan.track, project.voices, plan.seed, end, plan.life, now)
-    return Plan(plan.seed, end, layers, tuple(sorted(reports, key=lambda r: r.at)), kept + fresh, plan.track, life)
+    return Plan(
+        plan.seed, end, layers, tuple(sorted(reports, key=lambda r: r.at)), kept + fresh, plan.track, life
+    )
 
 
 def _meta(request: Request) -> MetaAction:
@@ -88,46 +92,73 @@ def _extend_layer(
     begin: str | None,
     idle: bool,
 ) -> tuple[LayerPlan, list[Report]]:
-    """Return a layer's plan and its reports, old and new. again: requests that replace what was asked before."""
+    """Return a layer's plan and its reports, old and new. again: requests that replace what was asked
+    before.
+    """
     graph, old = project.graphs[layer], plan.layers[layer]
     kept = [cue for cue in old.cues if cue.start < now]
     played = {cue.meta for cue in kept}
     waiting = {cue.meta for cue in old.cues[len(kept) :]}  # also those whose chain of transitions has begun
     written, cursor = _written(project, plan, layer, now, end) if idle else ((), old.cursor)
     again = again | {m.request.id for m in written}
-    future = [m for m in old.metas if m.request.id not in again and (m.key in waiting or (m.start >= now and m.key not in played))]
+    future = [
+        m
+        for m in old.metas
+        if m.request.id not in again and (m.key in waiting or (m.start >= now and m.key not in played))
+    ]
     # What was told about time still holds; the rest will be told again by those that are planned again.
     planned_again = {(m.request.id, m.start) for m in future}
     done = tuple(
-        m for m in old.metas
-        if m.request.id not in again and (m.request.id, m.start) not in planned_again and (m.key in played or m.start < now)
-    )  # fmt: skip
+        m
+        for m in old.metas
+        if m.request.id not in again
+        and (m.request.id, m.start) not in planned_again
+        and (m.key in played or m.start < now)
+    )
     reports = [
-        r for r in plan.reports
-        if r.layer == layer and r.request not in again and (r.outcome in TEMPORAL or (r.request, r.at) not in planned_again)
-    ]  # fmt: skip
+        r
+        for r in plan.reports
+        if r.layer == layer
+        and r.request not in again
+        and (r.outcome in TEMPORAL or (r.request, r.at) not in planned_again)
+    ]
     performer = Performer.after(project, graph, plan.seed, begin or "", old.past, kept)
     if not begin or not performer.begin(begin):
         why = f"the {layer} layer has no stance with a loop to begin in"
-        reports += [Report(m.request.id, "no-stance", why, layer, m.start) for m in (*future, *asked) if not m.written]
-        return LayerPlan(layer, (*done, *future, *asked), past=old.past, cursor=cursor, written=written), reports
+        reports += [
+            Report(m.request.id, "no-stance", why, layer, m.start) for m in (*future, *asked) if not m.written
+        ]
+        return LayerPlan(
+            layer, (*done, *future, *asked), past=old.past, cursor=cursor, written=written
+        ), reports
     if old.rests and now > 0:
         begun = {cue.end - cue.blend_out for cue in kept}
         performer.rests = [r for r in old.rests if r.fade_start < now or r.start in begun]
     performer.begun = frozenset(played & waiting)
     performer.free = max(now - (performer.ready - performer.free), performer.free)
     asked, delayed = delay(asked, performer.ready, project.settings)
-    busy = max((m.end for m in done if not m.written), default=float("-inf"))  # what runs keeps the time it was wanted for, from the models
+    busy = max(
+        (m.end for m in done if not m.written), default=float("-inf")
+    )  # what runs keeps the time it was wanted for, from the models
     placed, told = replan([*future, *written, *asked], project.settings, busy)
     performer.perform(
-        [m for m in placed if not (m.written and m.request.kind == "transition" and plan.track.stays_at(layer, m.start))], end
+        [
+            m
+            for m in placed
+            if not (m.written and m.request.kind == "transition" and plan.track.stays_at(layer, m.start))
+        ],
+        end,
     )
     performer.vary_rests(end)
-    whole = LayerPlan(layer, (*done, *placed), tuple(performer.cues), tuple(performer.rests), old.past, cursor, written)
+    whole = LayerPlan(
+        layer, (*done, *placed), tuple(performer.cues), tuple(performer.rests), old.past, cursor, written
+    )
     return whole, [*reports, *delayed, *told, *performer.reports]
 
 
-def _written(project: Project, plan: Plan, layer: Layer, now: float, end: float) -> tuple[tuple[MetaAction, ...], Cursor]:
+def _written(
+    project: Project, plan: Plan, layer: Layer, now: float, end: float
+) -> tuple[tuple[MetaAction, ...], Cursor]:
     """Return what the layer's model writes from `now` to `end`, as it wrote it, and where it writes on."""
     old = plan.layers[layer]
     kinds = {kind for _, kind in project.graphs[layer].index}
@@ -136,6 +167,14 @@ def _written(project: Project, plan: Plan, layer: Layer, now: float, end: float)
 
 
 def _begin(graph: MetaGraph, old: LayerPlan, stance: str | None) -> str | None:
-    """Return the stance a layer begins in: as it did before, as asked, the graph's start, or the first that has a loop."""
-    wishes = [old.past.stance, old.rests[0].stance if old.rests else None, stance, graph.start, *graph.stances]
+    """Return the stance a layer begins in: as it did before, as asked, the graph's start, or the first that
+    has a loop.
+    """
+    wishes = [
+        old.past.stance,
+        old.rests[0].stance if old.rests else None,
+        stance,
+        graph.start,
+        *graph.stances,
+    ]
     return next((s for s in wishes if s is not None and s in graph.stances and graph.of(s, "stance")), None)

@@ -30,10 +30,12 @@ def ease(x: Array) -> Array:
 
 
 def pose_at(plan: Plan, project: Project, seconds: Any, alive: bool = True) -> Pose:
-    """Return the composed pose at `seconds`, a number or an array `[...]`: rotations `[..., J, 4]`, translations `[..., J, 3]`.
+    """Return the composed pose at `seconds`, a number or an array `[...]`: rotations `[..., J, 4]`,
+    translations `[..., J, 3]`.
 
-    alive: with the life layers, as far as the project has them on. Times before 0 and after the plan's end rest in the first
-    and last stance. Actions whose clip is missing show their stance. Raises ValueError when the project has no skeleton.
+    alive: with the life layers, as far as the project has them on. Times before 0 and after the plan's end
+    rest in the first and last stance. Actions whose clip is missing show their stance. Raises ValueError when
+    the project has no skeleton.
     """
     at = np.asarray(seconds, np.float64)
     times = at.reshape(-1)
@@ -50,17 +52,23 @@ def pose_at(plan: Plan, project: Project, seconds: Any, alive: bool = True) -> P
 
 
 def cue_weight(cue: Cue, times: Array) -> Array:
-    """Return how much of the cue shows at `times [N]`: 0 outside it, rising over its blend in, falling over its blend out."""
-    rise = ease((times - cue.start) / cue.blend_in) if cue.blend_in > 0 else (times >= cue.start).astype(float)
+    """Return how much of the cue shows at `times [N]`: 0 outside it, rising over its blend in, falling over
+    its blend out.
+    """
+    rise = (
+        ease((times - cue.start) / cue.blend_in) if cue.blend_in > 0 else (times >= cue.start).astype(float)
+    )
     fall = ease((cue.end - times) / cue.blend_out) if cue.blend_out > 0 else (times < cue.end).astype(float)
     return np.asarray(rise * fall)
 
 
 def loop_seconds(project: Project, action: Action, elapsed: Array) -> tuple[Array, Array, Array]:
-    """Return for seconds since a loop began: clip seconds, clip seconds of the seam's other side, and how much of that shows.
+    """Return for seconds since a loop began: clip seconds, clip seconds of the seam's other side, and how
+    much of that shows.
 
-    With a seam of x seconds the loop's last x seconds fade into its first, and its period is x shorter. Before its beginning
-    a loop runs as if it had gone on for ever; one with a seam waits in its first pose, so that it starts without a jump.
+    With a seam of x seconds the loop's last x seconds fade into its first, and its period is x shorter.
+    Before its beginning a loop runs as if it had gone on for ever; one with a seam waits in its first pose,
+    so that it starts without a jump.
     """
     start, end = project.span(action)
     length = end - start
@@ -83,7 +91,9 @@ def playable(project: Project, action: Action) -> Clip | None:
     return motion if motion is not None and motion.skeleton == project.skeleton else None
 
 
-Sample = tuple[Array, Array]  # offsets on the joints a layer reaches: rotations [N, n, 4], translations [N, n, 3]
+Sample = tuple[
+    Array, Array
+]  # offsets on the joints a layer reaches: rotations [N, n, 4], translations [N, n, 3]
 
 _RESTING, _ENTERING, _FULL, _LEAVING = range(4)  # a cue's phases
 
@@ -101,19 +111,47 @@ def _layer(plan: LayerPlan, project: Project, ground: Ground, reach: Reach, time
     # Times that meet the same rest, cue and phase are worked out together.
     group = ((current * 2 + fading) * (len(plan.cues) + 1) + playing + 1) * 4 + phase
     if (group == group[0]).all():
-        return _together(plan, project, ground, reach, times, int(current[0]), bool(fading[0]), int(playing[0]), int(phase[0]))
+        return _together(
+            plan,
+            project,
+            ground,
+            reach,
+            times,
+            int(current[0]),
+            bool(fading[0]),
+            int(playing[0]),
+            int(phase[0]),
+        )
     rotations = np.empty((len(times), len(reach.joints), 4), np.float32)
     translations = np.empty((len(times), len(reach.joints), 3), np.float32)
     for number in np.unique(group):
         here = np.flatnonzero(group == number)
         k = here[0]
-        found = _together(plan, project, ground, reach, times[here], int(current[k]), bool(fading[k]), int(playing[k]), int(phase[k]))
+        found = _together(
+            plan,
+            project,
+            ground,
+            reach,
+            times[here],
+            int(current[k]),
+            bool(fading[k]),
+            int(playing[k]),
+            int(phase[k]),
+        )
         rotations[here], translations[here] = found
     return rotations, translations
 
 
 def _together(
-    plan: LayerPlan, project: Project, ground: Ground, reach: Reach, times: Array, current: int, fading: bool, playing: int, phase: int
+    plan: LayerPlan,
+    project: Project,
+    ground: Ground,
+    reach: Reach,
+    times: Array,
+    current: int,
+    fading: bool,
+    playing: int,
+    phase: int,
 ) -> Sample:
     """Return offsets at `times [N]` that all meet the same rest and the same phase of the same cue."""
     cue = plan.cues[playing] if phase != _RESTING else None
@@ -128,17 +166,20 @@ def _together(
     stance = _stance(plan, project, ground, reach, times, current, fading)
     if phase != _FULL:
         edge = cue.entry if phase == _ENTERING else cue.last
-        shown = _lead(shown, stance, sample(ground, reach, motion, np.array([edge])), 1 - cue_weight(cue, times))
+        shown = _lead(
+            shown, stance, sample(ground, reach, motion, np.array([edge])), 1 - cue_weight(cue, times)
+        )
     for part, rest in zip(shown, stance, strict=True):
         part[:, still] = rest[:, still]
     return shown
 
 
 def _lead(shown: Sample, stance: Sample, edge: Sample, weight: Array) -> Sample:
-    """Lead a clip in from, or out to, its stance: add `weight [N]` of what the stance differs from the clip's pose at that edge.
+    """Lead a clip in from, or out to, its stance: add `weight [N]` of what the stance differs from the clip's
+    pose at that edge.
 
-    A plain crossfade would hold the clip back and then hurry it, up to 1.7 times as fast as it was made; this way the
-    clip keeps its own speed, and where it begins in its stance there is next to nothing to add.
+    A plain crossfade would hold the clip back and then hurry it, up to 1.7 times as fast as it was made; this
+    way the clip keeps its own speed, and where it begins in its stance there is next to nothing to add.
     """
     w = weight.astype(np.float32)[:, None, None]
     apart = rotation.multiply(rotation.conjugate(edge[0]), stance[0])
@@ -160,10 +201,14 @@ def _unit(q: Array) -> Array:
 def mix(a: Sample, b: Sample, weight: Array) -> Sample:
     """Crossfade two samples, `weight [N]` of the second."""
     w = weight.astype(np.float32)[:, None]
-    return rotation.nlerp(a[0], b[0], np.broadcast_to(w, b[0].shape[:-1])), a[1] + (b[1] - a[1]) * w[..., None]
+    return rotation.nlerp(a[0], b[0], np.broadcast_to(w, b[0].shape[:-1])), a[1] + (b[1] - a[1]) * w[
+        ..., None
+    ]
 
 
-def _stance(plan: LayerPlan, project: Project, ground: Ground, reach: Reach, times: Array, current: int, fading: bool) -> Sample:
+def _stance(
+    plan: LayerPlan, project: Project, ground: Ground, reach: Reach, times: Array, current: int, fading: bool
+) -> Sample:
     """Return the offsets of the stance that lies under the cues."""
     rest = plan.rests[current]
     found = _rest(rest, project, ground, reach, times)
@@ -198,18 +243,28 @@ def sample(ground: Ground, reach: Reach, clip: Clip, seconds: Array) -> Sample:
 
 
 def morphs_at(plan: Plan, project: Project, seconds: float, alive: bool = True) -> dict[str, float]:
-    """Return morph target weights, 0..1, at one time: the layers' sums, and with `alive` the life layers' on top."""
+    """Return morph target weights, 0..1, at one time: the layers' sums, and with `alive` the life layers' on
+    top.
+    """
     out: dict[str, float] = {}
     for layer in LAYERS:
         of = plan.layers[layer]
         cue = of.cue_at(seconds)
-        rest = next((r for r in reversed(of.rests) if r.fade_start <= seconds), of.rests[0] if of.rests else None)
+        rest = next(
+            (r for r in reversed(of.rests) if r.fade_start <= seconds), of.rests[0] if of.rests else None
+        )
         shares: list[tuple[Action, float, float]] = []
         weight = float(cue_weight(cue, np.array([seconds]))[0]) if cue is not None else 0.0
         if cue is not None:
             shares.append((cue.action, float(cue.clip_seconds(seconds)), weight))
         if rest is not None:
-            shares.append((rest.action, float(loop_seconds(project, rest.action, np.array([seconds - rest.start]))[0][0]), 1 - weight))
+            shares.append(
+                (
+                    rest.action,
+                    float(loop_seconds(project, rest.action, np.array([seconds - rest.start]))[0][0]),
+                    1 - weight,
+                )
+            )
         for action, at, share in shares:
             motion = playable(project, action)
             if motion is not None and share > 0:
@@ -217,7 +272,9 @@ def morphs_at(plan: Plan, project: Project, seconds: float, alive: bool = True) 
                     out[name] = out.get(name, 0.0) + share * value
     if alive and project.life.on and plan.life.end > 0:
         by_morphs = project.skeleton is not None and bool(body_of(project).face.morphs)
-        composed = pose_at(plan, project, seconds, alive=False) if by_morphs else None  # what the eyes hold against
+        composed = (
+            pose_at(plan, project, seconds, alive=False) if by_morphs else None
+        )  # what the eyes hold against
         for name, value in face_weights(project, plan.life, plan.track, seconds, composed).items():
             out[name] = out.get(name, 0.0) + value
     return {name: min(1.0, max(0.0, value)) for name, value in out.items()}

@@ -1,7 +1,9 @@
-"""Temporal replanning: meta actions that may clash become a meta plan that does not (Borer et al., section 6.1).
+"""Temporal replanning: meta actions that may clash become a meta plan that does not (Borer et al., section
+6.1).
 
-Greedy, by start time and then priority. The running action is never touched. Where two overlap, the more important one
-keeps its time; the other is delayed past it, or cut where it begins, and then goes on with its remainder if it asked to.
+Greedy, by start time and then priority. The running action is never touched. Where two overlap, the more
+important one keeps its time; the other is delayed past it, or cut where it begins, and then goes on with its
+remainder if it asked to.
 """
 
 from __future__ import annotations
@@ -16,8 +18,12 @@ from metagraph.graph.model import Settings
 from metagraph.playback.plan import MetaAction, Outcome, Report
 
 
-def delay(asked: Iterable[MetaAction], free: float, settings: Settings) -> tuple[list[MetaAction], list[Report]]:
-    """Let new requests wait until `free` seconds, the end of the running action; what would wait too long is past."""
+def delay(
+    asked: Iterable[MetaAction], free: float, settings: Settings
+) -> tuple[list[MetaAction], list[Report]]:
+    """Let new requests wait until `free` seconds, the end of the running action; what would wait too long is
+    past.
+    """
     metas: list[MetaAction] = []
     reports: list[Report] = []
     for meta in asked:
@@ -25,19 +31,25 @@ def delay(asked: Iterable[MetaAction], free: float, settings: Settings) -> tuple
         if late <= 0:
             metas.append(meta)
         elif late > settings.wait:
-            reports.append(_told(meta, "past", f"asked for at {meta.start:.2f} s, {late:.1f} s before anything could start"))
+            reports.append(
+                _told(
+                    meta, "past", f"asked for at {meta.start:.2f} s, {late:.1f} s before anything could start"
+                )
+            )
         else:
             metas.append(replace(meta, start=free, end=free + (meta.end - meta.start)))
             reports.append(_told(meta, "late", f"waits {late:.2f} s for the running action", True))
     return metas, reports
 
 
-def replan(metas: Iterable[MetaAction], settings: Settings, busy: float = float("-inf")) -> tuple[list[MetaAction], list[Report]]:
+def replan(
+    metas: Iterable[MetaAction], settings: Settings, busy: float = float("-inf")
+) -> tuple[list[MetaAction], list[Report]]:
     """Return the meta plan, ascending and without overlaps, and what became of the rest.
 
-    What is asked for is placed first; what a model wrote fits into the gaps, from `busy` seconds on. Meta actions that do not
-    overlap come back as they are, so a plan that is placed again stays as it is. Of equal start and priority, the id that
-    sorts first goes first.
+    What is asked for is placed first; what a model wrote fits into the gaps, from `busy` seconds on. Meta
+    actions that do not overlap come back as they are, so a plan that is placed again stays as it is. Of equal
+    start and priority, the id that sorts first goes first.
     """
     every = list(metas)
     placed, reports = _placed([m for m in every if not m.written], settings)
@@ -48,7 +60,9 @@ def replan(metas: Iterable[MetaAction], settings: Settings, busy: float = float(
 def _fitted(
     written: Iterable[MetaAction], placed: Sequence[MetaAction], shortest: float, busy: float
 ) -> tuple[list[MetaAction], list[Report]]:
-    """Return what is left of what a model wrote beside what is placed: the first stretch of each that is long enough."""
+    """Return what is left of what a model wrote beside what is placed: the first stretch of each that is long
+    enough.
+    """
     out: list[MetaAction] = []
     reports: list[Report] = []
     starts = [m.start for m in placed]
@@ -69,7 +83,14 @@ def _fitted(
         elif end - start >= shortest:
             out.append(replace(meta, start=start, end=end))
             if end < meta.end and beside is not None:
-                reports.append(_told(meta, "cut", f"is cut at {end:.2f} s for '{beside.request.id}', which is asked for", True))
+                reports.append(
+                    _told(
+                        meta,
+                        "cut",
+                        f"is cut at {end:.2f} s for '{beside.request.id}', which is asked for",
+                        True,
+                    )
+                )
         else:
             words = _no_time(beside) if beside is not None else "no time left beside what plays"
             reports.append(_told(meta, "covered", words))
@@ -82,7 +103,9 @@ def _placed(metas: Iterable[MetaAction], settings: Settings) -> tuple[list[MetaA
     reports: list[Report] = []
 
     def push(meta: MetaAction) -> None:
-        heapq.heappush(queue, (meta.start, -meta.request.priority, meta.request.id, meta.part, next(serial), meta))
+        heapq.heappush(
+            queue, (meta.start, -meta.request.priority, meta.request.id, meta.part, next(serial), meta)
+        )
 
     for meta in metas:
         push(meta)
@@ -113,7 +136,11 @@ def _placed(metas: Iterable[MetaAction], settings: Settings) -> tuple[list[MetaA
             reports.append(_told(meta, "covered", _no_time(last)))
         else:
             push(replace(meta, start=last.end, end=last.end + (meta.end - meta.start)))
-            reports.append(_told(meta, "late", f"waits {last.end - meta.request.start:.2f} s for '{last.request.id}'", True))
+            reports.append(
+                _told(
+                    meta, "late", f"waits {last.end - meta.request.start:.2f} s for '{last.request.id}'", True
+                )
+            )
     return placed, reports
 
 

@@ -1,7 +1,9 @@
-"""A plan that goes on: what is asked is worked in when it becomes known, the horizon moves along, and what is over is put aside.
+"""A plan that goes on: what is asked is worked in when it becomes known, the horizon moves along, and what is
+over is put aside.
 
-Live sessions, characters in programs and kept sessions that are performed again all plan through this. Planning costs what lies ahead
-and what was lately, so that an hour of requests takes an hour's time and not its square.
+Live sessions, characters in programs and kept sessions that are performed again all plan through this.
+Planning costs what lies ahead and what was lately, so that an hour of requests takes an hour's time and not
+its square.
 """
 
 from __future__ import annotations
@@ -44,8 +46,14 @@ class RunningPlan:
         self.plan = hear(project, empty, 0.0, [], ahead, self.stances, idle)
 
     def reach(self, now: float, anew: bool = False) -> None:
-        """Plan on where less than `ahead`, but for a little, is left at `now`; anew: also what has not begun, for an edited project."""
-        end = self.plan.end if self.plan.end >= now + self.ahead - min(SLACK, self.ahead / 2) else now + self.ahead
+        """Plan on where less than `ahead`, but for a little, is left at `now`; anew: also what has not begun,
+        for an edited project.
+        """
+        end = (
+            self.plan.end
+            if self.plan.end >= now + self.ahead - min(SLACK, self.ahead / 2)
+            else now + self.ahead
+        )
         if anew or end > self.plan.end:
             self.extend(now, end)
 
@@ -78,7 +86,9 @@ def perform(
     """
     groups: dict[float, list[a.AnyAsk]] = {0.0: []}
     for number, ask in enumerate(asks):
-        groups.setdefault(ask.told or 0.0, []).append(ask if ask.id else msgspec.structs.replace(ask, id=f"ask{number}"))
+        groups.setdefault(ask.told or 0.0, []).append(
+            ask if ask.id else msgspec.structs.replace(ask, id=f"ask{number}")
+        )
     first = groups.pop(0.0)
     if not groups:
         empty = Plan(project.settings.seed if seed is None else seed, 0.0)
@@ -102,7 +112,9 @@ def perform(
 
 
 def _on(running: RunningPlan, now: float, end: float) -> None:
-    """Move the horizon along, to no later than the end; as time went by, since a plan must reach beyond what it is planned on from."""
+    """Move the horizon along, to no later than the end; as time went by, since a plan must reach beyond what
+    it is planned on from.
+    """
     slack = min(REPLAYED, running.ahead / 2)
     while running.plan.end < min(end, now + running.ahead - slack):
         then = running.plan.end - running.ahead + slack
@@ -119,8 +131,9 @@ class Piece:
 
 
 def whole(plan: Plan, pieces: Sequence[Piece], named: Sequence[str]) -> Plan:
-    """Return a plan with what was put aside. named: the ids that all asks were about, in order; of one asked for or taken back again
-    after a cut, what was put aside is not told any more."""
+    """Return a plan with what was put aside. named: the ids that all asks were about, in order; of one asked
+    for or taken back again after a cut, what was put aside is not told any more.
+    """
     if not pieces:
         return plan
     later = [frozenset(named[piece.asked :]) for piece in pieces]
@@ -136,22 +149,39 @@ def whole(plan: Plan, pieces: Sequence[Piece], named: Sequence[str]) -> Plan:
             kept = {id(m) for m in on.metas}
             metas += [m for m in was.metas if id(m) not in kept and not _again(m.request.id, again)]
         last, first = plan.layers[layer], pieces[0].before.layers[layer]
-        layers[layer] = replace(last, metas=(*metas, *last.metas), cues=(*cues, *last.cues), rests=(*rests, *last.rests), past=first.past)
+        layers[layer] = replace(
+            last,
+            metas=(*metas, *last.metas),
+            cues=(*cues, *last.cues),
+            rests=(*rests, *last.rests),
+            past=first.past,
+        )
     reports: list[Report] = []
     requests: list[Request] = []
     items: list[Item] = []
     for piece, again in zip(pieces, later, strict=True):
         before, after = piece.before, piece.after
-        told, asked, there = ({id(x) for x in xs} for xs in (after.reports, after.requests, after.track.items))
+        told, asked, there = (
+            {id(x) for x in xs} for xs in (after.reports, after.requests, after.track.items)
+        )
         reports += [r for r in before.reports if id(r) not in told and not _again(r.request, again)]
         requests += [r for r in before.requests if id(r) not in asked and not _again(r.id, again)]
         items += [i for i in before.track.items if id(i) not in there]
     life, cuts = plan.life, [(piece.before, piece.after) for piece in pieces]
     lanes: dict[str, Any] = {
-        name: _joined([*(_gone(getattr(before.life, name), getattr(after.life, name)) for before, after in cuts), getattr(life, name)])
+        name: _joined(
+            [
+                *(_gone(getattr(before.life, name), getattr(after.life, name)) for before, after in cuts),
+                getattr(life, name),
+            ]
+        )
         for name in LANES
     }
-    targets = [t for before, after in cuts for t in before.life.targets[: len(before.life.targets) - len(after.life.targets)]]
+    targets = [
+        t
+        for before, after in cuts
+        for t in before.life.targets[: len(before.life.targets) - len(after.life.targets)]
+    ]
     return replace(
         plan,
         layers=layers,
@@ -173,4 +203,6 @@ def _gone(before: Lane, after: Lane) -> Lane:
 
 
 def _joined(lanes: Sequence[Lane]) -> Lane:
-    return Lane(np.concatenate([x.starts for x in lanes]), np.concatenate([x.values for x in lanes]), lanes[0].first)
+    return Lane(
+        np.concatenate([x.starts for x in lanes]), np.concatenate([x.values for x in lanes]), lanes[0].first
+    )

@@ -1,4 +1,6 @@
-"""From asks at any level of abstraction to what the planner and the life layers work with (Borer et al., section 6 and figure 5)."""
+"""From asks at any level of abstraction to what the planner and the life layers work with (Borer et al.,
+section 6 and figure 5).
+"""
 
 from __future__ import annotations
 
@@ -50,7 +52,9 @@ def understand(project: Project, asks: Iterable[a.AnyAsk], now: float) -> Unders
                     items.append(meant)
         except (a.AskError, ValueError) as error:
             layer: Layer = getattr(ask, "layer", None) or "arms"
-            refused.append(Report(ask.id, "not-understood", str(error), layer, now if ask.at is None else ask.at))
+            refused.append(
+                Report(ask.id, "not-understood", str(error), layer, now if ask.at is None else ask.at)
+            )
     return Understood(tuple(requests), tuple(items), frozenset(withdrawn), tuple(refused))
 
 
@@ -61,12 +65,38 @@ def _meant(project: Project, ask: a.AnyAsk, at: float) -> Sequence[Request | Ite
             start, stroke = _timed(project, ask.layer, ask.tags, ask.stroke, at)
             return [
                 Request(
-                    ask.id, ask.layer, "gesture", start, ask.duration, None, ask.tags, ask.limb, None, ask.priority, ask.resume,
-                    stroke, ask.hold, ask.prepare,
+                    ask.id,
+                    ask.layer,
+                    "gesture",
+                    start,
+                    ask.duration,
+                    None,
+                    ask.tags,
+                    ask.limb,
+                    None,
+                    ask.priority,
+                    ask.resume,
+                    stroke,
+                    ask.hold,
+                    ask.prepare,
                 )
-            ]  # fmt: skip
+            ]
         case a.Fidget():
-            return [Request(ask.id, ask.layer, "fidget", at, ask.duration, None, ask.tags, ask.limb, None, ask.priority, ask.resume)]
+            return [
+                Request(
+                    ask.id,
+                    ask.layer,
+                    "fidget",
+                    at,
+                    ask.duration,
+                    None,
+                    ask.tags,
+                    ask.limb,
+                    None,
+                    ask.priority,
+                    ask.resume,
+                )
+            ]
         case a.Play():
             action = find_action(project, ask.action, ask.layer)
             start = at if ask.stroke is None else max(0.0, ask.stroke - lead(project, action))
@@ -78,7 +108,10 @@ def _meant(project: Project, ask: a.AnyAsk, at: float) -> Sequence[Request | Ite
             ]  # fmt: skip
         case a.Go():
             layer, stance = find_stance(project, ask.stance, ask.layer)
-            return [Request(ask.id, layer, "transition", at, stance=stance, priority=ask.priority), StayFrom(ask.id, at, layer, ask.stay)]
+            return [
+                Request(ask.id, layer, "transition", at, stance=stance, priority=ask.priority),
+                StayFrom(ask.id, at, layer, ask.stay),
+            ]
         case a.Change():
             # Whichever arm was seen to move: stances are joined by few transitions, and mostly of both.
             return [Request(ask.id, ask.layer, "transition", at, priority=ask.priority)]
@@ -139,7 +172,9 @@ def _said(project: Project, ask: a.Say, at: float) -> list[Request | Item | a.Wi
 
 
 def spoken_seconds(project: Project, line: str | None, text: str, duration: float | None = None) -> float:
-    """Return how long something takes to say: as asked, as its sound, as the line says, or as its text is long."""
+    """Return how long something takes to say: as asked, as its sound, as the line says, or as its text is
+    long.
+    """
     entry = project.lines.get(line or "")
     if duration is not None:
         return max(duration, 0.0)
@@ -151,8 +186,14 @@ def spoken_seconds(project: Project, line: str | None, text: str, duration: floa
 
 
 def _head(project: Project, ask: a.Nod | a.Shake, word: str, at: float) -> Request:
-    """Nods are gestures tagged so; where none is, the likeliest of those called so, whatever stance it needs."""
-    gestures = [x for x in project.graphs["head"].actions.values() if x.kind == "gesture" and set(ask.tags) <= set(x.tags)]
+    """Nods are gestures tagged so; where none is, the likeliest of those called so, whatever stance it
+    needs.
+    """
+    gestures = [
+        x
+        for x in project.graphs["head"].actions.values()
+        if x.kind == "gesture" and set(ask.tags) <= set(x.tags)
+    ]
     if any(word in x.tags for x in gestures):
         return Request(ask.id, "head", "gesture", at, tags=(word, *ask.tags), priority=ask.priority)
     called = tuple(x.id for x in gestures if word in x.name.lower())
@@ -162,13 +203,17 @@ def _head(project: Project, ask: a.Nod | a.Shake, word: str, at: float) -> Reque
     return Request(ask.id, "head", "gesture", at, priority=ask.priority, among=called)
 
 
-def _timed(project: Project, layer: Layer, tags: tuple[str, ...], stroke: float | None, at: float) -> tuple[float, float | None]:
+def _timed(
+    project: Project, layer: Layer, tags: tuple[str, ...], stroke: float | None, at: float
+) -> tuple[float, float | None]:
     """Return the earliest start of a gesture whose stroke should come at a time, and that time."""
     return (at, None) if stroke is None else (max(0.0, stroke - _longest_lead(project, layer, tags)), stroke)
 
 
 def _longest_lead(project: Project, layer: Layer, tags: tuple[str, ...]) -> float:
-    """Return how long before its stroke any gesture with these tags begins; remembered as long as graph and clips stay as they are."""
+    """Return how long before its stroke any gesture with these tags begins; remembered as long as graph and
+    clips stay as they are.
+    """
     graph = project.graphs[layer]
     known = graph.__dict__.get("_leads")
     leads: dict[tuple[str, ...], float] = known[1] if known is not None and known[0] is project.clips else {}
@@ -180,7 +225,9 @@ def _longest_lead(project: Project, layer: Layer, tags: tuple[str, ...]) -> floa
 
 
 def lead(project: Project, action: Action) -> float:
-    """Return the seconds from an action's start to its stroke; what is no gesture has it where it was set, or halfway."""
+    """Return the seconds from an action's start to its stroke; what is no gesture has it where it was set, or
+    halfway.
+    """
     if action.kind != "gesture":
         start, end = project.span(action)
         stroke = action.timing.stroke
@@ -192,7 +239,9 @@ def lead(project: Project, action: Action) -> float:
 
 
 def find_action(project: Project, word: str, layer: Layer | None = None) -> Action:
-    """Return the action of an id or, failing that, a name; of several of one name the likeliest. Raises AskError."""
+    """Return the action of an id or, failing that, a name; of several of one name the likeliest. Raises
+    AskError.
+    """
     found = project.action(word)
     if found is not None and layer in (None, found.layer):
         return found
@@ -217,7 +266,9 @@ def find_stance(project: Project, word: str, layer: Layer | None = None) -> tupl
             if stance.name == word:
                 return each, stance.id
             names[stance.name] = None
-    raise a.AskError(f"there is no stance '{word}'{f' in the {layer} layer' if layer else ''}{_hint(word, names)}")
+    raise a.AskError(
+        f"there is no stance '{word}'{f' in the {layer} layer' if layer else ''}{_hint(word, names)}"
+    )
 
 
 def _hint(word: str, known: Mapping[str, Any]) -> str:

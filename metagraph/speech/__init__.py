@@ -1,1 +1,3 @@
-"""Speech: from sound files and phones to what the life layers and the planner need to know of a spoken line."""
+"""Speech: from sound files and phones to what the life layers and the planner need to know of a spoken
+line.
+"""

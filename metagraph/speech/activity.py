@@ -1,6 +1,8 @@
-"""When somebody speaks, by loudness alone: what stands out of a channel's own noise, and is not the partner heard through one's microphone.
+"""When somebody speaks, by loudness alone: what stands out of a channel's own noise, and is not the partner
+heard through one's microphone.
 
-Levels are relative to the channel's, so gain does not matter. It tells speech from silence and steady noise, not from music or laughter.
+Levels are relative to the channel's, so gain does not matter. It tells speech from silence and steady noise,
+not from music or laughter.
 """
 
 from __future__ import annotations
@@ -37,8 +39,10 @@ class Stretch:
 
 
 def activity(heard: Heard, pitch: Pitch | None = None, partner: Heard | None = None) -> tuple[Stretch, ...]:
-    """Return when somebody speaks, by start, pauses between. pitch: of the same channel, to leave out what is not voiced. partner: what the
-    other's microphone hears, of the same conversation, to leave out what only crosses over."""
+    """Return when somebody speaks, by start, pauses between. pitch: of the same channel, to leave out what is
+    not voiced. partner: what the other's microphone hears, of the same conversation, to leave out what only
+    crosses over.
+    """
     return tuple(_spoken(heard, pitch, partner))
 
 
@@ -64,7 +68,12 @@ def _spoken(heard: Heard, pitch: Pitch | None, partner: Heard | None) -> list[St
     for a, b in joined:
         if (b - a) * HOP < SHORTEST or (pitch is not None and not _voiced(pitch, a, b)):
             continue
-        out.append(Stretch(round(float(heard.times[a]), 3), round(min(float(heard.times[b - 1]) + HOP, heard.duration), 3)))
+        out.append(
+            Stretch(
+                round(float(heard.times[a]), 3),
+                round(min(float(heard.times[b - 1]) + HOP, heard.duration), 3),
+            )
+        )
     return [s for s in out if s.start < s.end]
 
 
@@ -73,8 +82,9 @@ def _voiced(pitch: Pitch, a: int, b: int) -> bool:
 
 
 def crosstalk(heard: Heard, partner: Heard) -> float:
-    """Return how loud the partner is in one's own microphone, dB relative to the partner's: their middle over the moments in which only the
-    partner seems to speak. -inf where the partner says nothing."""
+    """Return how loud the partner is in one's own microphone, dB relative to the partner's: their middle over
+    the moments in which only the partner seems to speak. -inf where the partner says nothing.
+    """
     count = min(len(heard.level), len(partner.level))
     mine, theirs = heard.level[:count], partner.level[:count]
     floor, top = float(np.percentile(theirs, 10)), float(np.percentile(theirs, 99.5))
@@ -96,10 +106,14 @@ def not_crossed(heard: Heard, partner: Heard) -> Array:
     """Return which moments `[K]` are louder than what comes over from the partner."""
     bleed = crosstalk(heard, partner)
     count = min(len(heard.level), len(partner.level))
-    if not np.isfinite(bleed) or bleed > -3.0:  # one's own voice is as loud there: the two cannot be told apart by that
+    if (
+        not np.isfinite(bleed) or bleed > -3.0
+    ):  # one's own voice is as loud there: the two cannot be told apart by that
         return np.ones(len(heard.level), bool)
     out = np.ones(len(heard.level), bool)
     # Rooms answer late: what came over in the last 30 ms counts.
-    late = np.max(np.lib.stride_tricks.sliding_window_view(np.pad(partner.level[:count], (3, 0), "edge"), 4), axis=1)
+    late = np.max(
+        np.lib.stride_tricks.sliding_window_view(np.pad(partner.level[:count], (3, 0), "edge"), 4), axis=1
+    )
     out[:count] = heard.level[:count] > late + bleed + BLEED
     return out

@@ -1,12 +1,15 @@
-"""What one side of a conversation says, in segments: phonemic clauses, listener responses and its own hesitation pauses.
+"""What one side of a conversation says, in segments: phonemic clauses, listener responses and its own
+hesitation pauses.
 
-A phonemic clause is a group of words round one that is strongly stressed (Boomer and Dittmann 1962; Yang et al. 2020, section 4.2).
-Words are parted at pauses and hesitations; what is longer is parted so that each part has one word that stands out by pitch, loudness and
-length, with breaks rather before small words, at commas and where one speaks on a little later; parts of about four words are preferred.
+A phonemic clause is a group of words round one that is strongly stressed (Boomer and Dittmann 1962; Yang et
+al. 2020, section 4.2). Words are parted at pauses and hesitations; what is longer is parted so that each part
+has one word that stands out by pitch, loudness and length, with breaks rather before small words, at commas
+and where one speaks on a little later; parts of about four words are preferred.
 
-A response is a turn, pauses around it, that is made of response words alone: a "yes" within a sentence is part of the sentence. Hesitation
-words are hesitations wherever they stand; those that also mean something (`vocabulary.LEXICAL`: "well", "like", "you know") only where they
-stand alone, next to another hesitation, or before a pause after which the same speaker goes on.
+A response is a turn, pauses around it, that is made of response words alone: a "yes" within a sentence is
+part of the sentence. Hesitation words are hesitations wherever they stand; those that also mean something
+(`vocabulary.LEXICAL`: "well", "like", "you know") only where they stand alone, next to another hesitation, or
+before a pause after which the same speaker goes on.
 """
 
 from __future__ import annotations
@@ -55,9 +58,9 @@ def segments(
 ) -> tuple[Segment, ...]:
     """Return one side's clauses, responses and hesitations, by start, never overlapping.
 
-    words: as transcribed, by start. pitch, heard: of the side's own channel. partner: of the other's, where that is another. Without words,
-    what is loud tells (`activity.activity`): what pauses part is a clause, a short sound while the partner talks a response; hesitations
-    are not found then.
+    words: as transcribed, by start. pitch, heard: of the side's own channel. partner: of the other's, where
+    that is another. Without words, what is loud tells (`activity.activity`): what pauses part is a clause, a
+    short sound while the partner talks a response; hesitations are not found then.
     """
     words = in_order(words, heard.duration)
     tones = smooth(pitch)
@@ -75,43 +78,68 @@ def segments(
 
 
 def in_order(words: Sequence[Word], length: float) -> list[Word]:
-    """Return the words by start, none longer than to the next one's start, none past the length (seconds); those left too short go."""
+    """Return the words by start, none longer than to the next one's start, none past the length (seconds);
+    those left too short go.
+    """
     ordered = sorted(words, key=lambda w: (w.start, w.end))
     out: list[Word] = []
     for word, after in zip_longest(ordered, ordered[1:]):
-        end = min(word.end, length, after.start if after is not None and after.start > word.start + SHORTEST / 2 else length)
+        end = min(
+            word.end,
+            length,
+            after.start if after is not None and after.start > word.start + SHORTEST / 2 else length,
+        )
         start = max(word.start, out[-1].end) if out else word.start
         if end - start >= SHORTEST / 2:
-            out.append(word if (start, end) == (word.start, word.end) else Word(text=word.text, start=start, end=end))
+            out.append(
+                word if (start, end) == (word.start, word.end) else Word(text=word.text, start=start, end=end)
+            )
     return out
 
 
 def _segment(kind: Spoken, words: Sequence[Word], pitch: Pitch, tones: Array, heard: Heard) -> Segment:
     start, end = words[0].start, words[-1].end
     return Segment(
-        kind, start, end, peak_of(pitch, tones, heard, start, end) if kind == "clause" else None, " ".join(w.text for w in words)
+        kind,
+        start,
+        end,
+        peak_of(pitch, tones, heard, start, end) if kind == "clause" else None,
+        " ".join(w.text for w in words),
     )
 
 
 def peak_of(pitch: Pitch, tones: Array, heard: Heard, start: float, end: float) -> float:
-    """Return where the stress between two times is, seconds: F0's most prominent peak, or, of a voiceless one, the loudest moment.
-    tones: `pitch.smooth(pitch)`."""
+    """Return where the stress between two times is, seconds: F0's most prominent peak, or, of a voiceless
+    one, the loudest moment. tones: `pitch.smooth(pitch)`.
+    """
     found = peaks(pitch, start, end, tones)
     if found:
         return min(max(round(found[0], 3), start), end)
     part = slice(int(np.searchsorted(heard.times, start)), int(np.searchsorted(heard.times, end, "right")))
     level = heard.level[part]
-    return min(max(round(float(heard.times[part][int(level.argmax())]), 3), start), end) if len(level) else (start + end) / 2
+    return (
+        min(max(round(float(heard.times[part][int(level.argmax())]), 3), start), end)
+        if len(level)
+        else (start + end) / 2
+    )
 
 
-# --- by words --------------------------------------------------------------------------------------------------------
+# --- by words
+# --------------------------------------------------------------------------------------------------
 
 
-def _parts(words: Sequence[Word], said: Sequence[tuple[str, ...]], responses: Vocabulary, hesitations: Vocabulary) -> list[_Part]:
-    """Return the words in responses, hesitations and runs between pauses that clauses are made of, in order."""
+def _parts(
+    words: Sequence[Word], said: Sequence[tuple[str, ...]], responses: Vocabulary, hesitations: Vocabulary
+) -> list[_Part]:
+    """Return the words in responses, hesitations and runs between pauses that clauses are made of, in
+    order.
+    """
     out: list[_Part] = []
     for first, last in _turns(words):
-        if _all_of(said, first, last, responses) and words[last - 1].end - words[first].start <= LONGEST_RESPONSE:
+        if (
+            _all_of(said, first, last, responses)
+            and words[last - 1].end - words[first].start <= LONGEST_RESPONSE
+        ):
             out.append(_Part("response", first, last))
         else:
             out += _hesitating(words, said, first, last, responses, hesitations)
@@ -136,9 +164,16 @@ def _all_of(said: Sequence[tuple[str, ...]], first: int, last: int, phrases: Voc
 
 
 def _hesitating(
-    words: Sequence[Word], said: Sequence[tuple[str, ...]], first: int, last: int, responses: Vocabulary, hesitations: Vocabulary
+    words: Sequence[Word],
+    said: Sequence[tuple[str, ...]],
+    first: int,
+    last: int,
+    responses: Vocabulary,
+    hesitations: Vocabulary,
 ) -> list[_Part]:
-    """Return a turn in hesitations and what is between them; what is between, if it is response words alone, is a response."""
+    """Return a turn in hesitations and what is between them; what is between, if it is response words alone,
+    is a response.
+    """
     marks = [0] * (last - first)  # how many words a hesitation that begins here has
     n = first
     while n < last:
@@ -152,7 +187,11 @@ def _hesitating(
     # A word with a meaning counts only by what is around it; from the end, as it may lean on one behind it.
     for n in reversed(range(first, last)):
         size = marks[n - first]
-        if size and tuple(t for w in said[n : n + size] for t in w) in LEXICAL_PHRASES and not _hangs(words, n, size, first, last, marks):
+        if (
+            size
+            and tuple(t for w in said[n : n + size] for t in w) in LEXICAL_PHRASES
+            and not _hangs(words, n, size, first, last, marks)
+        ):
             marks[n - first] = 0
     out: list[_Part] = []
     n = begin = first
@@ -174,8 +213,9 @@ def _hesitating(
 
 
 def _hangs(words: Sequence[Word], n: int, size: int, first: int, last: int, marks: Sequence[int]) -> bool:
-    """Return whether words with a meaning hesitate: alone between pauses, next to another hesitation and a pause, or before a pause after
-    which the speaker goes on; not as the end of a sentence."""
+    """Return whether words with a meaning hesitate: alone between pauses, next to another hesitation and a
+    pause, or before a pause after which the speaker goes on; not as the end of a sentence.
+    """
     begins, ends = n == first, n + size == last
     leans = not ends and marks[n + size - first] > 0
     goes_on = n + size < len(words) and words[n + size].start - words[n + size - 1].end <= HOLDS
@@ -193,7 +233,8 @@ def _answers(words: Sequence[Word], first: int, last: int) -> bool:
     return words[last - 1].end - words[first].start <= LONGEST_RESPONSE
 
 
-# --- without words ---------------------------------------------------------------------------------------------------
+# --- without words
+# --------------------------------------------------------------------------------------------------
 
 
 def _by_loudness(pitch: Pitch, tones: Array, heard: Heard, partner: Heard | None) -> tuple[Segment, ...]:
@@ -221,6 +262,8 @@ def _shorter(s: Stretch, heard: Heard) -> list[tuple[float, float]]:
     if s.end - s.start <= LONGEST_CLAUSE:
         return [(s.start, s.end)]
     third = (s.end - s.start) / 4
-    part = slice(int(np.searchsorted(heard.times, s.start + third)), int(np.searchsorted(heard.times, s.end - third)))
+    part = slice(
+        int(np.searchsorted(heard.times, s.start + third)), int(np.searchsorted(heard.times, s.end - third))
+    )
     at = round(float(heard.times[part][int(heard.level[part].argmin())]), 3)
     return [*_shorter(Stretch(s.start, at), heard), *_shorter(Stretch(at, s.end), heard)]

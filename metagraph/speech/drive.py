@@ -1,7 +1,9 @@
-"""From a conversation's segments to what its characters are asked to do: gestures with clauses, nods with responses and hesitations.
+"""From a conversation's segments to what its characters are asked to do: gestures with clauses, nods with
+responses and hesitations.
 
-Which segments get one is drawn with the rates that were observed (Yang et al., table 1), each by a key of its own: changing one segment
-leaves the others' draws as they were. A gesture's stroke is asked for at its clause's F0 peak.
+Which segments get one is drawn with the rates that were observed (Yang et al., table 1), each by a key of its
+own: changing one segment leaves the others' draws as they were. A gesture's stroke is asked for at its
+clause's F0 peak.
 """
 
 from __future__ import annotations
@@ -9,7 +11,19 @@ from __future__ import annotations
 from collections import Counter
 from collections.abc import Iterator
 
-from metagraph.graph.asks import AnyAsk, Behave, Change, Fidget, Gesture, Look, Nod, Performance, Place, Point, Say
+from metagraph.graph.asks import (
+    AnyAsk,
+    Behave,
+    Change,
+    Fidget,
+    Gesture,
+    Look,
+    Nod,
+    Performance,
+    Place,
+    Point,
+    Say,
+)
 from metagraph.graph.conversation import Conversation, Segment, heard_by
 from metagraph.graph.model import Layer, Mode, Project
 from metagraph.playback.choice import uniform
@@ -26,18 +40,30 @@ TURN = 0.6  # seconds of one's own silence after which one listens
 QUIET = 2.0  # seconds of both's silence after which one idles
 REST = 3.5  # seconds nobody asks anything of a character after which it may fidget
 FIDGETS = 0.5  # how often it does
-SHIFTS = 0.4  # how often the body changes its stance as one begins to speak, where most shifts of posture are (Cassell et al. 2001)
+# how often the body changes its stance as one begins to speak, where most shifts of posture are (Cassell et
+# al. 2001)
+SHIFTS = 0.4
 
 
 def asks_of(
-    conversation: Conversation, side: int, project: Project, line: str | None = None, head: Point = (0.0, 1.6, 1.3)
+    conversation: Conversation,
+    side: int,
+    project: Project,
+    line: str | None = None,
+    head: Point = (0.0, 1.6, 1.3),
 ) -> list[AnyAsk]:
-    """Return what a side is asked to do. project: whose graph moves it. line: the project's line with its voice. head: where the
-    partner's head is, metres, in this side's space."""
-    out: list[AnyAsk] = [Place(id=PARTNER, at=0.0, name=PARTNER, point=head), Look(id="look", at=0.0, to=PARTNER)]
+    """Return what a side is asked to do. project: whose graph moves it. line: the project's line with its
+    voice. head: where the partner's head is, metres, in this side's space.
+    """
+    out: list[AnyAsk] = [
+        Place(id=PARTNER, at=0.0, name=PARTNER, point=head),
+        Look(id="look", at=0.0, to=PARTNER),
+    ]
     if line is not None:
         out.append(Say(id="voice", at=0.0, line=line, gestures=False))
-    out += [Behave(id=f"mode {n}", at=at, mode=mode) for n, (at, mode) in enumerate(_modes(conversation, side))]
+    out += [
+        Behave(id=f"mode {n}", at=at, mode=mode) for n, (at, mode) in enumerate(_modes(conversation, side))
+    ]
     rates = conversation.sides[side].rates
     kinds = {layer: {kind for _, kind in project.graphs[layer].index} for layer in project.graphs}
     nods = "gesture" in kinds["head"]
@@ -49,18 +75,26 @@ def asks_of(
             stroke = (s.start + s.end) / 2 if s.peak is None else s.peak
             tags = _tags(said, s.text, uniform(conversation.seed, str(side), key, "tags"))
             out.append(Gesture(id=key, at=s.start, stroke=stroke, tags=tags, priority=CLAUSE))
-        elif s.kind in ("response", "hesitation") and nods and drawn < (rates.response if s.kind == "response" else rates.hesitation):
+        elif (
+            s.kind in ("response", "hesitation")
+            and nods
+            and drawn < (rates.response if s.kind == "response" else rates.hesitation)
+        ):
             out.append(Nod(id=key, at=s.start, priority=ANSWER))
             busy.append((s.start, s.end + 1.0))
     if "transition" in kinds["body"]:
         own = _turns(conversation.sides[side].segments)
         for n, (start, end) in enumerate(own):
             if end - start > TURN and uniform(conversation.seed, str(side), f"shift {n}") < SHIFTS:
-                out.append(Change(id=f"shift {n}", at=max(0.0, round(start - 0.3, 3)), layer="body", priority=FILL))
+                out.append(
+                    Change(id=f"shift {n}", at=max(0.0, round(start - 0.3, 3)), layer="body", priority=FILL)
+                )
     for n, (start, end) in enumerate(_gaps(sorted(busy), conversation.length)):
         layer: Layer = "arms" if "fidget" in kinds["arms"] else "body"
         if "fidget" in kinds[layer] and uniform(conversation.seed, str(side), f"fidget {n}") < FIDGETS:
-            at = start + (0.2 + 0.5 * uniform(conversation.seed, str(side), f"when {n}")) * (end - start - 2.0)
+            at = start + (0.2 + 0.5 * uniform(conversation.seed, str(side), f"when {n}")) * (
+                end - start - 2.0
+            )
             out.append(Fidget(id=f"fidget {n}", at=round(at, 3), layer=layer, priority=FILL))
     return out
 
@@ -73,11 +107,16 @@ def _meanings(project: Project) -> Counter[str]:
 
 
 def _tags(meanings: Counter[str], text: str, drawn: float) -> tuple[str, ...]:
-    """Return what a clause's gesture is to mean: what one of its words says, else nothing in particular: a beat, or what explains.
+    """Return what a clause's gesture is to mean: what one of its words says, else nothing in particular: a
+    beat, or what explains.
 
     Gestures that mean something of their own would otherwise say what the words do not.
     """
-    words = [word for word in (w.strip(".,;:!?\"'").casefold() for w in text.split()) if word in meanings and word not in PLAIN]
+    words = [
+        word
+        for word in (w.strip(".,;:!?\"'").casefold() for w in text.split())
+        if word in meanings and word not in PLAIN
+    ]
     if words:
         return (words[-1],)
     plain = [tag for tag in PLAIN for _ in range(meanings[tag])]
@@ -85,9 +124,14 @@ def _tags(meanings: Counter[str], text: str, drawn: float) -> tuple[str, ...]:
 
 
 def drive(
-    conversation: Conversation, side: int, project: Project, line: str | None = None, head: Point = (0.0, 1.6, 1.3)
+    conversation: Conversation,
+    side: int,
+    project: Project,
+    line: str | None = None,
+    head: Point = (0.0, 1.6, 1.3),
 ) -> tuple[Performance, Plan]:
-    """Return what a side performs, and its plan: gestures whose stroke would miss its peak, since another still plays, are taken back.
+    """Return what a side performs, and its plan: gestures whose stroke would miss its peak, since another
+    still plays, are taken back.
 
     The same asks performed again give the same plan.
     """
@@ -100,7 +144,9 @@ def drive(
             break
         asks = [ask for ask in asks if ask.id not in late]
     name = f"{conversation.name}, {conversation.sides[side].name or f'side {side + 1}'}"[:200]
-    return Performance(name=name, asks=tuple(asks), seed=conversation.seed, length=conversation.length, idle=False), plan
+    return Performance(
+        name=name, asks=tuple(asks), seed=conversation.seed, length=conversation.length, idle=False
+    ), plan
 
 
 def strokes(project: Project, plan: Plan) -> dict[str, float]:
@@ -113,8 +159,9 @@ def strokes(project: Project, plan: Plan) -> dict[str, float]:
 
 
 def _missed(project: Project, plan: Plan, asks: list[AnyAsk]) -> set[str]:
-    """Return asks for gestures that came to nothing or miss their peak; of several in a row every other, since without one the next may
-    fit."""
+    """Return asks for gestures that came to nothing or miss their peak; of several in a row every other,
+    since without one the next may fit.
+    """
     found = strokes(project, plan)
     out: set[str] = set()
     before = False
@@ -128,7 +175,9 @@ def _missed(project: Project, plan: Plan, asks: list[AnyAsk]) -> set[str]:
 
 
 def _keyed(segments: tuple[Segment, ...]) -> Iterator[tuple[str, Segment]]:
-    """Yield a key of each segment that stays when others change: its kind and words, and how many such came before."""
+    """Yield a key of each segment that stays when others change: its kind and words, and how many such came
+    before.
+    """
     seen: Counter[str] = Counter()
     for s in segments:
         word = f"{s.kind} {s.text[:60]}".strip()
@@ -137,7 +186,9 @@ def _keyed(segments: tuple[Segment, ...]) -> Iterator[tuple[str, Segment]]:
 
 
 def _modes(conversation: Conversation, side: int) -> Iterator[tuple[float, Mode]]:
-    """Yield from when on a side talks, listens or idles: who speaks, with short silences counted to whoever spoke before."""
+    """Yield from when on a side talks, listens or idles: who speaks, with short silences counted to whoever
+    spoke before.
+    """
     own, other = (_turns(conversation.sides[n].segments) for n in (side, 1 - side))
     edges = sorted({0.0, *(x for start, end in (*own, *other) for x in (start, end))})
     last: Mode | None = None

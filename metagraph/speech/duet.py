@@ -35,9 +35,13 @@ class Stand:
     z: float = 0.0
 
     def placed(self, rotations: Array, positions: Array) -> tuple[Array, Array]:
-        """Return global rotations `[..., J, 4]` xyzw and positions `[..., J, 3]` of a character that stands here."""
+        """Return global rotations `[..., J, 4]` xyzw and positions `[..., J, 3]` of a character that stands
+        here.
+        """
         about = np.array([0.0, sin(self.turn / 2), 0.0, cos(self.turn / 2)], rotations.dtype)
-        moved = rotation.rotate(np.broadcast_to(about, rotations.shape), positions) + np.array([self.x, 0.0, self.z], positions.dtype)
+        moved = rotation.rotate(np.broadcast_to(about, rotations.shape), positions) + np.array(
+            [self.x, 0.0, self.z], positions.dtype
+        )
         return rotation.multiply(np.broadcast_to(about, rotations.shape), rotations), moved
 
 
@@ -61,7 +65,9 @@ class Duet:
 
 
 def stands(distance: float) -> tuple[Stand, Stand]:
-    """Return where two stand who face each other, so many metres apart, seen from the side: the first on the left."""
+    """Return where two stand who face each other, so many metres apart, seen from the side: the first on the
+    left.
+    """
     return Stand(pi / 2, -distance / 2), Stand(-pi / 2, distance / 2)
 
 
@@ -70,8 +76,12 @@ def line_of(side: Side) -> Line:
     return Line(text=" ".join(w.text for w in side.words)[:20000], audio=side.audio, channel=side.channel)
 
 
-def voices(conversation: Conversation, folder: Path) -> tuple[tuple[Voice | None, Voice | None], tuple[str, ...]]:
-    """Return each side's voice, None where its sound is missing, and what could not be read, in words. folder: what paths begin at."""
+def voices(
+    conversation: Conversation, folder: Path
+) -> tuple[tuple[Voice | None, Voice | None], tuple[str, ...]]:
+    """Return each side's voice, None where its sound is missing, and what could not be read, in words.
+    folder: what paths begin at.
+    """
     found: list[Voice | None] = []
     notes: list[str] = []
     for n, side in enumerate(conversation.sides, 1):
@@ -83,15 +93,21 @@ def voices(conversation: Conversation, folder: Path) -> tuple[tuple[Voice | None
     return (found[0], found[1]), tuple(dict.fromkeys(notes))
 
 
-def duet(conversation: Conversation, ident: str, projects: Sequence[Project], heard: Sequence[Voice | None]) -> Duet:
-    """Return both characters' plans. ident: the conversation's id. projects: of each side. heard: their voices."""
+def duet(
+    conversation: Conversation, ident: str, projects: Sequence[Project], heard: Sequence[Voice | None]
+) -> Duet:
+    """Return both characters' plans. ident: the conversation's id. projects: of each side. heard: their
+    voices.
+    """
     parts = []
     heads = [_head(project) for project in projects]
     for n, stand in enumerate(stands(conversation.distance)):
         side, project, voice, line = conversation.sides[n], projects[n], heard[n], None
         if voice is not None:
             line = _free_id(ident, n, project)
-            project = replace(project, lines={**project.lines, line: line_of(side)}, voices={**project.voices, line: voice})
+            project = replace(
+                project, lines={**project.lines, line: line_of(side)}, voices={**project.voices, line: voice}
+            )
         head = (0.0, round(heads[1 - n], 3), conversation.distance)
         performance, plan = drive(conversation, n, project, line, head)
         parts.append(Part(project, performance, plan, stand))

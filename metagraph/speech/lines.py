@@ -28,13 +28,18 @@ _VOWELS = ("aa", "E", "I", "O", "U", "RR")
 
 
 def read_voice(audio: str | Path, phones: str | Path | None = None, channel: int | None = None) -> Voice:
-    """Read a line's sound and, where there are any, its phones or words from a Praat TextGrid. channel: which of the sound's is the
-    line's, from 0; None for all mixed. Raises FileError."""
-    return _voice(*read_sound(audio, channel), pieces_of(read_textgrid(phones)) if phones is not None else None)
+    """Read a line's sound and, where there are any, its phones or words from a Praat TextGrid. channel: which
+    of the sound's is the line's, from 0; None for all mixed. Raises FileError.
+    """
+    return _voice(
+        *read_sound(audio, channel), pieces_of(read_textgrid(phones)) if phones is not None else None
+    )
 
 
 def read_spoken(audio: str | Path, channel: int | None = None, words: Sequence[Word] = ()) -> Voice:
-    """Read a voice from its sound and, where there are any, the words that were transcribed. Raises FileError."""
+    """Read a voice from its sound and, where there are any, the words that were transcribed. Raises
+    FileError.
+    """
     samples, rate = read_sound(audio, channel, CONVERSATION, FINE)
     if not words:
         return _voice(samples, rate, None)
@@ -51,7 +56,8 @@ def _voice(samples: Array, rate: int, told: list[Piece] | None) -> Voice:
     if told is not None:  # how open a vowel is, its loudness tells
         loud = [float(np.interp(0.5 * (p.start + p.end), heard.times, heard.loud)) for p in pieces]
         pieces = [
-            replace(p, strength=p.strength * (0.6 + 0.4 * x)) if p.viseme in _VOWELS else p for p, x in zip(pieces, loud, strict=True)
+            replace(p, strength=p.strength * (0.6 + 0.4 * x)) if p.viseme in _VOWELS else p
+            for p, x in zip(pieces, loud, strict=True)
         ]
     if not pieces:
         return silent(heard.duration)
@@ -66,29 +72,43 @@ def voice_from_phones(phones: str | Path) -> Voice:
     duration = max([grid.end, *(p.end for p in pieces)])
     if not pieces:
         return silent(max(duration, 0.0))
-    vowels = [p for n, p in enumerate(pieces) if p.viseme in _VOWELS and (n == 0 or pieces[n - 1].viseme not in _VOWELS)]
+    vowels = [
+        p
+        for n, p in enumerate(pieces)
+        if p.viseme in _VOWELS and (n == 0 or pieces[n - 1].viseme not in _VOWELS)
+    ]
     peaks = np.array([0.5 * (p.start + p.end) for p in vowels])
-    long = np.array([p.strength * min(1.0, 0.3 + 4 * (p.end - p.start)) for p in vowels])  # what is stressed is long
+    long = np.array(
+        [p.strength * min(1.0, 0.3 + 4 * (p.end - p.start)) for p in vowels]
+    )  # what is stressed is long
     return Voice(duration, peaks, *mouth_track(pieces, duration), long)
 
 
 def read_line(line: Line, folder: Path) -> Voice | None:
-    """Return the voice of a line with sound or phones, paths relative to `folder`; None for one without. Raises FileError."""
+    """Return the voice of a line with sound or phones, paths relative to `folder`; None for one without.
+    Raises FileError.
+    """
     if line.audio:
         return read_voice(folder / line.audio, folder / line.phones if line.phones else None, line.channel)
     return voice_from_phones(folder / line.phones) if line.phones else None
 
 
 def load_voices(project: Project, folder: str | Path) -> tuple[Project, tuple[str, ...]]:
-    """Read the sound of every line that has one; return the project with its voices, and what could not be read, in words.
+    """Read the sound of every line that has one; return the project with its voices, and what could not be
+    read, in words.
 
-    A line whose phones are broken is read from its sound alone; one whose sound is broken speaks by its letters.
+    A line whose phones are broken is read from its sound alone; one whose sound is broken speaks by its
+    letters.
     """
     folder = Path(folder)
     voices: dict[str, Voice] = {}
     notes: list[str] = []
     for ident, line in project.lines.items():
-        tries = [line] if not (line.audio and line.phones) else [line, Line(audio=line.audio, channel=line.channel)]
+        tries = (
+            [line]
+            if not (line.audio and line.phones)
+            else [line, Line(audio=line.audio, channel=line.channel)]
+        )
         for attempt in tries:
             try:
                 voice = read_line(attempt, folder)

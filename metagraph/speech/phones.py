@@ -1,4 +1,5 @@
-"""From phones to mouth shapes: ARPAbet (AA1, with or without stress), IPA and SAMPA; from words by their letters.
+"""From phones to mouth shapes: ARPAbet (AA1, with or without stress), IPA and SAMPA; from words by their
+letters.
 
 Shapes after the table of the Oculus visemes and what they are seen to do; diphthongs are two shapes.
 """
@@ -13,22 +14,109 @@ from metagraph.playback.life.letters import shapes
 from metagraph.playback.life.mouth import Piece
 from metagraph.speech.textgrid import Interval, TextGrid, Tier
 
-_SILENT = {"", "sil", "sp", "spn", "pau", "#", "h#", "epi", "_", "<p:>", "<p>", "<sil>", "noise", "brth", "<eps>", "xxx", "..."}
+_SILENT = {
+    "",
+    "sil",
+    "sp",
+    "spn",
+    "pau",
+    "#",
+    "h#",
+    "epi",
+    "_",
+    "<p:>",
+    "<p>",
+    "<sil>",
+    "noise",
+    "brth",
+    "<eps>",
+    "xxx",
+    "...",
+}
 
 _ARPABET = {
-    "aa": "aa", "ae": "aa", "ah": "aa", "ao": "O", "aw": "aa U", "ax": "E", "axr": "RR", "ay": "aa I", "eh": "E", "er": "RR",
-    "ey": "E I", "ih": "I", "ix": "I", "iy": "I", "ow": "O U", "oy": "O I", "uh": "U", "uw": "U", "ux": "U", "axh": "E",
-    "b": "PP", "p": "PP", "m": "PP", "em": "PP", "f": "FF", "v": "FF", "th": "TH", "dh": "TH", "d": "DD", "t": "DD", "dx": "DD",
-    "l": "nn", "el": "nn", "n": "nn", "en": "nn", "nx": "nn", "ng": "kk", "eng": "kk", "k": "kk", "g": "kk", "q": "kk", "hh": "kk",
-    "hv": "kk", "h": "kk", "ch": "CH", "jh": "CH", "sh": "CH", "zh": "CH", "s": "SS", "z": "SS", "r": "RR", "w": "U", "wh": "U",
-    "y": "I", "bcl": "PP", "pcl": "PP", "dcl": "DD", "tcl": "DD", "gcl": "kk", "kcl": "kk",
-}  # fmt: skip
-_LONG_VOWELS = {k for k, v in _ARPABET.items() if len(k) == 2 and v.split()[0] in ("aa", "E", "I", "O", "U", "RR") and k != "wh"}
+    "aa": "aa",
+    "ae": "aa",
+    "ah": "aa",
+    "ao": "O",
+    "aw": "aa U",
+    "ax": "E",
+    "axr": "RR",
+    "ay": "aa I",
+    "eh": "E",
+    "er": "RR",
+    "ey": "E I",
+    "ih": "I",
+    "ix": "I",
+    "iy": "I",
+    "ow": "O U",
+    "oy": "O I",
+    "uh": "U",
+    "uw": "U",
+    "ux": "U",
+    "axh": "E",
+    "b": "PP",
+    "p": "PP",
+    "m": "PP",
+    "em": "PP",
+    "f": "FF",
+    "v": "FF",
+    "th": "TH",
+    "dh": "TH",
+    "d": "DD",
+    "t": "DD",
+    "dx": "DD",
+    "l": "nn",
+    "el": "nn",
+    "n": "nn",
+    "en": "nn",
+    "nx": "nn",
+    "ng": "kk",
+    "eng": "kk",
+    "k": "kk",
+    "g": "kk",
+    "q": "kk",
+    "hh": "kk",
+    "hv": "kk",
+    "h": "kk",
+    "ch": "CH",
+    "jh": "CH",
+    "sh": "CH",
+    "zh": "CH",
+    "s": "SS",
+    "z": "SS",
+    "r": "RR",
+    "w": "U",
+    "wh": "U",
+    "y": "I",
+    "bcl": "PP",
+    "pcl": "PP",
+    "dcl": "DD",
+    "tcl": "DD",
+    "gcl": "kk",
+    "kcl": "kk",
+}
+_LONG_VOWELS = {
+    k
+    for k, v in _ARPABET.items()
+    if len(k) == 2 and v.split()[0] in ("aa", "E", "I", "O", "U", "RR") and k != "wh"
+}
 _SIGNS = {  # IPA, and SAMPA where it differs
-    "aa": "aɑɐʌæäɶAV{6", "E": "eɛəɜɘɞE@3", "I": "iɪɨjI1}", "O": "oɔɒɤœOQ9", "U": "uʊʉɯwʍyʏɥøUMHWY28", "PP": "pbmɓʙB", "FF": "fvɸβʋɱFP",
-    "TH": "θðTD", "DD": "tdʈɖɾɗ4", "nn": "nlɭɫɲɳʎɬɮɴʟNJL5", "kk": "kgɡqcɟxɣχhɦħʔŋʕɠGXh?", "CH": "ʃʒɕʑʂʐçSZC", "SS": "szʦʣ",
+    "aa": "aɑɐʌæäɶAV{6",
+    "E": "eɛəɜɘɞE@3",
+    "I": "iɪɨjI1}",
+    "O": "oɔɒɤœOQ9",
+    "U": "uʊʉɯwʍyʏɥøUMHWY28",
+    "PP": "pbmɓʙB",
+    "FF": "fvɸβʋɱFP",
+    "TH": "θðTD",
+    "DD": "tdʈɖɾɗ4",
+    "nn": "nlɭɫɲɳʎɬɮɴʟNJL5",
+    "kk": "kgɡqcɟxɣχhɦħʔŋʕɠGXh?",
+    "CH": "ʃʒɕʑʂʐçSZC",
+    "SS": "szʦʣ",
     "RR": "rɹʀʁɻɽɚɝR`",
-}  # fmt: skip
+}
 _SIGN = {sign: viseme for viseme, signs in _SIGNS.items() for sign in signs}
 _VOWELS = ("aa", "E", "I", "O", "U")
 _REDUCED = {"ə", "@", "ɘ", "ɐ", "6", "ax", "axh", "ix"}  # vowels that are hardly made
@@ -74,7 +162,9 @@ def _bare(label: str) -> str:
 
 def pieces_of(grid: TextGrid) -> list[Piece]:
     """Return what the mouth goes through in a TextGrid, by its phones or, where it has none, its words."""
-    tiers = [t for t in grid.tiers if not t.points and any(i.text.casefold() not in _SILENT for i in t.intervals)]
+    tiers = [
+        t for t in grid.tiers if not t.points and any(i.text.casefold() not in _SILENT for i in t.intervals)
+    ]
     phones = _pick(tiers, r"phon|segment|sampa|ipa|\bmau\b|\bph\b|^phs?$", short=True)
     if phones is not None:
         arpabet = is_arpabet(i.text for i in phones.intervals)

@@ -1,7 +1,9 @@
-"""How high a voice is, moment by moment: its fundamental frequency, F0, by YIN (de Cheveigné and Kawahara 2002).
+"""How high a voice is, moment by moment: its fundamental frequency, F0, by YIN (de Cheveigné and Kawahara
+2002).
 
-YIN finds a period in anything. A moment counts as voiced where it is audible, where the sound does repeat after that period, where its
-pitch lies in this voice's own range (two-pass quantiles, De Looze and Hirst 2008) and near its neighbours', not an octave off.
+YIN finds a period in anything. A moment counts as voiced where it is audible, where the sound does repeat
+after that period, where its pitch lies in this voice's own range (two-pass quantiles, De Looze and Hirst
+2008) and near its neighbours', not an octave off.
 """
 
 from __future__ import annotations
@@ -40,7 +42,9 @@ class Pitch:
 
 
 def pitch(samples: Array, rate: int) -> Pitch:
-    """Return the pitch of a voice. samples: `[N]`, about -1..1; rate: samples a second. Hours take memory for the samples alone."""
+    """Return the pitch of a voice. samples: `[N]`, about -1..1; rate: samples a second. Hours take memory for
+    the samples alone.
+    """
     count = int(len(samples) / rate / HOP) + 1
     times = np.arange(count) * HOP
     unvoiced = Pitch(times, np.full(count, np.nan))
@@ -79,14 +83,21 @@ def _blocks(
     return hertz, repeats, level
 
 
-def _block(samples: Array, rate: int, times: Array, bounds: tuple[float, float], audible: float) -> tuple[Array, Array, Array]:
-    """Return F0 within bounds (Hz), how well the sound repeats after its period (0..1) and its level (dB) at times `HOP` apart. Moments
-    softer than `audible` dB are passed over: nan, 0."""
+def _block(
+    samples: Array, rate: int, times: Array, bounds: tuple[float, float], audible: float
+) -> tuple[Array, Array, Array]:
+    """Return F0 within bounds (Hz), how well the sound repeats after its period (0..1) and its level (dB) at
+    times `HOP` apart. Moments softer than `audible` dB are passed over: nan, 0.
+    """
     every = max(1, rate // RATE)
     own = rate / every
-    size = int(2 ** np.ceil(np.log2(2.5 * own / LOWEST)))  # of a frame, samples: two of the longest periods, and some
+    size = int(
+        2 ** np.ceil(np.log2(2.5 * own / LOWEST))
+    )  # of a frame, samples: two of the longest periods, and some
     starts = np.round(times * own).astype(int) - size // 2
-    frames = np.lib.stride_tricks.sliding_window_view(_thinned(samples, every, int(starts[0]), int(starts[-1]) + size), size)
+    frames = np.lib.stride_tricks.sliding_window_view(
+        _thinned(samples, every, int(starts[0]), int(starts[-1]) + size), size
+    )
     frames = frames[starts - starts[0]]
     frames = frames - frames.mean(1, keepdims=True)
     level = 10 * np.log10((frames * frames).mean(1) + 1e-12)
@@ -101,14 +112,17 @@ def _block(samples: Array, rate: int, times: Array, bounds: tuple[float, float],
     two = np.take_along_axis(frames, np.arange(size - size // 2)[None, :] + period[:, None], 1)
     power = np.einsum("nk,nk->n", one, one) * np.einsum("nk,nk->n", two, two)
     alike = np.einsum("nk,nk->n", one, two) / np.sqrt(np.maximum(power, 1e-20))
-    alike[(found >= 0.98 * bounds[1]) | (found <= 1.005 * bounds[0])] = 0.0  # at the edge of what was tried: none was found
+    alike[(found >= 0.98 * bounds[1]) | (found <= 1.005 * bounds[0])] = (
+        0.0  # at the edge of what was tried: none was found
+    )
     hertz[some], repeats[some] = found, alike
     return hertz, repeats, level
 
 
 def _thinned(samples: Array, every: int, first: int, last: int) -> Array:
-    """Return samples `first` to `last`, float64, of the sound `[N]` at an `every`th of its rate, silence before and
-    after it: to 1e-6 the same in whichever pieces they are asked for."""
+    """Return samples `first` to `last`, float64, of the sound `[N]` at an `every`th of its rate, silence
+    before and after it: to 1e-6 the same in whichever pieces they are asked for.
+    """
     margin = _MARGIN if every > 1 else 0
     start, end = (first - margin) * every, (last + margin) * every
     piece = np.asarray(samples[max(start, 0) : max(end, 0)], np.float64)
@@ -123,7 +137,9 @@ def _thinned(samples: Array, every: int, first: int, last: int) -> Array:
 def _near(hertz: Array, voiced: Array) -> Array:
     """Return which moments are about as high as the voiced ones around them."""
     tones = np.where(voiced, 12 * np.log2(np.maximum(hertz, 1.0)), np.nan)
-    around = np.lib.stride_tricks.sliding_window_view(np.pad(tones, NEAR, constant_values=np.nan), 2 * NEAR + 1)
+    around = np.lib.stride_tricks.sliding_window_view(
+        np.pad(tones, NEAR, constant_values=np.nan), 2 * NEAR + 1
+    )
     with warnings.catch_warnings():  # of moments without any neighbour
         warnings.simplefilter("ignore", RuntimeWarning)
         return np.asarray(np.abs(tones - np.nanmedian(around, 1)) <= JUMP)
@@ -131,12 +147,16 @@ def _near(hertz: Array, voiced: Array) -> Array:
 
 def stretches(some: Array) -> list[tuple[int, int]]:
     """Return the runs of true moments in `[K]`, each from its first to behind its last."""
-    edges = np.flatnonzero(np.diff(np.concatenate([[False], np.asarray(some, bool), [False]]).astype(np.int8)))
+    edges = np.flatnonzero(
+        np.diff(np.concatenate([[False], np.asarray(some, bool), [False]]).astype(np.int8))
+    )
     return [(int(a), int(b)) for a, b in edges.reshape(-1, 2)]
 
 
 def smooth(found: Pitch) -> Array:
-    """Return the pitch in semitones over 1 Hz `[K]`, smoothed over 50 ms, short voiceless moments (up to 60 ms) bridged; nan elsewhere."""
+    """Return the pitch in semitones over 1 Hz `[K]`, smoothed over 50 ms, short voiceless moments (up to 60
+    ms) bridged; nan elsewhere.
+    """
     tones = 12 * np.log2(found.hertz)
     known = ~np.isnan(tones)
     if not known.any():
@@ -151,9 +171,10 @@ def smooth(found: Pitch) -> Array:
 
 
 def peaks(found: Pitch, start: float, end: float, tones: Array | None = None) -> tuple[float, ...]:
-    """Return when F0 has its local maxima between two times, seconds, the most prominent first: those that are followed and preceded by
-    the deepest falls, and, among equals, the highest. Where it only rises or falls, its highest moment. () where there is no voice.
-    tones: `smooth(found)`, where that is at hand."""
+    """Return when F0 has its local maxima between two times, seconds, the most prominent first: those that
+    are followed and preceded by the deepest falls, and, among equals, the highest. Where it only rises or
+    falls, its highest moment. () where there is no voice. tones: `smooth(found)`, where that is at hand.
+    """
     tones = smooth(found) if tones is None else tones
     first, last = int(np.searchsorted(found.times, start)), int(np.searchsorted(found.times, end, "right"))
     known = first + np.flatnonzero(~np.isnan(tones[first:last]))
@@ -161,7 +182,9 @@ def peaks(found: Pitch, start: float, end: float, tones: Array | None = None) ->
         return ()
     high = tones[known]
     # Where it goes on falling from what is before, or rising to what comes after, is no peak.
-    inner = np.nan_to_num(tones[[max(known[0] - 1, 0), *known, min(known[-1] + 1, len(tones) - 1)]], nan=-np.inf)
+    inner = np.nan_to_num(
+        tones[[max(known[0] - 1, 0), *known, min(known[-1] + 1, len(tones) - 1)]], nan=-np.inf
+    )
     tops = np.flatnonzero((high > inner[:-2]) & (high >= inner[2:]))
     if not len(tops):
         return (float(found.times[known[int(high.argmax())]]),)

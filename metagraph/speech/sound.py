@@ -1,7 +1,9 @@
-"""What can be heard in a sound file: where it is loud, its syllables, and roughly which shapes the mouth goes through.
+"""What can be heard in a sound file: where it is loud, its syllables, and roughly which shapes the mouth goes
+through.
 
-Syllables are found as de Jong and Wempe (2009) do: peaks of loudness that stand 2 dB above the dips beside them and not far
-below the loudest. Levels are relative to the line's own, so neither gain nor a steady noise matters.
+Syllables are found as de Jong and Wempe (2009) do: peaks of loudness that stand 2 dB above the dips beside
+them and not far below the loudest. Levels are relative to the line's own, so neither gain nor a steady noise
+matters.
 """
 
 from __future__ import annotations
@@ -35,9 +37,10 @@ _SUFFIXES = "WAV, FLAC, OGG or MP3"
 
 @dataclass(frozen=True, eq=False)
 class Heard:
-    """A sound, every `HOP` seconds `[K]`. duration: seconds. level: loudness of speech, dB. loud: 0 as soft as what is not
-    speech .. 1 as loud as it gets. open, front: of the vowel, 0..1: how far the mouth is open, how far forward the tongue.
-    hiss: share of the energy above 3.5 kHz, 0..1; bright: the middle of that energy, Hz.
+    """A sound, every `HOP` seconds `[K]`. duration: seconds. level: loudness of speech, dB. loud: 0 as soft
+    as what is not speech .. 1 as loud as it gets. open, front: of the vowel, 0..1: how far the mouth is open,
+    how far forward the tongue. hiss: share of the energy above 3.5 kHz, 0..1; bright: the middle of that
+    energy, Hz.
     """
 
     duration: float
@@ -52,8 +55,9 @@ class Heard:
 
 @dataclass(frozen=True, eq=False)
 class Recording:
-    """A sound file, channels apart: samples `[C, N]`, about -1..1, `rate` a second; `original`: how many the file has. clipped: share of
-    each channel's samples that were cut off at full scale, 0..1 `[C]`."""
+    """A sound file, channels apart: samples `[C, N]`, about -1..1, `rate` a second; `original`: how many the
+    file has. clipped: share of each channel's samples that were cut off at full scale, 0..1 `[C]`.
+    """
 
     samples: Array
     rate: int
@@ -66,40 +70,61 @@ class Recording:
         return float(self.samples.shape[1] / self.rate)
 
 
-def read_sound(path: str | Path, channel: int | None = None, longest: float = LONGEST, most: int | None = None) -> tuple[Array, int]:
-    """Read a sound file: samples `[N]` of one channel, from 0, or of all mixed, and samples a second. longest: seconds it may last. most:
-    as for `read_recording`. Raises FileError."""
+def read_sound(
+    path: str | Path, channel: int | None = None, longest: float = LONGEST, most: int | None = None
+) -> tuple[Array, int]:
+    """Read a sound file: samples `[N]` of one channel, from 0, or of all mixed, and samples a second.
+    longest: seconds it may last. most: as for `read_recording`. Raises FileError.
+    """
     read = read_recording(path, longest, most)
     samples = read.samples
     if channel is None:
         return np.asarray(samples.mean(0)), read.rate
     if channel >= len(samples):
         count = f"{len(samples)} channels" if len(samples) > 1 else "one channel"
-        raise FileError(path, f"has {count}; there is no channel {channel + 1}", remedy="Choose the sound anew.")
+        raise FileError(
+            path, f"has {count}; there is no channel {channel + 1}", remedy="Choose the sound anew."
+        )
     return samples[channel], read.rate
 
 
 def read_recording(path: str | Path, longest: float = LONGEST, most: int | None = None) -> Recording:
-    """Read a sound file, channels apart, block by block. most: samples a second at most, at least 8000; where the file has more, what is
-    too high is taken out, every second, third ... is kept, as float32, so that hours fit into memory. Raises FileError."""
+    """Read a sound file, channels apart, block by block. most: samples a second at most, at least 8000; where
+    the file has more, what is too high is taken out, every second, third ... is kept, as float32, so that
+    hours fit into memory. Raises FileError.
+    """
     import soundfile
 
     path = Path(path)
     if not path.is_file():
-        raise FileError(path, "there is no such sound file", remedy="Check where it is, or choose the file anew.")
+        raise FileError(
+            path, "there is no such sound file", remedy="Check where it is, or choose the file anew."
+        )
     try:
         with soundfile.SoundFile(str(path)) as file:
             rate = int(file.samplerate)
             if file.frames / max(rate, 1) > longest:
-                raise FileError(path, f"lasts {file.frames / rate:.0f} s, at most {longest:.0f} s are read", remedy="Cut it into pieces.")
+                raise FileError(
+                    path,
+                    f"lasts {file.frames / rate:.0f} s, at most {longest:.0f} s are read",
+                    remedy="Cut it into pieces.",
+                )
             if not file.frames or rate < 4000:
-                why = "holds no sound" if not file.frames else f"has {rate} samples a second, too few for speech"
-                raise FileError(path, why, remedy=f"Save it as {_SUFFIXES}, with 16000 samples a second or more.")
+                why = (
+                    "holds no sound"
+                    if not file.frames
+                    else f"has {rate} samples a second, too few for speech"
+                )
+                raise FileError(
+                    path, why, remedy=f"Save it as {_SUFFIXES}, with 16000 samples a second or more."
+                )
             every = 1 if most is None else max(1, -(-rate // most))
             return _read_blocks(file, rate, every)
     except (soundfile.LibsndfileError, RuntimeError, TypeError, MemoryError, OSError) as error:
         cause = str(getattr(error, "error_string", error)).strip().rstrip(".") or type(error).__name__
-        raise FileError(path, f"cannot be read as sound: {cause}", remedy=f"Save it as {_SUFFIXES}.") from error
+        raise FileError(
+            path, f"cannot be read as sound: {cause}", remedy=f"Save it as {_SUFFIXES}."
+        ) from error
 
 
 def _read_blocks(file: Any, rate: int, every: int) -> Recording:
@@ -136,7 +161,9 @@ def _thinned(samples: Array, taps: Array, every: int) -> Array:
 
 
 def _cut_off(samples: Array) -> Array:
-    """Return how many of the samples `[N, C]` of each channel stay at full scale for three or more in a row."""
+    """Return how many of the samples `[N, C]` of each channel stay at full scale for three or more in a
+    row.
+    """
     full = np.abs(samples) > 0.9999
     row = full[:-2] & full[1:-1] & full[2:]
     out = np.zeros_like(full)
@@ -157,7 +184,10 @@ def hear(samples: Array, rate: int) -> Heard:
     hertz = np.fft.rfftfreq(size, 1 / rate)
     window = np.hanning(size)
     scale = window.sum() ** 2 / 4
-    bands = [(hertz >= low) & (hertz < high) for low, high in (SPEECH, (3500, 8000), (1500, 3000), (650, 1300), (120, 3500))]
+    bands = [
+        (hertz >= low) & (hertz < high)
+        for low, high in (SPEECH, (3500, 8000), (1500, 3000), (650, 1300), (120, 3500))
+    ]
     middles = [(hertz >= low) & (hertz < high) for low, high in ((220, 1050), (2500, 8000))]
     energies, centres = np.empty((len(bands), count)), np.empty((len(middles), count))
     for n in range(0, count, 1000):  # a few seconds at a time, so that hours fit into memory
@@ -172,12 +202,18 @@ def hear(samples: Array, rate: int) -> Heard:
     level = _smooth(10 * np.log10(speech + 1e-12), SMOOTH / HOP)
     floor, top = float(np.percentile(level, 8)), float(np.percentile(level, 97))
     if top < _HUSH or top - floor < _LEAST_RANGE:
-        loud = np.zeros(count) if top < _HUSH or np.ptp(level) < _LEAST_RANGE else np.clip((level - top + BELOW) / BELOW, 0, 1)
+        loud = (
+            np.zeros(count)
+            if top < _HUSH or np.ptp(level) < _LEAST_RANGE
+            else np.clip((level - top + BELOW) / BELOW, 0, 1)
+        )
     else:
         softest = max(floor + 0.3 * (top - floor), top - BELOW)
         loud = np.clip((level - softest) / (top - softest), 0, 1)
     high_level = 10 * np.log10(high + 1e-12)
-    bursts = (high_level > np.percentile(high_level, 20) + _BURST) & (high_level > _HUSH)  # a hiss that never stops is noise
+    bursts = (high_level > np.percentile(high_level, 20) + _BURST) & (
+        high_level > _HUSH
+    )  # a hiss that never stops is noise
     # The first formant rises as the mouth opens, the second as the tongue comes forward.
     first = _smooth(centres[0], 2.0)
     front = _smooth(10 * np.log10((forward + 1e-12) / (back + 1e-12)), 2.0)
@@ -210,7 +246,11 @@ def syllables(heard: Heard) -> tuple[Array, Array]:
         kept.append(peak)
     # A stressed syllable is loud and long: loudness over a longer while tells it better than its peak.
     weight = _smooth(loud, 0.08 / HOP)
-    strengths = np.clip(0.5 * loud[kept] + 0.5 * weight[kept] / max(float(weight.max()), 1e-9), 0, 1) if kept else np.zeros(0)
+    strengths = (
+        np.clip(0.5 * loud[kept] + 0.5 * weight[kept] / max(float(weight.max()), 1e-9), 0, 1)
+        if kept
+        else np.zeros(0)
+    )
     return heard.times[kept] if kept else np.zeros(0), strengths
 
 
@@ -236,14 +276,19 @@ def _labels(heard: Heard) -> list[str]:
     vowels = np.where(
         heard.open > OPEN,
         "aa",
-        np.where(heard.open > HALF, np.where(heard.front > 0.45, "E", "O"), np.where(heard.front > 0.5, "I", "U")),
+        np.where(
+            heard.open > HALF, np.where(heard.front > 0.45, "E", "O"), np.where(heard.front > 0.5, "I", "U")
+        ),
     )
     # Energy high up that is not far below the line's loudest is a sibilant; softer, teeth on the lip.
     hissing = (heard.hiss > 0.45) & (
-        heard.level + 10 * np.log10(np.maximum(heard.hiss / np.maximum(1 - heard.hiss, 1e-3), 1e-9)) > heard.level.max() - 34
+        heard.level + 10 * np.log10(np.maximum(heard.hiss / np.maximum(1 - heard.hiss, 1e-3), 1e-9))
+        > heard.level.max() - 34
     )
     labels = np.where(heard.loud > SONOROUS, vowels, np.where(heard.loud > AUDIBLE, "nn", "sil"))
-    labels = np.where(hissing, np.where(heard.bright > 4800, "SS", np.where(heard.bright > 3300, "CH", "FF")), labels)
+    labels = np.where(
+        hissing, np.where(heard.bright > 4800, "SS", np.where(heard.bright > 3300, "CH", "FF")), labels
+    )
     out = _settled(labels.tolist(), 4)
     return _closures(out, heard)
 
@@ -262,7 +307,9 @@ def _settled(labels: list[str], least: int) -> list[str]:
 
 
 def _closures(labels: list[str], heard: Heard) -> list[str]:
-    """Make short gaps in speech the stops they are: lips where what follows is dull, tongue where it bursts."""
+    """Make short gaps in speech the stops they are: lips where what follows is dull, tongue where it
+    bursts.
+    """
     out, n = list(labels), 0
     while n < len(out):
         if out[n] != "sil":

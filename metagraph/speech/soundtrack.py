@@ -20,8 +20,12 @@ RATE = 44100  # samples a second
 FADE = 0.02  # seconds in which a line that is cut short goes
 
 
-def line_sounds(lines: Mapping[str, Line], folder: Path, rate: int = RATE) -> tuple[dict[str, Array], tuple[str, ...]]:
-    """Return the samples of each line that has sound, `[N]` float32 at `rate`, and what could not be read, in words."""
+def line_sounds(
+    lines: Mapping[str, Line], folder: Path, rate: int = RATE
+) -> tuple[dict[str, Array], tuple[str, ...]]:
+    """Return the samples of each line that has sound, `[N]` float32 at `rate`, and what could not be read, in
+    words.
+    """
     sounds: dict[str, Array] = {}
     notes: list[str] = []
     for ident, line in lines.items():
@@ -62,7 +66,9 @@ def placed(plan: Plan, sounds: Mapping[str, Array], rate: int = RATE) -> list[tu
 
 
 def mixed(parts: list[tuple[float, Array]], start: int, count: int, rate: int = RATE) -> Array:
-    """Return samples `start`..`start + count` of the track, `[count]` float32 within -1..1. Silent outside its parts."""
+    """Return samples `start`..`start + count` of the track, `[count]` float32 within -1..1. Silent outside
+    its parts.
+    """
     out = np.zeros(count, np.float32)
     for at, samples in parts:
         first = round(at * rate) - start

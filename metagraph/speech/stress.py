@@ -37,24 +37,34 @@ _JOINING = _set("""
 """)
 # Small words that rather end what is before them than begin what follows.
 _TRAILING = _set("me him her us them there here up out off down not")
-_INSIDE = _set("of than is was are were be been do does did have has had can could will would")  # of what is under way already
+_INSIDE = _set(
+    "of than is was are were be been do does did have has had can could will would"
+)  # of what is under way already
 STRONG = 1.6  # how stressed a word is that stands out
-_CONTENT = 1.2  # how much a word that means something outweighs a small one, in deviations of loudness or pitch
+_CONTENT = (
+    1.2  # how much a word that means something outweighs a small one, in deviations of loudness or pitch
+)
 
 
 def stresses(words: Sequence[Word], said: Sequence[tuple[str, ...]], tones: Array, heard: Heard) -> Array:
-    """Return how strongly each word is stressed `[W]`, about -3..5: its F0 peak and loudness, each compared with the side's other words,
-    how long it lasts, and whether it is one that usually is. tones: semitones `[K]` at `heard.times`, nan where voiceless."""
+    """Return how strongly each word is stressed `[W]`, about -3..5: its F0 peak and loudness, each compared
+    with the side's other words, how long it lasts, and whether it is one that usually is. tones: semitones
+    `[K]` at `heard.times`, nan where voiceless.
+    """
     highest, loudest = np.full(len(words), np.nan), np.full(len(words), np.nan)
     for n, word in enumerate(words):
-        part = slice(int(np.searchsorted(heard.times, word.start)), int(np.searchsorted(heard.times, word.end)))
+        part = slice(
+            int(np.searchsorted(heard.times, word.start)), int(np.searchsorted(heard.times, word.end))
+        )
         if np.isfinite(tones[part]).any():
             highest[n] = np.nanmax(tones[part])
         if len(heard.level[part]):
             loudest[n] = heard.level[part].max()
     length = np.log([max(w.end - w.start, 0.02) for w in words])
     meant = np.array([any(t not in SMALL for t in s) for s in said], float)
-    return np.asarray(0.8 * _standing(highest) + 0.6 * _standing(loudest) + 0.5 * _standing(length) + _CONTENT * meant)
+    return np.asarray(
+        0.8 * _standing(highest) + 0.6 * _standing(loudest) + 0.5 * _standing(length) + _CONTENT * meant
+    )
 
 
 def _standing(values: Array) -> Array:
@@ -67,15 +77,22 @@ def _standing(values: Array) -> Array:
     return np.asarray(np.nan_to_num(np.clip((values - middle) / spread, -2, 2)))
 
 
-def parted(words: Sequence[Word], said: Sequence[tuple[str, ...]], stress: Array, first: int, last: int) -> list[tuple[int, int]]:
-    """Return the words from `first` to before `last` in clauses (from, to before): the cheapest way to part them so that each has one
-    stressed word and about `USUAL` words, found exactly."""
+def parted(
+    words: Sequence[Word], said: Sequence[tuple[str, ...]], stress: Array, first: int, last: int
+) -> list[tuple[int, int]]:
+    """Return the words from `first` to before `last` in clauses (from, to before): the cheapest way to part
+    them so that each has one stressed word and about `USUAL` words, found exactly.
+    """
     count = last - first
     best = [0.0] + [np.inf] * count  # cost of the words up to here
     came = [0] * (count + 1)
     for end in range(1, count + 1):
         for begin in range(max(0, end - MOST), end):
-            cost = best[begin] + _cost(stress[first + begin : first + end]) - (_break(words, said, first + begin) if begin else 0.0)
+            cost = (
+                best[begin]
+                + _cost(stress[first + begin : first + end])
+                - (_break(words, said, first + begin) if begin else 0.0)
+            )
             if cost < best[end]:
                 best[end], came[end] = cost, begin
     out = []
@@ -87,7 +104,9 @@ def parted(words: Sequence[Word], said: Sequence[tuple[str, ...]], stress: Array
 
 
 def _cost(stress: Array) -> float:
-    """Return what a clause costs: an unusual length, a second stress as strong as the first, no stress at all."""
+    """Return what a clause costs: an unusual length, a second stress as strong as the first, no stress at
+    all.
+    """
     ordered = np.sort(stress)[::-1]
     second = float(np.maximum(ordered[1:4] - max(STRONG, ordered[0] - 1.0), 0).sum())
     none = max(0.0, 1.0 - float(ordered[0]))

@@ -1,7 +1,7 @@
 """Reading Praat's TextGrid files: both text formats, UTF-8 or UTF-16, intervals and points.
 
-Praat reads a text file as a row of free-standing numbers, quoted texts and `<flags>`; whatever else stands there is for
-people. So the long and the short format are one. (Praat's manual, "TextGrid file formats".)
+Praat reads a text file as a row of free-standing numbers, quoted texts and `<flags>`; whatever else stands
+there is for people. So the long and the short format are one. (Praat's manual, "TextGrid file formats".)
 """
 
 from __future__ import annotations
@@ -57,14 +57,18 @@ def _text(path: Path) -> str:
             raise FileError(path, f"is larger than {_LARGEST >> 20} MiB, no TextGrid is", remedy=_REMEDY)
         data = path.read_bytes()
     except OSError as error:
-        raise FileError(path, f"cannot be read ({error.strerror or error})", remedy="Check the path and the permissions.") from error
+        raise FileError(
+            path, f"cannot be read ({error.strerror or error})", remedy="Check the path and the permissions."
+        ) from error
     if data.startswith(b"ooBinaryFile"):
         raise FileError(path, "is a binary Praat file", remedy=_REMEDY)
     utf16 = data.startswith((codecs.BOM_UTF16_LE, codecs.BOM_UTF16_BE))
     try:
         return data.decode("utf-16" if utf16 else "utf-8-sig")
     except UnicodeDecodeError:
-        return data.decode("utf-16" if utf16 else "latin-1", "replace")  # Praat once wrote the system's own encoding
+        return data.decode(
+            "utf-16" if utf16 else "latin-1", "replace"
+        )  # Praat once wrote the system's own encoding
 
 
 class _Reader:
@@ -116,7 +120,9 @@ class _Reader:
             raise self.fail(f"it is no TextGrid but {kind[:20]!r}, {what[:20]!r}")
         start, end = self.number("start"), self.number("end")
         exists = next(self.tokens, "")
-        tiers = tuple(self.tier() for _ in range(self.count("number of tiers"))) if exists == "<exists>" else ()
+        tiers = (
+            tuple(self.tier() for _ in range(self.count("number of tiers"))) if exists == "<exists>" else ()
+        )
         return TextGrid(start, end, tiers)
 
     def tier(self) -> Tier:

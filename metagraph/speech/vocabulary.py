@@ -1,4 +1,6 @@
-"""Which words mean an answer or a hesitation, and how words are compared: without case, punctuation and hyphens ("Uh-huh." = "uh huh")."""
+"""Which words mean an answer or a hesitation, and how words are compared: without case, punctuation and
+hyphens ("Uh-huh." = "uh huh").
+"""
 
 from __future__ import annotations
 
@@ -6,8 +8,21 @@ import re
 from collections.abc import Iterable, Mapping, Sequence
 from functools import cached_property
 
-# Said in the middle of a sentence these mean something; they hesitate only where the speech around them stops.
-LEXICAL = ("well", "like", "you know", "i mean", "let me see", "let's see", "so", "okay", "right", "actually", "basically")
+# Said in the middle of a sentence these mean something; they hesitate only where the speech around them
+# stops.
+LEXICAL = (
+    "well",
+    "like",
+    "you know",
+    "i mean",
+    "let me see",
+    "let's see",
+    "so",
+    "okay",
+    "right",
+    "actually",
+    "basically",
+)
 _APOSTROPHES = str.maketrans("’ʼ`´", "''''")
 _BETWEEN = re.compile(r"[^\w'%]+")
 
@@ -36,7 +51,9 @@ class Vocabulary:
         return phrase in self._phrases
 
     def at(self, words: Sequence[tuple[str, ...]], n: int) -> int:
-        """Return how many of the words, each in its tokens, from the n-th on make the longest phrase that begins there; 0 for none."""
+        """Return how many of the words, each in its tokens, from the n-th on make the longest phrase that
+        begins there; 0 for none.
+        """
         most = self._longest.get(words[n][0], 0) if words[n] else 0
         found = 0
         phrase: tuple[str, ...] = ()

@@ -21,12 +21,16 @@ def yin(frames: Array, rate: float, lowest: float, highest: float) -> Array:
     """Return the F0 `[K]`, Hz, of frames `[K, N]`, each on its own: of one without any period, that of the
     period after which it differs least, and of silence about `highest`.
 
-    rate: samples a second. lowest, highest: Hz; periods of whole samples that hold them are tried, and the best
-    is refined between samples. Raises ValueError unless 2 <= shortest period < longest period - 1 < N - 1.
+    rate: samples a second. lowest, highest: Hz; periods of whole samples that hold them are tried, and the
+    best is refined between samples. Raises ValueError unless 2 <= shortest period < longest period - 1 < N -
+    1.
     """
     shortest, longest = int(rate / highest), min(int(np.ceil(rate / lowest)), frames.shape[1] - 1)
     if not 2 <= shortest < longest - 1:
-        raise ValueError(f"frames of {frames.shape[1]} samples at {rate:g} Hz tell no pitch from {lowest:g} to {highest:g} Hz")
+        raise ValueError(
+            f"frames of {frames.shape[1]} samples at {rate:g} Hz tell no pitch from {lowest:g} to "
+            f"{highest:g} Hz"
+        )
     apart = differences(np.asarray(frames, np.float64), longest)[:, shortest - 1 :]
     trough = apart < THRESHOLD
     trough[:, 1:] &= apart[:, 1:] < apart[:, :-1]
@@ -34,7 +38,8 @@ def yin(frames: Array, rate: float, lowest: float, highest: float) -> Array:
     trough[:, 0] &= apart[:, 0] < apart[:, 1]
     rows = np.arange(len(apart))
     best = np.where(trough.any(1), trough.argmax(1), apart.argmin(1))
-    # The lowest point of the parabola through the best and its neighbours, where there is one within a sample.
+    # The lowest point of the parabola through the best and its neighbours, where there is one within a
+    # sample.
     inner = np.clip(best, 1, apart.shape[1] - 2)
     left, middle, right = (apart[rows, inner + n] for n in (-1, 0, 1))
     curve, slope = left + right - 2 * middle, (right - left) / 2
@@ -43,8 +48,9 @@ def yin(frames: Array, rate: float, lowest: float, highest: float) -> Array:
 
 
 def differences(frames: Array, longest: int) -> Array:
-    """Return the cumulative mean normalised difference `[K, longest]` (the paper's equation 8) of frames `[K, N]`
-    float64 to themselves 1 to `longest` samples later: 0 where all repeats, about 1 where nothing does."""
+    """Return the cumulative mean normalised difference `[K, longest]` (the paper's equation 8) of frames `[K,
+    N]` float64 to themselves 1 to `longest` samples later: 0 where all repeats, about 1 where nothing does.
+    """
     size = _fast(frames.shape[1] + longest)
     spectrum = np.fft.rfft(frames, size)
     alike = np.fft.irfft(spectrum.real**2 + spectrum.imag**2, size)[:, : longest + 1]

@@ -1,4 +1,5 @@
-"""What the data of a study show: the ratio of times with its interval, learning, mistakes, ratings, and what cannot be said from them.
+"""What the data of a study show: the ratio of times with its interval, learning, mistakes, ratings, and what
+cannot be said from them.
 
 People are the units: each counts once, by the mean over their tasks, however many tasks there are.
 """
@@ -23,7 +24,9 @@ TITLES: Mapping[str, str] = {"meta": "meta-graph", "manual": "state machine by h
 
 @dataclass(frozen=True, slots=True)
 class Person:
-    """What one participant took, seconds, geometric mean over the tasks that count. above_first: began with ABOVE."""
+    """What one participant took, seconds, geometric mean over the tasks that count. above_first: began with
+    ABOVE.
+    """
 
     participant: str
     above: float
@@ -37,8 +40,10 @@ class Person:
 
 @dataclass(frozen=True)
 class Comparison:
-    """Seconds of ABOVE beside BELOW. unit: `task`, or `clip` where people had other tasks in each. paired: everybody did both; then people
-    are they. means: geometric, by condition. effect: d_z; raw_effect: uncorrected."""
+    """Seconds of ABOVE beside BELOW. unit: `task`, or `clip` where people had other tasks in each. paired:
+    everybody did both; then people are they. means: geometric, by condition. effect: d_z; raw_effect:
+    uncorrected.
+    """
 
     unit: str
     paired: bool
@@ -56,7 +61,9 @@ class Comparison:
 
 @dataclass(frozen=True)
 class Measure:
-    """Something counted or rated under both conditions. means: by condition, with t intervals. difference: of pairs, ABOVE less BELOW."""
+    """Something counted or rated under both conditions. means: by condition, with t intervals. difference: of
+    pairs, ABOVE less BELOW.
+    """
 
     name: str
     means: Mapping[str, Estimate]
@@ -67,8 +74,10 @@ class Measure:
 
 @dataclass(frozen=True)
 class Curve:
-    """How people got quicker. slope: of log seconds over log of the clip's number, the mean over people (of one person, the line's own).
-    seconds: geometric means of the first, second ... clip, each over those who came so far."""
+    """How people got quicker. slope: of log seconds over log of the clip's number, the mean over people (of
+    one person, the line's own). seconds: geometric means of the first, second ... clip, each over those who
+    came so far.
+    """
 
     slope: Estimate
     first: float
@@ -77,7 +86,9 @@ class Curve:
 
 @dataclass(frozen=True)
 class Predicted:
-    """Observed seconds beside those the keystroke-level model predicts. observed, model: geometric means a task. share: their ratio."""
+    """Observed seconds beside those the keystroke-level model predicts. observed, model: geometric means a
+    task. share: their ratio.
+    """
 
     observed: Estimate
     model: Estimate
@@ -86,8 +97,9 @@ class Predicted:
 
 @dataclass(frozen=True)
 class Results:
-    """Everything a report tells. by_task: task -> its ratio and its test, and p corrected for how many tasks there are. together: name,
-    test and p corrected for how many questions were asked of the same people."""
+    """Everything a report tells. by_task: task -> its ratio and its test, and p corrected for how many tasks
+    there are. together: name, test and p corrected for how many questions were asked of the same people.
+    """
 
     data: Data
     time: Comparison | None = None
@@ -112,26 +124,46 @@ def analyse(data: Data) -> Results:
     corrected = stats.holm([test.p for _, test in tasks.values()])
     conditions = [c for c in data.conditions if any(r.run.condition == c for r in done)]
     mistakes = tuple(
-        m for name, get in MISTAKES.items() if (m := _measure(name, _scored(done, get), 0.0, 100.0 if name.endswith("%") else inf))
+        m
+        for name, get in MISTAKES.items()
+        if (m := _measure(name, _scored(done, get), 0.0, 100.0 if name.endswith("%") else inf))
     )
     names = list(dict.fromkeys(r.measure for r in data.ratings))
-    ratings = tuple(m for name in names if (m := _measure(name, _rated(data, name), *((0.0, 100.0) if name in TOTALS else ()))) is not None)
+    ratings = tuple(
+        m
+        for name in names
+        if (m := _measure(name, _rated(data, name), *((0.0, 100.0) if name in TOTALS else ()))) is not None
+    )
     asked = [("time", time.test)] if time is not None and time.test.p is not None else []
-    asked += [(m.name, m.test) for m in (*mistakes[:1], *ratings) if m.test is not None and m.test.p is not None]
+    asked += [
+        (m.name, m.test) for m in (*mistakes[:1], *ratings) if m.test is not None and m.test.p is not None
+    ]
     return Results(
         data,
         time,
         {task: (*found, p) for (task, found), p in zip(tasks.items(), corrected, strict=True)},
-        {c: curve for c in conditions if (curve := learning([r for r in done if r.run.condition == c])) is not None},
+        {
+            c: curve
+            for c in conditions
+            if (curve := learning([r for r in done if r.run.condition == c])) is not None
+        },
         {c: _spent([r for r in done if r.run.condition == c]) for c in conditions},
-        {c: model for c in conditions if (model := _predicted([r for r in done if r.run.condition == c])) is not None},
+        {
+            c: model
+            for c in conditions
+            if (model := _predicted([r for r in done if r.run.condition == c])) is not None
+        },
         mistakes,
         ratings,
-        tuple((name, test, p) for (name, test), p in zip(asked, stats.holm([t.p for _, t in asked]), strict=True)),
+        tuple(
+            (name, test, p)
+            for (name, test), p in zip(asked, stats.holm([t.p for _, t in asked]), strict=True)
+        ),
     )
 
 
-# --- time ------------------------------------------------------------------------------------------------------------
+# --- time
+# --------------------------------------------------------------------------------------------------
 
 
 def compare(rows: Sequence[Row]) -> Comparison | None:
@@ -158,22 +190,41 @@ def compare(rows: Sequence[Row]) -> Comparison | None:
     cautions = stats.cautions(ratio, raw)
     alone = len(by) - len(both)
     if alone:
-        cautions.append(f"{alone} did only one of the two and {'is' if alone == 1 else 'are'} left out of the ratio.")
+        cautions.append(
+            f"{alone} did only one of the two and {'is' if alone == 1 else 'are'} left out of the ratio."
+        )
     timed_out = sum(1 for r in rows if r.run.timed_out)
     if timed_out:
-        cautions.append(f"{timed_out} of {len(rows)} tasks were ended by the time limit: their true times are longer than those used here.")
+        cautions.append(
+            f"{timed_out} of {len(rows)} tasks were ended by the time limit: their true times are longer "
+            "than those used here."
+        )
     order = stats.order_effects(began[True], began[False])
     if order is None and len(people) > 1:
-        cautions.append("Fewer than 2 people began with one of the conditions, so practice cannot be told from the condition.")
+        cautions.append(
+            "Fewer than 2 people began with one of the conditions, so practice cannot be told from the "
+            "condition."
+        )
     return Comparison(
-        "task" if same else "clip", True, {ABOVE: stats.geometric_mean(a), BELOW: stats.geometric_mean(b)}, ratio,
-        stats.paired_t(log_a, log_b), tuple(people), stats.wilcoxon(log_a, log_b), effect, raw, stats.rank_biserial(log_a, log_b),
-        order, tuple(cautions),
-    )  # fmt: skip
+        "task" if same else "clip",
+        True,
+        {ABOVE: stats.geometric_mean(a), BELOW: stats.geometric_mean(b)},
+        ratio,
+        stats.paired_t(log_a, log_b),
+        tuple(people),
+        stats.wilcoxon(log_a, log_b),
+        effect,
+        raw,
+        stats.rank_biserial(log_a, log_b),
+        order,
+        tuple(cautions),
+    )
 
 
 def _took(rows: Mapping[str, Row], tasks: set[str] | None) -> float:
-    """Return the geometric mean of seconds: a task, over some tasks, or where tasks is None a clip, over all."""
+    """Return the geometric mean of seconds: a task, over some tasks, or where tasks is None a clip, over
+    all.
+    """
     if tasks is None:
         return exp(np.mean([log(r.run.seconds / max(1, r.clips)) for r in rows.values()]))
     return exp(np.mean([log(rows[t].run.seconds) for t in sorted(tasks)]))
@@ -188,17 +239,24 @@ def _unpaired(by: Mapping[str, Mapping[str, Mapping[str, Row]]]) -> Comparison |
     took = {c: [_took(rows, set(rows) if same else None) for rows in group] for c, group in groups.items()}
     found, test = stats.welch(stats.logs(took[ABOVE]), stats.logs(took[BELOW]))
     ratio = found.exp()
-    words = ["No one did both, so people are compared with other people: it takes many more of them than when everybody does both."]
+    words = [
+        "No one did both, so people are compared with other people: it takes many more of them than when "
+        "everybody does both."
+    ]
     if ratio.low is None:
         words = ["A group of one has no interval: this says nothing about other people."]
     elif ratio.holds(1.0):
-        words.append("The interval of the ratio includes 1: these people do not show that either way is faster.")
+        words.append(
+            "The interval of the ratio includes 1: these people do not show that either way is faster."
+        )
     means = {c: stats.geometric_mean(values) for c, values in took.items()}
     return Comparison("task" if same else "clip", False, means, ratio, test, cautions=tuple(words))
 
 
 def learning(rows: Sequence[Row]) -> Curve | None:
-    """Return how people got quicker from clip to clip, within one condition; None where nobody had three clips."""
+    """Return how people got quicker from clip to clip, within one condition; None where nobody had three
+    clips.
+    """
     by: dict[str, list[float]] = {}
     for r in sorted(rows, key=lambda r: r.run.index):
         by.setdefault(r.run.participant, []).extend(s for s in r.run.per_clip.values() if s > 0)
@@ -217,7 +275,10 @@ def _spent(rows: Sequence[Row]) -> dict[Spent, float]:
     people: dict[str, list[Row]] = {}
     for r in rows:
         people.setdefault(r.run.participant, []).append(r)
-    return {s: float(np.mean([np.mean([r.run.spent[s] for r in mine]) for mine in people.values()])) for s in SPENT}
+    return {
+        s: float(np.mean([np.mean([r.run.spent[s] for r in mine]) for mine in people.values()]))
+        for s in SPENT
+    }
 
 
 def _predicted(rows: Sequence[Row]) -> Predicted | None:
@@ -227,8 +288,12 @@ def _predicted(rows: Sequence[Row]) -> Predicted | None:
             people.setdefault(r.run.participant, []).append(r)
     if not people:
         return None
-    observed, model = ([exp(np.mean([log(get(r)) for r in mine])) for mine in people.values()] for get in (_observed, _model))
-    return Predicted(stats.geometric_mean(observed), stats.geometric_mean(model), stats.ratio(observed, model))
+    observed, model = (
+        [exp(np.mean([log(get(r)) for r in mine])) for mine in people.values()] for get in (_observed, _model)
+    )
+    return Predicted(
+        stats.geometric_mean(observed), stats.geometric_mean(model), stats.ratio(observed, model)
+    )
 
 
 def _observed(row: Row) -> float:
@@ -239,7 +304,8 @@ def _model(row: Row) -> float:
     return row.predicted
 
 
-# --- mistakes and ratings --------------------------------------------------------------------------------------------
+# --- mistakes and ratings
+# --------------------------------------------------------------------------------------------
 
 
 def _counted(what: What) -> Callable[[Score], float | None]:
@@ -258,7 +324,9 @@ MISTAKES: Mapping[str, Callable[[Score], float | None]] = {
     "F1 of connections, %": _share("f1"),
     "precision, %": _share("precision"),
     "recall, %": _share("recall"),
-    "connections to and from rest, %": lambda s: 100 * s.essential_right / s.essential if s.essential else None,
+    "connections to and from rest, %": lambda s: (
+        100 * s.essential_right / s.essential if s.essential else None
+    ),
     "clips in the right place, %": lambda s: 100 * s.placed / s.states if s.states else None,
     "connections to the wrong target": lambda s: float(s.wrong),
     **{words: _counted(what) for what, words in WORDS.items()},
@@ -274,9 +342,12 @@ def _rated(data: Data, name: str) -> list[tuple[str, str, float]]:
     return [(r.participant, r.condition or "", r.value) for r in data.ratings if r.measure == name]
 
 
-def _measure(name: str, values: Sequence[tuple[str, str, float]], least: float = -inf, most: float = inf) -> Measure | None:
-    """Return a measure of (participant, condition, value), several of one participant taken together by their mean. least, most: what a
-    value can be; intervals do not go beyond."""
+def _measure(
+    name: str, values: Sequence[tuple[str, str, float]], least: float = -inf, most: float = inf
+) -> Measure | None:
+    """Return a measure of (participant, condition, value), several of one participant taken together by their
+    mean. least, most: what a value can be; intervals do not go beyond.
+    """
     by: dict[str, dict[str, list[float]]] = {}
     for who, condition, value in values:
         by.setdefault(condition, {}).setdefault(who, []).append(value)
@@ -294,4 +365,9 @@ def _measure(name: str, values: Sequence[tuple[str, str, float]], least: float =
 
 def _within(found: Estimate, least: float, most: float) -> Estimate:
     low, high = found.low, found.high
-    return Estimate(found.value, None if low is None else max(low, least), None if high is None else min(high, most), found.n)
+    return Estimate(
+        found.value,
+        None if low is None else max(low, least),
+        None if high is None else min(high, most),
+        found.n,
+    )

@@ -1,4 +1,6 @@
-"""The comparison that was published with the meta-graph (Borer et al., section 7.1), recomputed: what it shows, and what it does not."""
+"""The comparison that was published with the meta-graph (Borer et al., section 7.1), recomputed: what it
+shows, and what it does not.
+"""
 
 from __future__ import annotations
 
@@ -16,8 +18,10 @@ SCATTERS = (0.25, 0.5, 1.0)  # standard deviations of the logs of people's ratio
 
 @dataclass(frozen=True)
 class Example:
-    """minutes: a clip, meta and by hand. ratio: without an interval. with_tutorial: the ratio when the week before counts, in days as
-    long as those of the work. needed: scatter -> people for an 80 % chance to show such a ratio."""
+    """minutes: a clip, meta and by hand. ratio: without an interval. with_tutorial: the ratio when the week
+    before counts, in days as long as those of the work. needed: scatter -> people for an 80 % chance to show
+    such a ratio.
+    """
 
     minutes: tuple[float, float]
     ratio: stats.Estimate
@@ -45,16 +49,20 @@ def told(found: Example) -> str:
         f"Unreal state machine  {MANUAL_HOURS:6.1f} {MANUAL_DAYS:6.1f} {manual:16.2f}",
         f"ratio                 {found.ratio.value:6.2f}",
         "",
-        f"What it shows: this animator, with these clips, needed {manual - meta:.1f} minutes less for each of them.",
+        f"What it shows: this animator, with these clips, needed {manual - meta:.1f} minutes less for each "
+        "of them.",
         "",
         "What it does not show:",
         f"- {stats.cautions(found.ratio, None)[0]}",
-        "- The meta-graph came first and the state machine second, so practice with the clips helped the second.",
-        "- Before the state machine there was a week of tutorial and often help, before the meta-graph an example. With a week of days as",
+        "- The meta-graph came first and the state machine second, so practice with the clips helped the "
+        "second.",
+        "- Before the state machine there was a week of tutorial and often help, before the meta-graph an "
+        "example. With a week of days as",
         f"  long as those of the work the ratio is {found.with_tutorial:.1f}.",
         "- Mistakes were told, not counted: by hand there were 'several jumps' and 'many more mistakes'.",
         "",
-        "How many people show such a ratio with a chance of 80 %, by how much theirs differ (standard deviation of logs):",
+        "How many people show such a ratio with a chance of 80 %, by how much theirs differ (standard "
+        "deviation of logs):",
         *(f"- {scatter:.2f}: {people} people" for scatter, people in found.needed.items()),
         f"The signed-rank test needs {stats.FEWEST_RANKED} at least, and two orders as many people in each.",
     ]

@@ -1,4 +1,6 @@
-"""A study's folder as data: what every participant did and said, and how right it was; and what of it is missing, in words."""
+"""A study's folder as data: what every participant did and said, and how right it was; and what of it is
+missing, in words.
+"""
 
 from __future__ import annotations
 
@@ -22,15 +24,19 @@ from metagraph.study.tasks import Answer
 
 Progress = Callable[[int, int], None]
 SCORED: Mapping[str, tuple[str, Callable[[Mapping[str, Any]], float]]] = {
-    "sus": ("SUS", sus_score), "tlx": ("NASA-TLX, raw", tlx_raw), "tlx_weighted": ("NASA-TLX, weighted", tlx_weighted),
-}  # fmt: skip
+    "sus": ("SUS", sus_score),
+    "tlx": ("NASA-TLX, raw", tlx_raw),
+    "tlx_weighted": ("NASA-TLX, weighted", tlx_weighted),
+}
 TOTALS = frozenset(name for name, _ in SCORED.values())  # all from 0 to 100
 
 
 @dataclass(frozen=True)
 class Row:
-    """A task somebody did. sitting: 1 for the condition they began with, 2 for the next. clips: of the task, 0 where nobody knows.
-    predicted: seconds by the keystroke-level model. score: None without a reference or a project."""
+    """A task somebody did. sitting: 1 for the condition they began with, 2 for the next. clips: of the task,
+    0 where nobody knows. predicted: seconds by the keystroke-level model. score: None without a reference or
+    a project.
+    """
 
     run: TaskRun
     sitting: int
@@ -40,13 +46,17 @@ class Row:
 
     @property
     def done(self) -> bool:
-        """Whether its time can be used: it was worked on until it was done, or until there was no time left."""
+        """Whether its time can be used: it was worked on until it was done, or until there was no time
+        left.
+        """
         return (self.run.finished or self.run.timed_out) and self.run.seconds > 0
 
 
 @dataclass(frozen=True, slots=True)
 class Rating:
-    """What a questionnaire amounts to, or what was answered to one number item of others. condition: None for the whole study."""
+    """What a questionnaire amounts to, or what was answered to one number item of others. condition: None for
+    the whole study.
+    """
 
     participant: str
     measure: str
@@ -56,8 +66,9 @@ class Rating:
 
 @dataclass(frozen=True)
 class Data:
-    """title, conditions and tasks (id -> title): of the plan. participants: all that take part. rows: in the order they were done, by
-    participant. missing: what is not there or was left out, in words."""
+    """title, conditions and tasks (id -> title): of the plan. participants: all that take part. rows: in the
+    order they were done, by participant. missing: what is not there or was left out, in words.
+    """
 
     title: str
     conditions: tuple[str, ...]
@@ -72,16 +83,25 @@ class Data:
 
 
 def prediction(run: TaskRun, times: Times = USUAL) -> float:
-    """Return the seconds the keystroke-level model predicts for a task: its operators, a drag as a pointing besides its two button
-    operators, and a thought for every edit and for every step back."""
+    """Return the seconds the keystroke-level model predicts for a task: its operators, a drag as a pointing
+    besides its two button operators, and a thought for every edit and for every step back.
+    """
     ops = run.operators
-    counts = {"K": ops["K"], "P": ops["P"] + ops["D"], "B": ops["B"], "H": ops["H"], "M": run.edits + run.undos}
+    counts = {
+        "K": ops["K"],
+        "P": ops["P"] + ops["D"],
+        "B": ops["B"],
+        "H": ops["H"],
+        "M": run.edits + run.undos,
+    }
     return predicted(counts, times)
 
 
 def collect(folder: str | Path, jumps: bool = True, progress: Progress | None = None) -> Data:
-    """Read a study's folder, or study file, and what lies beside it. jumps: judge them, which needs the references' clips. Raises FileError
-    where the study file cannot be read; whatever else is wrong is told in `missing`."""
+    """Read a study's folder, or study file, and what lies beside it. jumps: judge them, which needs the
+    references' clips. Raises FileError where the study file cannot be read; whatever else is wrong is told in
+    `missing`.
+    """
     study = read_study(folder)
     plan = study.plan
     missing: list[str] = []
@@ -99,13 +119,27 @@ def collect(folder: str | Path, jumps: bool = True, progress: Progress | None = 
         rows += _rows(study, log, references, missing)
         answers += log.answers()
     data = study.folder / "data"
-    strangers = sorted(p.name for p in data.iterdir() if p.is_dir() and p.name not in plan.ids) if data.is_dir() else []
-    missing += [f"{name}: a folder of data, but nobody of that name takes part; it is left out." for name in strangers]
+    strangers = (
+        sorted(p.name for p in data.iterdir() if p.is_dir() and p.name not in plan.ids)
+        if data.is_dir()
+        else []
+    )
+    missing += [
+        f"{name}: a folder of data, but nobody of that name takes part; it is left out." for name in strangers
+    ]
     ratings = _ratings(study, answers, missing)
     return Data(
-        plan.title, tuple(plan.conditions), {t.id: t.name for t in plan.tasks}, plan.ids, tuple(rows), ratings, tuple(answers),
-        tuple(dict.fromkeys(missing)), plan.tolerance, simulated,
-    )  # fmt: skip
+        plan.title,
+        tuple(plan.conditions),
+        {t.id: t.name for t in plan.tasks},
+        plan.ids,
+        tuple(rows),
+        ratings,
+        tuple(answers),
+        tuple(dict.fromkeys(missing)),
+        plan.tolerance,
+        simulated,
+    )
 
 
 def _log(study: Study, participant: str, missing: list[str]) -> Log | None:
@@ -150,7 +184,15 @@ def _rows(study: Study, log: Log, references: _References, missing: list[str]) -
             missing.append(f"{who}: was ended by the time limit; the time it would have taken is not known.")
         elif not row.done:
             missing.append(f"{who}: was not finished; its time is left out.")
-        out.append(Row(run, row.sitting, clips, row.predicted, references.scored(log.path.parent, run, who) if row.done else None))
+        out.append(
+            Row(
+                run,
+                row.sitting,
+                clips,
+                row.predicted,
+                references.scored(log.path.parent, run, who) if row.done else None,
+            )
+        )
     return out
 
 

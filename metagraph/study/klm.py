@@ -1,9 +1,10 @@
-"""The keystroke-level model: how long an expert takes for a sequence of operators (Card, Moran and Newell 1980, "The Keystroke-Level Model
-for User Performance Time with Interactive Systems").
+"""The keystroke-level model: how long an expert takes for a sequence of operators (Card, Moran and Newell
+1980, "The Keystroke-Level Model for User Performance Time with Interactive Systems").
 
-Where M goes, the rules of that paper in short: before a chain of keys or a pointing that begins a decision of its own (rule 0), not before
-what is fully anticipated by the operator before it (rule 1), once for a unit such as a word or a command (rule 2), not before what ends it
-(rule 3), and not before a key that ends a fixed command (rule 4). Here a decision about a clip is such a unit, so is a command.
+Where M goes, the rules of that paper in short: before a chain of keys or a pointing that begins a decision of
+its own (rule 0), not before what is fully anticipated by the operator before it (rule 1), once for a unit
+such as a word or a command (rule 2), not before what ends it (rule 3), and not before a key that ends a fixed
+command (rule 4). Here a decision about a clip is such a unit, so is a command.
 """
 
 from __future__ import annotations
@@ -14,8 +15,10 @@ from dataclasses import dataclass, fields
 
 @dataclass(frozen=True)
 class Times:
-    """Seconds an operator takes: K a key, by an average typist; P pointing at a target; B a button pressed or released; H a hand to the
-    other device; M a mental preparation. A wait for the system (R) is told in seconds by whoever measures it."""
+    """Seconds an operator takes: K a key, by an average typist; P pointing at a target; B a button pressed or
+    released; H a hand to the other device; M a mental preparation. A wait for the system (R) is told in
+    seconds by whoever measures it.
+    """
 
     K: float = 0.28
     P: float = 1.10
@@ -28,8 +31,9 @@ USUAL = Times()
 
 
 def predicted(operators: Mapping[str, float], times: Times = USUAL) -> float:
-    """Return seconds for how many operators of each kind there were; R counts as seconds itself. Raises ValueError for a kind that there
-    is not."""
+    """Return seconds for how many operators of each kind there were; R counts as seconds itself. Raises
+    ValueError for a kind that there is not.
+    """
     known = {f.name: float(getattr(times, f.name)) for f in fields(times)} | {"R": 1.0}
     odd = sorted(set(operators) - set(known))
     if odd:

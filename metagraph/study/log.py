@@ -1,8 +1,10 @@
-"""The log of a sitting: one JSON object a line, appended, never changed. What a study knows about time comes from here.
+"""The log of a sitting: one JSON object a line, appended, never changed. What a study knows about time comes
+from here.
 
-Every event has n (0, 1, 2 ... without gaps), run (one per start of the program), mono (seconds within the run), wall (UTC), type and the
-fields of its type. A line is handed to the system whole, so that a killed program loses none, and is synced to the disk at most every
-250 ms and at each boundary, so that a power cut loses no more than that.
+Every event has n (0, 1, 2 ... without gaps), run (one per start of the program), mono (seconds within the
+run), wall (UTC), type and the fields of its type. A line is handed to the system whole, so that a killed
+program loses none, and is synced to the disk at most every 250 ms and at each boundary, so that a power cut
+loses no more than that.
 """
 
 from __future__ import annotations
@@ -28,17 +30,38 @@ __all__ = ["BOUNDARIES", "NAME", "TYPES", "Answer", "Event", "Log", "TaskRun", "
 
 NAME = "log.jsonl"
 TYPES = (
-    "begin", "resumed", "phase", "pause", "idle", "edit", "undo", "redo", "view", "playback", "dialog", "error", "import", "save",
-    "export", "ops", "note", "answer", "artefact", "end",
-)  # fmt: skip
-BOUNDARIES = frozenset({"begin", "resumed", "phase", "pause", "answer", "artefact", "end"})  # synced before anything else happens
+    "begin",
+    "resumed",
+    "phase",
+    "pause",
+    "idle",
+    "edit",
+    "undo",
+    "redo",
+    "view",
+    "playback",
+    "dialog",
+    "error",
+    "import",
+    "save",
+    "export",
+    "ops",
+    "note",
+    "answer",
+    "artefact",
+    "end",
+)
+BOUNDARIES = frozenset(
+    {"begin", "resumed", "phase", "pause", "answer", "artefact", "end"}
+)  # synced before anything else happens
 SYNC = 0.25  # seconds between syncs to the disk
 
 
 @dataclass(frozen=True)
 class Log:
-    """A log as it was read. torn: a half-written last line was left out. problems: what else is wrong, in words. following:
-    the number of the event that comes next."""
+    """A log as it was read. torn: a half-written last line was left out. problems: what else is wrong, in
+    words. following: the number of the event that comes next.
+    """
 
     path: Path
     events: tuple[Event, ...] = ()
@@ -49,7 +72,10 @@ class Log:
     @property
     def participant(self) -> str:
         """Return who it is about: as the log says, else as its folder is called."""
-        return next((str(e["participant"]) for e in self.events if e["type"] == "begin" and "participant" in e), self.path.parent.name)
+        return next(
+            (str(e["participant"]) for e in self.events if e["type"] == "begin" and "participant" in e),
+            self.path.parent.name,
+        )
 
     @property
     def complete(self) -> bool:
@@ -70,16 +96,21 @@ def wall_time(now: datetime) -> str:
     return now.astimezone(UTC).isoformat(timespec="milliseconds").replace("+00:00", "Z")
 
 
-# --- reading ---------------------------------------------------------------------------------------------------------
+# --- reading
+# --------------------------------------------------------------------------------------------------
 
 
 def read(path: str | Path) -> Log:
-    """Read a log. Raises FileError when there is none; damaged lines are left out and told among the problems."""
+    """Read a log. Raises FileError when there is none; damaged lines are left out and told among the
+    problems.
+    """
     path = Path(path)
     try:
         content = path.read_bytes()
     except OSError as error:
-        raise FileError(path, f"cannot be read ({error.strerror or error})", "on opening it", "Check that it is there.") from None
+        raise FileError(
+            path, f"cannot be read ({error.strerror or error})", "on opening it", "Check that it is there."
+        ) from None
     *lines, tail = content.split(b"\n")
     events: list[Event] = []
     problems: list[str] = []
@@ -94,7 +125,10 @@ def read(path: str | Path) -> Log:
             problems.append(f"line {number}: event {event['n']} is there twice; it is left out")
             continue
         if event["n"] > expected:
-            problems.append(f"line {number}: event {expected} is missing" + (" and more" if event["n"] > expected + 1 else ""))
+            problems.append(
+                f"line {number}: event {expected} is missing"
+                + (" and more" if event["n"] > expected + 1 else "")
+            )
         if event["type"] not in TYPES:
             problems.append(f"line {number}: '{event['type']}' is no kind of event")
         if events and events[-1]["run"] == event["run"] and event["mono"] < events[-1]["mono"]:
@@ -124,12 +158,15 @@ def _event(line: bytes) -> Event | str:
     return event
 
 
-# --- writing ---------------------------------------------------------------------------------------------------------
+# --- writing
+# --------------------------------------------------------------------------------------------------
 
 
 @dataclass
 class _Disk:
-    """Syncs a file on a thread of its own, at most every SYNC seconds: a slow disk must not hold up the window."""
+    """Syncs a file on a thread of its own, at most every SYNC seconds: a slow disk must not hold up the
+    window.
+    """
 
     handle: int
     wake: threading.Event = field(default_factory=threading.Event)
@@ -153,9 +190,11 @@ class _Disk:
 
 
 class Writer:
-    """Appends to a log, or begins one. before: what was in it; a torn last line is cut off and kept in a file beside it.
+    """Appends to a log, or begins one. before: what was in it; a torn last line is cut off and kept in a file
+    beside it.
 
-    clock: seconds, monotonic; now: the time of day. Only one program may write a log at a time; its user sees to that.
+    clock: seconds, monotonic; now: the time of day. Only one program may write a log at a time; its user sees
+    to that.
     """
 
     def __init__(
@@ -176,14 +215,18 @@ class Writer:
             self.path.parent.mkdir(parents=True, exist_ok=True)
             if self.before.torn:
                 self._cut()
-            self._handle = os.open(self.path, os.O_WRONLY | os.O_APPEND | os.O_CREAT | getattr(os, "O_BINARY", 0), 0o666)
+            self._handle = os.open(
+                self.path, os.O_WRONLY | os.O_APPEND | os.O_CREAT | getattr(os, "O_BINARY", 0), 0o666
+            )
         except OSError as error:
             raise self._failure(error) from None
         self._disk = _Disk(self._handle)
         self._start = clock()
 
     def begin(self, **fields: Any) -> Event:
-        """Write that the sitting begins, or goes on: `resumed` tells where it was left and how much time was lost."""
+        """Write that the sitting begins, or goes on: `resumed` tells where it was left and how much time was
+        lost.
+        """
         if not self.before.events:
             return self.add("begin", **fields)
         last = self.before.events[-1]
@@ -191,12 +234,20 @@ class Writer:
         return self.add("resumed", after=last["n"], lost=round(lost, 3), **fields)
 
     def add(self, kind: str, **fields: Any) -> Event:
-        """Append an event. Raises ValueError for a kind that there is not, TypeError for what JSON cannot say, FileError when the disk
-        does not take it; the event is then kept and written with the next one."""
+        """Append an event. Raises ValueError for a kind that there is not, TypeError for what JSON cannot
+        say, FileError when the disk does not take it; the event is then kept and written with the next one.
+        """
         if kind not in TYPES:
             raise ValueError(f"'{kind}' is no kind of event; there are {', '.join(TYPES)}")
         mono = round(self._clock() - self._start, 6)
-        event: Event = {"n": self.n, "run": self.run, "mono": mono, "wall": wall_time(self._now()), "type": kind, **fields}
+        event: Event = {
+            "n": self.n,
+            "run": self.run,
+            "mono": mono,
+            "wall": wall_time(self._now()),
+            "type": kind,
+            **fields,
+        }
         line = msgspec.json.encode(event) + b"\n"
         self.n += 1
         self._waiting.append(line)
@@ -248,5 +299,8 @@ class Writer:
 
     def _failure(self, error: OSError) -> FileError:
         return FileError(
-            self.path, f"cannot be written ({error.strerror or error})", "on adding to it", "Make room on the disk, and check your rights."
+            self.path,
+            f"cannot be written ({error.strerror or error})",
+            "on adding to it",
+            "Make room on the disk, and check your rights.",
         )

@@ -1,7 +1,9 @@
-"""Machines in normal form: what was authored, by meta-graph or by hand, as states and connections that can be compared.
+"""Machines in normal form: what was authored, by meta-graph or by hand, as states and connections that can be
+compared.
 
-States are known by their clips, not by names or ids: by file, take, and which use of it. A meta-graph is expanded; a machine drawn by hand
-is taken as it is; which of its states rest and what is a gesture of what is read from its links.
+States are known by their clips, not by names or ids: by file, take, and which use of it. A meta-graph is
+expanded; a machine drawn by hand is taken as it is; which of its states rest and what is a gesture of what is
+read from its links.
 """
 
 from __future__ import annotations
@@ -24,9 +26,10 @@ Pair = tuple[str, str]
 
 @dataclass(frozen=True, slots=True)
 class NormalState:
-    """A use of a clip. clip: its file's name, with the take where it is not the first. kind: None where nothing tells. stance, ends: the
-    stances it begins and ends in, as the machine calls them; None where nothing tells. start, end: seconds of the clip. limb, joints: what
-    it moves."""
+    """A use of a clip. clip: its file's name, with the take where it is not the first. kind: None where
+    nothing tells. stance, ends: the stances it begins and ends in, as the machine calls them; None where
+    nothing tells. start, end: seconds of the clip. limb, joints: what it moves.
+    """
 
     key: str
     clip: str
@@ -51,8 +54,9 @@ class NormalConnection:
 
 @dataclass(frozen=True)
 class NormalMachine:
-    """One layer. states: by key. connections: by (source, target). stances: id -> name, of no meaning elsewhere. derived: kinds and
-    stances were not said, but follow from the connections."""
+    """One layer. states: by key. connections: by (source, target). stances: id -> name, of no meaning
+    elsewhere. derived: kinds and stances were not said, but follow from the connections.
+    """
 
     layer: Layer
     states: Mapping[str, NormalState]
@@ -71,14 +75,18 @@ def is_manual(project: Project) -> bool:
 
 
 def normal(project: Project, manual: bool | None = None) -> dict[Layer, NormalMachine]:
-    """Return the machines of the layers that have any states. manual: which of both is meant, if not what the project has."""
+    """Return the machines of the layers that have any states. manual: which of both is meant, if not what the
+    project has.
+    """
     names = clip_names(project)
     by_hand = is_manual(project) if manual is None else manual
     meant = as_meta(project)[0] if by_hand else project
     out = {}
     for layer in LAYERS:
         if by_hand:
-            found = _of_manual(project, project.manual.get(layer) or Manual(layer), meant.graphs[layer], names)
+            found = _of_manual(
+                project, project.manual.get(layer) or Manual(layer), meant.graphs[layer], names
+            )
         else:
             found = _of_graph(project, project.graphs[layer], names)
         if found.states:
@@ -87,7 +95,9 @@ def normal(project: Project, manual: bool | None = None) -> dict[Layer, NormalMa
 
 
 def clip_names(project: Project) -> dict[str, str]:
-    """Return clip id -> its file's name, with its folder where two files are called alike, and its take where it is not the first."""
+    """Return clip id -> its file's name, with its folder where two files are called alike, and its take where
+    it is not the first.
+    """
     paths = {i: PurePosixPath(e.path.replace("\\", "/")) for i, e in project.clips.items()}
     alike = Counter(path.name for path in {str(p): p for p in paths.values()}.values())
     return {i: _clip_name(paths[i], e, alike[paths[i].name] > 1) for i, e in project.clips.items()}
@@ -118,13 +128,26 @@ def _of_graph(project: Project, graph: MetaGraph, names: Mapping[str, str]) -> N
         joints = tuple(sorted(a.joints))
         key = keys[a.id]
         states[key] = NormalState(
-            key, names.get(a.clip, a.clip), graph.layer, a.kind, a.stance, ends_in(a), loop, start, end, a.limb, joints
+            key,
+            names.get(a.clip, a.clip),
+            graph.layer,
+            a.kind,
+            a.stance,
+            ends_in(a),
+            loop,
+            start,
+            end,
+            a.limb,
+            joints,
         )
-    found = {(keys[c.source], keys[c.target]): NormalConnection(c.leave, c.blend) for c in expanded(project, graph)}
+    found = {
+        (keys[c.source], keys[c.target]): NormalConnection(c.leave, c.blend) for c in expanded(project, graph)
+    }
     return NormalMachine(graph.layer, states, found, {i: s.name for i, s in graph.stances.items()})
 
 
-# --- by hand ---------------------------------------------------------------------------------------------------------
+# --- by hand
+# --------------------------------------------------------------------------------------------------
 
 
 def _of_manual(project: Project, manual: Manual, meant: MetaGraph, names: Mapping[str, str]) -> NormalMachine:
@@ -136,10 +159,21 @@ def _of_manual(project: Project, manual: Manual, meant: MetaGraph, names: Mappin
         kind, stance, ends = roles[s.id]
         key = keys[s.id]
         states[key] = NormalState(
-            key, names.get(s.clip, s.clip), manual.layer, kind, stance, ends, s.loop, *spans[s.id], s.limb, tuple(sorted(s.joints))
+            key,
+            names.get(s.clip, s.clip),
+            manual.layer,
+            kind,
+            stance,
+            ends,
+            s.loop,
+            *spans[s.id],
+            s.limb,
+            tuple(sorted(s.joints)),
         )
     links: dict[Pair, Link] = {}
-    for link in manual.links.values():  # the first that was drawn, and one of the pair's own before one from any state
+    for link in (
+        manual.links.values()
+    ):  # the first that was drawn, and one of the pair's own before one from any state
         if link.source in manual.states:
             links.setdefault((link.source, link.target), link)
     for link in manual.links.values():
@@ -162,7 +196,9 @@ def _span(project: Project, state: State) -> tuple[float, float]:
 
 
 def _leave(link: Link, end: float) -> float | None:
-    """Return when a link leaves its source, as a meta-graph counts: where its blend would end with the source, at the source's end."""
+    """Return when a link leaves its source, as a meta-graph counts: where its blend would end with the
+    source, at the source's end.
+    """
     if link.exit_time is None:
         return end if link.condition.when == "finished" else None
     return end if link.exit_time + link.blend >= end - AT_ITS_END else link.exit_time
@@ -172,8 +208,9 @@ Role = tuple[Kind | None, str | None, str | None]
 
 
 def _roles(manual: Manual, meant: MetaGraph) -> dict[str, Role]:
-    """Return state -> (kind, stance, end stance) in the meta-graph that a machine amounts to, which has them in the same order but for
-    those it leaves out."""
+    """Return state -> (kind, stance, end stance) in the meta-graph that a machine amounts to, which has them
+    in the same order but for those it leaves out.
+    """
     out: dict[str, Role] = {}
     actions = iter(meant.actions.values())
     action = next(actions, None)

@@ -1,7 +1,9 @@
-"""Who does what in which order: counterbalanced by Latin squares, the same for a participant's number and seed for ever.
+"""Who does what in which order: counterbalanced by Latin squares, the same for a participant's number and
+seed for ever.
 
-Williams, E. J. (1949), "Experimental designs balanced for the estimation of residual effects of treatments", Australian Journal of
-Scientific Research 2: in his squares each treatment is as often in each place, and as often right after each other one.
+Williams, E. J. (1949), "Experimental designs balanced for the estimation of residual effects of treatments",
+Australian Journal of Scientific Research 2: in his squares each treatment is as often in each place, and as
+often right after each other one.
 """
 
 from __future__ import annotations
@@ -14,7 +16,8 @@ _MASK = 0xFFFFFFFF
 
 
 def williams(count: int) -> tuple[tuple[int, ...], ...]:
-    """Return a Williams design for `count` treatments 0..count-1: `count` rows, twice as many where `count` is odd (and above 1).
+    """Return a Williams design for `count` treatments 0..count-1: `count` rows, twice as many where `count`
+    is odd (and above 1).
 
     Raises ValueError for fewer than one.
     """
@@ -27,22 +30,30 @@ def williams(count: int) -> tuple[tuple[int, ...], ...]:
     return tuple(rows if count % 2 == 0 or count == 1 else [*rows, *(row[::-1] for row in rows)])
 
 
-def latin(conditions: Sequence[T], tasks: Sequence[T], number: int, seed: int) -> tuple[tuple[T, tuple[T, ...]], ...]:
-    """Return a participant's conditions in order, each with its tasks in order. number: 0, 1, 2 ... of the participant.
+def latin(
+    conditions: Sequence[T], tasks: Sequence[T], number: int, seed: int
+) -> tuple[tuple[T, tuple[T, ...]], ...]:
+    """Return a participant's conditions in order, each with its tasks in order. number: 0, 1, 2 ... of the
+    participant.
 
-    Within a participant the order of the tasks goes on from one condition to the next, so that two participants in a row already
-    have each of two tasks as often first in each condition.
+    Within a participant the order of the tasks goes on from one condition to the next, so that two
+    participants in a row already have each of two tasks as often first in each condition.
     """
     tried = tuple(shuffled(conditions, seed))
     worked = tuple(shuffled(tasks, seed ^ 0x5BD1E995))
     rows, orders = williams(len(tried)), williams(len(worked))
     blocks = [tried[x] for x in rows[number % len(rows)]]
     turn = number // len(rows)
-    return tuple((condition, tuple(worked[x] for x in orders[(turn + place) % len(orders)])) for place, condition in enumerate(blocks))
+    return tuple(
+        (condition, tuple(worked[x] for x in orders[(turn + place) % len(orders)]))
+        for place, condition in enumerate(blocks)
+    )
 
 
 def shuffled(items: Sequence[T], seed: int) -> list[T]:
-    """Return the items in an order that depends on the seed alone, by 32-bit integers: the same on every machine and version."""
+    """Return the items in an order that depends on the seed alone, by 32-bit integers: the same on every
+    machine and version.
+    """
     out = list(items)
     state = seed & _MASK
     for last in range(len(out) - 1, 0, -1):

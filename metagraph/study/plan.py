@@ -1,6 +1,8 @@
-"""Study files: who works on what under which conditions. `study.yaml` is read here and checked to the last field.
+"""Study files: who works on what under which conditions. `study.yaml` is read here and checked to the last
+field.
 
-Beside it lie `data/<participant>/` with the log and what was made, and `report/`. Paths in it are relative to it.
+Beside it lie `data/<participant>/` with the log and what was made, and `report/`. Paths in it are relative to
+it.
 """
 
 from __future__ import annotations
@@ -34,8 +36,9 @@ CONDITION_TITLES: Mapping[str, str] = {"meta": "Meta-graph", "manual": "State ma
 
 
 class Task(Struct, frozen=True, forbid_unknown_fields=True):
-    """clips: a folder, or files. reference: the project that is the right answer. minutes: the limit, null for none. instructions:
-    Markdown."""
+    """clips: a folder, or files. reference: the project that is the right answer. minutes: the limit, null
+    for none. instructions: Markdown.
+    """
 
     id: Name
     clips: str | tuple[str, ...]
@@ -59,21 +62,26 @@ class Training(Struct, frozen=True, forbid_unknown_fields=True):
 
 
 class Given(Struct, frozen=True, forbid_unknown_fields=True):
-    """given: for each participant the conditions in order ("meta"), or conditions with a task each ("meta/ten")."""
+    """given: for each participant the conditions in order ("meta"), or conditions with a task each
+    ("meta/ten").
+    """
 
     given: dict[str, tuple[str, ...]]
 
 
 class Plan(Struct, frozen=True, forbid_unknown_fields=True):
-    """study: the version of the format. participants: how many, or their pseudonyms. order: `latin` counterbalances conditions and
-    tasks, `fixed` keeps to the file. breaks: minutes after each condition but the last. when: what questionnaires are about that do not
-    say it themselves. tolerance: seconds by which a timing may differ from the reference. allow: `labels` lets proposals be asked for.
-    operators: seconds each operator of the keystroke-level model takes these participants, where it is not as `klm.Times` has it.
+    """study: the version of the format. participants: how many, or their pseudonyms. order: `latin`
+    counterbalances conditions and tasks, `fixed` keeps to the file. breaks: minutes after each condition but
+    the last. when: what questionnaires are about that do not say it themselves. tolerance: seconds by which a
+    timing may differ from the reference. allow: `labels` lets proposals be asked for. operators: seconds each
+    operator of the keystroke-level model takes these participants, where it is not as `klm.Times` has it.
     """
 
     study: int
     title: str
-    participants: Annotated[int, Meta(ge=1, le=MOST)] | Annotated[tuple[Name, ...], Meta(min_length=1, max_length=MOST)]
+    participants: (
+        Annotated[int, Meta(ge=1, le=MOST)] | Annotated[tuple[Name, ...], Meta(min_length=1, max_length=MOST)]
+    )
     conditions: Annotated[tuple[ConditionName, ...], Meta(min_length=1)]
     tasks: Annotated[tuple[Task, ...], Meta(min_length=1)]
     consent: str = ""
@@ -111,7 +119,9 @@ class Plan(Struct, frozen=True, forbid_unknown_fields=True):
         return tuple(BUILT_IN[q] if isinstance(q, str) else q for q in self.questionnaires)
 
     def blocks(self, participant: str) -> tuple[tuple[str, tuple[str, ...]], ...]:
-        """Return a participant's conditions in order, each with the ids of its tasks in order. Raises ValueError for a stranger."""
+        """Return a participant's conditions in order, each with the ids of its tasks in order. Raises
+        ValueError for a stranger.
+        """
         if participant not in self.ids:
             raise ValueError(f"'{participant}' does not take part; there are {_listed(self.ids)}")
         tasks = tuple(t.id for t in self.tasks)
@@ -149,18 +159,28 @@ class Study:
         return self.data(participant) / NAME
 
     def clips(self, named: str | tuple[str, ...]) -> tuple[Path, ...]:
-        """Return the clip files of a task or a training. Raises FileError when one is not there, or a folder has none."""
+        """Return the clip files of a task or a training. Raises FileError when one is not there, or a folder
+        has none.
+        """
         if isinstance(named, str):
             folder = self.folder / named
             found = [folder] if folder.is_file() else find_clip_files(folder) if folder.is_dir() else []
             if not found:
                 raise FileError(
-                    self.path, f"there are no clips in '{named}'", "clips", "Name a folder beside the study file that has some."
+                    self.path,
+                    f"there are no clips in '{named}'",
+                    "clips",
+                    "Name a folder beside the study file that has some.",
                 )
             return tuple(found)
         for name in named:
             if not (self.folder / name).is_file():
-                raise FileError(self.path, f"there is no clip '{name}'", "clips", "Name files by their paths from the study file.")
+                raise FileError(
+                    self.path,
+                    f"there is no clip '{name}'",
+                    "clips",
+                    "Name files by their paths from the study file.",
+                )
         return tuple(self.folder / name for name in named)
 
     def reference(self, task: str) -> Path | None:
@@ -169,7 +189,9 @@ class Study:
         return self.folder / found if found is not None else None
 
     def problems(self) -> list[str]:
-        """Return what would hamper a sitting: clips and references that are not there, or do not belong together."""
+        """Return what would hamper a sitting: clips and references that are not there, or do not belong
+        together.
+        """
         from metagraph.formats.store import read_project
 
         out: list[str] = []
@@ -193,7 +215,8 @@ class Study:
         return out
 
 
-# --- reading ---------------------------------------------------------------------------------------------------------
+# --- reading
+# --------------------------------------------------------------------------------------------------
 
 
 def read_study(path: str | Path) -> Study:
@@ -204,7 +227,9 @@ def read_study(path: str | Path) -> Study:
         content = path.read_bytes()
         text = content.decode("utf-8-sig")
     except OSError as error:
-        raise FileError(path, f"cannot be read ({error.strerror or error})", "on opening it", "Check that it is there.") from None
+        raise FileError(
+            path, f"cannot be read ({error.strerror or error})", "on opening it", "Check that it is there."
+        ) from None
     except UnicodeDecodeError as error:
         raise FileError(path, "is not text", f"byte {error.start}", "Choose a study file.") from None
     return Study(path.resolve(), from_text(text, path), hashlib.sha256(content).hexdigest())
@@ -215,19 +240,25 @@ def from_text(text: str, path: Path = Path(FILE)) -> Plan:
     try:
         data, lines = parse(text)
     except TextError as error:
-        raise FileError(path, f"not valid YAML ({error})", f"line {error.line}" if error.line else "its text", _CORRECT) from None
+        raise FileError(
+            path, f"not valid YAML ({error})", f"line {error.line}" if error.line else "its text", _CORRECT
+        ) from None
 
     def failure(cause: str, where: str) -> FileError:
         place = where
         while place not in lines and place:
             place = place[: max(place.rfind("."), place.rfind("["), 0)]
-        return FileError(path, cause, f"line {lines.get(place, 1)}" + (f" ({where})" if where else ""), _CORRECT)
+        return FileError(
+            path, cause, f"line {lines.get(place, 1)}" + (f" ({where})" if where else ""), _CORRECT
+        )
 
     version = data.get("study") if isinstance(data, Mapping) else None
     if not isinstance(data, Mapping) or "study" not in data:
         raise failure("is no study: it should begin with 'study: 1'", "")
     if isinstance(version, int) and version > VERSION:
-        raise FileError(path, f"is of a newer version ({version}; this one reads {VERSION})", "study", "Update Metagraph.")
+        raise FileError(
+            path, f"is of a newer version ({version}; this one reads {VERSION})", "study", "Update Metagraph."
+        )
     if version != VERSION or isinstance(version, bool):
         raise failure(f"should be the version of the format, {VERSION}", "study")
     try:
@@ -236,7 +267,9 @@ def from_text(text: str, path: Path = Path(FILE)) -> Plan:
         message, _, where = str(error).partition(" - at `$")
         where = where.rstrip("`").lstrip(".").replace("[...]", "")
         unknown = re.search(r"unknown field `(\w+)`", message)
-        raise failure(_plain(message), ".".join(filter(None, (where, unknown[1] if unknown else "")))) from None
+        raise failure(
+            _plain(message), ".".join(filter(None, (where, unknown[1] if unknown else "")))
+        ) from None
     for where, cause in _faults(plan):
         raise failure(cause, where)
     return plan
@@ -259,7 +292,11 @@ def _plain(message: str) -> str:
 def _faults(plan: Plan) -> list[tuple[str, str]]:
     """Return what is wrong that the fields' types do not say: (field, cause)."""
     out: list[tuple[str, str]] = []
-    for field, names in (("participants", plan.ids), ("conditions", plan.conditions), ("tasks", [t.id for t in plan.tasks])):
+    for field, names in (
+        ("participants", plan.ids),
+        ("conditions", plan.conditions),
+        ("tasks", [t.id for t in plan.tasks]),
+    ):
         twice = sorted({n for n in names if list(names).count(n) > 1})
         if twice:
             out.append((field, f"'{twice[0]}' is there twice"))
@@ -277,11 +314,17 @@ def _faults(plan: Plan) -> list[tuple[str, str]]:
         where = f"questionnaires[{n}]"
         if isinstance(found, str):
             if found not in BUILT_IN:
-                out.append((where, f"there is no questionnaire '{found}' built in; there are {', '.join(BUILT_IN)}"))
+                out.append(
+                    (where, f"there is no questionnaire '{found}' built in; there are {', '.join(BUILT_IN)}")
+                )
             ids.append(found)
             continue
         ids.append(found.id)
-        out += [(f"{where}.items[{k}]", cause) for k, item in enumerate(found.items) for cause in _item_faults(item)]
+        out += [
+            (f"{where}.items[{k}]", cause)
+            for k, item in enumerate(found.items)
+            for cause in _item_faults(item)
+        ]
         if len({i.id for i in found.items}) < len(found.items):
             out.append((f"{where}.items", "two items have the same id"))
         if found.id in BUILT_IN:
@@ -299,7 +342,11 @@ def _item_faults(item: Item) -> list[str]:
     scale: Scale | None = item.scale
     if scale is not None and (scale.highest <= scale.lowest or (scale.highest - scale.lowest) % scale.step):
         return ["a scale goes up from one number to another, in whole steps"]
-    return ["there should be two choices at least, no two the same"] if item.choices and len(set(item.choices)) < 2 else []
+    return (
+        ["there should be two choices at least, no two the same"]
+        if item.choices and len(set(item.choices)) < 2
+        else []
+    )
 
 
 def _given_faults(plan: Plan, given: Mapping[str, tuple[str, ...]]) -> list[tuple[str, str]]:
@@ -314,7 +361,13 @@ def _given_faults(plan: Plan, given: Mapping[str, tuple[str, ...]]) -> list[tupl
         if who not in plan.ids:
             out.append((where, f"'{who}' does not take part"))
         elif odd:
-            out.append((where, f"'{odd[0]}' is neither a condition nor a condition and a task, as 'meta/{plan.tasks[0].id}'"))
+            out.append(
+                (
+                    where,
+                    f"'{odd[0]}' is neither a condition nor a condition and a task, as "
+                    f"'meta/{plan.tasks[0].id}'",
+                )
+            )
         elif len(set(order)) < len(order) or len({"/" in s for s in order}) > 1:
             out.append((where, "name each condition once, or each condition with each of its tasks"))
     return out
@@ -324,7 +377,8 @@ def _listed(names: tuple[str, ...]) -> str:
     return ", ".join(names[:4]) + (f" and {len(names) - 4} more" if len(names) > 4 else "")
 
 
-# --- the published schema --------------------------------------------------------------------------------------------
+# --- the published schema
+# --------------------------------------------------------------------------------------------
 
 SCHEMA = Path(__file__).with_name("study.schema.json")
 

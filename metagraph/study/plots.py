@@ -1,6 +1,8 @@
-"""Plots of a study as SVG text, drawn by us so that a report needs nothing beside it. Colours come from the page's style, light or dark.
+"""Plots of a study as SVG text, drawn by us so that a report needs nothing beside it. Colours come from the
+page's style, light or dark.
 
-Classes: `meta`, `manual` the conditions; `axis`, `grid`, `label`, `dim`; `s0`..`s4` the parts of a stacked bar.
+Classes: `meta`, `manual` the conditions; `axis`, `grid`, `label`, `dim`; `s0`..`s4` the parts of a stacked
+bar.
 """
 
 from __future__ import annotations
@@ -27,18 +29,27 @@ def seconds(value: float) -> str:
     return f"{value / 60:.3g} min" if value < 5400 else f"{value / 3600:.3g} h"
 
 
-def paired(people: Sequence[tuple[str, float, float]], means: Sequence[Estimate], names: tuple[str, str]) -> str:
-    """Each person's two times as a line on a logarithmic axis, with geometric means and their intervals. people: (name, left, right)."""
+def paired(
+    people: Sequence[tuple[str, float, float]], means: Sequence[Estimate], names: tuple[str, str]
+) -> str:
+    """Each person's two times as a line on a logarithmic axis, with geometric means and their intervals.
+    people: (name, left, right).
+    """
     height, top, bottom, xs = 380, 24, 340, (210.0, 430.0)
-    every = [v for _, a, b in people for v in (a, b)] + [v for m in means for v in (m.low, m.high) if v is not None]
+    every = [v for _, a, b in people for v in (a, b)] + [
+        v for m in means for v in (m.low, m.high) if v is not None
+    ]
     y, ticks = _log_axis(min(every), max(every), bottom, top, _TIMES)
     parts = [_grid(x1=80, x2=560, y=y(t), words=seconds(t)) for t in ticks]
     for name, a, b in people:
         words = escape(f"{name}: {seconds(a)} and {seconds(b)}, {b / a:.2f} times")
         parts.append(
-            f"<g class='person'><title>{words}</title>{_line(xs[0], y(a), xs[1], y(b))}{_dot(xs[0], y(a), 3)}{_dot(xs[1], y(b), 3)}</g>"
+            f"<g class='person'><title>{words}</title>{_line(xs[0], y(a), xs[1], y(b))}"
+            f"{_dot(xs[0], y(a), 3)}{_dot(xs[1], y(b), 3)}</g>"
         )
-    for x, mean, css, name, side in zip((xs[0] - 26, xs[1] + 26), means, ("meta", "manual"), names, (-1, 1), strict=True):
+    for x, mean, css, name, side in zip(
+        (xs[0] - 26, xs[1] + 26), means, ("meta", "manual"), names, (-1, 1), strict=True
+    ):
         parts.append(f"<g class='{css}'>{_vertical(x, mean, y)}</g>")
         anchor = "end" if side < 0 else "start"
         parts.append(_text(x + 12 * side, y(mean.value) + 4, seconds(mean.value), f"label {css}", anchor))
@@ -55,7 +66,10 @@ def ratios(rows: Sequence[tuple[str, Estimate]]) -> str:
     bottom = 18 + row * len(rows)
     parts = []
     for t in ticks:
-        parts.append(f"<line class='{'one' if t == 1 else 'grid'}' x1='{number(x(t))}' x2='{number(x(t))}' y1='12' y2='{bottom}'/>")
+        parts.append(
+            f"<line class='{'one' if t == 1 else 'grid'}' x1='{number(x(t))}' x2='{number(x(t))}' y1='12' "
+            f"y2='{bottom}'/>"
+        )
         parts.append(_text(x(t), bottom + 18, f"{t:g}", "dim", "middle"))
     for n, (name, e) in enumerate(rows):
         at = 18 + row * (n + 0.5)
@@ -68,19 +82,33 @@ def ratios(rows: Sequence[tuple[str, Estimate]]) -> str:
 
 
 def curves(found: Mapping[str, tuple[Sequence[float], float, float]], names: Mapping[str, str]) -> str:
-    """Seconds of the first, second ... clip, both axes logarithmic. found: condition -> (seconds, first and slope of the line)."""
+    """Seconds of the first, second ... clip, both axes logarithmic. found: condition -> (seconds, first and
+    slope of the line).
+    """
     height, top, bottom, left, right = 330, 20, 280, 70, 470
-    every = [s for values, first, slope in found.values() for s in (*values, first, first * len(values) ** slope)]
+    every = [
+        s for values, first, slope in found.values() for s in (*values, first, first * len(values) ** slope)
+    ]
     longest = max(len(values) for values, _, _ in found.values())
     y, ticks = _log_axis(min(every), max(every), bottom, top, _TIMES)
     x, across = _log_axis(1, max(2, longest), left, right, _COUNTS)
     parts = [_grid(x1=left, x2=right, y=y(t), words=seconds(t)) for t in ticks]
     parts += [_text(x(t), bottom + 18, f"{t:g}", "dim", "middle") for t in across]
-    parts.append(_text((left + right) / 2, bottom + 40, "how many clips were done before and with this one", "dim", "middle"))
+    parts.append(
+        _text(
+            (left + right) / 2,
+            bottom + 40,
+            "how many clips were done before and with this one",
+            "dim",
+            "middle",
+        )
+    )
     for condition, (values, first, slope) in found.items():
         dots = "".join(_dot(x(n), y(s), 3.5) for n, s in enumerate(values, 1))
         end = first * len(values) ** slope
-        parts.append(f"<g class='{condition}'>{_line(x(1), y(first), x(len(values)), y(end), 'wide')}{dots}</g>")
+        parts.append(
+            f"<g class='{condition}'>{_line(x(1), y(first), x(len(values)), y(end), 'wide')}{dots}</g>"
+        )
         parts.append(_text(x(len(values)) + 10, y(end) + 4, names[condition], f"label {condition}", "start"))
     return _svg(height, parts, "Seconds a clip, from the first clip to the last")
 
@@ -93,13 +121,18 @@ def stacked(rows: Mapping[str, Mapping[str, float]], names: Mapping[str, str]) -
     out = []
     for n, (condition, parts) in enumerate(rows.items()):
         at, total = 16 + row * n, sum(parts.values())
-        out.append(_text(left, at + 10, f"{names[condition]}: {seconds(total)} a task", f"label {condition}", "start"))
+        out.append(
+            _text(
+                left, at + 10, f"{names[condition]}: {seconds(total)} a task", f"label {condition}", "start"
+            )
+        )
         edge = float(left)
         for k, (name, value) in enumerate(parts.items()):
             wide = (right - left) * value / most
             words = escape(f"{name}: {seconds(value)}, {value / total if total else 0:.0%}")
             out.append(
-                f"<rect class='s{k}' x='{number(edge)}' y='{at + 18}' width='{number(wide)}' height='22'><title>{words}</title></rect>"
+                f"<rect class='s{k}' x='{number(edge)}' y='{at + 18}' width='{number(wide)}' "
+                f"height='22'><title>{words}</title></rect>"
             )
             if wide > 34:
                 out.append(_text(edge + wide / 2, at + 33, f"{value / total:.0%}", "inside", "middle"))
@@ -113,7 +146,9 @@ def stacked(rows: Mapping[str, Mapping[str, float]], names: Mapping[str, str]) -
 
 
 def means(rows: Sequence[tuple[str, Mapping[str, Estimate]]], low: float = 0.0, high: float = 100.0) -> str:
-    """Means with their intervals on a plain axis, the conditions below each other. rows: (name, condition -> mean)."""
+    """Means with their intervals on a plain axis, the conditions below each other. rows: (name, condition ->
+    mean).
+    """
     row, left, right = 46, 190, 560
     height, bottom = 24 + row * len(rows) + 30, 16 + row * len(rows)
 
@@ -136,17 +171,36 @@ def means(rows: Sequence[tuple[str, Mapping[str, Estimate]]], low: float = 0.0, 
     return _svg(height, parts, "Means with their intervals")
 
 
-# --- axes and marks --------------------------------------------------------------------------------------------------
+# --- axes and marks
+# --------------------------------------------------------------------------------------------------
 
 _TIMES = (
-    *(m * b for b in (0.01, 0.1, 1) for m in (1, 2, 5)), 10, 20, 30, 60, 120, 300, 600, 1200, 1800, 3600, 7200, 18000, 36000, 72000, 180000,
-    360000, 720000,
-)  # fmt: skip
+    *(m * b for b in (0.01, 0.1, 1) for m in (1, 2, 5)),
+    10,
+    20,
+    30,
+    60,
+    120,
+    300,
+    600,
+    1200,
+    1800,
+    3600,
+    7200,
+    18000,
+    36000,
+    72000,
+    180000,
+    360000,
+    720000,
+)
 _RATIOS = tuple(m * 10.0**b for b in range(-6, 7) for m in (1, 2, 5))
 _COUNTS = (1, 2, 3, 5, 10, 20, 50, 100, 200, 500, 1000, 2000, 5000)
 
 
-def _log_axis(low: float, high: float, start: float, end: float, nice: Sequence[float]) -> tuple[Place, list[float]]:
+def _log_axis(
+    low: float, high: float, start: float, end: float, nice: Sequence[float]
+) -> tuple[Place, list[float]]:
     """Return where a value lies between start and end, and the values to mark."""
     a, b = log10(low) - 0.06, log10(high) + 0.06
     if b - a < 0.3:
@@ -166,7 +220,11 @@ def _grid(x1: float, x2: float, y: float, words: str) -> str:
 
 
 def _vertical(x: float, mean: Estimate, y: Place) -> str:
-    bar = _line(x, y(mean.low), x, y(mean.high), "wide") if mean.low is not None and mean.high is not None else ""
+    bar = (
+        _line(x, y(mean.low), x, y(mean.high), "wide")
+        if mean.low is not None and mean.high is not None
+        else ""
+    )
     return f"{bar}{_dot(x, y(mean.value), 6)}"
 
 
@@ -180,7 +238,9 @@ def _dot(x: float, y: float, r: float) -> str:
 
 
 def _text(x: float, y: float, words: str, css: str, anchor: str) -> str:
-    return f"<text class='{css}' x='{number(x)}' y='{number(y)}' text-anchor='{anchor}'>{escape(words)}</text>"
+    return (
+        f"<text class='{css}' x='{number(x)}' y='{number(y)}' text-anchor='{anchor}'>{escape(words)}</text>"
+    )
 
 
 def _svg(height: float, parts: Sequence[str], title: str) -> str:

@@ -1,7 +1,9 @@
 """Questionnaires: what they ask, and what their answers amount to.
 
-SUS: John Brooke, "SUS: a quick and dirty usability scale", in Jordan et al. (eds.), Usability Evaluation in Industry, Taylor and Francis
-1996. NASA-TLX: Sandra G. Hart and Lowell E. Staveland, "Development of NASA-TLX (Task Load Index): results of empirical and theoretical
+SUS: John Brooke, "SUS: a quick and dirty usability scale", in Jordan et al. (eds.), Usability Evaluation in
+Industry, Taylor and Francis
+1996. NASA-TLX: Sandra G. Hart and Lowell E. Staveland, "Development of NASA-TLX (Task Load Index): results of
+      empirical and theoretical
 research", in Hancock and Meshkati (eds.), Human Mental Workload, North-Holland 1988. The wording is theirs.
 """
 
@@ -20,7 +22,9 @@ BUTTONS = 11  # a scale of more points than this is a slider
 
 
 class Scale(Struct, frozen=True, forbid_unknown_fields=True):
-    """Numbers from one to another. left, right: what the ends mean. step: between two numbers that can be chosen."""
+    """Numbers from one to another. left, right: what the ends mean. step: between two numbers that can be
+    chosen.
+    """
 
     lowest: int = msgspec.field(name="from")
     highest: int = msgspec.field(name="to")
@@ -34,8 +38,9 @@ class Scale(Struct, frozen=True, forbid_unknown_fields=True):
 
 
 class Item(Struct, frozen=True, forbid_unknown_fields=True):
-    """A question, answered on a scale, by one of some choices, or in words. title: a short name above the question. optional: it may be
-    left open; words always may."""
+    """A question, answered on a scale, by one of some choices, or in words. title: a short name above the
+    question. optional: it may be left open; words always may.
+    """
 
     id: Name
     text: str
@@ -87,11 +92,17 @@ TLX_SCALES = {
     "physical": ("Physical demand", "How physically demanding was the task?", _LOAD),
     "temporal": ("Temporal demand", "How hurried or rushed was the pace of the task?", _LOAD),
     "performance": (
-        "Performance", "How successful were you in accomplishing what you were asked to do?", Scale(0, 100, "Perfect", "Failure", 5),
+        "Performance",
+        "How successful were you in accomplishing what you were asked to do?",
+        Scale(0, 100, "Perfect", "Failure", 5),
     ),
     "effort": ("Effort", "How hard did you have to work to accomplish your level of performance?", _LOAD),
-    "frustration": ("Frustration", "How insecure, discouraged, irritated, stressed, and annoyed were you?", _LOAD),
-}  # fmt: skip
+    "frustration": (
+        "Frustration",
+        "How insecure, discouraged, irritated, stressed, and annoyed were you?",
+        _LOAD,
+    ),
+}
 TLX_PAIRS = tuple(combinations(TLX_SCALES, 2))
 TLX = Questionnaire(
     "tlx",
@@ -104,7 +115,11 @@ TLX_WEIGHTED = Questionnaire(
     (
         *TLX.items,
         *(
-            Item(f"{a}-{b}", "Which of the two contributed more to the load of the work?", choices=(TLX_SCALES[a][0], TLX_SCALES[b][0]))
+            Item(
+                f"{a}-{b}",
+                "Which of the two contributed more to the load of the work?",
+                choices=(TLX_SCALES[a][0], TLX_SCALES[b][0]),
+            )
             for a, b in TLX_PAIRS
         ),
     ),
@@ -115,7 +130,8 @@ BUILT_IN: Mapping[str, Questionnaire] = {q.id: q for q in (SUS, TLX, TLX_WEIGHTE
 
 
 def sus_score(answers: Mapping[str, Any]) -> float:
-    """Return 0..100: odd items give their place on the scale less 1, even ones 5 less it; the sum times 2.5 (Brooke 1996).
+    """Return 0..100: odd items give their place on the scale less 1, even ones 5 less it; the sum times 2.5
+    (Brooke 1996).
 
     answers: sus1..sus10, each 1..5. Raises ValueError where one is missing or no such number.
     """
@@ -132,16 +148,21 @@ def tlx_raw(answers: Mapping[str, Any]) -> float:
 
 
 def tlx_weighted(answers: Mapping[str, Any]) -> float:
-    """Return 0..100: the mean of the six scales, weighted by how often each was chosen in the 15 pairs (Hart and Staveland 1988).
+    """Return 0..100: the mean of the six scales, weighted by how often each was chosen in the 15 pairs (Hart
+    and Staveland 1988).
 
-    answers: the scales by name, and for each pair "mental-physical" the title that was chosen. Raises ValueError as `sus_score` does.
+    answers: the scales by name, and for each pair "mental-physical" the title that was chosen. Raises
+    ValueError as `sus_score` does.
     """
     titles = {title: key for key, (title, _, _) in TLX_SCALES.items()}
     weights = dict.fromkeys(TLX_SCALES, 0)
     for a, b in TLX_PAIRS:
         chosen = titles.get(str(answers.get(f"{a}-{b}")))
         if chosen not in (a, b):
-            raise ValueError(f"the pair '{a}-{b}' of the weighted TLX should be answered with '{TLX_SCALES[a][0]}' or '{TLX_SCALES[b][0]}'")
+            raise ValueError(
+                f"the pair '{a}-{b}' of the weighted TLX should be answered with '{TLX_SCALES[a][0]}' or "
+                f"'{TLX_SCALES[b][0]}'"
+            )
         weights[chosen] += 1
     return sum(weights[item.id] * _value(answers, item) for item in TLX.items) / len(TLX_PAIRS)
 
@@ -150,7 +171,11 @@ def _value(answers: Mapping[str, Any], item: Item) -> float:
     scale = item.scale
     assert scale is not None
     value = answers.get(item.id)
-    if isinstance(value, bool) or not isinstance(value, int | float) or not scale.lowest <= value <= scale.highest:
+    if (
+        isinstance(value, bool)
+        or not isinstance(value, int | float)
+        or not scale.lowest <= value <= scale.highest
+    ):
         said = "is not answered" if value is None else f"is answered with {value!r}"
         raise ValueError(f"'{item.id}' {said}; it should be a number from {scale.lowest} to {scale.highest}")
     return float(value)

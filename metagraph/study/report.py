@@ -1,4 +1,6 @@
-"""The report of a study: one HTML page that needs nothing beside it, and tables as CSV. The same data give the same bytes."""
+"""The report of a study: one HTML page that needs nothing beside it, and tables as CSV. The same data give
+the same bytes.
+"""
 
 from __future__ import annotations
 
@@ -47,7 +49,10 @@ def page(results: Results) -> str:
         _missing(results),
         f"<h2>How it was reckoned</h2>{METHODS}",
     ]
-    head = "<meta charset='utf-8'><meta name='viewport' content='width=device-width'><link rel='icon' href='data:,'>"
+    head = (
+        "<meta charset='utf-8'><meta name='viewport' content='width=device-width'><link rel='icon' "
+        "href='data:,'>"
+    )
     head += f"<title>{escape(data.title)}: report</title><style>{STYLE}</style>"
     body = "\n".join(filter(None, parts))
     return f"<!doctype html>\n<html lang='en'><head>{head}</head><body>\n{body}\n</body></html>\n"
@@ -61,22 +66,33 @@ def summary(results: Results) -> list[str]:
         return ["Nobody has begun a task yet."]
     if time is None:
         found = sorted({TITLES[r.run.condition] for r in done})
-        return [f"There is nothing to compare yet: {f'only {found[0]} was' if found else 'no task was'} brought to an end."]
+        return [
+            f"There is nothing to compare yet: {f'only {found[0]} was' if found else 'no task was'} brought "
+            "to an end."
+        ]
     first = f"Working on the {TITLES[ABOVE]} took {times(time.ratio)} as long as with the {TITLES[BELOW]}"
     out = [f"{first} ({_who(time)})."]
     f1 = next((m for m in results.mistakes if m.name.startswith("F1")), None)
     if f1 is not None and ABOVE in f1.means and BELOW in f1.means:
         below, above = (f1.means[c].value for c in (BELOW, ABOVE))
-        out.append(f"Connections were right to {below:.1f} % (F1) with the meta-graph, to {above:.1f} % by hand.")
+        out.append(
+            f"Connections were right to {below:.1f} % (F1) with the meta-graph, to {above:.1f} % by hand."
+        )
     for name, better in (("SUS", "higher"), ("NASA-TLX, raw", "lower")):
-        found_rating = next((m for m in results.ratings if m.name == name and ABOVE in m.means and BELOW in m.means), None)
+        found_rating = next(
+            (m for m in results.ratings if m.name == name and ABOVE in m.means and BELOW in m.means), None
+        )
         if found_rating is not None:
             means = found_rating.means
-            out.append(f"{name} ({better} is better): {means[BELOW].value:.1f} with the meta-graph, {means[ABOVE].value:.1f} by hand.")
+            out.append(
+                f"{name} ({better} is better): {means[BELOW].value:.1f} with the meta-graph, "
+                f"{means[ABOVE].value:.1f} by hand."
+            )
     return out
 
 
-# --- parts -----------------------------------------------------------------------------------------------------------
+# --- parts
+# --------------------------------------------------------------------------------------------------
 
 
 def _headline(results: Results) -> str:
@@ -84,7 +100,9 @@ def _headline(results: Results) -> str:
     cautions = results.time.cautions if results.time is not None else ()
     big = f"<p class='big'>{escape(first)}</p>" + "".join(f"<p>{escape(words)}</p>" for words in rest)
     warned = "".join(f"<li>{escape(words)}</li>" for words in cautions)
-    return f"<div class='card'>{big}</div>" + (f"<div class='card warn'><ul>{warned}</ul></div>" if warned else "")
+    return f"<div class='card'>{big}</div>" + (
+        f"<div class='card warn'><ul>{warned}</ul></div>" if warned else ""
+    )
 
 
 def _time(results: Results) -> str:
@@ -95,7 +113,11 @@ def _time(results: Results) -> str:
     rows: list[tuple[str, Estimate]] = [("all tasks", time.ratio)]
     if time.order is not None:
         rows.append(("both orders alike", time.order.adjusted))
-    rows += [(results.data.tasks[task], ratio) for task, (ratio, _, _) in results.by_task.items() if len(results.by_task) > 1]
+    rows += [
+        (results.data.tasks[task], ratio)
+        for task, (ratio, _, _) in results.by_task.items()
+        if len(results.by_task) > 1
+    ]
     body = [
         [f"{TITLES[c]}, {unit}", _interval(time.means[c], seconds), ""] for c in (BELOW, ABOVE)
     ]  # fmt: skip
@@ -108,13 +130,16 @@ def _time(results: Results) -> str:
         body.append(["matched-pairs rank biserial", f"{time.biserial:.2f}", ""])
     for task, (ratio, test, p) in results.by_task.items() if len(results.by_task) > 1 else ():
         words = f"{tested(test)}; Holm: {chance(p)}" if p is not None else tested(test)
-        body.append([f"ratio, {escape(results.data.tasks[task])}", _interval(ratio, lambda v: f"{v:.2f}"), words])
+        body.append(
+            [f"ratio, {escape(results.data.tasks[task])}", _interval(ratio, lambda v: f"{v:.2f}"), words]
+        )
     out = "<h2>Time</h2>"
     if time.people:
         pairs = [(p.participant, p.below, p.above) for p in time.people]
         out += _figure(
             plots.paired(pairs, (time.means[BELOW], time.means[ABOVE]), (TITLES[BELOW], TITLES[ABOVE])),
-            f"Each line is one person: seconds {unit}, on a logarithmic axis. Beside them the geometric means with 95 % intervals.",
+            f"Each line is one person: seconds {unit}, on a logarithmic axis. Beside them the geometric "
+            "means with 95 % intervals.",
         )
     out += _figure(plots.ratios(rows), "How many times as long it took by hand, with 95 % intervals.")
     return out + _table(("", "value, 95 % interval", "test"), body) + _order(time)
@@ -124,16 +149,25 @@ def _order(time: Comparison) -> str:
     order = time.order
     if order is None:
         return ""
-    second = f"A second sitting took {times(order.second)} as long as a first one ({_range(order.second)}, {tested(order.second_test)})."
+    second = (
+        f"A second sitting took {times(order.second)} as long as a first one ({_range(order.second)}, "
+        f"{tested(order.second_test)})."
+    )
     carried = (
-        f"Those who began by hand took {times(order.carried)} as long over both as those who began with the meta-graph "
+        f"Those who began by hand took {times(order.carried)} as long over both as those who began with the "
+        "meta-graph "
         f"({_range(order.carried)}, {tested(order.carried_test)}): "
     )
     if order.carried.holds(1.0):
-        carried += "no sign that anything carried over from one to the other, though such a check finds only large effects."
+        carried += (
+            "no sign that anything carried over from one to the other, though such a check finds "
+            "only "
+            "large effects."
+        )
     else:
         carried += (
-            "something carried over, or the two groups were unlike. By first sittings alone, which nothing can have carried over to, the "
+            "something carried over, or the two groups were unlike. By first sittings alone, which nothing "
+            "can have carried over to, the "
             f"ratio is {order.first.value:.2f} ({_range(order.first)})."
         )
     return f"<h3>Order</h3><p>{second}</p><p>{carried}</p>"
@@ -147,8 +181,13 @@ def _learning(results: Results) -> str:
     for c, curve in results.curves.items():
         twice = 2**curve.slope.value
         words = f"With each doubling of the clips done, a clip took {twice:.2f} of the time"
-        said.append(f"<li>{escape(TITLES[c])}: slope {_interval(curve.slope, lambda v: f'{v:.3f}')}. {words}.</li>")
-    caption = "Geometric means over those who came so far, and the power law of practice; both axes are logarithmic."
+        said.append(
+            f"<li>{escape(TITLES[c])}: slope {_interval(curve.slope, lambda v: f'{v:.3f}')}. {words}.</li>"
+        )
+    caption = (
+        "Geometric means over those who came so far, and the power law of practice; both axes are "
+        "logarithmic."
+    )
     return f"<h2>Practice</h2>{_figure(plots.curves(lines, TITLES), caption)}<ul>{''.join(said)}</ul>"
 
 
@@ -157,15 +196,25 @@ def _spent(results: Results) -> str:
         return ""
     out = "<h2>Where the time went</h2>"
     out += _figure(
-        plots.stacked({c: {str(k): v for k, v in parts.items()} for c, parts in results.spent.items()}, TITLES),
+        plots.stacked(
+            {c: {str(k): v for k, v in parts.items()} for c, parts in results.spent.items()}, TITLES
+        ),
         "What a task went into, arithmetic means.",
     )
     if results.predicted:
         rows = [
-            [TITLES[c], _interval(p.observed, seconds), _interval(p.model, seconds), _interval(p.share, lambda v: f"{v:.2f}")]
+            [
+                TITLES[c],
+                _interval(p.observed, seconds),
+                _interval(p.model, seconds),
+                _interval(p.share, lambda v: f"{v:.2f}"),
+            ]
             for c, p in results.predicted.items()
         ]
-        out += "<h3>Beside the keystroke-level model</h3><p>What an expert who makes no mistake would need for the same operators.</p>"
+        out += (
+            "<h3>Beside the keystroke-level model</h3><p>What an expert who makes no mistake would need "
+            "for the same operators.</p>"
+        )
         out += _table(("a task", "observed", "predicted", "observed / predicted"), rows)
     return out
 
@@ -180,19 +229,29 @@ def _measures(title: str, words: str, measures: Sequence[Measure]) -> str:
             escape(m.name),
             *(_interval(m.means.get(c), lambda v: f"{v:.2f}") for c in columns),
             _interval(m.difference, lambda v: f"{v:.2f}"),
-            tested(m.test) if m.test is not None and (m.difference is None or m.difference.value != 0) else "",
+            tested(m.test)
+            if m.test is not None and (m.difference is None or m.difference.value != 0)
+            else "",
         ]
         for m in measures
         if m.name not in never
     ]
     if never:
         words += f" Nobody ever had: {', '.join(never)}."
-    return f"<h2>{title}</h2><p>{escape(words)}</p>" + _table(("", *(TITLES[c] for c in columns), "difference", "test"), rows)
+    return f"<h2>{title}</h2><p>{escape(words)}</p>" + _table(
+        ("", *(TITLES[c] for c in columns), "difference", "test"), rows
+    )
 
 
 def _ratings(results: Results) -> str:
     known = [(m.name, m.means) for m in results.ratings if m.name in TOTALS and set(m.means) <= set(TITLES)]
-    plot = _figure(plots.means(known), "Means with 95 % intervals. SUS: more is better; NASA-TLX: less is better.") if known else ""
+    plot = (
+        _figure(
+            plots.means(known), "Means with 95 % intervals. SUS: more is better; NASA-TLX: less is better."
+        )
+        if known
+        else ""
+    )
     table = _measures("Ratings", "The difference is by hand less meta-graph.", results.ratings)
     return table.replace("</h2>", f"</h2>{plot}", 1) if table else ""
 
@@ -209,14 +268,18 @@ def _missing(results: Results) -> str:
     data = results.data
     begun = len({r.run.participant for r in data.rows})
     done = sum(1 for r in data.rows if r.done)
-    words = f"{begun} of {len(data.participants)} people have begun; {done} of {len(data.rows)} tasks they began were brought to an end."
+    words = (
+        f"{begun} of {len(data.participants)} people have begun; {done} of {len(data.rows)} tasks they "
+        "began were brought to an end."
+    )
     items = "".join(f"<li>{escape(text)}</li>" for text in data.missing)
     return f"<h2>What is there, and what is not</h2><p>{words}</p>" + (
         f"<ul class='warn'>{items}</ul>" if items else "<p>Nothing is missing.</p>"
     )
 
 
-# --- words and cells -------------------------------------------------------------------------------------------------
+# --- words and cells
+# --------------------------------------------------------------------------------------------------
 
 
 def times(ratio: Estimate) -> str:
@@ -242,7 +305,9 @@ def _who(time: Comparison) -> str:
     people = f"{time.ratio.n} {'person' if time.ratio.n == 1 else 'people'}"
     if time.ratio.low is None:
         return f"no interval, {people}"
-    return f"95 % interval {time.ratio.low:.2f} to {time.ratio.high:.2f}, {people}" + ("" if time.paired else ", each doing only one")
+    return f"95 % interval {time.ratio.low:.2f} to {time.ratio.high:.2f}, {people}" + (
+        "" if time.paired else ", each doing only one"
+    )
 
 
 def _range(found: Estimate) -> str:

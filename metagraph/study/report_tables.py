@@ -1,4 +1,6 @@
-"""A study's data as CSV tables: a row a participant, a task, a clip, a mistake, an answer. Times in seconds."""
+"""A study's data as CSV tables: a row a participant, a task, a clip, a mistake, an answer. Times in
+seconds.
+"""
 
 from __future__ import annotations
 
@@ -57,32 +59,107 @@ def participants(results: Results) -> Table:
         mine = [r for r in data.rows if r.run.participant == who]
         person = time.get(who)
         order = "-".join(dict.fromkeys(r.run.condition for r in mine)) or None
-        ratings = [next((r.value for r in data.ratings if (r.participant, r.measure, r.condition) == (who, m, c)), None)
-                   for m in ("SUS", "NASA-TLX, raw") for c in data.conditions]  # fmt: skip
+        ratings = [
+            next(
+                (r.value for r in data.ratings if (r.participant, r.measure, r.condition) == (who, m, c)),
+                None,
+            )
+            for m in ("SUS", "NASA-TLX, raw")
+            for c in data.conditions
+        ]
         out.append(
-            (who, order, len(mine), sum(1 for r in mine if r.done), person and person.below, person and person.above,
-             person and person.ratio, *ratings)
-        )  # fmt: skip
+            (
+                who,
+                order,
+                len(mine),
+                sum(1 for r in mine if r.done),
+                person and person.below,
+                person and person.above,
+                person and person.ratio,
+                *ratings,
+            )
+        )
     rated = tuple(f"{m}_{c}" for m in ("sus", "tlx") for c in data.conditions)
-    return ("participant", "order", "tasks_begun", "tasks_done", "meta_seconds", "manual_seconds", "ratio", *rated), out
+    return (
+        "participant",
+        "order",
+        "tasks_begun",
+        "tasks_done",
+        "meta_seconds",
+        "manual_seconds",
+        "ratio",
+        *rated,
+    ), out
 
 
-SCORES = ("precision", "recall", "f1", "right", "missing", "extra", "wrong", "essential", "essential_right", "states", "placed", "jumps")
+SCORES = (
+    "precision",
+    "recall",
+    "f1",
+    "right",
+    "missing",
+    "extra",
+    "wrong",
+    "essential",
+    "essential_right",
+    "states",
+    "placed",
+    "jumps",
+)
 
 
 def tasks(data: Data) -> Table:
     columns = (
-        "participant", "condition", "task", "sitting", "index", "begun", "finished", "timed_out", "seconds", "wall", "paused", "away",
-        "clips", "predicted_seconds", "edits", "undos", "errors", *OPERATORS, "drag_seconds", *(f"{s}_seconds" for s in SPENT), *SCORES,
-    )  # fmt: skip
+        "participant",
+        "condition",
+        "task",
+        "sitting",
+        "index",
+        "begun",
+        "finished",
+        "timed_out",
+        "seconds",
+        "wall",
+        "paused",
+        "away",
+        "clips",
+        "predicted_seconds",
+        "edits",
+        "undos",
+        "errors",
+        *OPERATORS,
+        "drag_seconds",
+        *(f"{s}_seconds" for s in SPENT),
+        *SCORES,
+    )
     rows: list[tuple[Any, ...]] = []
     for r in data.rows:
         t = r.run
-        rows.append((
-            t.participant, t.condition, t.task, r.sitting, t.index, t.begun, t.finished, t.timed_out, t.seconds, t.wall, t.paused, t.away,
-            r.clips, r.predicted, t.edits, t.undos, t.errors, *(t.operators[o] for o in OPERATORS), t.drag_s, *(t.spent[s] for s in SPENT),
-            *_scores(r.score),
-        ))  # fmt: skip
+        rows.append(
+            (
+                t.participant,
+                t.condition,
+                t.task,
+                r.sitting,
+                t.index,
+                t.begun,
+                t.finished,
+                t.timed_out,
+                t.seconds,
+                t.wall,
+                t.paused,
+                t.away,
+                r.clips,
+                r.predicted,
+                t.edits,
+                t.undos,
+                t.errors,
+                *(t.operators[o] for o in OPERATORS),
+                t.drag_s,
+                *(t.spent[s] for s in SPENT),
+                *_scores(r.score),
+            )
+        )
     return columns, rows
 
 
@@ -109,7 +186,13 @@ def mistakes(data: Data) -> Table:
 
 
 def questionnaires(data: Data) -> Table:
-    rows: list[tuple[Any, ...]] = [(a.participant, a.condition, a.task, a.questionnaire, a.item, a.value) for a in data.answers]
+    rows: list[tuple[Any, ...]] = [
+        (a.participant, a.condition, a.task, a.questionnaire, a.item, a.value) for a in data.answers
+    ]
     totals: Mapping[str, str] = {"SUS": "sus", "NASA-TLX, raw": "tlx", "NASA-TLX, weighted": "tlx_weighted"}
-    rows += [(r.participant, r.condition, None, totals[r.measure], "score", r.value) for r in data.ratings if r.measure in totals]
+    rows += [
+        (r.participant, r.condition, None, totals[r.measure], "score", r.value)
+        for r in data.ratings
+        if r.measure in totals
+    ]
     return ("participant", "condition", "task", "questionnaire", "item", "value"), rows

@@ -1,7 +1,8 @@
-"""How right a machine is, beside a reference: connections found, missing and too many, and what was mistaken about each clip, in words.
+"""How right a machine is, beside a reference: connections found, missing and too many, and what was mistaken
+about each clip, in words.
 
-Both are in normal form, so it does not matter how they were authored, nor how stances are called: stances are those whose loops,
-and then whose actions, are the same.
+Both are in normal form, so it does not matter how they were authored, nor how stances are called: stances are
+those whose loops, and then whose actions, are the same.
 """
 
 from __future__ import annotations
@@ -21,15 +22,24 @@ NAMED = 4  # clips in a sentence, of more only how many
 
 What = Literal["absent", "unwanted", "kind", "stance", "layer", "mask", "timing", "missing", "extra", "jump"]
 WORDS: Mapping[What, str] = {
-    "absent": "not placed", "unwanted": "not wanted", "kind": "wrong kind", "stance": "wrong stance", "layer": "wrong layer",
-    "mask": "wrong limb or joints", "timing": "wrong timing", "missing": "missing connections", "extra": "extra connections",
+    "absent": "not placed",
+    "unwanted": "not wanted",
+    "kind": "wrong kind",
+    "stance": "wrong stance",
+    "layer": "wrong layer",
+    "mask": "wrong limb or joints",
+    "timing": "wrong timing",
+    "missing": "missing connections",
+    "extra": "extra connections",
     "jump": "visible jumps",
-}  # fmt: skip
+}
 
 
 @dataclass(frozen=True, slots=True)
 class Mistake:
-    """what: the sort; clip: the state it is about; count: how many connections or fields; words: a sentence."""
+    """what: the sort; clip: the state it is about; count: how many connections or fields; words: a
+    sentence.
+    """
 
     what: What
     layer: Layer
@@ -40,10 +50,11 @@ class Mistake:
 
 @dataclass(frozen=True)
 class Score:
-    """right, missing, extra: connections. wrong: of these, those that lead to another target instead. essential, essential_right: the
-    connections between a stance's rest and its actions that the reference has, and of them those that were found. states: that the
-    reference has; placed: of these, those with the right layer, kind, stance and limb. jumps: connections that jump, None where it was not
-    judged."""
+    """right, missing, extra: connections. wrong: of these, those that lead to another target instead.
+    essential, essential_right: the connections between a stance's rest and its actions that the reference
+    has, and of them those that were found. states: that the reference has; placed: of these, those with the
+    right layer, kind, stance and limb. jumps: connections that jump, None where it was not judged.
+    """
 
     right: int = 0
     missing: int = 0
@@ -74,13 +85,19 @@ class Score:
 
     def count(self, what: What) -> int:
         """Return how many mistakes of a sort there are: clips, for connections how many of them."""
-        return sum(m.count if what in ("missing", "extra", "jump") else 1 for m in self.mistakes if m.what == what)
+        return sum(
+            m.count if what in ("missing", "extra", "jump") else 1 for m in self.mistakes if m.what == what
+        )
 
     def with_jumps(self, jumps: int | None, mistakes: Iterable[Mistake]) -> Score:
         return replace(self, jumps=jumps, mistakes=(*self.mistakes, *mistakes))
 
 
-def score(attempt: Mapping[Layer, NormalMachine], reference: Mapping[Layer, NormalMachine], tolerance: float = TOLERANCE) -> Score:
+def score(
+    attempt: Mapping[Layer, NormalMachine],
+    reference: Mapping[Layer, NormalMachine],
+    tolerance: float = TOLERANCE,
+) -> Score:
     """Return how right an attempt is. tolerance: seconds by which a time may be off."""
     right = missing = extra = wrong = essential = essential_right = states = placed = 0
     mistakes: list[Mistake] = []
@@ -91,7 +108,11 @@ def score(attempt: Mapping[Layer, NormalMachine], reference: Mapping[Layer, Norm
         less, more = want.connections.keys() - both, got.connections.keys() - both
         right, missing, extra = right + len(both), missing + len(less), extra + len(more)
         wrong += (Counter(a for a, _ in less) & Counter(a for a, _ in more)).total()
-        rests = {p for p in want.connections if (want.states[p[0]].kind == "stance") != (want.states[p[1]].kind == "stance")}
+        rests = {
+            p
+            for p in want.connections
+            if (want.states[p[0]].kind == "stance") != (want.states[p[1]].kind == "stance")
+        }
         essential, essential_right = essential + len(rests), essential_right + len(rests & both)
         stances = matched_stances(got, want)
         states += len(want.states)
@@ -107,19 +128,26 @@ def score(attempt: Mapping[Layer, NormalMachine], reference: Mapping[Layer, Norm
         mistakes += _timing(got, want, both, tolerance)
         mistakes += _listed("missing", layer, less) + _listed("extra", layer, more)
     mistakes.sort(key=lambda m: (list(WORDS).index(m.what), m.layer, m.clip, m.words))
-    return Score(right, missing, extra, wrong, essential, essential_right, states, placed, None, tuple(mistakes))
+    return Score(
+        right, missing, extra, wrong, essential, essential_right, states, placed, None, tuple(mistakes)
+    )
 
 
-def equivalent(a: Mapping[Layer, NormalMachine], b: Mapping[Layer, NormalMachine], tolerance: float = TOLERANCE) -> bool:
+def equivalent(
+    a: Mapping[Layer, NormalMachine], b: Mapping[Layer, NormalMachine], tolerance: float = TOLERANCE
+) -> bool:
     """Return whether two machines are the same but for the names and the order of what is in them."""
     return not score(a, b, tolerance).mistakes
 
 
-# --- which is which --------------------------------------------------------------------------------------------------
+# --- which is which
+# --------------------------------------------------------------------------------------------------
 
 
 def matched_stances(got: NormalMachine, want: NormalMachine) -> dict[str, str]:
-    """Return stance of the one -> stance of the other: those that share most loops, then most actions, come together first."""
+    """Return stance of the one -> stance of the other: those that share most loops, then most actions, come
+    together first.
+    """
     shared: Counter[tuple[str, str]] = Counter()
     for key in got.states.keys() & want.states.keys():
         mine, theirs = got.states[key], want.states[key]
@@ -138,7 +166,9 @@ def matched_stances(got: NormalMachine, want: NormalMachine) -> dict[str, str]:
 
 
 def aligned(got: NormalMachine, want: NormalMachine) -> NormalMachine:
-    """Return a machine with its several uses of one clip numbered as the other has them: those that are used alike are the same."""
+    """Return a machine with its several uses of one clip numbered as the other has them: those that are used
+    alike are the same.
+    """
     renamed: dict[str, str] = {}
     for clip in {s.clip for s in got.states.values()}:
         mine = [k for k, s in got.states.items() if s.clip == clip]
@@ -152,7 +182,9 @@ def aligned(got: NormalMachine, want: NormalMachine) -> NormalMachine:
         return renamed.get(key, key)
 
     states = {name(k): replace(s, key=name(k)) for k, s in got.states.items()}
-    return replace(got, states=states, connections={(name(a), name(b)): c for (a, b), c in got.connections.items()})
+    return replace(
+        got, states=states, connections={(name(a), name(b)): c for (a, b), c in got.connections.items()}
+    )
 
 
 def _numbered(mine: list[str], theirs: list[str], got: NormalMachine, want: NormalMachine) -> dict[str, str]:
@@ -176,10 +208,13 @@ def _numbered(mine: list[str], theirs: list[str], got: NormalMachine, want: Norm
 
 
 def _alike(a: str, b: str, got: NormalMachine, want: NormalMachine) -> float:
-    """Return how alike two uses of a clip are: by their neighbours, which clips they are, then by kind, limb and part."""
+    """Return how alike two uses of a clip are: by their neighbours, which clips they are, then by kind, limb
+    and part.
+    """
     mine, theirs = got.states[a], want.states[b]
     near = [
-        {(m.states[y].clip, "to") for x, y in m.connections if x == k} | {(m.states[x].clip, "from") for x, y in m.connections if y == k}
+        {(m.states[y].clip, "to") for x, y in m.connections if x == k}
+        | {(m.states[x].clip, "from") for x, y in m.connections if y == k}
         for m, k in ((got, a), (want, b))
     ]
     union = len(near[0] | near[1])
@@ -188,17 +223,26 @@ def _alike(a: str, b: str, got: NormalMachine, want: NormalMachine) -> float:
     return 4 * same + (mine.kind == theirs.kind) + 0.5 * (mine.limb == theirs.limb) + 0.5 / (1 + off)
 
 
-def _told_by_links(got: NormalMachine, want: NormalMachine, less: Collection[Pair], more: Collection[Pair]) -> frozenset[str]:
-    """Return the states whose place follows from links drawn by hand and is unclear only since some to or from rest were forgotten: that
-    is one mistake, and is told of the links."""
+def _told_by_links(
+    got: NormalMachine, want: NormalMachine, less: Collection[Pair], more: Collection[Pair]
+) -> frozenset[str]:
+    """Return the states whose place follows from links drawn by hand and is unclear only since some to or
+    from rest were forgotten: that is one mistake, and is told of the links.
+    """
 
     def at_rest(pairs: Iterable[Pair], machine: NormalMachine) -> set[str]:
-        return {key for a, b in pairs for key, rest in ((a, b), (b, a)) if key in want.states and machine.states[rest].kind == "stance"}
+        return {
+            key
+            for a, b in pairs
+            for key, rest in ((a, b), (b, a))
+            if key in want.states and machine.states[rest].kind == "stance"
+        }
 
     return frozenset(at_rest(less, want) - at_rest(more, got))
 
 
-# --- mistakes --------------------------------------------------------------------------------------------------------
+# --- mistakes
+# --------------------------------------------------------------------------------------------------
 
 
 def _placing(
@@ -209,10 +253,19 @@ def _placing(
     attempt: Mapping[Layer, NormalMachine],
     layer: Layer,
 ) -> list[Mistake]:
-    """Return what is wrong about where a clip is placed; nothing where links drawn by hand do not tell, as that is told of the links."""
+    """Return what is wrong about where a clip is placed; nothing where links drawn by hand do not tell, as
+    that is told of the links.
+    """
     key = want.key
     if got is None:
-        elsewhere = next((x for x, m in attempt.items() if x != layer and any(s.clip == want.clip for s in m.states.values())), None)
+        elsewhere = next(
+            (
+                x
+                for x, m in attempt.items()
+                if x != layer and any(s.clip == want.clip for s in m.states.values())
+            ),
+            None,
+        )
         if elsewhere is not None:
             return [Mistake("layer", layer, key, 1, f"{key} is on {elsewhere} rather than on {layer}.")]
         return [Mistake("absent", layer, key, 1, f"{key} is not placed on {layer}.")]
@@ -239,12 +292,20 @@ def _kind(state: NormalState) -> str:
 
 def _moved(state: NormalState) -> str:
     limb = {"both": "everything", "left": "the left arm", "right": "the right arm"}[state.limb]
-    return limb if not state.joints else f"{len(state.joints)} joints" + (f" of {limb}" if state.limb != "both" else "")
+    return (
+        limb
+        if not state.joints
+        else f"{len(state.joints)} joints" + (f" of {limb}" if state.limb != "both" else "")
+    )
 
 
-def _timing(got: NormalMachine, want: NormalMachine, both: Collection[Pair], tolerance: float) -> list[Mistake]:
-    """Return the times that are off. Loops are left whenever something is asked, so when is not compared; the blend between two is told
-    once, of the clip that has it: of what is going back to rest its own, else that of what comes."""
+def _timing(
+    got: NormalMachine, want: NormalMachine, both: Collection[Pair], tolerance: float
+) -> list[Mistake]:
+    """Return the times that are off. Loops are left whenever something is asked, so when is not compared; the
+    blend between two is told once, of the clip that has it: of what is going back to rest its own, else that
+    of what comes.
+    """
     out: dict[tuple[str, str], list[tuple[float | None, float | None]]] = {}
     for key in want.states.keys() & got.states.keys():
         a, b = got.states[key], want.states[key]
@@ -258,10 +319,18 @@ def _timing(got: NormalMachine, want: NormalMachine, both: Collection[Pair], tol
             out.setdefault((pair[0], "may be left"), []).append((c.leave, d.leave))
         if _apart(c.blend, d.blend, tolerance):
             back = target.kind == "stance" and source.kind != "stance"
-            out.setdefault((pair[0], "blends out") if back else (pair[1], "blends in"), []).append((c.blend, d.blend))
+            out.setdefault((pair[0], "blends out") if back else (pair[1], "blends in"), []).append(
+                (c.blend, d.blend)
+            )
     mistakes = []
     for (key, name), offs in sorted(out.items()):
-        mine, theirs = max(offs, key=lambda o: (abs((o[0] if o[0] is not None else 1e3) - (o[1] if o[1] is not None else 1e3)), str(o)))
+        mine, theirs = max(
+            offs,
+            key=lambda o: (
+                abs((o[0] if o[0] is not None else 1e3) - (o[1] if o[1] is not None else 1e3)),
+                str(o),
+            ),
+        )
         where = f", on {len(offs)} connections" if len(offs) > 1 else ""
         words = f"{key} {name} {_when(mine, name)} rather than {_when(theirs, name)}{where}."
         mistakes.append(Mistake("timing", want.layer, key, len(offs), words))
@@ -284,7 +353,10 @@ def _listed(what: Literal["missing", "extra"], layer: Layer, pairs: Iterable[Pai
     for source, target in sorted(pairs):
         by.setdefault(source, []).append(target)
     verb = "does not lead to" if what == "missing" else "should not lead to"
-    return [Mistake(what, layer, source, len(targets), f"{source} {verb} {named(targets)}.") for source, targets in by.items()]
+    return [
+        Mistake(what, layer, source, len(targets), f"{source} {verb} {named(targets)}.")
+        for source, targets in by.items()
+    ]
 
 
 def named(names: list[str]) -> str:

@@ -1,7 +1,8 @@
-"""Connections of a machine that jump visibly: beyond what the clips themselves show between frames, once the blend is taken off.
+"""Connections of a machine that jump visibly: beyond what the clips themselves show between frames, once the
+blend is taken off.
 
-The measure is that of `suggest.compatibility` (Yang et al., section 6), its statistics those of the reference's clips, so that all attempts
-are judged alike.
+The measure is that of `suggest.compatibility` (Yang et al., section 6), its statistics those of the
+reference's clips, so that all attempts are judged alike.
 """
 
 from __future__ import annotations
@@ -26,8 +27,10 @@ Frames = tuple[Array, Array]  # positions and velocities `[G, J, 3]`
 
 
 def with_jumps(found: Score, attempt: Mapping[Layer, NormalMachine], reference: Project) -> Score:
-    """Return a score with the attempt's visible jumps, and each state that jumps among the mistakes. reference: with its clips loaded;
-    where they are not there, or too few to tell what is usual, jumps stay None."""
+    """Return a score with the attempt's visible jumps, and each state that jumps among the mistakes.
+    reference: with its clips loaded; where they are not there, or too few to tell what is usual, jumps stay
+    None.
+    """
     count: int | None = None
     mistakes: list[Mistake] = []
     for layer, machine in attempt.items():
@@ -42,7 +45,9 @@ def with_jumps(found: Score, attempt: Mapping[Layer, NormalMachine], reference: 
                 by.setdefault(source, []).append((target, cost))
         for source, jumps in by.items():
             worst = max(cost for _, cost in jumps)
-            words = f"{source} jumps to {named([t for t, _ in jumps])}: up to {worst:.1f} times what is usual."
+            words = (
+                f"{source} jumps to {named([t for t, _ in jumps])}: up to {worst:.1f} times what is usual."
+            )
             mistakes.append(Mistake("jump", layer, source, len(jumps), words))
     return found.with_jumps(count, mistakes)
 
@@ -53,12 +58,20 @@ class _Judge:
     def __init__(self, reference: Project, layer: Layer) -> None:
         self.project, self.layer = reference, layer
         self.measured = Measured(reference, layer)
-        own = {i: e.motion for i, e in reference.clips.items() if e.motion is not None and e.motion.skeleton == reference.skeleton}
-        self.motions: dict[str, Clip] = {name: own[i] for i, name in clip_names(reference).items() if i in own}
+        own = {
+            i: e.motion
+            for i, e in reference.clips.items()
+            if e.motion is not None and e.motion.skeleton == reference.skeleton
+        }
+        self.motions: dict[str, Clip] = {
+            name: own[i] for i, name in clip_names(reference).items() if i in own
+        }
         self._weights: dict[Any, Array] = {}
 
     def costs(self, machine: NormalMachine) -> dict[tuple[str, str], float]:
-        """Return connection -> what shows of it, beside the threshold; those whose clips are not there are left out."""
+        """Return connection -> what shows of it, beside the threshold; those whose clips are not there are
+        left out.
+        """
         entries = {k: f for k, s in machine.states.items() if (f := self._entry(s)) is not None}
         exits: dict[tuple[str, float | None], Frames | None] = {}
         out = {}
@@ -71,7 +84,8 @@ class _Judge:
             if left is None or b not in entries:
                 continue
             far = self._far(left, entries[b], self._moved(source) * self._moved(target))
-            # A loop is left and entered where it fits best; what may be left at any time, at no moment in particular.
+            # A loop is left and entered where it fits best; what may be left at any time, at no moment in
+            # particular.
             cost = float(far.min()) if source.loop or leave is not None else float(np.median(far.min(axis=1)))
             out[a, b] = float(shown(cost, c.blend))
         return out
@@ -97,7 +111,11 @@ class _Judge:
         track = track_of(rig_of(motion, self.measured.roles), motion)
         last = len(track) - 1
         first, final = (min(round(t * RATE), last) for t in (state.start, state.end))
-        chosen = np.array([min(at, last)]) if at is not None else np.unique(np.linspace(first, final, MOST_FRAMES).astype(int))
+        chosen = (
+            np.array([min(at, last)])
+            if at is not None
+            else np.unique(np.linspace(first, final, MOST_FRAMES).astype(int))
+        )
         return track[chosen], velocity_of(track)[chosen]
 
     def _moved(self, state: NormalState) -> Array:

@@ -1,7 +1,8 @@
-"""Simulated participants whose effects are known, to see whether an analysis finds them. They are no people, and reports of them say so.
+"""Simulated participants whose effects are known, to see whether an analysis finds them. They are no people,
+and reports of them say so.
 
-How long somebody works on their n-th clip: a base, times the person's own pace, times the condition, times n^slope for practice, times
-the order for the second sitting, times chance; all log-normal.
+How long somebody works on their n-th clip: a base, times the person's own pace, times the condition, times
+n^slope for practice, times the order for the second sitting, times chance; all log-normal.
 """
 
 from __future__ import annotations
@@ -22,10 +23,12 @@ CONDITIONS = ("meta", "manual")
 
 @dataclass(frozen=True)
 class Truth:
-    """What is put in. ratio: seconds by hand beside those with the meta-graph. seconds: for the first clip with the meta-graph.
-    learning: slope of log seconds over log of the clip's number. order: seconds of the second sitting beside the first. pace, spread: of
-    people, standard deviations of log seconds and of the log of their own ratio. chance: of a clip. slips: mean mistakes a task, meta and
-    by hand. sus, tlx: mean ratings, meta and by hand; sus_spread, tlx_spread: of people. Raises ValueError for what cannot be."""
+    """What is put in. ratio: seconds by hand beside those with the meta-graph. seconds: for the first clip
+    with the meta-graph. learning: slope of log seconds over log of the clip's number. order: seconds of the
+    second sitting beside the first. pace, spread: of people, standard deviations of log seconds and of the
+    log of their own ratio. chance: of a clip. slips: mean mistakes a task, meta and by hand. sus, tlx: mean
+    ratings, meta and by hand; sus_spread, tlx_spread: of people. Raises ValueError for what cannot be.
+    """
 
     participants: int = 24
     seed: int = 1
@@ -48,7 +51,9 @@ class Truth:
                 raise ValueError(f"{name} should be greater than 0, not {getattr(self, name):g}")
         for name in ("pace", "spread", "chance", "sus_spread", "tlx_spread"):
             if not 0 <= getattr(self, name) < 100:
-                raise ValueError(f"{name} should not be less than 0, and less than 100, not {getattr(self, name):g}")
+                raise ValueError(
+                    f"{name} should not be less than 0, and less than 100, not {getattr(self, name):g}"
+                )
         if not 1 <= self.participants <= 1000:
             raise ValueError(f"there are 1 to 1000 participants, not {self.participants}")
         if not -3 <= self.learning <= 3:
@@ -91,12 +96,24 @@ def simulated(truth: Truth, tasks: Mapping[str, tuple[str, ...]]) -> Iterator[Si
                 seconds = {}
                 for clip in tasks[task]:
                     n += 1
-                    at = log(truth.seconds) + pace + own * by_hand + truth.learning * log(n) + log(truth.order) * sitting
+                    at = (
+                        log(truth.seconds)
+                        + pace
+                        + own * by_hand
+                        + truth.learning * log(n)
+                        + log(truth.order) * sitting
+                    )
                     seconds[clip] = exp(at + rng.normal(0, truth.chance))
                 works.append(Work(condition, task, seconds, int(rng.poisson(truth.slips[by_hand]))))
         liking, load = rng.normal(0, truth.sus_spread), rng.normal(0, truth.tlx_spread)
-        sus = {c: _steps(m + liking + rng.normal(0, truth.sus_spread), 2.5) for c, m in zip(CONDITIONS, truth.sus, strict=True)}
-        tlx = {c: _steps(m + load + rng.normal(0, truth.tlx_spread), 5 / 6) for c, m in zip(CONDITIONS, truth.tlx, strict=True)}
+        sus = {
+            c: _steps(m + liking + rng.normal(0, truth.sus_spread), 2.5)
+            for c, m in zip(CONDITIONS, truth.sus, strict=True)
+        }
+        tlx = {
+            c: _steps(m + load + rng.normal(0, truth.tlx_spread), 5 / 6)
+            for c, m in zip(CONDITIONS, truth.tlx, strict=True)
+        }
         yield Simulated(f"P{number + 1:0{width}}", tuple(works), sus, tlx)
 
 
@@ -113,11 +130,26 @@ def numbers(truth: Truth, tasks: Mapping[str, tuple[str, ...]]) -> Data:
         for index, work in enumerate(person.works):
             total = sum(work.seconds.values())
             run = TaskRun(
-                person.participant, work.condition, work.task, index, total, total, Counter(), 0.0, len(work.seconds), 0, 0, work.seconds,
-                dict.fromkeys(SPENT, total / len(SPENT)), True, None,
-            )  # fmt: skip
+                person.participant,
+                work.condition,
+                work.task,
+                index,
+                total,
+                total,
+                Counter(),
+                0.0,
+                len(work.seconds),
+                0,
+                0,
+                work.seconds,
+                dict.fromkeys(SPENT, total / len(SPENT)),
+                True,
+                None,
+            )
             rows.append(Row(run, 1 if work.condition == began else 2, len(work.seconds), 0.0))
         for name, scores in (("SUS", person.sus), ("NASA-TLX, raw", person.tlx)):
             ratings += [Rating(person.participant, name, c, value) for c, value in scores.items()]
     people = tuple(dict.fromkeys(r.run.participant for r in rows))
-    return Data("Simulated", CONDITIONS, {t: t for t in tasks}, people, tuple(rows), tuple(ratings), simulated=True)
+    return Data(
+        "Simulated", CONDITIONS, {t: t for t in tasks}, people, tuple(rows), tuple(ratings), simulated=True
+    )

@@ -1,4 +1,6 @@
-"""A whole study of simulated participants as files: plan, clips, references, logs and projects, small and all of them valid."""
+"""A whole study of simulated participants as files: plan, clips, references, logs and projects, small and all
+of them valid.
+"""
 
 from __future__ import annotations
 
@@ -35,7 +37,8 @@ STEP = 30.0  # seconds between events, about: gaps of more than a minute would c
 OBSERVED = 1.4  # times what the keystroke-level model predicts
 FIRST_DAY = datetime(2026, 1, 5, 9, tzinfo=UTC)
 
-# stance -> how far both arms are raised, radians; task -> clips by stance, (name, kind, how far the right arm goes further)
+# stance -> how far both arms are raised, radians; task -> clips by stance, (name, kind, how far the right arm
+# goes further)
 RAISED = {"sides": 0.15, "hips": 0.7, "crossed": 1.2}
 GESTURES = {
     "sides": (("wave", "gesture", 1.6), ("shrug", "gesture", 0.5), ("scratch", "fidget", 0.9)),
@@ -54,9 +57,13 @@ def clips_of(task: str) -> tuple[str, ...]:
 
 
 def write_study(folder: Path, truth: Truth) -> Study:
-    """Write a study. Raises FileError, also where there is one already: what people did is not to be mixed with what nobody did."""
+    """Write a study. Raises FileError, also where there is one already: what people did is not to be mixed
+    with what nobody did.
+    """
     if folder.exists() and any(folder.iterdir()):
-        raise FileError(folder, "is not empty", "on writing the simulated study", "Give a folder that is not there yet.")
+        raise FileError(
+            folder, "is not empty", "on writing the simulated study", "Give a folder that is not there yet."
+        )
     for name in clips_of("large"):
         (folder / "clips").mkdir(parents=True, exist_ok=True)
         write_bvh(_clip(name), folder / "clips" / f"{name}.bvh")
@@ -65,26 +72,36 @@ def write_study(folder: Path, truth: Truth) -> Study:
         save_project(project, folder / f"{task}.metagraph.yaml")
     write_atomically(folder / FILE, _plan(truth).encode())
     study = read_study(folder)
-    right = {(task, c): p if c == "meta" else drawn(p) for task, p in references.items() for c in ("meta", "manual")}
+    right = {
+        (task, c): p if c == "meta" else drawn(p)
+        for task, p in references.items()
+        for c in ("meta", "manual")
+    }
     for number, person in enumerate(simulated(truth, {t: clips_of(t) for t in TASKS})):
         _Sitting(study, person, right, truth, number).write()
     return study
 
 
 def _plan(truth: Truth) -> str:
-    told = ", ".join(f"{name} {getattr(truth, name):g}" for name in ("ratio", "learning", "order", "pace", "spread", "chance"))
+    told = ", ".join(
+        f"{name} {getattr(truth, name):g}"
+        for name in ("ratio", "learning", "order", "pace", "spread", "chance")
+    )
     tasks = "".join(
-        f"- id: {task}\n  title: {len(clips_of(task))} clips\n  clips: [{', '.join(f'clips/{n}.bvh' for n in clips_of(task))}]\n"
+        f"- id: {task}\n  title: {len(clips_of(task))} clips\n  clips: "
+        f"[{', '.join(f'clips/{n}.bvh' for n in clips_of(task))}]\n"
         f"  reference: {task}.metagraph.yaml\n  instructions: Make them play without a jump.\n"
         for task in TASKS
     )
     return (
         f"# Nobody took part in this study: it was simulated ({told}).\nstudy: 1\ntitle: A simulated study\n"
-        f"participants: {truth.participants}\nconditions: [meta, manual]\nseed: {truth.seed}\ntasks:\n{tasks}questionnaires: [sus, tlx]\n"
+        f"participants: {truth.participants}\nconditions: [meta, manual]\nseed: "
+        f"{truth.seed}\ntasks:\n{tasks}questionnaires: [sus, tlx]\n"
     )
 
 
-# --- clips and references --------------------------------------------------------------------------------------------
+# --- clips and references
+# --------------------------------------------------------------------------------------------
 
 JOINTS = (
     ("Hips", -1, (0, 0.95, 0)), ("Spine", 0, (0, 0.2, 0)), ("Head", 1, (0, 0.35, 0)),
@@ -114,7 +131,11 @@ def _clip(name: str) -> Clip:
     breath = 0.02 * np.sin(2 * np.pi * t)
     turns = np.tile(rest, (61, 1, 1))
     names = [n for n, _, _ in JOINTS]
-    for joint, angle in (("LeftArm", left - np.pi / 2 + breath), ("RightArm", np.pi / 2 - right - breath), ("Spine", 0.5 * breath)):
+    for joint, angle in (
+        ("LeftArm", left - np.pi / 2 + breath),
+        ("RightArm", np.pi / 2 - right - breath),
+        ("Spine", 0.5 * breath),
+    ):
         turns[:, names.index(joint)] = np.stack([0 * t, 0 * t, np.sin(angle / 2), np.cos(angle / 2)], 1)
     return Clip(name, skeleton, 30.0, turns, np.tile(offsets[:1], (61, 1, 1)))
 
@@ -122,27 +143,41 @@ def _clip(name: str) -> Clip:
 def _reference(folder: Path, task: str) -> Project:
     """Return the right answer, its paths relative to the study's folder."""
     paths = [folder / "clips" / f"{n}.bvh" for n in clips_of(task)]
-    project = edits.add_clips(Project(task), [(f"clips/{p.name}", 0, digest(p), read_clips(p)[0]) for p in paths])
+    project = edits.add_clips(
+        Project(task), [(f"clips/{p.name}", 0, digest(p), read_clips(p)[0]) for p in paths]
+    )
     ids = {e.name: e.id for e in project.clips.values()}
     for stance in TASKS[task]:
         project = edits.add_stance(project, LAYER, stance, [ids[f"{stance}_idle"]])
     stances = {s.name: s.id for s in project.graphs[LAYER].stances.values()}
     for stance, ident in stances.items():
         for name, kind, _ in GESTURES[stance]:
-            project = edits.place(project, [ids[f"{stance}_{name}"]], LAYER, "gesture" if kind == "gesture" else "fidget", ident)
+            project = edits.place(
+                project, [ids[f"{stance}_{name}"]], LAYER, "gesture" if kind == "gesture" else "fidget", ident
+            )
         for other in stances:
             if other != stance:
-                project = edits.place(project, [ids[f"{stance}_to_{other}"]], LAYER, "transition", ident, stances[other])
+                project = edits.place(
+                    project, [ids[f"{stance}_to_{other}"]], LAYER, "transition", ident, stances[other]
+                )
     return project
 
 
-# --- logs ------------------------------------------------------------------------------------------------------------
+# --- logs
+# --------------------------------------------------------------------------------------------------
 
 
 class _Sitting:
     """Writes one participant's log and projects, event by event as the window would."""
 
-    def __init__(self, study: Study, person: Simulated, right: Mapping[tuple[str, str], Project], truth: Truth, number: int) -> None:
+    def __init__(
+        self,
+        study: Study,
+        person: Simulated,
+        right: Mapping[tuple[str, str], Project],
+        truth: Truth,
+        number: int,
+    ) -> None:
         self.study, self.person, self.right = study, person, right
         self.rng = np.random.default_rng((truth.seed, number, 1))
         self.start = FIRST_DAY + timedelta(days=number)
@@ -152,11 +187,27 @@ class _Sitting:
     def add(self, kind: str, after: float = 0.0, **fields: Any) -> None:
         self.mono += after
         wall = wall_time(self.start + timedelta(seconds=self.mono))
-        self.events.append({"n": len(self.events), "run": "simulated", "mono": round(self.mono, 6), "wall": wall, "type": kind, **fields})
+        self.events.append(
+            {
+                "n": len(self.events),
+                "run": "simulated",
+                "mono": round(self.mono, 6),
+                "wall": wall,
+                "type": kind,
+                **fields,
+            }
+        )
 
     def write(self) -> None:
         works = {(w.condition, w.task): w for w in self.person.works}
-        self.add("begin", participant=self.person.participant, study=self.study.digest, version="", machine={}, simulated=True)
+        self.add(
+            "begin",
+            participant=self.person.participant,
+            study=self.study.digest,
+            version="",
+            machine={},
+            simulated=True,
+        )
         for phase in phases(self.study, self.person.participant):
             self.add("phase", 1.0, state="begin", **phase.fields)
             if phase.name == "task":
@@ -167,15 +218,26 @@ class _Sitting:
             self.add("phase", 0.0 if phase.name == "task" else 2.0, state="end", why="done", **phase.fields)
         self.add("end")
         lines = (json.dumps(e, ensure_ascii=False, separators=(",", ":")) for e in self.events)
-        write_atomically(self.study.log(self.person.participant), "".join(f"{line}\n" for line in lines).encode())
+        write_atomically(
+            self.study.log(self.person.participant), "".join(f"{line}\n" for line in lines).encode()
+        )
 
     def _work(self, phase: Phase, work: Work) -> None:
         for clip, seconds in work.seconds.items():
             self._clip(clip, seconds, work.condition)
         folder = self.study.data(self.person.participant)
-        project = slipped(self.right[work.task, work.condition], work.condition == "manual", work.slips, self.rng)
+        project = slipped(
+            self.right[work.task, work.condition], work.condition == "manual", work.slips, self.rng
+        )
         save_project(project, folder / phase.file, self.study.folder / FILE)
-        self.add("artefact", path=phase.file, digest=digest(folder / phase.file), why="done", condition=work.condition, task=work.task)
+        self.add(
+            "artefact",
+            path=phase.file,
+            digest=digest(folder / phase.file),
+            why="done",
+            condition=work.condition,
+            task=work.task,
+        )
 
     def _clip(self, clip: str, seconds: float, condition: str) -> None:
         """Tell of the work on one clip, which ends with an edit of it."""
@@ -193,7 +255,9 @@ class _Sitting:
             elif n % 5 == 2 and condition == "manual" and self.rng.random() < 0.3:
                 self.add("undo", words="Take back")
             elif n % 2 == 0:
-                self.add("edit", what="timing" if self.rng.random() < 0.4 else "link", words="Change it", clips=[])
+                self.add(
+                    "edit", what="timing" if self.rng.random() < 0.4 else "link", words="Change it", clips=[]
+                )
 
     def _operators(self, seconds: float, last: bool) -> dict[str, Any]:
         """Return operators for which an expert would take some of these seconds."""
@@ -202,7 +266,15 @@ class _Sitting:
         points = round(left / (2 * USUAL.P)) + drags
         keys = round(max(0.0, left - points * (USUAL.P + 2 * USUAL.B) - USUAL.H) / USUAL.K / 2)
         drag_s = round(min(seconds / 4, 1.6 * drags), 3)
-        return {"K": keys, "P": points, "B": 2 * points, "D": drags, "H": 1, "seconds": round(seconds, 3), "drag_s": drag_s}
+        return {
+            "K": keys,
+            "P": points,
+            "B": 2 * points,
+            "D": drags,
+            "H": 1,
+            "seconds": round(seconds, 3),
+            "drag_s": drag_s,
+        }
 
     def _answers(self, phase: Phase) -> Iterator[tuple[str, int]]:
         assert phase.questionnaire is not None and phase.condition is not None
@@ -212,6 +284,8 @@ class _Sitting:
                 given = points // 10 + (n < points % 10)
                 yield item.id, 1 + given if n % 2 == 0 else 5 - given
             return
-        steps = round(self.person.tlx[phase.condition] * len(TLX.items) / 5)  # of all scales, which go in fives
+        steps = round(
+            self.person.tlx[phase.condition] * len(TLX.items) / 5
+        )  # of all scales, which go in fives
         for n, item in enumerate(TLX.items):
             yield item.id, 5 * (steps // len(TLX.items) + (n < steps % len(TLX.items)))

@@ -1,4 +1,6 @@
-"""Work to simulate: a machine drawn by hand that does what a meta-graph does, and slips of the kinds people make."""
+"""Work to simulate: a machine drawn by hand that does what a meta-graph does, and slips of the kinds people
+make.
+"""
 
 from __future__ import annotations
 
@@ -16,25 +18,43 @@ WIDE, HIGH, COLUMNS = 216.0, 88.0, 6  # how states lie in the editor
 
 
 def drawn(project: Project) -> Project:
-    """Return the project with a link drawn by hand for every connection its meta-graph stands for, and without the meta-graph's actions."""
+    """Return the project with a link drawn by hand for every connection its meta-graph stands for, and
+    without the meta-graph's actions.
+    """
     out = replace(edits.remove_actions(project, [a.id for a in project.actions()]), manual={})
     for layer in LAYERS:
         actions = project.graphs[layer].actions
         if not actions:
             continue
         states = {
-            a.id: State(a.id, a.clip, a.name, layer, a.kind == "stance" or a.timing.loop, *project.span(a), a.limb, a.joints,
-                        n % COLUMNS * WIDE, n // COLUMNS * HIGH)
+            a.id: State(
+                a.id,
+                a.clip,
+                a.name,
+                layer,
+                a.kind == "stance" or a.timing.loop,
+                *project.span(a),
+                a.limb,
+                a.joints,
+                n % COLUMNS * WIDE,
+                n // COLUMNS * HIGH,
+            )
             for n, a in enumerate(actions.values())
-        }  # fmt: skip
+        }
         links: dict[str, Link] = {}
         for n, c in enumerate(connections(project, project.graphs[layer])):
             ident = f"l{out.next_id + n}"
             leave = c.leave
             if leave is not None and leave >= project.span(actions[c.source])[1]:
-                leave = max(0.0, leave - c.blend)  # both run on while it blends, so it begins that much sooner
-            links[ident] = Link(ident, c.source, c.target, _condition(actions[c.source], actions[c.target]), leave, c.blend)
-        out = out.with_manual(Manual(layer, states, links, next(iter(states))), next_id=out.next_id + len(links))
+                leave = max(
+                    0.0, leave - c.blend
+                )  # both run on while it blends, so it begins that much sooner
+            links[ident] = Link(
+                ident, c.source, c.target, _condition(actions[c.source], actions[c.target]), leave, c.blend
+            )
+        out = out.with_manual(
+            Manual(layer, states, links, next(iter(states))), next_id=out.next_id + len(links)
+        )
     return out
 
 
@@ -44,12 +64,14 @@ def _condition(source: Action, target: Action) -> Condition:
     return Condition("request", target.name)
 
 
-# --- slips -----------------------------------------------------------------------------------------------------------
+# --- slips
+# --------------------------------------------------------------------------------------------------
 
 
 def slipped(project: Project, manual: bool, slips: int, rng: np.random.Generator) -> Project:
-    """Return the project with some slips: by hand links that were forgotten or lead elsewhere, in a meta-graph clips on the wrong node or
-    stance, in both times that are off."""
+    """Return the project with some slips: by hand links that were forgotten or lead elsewhere, in a
+    meta-graph clips on the wrong node or stance, in both times that are off.
+    """
     for _ in range(slips):
         project = _slip_by_hand(project, rng) if manual else _slip(project, rng)
     return project
@@ -65,7 +87,9 @@ def _slip_by_hand(project: Project, rng: np.random.Generator) -> Project:
         return manual_edits.remove(project, links=[link.id])
     if sort == 2:
         target = _any(list(machine.states), rng)
-        return project.with_manual(replace(machine, links={**machine.links, link.id: replace(link, target=target)}))
+        return project.with_manual(
+            replace(machine, links={**machine.links, link.id: replace(link, target=target)})
+        )
     state = _any(list(machine.states.values()), rng)
     return manual_edits.update_states(project, [state.id], start=round(state.start + 0.3, 3))
 
@@ -77,9 +101,13 @@ def _slip(project: Project, rng: np.random.Generator) -> Project:
     action = _any(actions, rng)
     sort = int(rng.integers(3))
     if sort == 0:
-        return edits.move_actions(project, [action.id], "fidget" if action.kind == "gesture" else "gesture", action.stance)
+        return edits.move_actions(
+            project, [action.id], "fidget" if action.kind == "gesture" else "gesture", action.stance
+        )
     if sort == 1:
-        return edits.move_actions(project, [action.id], action.kind, _any(list(project.graphs[action.layer].stances), rng))
+        return edits.move_actions(
+            project, [action.id], action.kind, _any(list(project.graphs[action.layer].stances), rng)
+        )
     return edits.update_actions(project, [action.id], timing={"start": round(action.timing.start + 0.3, 3)})
 
 

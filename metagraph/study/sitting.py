@@ -1,4 +1,6 @@
-"""A sitting: the phases one participant goes through. Where it stands follows from the log alone, so that it goes on after any crash."""
+"""A sitting: the phases one participant goes through. Where it stands follows from the log alone, so that it
+goes on after any crash.
+"""
 
 from __future__ import annotations
 
@@ -20,8 +22,9 @@ WORK: tuple[PhaseName, ...] = ("training", "task")  # phases with a project in t
 
 @dataclass(frozen=True)
 class Phase:
-    """index: its place in the sitting. condition, task: ids, where it is about one. minutes: the limit, of a break how long it should be.
-    clips: of the work, as the plan names them."""
+    """index: its place in the sitting. condition, task: ids, where it is about one. minutes: the limit, of a
+    break how long it should be. clips: of the work, as the plan names them.
+    """
 
     index: int
     name: PhaseName
@@ -58,8 +61,10 @@ class Phase:
 
 @dataclass(frozen=True)
 class Where:
-    """phase: the one that runs, or comes next; None at the end. begun: it runs. elapsed: seconds it has lasted, without pauses. answers:
-    given in it. artefact: what was made in it is there already, and only its end was not told."""
+    """phase: the one that runs, or comes next; None at the end. begun: it runs. elapsed: seconds it has
+    lasted, without pauses. answers: given in it. artefact: what was made in it is there already, and only its
+    end was not told.
+    """
 
     phase: Phase | None
     begun: bool = False
@@ -73,7 +78,9 @@ class SittingError(ValueError):
 
 
 def phases(study: Study, participant: str) -> tuple[Phase, ...]:
-    """Return what a participant goes through, from consent to end. Raises ValueError for one who does not take part."""
+    """Return what a participant goes through, from consent to end. Raises ValueError for one who does not
+    take part.
+    """
     plan = study.plan
     out: list[Phase] = []
 
@@ -83,7 +90,14 @@ def phases(study: Study, participant: str) -> tuple[Phase, ...]:
     def ask(when: str, condition: str | None = None, task: str | None = None) -> None:
         for q in plan.questions():
             if (q.when or plan.when) == when:
-                add("questionnaire", q.title or "Some questions", q.instructions, condition=condition, task=task, questionnaire=q)
+                add(
+                    "questionnaire",
+                    q.title or "Some questions",
+                    q.instructions,
+                    condition=condition,
+                    task=task,
+                    questionnaire=q,
+                )
 
     if plan.consent:
         add("consent", plan.title, plan.consent)
@@ -95,9 +109,21 @@ def phases(study: Study, participant: str) -> tuple[Phase, ...]:
         editor = CONDITION_TITLES[condition]
         for training in plan.training if condition not in trained else ():
             if training.condition == condition:
-                add("instructions", f"Practice: {editor}", training.instructions, condition=condition, minutes=training.minutes)
-                add("training", f"Practice: {editor}", training.instructions, condition=condition, minutes=training.minutes,
-                    clips=training.clips)  # fmt: skip
+                add(
+                    "instructions",
+                    f"Practice: {editor}",
+                    training.instructions,
+                    condition=condition,
+                    minutes=training.minutes,
+                )
+                add(
+                    "training",
+                    f"Practice: {editor}",
+                    training.instructions,
+                    condition=condition,
+                    minutes=training.minutes,
+                    clips=training.clips,
+                )
         trained.add(condition)
         for ident in tasks:
             task = plan.task(ident)
@@ -131,16 +157,26 @@ def where(course: Sequence[Phase], events: Sequence[Event]) -> Where:
         elif event["type"] == "phase":
             starts = event.get("state") == "begin"
             expected = course[done].fields if done < len(course) else {}
-            if {k: event.get(k) for k in expected} != expected or not expected or starts is (begun is not None):
+            if (
+                {k: event.get(k) for k in expected} != expected
+                or not expected
+                or starts is (begun is not None)
+            ):
                 told = " ".join(str(event[k]) for k in ("name", "condition", "task", "state") if k in event)
-                raise SittingError(f"event {event['n']} ({told}) does not fit the study: was the study file changed since?")
+                raise SittingError(
+                    f"event {event['n']} ({told}) does not fit the study: was the study file changed since?"
+                )
             if starts:
                 begun, elapsed, answers, artefact = event, 0.0, {}, None
             else:
                 begun, done = None, done + 1
     if done == len(course):
         return Where(None)
-    return Where(course[done], begun is not None, elapsed, answers, artefact) if begun is not None else Where(course[done])
+    return (
+        Where(course[done], begun is not None, elapsed, answers, artefact)
+        if begun is not None
+        else Where(course[done])
+    )
 
 
 def standing(study: Study, participant: str) -> str:
@@ -156,12 +192,15 @@ def standing(study: Study, participant: str) -> str:
 
 
 class Sitting:
-    """A sitting as it goes on: the one place that writes its phases. `writer` is open while it does; `close` at the end.
+    """A sitting as it goes on: the one place that writes its phases. `writer` is open while it does; `close`
+    at the end.
 
     log: what was there when it was opened. Raises FileError, and SittingError as `where`.
     """
 
-    def __init__(self, study: Study, participant: str, machine: dict[str, Any] | None = None, version: str = "") -> None:
+    def __init__(
+        self, study: Study, participant: str, machine: dict[str, Any] | None = None, version: str = ""
+    ) -> None:
         self.study, self.participant = study, participant
         self.course = phases(study, participant)
         self.writer = Writer(study.log(participant))
@@ -169,7 +208,9 @@ class Sitting:
             self.log: Log = self.writer.before
             self.now = where(self.course, self.log.events)
             if self.now.phase is not None or not self.log.complete:
-                self.writer.begin(participant=participant, study=study.digest, version=version, machine=machine or {})
+                self.writer.begin(
+                    participant=participant, study=study.digest, version=version, machine=machine or {}
+                )
         except (ValueError, FileError):
             self.writer.close()
             raise
@@ -208,13 +249,20 @@ class Sitting:
             self.writer.add("end")
 
     def keep(self, why: str = "done") -> None:
-        """Tell of the project that was made in the phase, as it is in its file, and end the phase. Raises FileError."""
+        """Tell of the project that was made in the phase, as it is in its file, and end the phase. Raises
+        FileError.
+        """
         phase = self.now.phase
         assert phase is not None
         try:
             digest = hashlib.sha256(self.file.read_bytes()).hexdigest()
         except OSError as error:
-            raise FileError(self.file, f"cannot be read ({error.strerror or error})", "on keeping it", "Save the project again.") from None
+            raise FileError(
+                self.file,
+                f"cannot be read ({error.strerror or error})",
+                "on keeping it",
+                "Save the project again.",
+            ) from None
         about = {k: v for k, v in phase.fields.items() if k in ("condition", "task")}
         self.writer.add("artefact", path=self.file.name, digest=digest, why=why, **about)
         self.end(why)

@@ -1,7 +1,9 @@
-"""Statistics of small studies: estimates with intervals first, tests beside them. Times are compared on logs, as ratios.
+"""Statistics of small studies: estimates with intervals first, tests beside them. Times are compared on logs,
+as ratios.
 
-Seconds of work are skewed and multiply rather than add (a person who is twice as slow is so at everything), so means of times are
-geometric, and conditions are compared by their ratio (Sauro and Lewis 2010, "Average task times in usability tests").
+Seconds of work are skewed and multiply rather than add (a person who is twice as slow is so at everything),
+so means of times are geometric, and conditions are compared by their ratio (Sauro and Lewis 2010, "Average
+task times in usability tests").
 """
 
 from __future__ import annotations
@@ -38,16 +40,26 @@ class Estimate:
     def exp(self) -> Estimate:
         """Return the estimate of logs as one of ratios."""
         return Estimate(
-            _exp(self.value), None if self.low is None else _exp(self.low), None if self.high is None else _exp(self.high), self.n
+            _exp(self.value),
+            None if self.low is None else _exp(self.low),
+            None if self.high is None else _exp(self.high),
+            self.n,
         )
 
     def __neg__(self) -> Estimate:
-        return Estimate(-self.value, None if self.high is None else -self.high, None if self.low is None else -self.low, self.n)
+        return Estimate(
+            -self.value,
+            None if self.high is None else -self.high,
+            None if self.low is None else -self.low,
+            self.n,
+        )
 
 
 @dataclass(frozen=True, slots=True)
 class Test:
-    """A two-sided test. df: degrees of freedom, None for ranks. p: None where it cannot be told. n: pairs, or people of both groups."""
+    """A two-sided test. df: degrees of freedom, None for ranks. p: None where it cannot be told. n: pairs, or
+    people of both groups.
+    """
 
     name: str
     statistic: float | None
@@ -85,7 +97,9 @@ def paired_t(a: Sequence[float], b: Sequence[float]) -> Test:
     spread = float(d.std(ddof=1))
     if spread == 0:
         same = float(d.mean()) == 0
-        return Test("paired t", 0.0 if same else float(np.sign(d.mean())) * inf, n - 1, 1.0 if same else 0.0, n)
+        return Test(
+            "paired t", 0.0 if same else float(np.sign(d.mean())) * inf, n - 1, 1.0 if same else 0.0, n
+        )
     t = float(d.mean()) / spread * sqrt(n)
     return Test("paired t", t, n - 1, t_two_sided(t, n - 1), n)
 
@@ -99,25 +113,33 @@ def welch(a: Sequence[float], b: Sequence[float], level: float = LEVEL) -> tuple
     va, vb = float(x.var(ddof=1)) / len(x), float(y.var(ddof=1)) / len(y)
     error = sqrt(va + vb)
     if error == 0:
-        return Estimate(d, d, d, n), Test("Welch's t", 0.0 if d == 0 else float(np.sign(d)) * inf, float(n - 2), 1.0 if d == 0 else 0.0, n)
+        return Estimate(d, d, d, n), Test(
+            "Welch's t", 0.0 if d == 0 else float(np.sign(d)) * inf, float(n - 2), 1.0 if d == 0 else 0.0, n
+        )
     df = (va + vb) ** 2 / (va**2 / (len(x) - 1) + vb**2 / (len(y) - 1))
     half = t_quantile((1 + level) / 2, df) * error
     return Estimate(d, d - half, d + half, n), Test("Welch's t", d / error, df, t_two_sided(d / error, df), n)
 
 
-# --- ranks -----------------------------------------------------------------------------------------------------------
+# --- ranks
+# --------------------------------------------------------------------------------------------------
 
 
 def signed_ranks(a: Sequence[float], b: Sequence[float]) -> tuple[np.ndarray, np.ndarray]:
-    """Return ranks `[n]` of the differences a - b by size, ties sharing their mean, and their signs `[n]`; pairs that do not differ
-    are ranked with the others and then left out (Pratt 1959)."""
+    """Return ranks `[n]` of the differences a - b by size, ties sharing their mean, and their signs `[n]`;
+    pairs that do not differ are ranked with the others and then left out (Pratt 1959).
+    """
     d = np.array(_paired(a, b))
     # Differences of logs that ought to be alike differ in their last digits.
     size = np.abs(d)
     size = np.where(size < 1e-12 * max(1.0, float(size.max(initial=0.0))), 0.0, size)
     order = np.argsort(size, kind="stable")
     ranks = np.empty(len(d))
-    edges = [0, *(np.flatnonzero(np.diff(size[order]) > 1e-12 * max(1.0, float(size.max(initial=0.0)))) + 1).tolist(), len(d)]
+    edges = [
+        0,
+        *(np.flatnonzero(np.diff(size[order]) > 1e-12 * max(1.0, float(size.max(initial=0.0)))) + 1).tolist(),
+        len(d),
+    ]
     for i, j in pairwise(edges):
         ranks[order[i:j]] = (i + 1 + j) / 2
     there = size > 0
@@ -125,10 +147,11 @@ def signed_ranks(a: Sequence[float], b: Sequence[float]) -> tuple[np.ndarray, np
 
 
 def wilcoxon(a: Sequence[float], b: Sequence[float]) -> Test:
-    """Return Wilcoxon's signed-rank test that a - b lies evenly about 0; the statistic is the sum of the positive ranks.
+    """Return Wilcoxon's signed-rank test that a - b lies evenly about 0; the statistic is the sum of the
+    positive ranks.
 
-    Up to EXACT pairs every way to give the ranks signs is counted, ties and all; beyond, by the normal distribution with a correction
-    for continuity.
+    Up to EXACT pairs every way to give the ranks signs is counted, ties and all; beyond, by the normal
+    distribution with a correction for continuity.
     """
     ranks, signs = signed_ranks(a, b)
     n = len(ranks)
@@ -151,18 +174,22 @@ def wilcoxon(a: Sequence[float], b: Sequence[float]) -> Test:
 
 
 def rank_biserial(a: Sequence[float], b: Sequence[float]) -> float | None:
-    """Return the matched-pairs rank biserial correlation, -1..1: the share of ranks for a > b less that against (Kerby 2014)."""
+    """Return the matched-pairs rank biserial correlation, -1..1: the share of ranks for a > b less that
+    against (Kerby 2014).
+    """
     ranks, signs = signed_ranks(a, b)
     return float((ranks * signs).sum() / ranks.sum()) if len(ranks) else None
 
 
-# --- sizes of effects, and of studies --------------------------------------------------------------------------------
+# --- sizes of effects, and of studies
+# --------------------------------------------------------------------------------
 
 
 def effect_size(a: Sequence[float], b: Sequence[float], level: float = LEVEL) -> Estimate | None:
-    """Return Cohen's d_z of pairs, the mean difference beside the differences' deviation, with Hedges' correction for small samples
-    (Hedges 1981, its exact form), and the interval of what it estimates, from the noncentral t distribution; None where the
-    differences do not vary."""
+    """Return Cohen's d_z of pairs, the mean difference beside the differences' deviation, with Hedges'
+    correction for small samples (Hedges 1981, its exact form), and the interval of what it estimates, from
+    the noncentral t distribution; None where the differences do not vary.
+    """
     d = np.array(_paired(a, b))
     n = len(d)
     spread = float(d.std(ddof=1)) if n > 1 else 0.0
@@ -189,7 +216,9 @@ def power(n: int, effect: float, alpha: float = 0.05) -> float:
 
 
 def people_needed(effect: float, wanted: float = 0.8, alpha: float = 0.05) -> int | None:
-    """Return how many pairs a paired t test needs to find an effect d_z that likely; None beyond MOST_PEOPLE."""
+    """Return how many pairs a paired t test needs to find an effect d_z that likely; None beyond
+    MOST_PEOPLE.
+    """
     if not isfinite(effect) or effect == 0:
         return None if effect == 0 else 2
     low, high = 1, 2
@@ -204,7 +233,9 @@ def people_needed(effect: float, wanted: float = 0.8, alpha: float = 0.05) -> in
 
 
 def holm(chances: Sequence[float | None]) -> list[float | None]:
-    """Return p values corrected for how many there are (Holm 1979), in their order; None stays None and is not counted."""
+    """Return p values corrected for how many there are (Holm 1979), in their order; None stays None and is
+    not counted.
+    """
     there = sorted((p, i) for i, p in enumerate(chances) if p is not None)
     out: list[float | None] = [None] * len(chances)
     most = 0.0
@@ -214,12 +245,14 @@ def holm(chances: Sequence[float | None]) -> list[float | None]:
     return out
 
 
-# --- learning, and order ---------------------------------------------------------------------------------------------
+# --- learning, and order
+# ---------------------------------------------------------------------------------------------
 
 
 def power_law(seconds: Sequence[float], level: float = LEVEL) -> tuple[Estimate, float] | None:
-    """Return the slope of log seconds over log of the how-many-eth, with its interval, and the seconds of the first on that line:
-    seconds = first * n^slope (Newell and Rosenbloom 1981). None for fewer than 3."""
+    """Return the slope of log seconds over log of the how-many-eth, with its interval, and the seconds of the
+    first on that line: seconds = first * n^slope (Newell and Rosenbloom 1981). None for fewer than 3.
+    """
     y = np.array(logs(seconds))
     n = len(y)
     if n < 3:
@@ -235,12 +268,13 @@ def power_law(seconds: Sequence[float], level: float = LEVEL) -> tuple[Estimate,
 
 @dataclass(frozen=True, slots=True)
 class Order:
-    """Whether it mattered who began with what, of pairs in two orders (Grizzle 1965, for a cross-over of two periods).
+    """Whether it mattered who began with what, of pairs in two orders (Grizzle 1965, for a cross-over of two
+    periods).
 
-    adjusted: the ratio with both orders weighing the same. second: the seconds of a second sitting beside a first, as a ratio.
-    carried: the seconds of all sittings of those who began with the one beside those who began with the other; unlike 1, something
-    carried over, or the groups were unlike. first: the ratio by first sittings alone, of other people each. tests: of second and carried
-    being 1.
+    adjusted: the ratio with both orders weighing the same. second: the seconds of a second sitting beside a
+    first, as a ratio. carried: the seconds of all sittings of those who began with the one beside those who
+    began with the other; unlike 1, something carried over, or the groups were unlike. first: the ratio by
+    first sittings alone, of other people each. tests: of second and carried being 1.
     """
 
     adjusted: Estimate
@@ -252,15 +286,19 @@ class Order:
 
 
 def order_effects(
-    above_first: Sequence[tuple[float, float]], below_first: Sequence[tuple[float, float]], level: float = LEVEL
+    above_first: Sequence[tuple[float, float]],
+    below_first: Sequence[tuple[float, float]],
+    level: float = LEVEL,
 ) -> Order | None:
-    """Return what the order did. Each group's (above, below) seconds, in one those who began with `above`. None with fewer than 2
-    in a group."""
+    """Return what the order did. Each group's (above, below) seconds, in one those who began with `above`.
+    None with fewer than 2 in a group.
+    """
     if len(above_first) < 2 or len(below_first) < 2:
         return None
     one, other = ([(log(a), log(b)) for a, b in group] for group in (above_first, below_first))
     d_one, d_other = [a - b for a, b in one], [a - b for a, b in other]
-    # Those who began with `above` have it in their first sitting: their difference is that of the conditions less that of the sittings.
+    # Those who began with `above` have it in their first sitting: their difference is that of the conditions
+    # less that of the sittings.
     gap, gap_test = welch(d_other, d_one, level)
     both, _ = welch(d_one, [-d for d in d_other], level)
     sums, sums_test = welch([(a + b) / 2 for a, b in one], [(a + b) / 2 for a, b in other], level)
@@ -268,29 +306,39 @@ def order_effects(
     return Order(_half(both).exp(), _half(gap).exp(), sums.exp(), first.exp(), gap_test, sums_test)
 
 
-# --- words -----------------------------------------------------------------------------------------------------------
+# --- words
+# --------------------------------------------------------------------------------------------------
 
 
 def cautions(found: Estimate, effect: float | None) -> list[str]:
-    """Return what a ratio of n pairs does not allow to say. effect: its d_z, uncorrected, None where it is not known."""
+    """Return what a ratio of n pairs does not allow to say. effect: its d_z, uncorrected, None where it is
+    not known.
+    """
     n = found.n
     if n < 2:
         return ["One person's ratio has no interval: it says nothing about other people."] if n else []
     out = []
     if n < FEWEST_RANKED:
-        out.append(f"With {n} pairs the signed-rank test cannot reach p = 0.05, whatever they did: it needs at least {FEWEST_RANKED}.")
+        out.append(
+            f"With {n} pairs the signed-rank test cannot reach p = 0.05, whatever they did: it needs at "
+            f"least {FEWEST_RANKED}."
+        )
     if found.holds(1.0):
         words = "The interval of the ratio includes 1: these people do not show that either way is faster."
         needed = people_needed(effect) if effect is not None else None
         if needed is not None and needed > n:
-            words += f" If the effect is as large as it was here, about {needed} people give an 80 % chance to show it."
+            words += (
+                f" If the effect is as large as it was here, about {needed} people give an 80 % chance "
+                "to show it."
+            )
         elif effect is not None and needed is None:
             words += f" An effect as small as here would not be shown by {MOST_PEOPLE:,} people."
         out.append(words)
     return out
 
 
-# --- small ones ------------------------------------------------------------------------------------------------------
+# --- small ones
+# --------------------------------------------------------------------------------------------------
 
 
 def logs(values: Sequence[float]) -> list[float]:
@@ -311,11 +359,18 @@ def _exp(x: float) -> float:
 
 
 def _half(found: Estimate) -> Estimate:
-    return Estimate(found.value / 2, None if found.low is None else found.low / 2, None if found.high is None else found.high / 2, found.n)
+    return Estimate(
+        found.value / 2,
+        None if found.low is None else found.low / 2,
+        None if found.high is None else found.high / 2,
+        found.n,
+    )
 
 
 def _shift(t: float, df: float, share: float) -> float:
-    """Return the noncentrality at which a share of the noncentral t distribution is up to t; by false position (Illinois)."""
+    """Return the noncentrality at which a share of the noncentral t distribution is up to t; by false
+    position (Illinois).
+    """
     width = 5 * sqrt(1 + t * t / (2 * df))
     low, high = t - width, t + width
     f_low, f_high = t_noncentral(t, df, low) - share, t_noncentral(t, df, high) - share

@@ -1,4 +1,6 @@
-"""Student's t distribution and its noncentral form, from the incomplete beta function: what intervals and power need of SciPy."""
+"""Student's t distribution and its noncentral form, from the incomplete beta function: what intervals and
+power need of SciPy.
+"""
 
 from __future__ import annotations
 
@@ -14,7 +16,9 @@ NODES, WEIGHTS = np.polynomial.legendre.leggauss(20)
 
 
 def incomplete_beta(a: float, b: float, x: float) -> float:
-    """Return the regularised incomplete beta function I_x(a, b), 0..1; a, b > 0 (Lentz's continued fraction, DLMF 8.17.22)."""
+    """Return the regularised incomplete beta function I_x(a, b), 0..1; a, b > 0 (Lentz's continued fraction,
+    DLMF 8.17.22).
+    """
     if x <= 0 or x >= 1:
         return 0.0 if x <= 0 else 1.0
     front = exp(lgamma(a + b) - lgamma(a) - lgamma(b) + a * log(x) + b * log1p(-x))
@@ -28,7 +32,10 @@ def _fraction(a: float, b: float, x: float) -> float:
     d = 1 / (d if abs(d) > TINY else TINY)
     out = d
     for m in range(1, STEPS):
-        for step in (m * (b - m) * x / ((a + 2 * m - 1) * (a + 2 * m)), -(a + m) * (a + b + m) * x / ((a + 2 * m) * (a + 2 * m + 1))):
+        for step in (
+            m * (b - m) * x / ((a + 2 * m - 1) * (a + 2 * m)),
+            -(a + m) * (a + b + m) * x / ((a + 2 * m) * (a + 2 * m + 1)),
+        ):
             d = 1 + step * d
             d = 1 / (d if abs(d) > TINY else TINY)
             c = 1 + step / c
@@ -44,7 +51,11 @@ def t_two_sided(t: float, df: float) -> float:
     if abs(t) == inf:
         return 0.0
     square = t * t
-    return incomplete_beta(df / 2, 0.5, df / (df + square)) if square > 1 else 1 - incomplete_beta(0.5, df / 2, square / (df + square))
+    return (
+        incomplete_beta(df / 2, 0.5, df / (df + square))
+        if square > 1
+        else 1 - incomplete_beta(0.5, df / 2, square / (df + square))
+    )
 
 
 def t_cdf(t: float, df: float) -> float:
@@ -55,7 +66,9 @@ def t_cdf(t: float, df: float) -> float:
 
 @lru_cache(maxsize=4096)
 def t_quantile(share: float, df: float) -> float:
-    """Return the t that a share of Student's distribution does not exceed. Raises ValueError unless 0 < share < 1 and df > 0."""
+    """Return the t that a share of Student's distribution does not exceed. Raises ValueError unless 0 < share
+    < 1 and df > 0.
+    """
     if not 0 < share < 1 or not df > 0:
         raise ValueError(f"there is no t of a share of {share} with {df} degrees of freedom")
     if share == 0.5:
@@ -78,15 +91,25 @@ def t_quantile(share: float, df: float) -> float:
 
 
 def t_noncentral(t: float, df: float, shift: float) -> float:
-    """Return the share of the noncentral t distribution up to t: of (Z + shift) / S, with S^2 a chi-squared over df.
+    """Return the share of the noncentral t distribution up to t: of (Z + shift) / S, with S^2 a chi-squared
+    over df.
 
     The mean over S of the normal share of t S - shift, by Gauss's rule on pieces that hold where it steps.
     """
     width = 12 / sqrt(2 * df)
-    edges = {max(0.0, 1 - width), 1.0, 1 + width, *(1 + width * k / 4 for k in range(-3, 4) if 1 + width * k / 4 > 0)}
-    edges |= {s for s in (1e-4, 1e-3, 1e-2, 0.1) if s > 1 - width}  # near 0 a broken power of S is no polynomial
+    edges = {
+        max(0.0, 1 - width),
+        1.0,
+        1 + width,
+        *(1 + width * k / 4 for k in range(-3, 4) if 1 + width * k / 4 > 0),
+    }
+    edges |= {
+        s for s in (1e-4, 1e-3, 1e-2, 0.1) if s > 1 - width
+    }  # near 0 a broken power of S is no polynomial
     if t != 0:
-        edges |= {s for k in (-8, -4, -1, 0, 1, 4, 8) if max(0.0, 1 - width) < (s := (shift + k) / t) < 1 + width}
+        edges |= {
+            s for k in (-8, -4, -1, 0, 1, 4, 8) if max(0.0, 1 - width) < (s := (shift + k) / t) < 1 + width
+        }
     cuts = np.array(sorted(edges))
     middle, half = (cuts[1:] + cuts[:-1]) / 2, np.diff(cuts) / 2
     s = (middle[:, None] + half[:, None] * NODES).ravel()

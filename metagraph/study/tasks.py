@@ -1,4 +1,6 @@
-"""What a log says about the tasks of a sitting: time, operators, edits, and which clips and what the time went into."""
+"""What a log says about the tasks of a sitting: time, operators, edits, and which clips and what the time
+went into.
+"""
 
 from __future__ import annotations
 
@@ -15,21 +17,29 @@ AWAY = 60.0  # seconds without any event after which a person is taken to be awa
 OPERATORS = ("K", "P", "B", "D", "H")
 SPENT: tuple[Spent, ...] = ("dragging", "timing", "looking", "undoing", "other")
 _TELLING: Mapping[str, Spent] = {
-    "edit": "other", "undo": "undoing", "redo": "undoing", "view": "looking", "playback": "looking", "import": "other", "dialog": "other",
+    "edit": "other",
+    "undo": "undoing",
+    "redo": "undoing",
+    "view": "looking",
+    "playback": "looking",
+    "import": "other",
+    "dialog": "other",
     "error": "other",
-}  # fmt: skip  # what the time before an event of a type went into; others say nothing about it
+}  # what the time before an event of a type went into; others say nothing about it
 
 
 @dataclass(frozen=True)
 class TaskRun:
     """One task of one participant in one condition.
 
-    index: the phase's place in the sitting. seconds: active, without pauses and absences; wall: from begin to end by the clock; paused,
-    away: seconds. operators: K keys, P pointings, B buttons pressed or released, D drags, H hands changing over; drag_s: seconds of the
-    drags. errors: what was refused or failed, not what the program warned of. per_clip: active seconds by clip name, in the order in
-    which the clips were first dealt with. spent: active seconds by what they went into; seconds before a change of timing are timing, of
-    the others those with the button held are dragging. finished: ended by the participant; timed_out: ended by the time limit. artefact:
-    the project that came of it, relative to the log's folder; digest: its SHA-256 as it was then.
+    index: the phase's place in the sitting. seconds: active, without pauses and absences; wall: from begin to
+    end by the clock; paused, away: seconds. operators: K keys, P pointings, B buttons pressed or released, D
+    drags, H hands changing over; drag_s: seconds of the drags. errors: what was refused or failed, not what
+    the program warned of. per_clip: active seconds by clip name, in the order in which the clips were first
+    dealt with. spent: active seconds by what they went into; seconds before a change of timing are timing, of
+    the others those with the button held are dragging. finished: ended by the participant; timed_out: ended
+    by the time limit. artefact: the project that came of it, relative to the log's folder; digest: its
+    SHA-256 as it was then.
     """
 
     participant: str
@@ -56,7 +66,9 @@ class TaskRun:
 
 @dataclass(frozen=True)
 class Answer:
-    """What was answered to an item last. condition, task: what the questionnaire was about, None for the whole study."""
+    """What was answered to an item last. condition, task: what the questionnaire was about, None for the
+    whole study.
+    """
 
     participant: str
     questionnaire: str
@@ -77,7 +89,11 @@ def task_runs(participant: str, events: Sequence[Event]) -> list[TaskRun]:
         if event["type"] == "phase":
             if tally is not None:
                 out.append(tally.run())
-            tally = _Tally(participant, event) if event.get("name") == "task" and event.get("state") == "begin" else None
+            tally = (
+                _Tally(participant, event)
+                if event.get("name") == "task" and event.get("state") == "begin"
+                else None
+            )
     return [*out, tally.run()] if tally is not None else out
 
 
@@ -92,12 +108,16 @@ def answers(participant: str, events: Sequence[Event]) -> list[Answer]:
             index = _index(phase)
             questionnaire, item = str(e.get("questionnaire")), str(e.get("item"))
             about = phase.get("condition"), phase.get("task")
-            out[index, questionnaire, item] = Answer(participant, questionnaire, item, e.get("value"), *about, index)
+            out[index, questionnaire, item] = Answer(
+                participant, questionnaire, item, e.get("value"), *about, index
+            )
     return list(out.values())
 
 
 def steps(events: Sequence[Event]) -> Iterator[tuple[Event, float, Literal["active", "paused", "away"]]]:
-    """Yield each event with the seconds since the one before and what they were; between two runs there are none."""
+    """Yield each event with the seconds since the one before and what they were; between two runs there are
+    none.
+    """
     before: Event | None = None
     paused = False
     for event in events:
@@ -123,7 +143,9 @@ class _Tally:
         self.per_clip: dict[str, float] = {}
         self.spent: dict[Spent, float] = dict.fromkeys(SPENT, 0.0)
         self.on_clip = 0.0  # seconds since the last edit of a clip
-        self.loose = self.loose_drag = 0.0  # seconds that no event has told the use of, and those of drags among them
+        self.loose = self.loose_drag = (
+            0.0  # seconds that no event has told the use of, and those of drags among them
+        )
         self.artefact: str | None = None
         self.digest: str | None = None
         self.ended = ""

@@ -16,8 +16,9 @@ from metagraph.suggest.proposal import Place, Proposal, Proposals, Rest, plain
 
 @dataclass(frozen=True)
 class Taken:
-    """The project with proposals taken over. placed: clips by id. left: clip -> why it was not placed. held: stance -> the moment of a clip
-    it is held in, since none rests in it."""
+    """The project with proposals taken over. placed: clips by id. left: clip -> why it was not placed. held:
+    stance -> the moment of a clip it is held in, since none rests in it.
+    """
 
     project: Project
     placed: tuple[str, ...]
@@ -25,15 +26,32 @@ class Taken:
     held: Mapping[str, Rest] = field(default_factory=dict)
 
 
-def accept(project: Project, found: Proposals, above: float = 0.0, clips: Collection[str] | None = None) -> Taken:
-    """Return the project with all proposals as sure as `above` placed, of some clips or all. Stances are made of the clips that rest in
-    them, or else held in a still moment of another; what belongs to a stance that nothing shows is left, with the reason."""
-    wanted = [p for p in found.proposals.values() if (clips is None or p.clip in clips) and p.clip in project.clips]
+def accept(
+    project: Project, found: Proposals, above: float = 0.0, clips: Collection[str] | None = None
+) -> Taken:
+    """Return the project with all proposals as sure as `above` placed, of some clips or all. Stances are made
+    of the clips that rest in them, or else held in a still moment of another; what belongs to a stance that
+    nothing shows is left, with the reason.
+    """
+    wanted = [
+        p for p in found.proposals.values() if (clips is None or p.clip in clips) and p.clip in project.clips
+    ]
     left = {p.clip: f"only {p.confidence:.0%} sure" for p in wanted if p.confidence < above}
     wanted = [p for p in wanted if p.clip not in left]
-    keys = {key: key for key, place in found.places.items() if place.there and project.stance(key) is not None}
-    loops = {plain(s.name): g.of(i, "stance")[0].clip for g in project.graphs.values() for i, s in g.stances.items() if g.of(i, "stance")}
-    loops |= {plain(found.places[p.stance.value].name): p.clip for p in wanted if p.kind.value == "stance" and p.stance is not None}
+    keys = {
+        key: key for key, place in found.places.items() if place.there and project.stance(key) is not None
+    }
+    loops = {
+        plain(s.name): g.of(i, "stance")[0].clip
+        for g in project.graphs.values()
+        for i, s in g.stances.items()
+        if g.of(i, "stance")
+    }
+    loops |= {
+        plain(found.places[p.stance.value].name): p.clip
+        for p in wanted
+        if p.kind.value == "stance" and p.stance is not None
+    }
     before, placed, held = project, list[str](), dict[str, Rest]()
     for p in sorted(wanted, key=lambda p: (p.kind.value != "stance", -p.confidence)):
         try:
@@ -45,15 +63,21 @@ def accept(project: Project, found: Proposals, above: float = 0.0, clips: Collec
 
 
 def _begun(before: Project, project: Project) -> Project:
-    """Return the project with layers that had no stance beginning in their most used one, and a base pose, where none was chosen, of the
-    arms' or else the body's: offsets are smallest against where a character mostly is."""
+    """Return the project with layers that had no stance beginning in their most used one, and a base pose,
+    where none was chosen, of the arms' or else the body's: offsets are smallest against where a character
+    mostly is.
+    """
     for layer in LAYERS:
         graph = project.graphs[layer]
         if graph.stances and not before.graphs[layer].stances:
             used = Counter(a.stance for a in graph.actions.values())
             project = edits.set_start(project, max(graph.stances, key=lambda s: used[s]))
     if before.base.clip is None:
-        starts = [(g, g.start) for layer in ("arms", "body", "head") if (g := project.graphs[layer]).start is not None]
+        starts = [
+            (g, g.start)
+            for layer in ("arms", "body", "head")
+            if (g := project.graphs[layer]).start is not None
+        ]
         loops = [loop for graph, start in starts for loop in graph.of(str(start), "stance")]
         if loops:
             project = edits.set_base(project, loops[0].clip)
@@ -68,8 +92,10 @@ def _place(
     loops: Mapping[str, str],
     held: dict[str, Rest],
 ) -> Project:
-    """Place one clip. keys: place -> stance id, of those there are by now. loops: a stance's name -> a clip that rests in it, on whatever
-    layer: clips of the whole body rest on all. held: grows by stances that are held in a moment of a clip. Raises EditError."""
+    """Place one clip. keys: place -> stance id, of those there are by now. loops: a stance's name -> a clip
+    that rests in it, on whatever layer: clips of the whole body rest on all. held: grows by stances that are
+    held in a moment of a clip. Raises EditError.
+    """
     if p.stance is None:
         raise EditError("nothing says which stance it belongs to")
     layer: Layer = p.layer.value
@@ -80,15 +106,26 @@ def _place(
         if belief is None or belief.value in keys or (belief is p.stance and kind == "stance"):
             continue
         place = places[belief.value]
-        loop = loops.get(plain(place.name), place.rest.clip if place.rest is not None and place.rest.clip in project.clips else None)
+        loop = loops.get(
+            plain(place.name),
+            place.rest.clip if place.rest is not None and place.rest.clip in project.clips else None,
+        )
         if loop is None:
-            raise EditError(f"no resting clip shows {'its stance' if belief is p.stance else 'the stance it ends in'}, '{place.name}'")
+            raise EditError(
+                f"no resting clip shows {'its stance' if belief is p.stance else 'the stance it ends in'}, "
+                f"'{place.name}'"
+            )
         project = edits.add_stance(project, layer, place.name, [loop])
         made = list(project.graphs[layer].stances)[-1]
         keys[place.key] = made
         if plain(place.name) not in loops and place.rest is not None:
             held[made] = place.rest
-            still = {"start": place.rest.start, "end": place.rest.end, "loop": True, "blend_in": (place.rest.end - place.rest.start) / 3}
+            still = {
+                "start": place.rest.start,
+                "end": place.rest.end,
+                "loop": True,
+                "blend_in": (place.rest.end - place.rest.start) / 3,
+            }
             project = edits.update_actions(project, [list(project.graphs[layer].actions)[-1]], timing=still)
     if p.stance.value not in keys:
         project = edits.add_stance(project, layer, places[p.stance.value].name, [p.clip])
@@ -97,7 +134,10 @@ def _place(
         end = keys[p.end_stance.value] if kind == "transition" and p.end_stance is not None else None
         project = edits.place(project, [p.clip], layer, kind, keys[p.stance.value], end)
     action = list(project.graphs[layer].actions.values())[-1]
-    changes: dict[str, Any] = {"limb": p.limb.value, "tags": p.tags.value if p.tags is not None else action.tags}
+    changes: dict[str, Any] = {
+        "limb": p.limb.value,
+        "tags": p.tags.value if p.tags is not None else action.tags,
+    }
     for name, field_of in (("joints", "mask"), ("likelihood", "likelihood")):
         if (belief := p.details.get(field_of)) is not None:
             changes[name] = belief.value
@@ -106,5 +146,7 @@ def _place(
         changes["timing"] = timing
     project = edits.update_actions(project, [action.id], **changes)
     if kind == "gesture" and "stroke" not in timing and (after := project.action(action.id)) is not None:
-        project = edits.update_actions(project, [action.id], timing={"stroke": round(phases(project, after).stroke, 3)})
+        project = edits.update_actions(
+            project, [action.id], timing={"stroke": round(phases(project, after).stroke, 3)}
+        )
     return project

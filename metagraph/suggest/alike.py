@@ -1,8 +1,10 @@
-"""What is labelled already teaches what is like it: words of names and measures of motion, counted anew whenever they are asked.
+"""What is labelled already teaches what is like it: words of names and measures of motion, counted anew
+whenever they are asked.
 
-Words vote as in naive Bayes (each word's counts by label, one added to each), measures by their nearest neighbours. How sure a guess is
-comes from the labelled clips themselves: each is guessed from all the others, and of those that were guessed as firmly as this one, the
-share that was right is the confidence; less for a motion unlike any of them.
+Words vote as in naive Bayes (each word's counts by label, one added to each), measures by their nearest
+neighbours. How sure a guess is comes from the labelled clips themselves: each is guessed from all the others,
+and of those that were guessed as firmly as this one, the share that was right is the confidence; less for a
+motion unlike any of them.
 """
 
 from __future__ import annotations
@@ -29,8 +31,9 @@ WORDS_PART = 0.6  # how much words count beside motion, where there are both
 
 @dataclass(frozen=True, eq=False)
 class Example:
-    """A labelled clip. words: of its name, small letters. measures `[d]`: of its motion, nan where one is not known; may be empty.
-    labels: field -> what it was labelled as."""
+    """A labelled clip. words: of its name, small letters. measures `[d]`: of its motion, nan where one is not
+    known; may be empty. labels: field -> what it was labelled as.
+    """
 
     words: tuple[str, ...]
     measures: Array
@@ -51,9 +54,13 @@ def example_from(data: Any) -> Example:
         raise ValueError("words: should be texts")
     if not isinstance(measures, list) or not all(x is None or _number(x) for x in measures):
         raise ValueError("measures: should be numbers")
-    if not isinstance(labels, Mapping) or not all(isinstance(k, str) and isinstance(v, str) for k, v in labels.items()):
+    if not isinstance(labels, Mapping) or not all(
+        isinstance(k, str) and isinstance(v, str) for k, v in labels.items()
+    ):
         raise ValueError("labels: should be texts")
-    return Example(tuple(words), np.array([np.nan if x is None else x for x in measures], float), dict(labels))
+    return Example(
+        tuple(words), np.array([np.nan if x is None else x for x in measures], float), dict(labels)
+    )
 
 
 def _number(x: object) -> bool:
@@ -61,18 +68,28 @@ def _number(x: object) -> bool:
 
 
 class Alike:
-    """A classifier of all fields that examples are labelled with. Examples whose measures have another length than most are read by
-    their words alone."""
+    """A classifier of all fields that examples are labelled with. Examples whose measures have another length
+    than most are read by their words alone.
+    """
 
     def __init__(self, examples: Sequence[Example]) -> None:
         self.examples = tuple(examples)
         lengths = Counter(len(e.measures) for e in examples if len(e.measures))
         self.width = lengths.most_common(1)[0][0] if lengths else 0
-        rows = [e.measures if len(e.measures) == self.width else np.full(self.width, np.nan) for e in self.examples]
+        rows = [
+            e.measures if len(e.measures) == self.width else np.full(self.width, np.nan)
+            for e in self.examples
+        ]
         self.measures = np.array(rows, float).reshape(len(rows), self.width)
         known = np.isfinite(self.measures)
-        middle = [float(np.median(column[there])) if there.any() else 0.0 for column, there in zip(self.measures.T, known.T, strict=True)]
-        spread = [float(np.std(column[there])) if there.any() else 0.0 for column, there in zip(self.measures.T, known.T, strict=True)]
+        middle = [
+            float(np.median(column[there])) if there.any() else 0.0
+            for column, there in zip(self.measures.T, known.T, strict=True)
+        ]
+        spread = [
+            float(np.std(column[there])) if there.any() else 0.0
+            for column, there in zip(self.measures.T, known.T, strict=True)
+        ]
         self.middle, self.spread = np.array(middle), np.maximum(np.array(spread), 1e-9)
         self._scaled = np.where(known, (self.measures - self.middle) / self.spread, 0.0)
         self._moving = known.any(1) if self.width else np.zeros(len(rows), bool)
@@ -88,7 +105,9 @@ class Alike:
         return tuple(dict.fromkeys(field for e in self.examples for field in e.labels))
 
     def guess(self, words: Sequence[str], measures: Array) -> dict[str, Belief[str]]:
-        """Return what a clip with these words and measures is taken for, by field; nothing of fields with too few examples."""
+        """Return what a clip with these words and measures is taken for, by field; nothing of fields with too
+        few examples.
+        """
         out = {}
         said, away = tuple(dict.fromkeys(words)), self._away(self._scale(measures))
         for field in self.fields:
@@ -101,11 +120,17 @@ class Alike:
         return out
 
     def _away(self, scaled: Array | None) -> Array | None:
-        """Return `[n]` how far each example's motion is from this one, infinite where it is not known; None where this one is not."""
+        """Return `[n]` how far each example's motion is from this one, infinite where it is not known; None
+        where this one is not.
+        """
         if scaled is None:
             return None
         difference = self._scaled - scaled
-        return np.asarray(np.where(self._moving, np.sqrt(np.einsum("ij,ij->i", difference, difference) / self.width), np.inf))
+        return np.asarray(
+            np.where(
+                self._moving, np.sqrt(np.einsum("ij,ij->i", difference, difference) / self.width), np.inf
+            )
+        )
 
     def _scale(self, measures: Array) -> Array | None:
         if len(measures) != self.width or not self.width or not np.isfinite(measures).any():
@@ -140,10 +165,14 @@ class _Field:
         for word, places in alike._with.items():
             mine = row[places]
             self.rows[word] = mine[mine >= 0]
-            self.words[word] = np.bincount(self.index[self.rows[word]], minlength=len(self.values)).astype(float)
+            self.words[word] = np.bincount(self.index[self.rows[word]], minlength=len(self.values)).astype(
+                float
+            )
 
     def scores(self, words: Sequence[str], away: Array | None, leave: int | None) -> Array:
-        """Return the probability of each value. words: distinct. away: as `Alike._away`. leave: the row that does not count."""
+        """Return the probability of each value. words: distinct. away: as `Alike._away`. leave: the row that
+        does not count.
+        """
         count = self.count.copy()
         own: set[str] = set()
         if leave is not None:
@@ -174,7 +203,9 @@ class _Field:
         away = away[self.places]
         if leave is not None:
             away[leave] = np.inf
-        few = np.argpartition(away, NEIGHBOURS)[:NEIGHBOURS] if len(away) > NEIGHBOURS else np.arange(len(away))
+        few = (
+            np.argpartition(away, NEIGHBOURS)[:NEIGHBOURS] if len(away) > NEIGHBOURS else np.arange(len(away))
+        )
         nearest = np.sort(few[np.isfinite(away[few])])
         if not len(nearest):
             return None
@@ -183,7 +214,9 @@ class _Field:
         return np.asarray(votes / votes.sum())
 
     def best(self, scores: Array, words: Sequence[str]) -> tuple[str, float, str]:
-        """Return the likeliest value, how firmly it is held, and the example that speaks for it most, as words."""
+        """Return the likeliest value, how firmly it is held, and the example that speaks for it most, as
+        words.
+        """
         shares = scores / scores.sum()
         place = int(shares.argmax())
         shared = np.zeros(len(self.places), int)
@@ -196,8 +229,9 @@ class _Field:
         return self.values[place], float(shares[place]), f"'{named}'" if named else ""
 
     def familiar(self, away: Array | None) -> float:
-        """Return how far the examples can speak for a motion, 0..1: less, the farther the nearest is beyond what is usual among them. A
-        hundred labelled stances say nothing of the first gesture."""
+        """Return how far the examples can speak for a motion, 0..1: less, the farther the nearest is beyond
+        what is usual among them. A hundred labelled stances say nothing of the first gesture.
+        """
         if away is None:
             return 1.0
         nearest = float(away[self.places].min())
@@ -218,7 +252,9 @@ class _Field:
 
     @cached_property
     def _trial(self) -> tuple[Array, Array]:
-        """Examples, all or an even choice, each guessed from all the others: how firmly `[n]`, and whether rightly `[n]`."""
+        """Examples, all or an even choice, each guessed from all the others: how firmly `[n]`, and whether
+        rightly `[n]`.
+        """
         firm, right = [], []
         for n in range(0, len(self.places), -(-len(self.places) // TRIALS)):
             place = self.places[n]
@@ -230,7 +266,9 @@ class _Field:
         return np.array(firm), np.array(right)
 
     def confidence(self, firm: float) -> float:
-        """Return how often guesses held about as firmly were right; one of each outcome is added, so that few examples stay unsure."""
+        """Return how often guesses held about as firmly were right; one of each outcome is added, so that few
+        examples stay unsure.
+        """
         firmness, right = self._trial
         order = np.argsort(np.abs(firmness - firm), kind="stable")[: max(8, len(firmness) // 4)]
         return float((right[order].sum() + 1) / (len(order) + 2))

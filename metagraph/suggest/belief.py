@@ -10,8 +10,9 @@ T = TypeVar("T")
 
 @dataclass(frozen=True, slots=True)
 class Belief(Generic[T]):
-    """value: what is believed. confidence: 0..1, how often such a guess is right. reason: in words, for people, without a full stop:
-    'ends 0.4 cm from "arms crossed"'."""
+    """value: what is believed. confidence: 0..1, how often such a guess is right. reason: in words, for
+    people, without a full stop: 'ends 0.4 cm from "arms crossed"'.
+    """
 
     value: T
     confidence: float

@@ -1,4 +1,5 @@
-"""Several beliefs about one thing made one: each source votes for its value with its confidence, and against all others with the rest.
+"""Several beliefs about one thing made one: each source votes for its value with its confidence, and against
+all others with the rest.
 
 For values v and sources i with value x_i and confidence c_i, of `count` values there might be,
 
@@ -18,20 +19,27 @@ from metagraph.suggest.belief import Belief
 
 T = TypeVar("T")
 
-LEAST, MOST = 0.02, 0.995  # nothing is certain: the sources are not independent, and not always right about themselves
+LEAST, MOST = (
+    0.02,
+    0.995,
+)  # nothing is certain: the sources are not independent, and not always right about themselves
 FIRM = 0.7  # from here on two sources that disagree are a conflict worth telling
 
 
 @dataclass(frozen=True, slots=True)
 class Agreed(Generic[T]):
-    """belief: what they say together; its reason joins those that agree. conflict: in words, where firm ones disagree, else empty."""
+    """belief: what they say together; its reason joins those that agree. conflict: in words, where firm ones
+    disagree, else empty.
+    """
 
     belief: Belief[T]
     conflict: str = ""
 
 
 def combine(votes: Sequence[Belief[T]], count: int) -> Agreed[T] | None:
-    """Return what sources say together of a thing that has `count` possible values; None where none says anything."""
+    """Return what sources say together of a thing that has `count` possible values; None where none says
+    anything.
+    """
     if not votes:
         return None
     values = list(dict.fromkeys(v.value for v in votes))

@@ -1,8 +1,10 @@
-"""Which clip can leave and enter which stance without a visible jump, and at which moments (Yang et al., section 6).
+"""Which clip can leave and enter which stance without a visible jump, and at which moments (Yang et al.,
+section 6).
 
 The cost of going from frame i to frame j is (their equations 3 and 4)
     c_ij = sum_b w_b |p_i[b] - p_(j-1)[b]| + w_v sum_b w_b |v_i[b] - v_(j-1)[b]|
-with positions p and velocities v of joints b seen from the root, fingers weighing 0. A jump is what the user's own motion does not show:
+with positions p and velocities v of joints b seen from the root, fingers weighing 0. A jump is what the
+user's own motion does not show:
 a Johnson S_B distribution is fitted to c_(i, i+3), at 30 frames a second, and 95 % of it are the threshold.
 """
 
@@ -40,8 +42,10 @@ Span = tuple[float, float]
 
 @dataclass(frozen=True, eq=False)
 class Statistics:
-    """What is usual between frames of a layer. weights `[J]`: of `tracks.Rig.joints`. velocity: w_v, seconds. threshold: metres, summed
-    over joints. count: how many costs it rests on. share: how many of those are below the threshold, LEVEL where the distribution fits."""
+    """What is usual between frames of a layer. weights `[J]`: of `tracks.Rig.joints`. velocity: w_v, seconds.
+    threshold: metres, summed over joints. count: how many costs it rests on. share: how many of those are
+    below the threshold, LEVEL where the distribution fits.
+    """
 
     layer: Layer
     weights: Array
@@ -54,8 +58,10 @@ class Statistics:
 
 @dataclass(frozen=True)
 class Fit:
-    """A clip beside a stance. enter, leave: seconds of the clip in which it can be entered from, and left to, the stance without a jump.
-    enter_at, leave_at: the best moments, and their costs beside the threshold: up to 1 is no jump."""
+    """A clip beside a stance. enter, leave: seconds of the clip in which it can be entered from, and left to,
+    the stance without a jump. enter_at, leave_at: the best moments, and their costs beside the threshold: up
+    to 1 is no jump.
+    """
 
     enter: tuple[Span, ...]
     leave: tuple[Span, ...]
@@ -67,7 +73,9 @@ class Fit:
 
 @dataclass(frozen=True)
 class Times:
-    """Proposed timing, seconds; see `model.Timing`. good: whether it neither begins nor ends with a jump. reason: in words."""
+    """Proposed timing, seconds; see `model.Timing`. good: whether it neither begins nor ends with a jump.
+    reason: in words.
+    """
 
     start: float
     end: float
@@ -80,8 +88,10 @@ class Times:
 
 @dataclass(frozen=True, eq=False)
 class Matrix:
-    """Clips x stances of a layer. clips, stances: their ids, C and S. enter_cost, leave_cost `[C, S]`: at the best moment, beside the
-    threshold, infinite where nothing is known; enter_at, leave_at `[C, S]`: that moment, seconds."""
+    """Clips x stances of a layer. clips, stances: their ids, C and S. enter_cost, leave_cost `[C, S]`: at the
+    best moment, beside the threshold, infinite where nothing is known; enter_at, leave_at `[C, S]`: that
+    moment, seconds.
+    """
 
     layer: Layer
     clips: tuple[str, ...]
@@ -103,9 +113,14 @@ class Matrix:
 
 
 def statistics(
-    clips: Iterable[Clip], layer: Layer, roles: Mapping[str, int] | None = None, weights: Mapping[str, float] | None = None
+    clips: Iterable[Clip],
+    layer: Layer,
+    roles: Mapping[str, int] | None = None,
+    weights: Mapping[str, float] | None = None,
 ) -> Statistics:
-    """Return what is usual in clips of a layer, all of one skeleton. weights: how strongly the layer moves parts, else REACH."""
+    """Return what is usual in clips of a layer, all of one skeleton. weights: how strongly the layer moves
+    parts, else REACH.
+    """
     some = list(clips)
     reach: Mapping[str, float] = REACH[layer] if weights is None else weights  # type: ignore[assignment]
     w = np.zeros(0, np.float32)
@@ -141,7 +156,9 @@ def statistics(
 def stance_frames(
     stats: Statistics, loops: Sequence[tuple[Clip, float, float]], roles: Mapping[str, int] | None = None
 ) -> tuple[Array, Array]:
-    """Return positions and velocities `[G, J, 3]` of frames of a stance's loops, each a clip from .. to a second (the same: one pose)."""
+    """Return positions and velocities `[G, J, 3]` of frames of a stance's loops, each a clip from .. to a
+    second (the same: one pose).
+    """
     most = max(2, MOST_FRAMES // max(1, len(loops)))
     places, speeds = [], []
     for clip, start, end in loops:
@@ -159,9 +176,13 @@ def stance_frames(
     return np.concatenate(places), np.concatenate(speeds)
 
 
-def costs(stats: Statistics, clip: Clip, stance: tuple[Array, Array], roles: Mapping[str, int] | None = None) -> Array:
-    """Return `[F]` what it costs to change between each frame of a clip, RATE a second, and the stance's nearest frame, beside the
-    threshold: up to 1 is no jump. Infinite where the stance has no frames, or another skeleton."""
+def costs(
+    stats: Statistics, clip: Clip, stance: tuple[Array, Array], roles: Mapping[str, int] | None = None
+) -> Array:
+    """Return `[F]` what it costs to change between each frame of a clip, RATE a second, and the stance's
+    nearest frame, beside the threshold: up to 1 is no jump. Infinite where the stance has no frames, or
+    another skeleton.
+    """
     return _costs(stats, track_of(rig_of(clip, roles), clip), [stance])[:, 0]
 
 
@@ -190,19 +211,33 @@ def fitting(clip: Clip, cost: Array) -> Fit:
     """Return where a clip can be entered and left, given its `costs` beside a stance."""
     times = times_of(clip)
     into = entering(cost)
-    a = int(np.argmax(into <= into.min() + ALIKE))  # of moments that are as good, the first to enter at and the last to leave at
+    a = int(
+        np.argmax(into <= into.min() + ALIKE)
+    )  # of moments that are as good, the first to enter at and the last to leave at
     b = int(len(cost) - 1 - np.argmax(cost[::-1] <= cost.min() + ALIKE))
-    return Fit(_spans(into <= 1, times), _spans(cost <= 1, times), float(times[a]), float(times[b]), float(into[a]), float(cost[b]))
+    return Fit(
+        _spans(into <= 1, times),
+        _spans(cost <= 1, times),
+        float(times[a]),
+        float(times[b]),
+        float(into[a]),
+        float(cost[b]),
+    )
 
 
 def entering(cost: Array) -> Array:
-    """Return `[F]` what entering at each frame costs, given a clip's `costs`: c_ij compares with frame j - 1, so a clip entered at j
-    follows a stance that looks like its frame before."""
+    """Return `[F]` what entering at each frame costs, given a clip's `costs`: c_ij compares with frame j - 1,
+    so a clip entered at j follows a stance that looks like its frame before.
+    """
     return np.append(cost[:1], cost[:-1])
 
 
-def masked(stats: Statistics, clip: Clip, moved: Array | None, roles: Mapping[str, int] | None = None) -> Statistics:
-    """Return the statistics for an action that moves only some joints, `[J]` how strongly (None: all): the others stay in the stance."""
+def masked(
+    stats: Statistics, clip: Clip, moved: Array | None, roles: Mapping[str, int] | None = None
+) -> Statistics:
+    """Return the statistics for an action that moves only some joints, `[J]` how strongly (None: all): the
+    others stay in the stance.
+    """
     if moved is None:
         return stats
     rig = rig_of(clip, roles)
@@ -211,8 +246,17 @@ def masked(stats: Statistics, clip: Clip, moved: Array | None, roles: Mapping[st
     return replace(stats, weights=stats.weights * (moved[rig.keep[rig.joints]] > 0))
 
 
-def seam(stats: Statistics, clip: Clip, start: float, end: float, overlap: float, roles: Mapping[str, int] | None = None) -> float:
-    """Return what the seam of a loop from `start` to `end` costs, beside the threshold: the most of what lies opposite in its overlap."""
+def seam(
+    stats: Statistics,
+    clip: Clip,
+    start: float,
+    end: float,
+    overlap: float,
+    roles: Mapping[str, int] | None = None,
+) -> float:
+    """Return what the seam of a loop from `start` to `end` costs, beside the threshold: the most of what lies
+    opposite in its overlap.
+    """
     track = track_of(rig_of(clip, roles), clip)
     v, last = velocity_of(track), len(track) - 1
     if track.shape[1] != len(stats.weights):
@@ -224,9 +268,12 @@ def seam(stats: Statistics, clip: Clip, start: float, end: float, overlap: float
 
 
 def shown(cost: Any, seconds: float) -> Any:
-    """Return what of a difference, beside the threshold, still shows when it is blended over some seconds: up to 1 is no jump.
+    """Return what of a difference, beside the threshold, still shows when it is blended over some seconds: up
+    to 1 is no jump.
 
-    The threshold is what passes in STEP - 1 frames; what is played is blended by 3x^2 - 2x^3, at its fastest 1.5 times its mean."""
+    The threshold is what passes in STEP - 1 frames; what is played is blended by 3x^2 - 2x^3, at its fastest
+    1.5 times its mean.
+    """
     return cost * min(1.0, 1.5 * (STEP - 1) / RATE / seconds) if seconds > 0 else cost
 
 
@@ -236,9 +283,11 @@ def _spans(good: Array, times: Array) -> tuple[Span, ...]:
 
 
 def blend(cost: float) -> float:
-    """Return in how many seconds a difference, beside the threshold, is blended over no faster than the user's own clips move.
+    """Return in how many seconds a difference, beside the threshold, is blended over no faster than the
+    user's own clips move.
 
-    The threshold is what passes in STEP - 1 frames; a cosine blend is at its fastest pi / 2 times its mean."""
+    The threshold is what passes in STEP - 1 frames; a cosine blend is at its fastest pi / 2 times its mean.
+    """
     return min(max(pi / 2 * cost * (STEP - 1) / RATE, BLEND[0]), BLEND[1])
 
 
@@ -250,10 +299,12 @@ def times(
     stroke: float | None = None,
     roles: Mapping[str, int] | None = None,
 ) -> Times:
-    """Return a timing for a clip entered from a stance and left to one, given its `costs` beside them (left None: the same).
+    """Return a timing for a clip entered from a stance and left to one, given its `costs` beside them (left
+    None: the same).
 
-    It begins and ends with the movement (their equation 2) where that looks like the stances, else at the nearest moment that does, with
-    room for the blends; once it looks like the stance it ends in, after its stroke and for good, it may be left.
+    It begins and ends with the movement (their equation 2) where that looks like the stances, else at the
+    nearest moment that does, with room for the blends; once it looks like the stance it ends in, after its
+    stroke and for good, it may be left.
     """
     left = entered if left is None else left
     into, out, at = fitting(clip, entered), fitting(clip, left), times_of(clip)
@@ -275,12 +326,19 @@ def times(
     last = out.leave[-1][0] if out.leave else end
     earliest = max(last, middle) if away and leave and max(last, middle) < end - blend_out else None
     if enter and leave:
-        reason = f"moves from {moving[0]:.2f} to {moving[-1]:.2f} s, and looks like its stance before and after"
+        reason = (
+            f"moves from {moving[0]:.2f} to {moving[-1]:.2f} s, and looks like its stance before and after"
+        )
     else:
-        worst = [f"{what} costs {cost:.1f} times what is usual" for what, cost, good in
-                 (("entering", into.enter_cost, enter), ("leaving", out.leave_cost, leave)) if not good]  # fmt: skip
+        worst = [
+            f"{what} costs {cost:.1f} times what is usual"
+            for what, cost, good in (("entering", into.enter_cost, enter), ("leaving", out.leave_cost, leave))
+            if not good
+        ]
         reason = " and ".join(worst) + ": a jump would be seen"
-    return Times(start, end, min(blend_in, room), min(blend_out, room), earliest, bool(enter and leave), reason)
+    return Times(
+        start, end, min(blend_in, room), min(blend_out, room), earliest, bool(enter and leave), reason
+    )
 
 
 def loop_times(stats: Statistics, clip: Clip, roles: Mapping[str, int] | None = None) -> Times:
@@ -288,10 +346,20 @@ def loop_times(stats: Statistics, clip: Clip, roles: Mapping[str, int] | None = 
     track = track_of(rig_of(clip, roles), clip)
     v = velocity_of(track)
     seam = float(np.linalg.norm(track[-1] - track[0], axis=-1) @ stats.weights)
-    seam = (seam + stats.velocity * float(np.linalg.norm(v[-1] - v[0], axis=-1) @ stats.weights)) / stats.threshold
+    seam = (
+        seam + stats.velocity * float(np.linalg.norm(v[-1] - v[0], axis=-1) @ stats.weights)
+    ) / stats.threshold
     overlap = 0.0 if seam <= SEAMLESS else min(blend(seam), clip.duration / 3)
     good = seam <= 1 or blend(seam) < BLEND[1]
-    return Times(0.0, clip.duration, overlap, 0.0, None, good, f"its seam costs {seam:.2f} times what is usual between frames")
+    return Times(
+        0.0,
+        clip.duration,
+        overlap,
+        0.0,
+        None,
+        good,
+        f"its seam costs {seam:.2f} times what is usual between frames",
+    )
 
 
 def _at(cost: Array, seconds: float) -> float:
@@ -307,15 +375,23 @@ def matrix(
     cancelled: Callable[[], bool] | None = None,
     progress: Callable[[int, int], None] | None = None,
 ) -> Matrix:
-    """Return all clips against all stances of a layer. stances: id -> its loops, the project's own unless given; clips: ids, all unless
-    given. What is left when `cancelled` stays infinite. progress: called with how many of how many."""
+    """Return all clips against all stances of a layer. stances: id -> its loops, the project's own unless
+    given; clips: ids, all unless given. What is left when `cancelled` stays infinite. progress: called with
+    how many of how many.
+    """
     roles = anatomy.roles(project)
-    own = {ident: e.motion for ident, e in project.clips.items() if e.motion is not None and e.motion.skeleton == project.skeleton}
+    own = {
+        ident: e.motion
+        for ident, e in project.clips.items()
+        if e.motion is not None and e.motion.skeleton == project.skeleton
+    }
     chosen = tuple(project.clips) if clips is None else tuple(clips)
     loops = loops_of(project, layer) if stances is None else stances
     graph = project.graphs[layer]
     labelled = [own[c] for c in graph.uses if c in own]
-    stats = statistics(labelled or own.values(), layer, roles, {part: graph.weight(part) for part in REACH[layer]})
+    stats = statistics(
+        labelled or own.values(), layer, roles, {part: graph.weight(part) for part in REACH[layer]}
+    )
     shape = (len(chosen), len(loops))
     out = Matrix(layer, chosen, tuple(loops), *(np.full(shape, v) for v in (np.inf, np.inf, 0.0, 0.0)))
     frames = [stance_frames(stats, some, roles) for some in loops.values()]
@@ -335,7 +411,9 @@ def matrix(
 
 
 def loops_of(project: Project, layer: Layer) -> dict[str, list[tuple[Clip, float, float]]]:
-    """Return stance id -> its loops, each a clip and the seconds that play, of a project's stances; those whose clips are there."""
+    """Return stance id -> its loops, each a clip and the seconds that play, of a project's stances; those
+    whose clips are there.
+    """
     out: dict[str, list[tuple[Clip, float, float]]] = {}
     for stance in project.graphs[layer].stances:
         out[stance] = []

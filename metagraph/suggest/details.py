@@ -1,4 +1,6 @@
-"""What an action has beside its labels, proposed: timing, the joints it moves, its stroke, how likely it is; each with a reason."""
+"""What an action has beside its labels, proposed: timing, the joints it moves, its stroke, how likely it is;
+each with a reason.
+"""
 
 from __future__ import annotations
 
@@ -28,8 +30,12 @@ LONGEST = 2.0  # seconds of such a moment
 MANY = 12  # clips that are looked through for one
 
 
-def timed(project: Project, proposals: Mapping[str, Proposal], cancelled: Callable[[], bool] | None = None) -> dict[str, Proposal]:
-    """Return proposals with timing from the statistics of the user's own clips, where stances have loops to measure against."""
+def timed(
+    project: Project, proposals: Mapping[str, Proposal], cancelled: Callable[[], bool] | None = None
+) -> dict[str, Proposal]:
+    """Return proposals with timing from the statistics of the user's own clips, where stances have loops to
+    measure against.
+    """
     roles = anatomy.roles(project)
     out = dict(proposals)
     for layer in LAYERS:
@@ -38,7 +44,9 @@ def timed(project: Project, proposals: Mapping[str, Proposal], cancelled: Callab
         if not motions:
             continue
         stats = compatibility.statistics(motions, layer, roles)
-        loops: dict[str, list[tuple[Clip, float, float]]] = {k: list(v) for k, v in compatibility.loops_of(project, layer).items()}
+        loops: dict[str, list[tuple[Clip, float, float]]] = {
+            k: list(v) for k, v in compatibility.loops_of(project, layer).items()
+        }
         for p in mine:
             motion = project.clips[p.clip].motion
             if p.kind.value == "stance" and p.stance is not None and motion is not None:
@@ -59,7 +67,12 @@ def timed(project: Project, proposals: Mapping[str, Proposal], cancelled: Callab
                 into = compatibility.costs(stats, motion, start, roles)
                 last = frames.get(p.end_stance.value) if p.end_stance is not None else None
                 times = compatibility.times(
-                    stats, motion, into, None if last is None else compatibility.costs(stats, motion, last, roles), None, roles
+                    stats,
+                    motion,
+                    into,
+                    None if last is None else compatibility.costs(stats, motion, last, roles),
+                    None,
+                    roles,
                 )
             out[p.clip] = _with_times(p, motion, times)
     return out
@@ -79,15 +92,26 @@ def _with_times(p: Proposal, motion: Clip, times: compatibility.Times) -> Propos
     reasons = dict.fromkeys(timing, times.reason)
     reasons["loop"] = "a stance goes on until it is left" if loop else f"a {p.kind.value} plays once"
     if times.earliest_exit is None:
-        reasons["earliest_exit"] = "a stance may be left at any time" if loop else "it plays to its end, where it looks like a stance again"
+        reasons["earliest_exit"] = (
+            "a stance may be left at any time"
+            if loop
+            else "it plays to its end, where it looks like a stance again"
+        )
     else:
         reasons["earliest_exit"] = f"looks like the stance it ends in from {times.earliest_exit:.2f} s on"
-    details = {key: Belief(value, p.kind.confidence if key == "loop" else sure, reasons[key]) for key, value in timing.items()}
-    return replace(p, timing=timing, timing_reason=times.reason, good=times.good, details={**p.details, **details})
+    details = {
+        key: Belief(value, p.kind.confidence if key == "loop" else sure, reasons[key])
+        for key, value in timing.items()
+    }
+    return replace(
+        p, timing=timing, timing_reason=times.reason, good=times.good, details={**p.details, **details}
+    )
 
 
 def masked(project: Project, p: Proposal, traits: Traits | None) -> Proposal:
-    """Return a proposal with the joints its clip moves: all its layer reaches, but of a clip of the face only those."""
+    """Return a proposal with the joints its clip moves: all its layer reaches, but of a clip of the face only
+    those.
+    """
     motion = project.clips[p.clip].motion
     if motion is None or traits is None:
         return p
@@ -95,22 +119,35 @@ def masked(project: Project, p: Proposal, traits: Traits | None) -> Proposal:
     if traits.face > 0 and p.layer.value == "head":
         moving = np.flatnonzero(np.ptp(motion.rotations, axis=0).max(-1) > 1e-3)
         apart = np.ptp(motion.translations, axis=0).max(-1) if len(motion.translated) else np.zeros(0)
-        joints = {int(j) for j in moving} | {int(j) for j, x in zip(motion.translated, apart, strict=True) if x > 1e-5}
+        joints = {int(j) for j in moving} | {
+            int(j) for j, x in zip(motion.translated, apart, strict=True) if x > 1e-5
+        }
         if joints:
             names = tuple(motion.skeleton.names[j] for j in sorted(joints))
-            mask = Belief(names, 0.9, f"only {len(names)} joint{'s' if len(names) > 1 else ''} of the face move{'s' * (len(names) == 1)}")
+            mask = Belief(
+                names,
+                0.9,
+                f"only {len(names)} joint{'s' if len(names) > 1 else ''} of the face "
+                f"move{'s' * (len(names) == 1)}",
+            )
     return replace(p, details={**p.details, "mask": mask})
 
 
 def stroked(project: Project, p: Proposal, motion: MotionGuess | None) -> Proposal:
-    """Return a gesture's proposal with its stroke, as `playback.phases` finds it within the proposed timing."""
+    """Return a gesture's proposal with its stroke, as `playback.phases` finds it within the proposed
+    timing.
+    """
     if p.kind.value != "gesture" or motion is None or project.clips[p.clip].motion is None:
         return p
-    action = Action("", p.clip, "gesture", p.layer.value, "", "", timing=Timing(**p.timing), limb=p.limb.value)
+    action = Action(
+        "", p.clip, "gesture", p.layer.value, "", "", timing=Timing(**p.timing), limb=p.limb.value
+    )
     found = phases(project, action)
     what = {"arms": "the hands are", "head": "the head is", "body": "the trunk is"}[p.layer.value]
     near = motion.stroke is not None and abs(motion.stroke.value - found.stroke) < 0.1
-    reason = f"{what} fastest at {found.stroke:.2f} s" + (f", on the way out; held until {found.relax:.2f} s" if near else "")
+    reason = f"{what} fastest at {found.stroke:.2f} s" + (
+        f", on the way out; held until {found.relax:.2f} s" if near else ""
+    )
     return replace(
         p,
         timing={**p.timing, "stroke": round(found.stroke, 3)},
@@ -119,12 +156,15 @@ def stroked(project: Project, p: Proposal, motion: MotionGuess | None) -> Propos
 
 
 def weighted(project: Project, proposals: Mapping[str, Proposal]) -> dict[str, Proposal]:
-    """Return proposals with likelihoods: numbered variants of one thing share one weight, so that many takes of it do not crowd out the
-    rest. Those placed before count along."""
+    """Return proposals with likelihoods: numbered variants of one thing share one weight, so that many takes
+    of it do not crowd out the rest. Those placed before count along.
+    """
     groups: dict[Any, list[str]] = defaultdict(list)
     placed: dict[Any, int] = defaultdict(int)
     for p in proposals.values():
-        groups[_alike(project, p.clip, p.kind.value, p.layer.value, p.stance.value if p.stance else "")].append(p.clip)
+        groups[
+            _alike(project, p.clip, p.kind.value, p.layer.value, p.stance.value if p.stance else "")
+        ].append(p.clip)
     for action in project.actions():
         if action.clip in project.clips and action.clip not in proposals:
             placed[_alike(project, action.clip, action.kind, action.layer, action.stance)] += 1
@@ -133,7 +173,9 @@ def weighted(project: Project, proposals: Mapping[str, Proposal]) -> dict[str, P
         count = len(clips) + placed[key]
         words = key[-1]
         if count > 1 and words:
-            belief = Belief(round(1 / count, 3), 0.8, f"one of {count} of '{words}', which share the weight of one")
+            belief = Belief(
+                round(1 / count, 3), 0.8, f"one of {count} of '{words}', which share the weight of one"
+            )
         else:
             belief = Belief(1.0, 0.8, "no other is called so, so it counts as one")
         for clip in clips:
@@ -153,12 +195,17 @@ def _alike(project: Project, clip: str, kind: str, layer: str, stance: str) -> t
 
 
 def rest_of(project: Project, place: Place, proposals: Mapping[str, Proposal]) -> Rest | None:
-    """Return the stillest moment in which clips show a stance that none rests in: the first of one that begins there, or the last of one
-    that ends there; None where no clip has motion."""
+    """Return the stillest moment in which clips show a stance that none rests in: the first of one that
+    begins there, or the last of one that ends there; None where no clip has motion.
+    """
     ends: list[tuple[float, str, bool]] = []
     for p in proposals.values():
         if p.layer.value == place.layer:
-            ends += [(b.confidence, p.clip, b is p.stance) for b in (p.stance, p.end_stance) if b is not None and b.value == place.key]
+            ends += [
+                (b.confidence, p.clip, b is p.stance)
+                for b in (p.stance, p.end_stance)
+                if b is not None and b.value == place.key
+            ]
     best: Rest | None = None
     for _, clip, first in sorted(ends, key=lambda x: (-x[0], x[1], not x[2]))[:MANY]:
         motion = project.clips[clip].motion
@@ -168,7 +215,10 @@ def rest_of(project: Project, place: Place, proposals: Mapping[str, Proposal]) -
         if best is None or long > best.end - best.start + 1e-6:
             start, end = (0.0, long) if first else (motion.duration - long, motion.duration)
             name = project.clips[clip].name
-            reason = f"no clip rests there; '{name}' is still for {'its first' if first else 'its last'} {long:.2f} s"
+            reason = (
+                f"no clip rests there; '{name}' is still for {'its first' if first else 'its last'} "
+                f"{long:.2f} s"
+            )
             best = Rest(clip, round(start, 3), round(end, 3), reason)
     return best
 
@@ -178,7 +228,11 @@ def _still(motion: Clip, first: bool) -> float:
     if motion.frames < 2:
         return motion.duration
     count = min(motion.frames, int(LONGEST * motion.fps) + 1)
-    rows = slice(0, count) if first else slice(motion.frames - 1, motion.frames - 1 - count if count < motion.frames else None, -1)
+    rows = (
+        slice(0, count)
+        if first
+        else slice(motion.frames - 1, motion.frames - 1 - count if count < motion.frames else None, -1)
+    )
     turns = motion.rotations[rows]
     angle = 2 * np.arccos(np.clip(np.abs(np.sum(turns * turns[0], axis=-1)), 0, 1)).max(-1)
     moved = np.zeros(len(turns))

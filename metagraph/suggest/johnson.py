@@ -1,7 +1,8 @@
-"""Johnson's bounded distribution (S_B): what is normal after z = gamma + delta ln(u / (1 - u)), u the place between the bounds.
+"""Johnson's bounded distribution (S_B): what is normal after z = gamma + delta ln(u / (1 - u)), u the place
+between the bounds.
 
-Yang et al. (section 6) found it to fit the costs of transitions between frames best.
-With known bounds the greatest likelihood has a closed form: delta and gamma make z's mean 0 and its deviation 1.
+Yang et al. (section 6) found it to fit the costs of transitions between frames best. With known bounds the
+greatest likelihood has a closed form: delta and gamma make z's mean 0 and its deviation 1.
 """
 
 from __future__ import annotations
@@ -47,7 +48,9 @@ class JohnsonSB:
 
 
 def fit(values: ArrayLike, low: float, high: float) -> JohnsonSB:
-    """Return the distribution that makes values likeliest, given its bounds. Raises ValueError without values, or where low >= high."""
+    """Return the distribution that makes values likeliest, given its bounds. Raises ValueError without
+    values, or where low >= high.
+    """
     x = np.asarray(values, np.float64).ravel()
     if not x.size:
         raise ValueError("a distribution cannot be fitted to no values")

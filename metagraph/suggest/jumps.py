@@ -1,4 +1,6 @@
-"""Where actions of a project would jump visibly - as they begin, end or loop - and when they would not: `compatibility`, applied."""
+"""Where actions of a project would jump visibly - as they begin, end or loop - and when they would not:
+`compatibility`, applied.
+"""
 
 from __future__ import annotations
 
@@ -28,9 +30,10 @@ ROOM = 0.8  # of the threshold: what a better moment may cost, so that it stays 
 
 @dataclass(frozen=True)
 class Jump:
-    """An action that would jump. edge: where. at: seconds of its clip now. cost: of what shows as a jump, its blend taken off; > 1.
-    stance: beside which, by id. change: the Timing fields that mend it; better: the moment among them. fits: the stance it looks like
-    at that moment, if another."""
+    """An action that would jump. edge: where. at: seconds of its clip now. cost: of what shows as a jump, its
+    blend taken off; > 1. stance: beside which, by id. change: the Timing fields that mend it; better: the
+    moment among them. fits: the stance it looks like at that moment, if another.
+    """
 
     action: str
     edge: Edge
@@ -44,9 +47,11 @@ class Jump:
 
 @dataclass(frozen=True, eq=False)
 class Curves:
-    """An action's clip beside its stances. times `[F]`: seconds, tracks.RATE a second. enter, leave `[F]`: what entering and
-    leaving at each would cost, of what shows as a jump, without a blend (see `compatibility.shown`); for a loop both are what its seam
-    would cost if it ended there. proposed: a timing in which nothing shows."""
+    """An action's clip beside its stances. times `[F]`: seconds, tracks.RATE a second. enter, leave `[F]`:
+    what entering and leaving at each would cost, of what shows as a jump, without a blend (see
+    `compatibility.shown`); for a loop both are what its seam would cost if it ended there. proposed: a timing
+    in which nothing shows.
+    """
 
     times: Array
     enter: Array
@@ -55,35 +60,52 @@ class Curves:
 
 
 class Measured:
-    """A layer's statistics beside its stances, with what has been compared. Made of another of the same layer, what still holds is kept.
+    """A layer's statistics beside its stances, with what has been compared. Made of another of the same
+    layer, what still holds is kept.
 
-    reliable: whether they rest on enough motion. stats, frames (stance -> its frames): as `compatibility` has them.
+    reliable: whether they rest on enough motion. stats, frames (stance -> its frames): as `compatibility` has
+    them.
     """
 
     def __init__(self, project: Project, layer: Layer, before: Measured | None = None) -> None:
         graph = project.graphs[layer]
         self.layer, self.roles, self.parts = layer, anatomy.roles(project), project.parts
-        own = {i: e.motion for i, e in project.clips.items() if e.motion is not None and e.motion.skeleton == project.skeleton}
+        own = {
+            i: e.motion
+            for i, e in project.clips.items()
+            if e.motion is not None and e.motion.skeleton == project.skeleton
+        }
         used = [own[i] for i in sorted(graph.uses) if i in own]
         self.motions = tuple(used or own.values())
         self.labelled = len(used)
         self.weights: dict[str, float] = {part: graph.weight(part) for part in REACH[layer]}
         self.loops = c.loops_of(project, layer)
         old = before if before is not None and before.rests_on(self) else None
-        self.stats: c.Statistics = old.stats if old is not None else c.statistics(self.motions, layer, self.roles, self.weights)
+        self.stats: c.Statistics = (
+            old.stats if old is not None else c.statistics(self.motions, layer, self.roles, self.weights)
+        )
         same: Mapping[str, tuple[Array, Array]] = old.frames if old is not None else {}
         self.frames: dict[str, tuple[Array, Array]] = {
-            stance: same[stance] if old is not None and old.loops.get(stance) == loops else c.stance_frames(self.stats, loops, self.roles)
+            stance: same[stance]
+            if old is not None and old.loops.get(stance) == loops
+            else c.stance_frames(self.stats, loops, self.roles)
             for stance, loops in self.loops.items()
         }
         kept = old._costs if old is not None else {}
-        self._costs: dict[Any, Array] = {k: v for k, v in kept.items() if same.get(k[1]) is self.frames.get(k[1])}
+        self._costs: dict[Any, Array] = {
+            k: v for k, v in kept.items() if same.get(k[1]) is self.frames.get(k[1])
+        }
 
     def rests_on(self, other: Measured) -> bool:
         """Whether the statistics are of the same motion as another's."""
         mine, theirs = self.motions, other.motions
         alike = len(mine) == len(theirs) and all(a is b for a, b in zip(mine, theirs, strict=True))
-        return alike and self.weights == other.weights and self.roles == other.roles and self.parts == other.parts
+        return (
+            alike
+            and self.weights == other.weights
+            and self.roles == other.roles
+            and self.parts == other.parts
+        )
 
     def same_as(self, other: Measured) -> bool:
         """Whether everything that is measured would come out as another's."""
@@ -94,7 +116,9 @@ class Measured:
         return self.labelled >= FEWEST_CLIPS and self.stats.count >= FEWEST_COSTS
 
     def costs(self, project: Project, action: Action, stance: str | None) -> Array | None:
-        """Return `[F]` what changing between each frame of an action's clip and a stance costs; None where nothing can be compared."""
+        """Return `[F]` what changing between each frame of an action's clip and a stance costs; None where
+        nothing can be compared.
+        """
         entry = project.clips.get(action.clip)
         motion = entry.motion if entry is not None else None
         frames = self.frames.get(stance or "")
@@ -103,15 +127,21 @@ class Measured:
         moved = anatomy.mask(project, action)
         key = id(motion), stance, None if moved is None else moved.tobytes()
         if key not in self._costs:
-            self._costs[key] = c.costs(c.masked(self.stats, motion, moved, self.roles), motion, frames, self.roles)
+            self._costs[key] = c.costs(
+                c.masked(self.stats, motion, moved, self.roles), motion, frames, self.roles
+            )
         return self._costs[key]
 
 
 def jumps(
-    project: Project, measured: Measured, known: dict[Any, tuple[Jump, ...]] | None = None, cancelled: Callable[[], bool] | None = None
+    project: Project,
+    measured: Measured,
+    known: dict[Any, tuple[Jump, ...]] | None = None,
+    cancelled: Callable[[], bool] | None = None,
 ) -> list[Jump]:
-    """Return the jumps of a layer; none where its statistics are not reliable. known: filled with what was found, and looked up there
-    again as long as the action and what it was measured beside stay the same."""
+    """Return the jumps of a layer; none where its statistics are not reliable. known: filled with what was
+    found, and looked up there again as long as the action and what it was measured beside stay the same.
+    """
     found: list[Jump] = []
     if not measured.reliable:
         return found
@@ -130,16 +160,29 @@ def _of(project: Project, measured: Measured, action: Action) -> list[Jump]:
         return _loop(project, measured, action)
     start, end = project.span(action)
     t = action.timing
-    into, left = measured.costs(project, action, action.stance), measured.costs(project, action, ends_in(action))
+    into, left = (
+        measured.costs(project, action, action.stance),
+        measured.costs(project, action, ends_in(action)),
+    )
     found = []
-    middle = t.stroke if t.stroke is not None else phases(project, action).stroke if action.kind == "gesture" else None
+    middle = (
+        t.stroke
+        if t.stroke is not None
+        else phases(project, action).stroke
+        if action.kind == "gesture"
+        else None
+    )
     if into is not None:
         cost = c.entering(into)
         now = float(c.shown(_at(cost, start), t.blend_in))
-        latest = end - t.blend_in - t.blend_out if middle is None else min(middle, end - t.blend_in - t.blend_out)
+        latest = (
+            end - t.blend_in - t.blend_out if middle is None else min(middle, end - t.blend_in - t.blend_out)
+        )
         if now > 1:
             better = _nearest(cost, start, 0.0, latest, t.blend_in)
-            better, mend = _mend("start", start, better, _blended("blend_in", _at(cost, start), end - start - t.blend_out))
+            better, mend = _mend(
+                "start", start, better, _blended("blend_in", _at(cost, start), end - start - t.blend_out)
+            )
             fits = _fits(project, measured, action, start, action.stance, c.entering)
             found.append(Jump(action.id, "begins", start, now, action.stance, mend, better, fits))
     target = ends_in(action)
@@ -147,12 +190,29 @@ def _of(project: Project, measured: Measured, action: Action) -> list[Jump]:
         now = float(c.shown(_at(left, end), t.blend_out))
         if now > 1:
             length = project.clips[action.clip].duration
-            soonest = start + t.blend_in + t.blend_out if middle is None else max(middle, start + t.blend_in + t.blend_out)
+            soonest = (
+                start + t.blend_in + t.blend_out
+                if middle is None
+                else max(middle, start + t.blend_in + t.blend_out)
+            )
             better = _nearest(left, end, soonest, length, t.blend_out)
-            better, mend = _mend("end", end, better, _blended("blend_out", _at(left, end), end - start - t.blend_in))
+            better, mend = _mend(
+                "end", end, better, _blended("blend_out", _at(left, end), end - start - t.blend_in)
+            )
             if better is not None and t.earliest_exit is not None and t.earliest_exit > better:
                 mend["earliest_exit"] = None
-            found.append(Jump(action.id, "ends", end, now, target, mend, better, _fits(project, measured, action, end, target)))
+            found.append(
+                Jump(
+                    action.id,
+                    "ends",
+                    end,
+                    now,
+                    target,
+                    mend,
+                    better,
+                    _fits(project, measured, action, end, target),
+                )
+            )
     return found
 
 
@@ -175,7 +235,9 @@ def _at(cost: Array, seconds: float) -> float:
 
 
 def _nearest(cost: Array, now: float, first: float, last: float, blend: float) -> float | None:
-    """Return the moment from first to last, nearest to now, at which no jump shows; None where there is none."""
+    """Return the moment from first to last, nearest to now, at which no jump shows; None where there is
+    none.
+    """
     times = np.arange(len(cost)) / RATE
     inside = (times >= first - 1e-6) & (times <= last + 1e-6)
     for most in (ROOM, 1.0):
@@ -185,7 +247,9 @@ def _nearest(cost: Array, now: float, first: float, last: float, blend: float) -
     return None
 
 
-def _mend(field: str, now: float, better: float | None, blended: dict[str, Any]) -> tuple[float | None, dict[str, Any]]:
+def _mend(
+    field: str, now: float, better: float | None, blended: dict[str, Any]
+) -> tuple[float | None, dict[str, Any]]:
     """Return a better moment, if it is what mends, and the Timing fields that do."""
     if better is not None and blended and abs(better - now) > NEAR:
         better = None
@@ -199,7 +263,12 @@ def _blended(name: str, cost: float, room: float) -> dict[str, Any]:
 
 
 def _fits(
-    project: Project, measured: Measured, action: Action, seconds: float, stance: str, seen: Callable[[Array], Array] | None = None
+    project: Project,
+    measured: Measured,
+    action: Action,
+    seconds: float,
+    stance: str,
+    seen: Callable[[Array], Array] | None = None,
 ) -> str | None:
     """Return the stance that an action looks like at a moment, if another than its own."""
     best: tuple[float, str] | None = None
@@ -223,7 +292,10 @@ def curves(project: Project, measured: Measured, action: Action) -> Curves | Non
         first = c.stance_frames(measured.stats, [(motion, start, start + 1e-6)], roles)
         cost = c.costs(measured.stats, motion, first, roles)
         return Curves(_times(motion, cost), cost, cost, c.loop_times(measured.stats, motion, roles))
-    into, left = measured.costs(project, action, action.stance), measured.costs(project, action, ends_in(action))
+    into, left = (
+        measured.costs(project, action, action.stance),
+        measured.costs(project, action, ends_in(action)),
+    )
     if into is None or left is None:
         return None
     stats = c.masked(measured.stats, motion, anatomy.mask(project, action), roles)

@@ -1,4 +1,6 @@
-"""Measures of a whole clip that discovering stances and guessing beside them share: how much it moves, which layer, how much it rests."""
+"""Measures of a whole clip that discovering stances and guessing beside them share: how much it moves, which
+layer, how much it rests.
+"""
 
 from __future__ import annotations
 
@@ -9,11 +11,16 @@ from metagraph.graph.words import Layer
 from metagraph.suggest.belief import Belief
 from metagraph.suggest.traits import Traits
 
-TYPICAL: Mapping[Layer, float] = {"arms": 0.12, "head": 0.04, "body": 0.03}  # heights that another stance is away, about
+TYPICAL: Mapping[Layer, float] = {
+    "arms": 0.12,
+    "head": 0.04,
+    "body": 0.03,
+}  # heights that another stance is away, about
 HELD = 1.0  # seconds in which nothing moves, from which on that is a pose to stand in
 FLOWING = 0.2  # of its greatest speed that a clip has at its ends, from which on it is a loop that flows
 STRIDE = 0.05  # heights that each foot comes before the other in a walk, at least
-SUREST = 0.95  # how often a guess from motion is right at most: it alone cannot tell a small gesture from a large fidget
+# how often a guess from motion is right at most: it alone cannot tell a small gesture from a large fidget
+SUREST = 0.95
 
 
 def energy(traits: Traits) -> float:
@@ -34,16 +41,28 @@ def resting(traits: Traits) -> float:
     fastest = max(x.peak, 3 * traits.energy["fingers"], 1e-3)
     apart = max(y.loop_error / TYPICAL[layer] for layer, y in traits.layers.items())
     long = 3.0 * log(min(traits.duration / 3.5, 2.0))
-    # A short loop, whose end goes on as it begins, is played again and again: then it does not matter that it is short.
+    # A short loop, whose end goes on as it begins, is played again and again: then it does not matter that it
+    # is short.
     flows = min(1.0, x.steady / FLOWING) if apart < 0.1 else 0.0
     small = 1.5 * max(0.0, 1 - x.extent / 0.08)
-    return long - 1.5 * log(fastest / 0.05) + 3.0 * x.steady - 6.0 * max(0.0, apart - 0.3) + flows * (max(0.0, -long) + small)
+    return (
+        long
+        - 1.5 * log(fastest / 0.05)
+        + 3.0 * x.steady
+        - 6.0 * max(0.0, apart - 0.3)
+        + flows * (max(0.0, -long) + small)
+    )
 
 
 def walks(traits: Traits) -> bool:
     """Return whether a clip is a cycle of steps, on the spot or over the ground."""
     body = traits.layers["body"]
-    return traits.stride > STRIDE and body.loop_error < 0.5 * TYPICAL["body"] and body.steady > FLOWING / 2 and traits.energy["legs"] > 0.2
+    return (
+        traits.stride > STRIDE
+        and body.loop_error < 0.5 * TYPICAL["body"]
+        and body.steady > FLOWING / 2
+        and traits.energy["legs"] > 0.2
+    )
 
 
 def layer_of(traits: Traits) -> Belief[Layer]:
@@ -59,13 +78,24 @@ def layer_of(traits: Traits) -> Belief[Layer]:
     if arms + lower + upper < 1e-5:
         return Belief("body", 0.34, "nothing moves")
     body, hands = lower / (0.15 * upper + 0.25 * arms + 1e-6), arms / (0.1 * upper + 1e-6)
-    share = f"hips and legs {lower * 100:.1f}, arms {arms * 100:.1f}, head and trunk {upper * 100:.1f} % of the height a second"
+    share = (
+        f"hips and legs {lower * 100:.1f}, arms {arms * 100:.1f}, head and trunk {upper * 100:.1f} % of "
+        "the height a second"
+    )
     if body >= 1:
         return Belief("body", _tempered(body), f"hips and legs move: {share}")
     if hands >= 1 and "arms" in have:
-        return Belief("arms", min(_tempered(hands), _tempered(1 / max(body, 1e-3))), f"the arms move, hips and legs do not: {share}")
+        return Belief(
+            "arms",
+            min(_tempered(hands), _tempered(1 / max(body, 1e-3))),
+            f"the arms move, hips and legs do not: {share}",
+        )
     if "head" in have:
-        return Belief("head", min(_tempered(1 / max(hands, 1e-3)), _tempered(1 / max(body, 1e-3))), f"only the head moves: {share}")
+        return Belief(
+            "head",
+            min(_tempered(1 / max(hands, 1e-3)), _tempered(1 / max(body, 1e-3))),
+            f"only the head moves: {share}",
+        )
     return Belief("body", 0.5, share)
 
 

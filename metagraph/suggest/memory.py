@@ -1,7 +1,8 @@
-"""What is learned between projects: what words in names mean, as the user changed and corrected it, and labelled clips of earlier projects.
+"""What is learned between projects: what words in names mean, as the user changed and corrected it, and
+labelled clips of earlier projects.
 
-A value: every change gives a new one, so that a file can be read, changed and written whole. It is kept as plain data by whoever has a
-place for it; a program without one starts from `Memory()`.
+A value: every change gives a new one, so that a file can be read, changed and written whole. It is kept as
+plain data by whoever has a place for it; a program without one starts from `Memory()`.
 """
 
 from __future__ import annotations
@@ -25,19 +26,27 @@ class MemoryFormatError(ValueError):
 
 @dataclass(frozen=True)
 class Memory:
-    """patterns: what words mean. examples: labelled clips by project key, any text that stays a project's own, the latest last."""
+    """patterns: what words mean. examples: labelled clips by project key, any text that stays a project's
+    own, the latest last.
+    """
 
     patterns: Patterns = field(default_factory=Patterns)
     examples: Mapping[str, tuple[Example, ...]] = field(default_factory=dict)
 
-    def corrected(self, name: str, field: str, value: str | Sequence[str], names: Sequence[str] = ()) -> Memory:
-        """Remember that a clip of this name was corrected. field: as `words_patterns.LEARNABLE`; value: a stance's or end stance's name,
-        tags as several, else the label. names: the batch it stands in. Raises PatternsError for a field or value that there is not."""
+    def corrected(
+        self, name: str, field: str, value: str | Sequence[str], names: Sequence[str] = ()
+    ) -> Memory:
+        """Remember that a clip of this name was corrected. field: as `words_patterns.LEARNABLE`; value: a
+        stance's or end stance's name, tags as several, else the label. names: the batch it stands in. Raises
+        PatternsError for a field or value that there is not.
+        """
         return replace(self, patterns=learn(self.patterns, name, field, value, names))
 
     def with_project(self, key: str, examples: Sequence[Example]) -> Memory:
-        """Return memory with a project's labelled clips in place of what it had of it; none forget it. The oldest projects go when there
-        are more than PROJECTS, or EXAMPLES of all; of one that is larger than that an even choice is kept."""
+        """Return memory with a project's labelled clips in place of what it had of it; none forget it. The
+        oldest projects go when there are more than PROJECTS, or EXAMPLES of all; of one that is larger than
+        that an even choice is kept.
+        """
         kept = {k: v for k, v in self.examples.items() if k != key}
         if examples:
             step = max(1, -(-len(examples) // EXAMPLES))
@@ -50,9 +59,12 @@ class Memory:
         """Return the examples of all projects but this one, whose own labels speak for themselves."""
         return [example for k, some in self.examples.items() if k != key for example in some]
 
-    def forgotten(self, words: bool = True, projects: bool = True, field: str | None = None, phrase: str | None = None) -> Memory:
-        """Return memory without what was learned. words: from corrections, all or of one field or phrase; the patterns the user wrote
-        stay. projects: the examples, which go whole."""
+    def forgotten(
+        self, words: bool = True, projects: bool = True, field: str | None = None, phrase: str | None = None
+    ) -> Memory:
+        """Return memory without what was learned. words: from corrections, all or of one field or phrase; the
+        patterns the user wrote stay. projects: the examples, which go whole.
+        """
         narrow = field is not None or phrase is not None
         patterns = forget(self.patterns, field, phrase) if words else self.patterns
         return Memory(patterns, {} if projects and not narrow else self.examples)
@@ -67,12 +79,17 @@ class Memory:
 
     @staticmethod
     def from_json(data: Any) -> Memory:
-        """Read what `to_json` gave; missing parts are empty. Raises MemoryFormatError naming the first place that is wrong."""
+        """Read what `to_json` gave; missing parts are empty. Raises MemoryFormatError naming the first place
+        that is wrong.
+        """
         if not isinstance(data, Mapping):
             raise MemoryFormatError(f"what was learned should be an object, not {type(data).__name__}")
         version = data.get("learned")
         if version != VERSION:
-            raise MemoryFormatError(f"'learned' is version {version!r}, this program reads {VERSION}; update it, or delete the file")
+            raise MemoryFormatError(
+                f"'learned' is version {version!r}, this program reads {VERSION}; update it, or delete the "
+                "file"
+            )
         for key in data:
             if key not in ("learned", "names", "projects"):
                 raise MemoryFormatError(f"'{key}' is not known; there are 'names' and 'projects'")

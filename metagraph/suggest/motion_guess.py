@@ -1,7 +1,7 @@
 """What a clip seems to be from its motion, beside known or discovered stances.
 
-A transition ends elsewhere than it begins, a stance rests for long, a gesture goes out, holds and comes back with the head and trunk
-along, a fidget is small, busy, or touches the character itself.
+A transition ends elsewhere than it begins, a stance rests for long, a gesture goes out, holds and comes back
+with the head and trunk along, a fidget is small, busy, or touches the character itself.
 """
 
 from __future__ import annotations
@@ -16,16 +16,24 @@ from metagraph.suggest.measures import SUREST, TYPICAL, energy, layer_of, restin
 from metagraph.suggest.stances import Shape, Stances, distance, nearest
 from metagraph.suggest.traits import LayerTraits, Traits
 
-STRAIGHT = 0.65  # of the way of a clip that ends in no other stance, the share from end to end from which on it is a transition
-ELSEWHERE = 0.1  # heights from the body's usual pose, from which on a resting clip is of the body: sitting, lying
-LIFE = 0.11  # of all movement of a resting clip that hips and legs make, from which on the whole body breathes
+# of the way of a clip that ends in no other stance, the share from end to end from which on it is a
+# transition
+STRAIGHT = 0.65
+ELSEWHERE = (
+    0.1  # heights from the body's usual pose, from which on a resting clip is of the body: sitting, lying
+)
+LIFE = (
+    0.11  # of all movement of a resting clip that hips and legs make, from which on the whole body breathes
+)
 ALONE = 0.5  # of the arms' energy on one side more than on the other, from which it is one-armed
 
 
 @dataclass(frozen=True)
 class MotionGuess:
-    """What a clip seems to be; None where the motion says nothing. stance, end_stance: of a `Shape`; the end stance of transitions only.
-    runner_up: the next nearest stance. stroke: seconds. chances: of each kind, adding up to 1."""
+    """What a clip seems to be; None where the motion says nothing. stance, end_stance: of a `Shape`; the end
+    stance of transitions only. runner_up: the next nearest stance. stroke: seconds. chances: of each kind,
+    adding up to 1.
+    """
 
     kind: Belief[Kind]
     layer: Belief[Layer]
@@ -39,8 +47,9 @@ class MotionGuess:
 
 
 def guess(traits: Traits, stances: Stances, on: Layer | None = None) -> MotionGuess:
-    """Return what a clip seems to be from its motion alone, beside known or discovered stances (none will do). on: the layer it is of,
-    where that is known from elsewhere."""
+    """Return what a clip seems to be from its motion alone, beside known or discovered stances (none will
+    do). on: the layer it is of, where that is known from elsewhere.
+    """
     layer = _layer_beside(traits, stances) if on is None else Belief(on, SUREST, "")
     x = traits.layers[layer.value]
     shapes = stances.get(layer.value, ())
@@ -59,12 +68,21 @@ def guess(traits: Traits, stances: Stances, on: Layer | None = None) -> MotionGu
     kind = max(chances, key=lambda k: chances[k])
     cm = 100 * traits.height
     reason = {
-        "transition": f"ends {x.loop_error * cm:.1f} cm from where it begins and goes only {x.extent * cm:.0f} cm beside that way",
-        "stance": f"moves at most {max(y.peak for y in traits.layers.values()) * cm:.0f} cm/s in {traits.duration:.1f} s"
+        "transition": f"ends {x.loop_error * cm:.1f} cm from where it begins and goes only "
+        f"{x.extent * cm:.0f} cm beside that way",
+        "stance": (
+            f"moves at most {max(y.peak for y in traits.layers.values()) * cm:.0f} cm/s in "
+            f"{traits.duration:.1f} s"
+        )
         if not walking
-        else f"goes on walking or running: its feet pass each other by {traits.stride * cm:.0f} cm, and its end flows into its beginning",
-        "gesture": f"goes {x.extent * cm:.0f} cm away and comes back, in {_times(x.bouts)}, up to {x.peak * cm:.0f} cm/s",
-        "fidget": f"goes {x.extent * cm:.0f} cm away in {_times(x.bouts)}, up to {x.peak * cm:.0f} cm/s" + _touching(traits, cm),
+        else (
+            f"goes on walking or running: its feet pass each other by {traits.stride * cm:.0f} cm, and its "
+            "end flows into its beginning"
+        ),
+        "gesture": f"goes {x.extent * cm:.0f} cm away and comes back, in {_times(x.bouts)}, up to "
+        f"{x.peak * cm:.0f} cm/s",
+        "fidget": f"goes {x.extent * cm:.0f} cm away in {_times(x.bouts)}, up to {x.peak * cm:.0f} cm/s"
+        + _touching(traits, cm),
     }[kind]
     if kind == "stance":
         starts = nearest(shapes, x.names, x.typical)
@@ -72,7 +90,9 @@ def guess(traits: Traits, stances: Stances, on: Layer | None = None) -> MotionGu
         Belief(kind, min(SUREST, chances[kind], (1 + layer.confidence) / 2), reason),
         layer,
         limb_of(traits, layer.value, kind),
-        Belief(kind == "stance", min(SUREST, chances[kind]), f"its ends are {x.loop_error * cm:.1f} cm apart"),
+        Belief(
+            kind == "stance", min(SUREST, chances[kind]), f"its ends are {x.loop_error * cm:.1f} cm apart"
+        ),
         _beside(starts, "begins" if kind != "stance" else "rests", layer, cm),
         _beside(ends, "ends", layer, cm) if kind == "transition" else None,
         starts[1][1] if len(starts) > 1 else None,
@@ -86,19 +106,29 @@ def _times(bouts: int) -> str:
 
 
 def _touching(traits: Traits, cm: float) -> str:
-    return f", and a hand comes {traits.touch * cm:.0f} cm nearer to touch the other arm or the head" if traits.touch > 0.03 else ""
+    return (
+        f", and a hand comes {traits.touch * cm:.0f} cm nearer to touch the other arm or the head"
+        if traits.touch > 0.03
+        else ""
+    )
 
 
 def _stroke(x: LayerTraits, cm: float) -> Belief[float]:
     again = x.peak_at == x.stroke_at
-    return Belief(x.stroke_at, 0.8 if again else 0.6, f"fastest on the way out at {x.stroke_at:.2f} s of {x.peak * cm:.0f} cm/s")
+    return Belief(
+        x.stroke_at,
+        0.8 if again else 0.6,
+        f"fastest on the way out at {x.stroke_at:.2f} s of {x.peak * cm:.0f} cm/s",
+    )
 
 
 def _sigmoid(z: float) -> float:
     return 1 / (1 + exp(-min(max(z, -30.0), 30.0)))
 
 
-def _beside(found: Sequence[tuple[float, Shape]], verb: str, layer: Belief[Layer], cm: float) -> Belief[Shape] | None:
+def _beside(
+    found: Sequence[tuple[float, Shape]], verb: str, layer: Belief[Layer], cm: float
+) -> Belief[Shape] | None:
     if not found:
         return None
     (near, shape), typical = found[0], TYPICAL[layer.value]
@@ -106,7 +136,11 @@ def _beside(found: Sequence[tuple[float, Shape]], verb: str, layer: Belief[Layer
     margin = 1.0 if second is None else (second - near) / max(second, 1e-9)
     confidence = SUREST * exp(-((near / typical) ** 2)) * (0.4 + 0.6 * min(1.0, 1.5 * margin))
     more = "" if second is None else f"; next nearest {_cm(second * cm)}"
-    return Belief(shape, min(confidence, shape.confidence, layer.confidence), f'{verb} {_cm(near * cm)} from "{shape.name}"{more}')
+    return Belief(
+        shape,
+        min(confidence, shape.confidence, layer.confidence),
+        f'{verb} {_cm(near * cm)} from "{shape.name}"{more}',
+    )
 
 
 def _cm(length: float) -> str:
@@ -114,10 +148,14 @@ def _cm(length: float) -> str:
 
 
 def _layer_beside(traits: Traits, stances: Stances) -> Belief[Layer]:
-    """Return which layer a clip moves; of one that rests, the only layer whose pose is not the usual one, if there is."""
+    """Return which layer a clip moves; of one that rests, the only layer whose pose is not the usual one, if
+    there is.
+    """
     found = layer_of(traits)
     if walks(traits):
-        return Belief("body", SUREST, f"the feet pass each other by {100 * traits.height * traits.stride:.0f} cm")
+        return Belief(
+            "body", SUREST, f"the feet pass each other by {100 * traits.height * traits.stride:.0f} cm"
+        )
     if resting(traits) < 0 or traits.face > 1e-3:
         return found
     unusual: dict[Layer, float] = {}
@@ -128,12 +166,22 @@ def _layer_beside(traits: Traits, stances: Stances) -> Belief[Layer]:
             if 0.5 * TYPICAL[layer] < away < float("inf"):
                 unusual[layer] = away
     lower, all_of = traits.energy["hips"] + traits.energy["legs"], energy(traits)
-    if found.value != "body" and (("body" in unusual and unusual["body"] > ELSEWHERE) or lower > LIFE * all_of):
-        where = f"rests {100 * traits.height * unusual['body']:.0f} cm from the usual pose of the body" if "body" in unusual else ""
-        return Belief("body", 0.75, where or f"rests, and hips and legs make {lower / all_of:.0%} of what moves")
+    if found.value != "body" and (
+        ("body" in unusual and unusual["body"] > ELSEWHERE) or lower > LIFE * all_of
+    ):
+        where = (
+            f"rests {100 * traits.height * unusual['body']:.0f} cm from the usual pose of the body"
+            if "body" in unusual
+            else ""
+        )
+        return Belief(
+            "body", 0.75, where or f"rests, and hips and legs make {lower / all_of:.0%} of what moves"
+        )
     if len(unusual) == 1 and found.value not in unusual:
         ((layer, away),) = unusual.items()
-        return Belief(layer, 0.7, f"rests {100 * traits.height * away:.0f} cm from the usual pose of the {layer}")
+        return Belief(
+            layer, 0.7, f"rests {100 * traits.height * away:.0f} cm from the usual pose of the {layer}"
+        )
     return found
 
 
@@ -146,7 +194,10 @@ def limb_of(traits: Traits, layer: Layer, kind: Kind) -> Belief[Limb]:
         limb: Limb = "both" if abs(share) < ALONE else "left" if share > 0 else "right"
         confidence = 0.5 + 0.45 * min(1.0, abs(abs(share) - ALONE) / 0.3)
         return Belief(
-            limb, confidence, f"the left arm makes {50 * (1 + share):.0f} % of the arms' movement, the right {50 * (1 - share):.0f} %"
+            limb,
+            confidence,
+            f"the left arm makes {50 * (1 + share):.0f} % of the arms' movement, the right "
+            f"{50 * (1 - share):.0f} %",
         )
     x = traits.layers["head"]
     if layer == "head" and "nose" in x.names:
@@ -154,16 +205,22 @@ def limb_of(traits: Traits, layer: Layer, kind: Kind) -> Belief[Limb]:
         left, right = float(x.high[n, 0] - x.first[n, 0]), float(x.first[n, 0] - x.low[n, 0])
         if max(left, right) > 0.02 and max(left, right) > 3 * min(left, right):
             side: Limb = "left" if left > right else "right"
-            return Belief(side, 0.7, f"the nose goes {100 * traits.height * max(left, right):.0f} cm to the {side}")
+            return Belief(
+                side, 0.7, f"the nose goes {100 * traits.height * max(left, right):.0f} cm to the {side}"
+            )
     return Belief("both", 0.9, f"the {layer} moves, not one arm")
 
 
-def _moving(traits: Traits, layer: Layer, starts: Sequence[tuple[float, Shape]], ends: Sequence[tuple[float, Shape]]) -> float:
+def _moving(
+    traits: Traits, layer: Layer, starts: Sequence[tuple[float, Shape]], ends: Sequence[tuple[float, Shape]]
+) -> float:
     """Return how much speaks for a transition, a logit."""
     x = traits.layers[layer]
     if x.loop_error < 1e-6:
         return -10.0
-    z = 3.0 * log(x.loop_error / (0.4 * TYPICAL[layer])) + 12.0 * (min(x.loop_error / (x.loop_error + x.extent), 0.5) - 0.3)
+    z = 3.0 * log(x.loop_error / (0.4 * TYPICAL[layer])) + 12.0 * (
+        min(x.loop_error / (x.loop_error + x.extent), 0.5) - 0.3
+    )
     if starts and ends:
         (_, here), (near, there) = starts[0], ends[0]
         back = next(d for d, shape in ends if shape is here)
@@ -171,7 +228,9 @@ def _moving(traits: Traits, layer: Layer, starts: Sequence[tuple[float, Shape]],
             z += 2.0
         elif there is here and back < 0.5 * x.loop_error + 0.1 * TYPICAL[layer]:
             z -= 3.0
-        if there is here or near > 0.5 * TYPICAL[layer]:  # ends in no other stance: recorded ones seldom end quite as they begin
+        if (
+            there is here or near > 0.5 * TYPICAL[layer]
+        ):  # ends in no other stance: recorded ones seldom end quite as they begin
             z = min(z, 3.0) + 20.0 * (x.loop_error / (x.loop_error + x.extent) - STRAIGHT)
     return z
 
@@ -194,11 +253,27 @@ def _telling(traits: Traits, layer: Layer) -> float:
     nods, leans = _log(head.peak, 0.12), _log(body.peak, 0.1)
     busy = 1.0 if bouts > 2 else 0.0
     if layer == "arms":
-        away = 1.9 * 5 * min(traits.out, 0.2) - 1.3 * 5 * min(traits.near, 0.2) - 1.55 * 10 * min(traits.touch, 0.1)
+        away = (
+            1.9 * 5 * min(traits.out, 0.2)
+            - 1.3 * 5 * min(traits.near, 0.2)
+            - 1.55 * 10 * min(traits.touch, 0.1)
+        )
         return 3.5 + 1.1 * _log(arms.extent, 0.2) + 0.9 * leans + 1.15 * nods + away - 1.95 * busy
     if layer == "head":
-        return 1.6 * nods + (2.7 if bouts == 1 else 0.0) + 2.7 * log(traits.duration + 0.1) - 0.3 * _log(head.extent, 0.03) - 2.0
-    return 1.2 + 0.9 * nods + leans - 1.4 * _log(traits.energy["legs"] + traits.energy["hips"], 0.02) - 2.9 * busy
+        return (
+            1.6 * nods
+            + (2.7 if bouts == 1 else 0.0)
+            + 2.7 * log(traits.duration + 0.1)
+            - 0.3 * _log(head.extent, 0.03)
+            - 2.0
+        )
+    return (
+        1.2
+        + 0.9 * nods
+        + leans
+        - 1.4 * _log(traits.energy["legs"] + traits.energy["hips"], 0.02)
+        - 2.9 * busy
+    )
 
 
 def _log(x: float, typical: float) -> float:

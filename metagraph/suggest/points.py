@@ -1,7 +1,9 @@
-"""Where the points of a character are over time, seen from its own ground: what `traits` measures movement by.
+"""Where the points of a character are over time, seen from its own ground: what `traits` measures movement
+by.
 
-Each layer's points are seen from what carries it: the arms from the chest, the head from the chest as the hips face, the body from between
-the feet. Lengths are in character heights, directions the character's own (x left, y up, z ahead).
+Each layer's points are seen from what carries it: the arms from the chest, the head from the chest as the
+hips face, the body from between the feet. Lengths are in character heights, directions the character's own (x
+left, y up, z ahead).
 """
 
 from __future__ import annotations
@@ -24,7 +26,9 @@ Array = NDArray[Any]
 FINGERS = 5  # of a hand, looked at
 AHEAD = 0.12  # heights from the middle of the head to its nose and its top, about
 NAMES: Mapping[Layer, tuple[str, ...]] = {
-    "arms": tuple(f"{side}_{part}" for side in ("left", "right") for part in ("hand", "tip", "lower_arm", "upper_arm")),
+    "arms": tuple(
+        f"{side}_{part}" for side in ("left", "right") for part in ("hand", "tip", "lower_arm", "upper_arm")
+    ),
     "head": ("head", "nose", "crown"),
     "body": ("hips", "trunk", "trunk_ahead", "left_lower_leg", "left_foot", "right_lower_leg", "right_foot"),
 }
@@ -34,8 +38,10 @@ _LIMBS = ("upper_arm", "lower_arm", "hand", "upper_leg", "lower_leg", "foot")
 
 @dataclass(frozen=True, eq=False)
 class Figure:
-    """What of a skeleton is posed. keep: joints, every parent among them; places: role -> its place among them. turned: role -> the
-    turn that takes its axes to the character's. tips: side -> the places of the fingertips, the farthest from the wrist first."""
+    """What of a skeleton is posed. keep: joints, every parent among them; places: role -> its place among
+    them. turned: role -> the turn that takes its axes to the character's. tips: side -> the places of the
+    fingertips, the farthest from the wrist first.
+    """
 
     small: Skeleton
     keep: Array
@@ -57,13 +63,31 @@ def figure_of(skeleton: Skeleton, named: tuple[tuple[str, int], ...]) -> Figure:
         if (hand := roles.get(f"{side}_hand")) is not None:
             ends = [j for j in skeleton.descendants(hand) if not skeleton.children[j] and j != hand]
             if ends:
-                tips[side] = sorted(ends, key=lambda j: (-round(float(np.linalg.norm(at[j] - at[hand])), 5), j))[:FINGERS]
+                tips[side] = sorted(
+                    ends, key=lambda j: (-round(float(np.linalg.norm(at[j] - at[hand])), 5), j)
+                )[:FINGERS]
     if len(wanted) < 3:  # no figure that we know: its joints from the root on, a handful
-        wanted |= {f"joint {j}": int(j) for j in np.unique(np.linspace(0, len(skeleton) - 1, min(len(skeleton), 12)).astype(int))}
-    keep = np.array(sorted({j for end in (*wanted.values(), *(t for some in tips.values() for t in some)) for j in skeleton.chain(end)}))
+        wanted |= {
+            f"joint {j}": int(j)
+            for j in np.unique(np.linspace(0, len(skeleton) - 1, min(len(skeleton), 12)).astype(int))
+        }
+    keep = np.array(
+        sorted(
+            {
+                j
+                for end in (*wanted.values(), *(t for some in tips.values() for t in some))
+                for j in skeleton.chain(end)
+            }
+        )
+    )
     place = {int(j): i for i, j in enumerate(keep)}
     parents = np.array([place.get(int(skeleton.parents[j]), -1) for j in keep])
-    small = Skeleton(tuple(skeleton.names[j] for j in keep), parents, skeleton.rest_rotations[keep], skeleton.rest_translations[keep])
+    small = Skeleton(
+        tuple(skeleton.names[j] for j in keep),
+        parents,
+        skeleton.rest_rotations[keep],
+        skeleton.rest_translations[keep],
+    )
     axes = _axes_at_rest({r: at[j] for r, j in wanted.items()})
     turned = {r: rotation.multiply(rotation.conjugate(turns[j]), axes) for r, j in wanted.items()}
     return Figure(
@@ -96,13 +120,19 @@ def _axes_at_rest(at: Mapping[str, Array]) -> Array:
 def left_of(at: Mapping[str, Array]) -> Array | None:
     """Return from right to left, of hips and shoulders together; None without either."""
     pairs = [
-        at[f"left_{part}"] - at[f"right_{part}"] for part in ("upper_leg", "upper_arm") if {f"left_{part}", f"right_{part}"} <= set(at)
+        at[f"left_{part}"] - at[f"right_{part}"]
+        for part in ("upper_leg", "upper_arm")
+        if {f"left_{part}", f"right_{part}"} <= set(at)
     ]
     return np.sum(pairs, axis=0) if pairs else None
 
 
-def points_of(figure: Figure, clips: Sequence[Clip], frames: Sequence[Array]) -> tuple[dict[str, Array], dict[str, Array]]:
-    """Return name -> `[F, 3]` of all NAMES there are, each from its ground, and of what is in world space; in heights."""
+def points_of(
+    figure: Figure, clips: Sequence[Clip], frames: Sequence[Array]
+) -> tuple[dict[str, Array], dict[str, Array]]:
+    """Return name -> `[F, 3]` of all NAMES there are, each from its ground, and of what is in world space; in
+    heights.
+    """
     small = figure.small
     total = sum(map(len, frames))
     translations = np.broadcast_to(small.rest_translations.astype(np.float32), (total, len(small), 3)).copy()
@@ -113,18 +143,25 @@ def points_of(figure: Figure, clips: Sequence[Clip], frames: Sequence[Array]) ->
             if joint in where:
                 translations[at : at + len(index), where[joint]] = clip.translations[index, k]
         at += len(index)
-    rotations = np.concatenate([clip.rotations[np.ix_(index, figure.keep)] for clip, index in zip(clips, frames, strict=True)])
+    rotations = np.concatenate(
+        [clip.rotations[np.ix_(index, figure.keep)] for clip, index in zip(clips, frames, strict=True)]
+    )
     turns, places = small.globals(Pose(rotations, translations))
     places = places / np.float32(figure.height)
     p = {role: places[:, i] for role, i in figure.places.items()}
     p |= {f"{side}_tip": places[:, some[0]] for side, some in figure.tips.items()}
 
     def axis(role: str, direction: Sequence[float]) -> Array:
-        return rotation.rotate(turns[:, figure.places[role]], rotation.rotate(figure.turned[role], np.array(direction)).astype(np.float32))
+        return rotation.rotate(
+            turns[:, figure.places[role]],
+            rotation.rotate(figure.turned[role], np.array(direction)).astype(np.float32),
+        )
 
     carrier = next(role for role in _CARRIERS if role in figure.places)
     facing = facing_of(p, turns[:, figure.places["hips"]], figure.turned["hips"])
-    back = rotation.conjugate(rotation.multiply(turns[:, figure.places[carrier]], figure.turned[carrier].astype(np.float32)))
+    back = rotation.conjugate(
+        rotation.multiply(turns[:, figure.places[carrier]], figure.turned[carrier].astype(np.float32))
+    )
     out: dict[str, Array] = {}
     for name in NAMES["arms"]:
         if name in p:
@@ -149,7 +186,11 @@ def points_of(figure: Figure, clips: Sequence[Clip], frames: Sequence[Array]) ->
     for side, some in figure.tips.items():
         hand = rotation.conjugate(turns[:, figure.places[f"{side}_hand"]])
         out[f"{side}_fingers"] = rotation.rotate(hand[:, None], places[:, some] - p[f"{side}_hand"][:, None])
-    world = {"facing": facing, "hips": p["hips"], **{name: p[name] for name in p if name.endswith(("_hand", "_lower_arm"))}}
+    world = {
+        "facing": facing,
+        "hips": p["hips"],
+        **{name: p[name] for name in p if name.endswith(("_hand", "_lower_arm"))},
+    }
     for name in ("head", carrier):
         if name in p:
             world["head" if name == "head" else "carrier"] = p[name]
@@ -167,6 +208,8 @@ def facing_of(p: Mapping[str, Array], hips: Array, turned: Array) -> Array:
 
 
 def seen_from(facing: Array, v: Array) -> Array:
-    """Return vectors as seen by somebody who faces there. facing `[..., 2]`, see `facing_of`; v `[..., 3]`."""
+    """Return vectors as seen by somebody who faces there. facing `[..., 2]`, see `facing_of`; v `[...,
+    3]`.
+    """
     s, c = facing[..., 0], facing[..., 1]
     return np.stack([c * v[..., 0] - s * v[..., 2], v[..., 1], s * v[..., 0] + c * v[..., 2]], axis=-1)

@@ -1,4 +1,6 @@
-"""What is proposed for clips: values that name, motion and labels together give, that a person corrects, and that are taken over."""
+"""What is proposed for clips: values that name, motion and labels together give, that a person corrects, and
+that are taken over.
+"""
 
 from __future__ import annotations
 
@@ -17,7 +19,9 @@ _USUAL = Patterns()
 
 @dataclass(frozen=True)
 class Rest:
-    """A moment of a clip that is still enough to stand in. start, end: seconds of the clip. reason: in words."""
+    """A moment of a clip that is still enough to stand in. start, end: seconds of the clip. reason: in
+    words.
+    """
 
     clip: str
     start: float
@@ -27,8 +31,9 @@ class Rest:
 
 @dataclass(frozen=True)
 class Place:
-    """A stance clips may belong to. key: the project's id, or one of its own for a stance that is not there yet. shape: what it looks
-    like, where that is known. rest: where it can be seen, when no clip rests in it."""
+    """A stance clips may belong to. key: the project's id, or one of its own for a stance that is not there
+    yet. shape: what it looks like, where that is known. rest: where it can be seen, when no clip rests in it.
+    """
 
     key: str
     layer: Layer
@@ -40,10 +45,12 @@ class Place:
 
 @dataclass(frozen=True)
 class Proposal:
-    """What a clip is taken for. stance, end_stance: of a `Place`, by key. conflicts: where sources disagree firmly, in words. timing: as
-    `Timing` has it, where the motion says; good: whether neither its beginning nor its end would jump, None where nobody knows.
-    details: what else an action has, by its name in the model, where something is known: each of `timing`, `mask` (names of the only
-    joints it moves, none for all), `stroke` (seconds, of gestures) and `likelihood`."""
+    """What a clip is taken for. stance, end_stance: of a `Place`, by key. conflicts: where sources disagree
+    firmly, in words. timing: as `Timing` has it, where the motion says; good: whether neither its beginning
+    nor its end would jump, None where nobody knows. details: what else an action has, by its name in the
+    model, where something is known: each of `timing`, `mask` (names of the only joints it moves, none for
+    all), `stroke` (seconds, of gestures) and `likelihood`.
+    """
 
     clip: str
     kind: Belief[Kind]
@@ -61,7 +68,11 @@ class Proposal:
     @property
     def confidence(self) -> float:
         """How sure it is as a whole: as its least sure part that decides where it goes."""
-        parts = [self.kind.confidence, self.layer.confidence, self.stance.confidence if self.stance is not None else 0.0]
+        parts = [
+            self.kind.confidence,
+            self.layer.confidence,
+            self.stance.confidence if self.stance is not None else 0.0,
+        ]
         if self.kind.value == "transition":
             parts.append(self.end_stance.confidence if self.end_stance is not None else 0.0)
         return min(parts)

@@ -1,7 +1,8 @@
-"""Proposals for clips: what each is, from its name, its motion and what is labelled already, together; and the edit that takes them over.
+"""Proposals for clips: what each is, from its name, its motion and what is labelled already, together; and
+the edit that takes them over.
 
-Stances come first: those the project has, those found in the motion, those that names speak of. A name's word belongs to the stance in
-which the clips it names begin; then every clip is asked where it belongs.
+Stances come first: those the project has, those found in the motion, those that names speak of. A name's word
+belongs to the stance in which the clips it names begin; then every clip is asked where it belongs.
 """
 
 from __future__ import annotations
@@ -43,7 +44,8 @@ __all__ = [
 
 Source = Literal["name", "motion", "learned"]
 SOURCES: tuple[Source, ...] = ("name", "motion", "learned")
-LOOP_VOTE = 1.5  # how much the name of a clip that rests in a stance counts to name it, beside one that begins or ends there
+# how much the name of a clip that rests in a stance counts to name it, beside one that begins or ends there
+LOOP_VOTE = 1.5
 LENT = 0.5  # of a clip that a stance plays, below which it only borrows a moment of it
 NEVER = 0.3  # of how sure a source is at least, so that its vote counts
 
@@ -64,7 +66,15 @@ def measures_of(traits: Traits | None) -> Any:
     """Return a clip's motion as numbers that clips of any character share."""
     if traits is None:
         return np.zeros(0)
-    rows: list[float] = [np.log1p(traits.duration), traits.travel, traits.symmetry, traits.mirrored, traits.out, traits.near, traits.touch]
+    rows: list[float] = [
+        np.log1p(traits.duration),
+        traits.travel,
+        traits.symmetry,
+        traits.mirrored,
+        traits.out,
+        traits.near,
+        traits.touch,
+    ]
     for layer in LAYERS:
         x = traits.layers[layer]
         rows += [np.log1p(x.energy), np.log1p(x.peak), x.extent, x.loop_error, x.rest, float(x.bouts)]
@@ -73,12 +83,21 @@ def measures_of(traits: Traits | None) -> Any:
 
 def waiting(project: Project) -> list[str]:
     """Return the clips that are not placed yet; one that only lends a stance a still moment is not."""
-    return [clip for clip in project.clips if all(_lends(project, action) for action in project.uses.get(clip, ()))]
+    return [
+        clip
+        for clip in project.clips
+        if all(_lends(project, action) for action in project.uses.get(clip, ()))
+    ]
 
 
 def _lends(project: Project, action: Action) -> bool:
     motion, end = project.clips[action.clip].motion, action.timing.end
-    return action.kind == "stance" and motion is not None and end is not None and end - action.timing.start < LENT * motion.duration
+    return (
+        action.kind == "stance"
+        and motion is not None
+        and end is not None
+        and end - action.timing.start < LENT * motion.duration
+    )
 
 
 def propose(
@@ -90,7 +109,8 @@ def propose(
     cancelled: Callable[[], bool] | None = None,
     progress: Callable[[int, int], None] | None = None,
 ) -> Proposals:
-    """Return proposals for clips, those that are not placed yet when None. examples: of earlier projects. sources: which may speak.
+    """Return proposals for clips, those that are not placed yet when None. examples: of earlier projects.
+    sources: which may speak.
 
     Never raises for what clips are; one of which nothing is known is left out.
     """
@@ -104,7 +124,13 @@ def propose(
         shapes = {layer: there.get(layer) or found.get(layer, ()) for layer in LAYERS}
     alike = Alike([*examples_of(project, traits), *examples]) if "learned" in sources else Alike([])
     heard = [
-        _Heard(c, project.clips[c].name, names.get(project.clips[c].name, NameGuess()), traits.get(c), named="name" in sources)
+        _Heard(
+            c,
+            project.clips[c].name,
+            names.get(project.clips[c].name, NameGuess()),
+            traits.get(c),
+            named="name" in sources,
+        )
         for c in chosen
     ]
     for each in heard:
@@ -123,14 +149,18 @@ def propose(
     if "motion" in sources:
         out = timed(project, out, cancelled)
         motions = {each.clip: each for each in heard}
-        out = {c: stroked(project, masked(project, p, motions[c].traits), motions[c].beside) for c, p in out.items()}
+        out = {
+            c: stroked(project, masked(project, p, motions[c].traits), motions[c].beside)
+            for c, p in out.items()
+        }
     return Proposals(weighted(project, out), _with_rests(project, places.by_key, out))
 
 
 @dataclass
 class _Heard:
-    """What the sources say of a clip. motion: what it seems to be; beside: the same when it is of the layer that all agree on.
-    named: whether names may speak."""
+    """What the sources say of a clip. motion: what it seems to be; beside: the same when it is of the layer
+    that all agree on. named: whether names may speak.
+    """
 
     clip: str
     name: str
@@ -176,7 +206,9 @@ class _Heard:
 class _Places:
     """The stances there may be, and which word and which shape belongs to which."""
 
-    def __init__(self, project: Project, heard: Sequence[_Heard], shapes: Mapping[Layer, Sequence[Shape]]) -> None:
+    def __init__(
+        self, project: Project, heard: Sequence[_Heard], shapes: Mapping[Layer, Sequence[Shape]]
+    ) -> None:
         self.by_key: dict[str, Place] = {}
         self.of_shape: dict[int, str] = {}
         self.of_word: dict[tuple[Layer, str], str] = {}
@@ -206,9 +238,17 @@ class _Places:
         for each in heard:
             for said, seen in ((each.said.stance, each.begins), (each.said.end_stance, each.ends)):
                 if said is not None and seen is not None and seen.value is shape:
-                    rests = said is each.said.stance and each.said.kind is not None and each.said.kind.value == "stance"
+                    rests = (
+                        said is each.said.stance
+                        and each.said.kind is not None
+                        and each.said.kind.value == "stance"
+                    )
                     words[said.value] += LOOP_VOTE if rests else 1
-        free = [(word, count) for word, count in sorted(words.items(), key=lambda x: -x[1]) if (layer, plain(word)) not in self.of_word]
+        free = [
+            (word, count)
+            for word, count in sorted(words.items(), key=lambda x: -x[1])
+            if (layer, plain(word)) not in self.of_word
+        ]
         if not shape.id:
             name = free[0][0] if free else f"{layer} stance {number + 1}"
             self.by_key[key] = Place(key, layer, name, False, shape)
@@ -222,14 +262,30 @@ class _Places:
     def vote(self, each: _Heard, what: str, layer: Layer) -> list[Belief[str]]:
         """Return beliefs about a stance as keys."""
         if each.walks and what == "stance" and layer == "body":
-            return [Belief(f"new body {each.step}", 0.7, "a cycle of steps is a stance of its own, which goes on until it is left")]
+            return [
+                Belief(
+                    f"new body {each.step}",
+                    0.7,
+                    "a cycle of steps is a stance of its own, which goes on until it is left",
+                )
+            ]
         out: list[Belief[str]] = []
         said: Belief[str] | None = getattr(each.said, what)
         if said is not None and (key := self.of_word.get((layer, plain(said.value)))) is not None:
             out.append(Belief(key, said.confidence, said.reason))
         seen: Belief[Shape] | None = getattr(each.beside, what, None)
-        if seen is not None and seen.value.layer == layer and (key := self.of_shape.get(id(seen.value))) is not None:
-            out.append(Belief(key, seen.confidence, seen.reason.replace(f'"{seen.value.name}"', f'"{self.by_key[key].name}"')))
+        if (
+            seen is not None
+            and seen.value.layer == layer
+            and (key := self.of_shape.get(id(seen.value))) is not None
+        ):
+            out.append(
+                Belief(
+                    key,
+                    seen.confidence,
+                    seen.reason.replace(f'"{seen.value.name}"', f'"{self.by_key[key].name}"'),
+                )
+            )
         return out
 
     def count(self, layer: Layer) -> int:
@@ -237,8 +293,9 @@ class _Places:
 
 
 def _somewhere(proposals: Mapping[str, Proposal], places: dict[str, Place]) -> dict[str, Proposal]:
-    """Return proposals, those that nothing says the stance of in the stance most clips of their layer are in; one is made where there is
-    none."""
+    """Return proposals, those that nothing says the stance of in the stance most clips of their layer are in;
+    one is made where there is none.
+    """
     used = Counter(p.stance.value for p in proposals.values() if p.stance is not None)
     out = {}
     for clip, p in proposals.items():
@@ -247,17 +304,28 @@ def _somewhere(proposals: Mapping[str, Proposal], places: dict[str, Place]) -> d
             mine = [key for key, place in places.items() if place.layer == layer]
             key = max(mine, key=lambda k: used[k]) if mine else f"new {layer} rest"
             places.setdefault(key, Place(key, layer, "rest"))
-            p = replace(p, stance=Belief(key, 0.3, "nothing says a stance; " + ("most are in this one" if mine else "there is no other")))
+            p = replace(
+                p,
+                stance=Belief(
+                    key,
+                    0.3,
+                    "nothing says a stance; " + ("most are in this one" if mine else "there is no other"),
+                ),
+            )
         out[clip] = p
     return out
 
 
-def _with_rests(project: Project, places: Mapping[str, Place], proposals: Mapping[str, Proposal]) -> dict[str, Place]:
+def _with_rests(
+    project: Project, places: Mapping[str, Place], proposals: Mapping[str, Proposal]
+) -> dict[str, Place]:
     """Return the stances, those that no clip rests in with a moment of some clip that shows them."""
     shown = {p.stance.value for p in proposals.values() if p.kind.value == "stance" and p.stance is not None}
     names = {plain(places[key].name) for key in shown}
     return {
-        key: place if place.there or key in shown or plain(place.name) in names else replace(place, rest=rest_of(project, place, proposals))
+        key: place
+        if place.there or key in shown or plain(place.name) in names
+        else replace(place, rest=rest_of(project, place, proposals))
         for key, place in places.items()
     }
 
@@ -277,7 +345,9 @@ def _proposal(each: _Heard, places: _Places) -> Proposal | None:
         ends = [b for b in places.vote(each, "end_stance", where) if b.value != start]
         end = combine(ends, places.count(where))
     limb = each.agreed("limb", len(LIMBS)) if where == "arms" and kind.belief.value != "stance" else None
-    both: Belief[Limb] = Belief("both", 0.9, "only arms have sides" if where != "arms" else "nothing says a side")
+    both: Belief[Limb] = Belief(
+        "both", 0.9, "only arms have sides" if where != "arms" else "nothing says a side"
+    )
     found = [x for x in (kind, layer, stance, end) if x is not None]
     return Proposal(
         each.clip,

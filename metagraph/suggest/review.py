@@ -1,7 +1,7 @@
 """A person going through proposals: what they correct, what is still open, and how long the rest will take.
 
-Stances come first, the most used before the others, since all else hangs on them; then the least certain. A correction is kept as it was
-meant - a stance by its name - so that it outlives proposals that are made anew.
+Stances come first, the most used before the others, since all else hangs on them; then the least certain. A
+correction is kept as it was meant - a stance by its name - so that it outlives proposals that are made anew.
 """
 
 from __future__ import annotations
@@ -22,7 +22,13 @@ from metagraph.suggest.proposal import Place, Proposal, Proposals, plain
 from metagraph.suggest.propose import waiting
 
 Field = Literal["kind", "layer", "stance", "end_stance", "limb", "tags", "timing"]
-DECIDING: tuple[Field, ...] = ("kind", "layer", "stance", "end_stance", "limb")  # what has a few values to choose from
+DECIDING: tuple[Field, ...] = (
+    "kind",
+    "layer",
+    "stance",
+    "end_stance",
+    "limb",
+)  # what has a few values to choose from
 WORDS: tuple[Field, ...] = ("kind", "layer", "limb", "tags")
 SAID = "you said so"
 USUAL = 6.0  # seconds a clip takes somebody, until some were decided
@@ -32,8 +38,9 @@ REMEMBERED = 25  # decisions the pace is taken from
 
 @dataclass(frozen=True)
 class Review:
-    """found: the proposals with what was said in them. said: clip -> field -> value; stances are told by name, tags as a tuple, timing as
-    `Timing` has it."""
+    """found: the proposals with what was said in them. said: clip -> field -> value; stances are told by
+    name, tags as a tuple, timing as `Timing` has it.
+    """
 
     found: Proposals
     said: Mapping[str, Mapping[Field, Any]] = field(default_factory=dict)
@@ -44,12 +51,16 @@ class Review:
         if name == "timing":
             value = {**old.get("timing", {}), **value}
         if name == "layer" and value != self.found.proposals[clip].layer.value:
-            old = {k: v for k, v in old.items() if k not in ("stance", "end_stance")}  # they were of the other layer
+            old = {
+                k: v for k, v in old.items() if k not in ("stance", "end_stance")
+            }  # they were of the other layer
         said = {**old, name: value}
         return Review(_corrected(self.found, clip, said), {**self.said, clip: said})
 
     def anew(self, found: Proposals) -> Review:
-        """Return the review of other proposals for the same clips; what was said stays said. Clips that are not among them keep theirs."""
+        """Return the review of other proposals for the same clips; what was said stays said. Clips that are
+        not among them keep theirs.
+        """
         mine = {c: p for c, p in self.found.proposals.items() if c not in found.proposals}
         found = Proposals({**mine, **found.proposals}, {**self.found.places, **found.places})
         for clip, said in self.said.items():
@@ -58,13 +69,16 @@ class Review:
         return Review(found, self.said)
 
     def settled(self, project: Project) -> Review:
-        """Return the review with the stances that have been made meanwhile as the project's, those that are gone as ones to be made.
+        """Return the review with the stances that have been made meanwhile as the project's, those that are
+        gone as ones to be made.
 
         To be called after every change of the project: an id that is gone may come again for another stance.
         """
         moved: dict[str, str] = {}
         places: dict[str, Place] = {}
-        named = {(s.layer, plain(s.name)): s for layer in LAYERS for s in project.graphs[layer].stances.values()}
+        named = {
+            (s.layer, plain(s.name)): s for layer in LAYERS for s in project.graphs[layer].stances.values()
+        }
         for key, place in self.found.places.items():
             stance = project.stance(key) or named.get((place.layer, plain(place.name)))
             if stance is not None:
@@ -84,18 +98,26 @@ class Review:
         return Review(Proposals(proposals, places), self.said)
 
     def order(self) -> list[str]:
-        """Return the clips in the order they are best looked at: stances first, the most used before the others, since a layer begins in
-        its first and the first gives the base pose; then the least certain."""
+        """Return the clips in the order they are best looked at: stances first, the most used before the
+        others, since a layer begins in its first and the first gives the base pose; then the least certain.
+        """
         used = Counter(p.stance.value for p in self.found.proposals.values() if p.stance is not None)
 
         def rank(p: Proposal) -> tuple[Any, ...]:
             rests = p.kind.value == "stance"
-            return not rests, -used[p.stance.value] if rests and p.stance is not None else 0, p.confidence, p.clip
+            return (
+                not rests,
+                -used[p.stance.value] if rests and p.stance is not None else 0,
+                p.confidence,
+                p.clip,
+            )
 
         return [p.clip for p in sorted(self.found.proposals.values(), key=rank)]
 
     def choices(self, clip: str, name: Field) -> list[tuple[Any, str]]:
-        """Return what a deciding field may be: (value to tell, words). Stances the project has come first, then the most spoken of."""
+        """Return what a deciding field may be: (value to tell, words). Stances the project has come first,
+        then the most spoken of.
+        """
         p = self.found.proposals[clip]
         if name == "kind":
             return [(k, k) for k in KINDS]
@@ -109,7 +131,10 @@ class Review:
         mine = [place for place in self.found.places.values() if place.layer == p.layer.value]
         start = p.stance.value if p.stance is not None else None
         mine = [place for place in mine if name == "stance" or place.key != start]
-        return [(place.name, place.name) for place in sorted(mine, key=lambda x: (not x.there, -spoken[x.key], x.name))]
+        return [
+            (place.name, place.name)
+            for place in sorted(mine, key=lambda x: (not x.there, -spoken[x.key], x.name))
+        ]
 
     def value(self, clip: str, name: Field) -> Any:
         """Return what a deciding field is now, as `choices` names it; None where nothing is known."""
@@ -121,12 +146,15 @@ class Review:
     def doubtful(self, clip: str) -> Field:
         """Return the deciding field that is least sure."""
         p = self.found.proposals[clip]
-        beliefs: dict[Field, Belief[Any] | None] = {n: getattr(p, n) for n in DECIDING if self.choices(clip, n)}
+        beliefs: dict[Field, Belief[Any] | None] = {
+            n: getattr(p, n) for n in DECIDING if self.choices(clip, n)
+        }
         return min(beliefs, key=lambda n: belief.confidence if (belief := beliefs[n]) is not None else -1.0)
 
     def take(self, project: Project, clips: Collection[str], above: float = 0.0) -> Taken:
-        """Return the project with clips placed as proposed, and resting clips along with them that show a stance they need and that is
-        not there yet. A clip that is placed already is placed anew."""
+        """Return the project with clips placed as proposed, and resting clips along with them that show a
+        stance they need and that is not there yet. A clip that is placed already is placed anew.
+        """
         known = [c for c in clips if c in self.found.proposals and c in project.clips]
         open_ = set(waiting(project))
         again = [a.id for c in known if c not in open_ for a in project.uses.get(c, ())]
@@ -138,11 +166,15 @@ class Review:
         along = {r for c in wanted for r in self._resting(bare, c)}
         taken = accept(bare, self.found, 0.0, {*wanted, *along})
         if (again and taken.left) or not set(wanted) & set(taken.placed):
-            return Taken(project, (), taken.left)  # nothing comes along for nothing, and what was placed is not lost
+            return Taken(
+                project, (), taken.left
+            )  # nothing comes along for nothing, and what was placed is not lost
         return taken
 
     def timed(self, project: Project, clip: str) -> Proposal:
-        """Return a clip's proposal with the times the statistics give it as what it is taken for now, and those that were said."""
+        """Return a clip's proposal with the times the statistics give it as what it is taken for now, and
+        those that were said.
+        """
         p = timed(project, self.found.proposals)[clip]
         told = self.said.get(clip, {}).get("timing")
         return replace(p, timing={**p.timing, **told}) if told else p
@@ -152,20 +184,36 @@ class Review:
         mine = self.found.proposals.get(p.clip)
         if mine is None or _decides(mine) != _decides(p):
             return self
-        mine = replace(mine, timing={**p.timing, **mine.timing}, timing_reason=p.timing_reason, good=p.good, details=p.details)
+        mine = replace(
+            mine,
+            timing={**p.timing, **mine.timing},
+            timing_reason=p.timing_reason,
+            good=p.good,
+            details=p.details,
+        )
         return Review(replace(self.found, proposals={**self.found.proposals, p.clip: mine}), self.said)
 
     def _resting(self, project: Project, clip: str) -> list[str]:
-        """Return the surest unplaced clips that rest in stances this clip needs and the project does not have."""
+        """Return the surest unplaced clips that rest in stances this clip needs and the project does not
+        have.
+        """
         p = self.found.proposals[clip]
         out, open_ = [], set(waiting(project))
         for belief in (p.stance, p.end_stance if p.kind.value == "transition" else None):
-            if belief is None or project.stance(belief.value) is not None or (belief is p.stance and p.kind.value == "stance"):
+            if (
+                belief is None
+                or project.stance(belief.value) is not None
+                or (belief is p.stance and p.kind.value == "stance")
+            ):
                 continue
             rests = [
-                x for x in self.found.proposals.values()
-                if x.kind.value == "stance" and x.stance is not None and x.stance.value == belief.value and x.clip in open_
-            ]  # fmt: skip
+                x
+                for x in self.found.proposals.values()
+                if x.kind.value == "stance"
+                and x.stance is not None
+                and x.stance.value == belief.value
+                and x.clip in open_
+            ]
             if rests:
                 out.append(max(rests, key=lambda x: x.confidence).clip)
         return out
@@ -197,20 +245,35 @@ def _corrected(found: Proposals, clip: str, said: Mapping[Field, Any]) -> Propos
         # The other layer's stance of the same name, if there is one; else where most of its clips are.
         name = plain(places[stance.value].name)
         same = next((k for k, x in places.items() if x.layer == layer and plain(x.name) == name), None)
-        there = Counter(x.stance.value for x in found.proposals.values() if x.stance is not None and places[x.stance.value].layer == layer)
-        best = same or next((k for k, _ in there.most_common(1)), next((k for k, x in places.items() if x.layer == layer), None))
+        there = Counter(
+            x.stance.value
+            for x in found.proposals.values()
+            if x.stance is not None and places[x.stance.value].layer == layer
+        )
+        best = same or next(
+            (k for k, _ in there.most_common(1)),
+            next((k for k, x in places.items() if x.layer == layer), None),
+        )
         stance = Belief(best, 0.5, "where most clips of this layer are") if best is not None else None
     end = p.end_stance if p.kind.value == "transition" else None
     if "end_stance" in said and p.kind.value == "transition":
         end = Belief(place(said["end_stance"]), 1.0, SAID)
-    if end is not None and (places[end.value].layer != layer or (stance is not None and end.value == stance.value)):
+    if end is not None and (
+        places[end.value].layer != layer or (stance is not None and end.value == stance.value)
+    ):
         end = None
     if layer != "arms":
         p = replace(p, limb=Belief("both", 0.9, "only arms have sides"))
     was = found.proposals[clip]
     if (p.kind.value, p.layer.value, stance and stance.value, end and end.value) != _decides(was):
         # Its times were of what it is not; `Review.timed` finds those it has as what it is.
-        p = replace(p, timing={}, timing_reason="", good=None, details={k: v for k, v in p.details.items() if k == "likelihood"})
+        p = replace(
+            p,
+            timing={},
+            timing_reason="",
+            good=None,
+            details={k: v for k, v in p.details.items() if k == "likelihood"},
+        )
     if "timing" in said:
         p = replace(p, timing={**p.timing, **said["timing"]})
     # What sources disagreed about is decided.

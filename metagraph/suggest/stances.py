@@ -1,7 +1,7 @@
 """What stances look like, known or discovered.
 
-Discovering: the poses in which clips rest, begin and end are joined nearest first (average linkage) until the next step is the widest;
-a group that several clips share, or that a resting clip holds, is a stance.
+Discovering: the poses in which clips rest, begin and end are joined nearest first (average linkage) until the
+next step is the widest; a group that several clips share, or that a resting clip holds, is a stance.
 """
 
 from __future__ import annotations
@@ -21,21 +21,28 @@ from metagraph.suggest.traits import LayerTraits, Traits
 
 Array = NDArray[Any]
 
-SAME: Mapping[Layer, tuple[float, float]] = {"arms": (0.02, 0.08), "head": (0.008, 0.025), "body": (0.008, 0.025)}
+SAME: Mapping[Layer, tuple[float, float]] = {
+    "arms": (0.02, 0.08),
+    "head": (0.008, 0.025),
+    "body": (0.008, 0.025),
+}
 FINGERTIP = 0.5  # how much a fingertip's place counts beside the hand's
 MOST = 400  # poses joined at once; more are thinned out first
 FEW = 3  # clips that begin and end in a pose, from which on the quietest of them is taken for its loop
 QUIET = 0.6  # of their median energy
-CALM = 0.3  # heights a second, of all parts together, that the only clip which stays in a pose moves at most to be its loop
+# heights a second, of all parts together, that the only clip which stays in a pose moves at most to be its
+# loop
+CALM = 0.3
 
 
 @dataclass(frozen=True, eq=False)
 class Shape:
-    """What a stance looks like. id, name: of the project's stance; of one discovered, "" and its representative clip.
+    """What a stance looks like. id, name: of the project's stance; of one discovered, "" and its
+    representative clip.
 
-    names: points, n. poses `[k, n, 3]`, heights. members: clips that rest, begin or end in it. clip, at: a clip and the second in
-    which it can be seen. confidence: 0..1, that it is one. calm: energy of the clip that is
-    taken for its loop as the quietest; 0 where one rests, or none is.
+    names: points, n. poses `[k, n, 3]`, heights. members: clips that rest, begin or end in it. clip, at: a
+    clip and the second in which it can be seen. confidence: 0..1, that it is one. calm: energy of the clip
+    that is taken for its loop as the quietest; 0 where one rests, or none is.
     """
 
     id: str
@@ -54,12 +61,18 @@ Stances = Mapping[Layer, Sequence[Shape]]
 
 
 def known(project: Project, traits: Mapping[str, Traits]) -> dict[Layer, tuple[Shape, ...]]:
-    """Return the stances that a project has, the most used first, as their loops show them; those without as transitions end in them."""
+    """Return the stances that a project has, the most used first, as their loops show them; those without as
+    transitions end in them.
+    """
     out: dict[Layer, tuple[Shape, ...]] = {}
     for layer in LAYERS:
         graph, shapes = project.graphs[layer], []
         for stance in graph.stances.values():
-            loops = [(a.clip, traits[a.clip].layers[layer]) for a in graph.of(stance.id, "stance") if a.clip in traits]
+            loops = [
+                (a.clip, traits[a.clip].layers[layer])
+                for a in graph.of(stance.id, "stance")
+                if a.clip in traits
+            ]
             found = [(clip, 0.0, pose) for clip, x in loops for pose in (x.first, x.typical)]
             if not loops:
                 found = [
@@ -75,7 +88,13 @@ def known(project: Project, traits: Mapping[str, Traits]) -> dict[Layer, tuple[S
     return out
 
 
-def _shape(ident: str, name: str, layer: Layer, found: Sequence[tuple[str, float, Array]], traits: Mapping[str, Traits]) -> Shape | None:
+def _shape(
+    ident: str,
+    name: str,
+    layer: Layer,
+    found: Sequence[tuple[str, float, Array]],
+    traits: Mapping[str, Traits],
+) -> Shape | None:
     if not found:
         return None
     clip, at, first = found[0]
@@ -83,18 +102,25 @@ def _shape(ident: str, name: str, layer: Layer, found: Sequence[tuple[str, float
     poses = np.array([p for c, _, p in found if traits[c].layers[layer].names == names])
     if not names or not len(first):
         return None
-    return Shape(ident, name, layer, names, poses, tuple(dict.fromkeys(c for c, _, _ in found)), clip, at, 1.0)
+    return Shape(
+        ident, name, layer, names, poses, tuple(dict.fromkeys(c for c, _, _ in found)), clip, at, 1.0
+    )
 
 
 def distance(shape: Shape, names: tuple[str, ...], pose: Array) -> float:
-    """Return how far a pose `[n, 3]` is from a stance: of the farthest point, heights; infinite where they share none."""
+    """Return how far a pose `[n, 3]` is from a stance: of the farthest point, heights; infinite where they
+    share none.
+    """
     if names == shape.names:
         mine, theirs = pose, shape.poses
     else:
         shared = [n for n in names if n in shape.names]
         if not shared:
             return float("inf")
-        mine, theirs = pose[[names.index(n) for n in shared]], shape.poses[:, [shape.names.index(n) for n in shared]]
+        mine, theirs = (
+            pose[[names.index(n) for n in shared]],
+            shape.poses[:, [shape.names.index(n) for n in shared]],
+        )
         names = tuple(shared)
     return float((np.linalg.norm(theirs - mine, axis=-1) * _weights(names)).max(-1).min())
 
@@ -109,12 +135,19 @@ def _weights(names: Sequence[str]) -> Array:
     return np.array([FINGERTIP if n.endswith("_tip") else 1.0 for n in names])
 
 
-# -- discovering ----------------------------------------------------------------------------------------------------------------------
+# -- discovering
+# --------------------------------------------------------------------------------------------------
 
 
 def discover(traits: Mapping[str, Traits], layer: Layer) -> tuple[Shape, ...]:
-    """Return the stances that clips of a layer rest, begin and end in, the one with the most members first."""
-    moving = {clip: t for clip, t in sorted(traits.items()) if not (0 < t.duration < HELD and nothing(t)) and not walks(t)}
+    """Return the stances that clips of a layer rest, begin and end in, the one with the most members
+    first.
+    """
+    moving = {
+        clip: t
+        for clip, t in sorted(traits.items())
+        if not (0 < t.duration < HELD and nothing(t)) and not walks(t)
+    }
     mine = {clip: t for clip, t in moving.items() if t.layers[layer].names and layer_of(t).value == layer}
     if not mine:
         return ()
@@ -142,18 +175,30 @@ def discover(traits: Mapping[str, Traits], layer: Layer) -> tuple[Shape, ...]:
         best = min(loops or rows, key=lambda i: (float(np.linalg.norm(poses[i] - middle)), i))
         calm = 0.0
         closed = [i for i, j in pairwise(rows) if found[i][0] == found[j][0]]
-        if not loops and len(closed) >= FEW:  # the quietest of what begins and ends there is its loop, if much quieter than the others
+        if (
+            not loops and len(closed) >= FEW
+        ):  # the quietest of what begins and ends there is its loop, if much quieter than the others
             quiet = {i: energy(mine[found[i][0]]) for i in closed}
             first = min(closed, key=lambda i: (quiet[i], i))
             if quiet[first] < QUIET * float(np.median([*quiet.values()])):
                 best, calm = first, quiet[first]
         elif not loops and len(closed) == 1 and len(members) > 1 and energy(mine[found[closed[0]][0]]) < CALM:
-            best, calm = closed[0], energy(mine[found[closed[0]][0]])  # others only come there or leave: what stays is its loop
+            best, calm = (
+                closed[0],
+                energy(mine[found[closed[0]][0]]),
+            )  # others only come there or leave: what stays is its loop
         poses_of = np.array([middle, *(poses[i] for i in loops)])
         clip, at = found[best][0], found[best][1]
-        if not loops and not closed:  # others only come or leave; a clip of another layer may rest here: of the arms of one who sits
-            away = {c: max(_far(t.layers[layer], pose, middle, names) for pose in ("first", "last")) for c, t in others.items()}
-            staying = {c: energy(t) for c, t in others.items() if away[c] <= SAME[layer][1] and energy(t) < CALM}
+        if (
+            not loops and not closed
+        ):  # others only come or leave; a clip of another layer may rest here: of the arms of one who sits
+            away = {
+                c: max(_far(t.layers[layer], pose, middle, names) for pose in ("first", "last"))
+                for c, t in others.items()
+            }
+            staying = {
+                c: energy(t) for c, t in others.items() if away[c] <= SAME[layer][1] and energy(t) < CALM
+            }
             if staying:
                 clip, at = min(staying, key=lambda c: (staying[c], c)), 0.0
                 calm = staying[clip]
@@ -210,7 +255,9 @@ def _groups(poses: Array, weights: Array, least: float, most: float) -> list[lis
 
 
 def _thinned(poses: Array, weights: Array, reach: float) -> tuple[list[int], Array]:
-    """Return rows of which every other is within reach, at most MOST, and for each row its nearest of them."""
+    """Return rows of which every other is within reach, at most MOST, and for each row its nearest of
+    them.
+    """
     while True:
         leaders: list[int] = []
         of = np.zeros(len(poses), int)

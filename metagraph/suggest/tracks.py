@@ -1,4 +1,6 @@
-"""Where the counted joints of clips are, as transitions are compared: from the root, as the character faces, at one rate."""
+"""Where the counted joints of clips are, as transitions are compared: from the root, as the character faces,
+at one rate.
+"""
 
 from __future__ import annotations
 
@@ -43,7 +45,12 @@ def _rig(skeleton: Skeleton, named: tuple[tuple[str, int], ...]) -> Rig:
     keep = np.array(sorted({k for j in used for k in skeleton.chain(j)}))
     place = {int(j): i for i, j in enumerate(keep)}
     parents = np.array([place.get(int(skeleton.parents[j]), -1) for j in keep])
-    small = Skeleton(tuple(skeleton.names[j] for j in keep), parents, skeleton.rest_rotations[keep], skeleton.rest_translations[keep])
+    small = Skeleton(
+        tuple(skeleton.names[j] for j in keep),
+        parents,
+        skeleton.rest_rotations[keep],
+        skeleton.rest_translations[keep],
+    )
     limbs = {r: place[j] for r, j in roles.items() if r.endswith(("upper_leg", "upper_arm")) and j in place}
     root = place.get(roles.get("hips", 0), 0)
     return Rig(small, keep, np.array([place[j] for j in used]), tuple(parts[j] for j in used), limbs, root)
@@ -53,7 +60,9 @@ _TRACKS: WeakKeyDictionary[Clip, tuple[Rig, Array]] = WeakKeyDictionary()
 
 
 def track_of(rig: Rig, clip: Clip) -> Array:
-    """Return where the counted joints are, `[F, J, 3]` float32, metres, from the root as the character faces, RATE frames a second."""
+    """Return where the counted joints are, `[F, J, 3]` float32, metres, from the root as the character faces,
+    RATE frames a second.
+    """
     known = _TRACKS.get(clip)
     if known is not None and known[0] is rig:
         return known[1]
@@ -69,9 +78,13 @@ def poses_of(clip: Clip) -> Pose:
 
 
 def stands(rig: Rig, poses: Pose) -> tuple[Array, Array]:
-    """Return where a character faces `[F, 2]`, as `points.facing_of`, and where the joints `Rig.keep` are `[F, K, 3]`, in the world."""
+    """Return where a character faces `[F, 2]`, as `points.facing_of`, and where the joints `Rig.keep` are
+    `[F, K, 3]`, in the world.
+    """
     turns, at = rig.small.globals(Pose(poses.rotations[:, rig.keep], poses.translations[:, rig.keep]))
-    return facing_of({role: at[:, j] for role, j in rig.places.items()}, turns[:, rig.root], np.array([0.0, 0, 0, 1])), at
+    return facing_of(
+        {role: at[:, j] for role, j in rig.places.items()}, turns[:, rig.root], np.array([0.0, 0, 0, 1])
+    ), at
 
 
 def times_of(clip: Clip) -> Array:

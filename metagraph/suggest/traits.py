@@ -1,7 +1,8 @@
-"""What a clip's motion looks like, in measures that compare between characters: poses seen from their own ground, and how much moves when.
+"""What a clip's motion looks like, in measures that compare between characters: poses seen from their own
+ground, and how much moves when.
 
-Lengths are in character heights, so that size does not matter; directions are the character's own (see `points`), so that neither does
-where it stands or what its rest pose is.
+Lengths are in character heights, so that size does not matter; directions are the character's own (see
+`points`), so that neither does where it stands or what its rest pose is.
 """
 
 from __future__ import annotations
@@ -37,12 +38,13 @@ PARTS = ("left_arm", "right_arm", "fingers", "head", "trunk", "hips", "legs")
 class LayerTraits:
     """One layer of a clip. All lengths are in heights.
 
-    names: which points there are, n (see NAMES; fewer on characters that lack them). first, last, typical `[n, 3]`: the poses at
-    the ends and the median. loop_error: how far the last pose is from the first, of the farthest point. steady: speed at the ends
-    beside the greatest, 0..1. extent, extent_at: how far any point goes from the line between both ends, and when, seconds.
-    energy: mean speed; peak, peak_at: the greatest speed and when, seconds. rest: share of the time below RESTING.
-    bouts: how often it speeds up. farthest `[n, 3]`: the pose at extent_at; low, high `[n, 3]`: the least and the greatest of
-    each coordinate. stroke_at: when it is fastest on its way to there, seconds.
+    names: which points there are, n (see NAMES; fewer on characters that lack them). first, last, typical
+    `[n, 3]`: the poses at the ends and the median. loop_error: how far the last pose is from the first, of
+    the farthest point. steady: speed at the ends beside the greatest, 0..1. extent, extent_at: how far any
+    point goes from the line between both ends, and when, seconds. energy: mean speed; peak, peak_at: the
+    greatest speed and when, seconds. rest: share of the time below RESTING. bouts: how often it speeds up.
+    farthest `[n, 3]`: the pose at extent_at; low, high `[n, 3]`: the least and the greatest of each
+    coordinate. stroke_at: when it is fastest on its way to there, seconds.
     """
 
     names: tuple[str, ...]
@@ -66,13 +68,15 @@ class LayerTraits:
 
 @dataclass(frozen=True, eq=False)
 class Traits:
-    """height: metres. duration: seconds. energy: speed of each of PARTS, heights a second, the root of
-    its mean square, so that slow drifts count little beside movements. travel: how far the character goes
-    over the ground. symmetry: -1 only the right arm moves, 0 both alike, 1 only the left. mirrored: 0..1, how far the arms move as
-    mirror images. out, near: how much farther from, and nearer to, the trunk and head the hands come than where they begin.
-    touch: how near a moving hand comes to the other arm, the neck or the head, beyond how near it was. stride: how far each foot comes
-    in front of the other, the lesser of both: what walks. face: of a clip in which nothing else moves, how much joints of the face do,
-    0..2; 0 of any other."""
+    """height: metres. duration: seconds. energy: speed of each of PARTS, heights a second, the root of its
+    mean square, so that slow drifts count little beside movements. travel: how far the character goes over
+    the ground. symmetry: -1 only the right arm moves, 0 both alike, 1 only the left. mirrored: 0..1, how far
+    the arms move as mirror images. out, near: how much farther from, and nearer to, the trunk and head the
+    hands come than where they begin. touch: how near a moving hand comes to the other arm, the neck or the
+    head, beyond how near it was. stride: how far each foot comes in front of the other, the lesser of both:
+    what walks. face: of a clip in which nothing else moves, how much joints of the face do, 0..2; 0 of any
+    other.
+    """
 
     height: float
     duration: float
@@ -94,8 +98,12 @@ _KNOWN: WeakKeyDictionary[Clip, tuple[tuple[tuple[str, int], ...], Traits]] = We
 
 
 def traits(skeleton: Skeleton, roles: Mapping[str, int] | None, clip: Clip) -> Traits:
-    """Return what a clip's motion looks like. roles: role -> joint of the skeleton, None to find them. Never raises."""
-    named = _named(skeleton if clip.skeleton == skeleton else clip.skeleton, roles if clip.skeleton == skeleton else None)
+    """Return what a clip's motion looks like. roles: role -> joint of the skeleton, None to find them. Never
+    raises.
+    """
+    named = _named(
+        skeleton if clip.skeleton == skeleton else clip.skeleton, roles if clip.skeleton == skeleton else None
+    )
     return _all([clip], lambda _: named)[0]
 
 
@@ -104,7 +112,9 @@ def traits_of(
     cancelled: Callable[[], bool] | None = None,
     progress: Callable[[int, int], None] | None = None,
 ) -> dict[str, Traits]:
-    """Return clip id -> traits of a project, or name -> traits of clips; those found until `cancelled`. progress: done, of how many."""
+    """Return clip id -> traits of a project, or name -> traits of clips; those found until `cancelled`.
+    progress: done, of how many.
+    """
     if isinstance(source, Project):
         clips = [(ident, entry.motion) for ident, entry in source.clips.items() if entry.motion is not None]
         own = dict(anatomy.roles(source))
@@ -136,7 +146,9 @@ def traits_of(
 
 def traits_known(project: Project) -> dict[str, Traits]:
     """Return clip id -> traits of those clips that were looked at before, at once."""
-    found = {ident: _KNOWN.get(entry.motion) for ident, entry in project.clips.items() if entry.motion is not None}
+    found = {
+        ident: _KNOWN.get(entry.motion) for ident, entry in project.clips.items() if entry.motion is not None
+    }
     return {ident: known[1] for ident, known in found.items() if known is not None}
 
 
@@ -164,7 +176,9 @@ def _all(clips: Sequence[Clip], roles: Callable[[Clip], tuple[tuple[str, int], .
         ends = np.cumsum([0, *(len(f) for f in frames)])
         for clip, index, a, b in zip(some, frames, ends, ends[1:], strict=False):
             times = index / clip.fps
-            found = _of(figure, {k: v[a:b] for k, v in points.items()}, {k: v[a:b] for k, v in world.items()}, times)
+            found = _of(
+                figure, {k: v[a:b] for k, v in points.items()}, {k: v[a:b] for k, v in world.items()}, times
+            )
             if max(found.energy.values()) < 1e-3:
                 found = replace(found, face=_face(clip, dict(named)))
             _KNOWN[clip] = named, found
@@ -195,15 +209,20 @@ def _speeds(tracks: Array, times: Array) -> Array:
 
 
 def _layer(names: tuple[str, ...], poses: Array, tracks: Array, speeds: Array, times: Array) -> LayerTraits:
-    """Return one layer's traits. poses `[F, n, 3]`: as the character faces then; tracks: as it faced at first."""
+    """Return one layer's traits. poses `[F, n, 3]`: as the character faces then; tracks: as it faced at
+    first.
+    """
     if not names:
         none = np.zeros((0, 3))
-        return LayerTraits((), none, none, none, none, none, none, 0.0, 1.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 1.0, 0)
+        return LayerTraits(
+            (), none, none, none, none, none, none, 0.0, 1.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 1.0, 0
+        )
     fast = speeds.max(-1)
     peak = _greatest(fast)
     first, last = tracks[0].astype(float), tracks[-1].astype(float)
     way = (times / times[-1] if times[-1] > 0 else times)[:, None, None]
-    # Against a smooth way from one end to the other, so that a transition does not count as going out and back.
+    # Against a smooth way from one end to the other, so that a transition does not count as going out and
+    # back.
     away = np.linalg.norm(tracks - (first + (last - first) * (way * way * (3 - 2 * way))), axis=-1).max(-1)
     far = _greatest(away)
     return LayerTraits(
@@ -228,7 +247,9 @@ def _layer(names: tuple[str, ...], poses: Array, tracks: Array, speeds: Array, t
 
 
 def _greatest(x: Array) -> int:
-    """Return where the greatest value is, the first of those that are as good as equal: rounding must not choose."""
+    """Return where the greatest value is, the first of those that are as good as equal: rounding must not
+    choose.
+    """
     return int(np.argmax(x >= x.max() - 1e-4))
 
 
@@ -237,7 +258,9 @@ def _mean(x: Array, times: Array) -> float:
 
 
 def _bouts(speed: Array) -> int:
-    """Return how many peaks of at least a quarter of the greatest there are, with a slowing to below half between them."""
+    """Return how many peaks of at least a quarter of the greatest there are, with a slowing to below half
+    between them.
+    """
     least, count, low, top = speed.max() / 4, 0, 0.0, 0.0
     if least <= RESTING / 4:
         return 0
@@ -316,7 +339,10 @@ def _face(clip: Clip, roles: Mapping[str, int]) -> float:
         return 0.0
     face = [j for j in clip.skeleton.descendants(roles["head"]) if j != roles["head"]]
     turned = np.ptp(clip.rotations[:, face], axis=0) if face else np.zeros(0)
-    moved = np.ptp(clip.translations[:, [k for k, j in enumerate(clip.translated) if j in set(face)]], axis=0) / clip.skeleton.height
+    moved = (
+        np.ptp(clip.translations[:, [k for k, j in enumerate(clip.translated) if j in set(face)]], axis=0)
+        / clip.skeleton.height
+    )
     return float(max(turned.max(initial=0.0), moved.max(initial=0.0)))
 
 
@@ -328,7 +354,9 @@ def _stride(points: Mapping[str, Array]) -> float:
 
 
 def _reach(world: Mapping[str, Array]) -> tuple[float, float]:
-    """Return how much farther away from the trunk and head the farther hand goes, and how much nearer the nearer comes."""
+    """Return how much farther away from the trunk and head the farther hand goes, and how much nearer the
+    nearer comes.
+    """
     centres = [world[n] for n in ("carrier", "head") if n in world]
     hands = [world[n] for n in ("left_hand", "right_hand") if n in world]
     if not centres or not hands:
@@ -342,13 +370,17 @@ def _reach(world: Mapping[str, Array]) -> tuple[float, float]:
 
 
 def _touch(world: Mapping[str, Array]) -> float:
-    """Return how much nearer a hand comes to the other forearm or the head than where it begins, if it comes within a touch of them."""
+    """Return how much nearer a hand comes to the other forearm or the head than where it begins, if it comes
+    within a touch of them.
+    """
     nearest = 0.0
     for side, other in (("left", "right"), ("right", "left")):
         if (hand := world.get(f"{side}_hand")) is None:
             continue
         gaps = []
-        if (a := world.get(f"{other}_lower_arm")) is not None and (b := world.get(f"{other}_hand")) is not None:
+        if (a := world.get(f"{other}_lower_arm")) is not None and (
+            b := world.get(f"{other}_hand")
+        ) is not None:
             line = b - a
             share = np.clip(np.sum((hand - a) * line, -1) / np.maximum(np.sum(line * line, -1), 1e-9), 0, 1)
             gaps.append(np.linalg.norm(hand - a - share[:, None] * line, axis=-1))

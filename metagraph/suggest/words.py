@@ -1,4 +1,6 @@
-"""What clips' names say of their labels. The names of a batch are read together: what several share tells the stances."""
+"""What clips' names say of their labels. The names of a batch are read together: what several share tells the
+stances.
+"""
 
 from __future__ import annotations
 
@@ -13,7 +15,17 @@ from metagraph.suggest.belief import Belief
 from metagraph.suggest.words_defaults import Field
 from metagraph.suggest.words_patterns import Patterns, PatternsError, forget, merged, recalled, remembered
 from metagraph.suggest.words_stances import Found, Stances, Words, is_low, label
-from metagraph.suggest.words_tokens import Phrase, Taken, is_number, phrases, quoted, take_apart, variant, without_numbers, without_shared
+from metagraph.suggest.words_tokens import (
+    Phrase,
+    Taken,
+    is_number,
+    phrases,
+    quoted,
+    take_apart,
+    variant,
+    without_numbers,
+    without_shared,
+)
 
 __all__ = ["NameGuess", "Patterns", "PatternsError", "forget", "learn", "merged", "read_names"]
 
@@ -41,9 +53,9 @@ class NameGuess:
 class _Parse:
     """A name taken apart. stance: where it begins; act: the words of what is done, numbers left out.
 
-    own: how many words at the beginning are its stance's, 0 for a stance that only follows from what is done. joined: the words that
-    make it a transition, "" if none do; end, end_words: the stance it ends in, or words for one, with their confidence. sure: that it
-    is a transition.
+    own: how many words at the beginning are its stance's, 0 for a stance that only follows from what is done.
+    joined: the words that make it a transition, "" if none do; end, end_words: the stance it ends in, or
+    words for one, with their confidence. sure: that it is a transition.
     """
 
     words: Words
@@ -58,13 +70,19 @@ class _Parse:
 
 
 def read_names(names: Sequence[str], patterns: Patterns | None = None) -> dict[str, NameGuess]:
-    """Return what each distinct name says, with the others of the batch in mind. Never raises; the order does not matter."""
+    """Return what each distinct name says, with the others of the batch in mind. Never raises; the order does
+    not matter.
+    """
     reader = _Reader(names, patterns or Patterns())
     return {name: reader.guess(name) for name in dict.fromkeys(names)}
 
 
-def learn(patterns: Patterns, name: str, field: str, value: str | Sequence[str], names: Sequence[str] = ()) -> Patterns:
-    """Remember a correction: the words of `name` mean `value`. names: the batch it stands in, which tells its stance from its act."""
+def learn(
+    patterns: Patterns, name: str, field: str, value: str | Sequence[str], names: Sequence[str] = ()
+) -> Patterns:
+    """Remember a correction: the words of `name` mean `value`. names: the batch it stands in, which tells its
+    stance from its act.
+    """
     reader = _Reader([*names, name], patterns)
     said = " ".join(value.split()) if isinstance(value, str) else " ".join(value)
     return remembered(patterns, field, reader.key(reader.parse(name), field), said)
@@ -110,22 +128,36 @@ class _Reader:
 
     def _passing(self, words: Words, stance: Found | None, rest: Words) -> _Parse | None:
         """Read a transition: from one stance to another, down into one, up out of one."""
-        if rest and self._joins.get(rest[0]) == "to" and (stance is not None or self._stances.named(rest[1:]) is not None):
+        if (
+            rest
+            and self._joins.get(rest[0]) == "to"
+            and (stance is not None or self._stances.named(rest[1:]) is not None)
+        ):
             return self._to(words, stance, rest[0], rest[1:], 0.97 if stance else 0.85)
         if rest and self._joins.get(rest[0]) == "from" and len(rest) > 1:
             at = next((i for i, w in enumerate(rest) if i and self._joins.get(w) == "to"), len(rest))
             start = self._stances.named(rest[1:at])
             if start and at == len(rest):  # "crossed from sides"
-                return _Parse(words, start[0], 0, (), rest[0], stance, stance.words if stance else (), 0.9, 0.85)
+                return _Parse(
+                    words, start[0], 0, (), rest[0], stance, stance.words if stance else (), 0.9, 0.85
+                )
             if at < len(rest) - 1:
-                return self._to(words, start[0] if start else None, rest[at], rest[at + 1 :], 0.95 if start else 0.8)
+                return self._to(
+                    words, start[0] if start else None, rest[at], rest[at + 1 :], 0.95 if start else 0.8
+                )
         if stance is None or not stance.prefixes & {words, words[: len(words) - variant(words)]}:
             for at in range(1, len(words) - 1):
                 if self._joins.get(words[at]) == "to" and at >= len(words) - len(rest):
                     left, right = self._stances.named(words[:at]), self._stances.named(words[at + 1 :])
                     telling = self._stances.postural(words[:at]) and self._stances.postural(words[at + 1 :])
                     if telling or (right and right[1] > 0.9 and (left or words[at] != "2")):
-                        return self._to(words, left[0] if left else None, words[at], words[at + 1 :], 0.9 if left else 0.75)
+                        return self._to(
+                            words,
+                            left[0] if left else None,
+                            words[at],
+                            words[at + 1 :],
+                            0.9 if left else 0.75,
+                        )
         return self._moving(words, stance, rest)
 
     def _to(self, words: Words, stance: Found | None, joined: str, end: Words, sure: float) -> _Parse:
@@ -139,18 +171,32 @@ class _Reader:
     def _moving(self, words: Words, stance: Found | None, rest: Words) -> _Parse | None:
         told = next((p for p in phrases(words, self._kinds) if p.meaning == "transition"), None)
         text = without_numbers(rest)
-        if stance is not None and len(text) == 1 and (text[0] in ("in", "enter") or (text[0] == "down" and is_low(stance.words))):
+        if (
+            stance is not None
+            and len(text) == 1
+            and (text[0] in ("in", "enter") or (text[0] == "down" and is_low(stance.words)))
+        ):
             return _Parse(words, self._stances.standing(), 0, (), text[0], stance, stance.words, 0.95, 0.95)
         if stance is not None and text:
             rising = is_low(stance.words) and all(w in _UP for w in text)
             if rising or text in (("out",), ("exit",)):
-                return _Parse(words, stance, 1, (), " ".join(text), *self._end(self._stances.standing(), ("stand",)), 0.95)
+                return _Parse(
+                    words,
+                    stance,
+                    1,
+                    (),
+                    " ".join(text),
+                    *self._end(self._stances.standing(), ("stand",)),
+                    0.95,
+                )
         if told is None:
             return None
         if told.text.endswith("down"):
             low = self._stances.low(words)
             verb = told.text.split()[:1]
-            return _Parse(words, self._stances.standing(), 0, (), told.text, *self._end(low, tuple(verb)), 0.9)
+            return _Parse(
+                words, self._stances.standing(), 0, (), told.text, *self._end(low, tuple(verb)), 0.9
+            )
         if told.text in ("stand up", "get up", "rise"):
             low = self._stances.low([w for w in words if w not in _UP])
             return _Parse(words, low, 0, (), told.text, *self._end(self._stances.standing(), ("stand",)), 0.9)
@@ -161,7 +207,15 @@ class _Reader:
         start = stance if told.start else None
         after = self._stances.named(without_numbers(words[told.end :]), start.words if start else ())
         return _Parse(
-            words, start, int(start is not None), (), told.text, after[0] if after else None, (), after[1] if after else 0.0, 0.85
+            words,
+            start,
+            int(start is not None),
+            (),
+            told.text,
+            after[0] if after else None,
+            (),
+            after[1] if after else 0.0,
+            0.85,
         )
 
     def _end(self, found: Found | None, otherwise: Words) -> tuple[Found | None, Words, float]:
@@ -211,7 +265,11 @@ class _Reader:
             return Belief("transition", parse.sure, f"name says '{parse.joined}'")
         stance = parse.stance
         if stance and parse.own and all(self._kinds.get(w) == "stance" for w in parse.act):
-            return Belief("stance", stance.confidence, f"name says '{stance.why}'" if " names " not in stance.why else stance.why)
+            return Belief(
+                "stance",
+                stance.confidence,
+                f"name says '{stance.why}'" if " names " not in stance.why else stance.why,
+            )
         if any(p.meaning == "other" for p in phrases(parse.words, self._kinds)):
             return None  # walking, fighting: none of the four
         said = [p for p in phrases(parse.act, self._kinds) if p.meaning in ("gesture", "fidget")]
@@ -221,7 +279,9 @@ class _Reader:
                 both = " and ".join(dict.fromkeys(f"'{p.text}'" for p in said))
                 return Belief(cast("Kind", best.meaning), 0.55, f"name says {both}")
             return Belief(cast("Kind", best.meaning), 0.95 if parse.own else 0.85, f"name says '{best.text}'")
-        if stance and parse.own and any(len(w) > 2 for w in parse.act):  # shorter ones are directions: "head_dl"
+        if (
+            stance and parse.own and any(len(w) > 2 for w in parse.act)
+        ):  # shorter ones are directions: "head_dl"
             idle = "idle" in (stance.words[0] if len(stance.words) == 1 else "", self._before(parse))
             reason = f"name adds '{' '.join(parse.act)}' to the stance \"{stance.text}\""
             return Belief("fidget" if idle else "gesture", 0.55, reason)
@@ -237,14 +297,22 @@ class _Reader:
         if learned is not None:
             return learned
         if parse.stance and parse.own:
-            begins = f'comes from "{parse.stance.text}"' if parse.joined else f"begins with '{' '.join(parse.words[: parse.own])}'"
+            begins = (
+                f'comes from "{parse.stance.text}"'
+                if parse.joined
+                else f"begins with '{' '.join(parse.words[: parse.own])}'"
+            )
             return Belief(parse.stance.text, min(0.97, parse.stance.confidence + 0.05), f"name {begins}")
         if parse.stance:
             return Belief(self._called(parse.stance), 0.8, f"name says '{parse.joined}', which begins there")
         usual = self._stances.usual()
         if kind is None or kind.value in ("stance", "transition") or usual is None:
             return None
-        return Belief(self._called(usual[0]), usual[1], f"no other stance is named and '{usual[0].text}' is the plain one")
+        return Belief(
+            self._called(usual[0]),
+            usual[1],
+            f"no other stance is named and '{usual[0].text}' is the plain one",
+        )
 
     def _end_stance(self, parse: _Parse) -> Belief[str] | None:
         if not parse.joined:
@@ -297,7 +365,10 @@ class _Reader:
         said = phrases(parse.act, limbs)
         sides = [p for p in said if len(p.text) <= 5 or " " in p.text]
         learned = self._recalled(parse, "limb")
-        if learned is not None and (not sides or learned.reason.startswith((f"'{' '.join(parse.act)}'", *(f"'{p.text}'" for p in sides)))):
+        if learned is not None and (
+            not sides
+            or learned.reason.startswith((f"'{' '.join(parse.act)}'", *(f"'{p.text}'" for p in sides)))
+        ):
             return cast("Belief[Limb]", learned)
         if not said:
             return None
@@ -320,7 +391,9 @@ class _Reader:
         if not said:
             return None
         words = " and ".join(dict.fromkeys(f"'{p.text}'" for p in said))
-        return Belief(tuple(dict.fromkeys(t for p in said for t in p.meaning.split())), 0.8, f"name says {words}")
+        return Belief(
+            tuple(dict.fromkeys(t for p in said for t in p.meaning.split())), 0.8, f"name says {words}"
+        )
 
     def _number(self, words: Words) -> Belief[int] | None:
         if not words or not is_number(words[-1]) or len(words[-1]) > 9:
@@ -332,7 +405,11 @@ def _spelled(name: str, belief: Belief[T] | None) -> Belief[T] | None:
     """Return the belief with what its reason quotes as the name writes it: 'ToCrossed'."""
     if belief is None or "'" not in belief.reason:
         return belief
-    return Belief(belief.value, belief.confidence, re.sub("'([^']+)'", lambda found: quoted(name, found[1].split()), belief.reason))
+    return Belief(
+        belief.value,
+        belief.confidence,
+        re.sub("'([^']+)'", lambda found: quoted(name, found[1].split()), belief.reason),
+    )
 
 
 def _layer(said: Phrase, confidence: float) -> Belief[Layer]:

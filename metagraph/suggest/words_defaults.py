@@ -1,4 +1,6 @@
-"""The words animators name clips with, in English, and what they say. Data only; `words_patterns` lets users change it."""
+"""The words animators name clips with, in English, and what they say. Data only; `words_patterns` lets users
+change it.
+"""
 
 from __future__ import annotations
 
@@ -12,13 +14,16 @@ Meanings = Mapping[str, str]
 
 def _table(meanings: Mapping[str, str]) -> Meanings:
     """Turn meaning -> "phrase, phrase, ..." around."""
-    return MappingProxyType({p.strip(): meaning for meaning, phrases in meanings.items() for p in phrases.split(",") if p.strip()})
+    return MappingProxyType(
+        {p.strip(): meaning for meaning, phrases in meanings.items() for p in phrases.split(",") if p.strip()}
+    )
 
 
 KINDS: Final = _table(
     {
         "stance": "idle, idling, stance, rest, resting, base, loop, pose, hold, neutral, default, relaxed",
-        "transition": "trans, transition, enter, exit, sit down, stand up, get up, lie down, lay down, kneel down, crouch down, rise",
+        "transition": "trans, transition, enter, exit, sit down, stand up, get up, lie down, lay down, kneel "
+        "down, crouch down, rise",
         "gesture": """
             shrug, point, pointing, wave, waving, beat, nod, nodding, shake, head shake, shake head, no, yes, emphasize, emphasise,
             emphasis, emphatic, bow, clap, clapping, applaud, applause, cheer, cheering, thumbs up, thumb up, thumbs down, stop, refuse,
@@ -142,5 +147,11 @@ JUNK: Final = _table(
     }
 )
 DEFAULTS: Final[Mapping[Field, Meanings]] = {
-    "kinds": KINDS, "layers": LAYERS, "limbs": LIMBS, "tags": TAGS, "postures": POSTURES, "joins": JOINS, "junk": JUNK,
-}  # fmt: skip
+    "kinds": KINDS,
+    "layers": LAYERS,
+    "limbs": LIMBS,
+    "tags": TAGS,
+    "postures": POSTURES,
+    "joins": JOINS,
+    "junk": JUNK,
+}

@@ -1,4 +1,6 @@
-"""What words in clips' names mean: defaults, a user's changes to them, and what was learned from corrections."""
+"""What words in clips' names mean: defaults, a user's changes to them, and what was learned from
+corrections.
+"""
 
 from __future__ import annotations
 
@@ -22,7 +24,8 @@ _OF_FIELD: Final[Mapping[str, tuple[str, ...] | None]] = {
     "kind": KINDS, "layer": LAYERS, "limb": LIMBS, "tags": None, "stance": None, "end_stance": None,
 }  # fmt: skip
 
-# field -> words of a name -> what it was corrected to -> how often. A phrase is stored with its words joined by blanks.
+# field -> words of a name -> what it was corrected to -> how often. A phrase is stored with its words joined
+# by blanks.
 Learned = Mapping[str, Mapping[str, Mapping[str, int]]]
 
 
@@ -32,11 +35,13 @@ class PatternsError(ValueError):
 
 @dataclass(frozen=True)
 class Patterns:
-    """Which words mean what. changes: field -> phrase -> meaning, on top of the defaults; None takes a default away.
+    """Which words mean what. changes: field -> phrase -> meaning, on top of the defaults; None takes a
+    default away.
 
-    A phrase is lower-case words joined by blanks, as names are taken apart: "check watch". Fields: `kinds` (phrase -> kind, or
-    "other" for what is no conversation), `layers`, `limbs`, `tags` (blanks between several), `postures` (words that stances are
-    called by), `joins` (words between the two stances of a transition), `junk` (words exporters leave).
+    A phrase is lower-case words joined by blanks, as names are taken apart: "check watch". Fields: `kinds`
+    (phrase -> kind, or "other" for what is no conversation), `layers`, `limbs`, `tags` (blanks between
+    several), `postures` (words that stances are called by), `joins` (words between the two stances of a
+    transition), `junk` (words exporters leave).
     """
 
     changes: Mapping[Field, Mapping[str, str | None]] = field(default_factory=dict)
@@ -54,7 +59,9 @@ class Patterns:
     @cached_property
     def vocabulary(self) -> frozenset[str]:
         """Every single word that means something."""
-        return frozenset(w for name in FIELDS if name != "junk" for phrase in self.meanings[name] for w in phrase.split())
+        return frozenset(
+            w for name in FIELDS if name != "junk" for phrase in self.meanings[name] for w in phrase.split()
+        )
 
     def with_pattern(self, name: Field, phrase: str, meaning: str | None) -> Patterns:
         """Return patterns in which a phrase means something (else), or nothing for None."""
@@ -68,24 +75,37 @@ class Patterns:
         return replace(self, changes={**self.changes, name: mine})
 
     def to_json(self) -> dict[str, Any]:
-        """Return plain values for a file: only what differs from the defaults, so that better defaults arrive with updates."""
+        """Return plain values for a file: only what differs from the defaults, so that better defaults arrive
+        with updates.
+        """
         out: dict[str, Any] = {"patterns": VERSION}
         out |= {name: dict(sorted(mine.items())) for name, mine in self.changes.items() if mine}
         if self.learned:
-            out["learned"] = {f: {w: dict(v) for w, v in sorted(words.items())} for f, words in sorted(self.learned.items()) if words}
+            out["learned"] = {
+                f: {w: dict(v) for w, v in sorted(words.items())}
+                for f, words in sorted(self.learned.items())
+                if words
+            }
         return out
 
     @staticmethod
     def from_json(data: Any) -> Patterns:
         """Read what `to_json` gave; raise PatternsError naming the place of the first thing wrong."""
         if not isinstance(data, Mapping):
-            raise PatternsError(f"name patterns are {_kind_of(data)}, expected an object; delete the file to begin anew")
+            raise PatternsError(
+                f"name patterns are {_kind_of(data)}, expected an object; delete the file to begin anew"
+            )
         version = data.get("patterns")
         if version != VERSION:
-            raise PatternsError(f"name patterns have version {version!r}, this program reads {VERSION}; update it, or delete the file")
+            raise PatternsError(
+                f"name patterns have version {version!r}, this program reads {VERSION}; update it, or delete "
+                "the file"
+            )
         for key in data:
             if key not in (*FIELDS, "patterns", "learned"):
-                raise PatternsError(f"name patterns hold an unknown part '{key}'; known are {', '.join((*FIELDS, 'learned'))}")
+                raise PatternsError(
+                    f"name patterns hold an unknown part '{key}'; known are {', '.join((*FIELDS, 'learned'))}"
+                )
         changes: dict[Field, dict[str, str | None]] = {}
         for name in FIELDS:
             for phrase, meaning in _object(data.get(name, {}), f"'{name}'").items():
@@ -98,7 +118,9 @@ def _learned(data: Any) -> Learned:
     out: dict[str, dict[str, dict[str, int]]] = {}
     for name, words in _object(data, "'learned'").items():
         if name not in LEARNABLE:
-            raise PatternsError(f"'learned' holds an unknown field '{name}'; known are {', '.join(LEARNABLE)}")
+            raise PatternsError(
+                f"'learned' holds an unknown field '{name}'; known are {', '.join(LEARNABLE)}"
+            )
         for word, counts in _object(words, f"'learned', '{name}'").items():
             for value, count in _object(counts, f"'learned', '{name}', '{word}'").items():
                 where = f"'learned', '{name}', '{word}', '{value}'"
@@ -119,7 +141,11 @@ def _check(name: str, phrase: Any, meaning: Any, where: str) -> None:
     if meaning is None:
         return
     allowed = _ALLOWED[name]
-    if not isinstance(meaning, str) or not meaning.strip() or (allowed is not None and meaning not in allowed):
+    if (
+        not isinstance(meaning, str)
+        or not meaning.strip()
+        or (allowed is not None and meaning not in allowed)
+    ):
         wanted = "words" if allowed is None else "one of " + ", ".join(allowed)
         raise PatternsError(f"{where} means {meaning!r}, expected {wanted}, or null to take it away")
 
@@ -134,7 +160,8 @@ def _kind_of(data: Any) -> str:
     return "nothing" if data is None else f"a {type(data).__name__}"
 
 
-# --- learning --------------------------------------------------------------------------------------------------------
+# --- learning
+# --------------------------------------------------------------------------------------------------
 
 
 def remembered(patterns: Patterns, name: str, words: Sequence[str], value: str) -> Patterns:
@@ -154,10 +181,11 @@ def remembered(patterns: Patterns, name: str, words: Sequence[str], value: str) 
 
 
 def recalled(patterns: Patterns, name: str, words: Sequence[str]) -> tuple[str, str, int] | None:
-    """Return (meaning, the words it comes from, how often) of what was corrected before; None where that is unknown or disputed.
+    """Return (meaning, the words it comes from, how often) of what was corrected before; None where that is
+    unknown or disputed.
 
-    The whole phrase counts from the first time; a single word only when two corrections agree and none disagrees, so that one
-    correction does not change clips that merely share a word.
+    The whole phrase counts from the first time; a single word only when two corrections agree and none
+    disagrees, so that one correction does not change clips that merely share a word.
     """
     known = patterns.learned.get(name)
     if not known or not words:
@@ -176,11 +204,17 @@ def _agreed(counts: Mapping[str, int], least: int, share: float) -> tuple[str, i
     if not counts:
         return None
     value = min(counts, key=lambda v: (-counts[v], v))
-    return (value, counts[value]) if counts[value] >= least and counts[value] >= share * sum(counts.values()) else None
+    return (
+        (value, counts[value])
+        if counts[value] >= least and counts[value] >= share * sum(counts.values())
+        else None
+    )
 
 
 def forget(patterns: Patterns, name: str | None = None, phrase: str | None = None) -> Patterns:
-    """Return patterns without what was learned: all, of one field, or of one phrase in it (or in every field)."""
+    """Return patterns without what was learned: all, of one field, or of one phrase in it (or in every
+    field).
+    """
     kept = {}
     for known, words in patterns.learned.items():
         if name not in (None, known):
@@ -191,9 +225,13 @@ def forget(patterns: Patterns, name: str | None = None, phrase: str | None = Non
 
 
 def merged(mine: Patterns, theirs: Patterns) -> Patterns:
-    """Return patterns with another's on top: its meanings win, its corrections count as often as they counted there, or here if more."""
+    """Return patterns with another's on top: its meanings win, its corrections count as often as they counted
+    there, or here if more.
+    """
     changes = {name: {**mine.changes.get(name, {}), **theirs.changes.get(name, {})} for name in FIELDS}
-    learned: dict[str, dict[str, dict[str, int]]] = {f: {w: dict(c) for w, c in words.items()} for f, words in mine.learned.items()}
+    learned: dict[str, dict[str, dict[str, int]]] = {
+        f: {w: dict(c) for w, c in words.items()} for f, words in mine.learned.items()
+    }
     for known, words in theirs.learned.items():
         for word, counts in words.items():
             there = learned.setdefault(known, {}).setdefault(word, {})

@@ -1,4 +1,6 @@
-"""Which stances a batch of names speaks of: idle words, shared prefixes that are clips themselves, words of posture."""
+"""Which stances a batch of names speaks of: idle words, shared prefixes that are clips themselves, words of
+posture.
+"""
 
 from __future__ import annotations
 
@@ -10,20 +12,75 @@ from metagraph.suggest.words_tokens import Taken, is_number, phrases, stem, vari
 
 Words = tuple[str, ...]
 
-_WEAK = {"loop", "pose", "hold", "base", "rest", "neutral", "default", "relaxed"}  # also said of gestures: "wave loop"
+_WEAK = {
+    "loop",
+    "pose",
+    "hold",
+    "base",
+    "rest",
+    "neutral",
+    "default",
+    "relaxed",
+}  # also said of gestures: "wave loop"
 _BARE = {"body", "fullbody"}  # says the layer and nothing of the stance
 _PARTS = {
-    "hand", "hands", "arm", "arms", "head", "hip", "hips", "chin", "side", "sides", "leg", "legs", "knee", "knees", "chest", "elbow",
-    "elbows", "finger", "fingers", "thumb", "thumbs", "palm", "palms", "foot", "feet", "neck", "torso", "chair", "floor", "ground", "desk",
-    "table", "wall", "bench", "at", "on", "in", "behind", "down", "up", "both", "left", "right", "lf", "rt", "l", "r",
-}  # fmt: skip
+    "hand",
+    "hands",
+    "arm",
+    "arms",
+    "head",
+    "hip",
+    "hips",
+    "chin",
+    "side",
+    "sides",
+    "leg",
+    "legs",
+    "knee",
+    "knees",
+    "chest",
+    "elbow",
+    "elbows",
+    "finger",
+    "fingers",
+    "thumb",
+    "thumbs",
+    "palm",
+    "palms",
+    "foot",
+    "feet",
+    "neck",
+    "torso",
+    "chair",
+    "floor",
+    "ground",
+    "desk",
+    "table",
+    "wall",
+    "bench",
+    "at",
+    "on",
+    "in",
+    "behind",
+    "down",
+    "up",
+    "both",
+    "left",
+    "right",
+    "lf",
+    "rt",
+    "l",
+    "r",
+}
 _PLACES = {"chair", "floor", "ground", "desk", "table", "wall", "bench"}
 _STEMS_DOWN = ("sit", "lie", "kneel", "crouch")
 
 
 @dataclass
 class Found:
-    """A stance that names speak of. prefixes: how names begin that belong to it. confidence: that it is one. why: the words."""
+    """A stance that names speak of. prefixes: how names begin that belong to it. confidence: that it is one.
+    why: the words.
+    """
 
     words: Words
     confidence: float
@@ -88,7 +145,9 @@ class Stances:
         return any(p.meaning == "other" for p in phrases(words, self._kinds))
 
     def _announced(self, words: Words) -> None:
-        """A clip whose own name says it is a stance: "crossed idle", "idle seated back 01", "arms crossed"."""
+        """A clip whose own name says it is a stance: "crossed idle", "idle seated back 01", "arms
+        crossed".
+        """
         core = words[: len(words) - variant(words)]
         if not core or any(p.meaning == "transition" for p in phrases(core, self._kinds)):
             return
@@ -110,7 +169,13 @@ class Stances:
             while len(trimmed) > 1 and self._kinds.get(trimmed[-1]) == "stance":
                 trimmed = trimmed[:-1]  # "sitting idle loop"
             self._add(
-                trimmed, 0.75 if acts else 0.7 if not rest and weak else 0.85 if weak else 0.97, last, rest or core, trimmed, core, words
+                trimmed,
+                0.75 if acts else 0.7 if not rest and weak else 0.85 if weak else 0.97,
+                last,
+                rest or core,
+                trimmed,
+                core,
+                words,
             )
         elif self._kinds.get(core[0]) == "stance" and not self._acts(core) and self.postural(core[1:]):
             self._add(core, 0.95, core[0], core, words)
@@ -118,7 +183,9 @@ class Stances:
             self._add(core, 0.7, " ".join(core), core, words)
 
     def _passes_over(self, rest: Words) -> bool:
-        """Whether words before "idle" tell a transition ("walk to idle") and not a stance ("hand to chin idle")."""
+        """Whether words before "idle" tell a transition ("walk to idle") and not a stance ("hand to chin
+        idle").
+        """
         if any(self._joins.get(w) == "from" for w in rest):
             return True
         at = next((i for i, w in enumerate(rest) if self._joins.get(w) == "to"), None)
@@ -149,7 +216,13 @@ class Stances:
     def _clip_that_others_continue(self, words: Words, followers: Mapping[Words, int]) -> None:
         count = followers.get(words, 0)
         core = words[: len(words) - variant(words)]
-        if not core or self._acts(core) or self._other(core) or core in self.found or any(w in self._joins for w in core):
+        if (
+            not core
+            or self._acts(core)
+            or self._other(core)
+            or core in self.found
+            or any(w in self._joins for w in core)
+        ):
             return
         if count >= 2 and not any(p.meaning == "transition" for p in phrases(core, self._kinds)):
             self._add(core, 0.85, f"{count} names begin with it", words, core)
@@ -163,7 +236,12 @@ class Stances:
                 heads[head] = heads.get(head, 0) + 1
         for head, count in heads.items():
             core = head[: len(head) - variant(head)]
-            if core and (count >= 2 or self.postural(core)) and not self._acts(core) and not self._other(core):
+            if (
+                core
+                and (count >= 2 or self.postural(core))
+                and not self._acts(core)
+                and not self._other(core)
+            ):
                 self._add(core, 0.9, f"{count} names begin with it", head, core)
         runs: dict[Words, int] = {}
         for taken in distinct:
@@ -174,12 +252,18 @@ class Stances:
         for run, count in runs.items():
             if not run or any(run in s.prefixes for s in self.found.values()):
                 continue
-            if count > 1 or run[0] == "idle" or any(self._bare(run) == self._bare(s.words) for s in self.found.values()):
+            if (
+                count > 1
+                or run[0] == "idle"
+                or any(self._bare(run) == self._bare(s.words) for s in self.found.values())
+            ):
                 bare = run[:-1] if len(run) > 1 and self._kinds.get(run[-1]) == "stance" else run
                 self._add(bare, 0.75, " ".join(run), run)
 
     def _trimmed(self, run: Words) -> Words:
-        """Leave out what belongs to the act that follows: numbers and body parts, "idle finger" of "idle finger nail"."""
+        """Leave out what belongs to the act that follows: numbers and body parts, "idle finger" of "idle
+        finger nail".
+        """
         run = run[: len(run) - variant(run)]
         told = max((p.end for p in phrases(run, self._patterns.meanings["postures"])), default=0)
         while len(run) > told and run[-1] not in _PLACES and run[-1] not in self._patterns.meanings["limbs"]:
@@ -187,23 +271,35 @@ class Stances:
         return run
 
     def _passed_between(self, distinct: Sequence[Taken]) -> None:
-        """Stances that only transitions name: the other end of one that is known, or both where there is a way back."""
+        """Stances that only transitions name: the other end of one that is known, or both where there is a
+        way back.
+        """
         pairs: dict[tuple[Words, Words], str] = {}
         for taken in distinct:
             words = taken.words[: len(taken.words) - variant(taken.words)]
             for at in range(1, len(words) - 1):
-                if self._joins.get(words[at]) == "to" and words[at] != "2" and not any(w in _PARTS for w in words[:at]):
+                if (
+                    self._joins.get(words[at]) == "to"
+                    and words[at] != "2"
+                    and not any(w in _PARTS for w in words[:at])
+                ):
                     pairs[words[:at], words[at + 1 :]] = words[at]
         known = {prefix for stance in self.found.values() for prefix in stance.prefixes}
         for (start, end), joined in sorted(pairs.items()):
-            if (start in known or (end, start) in pairs) and not self._acts(end) and not self._other(end) and not self._sister(end):
+            if (
+                (start in known or (end, start) in pairs)
+                and not self._acts(end)
+                and not self._other(end)
+                and not self._sister(end)
+            ):
                 self._add(end, 0.7, f"{joined} {' '.join(end)}", end)
 
     def _sister(self, end: Words) -> bool:
         """Whether an end is short for a stance that is known: "tilt left" for "head tilt left"."""
         bare = self._bare(end)
         return not bare or any(
-            self._bare(s.words)[-len(bare) :] == bare or set(self._bare(s.words)) < set(bare) for s in self.found.values()
+            self._bare(s.words)[-len(bare) :] == bare or set(self._bare(s.words)) < set(bare)
+            for s in self.found.values()
         )
 
     def _only_number(self, words: Words) -> bool:
@@ -245,7 +341,9 @@ class Stances:
         return None
 
     def named(self, words: Sequence[str], beside: Words = ()) -> tuple[Found, float] | None:
-        """Return the stance that words mean and how surely; `beside`: the stance one comes from, whose sisters are likelier."""
+        """Return the stance that words mean and how surely; `beside`: the stance one comes from, whose
+        sisters are likelier.
+        """
         key = (tuple(words), beside)
         if key not in self._resolved:
             self._resolved[key] = self._named(*key)

@@ -1,4 +1,6 @@
-"""Names taken apart: words, sides and numbers at separators and capitals, without what exporters and character names add."""
+"""Names taken apart: words, sides and numbers at separators and capitals, without what exporters and
+character names add.
+"""
 
 from __future__ import annotations
 
@@ -44,7 +46,9 @@ class Phrase:
 
 
 def take_apart(name: str, patterns: Patterns) -> Taken:
-    """Split a name into words, leaving out file endings and what exporters add ("Armature|mixamo.com|Layer0", "Take 001")."""
+    """Split a name into words, leaving out file endings and what exporters add ("Armature|mixamo.com|Layer0",
+    "Take 001").
+    """
     segments = [_segment(part, patterns) for part in re.split(r"[|:]", _EXTENSION.sub("", name))]
     words: list[str] = []
     splits: list[int] = []
@@ -76,7 +80,9 @@ def _segment(text: str, patterns: Patterns) -> Taken:
 def _without_junk(taken: Taken, patterns: Patterns) -> Taken:
     """Leave out what exporters write before a name, unless it is part of a phrase ("take item")."""
     junk = patterns.meanings["junk"]
-    while (n := _junk_at(taken.words, junk, front=True)) and (n > 1 or " ".join(taken.words[:2]) not in patterns.meanings["kinds"]):
+    while (n := _junk_at(taken.words, junk, front=True)) and (
+        n > 1 or " ".join(taken.words[:2]) not in patterns.meanings["kinds"]
+    ):
         taken = taken.without(n)
     return taken
 
@@ -100,7 +106,9 @@ def _camel(run: str) -> list[str]:
 
 @lru_cache(maxsize=8192)
 def _known(word: str, vocabulary: frozenset[str]) -> tuple[str, ...]:
-    """Return a word as the vocabulary has it: "shrugging" as "shrug", "crossarms" as two; as it is where it is not known."""
+    """Return a word as the vocabulary has it: "shrugging" as "shrug", "crossarms" as two; as it is where it
+    is not known.
+    """
     if word in vocabulary or not word.isascii():
         return (word,)
     for ending in ("ing", "ed", "s"):
@@ -125,13 +133,19 @@ def _unglued(word: str, vocabulary: frozenset[str]) -> tuple[str, ...]:
 
 
 def without_shared(taken: Sequence[Taken], patterns: Patterns) -> list[Taken]:
-    """Leave out the words all names begin with (a character, a project) as far as they mean nothing; a name keeps one word at least."""
+    """Leave out the words all names begin with (a character, a project) as far as they mean nothing; a name
+    keeps one word at least.
+    """
     named = [t.words for t in taken if t.words]
     if len(named) < 2:
         return list(taken)
     first, last = min(named), max(named)
     count = 0
-    while count < min(map(len, named)) - 1 and first[count] == last[count] and first[count] not in patterns.vocabulary:
+    while (
+        count < min(map(len, named)) - 1
+        and first[count] == last[count]
+        and first[count] not in patterns.vocabulary
+    ):
         count += 1
     return [_without_junk(t.without(count), patterns) if count and t.words else t for t in taken]
 
@@ -171,16 +185,34 @@ def without_numbers(words: Iterable[str]) -> tuple[str, ...]:
 def variant(words: Sequence[str]) -> int:
     """Return how many words at the end only tell variants apart: numbers, or one letter a to d."""
     n = 0
-    while n < len(words) and (words[-1 - n].isdecimal() or (n == 0 and len(words) > 1 and words[-1] in ("a", "b", "c", "d"))):
+    while n < len(words) and (
+        words[-1 - n].isdecimal() or (n == 0 and len(words) > 1 and words[-1] in ("a", "b", "c", "d"))
+    ):
         n += 1
     return n
 
 
 _STEMS = {
-    "sitting": "sit", "seated": "sit", "sat": "sit", "seat": "sit", "standing": "stand", "stood": "stand", "crossed": "cross",
-    "crossing": "cross", "lying": "lie", "lay": "lie", "laying": "lie", "kneeling": "kneel", "crouching": "crouch", "leaning": "lean",
-    "clasped": "clasp", "folded": "fold", "tilted": "tilt", "idling": "idle", "feet": "foot",
-}  # fmt: skip
+    "sitting": "sit",
+    "seated": "sit",
+    "sat": "sit",
+    "seat": "sit",
+    "standing": "stand",
+    "stood": "stand",
+    "crossed": "cross",
+    "crossing": "cross",
+    "lying": "lie",
+    "lay": "lie",
+    "laying": "lie",
+    "kneeling": "kneel",
+    "crouching": "crouch",
+    "leaning": "lean",
+    "clasped": "clasp",
+    "folded": "fold",
+    "tilted": "tilt",
+    "idling": "idle",
+    "feet": "foot",
+}
 
 
 def stem(word: str) -> str:

@@ -1,5 +1,6 @@
-"""A path through a motion graph as a clip: frames of takes one after another, blended where they do not follow, walking on from where
-they are (Yang et al., section 7.1)."""
+"""A path through a motion graph as a clip: frames of takes one after another, blended where they do not
+follow, walking on from where they are (Yang et al., section 7.1).
+"""
 
 from __future__ import annotations
 
@@ -24,8 +25,9 @@ BLEND = 5  # frames before and after a transition that are blended
 
 @dataclass(frozen=True, eq=False)
 class _Frames:
-    """All states' poses in their own takes: rotations `[F, J, 4]`, translations `[F, J, 3]`; where the hips are over the ground `[F, 2]`,
-    x and z, and where the character faces `[F]`, radians about y from +z."""
+    """All states' poses in their own takes: rotations `[F, J, 4]`, translations `[F, J, 3]`; where the hips
+    are over the ground `[F, 2]`, x and z, and where the character faces `[F]`, radians about y from +z.
+    """
 
     rotations: Array
     translations: Array
@@ -33,14 +35,20 @@ class _Frames:
     heading: Array
 
 
-def assemble(states: States, clips: Sequence[Clip], path: Path, name: str = "synthesised", blend: int = BLEND) -> Clip:
-    """Return a path's motion, RATE frames a second. clips: those the states are of. It begins over the origin, facing +z; from there the
-    root goes on by what each frame goes on in its take. blend: frames on either side of a transition in which one motion fades into the
-    other, by a cosine, rotations along the shortest way (slerp). Raises SynthesisError when the takes are others."""
+def assemble(
+    states: States, clips: Sequence[Clip], path: Path, name: str = "synthesised", blend: int = BLEND
+) -> Clip:
+    """Return a path's motion, RATE frames a second. clips: those the states are of. It begins over the
+    origin, facing +z; from there the root goes on by what each frame goes on in its take. blend: frames on
+    either side of a transition in which one motion fades into the other, by a cosine, rotations along the
+    shortest way (slerp). Raises SynthesisError when the takes are others.
+    """
     takes = [c for c in clips if c.frames >= 2]
     frames = _frames(takes)
     if len(frames.heading) != len(states):
-        raise SynthesisError(f"the graph is of {len(states)} frames, but these takes have {len(frames.heading)}")
+        raise SynthesisError(
+            f"the graph is of {len(states)} frames, but these takes have {len(frames.heading)}"
+        )
     way = np.asarray(path.states, np.int64)
     ground, heading = _walk(frames, way, ~_first(states))
     out = _moved(frames, way, ground, heading)
@@ -59,7 +67,10 @@ def assemble(states: States, clips: Sequence[Clip], path: Path, name: str = "syn
         rotation.continuous(rotation.normalize(out.rotations)).astype(np.float32),
         out.translations[:, joints].astype(np.float32),
         tuple(joints),
-        notes=(f"synthesised from {len({states.take(int(s)) for s in way})} takes with {len(path.jumps)} transitions",),
+        notes=(
+            f"synthesised from {len({states.take(int(s)) for s in way})} takes with {len(path.jumps)} "
+            "transitions",
+        ),
     )
 
 
@@ -90,8 +101,9 @@ def _turned(v: Array, angle: Array) -> Array:
 
 
 def _walk(frames: _Frames, way: Array, has_before: Array) -> tuple[Array, Array]:
-    """Return where the hips are over the ground `[T, 2]` and where they face `[T]`, by what each frame goes on from the one before it in
-    its own take."""
+    """Return where the hips are over the ground `[T, 2]` and where they face `[T]`, by what each frame goes
+    on from the one before it in its own take.
+    """
     before = np.where(has_before[way], way - 1, way)
     step = _turned(frames.ground[way] - frames.ground[before], -frames.heading[before])
     turn = frames.heading[way] - frames.heading[before]
@@ -118,10 +130,19 @@ def _moved(frames: _Frames, which: Array, ground: Array, heading: Array) -> Pose
 
 
 def _blend(
-    out: Pose, frames: _Frames, states: States, way: Array, ground: Array, heading: Array, jump: int, before: int, after: int
+    out: Pose,
+    frames: _Frames,
+    states: States,
+    way: Array,
+    ground: Array,
+    heading: Array,
+    jump: int,
+    before: int,
+    after: int,
 ) -> None:
-    """Fade one motion into the other about a transition: before it towards what the new take did there, after it away from what the old
-    one would have gone on to do."""
+    """Fade one motion into the other about a transition: before it towards what the new take did there, after
+    it away from what the old one would have gone on to do.
+    """
     span = before + after
     if not span:
         return
@@ -136,8 +157,11 @@ def _blend(
             other = int(way[jump - 1]) + 1 + offset
             take = states.take(int(way[jump - 1]))
         other = min(max(other, int(states.starts[take])), int(states.starts[take + 1]) - 1)
-        # It stands where this one does: only how it moves its limbs is blended, the ground is walked over by the path alone.
+        # It stands where this one does: only how it moves its limbs is blended, the ground is walked over by
+        # the path alone.
         there = _moved(frames, np.array([other]), ground[t : t + 1], heading[t : t + 1])
         w = float(weight[number]) if offset < 0 else 1.0 - float(weight[number])
-        out.rotations[t] = rotation.slerp(out.rotations[t], there.rotations[0], np.full(len(out.rotations[t]), w))
+        out.rotations[t] = rotation.slerp(
+            out.rotations[t], there.rotations[0], np.full(len(out.rotations[t]), w)
+        )
         out.translations[t] = out.translations[t] * (1 - w) + there.translations[0] * w

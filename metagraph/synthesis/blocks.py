@@ -1,6 +1,8 @@
-"""The transitions of a motion graph block by block: on all cores of a machine or on a cluster, kept in a folder to take up again.
+"""The transitions of a motion graph block by block: on all cores of a machine or on a cluster, kept in a
+folder to take up again.
 
-A block is some key states beside all others. Blocks need nothing of each other: whoever makes them, in whatever order, makes the same.
+A block is some key states beside all others. Blocks need nothing of each other: whoever makes them, in
+whatever order, makes the same.
 """
 
 from __future__ import annotations
@@ -23,7 +25,9 @@ from numpy.typing import NDArray
 from metagraph.synthesis.states import States, SynthesisError, terms_of
 
 Array = NDArray[Any]
-Block = tuple[Array, Array, Array]  # how many transitions each key state has `[R]`, where they go `[E]`, what they cost `[E]`
+Block = tuple[
+    Array, Array, Array
+]  # how many transitions each key state has `[R]`, where they go `[E]`, what they cost `[E]`
 
 BLOCK = 512  # key states of a block
 ROWS = 64  # key states compared with all others at once
@@ -35,9 +39,11 @@ CANCELLED = "the motion graph was cancelled"
 
 @dataclass(frozen=True, eq=False)
 class Work:
-    """What all blocks are made from. rows `[K, T, 3]`: the terms of key states, those that differ most first; keys `[K]`: which states
-    they are. blocks `[B, T, 3, 64]`: the terms of the frames before `into [N]`, the states transitions may enter, filled up with what is
-    far from everything. limit: what a transition may cost; most: how many of a state's cheapest are kept, all when None."""
+    """What all blocks are made from. rows `[K, T, 3]`: the terms of key states, those that differ most first;
+    keys `[K]`: which states they are. blocks `[B, T, 3, 64]`: the terms of the frames before `into [N]`, the
+    states transitions may enter, filled up with what is far from everything. limit: what a transition may
+    cost; most: how many of a state's cheapest are kept, all when None.
+    """
 
     rows: Array
     keys: Array
@@ -62,9 +68,11 @@ class Work:
 
 
 def work_of(states: States, keys: Array, limit: float, most: int | None) -> Work:
-    """Return what the blocks of a graph are made from. Only key states are copied, whatever the number of frames.
+    """Return what the blocks of a graph are made from. Only key states are copied, whatever the number of
+    frames.
 
-    To go from i to j costs as much as i differs from j - 1, so a state that is entered has a frame before it in its take.
+    To go from i to j costs as much as i differs from j - 1, so a state that is entered has a frame before it
+    in its take.
     """
     from metagraph.synthesis.kernels import LANES
 
@@ -86,8 +94,9 @@ def _order(terms: Array) -> Array:
 
 
 def block(work: Work, first: int, cancelled: Callable[[], bool] | None = None) -> Block:
-    """Return the transitions of the key states from the `first` on, one after another, targets ascending. Raises SynthesisError when it
-    was cancelled."""
+    """Return the transitions of the key states from the `first` on, one after another, targets ascending.
+    Raises SynthesisError when it was cancelled.
+    """
     from metagraph.synthesis.kernels import near, pack, thin
 
     count = len(work.into)
@@ -99,7 +108,15 @@ def block(work: Work, first: int, cancelled: Callable[[], bool] | None = None) -
             raise SynthesisError(CANCELLED)
         rows = work.keys[begin : min(begin + ROWS, first + BLOCK)]
         found = np.empty(len(rows), np.int64)
-        near(work.rows[begin : begin + len(rows)], work.blocks, count, np.float32(work.limit), places, price, found)
+        near(
+            work.rows[begin : begin + len(rows)],
+            work.blocks,
+            count,
+            np.float32(work.limit),
+            places,
+            price,
+            found,
+        )
         counts = found.copy()
         targets, costs = pack(places, price, found, work.into, rows, counts)
         if work.most is not None:
@@ -119,9 +136,9 @@ def transitions(
 ) -> Block:
     """Return the transitions of all key states.
 
-    folder: where finished blocks are kept and taken up from, those of each work in a folder of its own: other inputs, other blocks.
-    cluster: a `distributed.Client`; its workers make the blocks, else the threads of this machine do. Raises SynthesisError when it was
-    cancelled.
+    folder: where finished blocks are kept and taken up from, those of each work in a folder of its own: other
+    inputs, other blocks. cluster: a `distributed.Client`; its workers make the blocks, else the threads of
+    this machine do. Raises SynthesisError when it was cancelled.
     """
     kept = _Kept(None if folder is None else folder / work.digest)
     rows = {first: len(b[0]) for first in work.firsts if (b := kept.get(first)) is not None}
@@ -129,7 +146,11 @@ def transitions(
     if progress is not None and so_far:
         progress(so_far, total)
     missing = [first for first in work.firsts if first not in rows]
-    made = _here(work, missing, cancelled, threads) if cluster is None else _there(work, missing, cancelled, cluster)
+    made = (
+        _here(work, missing, cancelled, threads)
+        if cluster is None
+        else _there(work, missing, cancelled, cluster)
+    )
     for first, new in made:
         kept.put(first, new)
         so_far += len(new[0])
@@ -139,7 +160,9 @@ def transitions(
 
 
 class _Kept:
-    """Finished blocks, in a folder, or in memory where there is none. A file is there as a whole or not at all."""
+    """Finished blocks, in a folder, or in memory where there is none. A file is there as a whole or not at
+    all.
+    """
 
     def __init__(self, folder: Path | None) -> None:
         self.folder = folder
@@ -172,14 +195,19 @@ class _Kept:
         part.replace(place)
 
     def joined(self, firsts: range) -> Block:
-        """Return all blocks as one, letting go of one after another, so that there are never two of everything."""
+        """Return all blocks as one, letting go of one after another, so that there are never two of
+        everything.
+        """
         counts = np.concatenate([self.counts[first] for first in firsts])
         size = int(counts.sum())
         targets, costs, at = np.empty(size, np.int32), np.empty(size, np.float32), 0
         for first in firsts:
             found = self.get(first)
             if found is None:
-                raise SynthesisError(f"{self._place(first)} is gone: leave the folder alone while a graph is built, and build again")
+                raise SynthesisError(
+                    f"{self._place(first)} is gone: leave the folder alone while a graph is built, and build "
+                    "again"
+                )
             _, some, price = found
             targets[at : at + len(some)], costs[at : at + len(some)] = some, price
             at += len(some)
@@ -191,8 +219,12 @@ class _Kept:
         return self.folder / f"{first:09d}.npz"
 
 
-def _here(work: Work, firsts: list[int], cancelled: Callable[[], bool] | None, threads: int | None) -> Iterator[tuple[int, Block]]:
-    """Make blocks on this machine's cores; a few are under way at a time, so that what was made does not wait in memory."""
+def _here(
+    work: Work, firsts: list[int], cancelled: Callable[[], bool] | None, threads: int | None
+) -> Iterator[tuple[int, Block]]:
+    """Make blocks on this machine's cores; a few are under way at a time, so that what was made does not wait
+    in memory.
+    """
     count = threads or os.cpu_count() or 1
     stop = Event()
 
@@ -214,7 +246,9 @@ def _here(work: Work, firsts: list[int], cancelled: Callable[[], bool] | None, t
             stop.set()
 
 
-def _there(work: Work, firsts: list[int], cancelled: Callable[[], bool] | None, cluster: Any) -> Iterator[tuple[int, Block]]:
+def _there(
+    work: Work, firsts: list[int], cancelled: Callable[[], bool] | None, cluster: Any
+) -> Iterator[tuple[int, Block]]:
     """Make blocks on a Dask cluster, which is sent the work once."""
     distributed: Any = import_module("distributed")
     if cancelled is not None and cancelled():

@@ -1,4 +1,6 @@
-"""What a new motion has to go with: segments of speech, and the states of a motion graph that went with such (Yang et al., section 7.2)."""
+"""What a new motion has to go with: segments of speech, and the states of a motion graph that went with such
+(Yang et al., section 7.2).
+"""
 
 from __future__ import annotations
 
@@ -21,7 +23,9 @@ ALL = (1 << len(SOUNDS)) - 1
 
 @dataclass(frozen=True, eq=False)
 class Heard:
-    """What was heard at the states of a graph. kinds `[F]` uint8: bits of SOUNDS. peaks `[F]`: whether a clause's stress is there."""
+    """What was heard at the states of a graph. kinds `[F]` uint8: bits of SOUNDS. peaks `[F]`: whether a
+    clause's stress is there.
+    """
 
     kinds: Array
     peaks: Array
@@ -29,8 +33,9 @@ class Heard:
 
 @dataclass(frozen=True, eq=False)
 class Wanted:
-    """What is to be heard, frame by frame. allowed `[T]` uint8: bits of the SOUNDS a state may have gone with. window `[T]` int32: number
-    of the stress that has to lie in this frame's window, -1 outside of all."""
+    """What is to be heard, frame by frame. allowed `[T]` uint8: bits of the SOUNDS a state may have gone
+    with. window `[T]` int32: number of the stress that has to lie in this frame's window, -1 outside of all.
+    """
 
     allowed: Array
     window: Array
@@ -40,8 +45,10 @@ class Wanted:
 
 
 def heard(states: States, takes: Sequence[Sequence[Segment]]) -> Heard:
-    """Return what was heard at states, from each take's segments; where segments of a take overlap the later one counts, and where there
-    is none it was idle. Raises SynthesisError when there are not as many takes, or a segment ends before it starts."""
+    """Return what was heard at states, from each take's segments; where segments of a take overlap the later
+    one counts, and where there is none it was idle. Raises SynthesisError when there are not as many takes,
+    or a segment ends before it starts.
+    """
     if len(takes) != len(states.starts) - 1:
         raise SynthesisError(f"{len(states.starts) - 1} takes have states, but {len(takes)} have speech")
     kinds = np.ones(len(states), np.uint8)
@@ -74,8 +81,10 @@ def wanted(
     use: Collection[Sound] = SOUNDS,
     peaks: bool = True,
 ) -> Wanted:
-    """Return what is to be heard in so many seconds. tolerance: how far starts, ends and stresses may be from where they should be.
-    use: the kinds that constrain; during others anything goes. peaks: whether clauses' stresses have to be met."""
+    """Return what is to be heard in so many seconds. tolerance: how far starts, ends and stresses may be from
+    where they should be. use: the kinds that constrain; during others anything goes. peaks: whether clauses'
+    stresses have to be met.
+    """
     frames = max(1, round(seconds * RATE))
     slack = round(tolerance * RATE)
     kinds = np.ones(frames, np.uint8) if "idle" in use else np.full(frames, ALL, np.uint8)
@@ -95,7 +104,9 @@ def wanted(
 def _checked(segments: Sequence[Segment]) -> list[Segment]:
     for s in segments:
         if not s.end > s.start:
-            raise SynthesisError(f"a {s.kind} from {s.start:g} s ends at {s.end:g} s: a segment has to end after it starts")
+            raise SynthesisError(
+                f"a {s.kind} from {s.start:g} s ends at {s.end:g} s: a segment has to end after it starts"
+            )
         if s.kind not in SOUNDS:
             raise SynthesisError(f"'{s.kind}' is no kind of segment; there are {', '.join(SOUNDS)}")
     return sorted(segments, key=lambda s: s.start)

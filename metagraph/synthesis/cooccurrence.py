@@ -1,7 +1,9 @@
-"""How often people move when something is said: hands with clauses, the head with responses and hesitations (Yang et al., section 5).
+"""How often people move when something is said: hands with clauses, the head with responses and hesitations
+(Yang et al., section 5).
 
-Around every segment of speech a window is searched for a movement of the hand or the head. Whether anything moves there at all is told by
-a threshold of the whole take (equation 1), where the movement begins and ends by one of the window (equation 2).
+Around every segment of speech a window is searched for a movement of the hand or the head. Whether anything
+moves there at all is told by a threshold of the whole take (equation 1), where the movement begins and ends
+by one of the window (equation 2).
 """
 
 from __future__ import annotations
@@ -39,8 +41,9 @@ HYPOTHESES: tuple[tuple[str, Sound, tuple[Part, ...]], ...] = (
 
 @dataclass(frozen=True)
 class Row:
-    """matched of total segments went with a movement. rate: their share, 0..1; low, high: its 95 % interval (Wilson). chance: the mean rate
-    when the same speech is laid elsewhere over the same motion."""
+    """matched of total segments went with a movement. rate: their share, 0..1; low, high: its 95 % interval
+    (Wilson). chance: the mean rate when the same speech is laid elsewhere over the same motion.
+    """
 
     hypothesis: str
     matched: int
@@ -52,8 +55,10 @@ class Row:
 
 
 def speeds(clip: Clip, roles: Mapping[str, int] | None = None) -> dict[Part, Array]:
-    """Return speeds `[F]`, metres a second, of those parts the skeleton has: hands as seen from the shoulder, the head up and down as
-    seen from the neck; so a walk or a turn of the trunk is no gesture, and a step no nod."""
+    """Return speeds `[F]`, metres a second, of those parts the skeleton has: hands as seen from the shoulder,
+    the head up and down as seen from the neck; so a walk or a turn of the trunk is no gesture, and a step no
+    nod.
+    """
     named = find_roles(clip.skeleton) if roles is None else roles
     turns, at = clip.skeleton.globals(clip.poses())
     out: dict[Part, Array] = {}
@@ -89,8 +94,9 @@ def activation(speed: Array, share: float = ACTIVE) -> float:
 
 
 def windows(segments: Sequence[Segment], length: float) -> list[tuple[float, float]]:
-    """Return where to look for the movement of each segment, seconds: about its middle, WIDE times as long, trimmed at the middle of the
-    gaps to its neighbours of the same kind, and at the take's ends."""
+    """Return where to look for the movement of each segment, seconds: about its middle, WIDE times as long,
+    trimmed at the middle of the gaps to its neighbours of the same kind, and at the take's ends.
+    """
     out = []
     ordered = sorted(range(len(segments)), key=lambda n: segments[n].start)
     before = {n: m for m, n in pairwise(ordered)}
@@ -106,10 +112,14 @@ def windows(segments: Sequence[Segment], length: float) -> list[tuple[float, flo
     return out
 
 
-def movement(speed: Array, fps: float, window: tuple[float, float], idle: float) -> tuple[float, float] | None:
-    """Return when a movement begins and ends within a window, seconds; None where nothing is faster than `idle` there (equation 1).
+def movement(
+    speed: Array, fps: float, window: tuple[float, float], idle: float
+) -> tuple[float, float] | None:
+    """Return when a movement begins and ends within a window, seconds; None where nothing is faster than
+    `idle` there (equation 1).
 
-    It begins with the first frame faster than the window's own threshold, and ends with the last (equation 2).
+    It begins with the first frame faster than the window's own threshold, and ends with the last (equation
+    2).
     """
     first, after = max(0, round(window[0] * fps)), min(len(speed), round(window[1] * fps) + 1)
     part = speed[first:after]
@@ -121,11 +131,13 @@ def movement(speed: Array, fps: float, window: tuple[float, float], idle: float)
     return (first + int(fast[0])) / fps, (first + int(fast[-1])) / fps
 
 
-def table(takes: Sequence[Clip], speech: Sequence[Sequence[Segment]], chances: int = CHANCES, seed: int = 1) -> list[Row]:
+def table(
+    takes: Sequence[Clip], speech: Sequence[Sequence[Segment]], chances: int = CHANCES, seed: int = 1
+) -> list[Row]:
     """Return how often each kind of segment went with which movement, over all takes, as the paper's table 1.
 
-    speech: the segments of each take. chances: how often speech is laid elsewhere, turned round within its take, to tell what chance gives.
-    Raises ValueError when there are not as many takes as speeches.
+    speech: the segments of each take. chances: how often speech is laid elsewhere, turned round within its
+    take, to tell what chance gives. Raises ValueError when there are not as many takes as speeches.
     """
     if len(takes) != len(speech):
         raise ValueError(f"{len(takes)} takes, but speech for {len(speech)}")
@@ -142,9 +154,14 @@ def table(takes: Sequence[Clip], speech: Sequence[Sequence[Segment]], chances: i
 
 
 def _matches(
-    found: Sequence[tuple[Clip, Mapping[Part, Array], Sequence[Segment]]], kind: Sound, parts: Sequence[Part], shift: Array | None
+    found: Sequence[tuple[Clip, Mapping[Part, Array], Sequence[Segment]]],
+    kind: Sound,
+    parts: Sequence[Part],
+    shift: Array | None,
 ) -> tuple[int, int]:
-    """Count the segments of a kind that have a movement near, and all. shift: how far each take's speech is turned round, 0..1."""
+    """Count the segments of a kind that have a movement near, and all. shift: how far each take's speech is
+    turned round, 0..1.
+    """
     matched = total = 0
     for number, (clip, speed, segments) in enumerate(found):
         mine = [s for s in segments if s.kind == kind]
@@ -156,7 +173,9 @@ def _matches(
         idle = {part: activation(speed[part]) for part in parts if part in speed}
         for window in windows(mine, clip.duration):
             total += 1
-            matched += any(movement(speed[part], clip.fps, window, least) is not None for part, least in idle.items())
+            matched += any(
+                movement(speed[part], clip.fps, window, least) is not None for part, least in idle.items()
+            )
     return matched, total
 
 

@@ -1,7 +1,8 @@
 """Where a long take can be cut into clips that leave and come back without a jump: at rests that look alike.
 
-A clip between two moments is safe when somebody can go from its end to its beginning, and from the end of any other such clip to it, for
-no more than a transition of a motion graph may cost. So its ends lie near one pose, the stance, in which the take often rests.
+A clip between two moments is safe when somebody can go from its end to its beginning, and from the end of any
+other such clip to it, for no more than a transition of a motion graph may cost. So its ends lie near one
+pose, the stance, in which the take often rests.
 """
 
 from __future__ import annotations
@@ -17,7 +18,9 @@ from metagraph.synthesis.graph import threshold
 from metagraph.synthesis.states import States, SynthesisError, states_of, terms_of
 
 Array = NDArray[Any]
-Candidate = tuple[float, float, float]  # start, end: seconds; score: 0..1, 1 when it leaves and comes back without any difference
+Candidate = tuple[
+    float, float, float
+]  # start, end: seconds; score: 0..1, 1 when it leaves and comes back without any difference
 
 LEAST, MOST = 1.0, 8.0  # seconds
 APART = 8  # frames between moments that may be cut at
@@ -26,16 +29,25 @@ POSES = 2000  # moments that are compared with each other at most
 
 
 def candidates(
-    clip: Clip, limit: float | None = None, least: float = LEAST, most: float = MOST, states: States | None = None
+    clip: Clip,
+    limit: float | None = None,
+    least: float = LEAST,
+    most: float = MOST,
+    states: States | None = None,
 ) -> tuple[Candidate, ...]:
-    """Return clips to cut from a take, by start, none overlapping: from one rest in the stance to the next that is far enough.
+    """Return clips to cut from a take, by start, none overlapping: from one rest in the stance to the next
+    that is far enough.
 
-    limit: what frames at which they begin and end may differ by, metres, half of it from the stance each, else `threshold` of the take.
-    least, most: seconds a clip lasts. What moves less than the limit on the way, rest alone, is left out. states: the take's, where they
-    are known. Raises SynthesisError for takes too short to tell, and lengths that cannot be.
+    limit: what frames at which they begin and end may differ by, metres, half of it from the stance each,
+    else `threshold` of the take. least, most: seconds a clip lasts. What moves less than the limit on the
+    way, rest alone, is left out. states: the take's, where they are known. Raises SynthesisError for takes
+    too short to tell, and lengths that cannot be.
     """
     if not 0 < least <= most:
-        raise SynthesisError(f"clips of {least:g} to {most:g} s cannot be: the longest lasts at least as long as the shortest, more than 0")
+        raise SynthesisError(
+            f"clips of {least:g} to {most:g} s cannot be: the longest lasts at least as long as the "
+            "shortest, more than 0"
+        )
     states = states_of([clip]) if states is None else states
     limit = threshold(states).limit if limit is None else limit
     places = moments(states)
@@ -65,7 +77,9 @@ def candidates(
 
 
 def moments(states: States) -> Array:
-    """Return `[n]` the states at which a take rests: where it is slowest, for a while around, and slow by itself; ascending."""
+    """Return `[n]` the states at which a take rests: where it is slowest, for a while around, and slow by
+    itself; ascending.
+    """
     speed = np.linalg.norm(states.velocities, axis=-1).max(-1)
     if len(speed) < 3:
         return np.zeros(0, int)
@@ -83,7 +97,9 @@ def moments(states: States) -> Array:
 
 
 def _stance(terms: Array, limit: float) -> int:
-    """Return the moment that most others are near to, half the limit away; of several the one they are nearest to."""
+    """Return the moment that most others are near to, half the limit away; of several the one they are
+    nearest to.
+    """
     best, found = (-1, 0.0), 0
     for n in range(len(terms)):
         away = np.linalg.norm(terms - terms[n], axis=-1).sum(-1)

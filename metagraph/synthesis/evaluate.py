@@ -1,4 +1,6 @@
-"""How often speech finds motion, and how soon: each take's speech against the graph of all the others (Yang et al., sections 8.1, 8.3)."""
+"""How often speech finds motion, and how soon: each take's speech against the graph of all the others (Yang
+et al., sections 8.1, 8.3).
+"""
 
 from __future__ import annotations
 
@@ -20,7 +22,16 @@ from metagraph.synthesis.constraints import TOLERANCE, Heard, changes, heard, wa
 from metagraph.synthesis.cooccurrence import wilson
 from metagraph.synthesis.graph import MotionGraph, build, threshold
 from metagraph.synthesis.search import Path, best, greedy
-from metagraph.synthesis.states import KEYS, LEVEL, STEP, States, SynthesisError, key_states, states_of, with_velocity
+from metagraph.synthesis.states import (
+    KEYS,
+    LEVEL,
+    STEP,
+    States,
+    SynthesisError,
+    key_states,
+    states_of,
+    with_velocity,
+)
 
 Array = NDArray[Any]
 Search = Literal["greedy", "exact"]
@@ -32,7 +43,9 @@ LEAST = 1.0  # seconds of a take that make a case
 
 @dataclass(frozen=True)
 class Setting:
-    """What constrains a search: segments of these kinds, where clauses' stresses are, and how exactly, seconds."""
+    """What constrains a search: segments of these kinds, where clauses' stresses are, and how exactly,
+    seconds.
+    """
 
     name: str
     use: tuple[Sound, ...] = SOUNDS
@@ -56,8 +69,9 @@ SETTINGS: tuple[Setting, ...] = (
 
 @dataclass(frozen=True)
 class Case:
-    """One window of a take that was held out. start, length, seconds of the search: seconds. transitions, cost: of what was found, 0 where
-    nothing was; then `why` says why."""
+    """One window of a take that was held out. start, length, seconds of the search: seconds. transitions,
+    cost: of what was found, 0 where nothing was; then `why` says why.
+    """
 
     take: str
     start: float
@@ -73,7 +87,9 @@ class Case:
 
 @dataclass(frozen=True)
 class Graph:
-    """What was built without a take. states: how many are kept of how many; transitions; limit: metres; seconds: of the building."""
+    """What was built without a take. states: how many are kept of how many; transitions; limit: metres;
+    seconds: of the building.
+    """
 
     without: str
     kept: int
@@ -85,8 +101,10 @@ class Graph:
 
 @dataclass(frozen=True)
 class Row:
-    """All cases of a setting and a search. success: the share that found motion, 0..1, low, high: its 95 % interval (Wilson). seconds:
-    median of the searches, whether they found something or not. per_second, cost: of those found, transitions a second, and the mean."""
+    """All cases of a setting and a search. success: the share that found motion, 0..1, low, high: its 95 %
+    interval (Wilson). seconds: median of the searches, whether they found something or not. per_second, cost:
+    of those found, transitions a second, and the mean.
+    """
 
     setting: str
     search: Search
@@ -122,14 +140,23 @@ def _row(setting: str, search: Search, cases: Sequence[Case]) -> Row:
     low, high = wilson(len(found), len(cases))
     moved = sum(c.length for c in found)
     return Row(
-        setting, search, len(found), len(cases), len(found) / len(cases), low, high, median(c.seconds for c in cases),
-        sum(c.transitions for c in found) / moved if moved else 0.0, fmean(c.cost for c in found) if found else 0.0,
-    )  # fmt: skip
+        setting,
+        search,
+        len(found),
+        len(cases),
+        len(found) / len(cases),
+        low,
+        high,
+        median(c.seconds for c in cases),
+        sum(c.transitions for c in found) / moved if moved else 0.0,
+        fmean(c.cost for c in found) if found else 0.0,
+    )
 
 
 def windows(length: float, window: float = WINDOW, every: float = EVERY) -> list[tuple[float, float]]:
-    """Return where a take's cases begin, and how long they are, seconds. A take shorter than a window makes one case as long as it is,
-    one shorter than LEAST none."""
+    """Return where a take's cases begin, and how long they are, seconds. A take shorter than a window makes
+    one case as long as it is, one shorter than LEAST none.
+    """
     if length < window:
         return [(0.0, length)] if length >= LEAST else []
     return [(n * every, window) for n in range(int((length - window + 1e-6) // every) + 1)]
@@ -161,11 +188,13 @@ def evaluate(
     progress: Callable[[int, int], None] | None = None,
     cancelled: Callable[[], bool] | None = None,
 ) -> Evaluation:
-    """Hold out one take after another, build the graph of the rest as `build` does, and search it for what was said in the one held out.
+    """Hold out one take after another, build the graph of the rest as `build` does, and search it for what
+    was said in the one held out.
 
-    speech: what each take goes with, `heard_by`. keys: share of states that are key states. seed: of the greedy search. A take without
-    which there is no graph makes cases that find nothing. Cancelled, it returns what there is. Raises SynthesisError when there are fewer
-    than two takes, not as many speeches, or no case at all.
+    speech: what each take goes with, `heard_by`. keys: share of states that are key states. seed: of the
+    greedy search. A take without which there is no graph makes cases that find nothing. Cancelled, it returns
+    what there is. Raises SynthesisError when there are fewer than two takes, not as many speeches, or no case
+    at all.
     """
     takes, speech = _checked(takes, speech)
     every_state = states_of(takes)
@@ -190,25 +219,50 @@ def evaluate(
             for setting, search in ((s, x) for s in settings for x in searches):
                 if cancelled is not None and cancelled():
                     return Evaluation(tuple(done), tuple(graphs), False)
-                case = Case(take.name, start, length, setting.name, search, False, 0.0, 0, 0.0, made if isinstance(made, str) else "")
-                done.append(case if isinstance(made, str) else _tried(case, graph, sound, said, setting, seed))
+                case = Case(
+                    take.name,
+                    start,
+                    length,
+                    setting.name,
+                    search,
+                    False,
+                    0.0,
+                    0,
+                    0.0,
+                    made if isinstance(made, str) else "",
+                )
+                done.append(
+                    case if isinstance(made, str) else _tried(case, graph, sound, said, setting, seed)
+                )
                 if progress is not None:
                     progress(len(done), total)
     return Evaluation(tuple(done), tuple(graphs), True)
 
 
-def _checked(takes: Sequence[Clip], speech: Sequence[Sequence[Segment]]) -> tuple[list[Clip], list[Sequence[Segment]]]:
+def _checked(
+    takes: Sequence[Clip], speech: Sequence[Sequence[Segment]]
+) -> tuple[list[Clip], list[Sequence[Segment]]]:
     if len(takes) != len(speech):
         raise SynthesisError(f"{len(takes)} takes, but speech for {len(speech)}")
-    pairs = [(t, s) for t, s in zip(takes, speech, strict=True) if t.frames >= 2]  # one frame is no state of a graph
+    pairs = [
+        (t, s) for t, s in zip(takes, speech, strict=True) if t.frames >= 2
+    ]  # one frame is no state of a graph
     if len(pairs) < 2:
-        raise SynthesisError("holding one take out needs at least two takes of more than one frame: give more")
+        raise SynthesisError(
+            "holding one take out needs at least two takes of more than one frame: give more"
+        )
     return [t for t, _ in pairs], [s for _, s in pairs]
 
 
 def _warm(searches: Collection[Search]) -> None:
     """Compile what is timed."""
-    tiny = States(np.zeros((4, 1, 3), np.float32), np.zeros((4, 1, 3), np.float32), np.ones(1, np.float32), np.array([0, 4]), 1.0)
+    tiny = States(
+        np.zeros((4, 1, 3), np.float32),
+        np.zeros((4, 1, 3), np.float32),
+        np.ones(1, np.float32),
+        np.array([0, 4]),
+        1.0,
+    )
     graph = build(tiny, threshold(tiny, 2), np.arange(4))
     for search in searches:
         _SEARCHES[search](graph, Heard(np.ones(4, np.uint8), np.zeros(4, bool)), wanted([], 0.1))
@@ -231,7 +285,9 @@ def _graph(
     most: int | None,
     cancelled: Callable[[], bool] | None,
 ) -> tuple[MotionGraph, Heard, float] | str:
-    """Return the graph without a take, what is heard at its states, and how long it took; or why there is none."""
+    """Return the graph without a take, what is heard at its states, and how long it took; or why there is
+    none.
+    """
     begun = perf_counter()
     rest = without(states, out)
     said = [s for n, s in enumerate(speech) if n != out]
@@ -251,14 +307,18 @@ def without(states: States, take: int) -> States:
     return with_velocity(replace(states, places=places, velocities=velocities, starts=starts), None)
 
 
-def _tried(case: Case, graph: MotionGraph, sound: Heard, said: Sequence[Segment], setting: Setting, seed: int) -> Case:
+def _tried(
+    case: Case, graph: MotionGraph, sound: Heard, said: Sequence[Segment], setting: Setting, seed: int
+) -> Case:
     want = wanted(said, case.length, setting.tolerance, setting.use, setting.peaks)
     begun = perf_counter()
     try:
         path = _SEARCHES[case.search](graph, sound, want, seed=seed)
     except SynthesisError as error:
         return replace(case, seconds=perf_counter() - begun, why=str(error))
-    return replace(case, found=True, seconds=perf_counter() - begun, transitions=len(path.jumps), cost=path.cost)
+    return replace(
+        case, found=True, seconds=perf_counter() - begun, transitions=len(path.jumps), cost=path.cost
+    )
 
 
 def csv_of(cases: Sequence[Case]) -> str:
@@ -267,7 +327,12 @@ def csv_of(cases: Sequence[Case]) -> str:
     writer = csv.writer(out, lineterminator="\n")
     writer.writerow([f.name for f in fields(Case)])
     for case in cases:
-        writer.writerow([round(v, 6) if isinstance(v, float) else int(v) if isinstance(v, bool) else v for v in astuple(case)])
+        writer.writerow(
+            [
+                round(v, 6) if isinstance(v, float) else int(v) if isinstance(v, bool) else v
+                for v in astuple(case)
+            ]
+        )
     return out.getvalue()
 
 
@@ -281,14 +346,19 @@ def _lines(evaluation: Evaluation) -> Iterator[str]:
     if graphs:
         yield (
             f"{len(graphs)} graphs, each without one take: {fmean(g.states for g in graphs):,.0f} states, "
-            f"{fmean(g.kept / g.states for g in graphs):.0%} kept, {fmean(g.transitions for g in graphs):,.0f} transitions, "
+            f"{fmean(g.kept / g.states for g in graphs):.0%} kept, "
+            f"{fmean(g.transitions for g in graphs):,.0f} transitions, "
             f"built in {fmean(g.seconds for g in graphs):.2f} s (means)"
         )
-    yield f"{'constraints':<20}{'search':<8}{'found':>9}{'success':>9}  {'95 %':<14}{'median':>9}{'jumps/s':>9}{'cost':>9}"
+    yield (
+        f"{'constraints':<20}{'search':<8}{'found':>9}{'success':>9}  "
+        f"{'95 %':<14}{'median':>9}{'jumps/s':>9}{'cost':>9}"
+    )
     for r in evaluation.rows:
         interval = f"{r.low:.0%} to {r.high:.0%}"
         yield (
-            f"{r.setting:<20}{r.search:<8}{f'{r.found}/{r.cases}':>9}{r.success:>9.1%}  {interval:<14}{1000 * r.seconds:>6.0f} ms"
+            f"{r.setting:<20}{r.search:<8}{f'{r.found}/{r.cases}':>9}{r.success:>9.1%}  "
+            f"{interval:<14}{1000 * r.seconds:>6.0f} ms"
             f"{r.per_second:>9.2f}{r.cost:>9.3g}"
         )
     if not evaluation.whole:

@@ -1,4 +1,6 @@
-"""The motion graph: transitions no worse than what the takes themselves show, of which nobody can get stuck (Yang et al., section 6)."""
+"""The motion graph: transitions no worse than what the takes themselves show, of which nobody can get stuck
+(Yang et al., section 6).
+"""
 
 from __future__ import annotations
 
@@ -21,8 +23,9 @@ MARGIN = 1e-3  # of the range: bounds of the distribution lie that far outside w
 
 @dataclass(frozen=True, eq=False)
 class Threshold:
-    """What a transition may cost. costs `[n]`: c_(i, i+k) of the takes. distribution: fitted to them, None where all are alike. limit:
-    its LEVEL; observed: the costs' own."""
+    """What a transition may cost. costs `[n]`: c_(i, i+k) of the takes. distribution: fitted to them, None
+    where all are alike. limit: its LEVEL; observed: the costs' own.
+    """
 
     k: int
     level: float
@@ -34,9 +37,11 @@ class Threshold:
 
 @dataclass(frozen=True, eq=False)
 class MotionGraph:
-    """starts `[F + 1]`, targets `[E]` int32, costs `[E]` float32: transitions from state f go to targets[starts[f]:starts[f + 1]],
-    ascending, beside the one to the frame that follows, which costs nothing. keys `[K]`. kept `[F]`: the states of the largest strongly
-    connected component, all where none was cut away."""
+    """starts `[F + 1]`, targets `[E]` int32, costs `[E]` float32: transitions from state f go to
+    targets[starts[f]:starts[f + 1]], ascending, beside the one to the frame that follows, which costs
+    nothing. keys `[K]`. kept `[F]`: the states of the largest strongly connected component, all where none
+    was cut away.
+    """
 
     states: States
     threshold: Threshold
@@ -48,18 +53,23 @@ class MotionGraph:
 
     @property
     def size(self) -> tuple[int, int]:
-        """How many states are kept, and how many transitions there are, those to following frames not counted."""
+        """How many states are kept, and how many transitions there are, those to following frames not
+        counted.
+        """
         return int(self.kept.sum()), len(self.targets)
 
 
 def threshold(states: States, k: int = STEP, level: float = LEVEL) -> Threshold:
-    """Return what a transition may cost: the level of the Johnson S_B distribution of c_(i, i+k), or what was observed where none fits.
+    """Return what a transition may cost: the level of the Johnson S_B distribution of c_(i, i+k), or what was
+    observed where none fits.
 
     Raises SynthesisError when no take is longer than k frames.
     """
     costs = costs_apart(states, k)
     if not len(costs):
-        raise SynthesisError(f"no take has more than {k} frames, so nothing tells what a jump is: give longer takes")
+        raise SynthesisError(
+            f"no take has more than {k} frames, so nothing tells what a jump is: give longer takes"
+        )
     observed = float(np.quantile(costs, level))
     low, high = float(costs.min()), float(costs.max())
     if high - low < 1e-9:
@@ -83,11 +93,12 @@ def build(
 ) -> MotionGraph:
     """Return the motion graph of takes.
 
-    limit: what transitions may cost, else `threshold(states)`. keys: the states they may leave and enter, else `key_states(states)`.
-    most: how many of the cheapest are kept of each state, all when None; bounds the memory of large sets. connected: keep only the largest
-    strongly connected component. threads: of this machine, else as many as it has cores. folder: where finished blocks are kept, so that a
-    build that was ended takes up where it was. cluster: a `distributed.Client` whose workers make the blocks. Raises SynthesisError when
-    it was cancelled, or when nothing is connected.
+    limit: what transitions may cost, else `threshold(states)`. keys: the states they may leave and enter,
+    else `key_states(states)`. most: how many of the cheapest are kept of each state, all when None; bounds
+    the memory of large sets. connected: keep only the largest strongly connected component. threads: of this
+    machine, else as many as it has cores. folder: where finished blocks are kept, so that a build that was
+    ended takes up where it was. cluster: a `distributed.Client` whose workers make the blocks. Raises
+    SynthesisError when it was cancelled, or when nothing is connected.
     """
     limit = threshold(states) if limit is None else limit
     keys = key_states(states) if keys is None else np.asarray(keys)
@@ -102,15 +113,17 @@ def build(
 
 
 def largest(graph: MotionGraph) -> MotionGraph:
-    """Return what is left of a graph in its largest strongly connected component: from every state there is a way to every other. Raises
-    SynthesisError when no two states are."""
+    """Return what is left of a graph in its largest strongly connected component: from every state there is a
+    way to every other. Raises SynthesisError when no two states are.
+    """
     from metagraph.synthesis.kernels import components, cut
 
     component, count = components(graph.starts, graph.targets, ~graph.states.last)
     sizes = np.bincount(component, minlength=count)
     if sizes.max() < 2:
         raise SynthesisError(
-            f"no two states are connected both ways: at {graph.threshold.limit:.3g} m the threshold is too low for these takes; "
+            f"no two states are connected both ways: at {graph.threshold.limit:.3g} m the threshold is too "
+            "low for these takes; "
             "raise k or the level, or add takes that come back to the same poses"
         )
     kept = component == int(sizes.argmax())

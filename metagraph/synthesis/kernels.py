@@ -1,7 +1,8 @@
 """Compiled loops of the motion graph. Importing this imports numba.
 
-Costs are sums of lengths, so a pair whose partial sum is over the limit is done with: exact, and most pairs end after a few joints when
-those that differ most come first. Targets lie in blocks of 64, `[block, term, xyz, 64]`, so that the inner loop compiles to vectors.
+Costs are sums of lengths, so a pair whose partial sum is over the limit is done with: exact, and most pairs
+end after a few joints when those that differ most come first. Targets lie in blocks of 64, `[block, term,
+xyz, 64]`, so that the inner loop compiles to vectors.
 """
 
 from __future__ import annotations
@@ -18,12 +19,16 @@ LANES = 64  # wide enough that the loops cost little, narrow enough that most bl
 EVERY = 4  # terms between looks at whether a block is done with
 
 compiled = compiler(nogil=True, fastmath=True, error_model="numpy")
-compiled_exactly = compiler(nogil=True, error_model="numpy")  # where infinite means out of reach: fast arithmetic takes it that nothing is
+compiled_exactly = compiler(
+    nogil=True, error_model="numpy"
+)  # where infinite means out of reach: fast arithmetic takes it that nothing is
 
 
 @compiled
 def _add(x: Array, y: Array, z: Array, a: Any, b: Any, c: Any, total: Array) -> None:
-    """Add how far points `[64]` are from one point to the totals `[64]`. Over whole rows of memory, else it is not made of vectors."""
+    """Add how far points `[64]` are from one point to the totals `[64]`. Over whole rows of memory, else it
+    is not made of vectors.
+    """
     for n in range(len(total)):
         u, v, w = x[n] - a, y[n] - b, z[n] - c
         total[n] += np.sqrt(u * u + v * v + w * w)
@@ -38,11 +43,14 @@ def _least(total: Array) -> Any:
 
 
 @compiled
-def near(rows: Array, blocks: Array, count: int, limit: Any, places: Array, costs: Array, found: Array) -> None:
-    """Find for rows `[R, T, 3]` the targets, of `count` in blocks `[B, T, 3, 64]`, that are at most `limit` away.
+def near(
+    rows: Array, blocks: Array, count: int, limit: Any, places: Array, costs: Array, found: Array
+) -> None:
+    """Find for rows `[R, T, 3]` the targets, of `count` in blocks `[B, T, 3, 64]`, that are at most `limit`
+    away.
 
-    Writes their numbers, ascending, to places `[R, count]`, what they cost to costs `[R, count]`, how many there are to found `[R]`. All
-    rows are compared with a block while it is near at hand in memory.
+    Writes their numbers, ascending, to places `[R, count]`, what they cost to costs `[R, count]`, how many
+    there are to found `[R]`. All rows are compared with a block while it is near at hand in memory.
     """
     terms = rows.shape[1]
     total = np.empty(LANES, np.float32)
@@ -72,10 +80,14 @@ def near(rows: Array, blocks: Array, count: int, limit: Any, places: Array, cost
 
 
 @compiled
-def pack(places: Array, costs: Array, found: Array, into: Array, rows: Array, counts: Array) -> tuple[Array, Array]:
-    """Return the targets and costs of rows as `near` found them, one row after another, without the state that follows a row's own.
+def pack(
+    places: Array, costs: Array, found: Array, into: Array, rows: Array, counts: Array
+) -> tuple[Array, Array]:
+    """Return the targets and costs of rows as `near` found them, one row after another, without the state
+    that follows a row's own.
 
-    into `[count]`: which states the numbers stand for. rows `[R]`: the rows' own states. counts `[R]` becomes how many each row has.
+    into `[count]`: which states the numbers stand for. rows `[R]`: the rows' own states. counts `[R]` becomes
+    how many each row has.
     """
     targets, packed = np.empty(found.sum(), np.int32), np.empty(found.sum(), np.float32)
     at = 0
@@ -93,8 +105,9 @@ def pack(places: Array, costs: Array, found: Array, into: Array, rows: Array, co
 
 @compiled
 def thin(counts: Array, targets: Array, costs: Array, most: Any) -> tuple[Array, Array]:
-    """Return the targets and costs of the cheapest transitions of each row, as `pack` returns them, of those that cost alike the first
-    ones. counts `[R]`: how many a row has; becomes how many are left."""
+    """Return the targets and costs of the cheapest transitions of each row, as `pack` returns them, of those
+    that cost alike the first ones. counts `[R]`: how many a row has; becomes how many are left.
+    """
     ends, price = np.empty(len(targets), np.int32), np.empty(len(costs), np.float32)
     at = first = 0
     for r in range(len(counts)):
@@ -142,9 +155,11 @@ def cut(starts: Array, targets: Array, costs: Array, kept: Array) -> tuple[Array
 
 @compiled
 def components(starts: Array, targets: Array, follows: Array) -> tuple[Array, int]:
-    """Return which strongly connected component each state is of, and how many there are (Tarjan, without recursion).
+    """Return which strongly connected component each state is of, and how many there are (Tarjan, without
+    recursion).
 
-    starts `[F + 1]`: where each state's targets begin in `targets [E]`. follows `[F]`: whether a state is followed by the next one.
+    starts `[F + 1]`: where each state's targets begin in `targets [E]`. follows `[F]`: whether a state is
+    followed by the next one.
     """
     states = len(starts) - 1
     index = np.full(states, -1, np.int32)
@@ -153,7 +168,9 @@ def components(starts: Array, targets: Array, follows: Array) -> tuple[Array, in
     component = np.full(states, -1, np.int32)
     stack = np.empty(states, np.int32)
     path = np.empty(states, np.int32)
-    at = np.empty(states, np.int64)  # the next target to look at; starts - 1 stands for the state that follows
+    at = np.empty(
+        states, np.int64
+    )  # the next target to look at; starts - 1 stands for the state that follows
     high = depth = number = made = 0
     for root in range(states):
         if index[root] >= 0:
@@ -230,11 +247,21 @@ def cheap(starts: Array, targets: Array, costs: Array, bound: Any) -> Any:
 
 @compiled_exactly
 def relax(
-    cost: Array, new: Array, back: Array, starts: Array, targets: Array, costs: Array, follows: Array, fits: Array, peaks: Array, bound: Any
+    cost: Array,
+    new: Array,
+    back: Array,
+    starts: Array,
+    targets: Array,
+    costs: Array,
+    follows: Array,
+    fits: Array,
+    peaks: Array,
+    bound: Any,
 ) -> None:
-    """Go one frame on from all states: cost, new `[2, F]` what the cheapest way to a state costs, without and with its stress met;
-    back `[2, F]`: where it comes from, 2 state + met. fits, peaks `[F]`: which states may come, and which of them meet the stress.
-    bound: what no way may cost more than."""
+    """Go one frame on from all states: cost, new `[2, F]` what the cheapest way to a state costs, without and
+    with its stress met; back `[2, F]`: where it comes from, 2 state + met. fits, peaks `[F]`: which states
+    may come, and which of them meet the stress. bound: what no way may cost more than.
+    """
     for met in range(2):
         for state in range(cost.shape[1]):
             so_far = cost[met, state]

@@ -1,7 +1,9 @@
-"""Paths through a motion graph that go with speech: the paper's stochastic greedy search, and the best path there is.
+"""Paths through a motion graph that go with speech: the paper's stochastic greedy search, and the best path
+there is.
 
-The greedy search keeps the cheapest few hundred of what it came upon, and may come to an end where nothing fits. The exact one is dynamic
-programming over all states: it finds a path whenever there is one, and no other costs less. Both count what transitions cost.
+The greedy search keeps the cheapest few hundred of what it came upon, and may come to an end where nothing
+fits. The exact one is dynamic programming over all states: it finds a path whenever there is one, and no
+other costs less. Both count what transitions cost.
 """
 
 from __future__ import annotations
@@ -29,7 +31,11 @@ Cancelled = Callable[[], bool] | None
 SAVED = 200  # n_save: candidates that are kept
 STARTS = 3  # so many times SAVED are the states it begins with
 BRANCHES = 1  # transitions of a run that are gone deeper into
-DEEPER = ((3, 0), (6, 1), (6, 2))  # transitions one after another in a stretch, branches more: when a search comes to an end
+DEEPER = (
+    (3, 0),
+    (6, 1),
+    (6, 2),
+)  # transitions one after another in a stretch, branches more: when a search comes to an end
 CHEAPEST = 32  # transitions of a state that are always tried
 TRIES = 16  # and at most so many by chance
 LONGEST = 60  # frames of a stretch that is searched at once
@@ -41,8 +47,9 @@ MOST = 4_000_000_000  # bytes of way back that are kept at once
 
 @dataclass(frozen=True, eq=False)
 class Path:
-    """states `[T]`: one after another, a frame each. cost: of its transitions together. jumps `[n]`: the frames that come by a transition
-    instead of following."""
+    """states `[T]`: one after another, a frame each. cost: of its transitions together. jumps `[n]`: the
+    frames that come by a transition instead of following.
+    """
 
     states: Array
     cost: float
@@ -50,16 +57,17 @@ class Path:
 
 
 def best(graph: MotionGraph, heard: Heard, wanted: Wanted, cancelled: Cancelled = None) -> Path:
-    """Return the cheapest path that has what is wanted. Raises SynthesisError when there is none, saying at what time all end, or when
-    it was cancelled.
+    """Return the cheapest path that has what is wanted. Raises SynthesisError when there is none, saying at
+    what time all end, or when it was cancelled.
 
-    Ways dearer than a bound are not followed, which is exact: what is found within it is the cheapest. The bound grows until there is
-    one, up to what the greedy search found.
+    Ways dearer than a bound are not followed, which is exact: what is found within it is the cheapest. The
+    bound grows until there is one, up to what the greedy search found.
     """
     states, frames = len(graph.states), len(wanted)
     if 8 * states * frames > MOST:
         raise SynthesisError(
-            f"the best path over {states:,} states and {frames / RATE:.0f} s needs {8e-9 * states * frames:.1f} GB: "
+            f"the best path over {states:,} states and {frames / RATE:.0f} s needs "
+            f"{8e-9 * states * frames:.1f} GB: "
             "search shorter stretches, or with the greedy search"
         )
     try:
@@ -84,13 +92,20 @@ def _go_on(cancelled: Cancelled) -> None:
         raise SynthesisError("the search was cancelled")
 
 
-def _best_within(graph: MotionGraph, heard: Heard, wanted: Wanted, back: Array, bound: float, cancelled: Cancelled = None) -> Path:
-    """Return the cheapest path of those that cost no more than a bound. back: room for the way back `[T, 2, F]`. Raises SynthesisError when
-    there is none."""
+def _best_within(
+    graph: MotionGraph, heard: Heard, wanted: Wanted, back: Array, bound: float, cancelled: Cancelled = None
+) -> Path:
+    """Return the cheapest path of those that cost no more than a bound. back: room for the way back `[T, 2,
+    F]`. Raises SynthesisError when there is none.
+    """
     from metagraph.synthesis.kernels import cheap, relax
 
     states, frames, most = len(graph.states), len(wanted), np.float32(bound)
-    links = cheap(graph.starts, graph.targets, graph.costs, most) if np.isfinite(bound) else (graph.starts, graph.targets, graph.costs)
+    links = (
+        cheap(graph.starts, graph.targets, graph.costs, most)
+        if np.isfinite(bound)
+        else (graph.starts, graph.targets, graph.costs)
+    )
     follows = ~graph.states.last
     cost = np.full((2, states), np.inf, np.float32)
     fits = _fits(graph, heard, wanted, 0)
@@ -127,14 +142,17 @@ def greedy(
     branches: int = BRANCHES,
     cancelled: Cancelled = None,
 ) -> Path:
-    """Return a path that has what is wanted, found as the paper's search finds it, a stretch of speech after the other.
+    """Return a path that has what is wanted, found as the paper's search finds it, a stretch of speech after
+    the other.
 
-    From random states on, depth first: a run goes along with its take, and branches off by transitions, some by chance and some the
-    cheapest; those that lead on cheapest are gone deeper into. Of what comes through a stretch only cheap ones are kept. Beyond the paper:
-    a run that goes on longer with what is said next counts as a little cheaper, no two kept ones end within a few frames of each other
-    while there are others, what is dearer than more than enough others is not followed, and a search that comes to an end is tried again,
-    deeper. saved: how many are kept; branches: how many are gone deeper into of a run. Raises SynthesisError when it comes to an end before
-    the speech does, though there may be a path, or when it was cancelled.
+    From random states on, depth first: a run goes along with its take, and branches off by transitions, some
+    by chance and some the cheapest; those that lead on cheapest are gone deeper into. Of what comes through a
+    stretch only cheap ones are kept. Beyond the paper: a run that goes on longer with what is said next
+    counts as a little cheaper, no two kept ones end within a few frames of each other while there are others,
+    what is dearer than more than enough others is not followed, and a search that comes to an end is tried
+    again, deeper. saved: how many are kept; branches: how many are gone deeper into of a run. Raises
+    SynthesisError when it comes to an end before the speech does, though there may be a path, or when it was
+    cancelled.
     """
     *first, last = ((branches + more, deepest) for deepest, more in DEEPER)
     for wide, deep in first:
@@ -145,7 +163,14 @@ def greedy(
 
 
 def _greedy(
-    graph: MotionGraph, heard: Heard, wanted: Wanted, seed: int, saved: int, branches: int, deepest: int, cancelled: Cancelled
+    graph: MotionGraph,
+    heard: Heard,
+    wanted: Wanted,
+    seed: int,
+    saved: int,
+    branches: int,
+    deepest: int,
+    cancelled: Cancelled,
 ) -> Path:
     from metagraph.synthesis.wander import segment
 
@@ -165,7 +190,20 @@ def _greedy(
     for t1 in _stretches(wanted):
         _go_on(cancelled)
         off, ats, owns, _, found, paid, random = segment(
-            t0, t1, at, own, cost, met, links, speech, best_at, saved, branches, TRIES, deepest, np.uint64(random)
+            t0,
+            t1,
+            at,
+            own,
+            cost,
+            met,
+            links,
+            speech,
+            best_at,
+            saved,
+            branches,
+            TRIES,
+            deepest,
+            np.uint64(random),
         )
         if not len(found):
             raise SynthesisError(_stuck(t0))
@@ -179,7 +217,10 @@ def _greedy(
         ids = names[which]
         ids[new] = count + np.arange(int(new.sum()))
         count += int(new.sum())
-        at, own = np.where(new, since, ats[which]).astype(np.int32), np.where(new, state, owns[which]).astype(np.int32)
+        at, own = (
+            np.where(new, since, ats[which]).astype(np.int32),
+            np.where(new, state, owns[which]).astype(np.int32),
+        )
         cost, met, t0 = paid[keep], key % 2 == 1, t1
     off, since, state = (np.concatenate(parts) for parts in zip(*tree, strict=True))
     place = int(cost.argmin())
@@ -192,7 +233,9 @@ def _greedy(
 
 
 def _kept(score: Array, keys: Array, saved: int, chance: np.random.Generator) -> Array:
-    """Return which candidates are kept: the best, and of those that end within a few frames of each other one before the others."""
+    """Return which candidates are kept: the best, and of those that end within a few frames of each other one
+    before the others.
+    """
     order = np.lexsort((chance.random(len(score)), score))
     if len(order) > saved:
         alone = np.zeros(len(order), bool)
@@ -202,8 +245,9 @@ def _kept(score: Array, keys: Array, saved: int, chance: np.random.Generator) ->
 
 
 def _stretches(wanted: Wanted) -> list[int]:
-    """Return the frames after the stretches that are searched one by one: up to where a boundary's tolerance has passed, of at most
-    LONGEST frames."""
+    """Return the frames after the stretches that are searched one by one: up to where a boundary's tolerance
+    has passed, of at most LONGEST frames.
+    """
     narrow = np.flatnonzero(wanted.allowed[:-1] & ~wanted.allowed[1:]) + 1
     out, begin = [], 0
     for end in [*narrow.tolist(), len(wanted)]:
@@ -222,7 +266,9 @@ def _links(graph: MotionGraph) -> Links:
 
     found = _LINKS.get(graph)
     if found is None:
-        found = Links(graph.starts, graph.targets, graph.costs, *cheapest(graph.starts, graph.costs, CHEAPEST))
+        found = Links(
+            graph.starts, graph.targets, graph.costs, *cheapest(graph.starts, graph.costs, CHEAPEST)
+        )
         _LINKS[graph] = found
     return found
 
@@ -239,7 +285,18 @@ def _speech(graph: MotionGraph, heard: Heard, wanted: Wanted) -> Speech:
     until = np.stack([until_of(heard.kinds, graph.kept, last, mask) for mask in masks])
     stresses, closes = wanted.window >= 0, np.array([_closes(wanted, t) for t in range(len(wanted))])
     stretch = (np.cumsum(new) - 1).astype(np.int32)
-    return Speech(stretch, ends, rows, until, stresses[begins], closes[ends - 1], stresses, closes, next_of(heard.peaks), next_of(last) + 1)
+    return Speech(
+        stretch,
+        ends,
+        rows,
+        until,
+        stresses[begins],
+        closes[ends - 1],
+        stresses,
+        closes,
+        next_of(heard.peaks),
+        next_of(last) + 1,
+    )
 
 
 def _fits(graph: MotionGraph, heard: Heard, wanted: Wanted, t: int) -> Array:
@@ -252,7 +309,9 @@ def _closes(wanted: Wanted, t: int) -> bool:
 
 
 def _close(cost: Array, wanted: Wanted, t: int) -> None:
-    """Forget ways on which a stress was not met whose window ends; the others begin anew. Raises SynthesisError when none is left."""
+    """Forget ways on which a stress was not met whose window ends; the others begin anew. Raises
+    SynthesisError when none is left.
+    """
     if _closes(wanted, t):
         cost[0] = cost[1]
         cost[1] = np.inf
@@ -266,6 +325,7 @@ def _jumps(way: Array) -> Array:
 
 def _stuck(t: int) -> str:
     return (
-        f"no motion goes with this speech beyond {t / RATE:.1f} s: allow more tolerance, leave a kind of constraint out, "
+        f"no motion goes with this speech beyond {t / RATE:.1f} s: allow more tolerance, leave a kind of "
+        "constraint out, "
         "or add takes with such speech"
     )

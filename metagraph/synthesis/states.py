@@ -1,4 +1,6 @@
-"""The frames of takes as states of a motion graph, and which of them transitions may leave and enter (Yang et al., sections 4.1 and 6)."""
+"""The frames of takes as states of a motion graph, and which of them transitions may leave and enter (Yang et
+al., sections 4.1 and 6).
+"""
 
 from __future__ import annotations
 
@@ -28,8 +30,9 @@ class SynthesisError(ValueError):
 class States:
     """Frames of takes, one after another, at RATE frames a second.
 
-    places `[F, J, 3]` metres, velocities `[F, J, 3]` metres a second: joints seen from the root as the character faces, float32.
-    weights `[J]`: w_b. starts `[T + 1]`: the first state of each take, and F. velocity: w_v, seconds.
+    places `[F, J, 3]` metres, velocities `[F, J, 3]` metres a second: joints seen from the root as the
+    character faces, float32. weights `[J]`: w_b. starts `[T + 1]`: the first state of each take, and F.
+    velocity: w_v, seconds.
     """
 
     places: Array
@@ -54,7 +57,9 @@ class States:
 
 
 def terms_of(states: States, which: Array) -> Array:
-    """Return `[n, 2 J', 3]` float32: what costs of states are sums of lengths of differences of; joints without weight are left out."""
+    """Return `[n, 2 J', 3]` float32: what costs of states are sums of lengths of differences of; joints
+    without weight are left out.
+    """
     used = np.flatnonzero(states.weights)
     w = states.weights[used, None].astype(np.float32)
     half = len(used)
@@ -66,14 +71,20 @@ def terms_of(states: States, which: Array) -> Array:
     return out
 
 
-def states_of(clips: Sequence[Clip], roles: Mapping[str, int] | None = None, velocity: float | None = None) -> States:
-    """Return the states of takes of one skeleton. velocity: w_v, else what brings velocities to the range of places, as the paper asks:
-    the mean of d(p) over c_(i, i+k) over that of d(v). Raises SynthesisError for takes of other skeletons, or without two frames."""
+def states_of(
+    clips: Sequence[Clip], roles: Mapping[str, int] | None = None, velocity: float | None = None
+) -> States:
+    """Return the states of takes of one skeleton. velocity: w_v, else what brings velocities to the range of
+    places, as the paper asks: the mean of d(p) over c_(i, i+k) over that of d(v). Raises SynthesisError for
+    takes of other skeletons, or without two frames.
+    """
     if not clips:
         raise SynthesisError("a motion graph needs takes; there is none")
     odd = next((c for c in clips if c.skeleton != clips[0].skeleton), None)
     if odd is not None:
-        raise SynthesisError(f"take '{odd.name}' has another skeleton than '{clips[0].name}': retarget it, or leave it out")
+        raise SynthesisError(
+            f"take '{odd.name}' has another skeleton than '{clips[0].name}': retarget it, or leave it out"
+        )
     short = [c.name for c in clips if c.frames < 2]
     if len(short) == len(clips):
         raise SynthesisError("every take has only one frame; a motion graph needs motion")
@@ -108,20 +119,26 @@ def pairs_apart(states: States, frames: int) -> tuple[Array, Array]:
 def _distance(values: Array, a: Array, b: Array, weights: Array) -> Array:
     out = np.empty(len(a), np.float64)
     for n in range(0, len(a), AT_ONCE):
-        out[n : n + AT_ONCE] = np.linalg.norm(values[a[n : n + AT_ONCE]] - values[b[n : n + AT_ONCE]], axis=-1) @ weights
+        out[n : n + AT_ONCE] = (
+            np.linalg.norm(values[a[n : n + AT_ONCE]] - values[b[n : n + AT_ONCE]], axis=-1) @ weights
+        )
     return out
 
 
 def costs_apart(states: States, k: int = STEP) -> Array:
-    """Return c_(i, i+k) `[n]` of all frames that have one so much later (equations 3 and 4): frame i beside frame i + k - 1."""
+    """Return c_(i, i+k) `[n]` of all frames that have one so much later (equations 3 and 4): frame i beside
+    frame i + k - 1.
+    """
     near, later = pairs_apart(states, k - 1)
     costs = _distance(states.places, near, later, states.weights)
     return costs + states.velocity * _distance(states.velocities, near, later, states.weights)
 
 
 def key_states(states: States, share: float = KEYS, changes: Sequence[int] = ()) -> Array:
-    """Return `[K]` the states that transitions may leave and enter, ascending: keyframes, closer where joints move more, and states at
-    which what is heard changes. share: of all states, about, 0..1. The first and the last of a take are always among them."""
+    """Return `[K]` the states that transitions may leave and enter, ascending: keyframes, closer where joints
+    move more, and states at which what is heard changes. share: of all states, about, 0..1. The first and the
+    last of a take are always among them.
+    """
     moved = np.zeros(len(states))
     for n in range(1, len(states), AT_ONCE):
         some = states.places[n - 1 : n + AT_ONCE]

@@ -1,7 +1,7 @@
 """Compiled loops of the greedy search. Importing this imports numba.
 
-A way through the graph is a row of runs: frames of a take, one after another, until a transition. How far a run goes along with the
-speech is looked up, not walked, so that a great many transitions can be tried.
+A way through the graph is a row of runs: frames of a take, one after another, until a transition. How far a
+run goes along with the speech is looked up, not walked, so that a great many transitions can be tried.
 """
 
 from __future__ import annotations
@@ -18,10 +18,11 @@ Array = Any
 class Speech(NamedTuple):
     """What is wanted, as runs look it up. Stretches `[S]` are frames that want the same.
 
-    stretch `[T]`: which one a frame is in. ends `[S]`: the frame after each. rows `[S]`: its row of until `[M, F]`: the first state from
-    each on, itself included, that does not go with it, or is past the take. stressed, closing `[S]`: whether a stress is to be met in it,
-    and by its end. stresses `[T]`, closes `[T]`: the same of frames. peak_at `[F]`: the first state with a stress from each on. stops
-    `[F]`: the end of its take.
+    stretch `[T]`: which one a frame is in. ends `[S]`: the frame after each. rows `[S]`: its row of until
+    `[M, F]`: the first state from each on, itself included, that does not go with it, or is past the take.
+    stressed, closing `[S]`: whether a stress is to be met in it, and by its end. stresses `[T]`, closes
+    `[T]`: the same of frames. peak_at `[F]`: the first state with a stress from each on. stops `[F]`: the end
+    of its take.
     """
 
     stretch: Array
@@ -37,7 +38,9 @@ class Speech(NamedTuple):
 
 
 class Links(NamedTuple):
-    """The transitions of a graph, and of each state its few cheapest: places `cheap[firsts[f]:firsts[f + 1]]`, cheapest first."""
+    """The transitions of a graph, and of each state its few cheapest: places `cheap[firsts[f]:firsts[f +
+    1]]`, cheapest first.
+    """
 
     starts: Array
     targets: Array
@@ -48,7 +51,9 @@ class Links(NamedTuple):
 
 @compiled
 def until_of(kinds: Array, kept: Array, last: Array, mask: Any) -> Array:
-    """Return `[F]` the first state from each on, itself included, that nobody may be in: of another kind, cut away, or past the take."""
+    """Return `[F]` the first state from each on, itself included, that nobody may be in: of another kind, cut
+    away, or past the take.
+    """
     out = np.empty(len(kinds), np.int32)
     end = len(kinds)
     for state in range(len(kinds) - 1, -1, -1):
@@ -96,7 +101,9 @@ def cheapest(starts: Array, costs: Array, most: Any) -> Any:
 
 @compiled
 def reach(t: Any, state: Any, met: Any, speech: Any) -> Any:
-    """Return the frame up to which a run goes along with the speech that is in a state at frame t: by then it has to be left."""
+    """Return the frame up to which a run goes along with the speech that is in a state at frame t: by then it
+    has to be left.
+    """
     stop = speech.stops[state]
     for k in range(speech.stretch[t], len(speech.ends)):
         whole = speech.ends[k] - t
@@ -116,7 +123,9 @@ def reach(t: Any, state: Any, met: Any, speech: Any) -> Any:
 
 @compiled
 def _met(t: Any, after: Any, state: Any, met: Any, speech: Any) -> Any:
-    """Return whether, before frame `after`, a run that is in a state at frame t has met a stress whose window is still open."""
+    """Return whether, before frame `after`, a run that is in a state at frame t has met a stress whose window
+    is still open.
+    """
     if not speech.stresses[after - 1] or speech.closes[after - 1]:
         return False
     for frame in range(t, after):
@@ -138,8 +147,22 @@ def _next(random: Any) -> Any:
 
 
 @compiled_exactly
-def _note(run: Any, cost: Any, t: Any, state: Any, far: Any, end: Any, met: Any, count: Any, found: Array, price: Array, best: Any) -> Any:
-    """Write down what came through, if it is the cheapest that ends in its state; return how many there are."""
+def _note(
+    run: Any,
+    cost: Any,
+    t: Any,
+    state: Any,
+    far: Any,
+    end: Any,
+    met: Any,
+    count: Any,
+    found: Array,
+    price: Array,
+    best: Any,
+) -> Any:
+    """Write down what came through, if it is the cheapest that ends in its state; return how many there
+    are.
+    """
     key = 2 * end + met
     place = best[key]
     if place < 0:
@@ -148,7 +171,13 @@ def _note(run: Any, cost: Any, t: Any, state: Any, far: Any, end: Any, met: Any,
     elif price[place] <= cost:
         return count
     price[place] = cost
-    found[place, 0], found[place, 1], found[place, 2], found[place, 3], found[place, 4] = run, t, state, far, key
+    found[place, 0], found[place, 1], found[place, 2], found[place, 3], found[place, 4] = (
+        run,
+        t,
+        state,
+        far,
+        key,
+    )
     return count
 
 
@@ -159,10 +188,11 @@ def segment(
 ) -> Any:  # fmt: skip
     """Find ways through the frames t0 .. t1 - 1 of one segment from runs that are kept, depth first.
 
-    Runs `[N]`: since when (at), in which state (own), at what cost (price), and whether an open stress was met by t0 (mets). best `[2 F]`:
-    all -1, and left so. Returns all runs, given ones first: what each branches off, at, own, price; and what came through: `[C, 5]` int32
-    the run it branches off at a frame in a state (frame -1: it is that run itself), how far it goes, 2 x its last state + met; its cost
-    `[C]`; and the next random number.
+    Runs `[N]`: since when (at), in which state (own), at what cost (price), and whether an open stress was
+    met by t0 (mets). best `[2 F]`: all -1, and left so. Returns all runs, given ones first: what each
+    branches off, at, own, price; and what came through: `[C, 5]` int32 the run it branches off at a frame in
+    a state (frame -1: it is that run itself), how far it goes, 2 x its last state + met; its cost `[C]`; and
+    the next random number.
     """
     made = given = len(at)
     off = np.full(given, -1, np.int32)
@@ -170,7 +200,11 @@ def segment(
     found, paid, count = np.empty((1024, 5), np.int32), np.empty(1024, np.float32), 0
     bound, check = np.float32(np.inf), 4 * saved
     stack = np.empty((deepest + 1) * branches + 2, np.int32)
-    pick, pick_price, score = np.empty((branches, 3), np.int32), np.empty(branches, np.float32), np.empty(branches, np.float32)
+    pick, pick_price, score = (
+        np.empty((branches, 3), np.int32),
+        np.empty(branches, np.float32),
+        np.empty(branches, np.float32),
+    )
     for kept in range(given):
         stack[0] = kept
         high = 1
@@ -188,7 +222,9 @@ def segment(
                 end = reach(begin, state, met, speech)
             if end >= t1:
                 through = _met(begin, t1, state, met, speech)
-                count = _note(run, so_far, -1, state, end, state + t1 - 1 - begin, through, count, found, paid, best)
+                count = _note(
+                    run, so_far, -1, state, end, state + t1 - 1 - begin, through, count, found, paid, best
+                )
                 if count + 1 >= len(paid):
                     found, paid = _more(found), _more(paid)
             if level[run] >= deepest:
@@ -209,7 +245,11 @@ def segment(
                     found, paid = _more(found), _more(paid)
                 until = speech.until[speech.rows[speech.stretch[t + 1]]]
                 for number in range(easy + (after - first + step - 1) // step):
-                    place = links.cheap[links.firsts[x] + number] if number < easy else first + (number - easy) * step
+                    place = (
+                        links.cheap[links.firsts[x] + number]
+                        if number < easy
+                        else first + (number - easy) * step
+                    )
                     total = so_far + links.costs[place]
                     target = links.targets[place]
                     if total >= bound or until[target] <= target:
@@ -217,7 +257,19 @@ def segment(
                     far = reach(t + 1, target, met, speech)
                     if far >= t1:
                         through = _met(t + 1, t1, target, met, speech)
-                        count = _note(run, total, t + 1, target, far, target + t1 - 2 - t, through, count, found, paid, best)
+                        count = _note(
+                            run,
+                            total,
+                            t + 1,
+                            target,
+                            far,
+                            target + t1 - 2 - t,
+                            through,
+                            count,
+                            found,
+                            paid,
+                            best,
+                        )
                     elif far > end:  # what leads on cheapest, and chance, tell where to go deeper
                         random = _next(random)
                         chance = np.float32(random >> np.uint64(40)) / np.float32(1 << 24)
@@ -233,7 +285,14 @@ def segment(
                         pick_price[spot], score[spot] = total, worth
             for n in range(picks):
                 if made == len(at):
-                    off, at, own, price, mets, level = _more(off), _more(at), _more(own), _more(price), _more(mets), _more(level)
+                    off, at, own, price, mets, level = (
+                        _more(off),
+                        _more(at),
+                        _more(own),
+                        _more(price),
+                        _more(mets),
+                        _more(level),
+                    )
                 off[made], at[made], own[made], mets[made] = run, pick[n, 0], pick[n, 1], pick[n, 2] == 1
                 price[made], level[made] = pick_price[n], level[run] + 1
                 stack[high] = made

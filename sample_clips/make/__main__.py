@@ -23,7 +23,9 @@ TOLERANCE = 1.5e-4  # of a quaternion's component, some 0.02 degrees: what keys 
 def main() -> None:
     parser = argparse.ArgumentParser(prog="python -m sample_clips.make", description="Make the sample clips.")
     parser.add_argument("--only", default="", help="make only clips whose name contains this")
-    parser.add_argument("--folder", type=Path, default=CLIPS, help="where to write (default: sample_clips/clips)")
+    parser.add_argument(
+        "--folder", type=Path, default=CLIPS, help="where to write (default: sample_clips/clips)"
+    )
     parser.add_argument("--sheets", type=Path, help="write a picture of each clip into this folder")
     options = parser.parse_args()
     options.folder.mkdir(parents=True, exist_ok=True)

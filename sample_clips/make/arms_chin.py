@@ -27,7 +27,12 @@ def over_elbow(out: float, up: float, forwards: float, **held: Any) -> Hand:
 
 
 OUT = over_elbow(-0.10, 0.85, 0.52, turn=-8, bend=2, shape="relaxed")  # the hand come away from the chin
-STROKED = over_elbow(*(np.array(CHIN.at) - ELBOW + (0.012, 0.0, 0.030)).tolist(), fingers=CHIN.fingers, palm=CHIN.palm, shape="cupped")
+STROKED = over_elbow(
+    *(np.array(CHIN.at) - ELBOW + (0.012, 0.0, 0.030)).tolist(),
+    fingers=CHIN.fingers,
+    palm=CHIN.palm,
+    shape="cupped",
+)
 BACK = go(0.38, rt=OUT, spine=(3, -2, 1.5), head=(3, 2, 2), flow=0.17, overshoot=0.0)
 
 CLIPS = (
@@ -37,7 +42,13 @@ CLIPS = (
         "gesture",
         "point_up",
         "rt",
-        go(0.30, rt=over_elbow(-0.05, 0.80, 0.60, turn=-12, bend=12, shape="loose_point"), head=(1, 1, 1), flow=0.1, overshoot=0.0),
+        go(
+            0.30,
+            rt=over_elbow(-0.05, 0.80, 0.60, turn=-12, bend=12, shape="loose_point"),
+            head=(1, 1, 1),
+            flow=0.1,
+            overshoot=0.0,
+        ),
         go(
             0.26,
             hold=0.42,
@@ -81,7 +92,13 @@ CLIPS = (
         "gesture",
         "beat_small",
         "rt",
-        go(0.36, rt=over_elbow(-0.02, 0.80, 0.60, turn=-16, bend=-8, shape="pinch"), head=(1, 1, 1), flow=0.08, overshoot=0.0),
+        go(
+            0.36,
+            rt=over_elbow(-0.02, 0.80, 0.60, turn=-16, bend=-8, shape="pinch"),
+            head=(1, 1, 1),
+            flow=0.08,
+            overshoot=0.0,
+        ),
         go(
             0.22,
             hold=0.12,
@@ -91,8 +108,21 @@ CLIPS = (
             peak=0.55,
             overshoot=0.08,
         ),
-        go(0.22, rt=over_elbow(0.06, 0.78, 0.62, turn=-14, bend=0, shape="pinch"), head=(2, 1, 1), overshoot=0.0, flow=0.07),
-        go(0.20, hold=0.24, rt=over_elbow(0.11, 0.70, 0.69, turn=-12, bend=10, shape="pinch"), head=(6, 0, 1), peak=0.55, overshoot=0.08),
+        go(
+            0.22,
+            rt=over_elbow(0.06, 0.78, 0.62, turn=-14, bend=0, shape="pinch"),
+            head=(2, 1, 1),
+            overshoot=0.0,
+            flow=0.07,
+        ),
+        go(
+            0.20,
+            hold=0.24,
+            rt=over_elbow(0.11, 0.70, 0.69, turn=-12, bend=10, shape="pinch"),
+            head=(6, 0, 1),
+            peak=0.55,
+            overshoot=0.08,
+        ),
         BACK,
         home(0.46),
         tags="beat detail",
@@ -110,9 +140,27 @@ CLIPS = (
             spine=(2, -1, 1),
             flow=0.06,
         ),
-        go(0.20, rt=over_elbow(0.08, 0.69, 0.72, turn=-34, bend=20, shape="spread"), head=(2, 0, 5), overshoot=0.0, flow=0.05),
-        go(0.20, rt=over_elbow(0.04, 0.69, 0.72, turn=-80, bend=16, shape="spread"), head=(2, 0, 0), overshoot=0.0, flow=0.05),
-        go(0.22, hold=0.14, rt=over_elbow(0.07, 0.68, 0.73, turn=-50, bend=20, shape="spread"), head=(2, 0, 4), overshoot=0.08),
+        go(
+            0.20,
+            rt=over_elbow(0.08, 0.69, 0.72, turn=-34, bend=20, shape="spread"),
+            head=(2, 0, 5),
+            overshoot=0.0,
+            flow=0.05,
+        ),
+        go(
+            0.20,
+            rt=over_elbow(0.04, 0.69, 0.72, turn=-80, bend=16, shape="spread"),
+            head=(2, 0, 0),
+            overshoot=0.0,
+            flow=0.05,
+        ),
+        go(
+            0.22,
+            hold=0.14,
+            rt=over_elbow(0.07, 0.68, 0.73, turn=-50, bend=20, shape="spread"),
+            head=(2, 0, 4),
+            overshoot=0.08,
+        ),
         BACK,
         home(0.46),
         tags="unsure",
@@ -140,7 +188,13 @@ CLIPS = (
             step
             for turn in (2.5, 3.5, 3.0)
             for step in (
-                go(0.16, rt=CHIN.moved(shape=lifted("chin", {1: 26})), head=(3, turn, 2), overshoot=0.0, flow=0.03),
+                go(
+                    0.16,
+                    rt=CHIN.moved(shape=lifted("chin", {1: 26})),
+                    head=(3, turn, 2),
+                    overshoot=0.0,
+                    flow=0.03,
+                ),
                 go(0.14, hold=0.12, rt=CHIN.moved(shape=lifted("chin", {1: 4})), overshoot=0.0),
             )
         ),

@@ -31,12 +31,26 @@ def both(up: float, forwards: float) -> dict[str, Hand]:
 
 def rubbing(slide: float, up: float = 0.035) -> dict[str, Hand]:
     """Return flat hands, palm on palm, one slid forwards by metres and the other back."""
-    left = Hand(at=(0.099, 1.05 + up, 0.215 - slide), fingers=(-0.62, 0.10, 0.78), palm=(-0.78, -0.05, -0.62), shape="flat", elbow=LOW)
-    right = Hand(at=(0.099, 1.056 + up, 0.222 + slide), fingers=(-0.62, 0.14, 0.78), palm=(-0.78, -0.05, -0.62), shape="flat", elbow=LOW)
+    left = Hand(
+        at=(0.099, 1.05 + up, 0.215 - slide),
+        fingers=(-0.62, 0.10, 0.78),
+        palm=(-0.78, -0.05, -0.62),
+        shape="flat",
+        elbow=LOW,
+    )
+    right = Hand(
+        at=(0.099, 1.056 + up, 0.222 + slide),
+        fingers=(-0.62, 0.14, 0.78),
+        palm=(-0.78, -0.05, -0.62),
+        shape="flat",
+        elbow=LOW,
+    )
     return {"lf": left, "rt": right}
 
 
-UNCLASP = go(0.20, rt=CLASP_OVER.moved(0.016, 0.014, 0.040, shape="open"), overshoot=0.0, flow=0.5)  # the hand on top lifts first
+UNCLASP = go(
+    0.20, rt=CLASP_OVER.moved(0.016, 0.014, 0.040, shape="open"), overshoot=0.0, flow=0.5
+)  # the hand on top lifts first
 THUMB_ROUND = (  # the thumbs chase each other
     ((44, -12, 14, 10), (20, 22, 4, 4)),
     ((34, 8, 4, 2), (44, 2, 22, 20)),
@@ -58,7 +72,9 @@ CLIPS = (
         "beat_small",
         "bt",
         go(0.34, **both(0.045, 0.02), head=(-2, 0, 0), spine=(0, 0, 0), overshoot=0.0, flow=0.06),
-        go(0.24, hold=0.30, **both(-0.018, 0.022), head=(3, 0, 0), spine=(3, 0, 0), peak=0.55, overshoot=0.10),
+        go(
+            0.24, hold=0.30, **both(-0.018, 0.022), head=(3, 0, 0), spine=(3, 0, 0), peak=0.55, overshoot=0.10
+        ),
         home(0.6),
         tags="beat",
         together=True,
@@ -71,7 +87,13 @@ CLIPS = (
         "open_palms",
         "bt",
         UNCLASP,
-        go(0.34, lf=APART.moved(0.02, 0.0, -0.02), rt=APART.moved(0.02, 0.02, 0.025), flow=0.18, overshoot=0.0),
+        go(
+            0.34,
+            lf=APART.moved(0.02, 0.0, -0.02),
+            rt=APART.moved(0.02, 0.02, 0.025),
+            flow=0.18,
+            overshoot=0.0,
+        ),
         go(
             0.36,
             hold=0.42,
@@ -92,10 +114,40 @@ CLIPS = (
         "beat_double",
         "rt",
         go(0.42, rt=READY.moved(-0.03, 0.0, 0.01), head=(-2, 0, 0), overshoot=0.0, flow=0.08),
-        go(0.22, hold=0.08, rt=BEAT.moved(-0.03, 0.02), head=(3, 0, 0), spine=(3, 0, 0), peak=0.55, overshoot=0.08),
-        go(0.24, rt=READY.moved(-0.01, -0.03, 0.02), head=(0, 0, 0), spine=(1, 0, 0), overshoot=0.0, flow=0.07),
-        go(0.22, hold=0.30, rt=BEAT.moved(-0.01, 0.03), head=(3, 0, 1), spine=(2.5, 0, 0), peak=0.55, overshoot=0.08),
-        go(0.44, rt=CLOSE.moved(0.0, 0.02, 0.025), spine=(1, 0, 0), head=(-0.5, 0, 0), flow=0.18, overshoot=0.0),
+        go(
+            0.22,
+            hold=0.08,
+            rt=BEAT.moved(-0.03, 0.02),
+            head=(3, 0, 0),
+            spine=(3, 0, 0),
+            peak=0.55,
+            overshoot=0.08,
+        ),
+        go(
+            0.24,
+            rt=READY.moved(-0.01, -0.03, 0.02),
+            head=(0, 0, 0),
+            spine=(1, 0, 0),
+            overshoot=0.0,
+            flow=0.07,
+        ),
+        go(
+            0.22,
+            hold=0.30,
+            rt=BEAT.moved(-0.01, 0.03),
+            head=(3, 0, 1),
+            spine=(2.5, 0, 0),
+            peak=0.55,
+            overshoot=0.08,
+        ),
+        go(
+            0.44,
+            rt=CLOSE.moved(0.0, 0.02, 0.025),
+            spine=(1, 0, 0),
+            head=(-0.5, 0, 0),
+            flow=0.18,
+            overshoot=0.0,
+        ),
         home(0.44),
         tags="beat",
     ),
@@ -105,7 +157,12 @@ CLIPS = (
         "shrug",
         "bt",
         go(
-            0.30, lf=APART.moved(0.03, 0.0, 0.0, turn=24), rt=APART.moved(0.03, 0.01, 0.0, turn=24), head=(2, 0, 0), flow=0.2, overshoot=0.0
+            0.30,
+            lf=APART.moved(0.03, 0.0, 0.0, turn=24),
+            rt=APART.moved(0.03, 0.01, 0.0, turn=24),
+            head=(2, 0, 0),
+            flow=0.2,
+            overshoot=0.0,
         ),
         go(
             0.36,
@@ -126,8 +183,22 @@ CLIPS = (
         "offer",
         "rt",
         go(0.36, rt=APART.moved(0.02, 0.02, 0.02, turn=20), flow=0.22, overshoot=0.0),
-        go(0.36, hold=0.44, rt=OFFERING.moved(-0.01, -0.02, -0.01), head=(2, -2, 4), spine=(4, 1, 0), overshoot=0.045),
-        go(0.46, rt=CLOSE.moved(0.0, 0.02, 0.025), spine=(1, 0, 0), head=(-0.5, 0, 0), flow=0.2, overshoot=0.0),
+        go(
+            0.36,
+            hold=0.44,
+            rt=OFFERING.moved(-0.01, -0.02, -0.01),
+            head=(2, -2, 4),
+            spine=(4, 1, 0),
+            overshoot=0.045,
+        ),
+        go(
+            0.46,
+            rt=CLOSE.moved(0.0, 0.02, 0.025),
+            spine=(1, 0, 0),
+            head=(-0.5, 0, 0),
+            flow=0.2,
+            overshoot=0.0,
+        ),
         home(0.46),
         tags="you open positive",
     ),
@@ -136,13 +207,22 @@ CLIPS = (
         "fidget",
         "rub_hands",
         "bt",
-        go(0.24, lf=CLOSE.moved(0.02, 0.0, -0.01), rt=CLOSE.moved(0.02, 0.02, 0.02), flow=0.35, overshoot=0.0),
+        go(
+            0.24, lf=CLOSE.moved(0.02, 0.0, -0.01), rt=CLOSE.moved(0.02, 0.02, 0.02), flow=0.35, overshoot=0.0
+        ),
         go(0.34, **rubbing(0.0), head=(2, 0, 0), overshoot=0.0, flow=0.05),
         go(0.22, **rubbing(0.030), overshoot=0.0, flow=0.04),
         go(0.24, **rubbing(-0.028), head=(3, 1, 1), overshoot=0.0, flow=0.04),
         go(0.23, **rubbing(0.026), overshoot=0.0, flow=0.04),
         go(0.24, **rubbing(-0.018), head=(1, 0, 0), overshoot=0.0, flow=0.04),
-        go(0.26, lf=CLOSE.moved(0.018, -0.016, -0.026), rt=CLOSE.moved(0.020, 0.026, 0.036), head=(0, 0, 0), overshoot=0.0, flow=0.25),
+        go(
+            0.26,
+            lf=CLOSE.moved(0.018, -0.016, -0.026),
+            rt=CLOSE.moved(0.020, 0.026, 0.036),
+            head=(0, 0, 0),
+            overshoot=0.0,
+            flow=0.25,
+        ),
         home(0.44),
         tags="eager positive",
         together=True,
@@ -154,7 +234,14 @@ CLIPS = (
         "twiddle_thumbs",
         "bt",
         *(
-            go(0.21, lf=with_thumb(CLASP_UNDER, left), rt=with_thumb(CLASP_OVER, right), head=(4, 0, 0), overshoot=0.0, flow=0.07)
+            go(
+                0.21,
+                lf=with_thumb(CLASP_UNDER, left),
+                rt=with_thumb(CLASP_OVER, right),
+                head=(4, 0, 0),
+                overshoot=0.0,
+                flow=0.07,
+            )
             for left, right in (*THUMB_ROUND, *THUMB_ROUND[:2])
         ),
         home(0.45),
@@ -167,8 +254,21 @@ CLIPS = (
         "fidget",
         "regrip",
         "bt",
-        go(0.34, lf=CLOSE.moved(-0.012, -0.012, -0.02), rt=CLOSE.moved(-0.005, 0.012, 0.02), spine=(0, 0, 0), head=(1, 0, 0), flow=0.04),
-        go(0.34, hold=0.12, lf=CLASP_UNDER.moved(0.004, 0.012, 0.008), rt=CLASP_OVER.moved(0.004, 0.012, 0.012), spine=(1.5, 0, 0)),
+        go(
+            0.34,
+            lf=CLOSE.moved(-0.012, -0.012, -0.02),
+            rt=CLOSE.moved(-0.005, 0.012, 0.02),
+            spine=(0, 0, 0),
+            head=(1, 0, 0),
+            flow=0.04,
+        ),
+        go(
+            0.34,
+            hold=0.12,
+            lf=CLASP_UNDER.moved(0.004, 0.012, 0.008),
+            rt=CLASP_OVER.moved(0.004, 0.012, 0.012),
+            spine=(1.5, 0, 0),
+        ),
         home(0.5),
         likelihood=0.7,
     ),

@@ -9,7 +9,9 @@ from sample_clips.make.recipe import HOME, Recipe, go, home
 from sample_clips.make.stances import CROSS_OVER, CROSS_UNDER
 
 S = "arms_crossed"
-OUT = Hand(at=(0.060, 1.225, 0.300), turn=8, bend=4, shape="relaxed", elbow=WIDE, reach=5)  # the right hand lifted off the left arm
+OUT = Hand(
+    at=(0.060, 1.225, 0.300), turn=8, bend=4, shape="relaxed", elbow=WIDE, reach=5
+)  # the right hand lifted off the left arm
 LEFT_OUT = Hand(at=(0.060, 1.135, 0.235), turn=2, bend=4, shape="relaxed", elbow=WIDE, reach=5)
 ABOVE = CROSS_OVER.moved(0.062, 0.006, 0.030)  # about to slip between the left arm and the ribs
 BACK = go(0.40, rt=OUT, spine=(1, -1, 0.5), head=(-1, 1, 0), flow=0.18, overshoot=0.0)
@@ -22,7 +24,13 @@ CLIPS = (
         "gesture",
         "beat_small",
         "rt",
-        go(0.40, rt=OUT.moved(0.04, 0.035, 0.0, turn=14, bend=-12, shape="open"), head=(-2, 1, 0), flow=0.08, overshoot=0.0),
+        go(
+            0.40,
+            rt=OUT.moved(0.04, 0.035, 0.0, turn=14, bend=-12, shape="open"),
+            head=(-2, 1, 0),
+            flow=0.08,
+            overshoot=0.0,
+        ),
         go(
             0.22,
             hold=0.30,
@@ -44,7 +52,14 @@ CLIPS = (
         "open_palm",
         "rt",
         go(0.36, rt=OUT.moved(0.02, -0.01, 0.0), flow=0.2, overshoot=0.0),
-        go(0.36, hold=0.42, rt=OPEN_PALM.moved(-0.02, 0.055, 0.0), head=(1, 1, 6), spine=(1, -1, 0), overshoot=0.06),
+        go(
+            0.36,
+            hold=0.42,
+            rt=OPEN_PALM.moved(-0.02, 0.055, 0.0),
+            head=(1, 1, 6),
+            spine=(1, -1, 0),
+            overshoot=0.06,
+        ),
         BACK,
         LANDING,
         home(0.42),
@@ -97,7 +112,15 @@ CLIPS = (
             spine=(-1, 0, 0),
             overshoot=0.05,
         ),
-        go(0.42, lf=LEFT_OUT, rt=OUT.moved(0.07, 0.02, 0.01), spine=(1, -1, 0.5), head=(-1, 1, 0), flow=0.2, overshoot=0.0),
+        go(
+            0.42,
+            lf=LEFT_OUT,
+            rt=OUT.moved(0.07, 0.02, 0.01),
+            spine=(1, -1, 0.5),
+            head=(-1, 1, 0),
+            flow=0.2,
+            overshoot=0.0,
+        ),
         go(0.34, lf=HOME, rt=OUT.moved(0.01), flow=0.25, overshoot=0.0),
         go(0.30, rt=ABOVE, flow=0.3, overshoot=0.0),
         home(0.40),

@@ -1,4 +1,6 @@
-"""The arms layer with hands at the sides: the richest stance, thirty kinds of saying something with one's hands."""
+"""The arms layer with hands at the sides: the richest stance, thirty kinds of saying something with one's
+hands.
+"""
 
 from __future__ import annotations
 
@@ -50,15 +52,44 @@ def fidget(action: str, limb: str, *steps: Step, tags: str = "", **more: Any) ->
 
 GESTURES = (
     gesture("beat_small", "rt", *beat("rt", READY, BEAT), home(0.72), tags="beat", likelihood=1.5),
-    gesture("beat_small", "lf", *beat("lf", READY.moved(0.01, -0.015), BEAT.moved(0.0, -0.01)), home(0.76), tags="beat", likelihood=1.3),
-    gesture("beat_large", "bt", *beat("bt", BIG_READY, BIG_BEAT, quick=0.27), home(0.8), tags="beat emphasis"),
+    gesture(
+        "beat_small",
+        "lf",
+        *beat("lf", READY.moved(0.01, -0.015), BEAT.moved(0.0, -0.01)),
+        home(0.76),
+        tags="beat",
+        likelihood=1.3,
+    ),
+    gesture(
+        "beat_large", "bt", *beat("bt", BIG_READY, BIG_BEAT, quick=0.27), home(0.8), tags="beat emphasis"
+    ),
     gesture("beat_double", "rt", *beat("rt", READY.moved(0, 0.03), BEAT, 2), home(0.74), tags="beat"),
-    gesture("beat_triple", "bt", *beat("bt", READY.moved(-0.03, 0.02, 0.02), BEAT.moved(-0.02), 3, 0.22), home(0.78), tags="beat emphasis"),
+    gesture(
+        "beat_triple",
+        "bt",
+        *beat("bt", READY.moved(-0.03, 0.02, 0.02), BEAT.moved(-0.02), 3, 0.22),
+        home(0.78),
+        tags="beat emphasis",
+    ),
     gesture(
         "open_palms",
         "bt",
-        go(0.40, lf=READY.moved(-0.06, -0.03, 0.02, turn=18), rt=READY.moved(-0.06, -0.02, 0.02, turn=20), flow=0.28, overshoot=0.0),
-        go(0.36, hold=0.42, lf=OPEN_PALM.moved(0.0, -0.02), rt=OPEN_PALM, spine=(-1, 0, 0), head=(2, -1, 3), overshoot=0.06),
+        go(
+            0.40,
+            lf=READY.moved(-0.06, -0.03, 0.02, turn=18),
+            rt=READY.moved(-0.06, -0.02, 0.02, turn=20),
+            flow=0.28,
+            overshoot=0.0,
+        ),
+        go(
+            0.36,
+            hold=0.42,
+            lf=OPEN_PALM.moved(0.0, -0.02),
+            rt=OPEN_PALM,
+            spine=(-1, 0, 0),
+            head=(2, -1, 3),
+            overshoot=0.06,
+        ),
         home(0.82),
         tags="explain open",
         likelihood=1.3,
@@ -74,7 +105,15 @@ GESTURES = (
             flow=0.3,
             overshoot=0.0,
         ),
-        go(0.36, hold=0.46, lf=SHRUGGED.moved(0.0, -0.02), rt=SHRUGGED, spine=(-2, 0, 1.0), head=(-2, 2, 8), overshoot=0.05),
+        go(
+            0.36,
+            hold=0.46,
+            lf=SHRUGGED.moved(0.0, -0.02),
+            rt=SHRUGGED,
+            spine=(-2, 0, 1.0),
+            head=(-2, 2, 8),
+            overshoot=0.05,
+        ),
         home(0.8, peak=0.36),
         tags="unsure question",
     ),
@@ -90,7 +129,14 @@ GESTURES = (
         "point_me",
         "rt",
         go(0.34, rt=READY.moved(0.02, 0.0, 0.02, turn=-10), flow=0.22, overshoot=0.0),
-        go(0.34, hold=0.16, rt=POINT_ME.moved(0.02, -0.01, 0.03), spine=(-1, 0, 0), head=(4, 0, -3), overshoot=0.03),
+        go(
+            0.34,
+            hold=0.16,
+            rt=POINT_ME.moved(0.02, -0.01, 0.03),
+            spine=(-1, 0, 0),
+            head=(4, 0, -3),
+            overshoot=0.03,
+        ),
         go(0.17, hold=0.36, rt=POINT_ME, spine=(-2, 0, 0), head=(5, 0, -4), peak=0.5, overshoot=0.05),
         home(0.76),
         tags="me",
@@ -98,7 +144,13 @@ GESTURES = (
     gesture(
         "point_aside",
         "lf",
-        go(0.40, lf=READY.moved(-0.04, 0.03, 0.0, shape="loose_point"), head=(0, 8, 0), flow=0.2, overshoot=0.0),
+        go(
+            0.40,
+            lf=READY.moved(-0.04, 0.03, 0.0, shape="loose_point"),
+            head=(0, 8, 0),
+            flow=0.2,
+            overshoot=0.0,
+        ),
         go(0.33, hold=0.48, lf=POINT_ASIDE, spine=(0, 4, -1), head=(0, 16, -2), overshoot=0.05),
         home(0.84),
         tags="other there",
@@ -107,8 +159,21 @@ GESTURES = (
         "count_three",
         "rt",
         go(0.48, hold=0.02, rt=COUNTING, head=(-1, 0, 1), overshoot=0.02),
-        go(0.27, hold=0.20, rt=COUNTING.moved(0.01, -0.025, 0.03, shape="count_one", bend=6), head=(4, 0, 0), peak=0.52, overshoot=0.08),
-        go(0.12, rt=COUNTING.moved(0.012, 0.0, 0.01, shape="count_one", turn=4), head=(1, 0, 0), flow=0.05, overshoot=0.0),
+        go(
+            0.27,
+            hold=0.20,
+            rt=COUNTING.moved(0.01, -0.025, 0.03, shape="count_one", bend=6),
+            head=(4, 0, 0),
+            peak=0.52,
+            overshoot=0.08,
+        ),
+        go(
+            0.12,
+            rt=COUNTING.moved(0.012, 0.0, 0.01, shape="count_one", turn=4),
+            head=(1, 0, 0),
+            flow=0.05,
+            overshoot=0.0,
+        ),
         go(
             0.18,
             hold=0.20,
@@ -117,8 +182,20 @@ GESTURES = (
             peak=0.52,
             overshoot=0.08,
         ),
-        go(0.12, rt=COUNTING.moved(0.03, 0.0, 0.015, shape="count_two", turn=6), head=(1, 0, -1), flow=0.05, overshoot=0.0),
-        go(0.25, hold=0.30, rt=COUNTING.moved(0.045, -0.03, 0.045, shape="count_three", bend=8, turn=9), head=(5, -2, 0), overshoot=0.08),
+        go(
+            0.12,
+            rt=COUNTING.moved(0.03, 0.0, 0.015, shape="count_two", turn=6),
+            head=(1, 0, -1),
+            flow=0.05,
+            overshoot=0.0,
+        ),
+        go(
+            0.25,
+            hold=0.30,
+            rt=COUNTING.moved(0.045, -0.03, 0.045, shape="count_three", bend=8, turn=9),
+            head=(5, -2, 0),
+            overshoot=0.08,
+        ),
         home(0.76),
         tags="enumerate",
         likelihood=0.7,
@@ -180,7 +257,16 @@ GESTURES = (
             flow=0.08,
             overshoot=0.0,
         ),
-        go(0.36, hold=0.36, lf=SWEEP_OUT, rt=SWEEP_OUT.moved(0.0, 0.02), head=(0, -5, 0), spine=(-2, 0, 0), peak=0.42, overshoot=0.06),
+        go(
+            0.36,
+            hold=0.36,
+            lf=SWEEP_OUT,
+            rt=SWEEP_OUT.moved(0.0, 0.02),
+            head=(0, -5, 0),
+            spine=(-2, 0, 0),
+            peak=0.42,
+            overshoot=0.06,
+        ),
         home(0.78),
         tags="negative refuse",
     ),
@@ -197,17 +283,48 @@ GESTURES = (
         "precision",
         "rt",
         go(0.46, rt=PRECISE.moved(0.0, 0.035, -0.02), head=(-2, 0, 0), flow=0.08, overshoot=0.02),
-        go(0.20, hold=0.10, rt=PRECISE.moved(0.0, -0.045, 0.03, bend=10), head=(3, 0, 0), spine=(2, 0, 0), peak=0.55, overshoot=0.07),
+        go(
+            0.20,
+            hold=0.10,
+            rt=PRECISE.moved(0.0, -0.045, 0.03, bend=10),
+            head=(3, 0, 0),
+            spine=(2, 0, 0),
+            peak=0.55,
+            overshoot=0.07,
+        ),
         go(0.22, rt=PRECISE.moved(0.01, 0.015, 0.0), head=(0, 0, 0), flow=0.07, overshoot=0.0),
-        go(0.20, hold=0.32, rt=PRECISE.moved(0.01, -0.04, 0.035, bend=9), head=(4, 0, 1), spine=(2, 0, 0), peak=0.55, overshoot=0.07),
+        go(
+            0.20,
+            hold=0.32,
+            rt=PRECISE.moved(0.01, -0.04, 0.035, bend=9),
+            head=(4, 0, 1),
+            spine=(2, 0, 0),
+            peak=0.55,
+            overshoot=0.07,
+        ),
         home(0.74),
         tags="explain detail",
     ),
     gesture(
         "size_big",
         "bt",
-        go(0.42, lf=CLOSE_TOGETHER.moved(0.012), rt=CLOSE_TOGETHER.moved(0.012, 0.01), head=(4, 0, 0), flow=0.1, overshoot=0.0),
-        go(0.42, hold=0.42, lf=WIDE_APART, rt=WIDE_APART.moved(0.0, 0.015), head=(-3, 0, 2), spine=(-2.5, 0, 0), overshoot=0.06),
+        go(
+            0.42,
+            lf=CLOSE_TOGETHER.moved(0.012),
+            rt=CLOSE_TOGETHER.moved(0.012, 0.01),
+            head=(4, 0, 0),
+            flow=0.1,
+            overshoot=0.0,
+        ),
+        go(
+            0.42,
+            hold=0.42,
+            lf=WIDE_APART,
+            rt=WIDE_APART.moved(0.0, 0.015),
+            head=(-3, 0, 2),
+            spine=(-2.5, 0, 0),
+            overshoot=0.06,
+        ),
         home(0.82),
         tags="size big",
         likelihood=0.7,
@@ -264,7 +381,11 @@ GESTURES = (
 )
 
 NECK = Hand(
-    at=(0.160, 1.472, 0.096), fingers=(-0.333, 0.587, -0.738), palm=(-0.754, 0.237, 0.612), shape="cupped", elbow=(0.74, -0.45, 0.5)
+    at=(0.160, 1.472, 0.096),
+    fingers=(-0.333, 0.587, -0.738),
+    palm=(-0.754, 0.237, 0.612),
+    shape="cupped",
+    elbow=(0.74, -0.45, 0.5),
 )
 
 FIDGETS = (
@@ -282,10 +403,29 @@ FIDGETS = (
         "swing_arms",
         "bt",
         go(
-            0.46, lf=SIDE.moved(0.012, 0.03, 0.10), rt=SIDE.moved(0.022, 0.025, -0.07, bend=6), spine=(0, -1.5, 0), overshoot=0.0, flow=0.06
+            0.46,
+            lf=SIDE.moved(0.012, 0.03, 0.10),
+            rt=SIDE.moved(0.022, 0.025, -0.07, bend=6),
+            spine=(0, -1.5, 0),
+            overshoot=0.0,
+            flow=0.06,
         ),
-        go(0.54, lf=SIDE.moved(0.022, 0.02, -0.07, bend=6), rt=SIDE.moved(0.012, 0.035, 0.11), spine=(0, 1.5, 0), overshoot=0.0, flow=0.06),
-        go(0.52, lf=SIDE.moved(0.0, 0.01, 0.05), rt=SIDE.moved(0.0, 0.01, -0.035), spine=(0, -0.8, 0), overshoot=0.0, flow=0.06),
+        go(
+            0.54,
+            lf=SIDE.moved(0.022, 0.02, -0.07, bend=6),
+            rt=SIDE.moved(0.012, 0.035, 0.11),
+            spine=(0, 1.5, 0),
+            overshoot=0.0,
+            flow=0.06,
+        ),
+        go(
+            0.52,
+            lf=SIDE.moved(0.0, 0.01, 0.05),
+            rt=SIDE.moved(0.0, 0.01, -0.035),
+            spine=(0, -0.8, 0),
+            overshoot=0.0,
+            flow=0.06,
+        ),
         home(0.55),
         drag=1.4,
     ),
@@ -294,7 +434,14 @@ FIDGETS = (
         "lf",
         go(0.40, lf=READY.moved(-0.04, 0.0, 0.02, turn=-20, shape="relaxed"), flow=0.24, overshoot=0.0),
         go(0.36, hold=0.62, lf=WATCHED, head=(13, 4, -3), spine=(3, 1, 0), overshoot=0.03),
-        go(0.22, hold=0.10, lf=WATCHED.moved(0.02, -0.01, 0.0, turn=16), head=(5, 1, 0), spine=(1, 0, 0), overshoot=0.0),
+        go(
+            0.22,
+            hold=0.10,
+            lf=WATCHED.moved(0.02, -0.01, 0.0, turn=16),
+            head=(5, 1, 0),
+            spine=(1, 0, 0),
+            overshoot=0.0,
+        ),
         home(0.78),
         tags="impatient",
     ),
@@ -315,7 +462,12 @@ FIDGETS = (
             head=(12, 6, -2),
             overshoot=0.02,
         ),
-        go(0.22, hold=0.08, rt=Hand(at=(0.005, 1.168, 0.340), turn=-56, bend=30, shape="pinch", elbow=(0.8, -0.6, 0.0)), overshoot=0.0),
+        go(
+            0.22,
+            hold=0.08,
+            rt=Hand(at=(0.005, 1.168, 0.340), turn=-56, bend=30, shape="pinch", elbow=(0.8, -0.6, 0.0)),
+            overshoot=0.0,
+        ),
         go(
             0.30,
             hold=0.14,
@@ -323,13 +475,27 @@ FIDGETS = (
             spine=(1, 1, 0),
             overshoot=0.03,
         ),
-        go(0.24, rt=READY.moved(-0.02, 0.0, 0.03, turn=-20), lf=HOME, head=(4, 2, 0), spine=(0, 0, 0), flow=0.12, overshoot=0.0),
+        go(
+            0.24,
+            rt=READY.moved(-0.02, 0.0, 0.03, turn=-20),
+            lf=HOME,
+            head=(4, 2, 0),
+            spine=(0, 0, 0),
+            flow=0.12,
+            overshoot=0.0,
+        ),
         home(0.7),
     ),
     fidget(
         "touch_neck",
         "rt",
-        go(0.50, rt=Hand(at=(0.315, 1.340, 0.165), turn=-30, bend=4, elbow=(0.7, -0.6, 0.1)), head=(3, 2, 0), flow=0.26, overshoot=0.0),
+        go(
+            0.50,
+            rt=Hand(at=(0.315, 1.340, 0.165), turn=-30, bend=4, elbow=(0.7, -0.6, 0.1)),
+            head=(3, 2, 0),
+            flow=0.26,
+            overshoot=0.0,
+        ),
         go(0.44, hold=0.06, rt=NECK, head=(7, 6, -5), spine=(1, 1, 0), overshoot=0.0),
         go(0.26, rt=NECK.moved(0.004, -0.020, 0.014), head=(8, 7, -7), overshoot=0.0),
         go(0.26, hold=0.08, rt=NECK.moved(0.001, -0.003, 0.002), head=(6, 5, -5), overshoot=0.0),
@@ -347,4 +513,8 @@ FIDGETS = (
     ),
 )
 
-CLIPS = (Recipe("hands_at_sides__stance", "arms", "stance", "hands_at_sides", "hands_at_sides", seconds=6.0), *GESTURES, *FIDGETS)
+CLIPS = (
+    Recipe("hands_at_sides__stance", "arms", "stance", "hands_at_sides", "hands_at_sides", seconds=6.0),
+    *GESTURES,
+    *FIDGETS,
+)

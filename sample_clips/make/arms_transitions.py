@@ -1,7 +1,7 @@
 """The arms layer's ways from stance to stance: out of the one, across, and into the other.
 
-From a hand at the chin there is no straight way to the hips or to clasped hands, and none back; those go by another
-stance, as a person's would.
+From a hand at the chin there is no straight way to the hips or to clasped hands, and none back; those go by
+another stance, as a person's would.
 """
 
 from __future__ import annotations
@@ -14,11 +14,20 @@ from sample_clips.make.tracks import Step
 
 # Where both hands (left, right) are just before they arrive in a stance and just after they leave it.
 NEAR: dict[str, tuple[Hand, Hand]] = {
-    "hands_at_sides": (SIDE.moved(0.02, 0.09, 0.09, shape="relaxed"), SIDE.moved(0.02, 0.10, 0.10, shape="relaxed")),
+    "hands_at_sides": (
+        SIDE.moved(0.02, 0.09, 0.09, shape="relaxed"),
+        SIDE.moved(0.02, 0.10, 0.10, shape="relaxed"),
+    ),
     "on_hips": (arms_hips.OFF.moved(0.03), arms_hips.OFF.moved(0.028, 0.01, 0.005)),
     "arms_crossed": (arms_crossed.LEFT_OUT, arms_crossed.OUT),
-    "hand_to_chin": (SUPPORT.moved(0.03, -0.045, 0.03, shape="relaxed"), arms_chin.over_elbow(0.0, 0.62, 0.78, bend=4, shape="relaxed")),
-    "hands_clasped": (arms_clasped.CLOSE.moved(0.015, -0.014, -0.026), arms_clasped.CLOSE.moved(0.018, 0.022, 0.034)),
+    "hand_to_chin": (
+        SUPPORT.moved(0.03, -0.045, 0.03, shape="relaxed"),
+        arms_chin.over_elbow(0.0, 0.62, 0.78, bend=4, shape="relaxed"),
+    ),
+    "hands_clasped": (
+        arms_clasped.CLOSE.moved(0.015, -0.014, -0.026),
+        arms_clasped.CLOSE.moved(0.018, 0.022, 0.034),
+    ),
 }
 # (leaves, arrives): seconds out, across, in; and how the head goes along (pitch, turn, lean).
 WAYS: dict[tuple[str, str], tuple[float, float, float, tuple[float, float, float]]] = {
@@ -45,10 +54,24 @@ def way(leaves: str, arrives: str) -> Recipe:
     """Return the transition between two stances."""
     out, across, into, head = WAYS[leaves, arrives]
     first, last = NEAR[leaves], NEAR[arrives]
-    spine = tuple((a + b) / 2 - 1.0 * (i == 0) for i, (a, b) in enumerate(zip(ARMS[leaves].spine, ARMS[arrives].spine, strict=True)))
+    spine = tuple(
+        (a + b) / 2 - 1.0 * (i == 0)
+        for i, (a, b) in enumerate(zip(ARMS[leaves].spine, ARMS[arrives].spine, strict=True))
+    )
     steps: list[Step] = []
     if leaves == "hands_at_sides":
-        steps.append(go(across * 1.15, lf=last[0], rt=last[1], spine=spine, head=head, overshoot=0.0, flow=0.2, peak=0.46))
+        steps.append(
+            go(
+                across * 1.15,
+                lf=last[0],
+                rt=last[1],
+                spine=spine,
+                head=head,
+                overshoot=0.0,
+                flow=0.2,
+                peak=0.46,
+            )
+        )
     else:
         if leaves == "arms_crossed":  # the arm on top goes first
             steps.append(go(out * 0.7, rt=first[1], overshoot=0.0, flow=0.5))
@@ -63,7 +86,9 @@ def way(leaves: str, arrives: str) -> Recipe:
     if arrives == "hand_to_chin":  # while the elbow is there before the hand that carries it
         steps.append(go(into * 0.8, rt=HOME, overshoot=0.0, flow=0.5))
     steps.append(home(into * (1.25 if arrives == "hands_at_sides" else 1.0), overshoot=0.025))
-    return Recipe(f"{leaves}__to__{arrives}", "arms", "transition", leaves, arrives, tuple(steps), later="Left")
+    return Recipe(
+        f"{leaves}__to__{arrives}", "arms", "transition", leaves, arrives, tuple(steps), later="Left"
+    )
 
 
 CLIPS = tuple(way(*pair) for pair in WAYS)

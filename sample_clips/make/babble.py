@@ -2,9 +2,10 @@
 
     python -m sample_clips.make.babble
 
-A source of pulses and noise goes through four resonators in a row, whose frequencies glide from phone to phone (after Klatt 1980). It
-sounds like a machine, and need not sound like more: it is there so that a line can be heard, and seen on the lips, at once.
-Writes `lines/<name>.flac` and the phones, which are known exactly, as `lines/<name>.TextGrid`.
+A source of pulses and noise goes through four resonators in a row, whose frequencies glide from phone to
+phone (after Klatt 1980). It sounds like a machine, and need not sound like more: it is there so that a line
+can be heard, and seen on the lips, at once. Writes `lines/<name>.flac` and the phones, which are known
+exactly, as `lines/<name>.TextGrid`.
 """
 
 from __future__ import annotations
@@ -29,7 +30,9 @@ FOURTH, WIDTHS = 3500.0, (70.0, 95.0, 130.0, 250.0)  # Hz
 
 @dataclass(frozen=True)
 class Phone:
-    """Formants, Hz; how strong voice and breath are, and what hiss there is beside them: strength, middle and width, Hz; ms."""
+    """Formants, Hz; how strong voice and breath are, and what hiss there is beside them: strength, middle and
+    width, Hz; ms.
+    """
 
     formants: tuple[float, float, float]
     voice: float = 1.0
@@ -39,19 +42,33 @@ class Phone:
 
 
 PHONES: dict[str, Phone] = {
-    "AA": Phone((730, 1090, 2440), length=125), "AE": Phone((660, 1720, 2410), length=125), "AH": Phone((620, 1190, 2390), length=80),
-    "AO": Phone((570, 840, 2410), length=125), "EH": Phone((530, 1840, 2480), length=100), "ER": Phone((480, 1350, 1690), length=110),
-    "IH": Phone((390, 1990, 2550), length=75), "IY": Phone((280, 2290, 3010), length=105), "UH": Phone((440, 1020, 2240), length=75),
-    "UW": Phone((310, 870, 2240), length=110), "OH": Phone((480, 850, 2400), length=90),
-    "M": Phone((270, 1000, 2200), 0.42, length=70), "N": Phone((270, 1700, 2600), 0.42, length=65), "NG": Phone((270, 2200, 2700), 0.4),
-    "L": Phone((360, 1050, 2700), 0.6, length=65), "R": Phone((400, 1250, 1550), 0.65, length=65),
+    "AA": Phone((730, 1090, 2440), length=125),
+    "AE": Phone((660, 1720, 2410), length=125),
+    "AH": Phone((620, 1190, 2390), length=80),
+    "AO": Phone((570, 840, 2410), length=125),
+    "EH": Phone((530, 1840, 2480), length=100),
+    "ER": Phone((480, 1350, 1690), length=110),
+    "IH": Phone((390, 1990, 2550), length=75),
+    "IY": Phone((280, 2290, 3010), length=105),
+    "UH": Phone((440, 1020, 2240), length=75),
+    "UW": Phone((310, 870, 2240), length=110),
+    "OH": Phone((480, 850, 2400), length=90),
+    "M": Phone((270, 1000, 2200), 0.42, length=70),
+    "N": Phone((270, 1700, 2600), 0.42, length=65),
+    "NG": Phone((270, 2200, 2700), 0.4),
+    "L": Phone((360, 1050, 2700), 0.6, length=65),
+    "R": Phone((400, 1250, 1550), 0.65, length=65),
     "W": Phone((310, 680, 2200), 0.6, length=65),
-    "Y": Phone((280, 2200, 3000), 0.6, length=60), "HH": Phone((560, 1500, 2500), 0.0, 0.22, length=60),
-    "S": Phone((320, 1700, 2600), 0.0, 0.0, (0.34, 6300, 1600), 105), "SH": Phone((320, 1800, 2600), 0.0, 0.0, (0.34, 3000, 1200), 105),
-    "Z": Phone((300, 1700, 2600), 0.4, 0.0, (0.16, 6300, 1600), 80), "F": Phone((320, 1000, 2200), 0.0, 0.0, (0.07, 5200, 4000), 90),
-    "V": Phone((320, 1000, 2200), 0.42, 0.0, (0.035, 5200, 4000), 60), "TH": Phone((320, 1400, 2500), 0.0, 0.0, (0.06, 6000, 3500), 80),
+    "Y": Phone((280, 2200, 3000), 0.6, length=60),
+    "HH": Phone((560, 1500, 2500), 0.0, 0.22, length=60),
+    "S": Phone((320, 1700, 2600), 0.0, 0.0, (0.34, 6300, 1600), 105),
+    "SH": Phone((320, 1800, 2600), 0.0, 0.0, (0.34, 3000, 1200), 105),
+    "Z": Phone((300, 1700, 2600), 0.4, 0.0, (0.16, 6300, 1600), 80),
+    "F": Phone((320, 1000, 2200), 0.0, 0.0, (0.07, 5200, 4000), 90),
+    "V": Phone((320, 1000, 2200), 0.42, 0.0, (0.035, 5200, 4000), 60),
+    "TH": Phone((320, 1400, 2500), 0.0, 0.0, (0.06, 6000, 3500), 80),
     "DH": Phone((320, 1400, 2500), 0.42, 0.0, (0.03, 6000, 3500), 45),
-}  # fmt: skip
+}
 # Stops: a gap, voiced or not, then a burst: its strength, middle and width; and where the formants point.
 STOPS: dict[str, tuple[float, tuple[float, float, float], tuple[float, float, float]]] = {
     "B": (0.10, (0.10, 800, 900), (250, 850, 2200)), "P": (0.0, (0.22, 900, 1000), (300, 850, 2200)),
@@ -97,16 +114,23 @@ def _parts(name: str) -> list[tuple[float, Phone]]:
         return [(85.0, first), (65.0, second)]
     if name in STOPS:
         voice, burst, formants = STOPS[name]
-        return [(55.0, Phone(formants, voice)), (14.0, Phone(formants, 0.0, 0.0, burst)), (18.0, Phone(formants, 0.1, 0.1))]
+        return [
+            (55.0, Phone(formants, voice)),
+            (14.0, Phone(formants, 0.0, 0.0, burst)),
+            (18.0, Phone(formants, 0.1, 0.1)),
+        ]
     return [(PHONES[name].length, PHONES[name])]
 
 
 def _sound(rows: list[tuple[float, Phone, float]]) -> Array:
     """Synthesise phones of so many milliseconds each."""
     frames = [max(1, round(length / 1e3 * RATE / FRAME)) for length, _, _ in rows]
-    tracks = np.concatenate([
-        np.tile([*p.formants, p.voice, p.breath, *p.hiss, pitch], (count, 1)) for count, (_, p, pitch) in zip(frames, rows, strict=True)
-    ])  # fmt: skip
+    tracks = np.concatenate(
+        [
+            np.tile([*p.formants, p.voice, p.breath, *p.hiss, pitch], (count, 1))
+            for count, (_, p, pitch) in zip(frames, rows, strict=True)
+        ]
+    )
     for column, reach in ((0, 5), (1, 5), (2, 5), (3, 2), (4, 2), (5, 1), (8, 12)):
         tracks[:, column] = _smooth(tracks[:, column], reach)
     rng = np.random.default_rng(279)
@@ -119,9 +143,15 @@ def _sound(rows: list[tuple[float, Phone, float]]) -> Array:
     source = source + 0.25 * noise * each[:, 4] + 0.004 * noise * each[:, 3]
     out = np.diff(source, prepend=0.0)  # the lips radiate what changes
     for column, width in enumerate(WIDTHS):
-        out = _resonate(out, tracks[:, column] if column < 3 else np.full(len(tracks), FOURTH), np.full(len(tracks), width))
+        out = _resonate(
+            out,
+            tracks[:, column] if column < 3 else np.full(len(tracks), FOURTH),
+            np.full(len(tracks), width),
+        )
     hiss = _resonate(rng.normal(size=count), tracks[:, 6], tracks[:, 7]) * each[:, 5]
-    out = out / max(np.abs(out).max(), 1e-9) + 0.5 * hiss / max(np.abs(hiss).max(), 1e-9) * float(each[:, 5].max())
+    out = out / max(np.abs(out).max(), 1e-9) + 0.5 * hiss / max(np.abs(hiss).max(), 1e-9) * float(
+        each[:, 5].max()
+    )
     return np.asarray(0.6 * out / np.abs(out).max())
 
 
@@ -156,13 +186,19 @@ def text_grid(marks: list[tuple[float, float, str]]) -> str:
     """Return phones as a TextGrid in Praat's short format."""
     end = marks[-1][1]
     rows = [f'{start:.4f}\n{stop:.4f}\n"{name}"' for start, stop, name in marks]
-    head = f'File type = "ooTextFile"\nObject class = "TextGrid"\n\n0\n{end:.4f}\n<exists>\n1\n"IntervalTier"\n"phones"\n0\n{end:.4f}\n'
+    head = (
+        'File type = "ooTextFile"\nObject class = '
+        f'"TextGrid"\n\n0\n{end:.4f}\n<exists>\n1\n"IntervalTier"\n"phones"\n0\n{end:.4f}\n'
+    )
     return f"{head}{len(rows)}\n" + "\n".join(rows) + "\n"
 
 
 def sample_lines() -> dict[str, Line]:
     """Return the sample lines as a project beside `lines` has them."""
-    return {name: Line(text=text, audio=f"lines/{name}.flac", phones=f"lines/{name}.TextGrid") for name, text, _ in LINES}
+    return {
+        name: Line(text=text, audio=f"lines/{name}.flac", phones=f"lines/{name}.TextGrid")
+        for name, text, _ in LINES
+    }
 
 
 def main() -> None:
@@ -173,7 +209,10 @@ def main() -> None:
         samples, marks = spoken(phones)
         soundfile.write(str(FOLDER / f"{name}.flac"), np.round(samples * 32767).astype(np.int16), RATE)
         (FOLDER / f"{name}.TextGrid").write_text(text_grid(marks), "utf-8", newline="\n")
-        print(f"{name}.flac  {len(samples) / RATE:.2f} s  {(FOLDER / f'{name}.flac').stat().st_size / 1e3:.0f} kB")
+        print(
+            f"{name}.flac  {len(samples) / RATE:.2f} s  "
+            f"{(FOLDER / f'{name}.flac').stat().st_size / 1e3:.0f} kB"
+        )
 
 
 if __name__ == "__main__":

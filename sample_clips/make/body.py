@@ -1,4 +1,6 @@
-"""The body layer: where the weight is, and what hips and torso say. Thirty-six clips; the feet stay planted unless they step."""
+"""The body layer: where the weight is, and what hips and torso say. Thirty-six clips; the feet stay planted
+unless they step.
+"""
 
 from __future__ import annotations
 
@@ -16,8 +18,17 @@ from sample_clips.make.tracks import Step
 NONE: Angles = (0.0, 0.0, 0.0)
 
 
-def off(stance: str, shift: Angles = NONE, hips: Angles = NONE, spine: Angles = NONE, head: Angles = NONE, **feet: Any) -> dict[str, Any]:
-    """Return the fields of a posture that differs from the stance's by metres (left, up, forwards) and degrees."""
+def off(
+    stance: str,
+    shift: Angles = NONE,
+    hips: Angles = NONE,
+    spine: Angles = NONE,
+    head: Angles = NONE,
+    **feet: Any,
+) -> dict[str, Any]:
+    """Return the fields of a posture that differs from the stance's by metres (left, up, forwards) and
+    degrees.
+    """
     posture = BODY[stance]
     added = {"shift": shift, "hips": hips, "spine": spine, "head": head}
     return {k: tuple(np.array(getattr(posture, k)) + v) for k, v in added.items()} | feet
@@ -25,7 +36,17 @@ def off(stance: str, shift: Angles = NONE, hips: Angles = NONE, spine: Angles = 
 
 def body_clip(stance: str, kind: str, action: str, *steps: Step, tags: str = "", **more: Any) -> Recipe:
     """Return a recipe named `body_stance__action_01`."""
-    return Recipe(f"body_{stance}__{action}_01", "body", kind, stance, stance, steps, "both", tuple(tags.split()), **more)
+    return Recipe(
+        f"body_{stance}__{action}_01",
+        "body",
+        kind,
+        stance,
+        stance,
+        steps,
+        "both",
+        tuple(tags.split()),
+        **more,
+    )
 
 
 def lifted(foot: Foot, other: Foot, lift: float = 0.022, heel: float = 13.0) -> Foot:
@@ -43,7 +64,12 @@ BOTH = (
         "weight_both",
         "gesture",
         "lean_in",
-        go(0.42, **off("weight_both", (0, 0.001, 0.004), (-1, 0, 0), (-1.5, 0, 0), (1, 0, 0)), overshoot=0.0, flow=0.14),
+        go(
+            0.42,
+            **off("weight_both", (0, 0.001, 0.004), (-1, 0, 0), (-1.5, 0, 0), (1, 0, 0)),
+            overshoot=0.0,
+            flow=0.14,
+        ),
         go(0.44, hold=0.55, **off("weight_both", (0.004, -0.004, 0.012), (4, 1, 0), (7, 1, -1), (-6, 0, 1))),
         home(0.85),
         tags="interest emphasis",
@@ -53,8 +79,18 @@ BOTH = (
         "weight_both",
         "gesture",
         "bow",
-        go(0.30, **off("weight_both", (0, 0.002, 0.004), (-1, 0, 0), (-1.5, 0, 0), (-1, 0, 0)), overshoot=0.0, flow=0.06),
-        go(0.52, hold=0.32, **off("weight_both", (0, -0.008, -0.045), (9, 0, 0), (13, 0, 0), (5, 0, 0)), overshoot=0.02),
+        go(
+            0.30,
+            **off("weight_both", (0, 0.002, 0.004), (-1, 0, 0), (-1.5, 0, 0), (-1, 0, 0)),
+            overshoot=0.0,
+            flow=0.06,
+        ),
+        go(
+            0.52,
+            hold=0.32,
+            **off("weight_both", (0, -0.008, -0.045), (9, 0, 0), (13, 0, 0), (5, 0, 0)),
+            overshoot=0.02,
+        ),
         home(0.95),
         tags="greeting polite",
         likelihood=0.4,
@@ -63,7 +99,13 @@ BOTH = (
         "weight_both",
         "gesture",
         "recoil",
-        go(0.24, hold=0.34, **off("weight_both", (0.006, -0.010, -0.026), (-3, 3, 0), (-8, 4, -2), (6, -5, 2)), peak=0.38, overshoot=0.07),
+        go(
+            0.24,
+            hold=0.34,
+            **off("weight_both", (0.006, -0.010, -0.026), (-3, 3, 0), (-8, 4, -2), (6, -5, 2)),
+            peak=0.38,
+            overshoot=0.07,
+        ),
         home(1.0, peak=0.38),
         tags="surprise negative",
         likelihood=0.5,
@@ -72,7 +114,12 @@ BOTH = (
         "weight_both",
         "gesture",
         "straighten",
-        go(0.30, **off("weight_both", (0, -0.012, 0.0), (1.5, 0, 0), (4, 0, 0), (2, 0, 0)), overshoot=0.0, flow=0.08),
+        go(
+            0.30,
+            **off("weight_both", (0, -0.012, 0.0), (1.5, 0, 0), (4, 0, 0), (2, 0, 0)),
+            overshoot=0.0,
+            flow=0.08,
+        ),
         go(
             0.44,
             hold=0.42,
@@ -95,14 +142,34 @@ BOTH = (
         "weight_both",
         "fidget",
         "shift_feet",
-        go(0.36, **off("weight_both", (0.045, -0.004, 0), (0, 2, 2.5), (0, -1, -4), (0, -1, 1.5)), overshoot=0.0, flow=0.06),
+        go(
+            0.36,
+            **off("weight_both", (0.045, -0.004, 0), (0, 2, 2.5), (0, -1, -4), (0, -1, 1.5)),
+            overshoot=0.0,
+            flow=0.06,
+        ),
         go(0.20, right_foot=lifted(PLAIN, Foot(out=0.026, forwards=0.02, turn=12)), overshoot=0.0, flow=0.03),
         go(0.20, right_foot=Foot(out=0.020, forwards=0.012, turn=13), overshoot=0.0),
-        go(0.46, **off("weight_both", (-0.040, -0.004, 0.004), (0, -2, -2.5), (0, 1, 4), (0, 1, -1.5)), overshoot=0.0, flow=0.06),
+        go(
+            0.46,
+            **off("weight_both", (-0.040, -0.004, 0.004), (0, -2, -2.5), (0, 1, 4), (0, 1, -1.5)),
+            overshoot=0.0,
+            flow=0.06,
+        ),
         go(0.20, left_foot=lifted(PLAIN, PLAIN, 0.024), overshoot=0.0, flow=0.03),
         go(0.20, left_foot=PLAIN, overshoot=0.0),
-        go(0.40, **off("weight_both", (0.038, -0.004, 0.002), (0, 2, 2), (0, -1, -3), (0, -1, 1)), overshoot=0.0, flow=0.06),
-        go(0.18, right_foot=lifted(PLAIN, Foot(out=0.020, forwards=0.012, turn=13), 0.016, 9), overshoot=0.0, flow=0.03),
+        go(
+            0.40,
+            **off("weight_both", (0.038, -0.004, 0.002), (0, 2, 2), (0, -1, -3), (0, -1, 1)),
+            overshoot=0.0,
+            flow=0.06,
+        ),
+        go(
+            0.18,
+            right_foot=lifted(PLAIN, Foot(out=0.020, forwards=0.012, turn=13), 0.016, 9),
+            overshoot=0.0,
+            flow=0.03,
+        ),
         go(0.20, right_foot=HOME, overshoot=0.0, flow=0.06),
         home(0.5),
         likelihood=0.7,
@@ -111,14 +178,25 @@ BOTH = (
         "weight_both",
         "fidget",
         "knee_bounce",
-        go(0.30, **off("weight_both", (0.022, -0.003, 0), (0, 1, 1.5), (0, 0, -2), (0, 0, 0.8)), overshoot=0.0, flow=0.08),
+        go(
+            0.30,
+            **off("weight_both", (0.022, -0.003, 0), (0, 1, 1.5), (0, 0, -2), (0, 0, 0.8)),
+            overshoot=0.0,
+            flow=0.08,
+        ),
         *(
             step
             for size in (1.0, 0.85, 1.0, 0.6)
             for step in (
                 go(
                     0.17,
-                    **off("weight_both", (0.023, -0.0045 * size, 0.001), (0, 2 * size, 1.5 - size), (0, -1.2 * size, -2), (0, 0, 0.8)),
+                    **off(
+                        "weight_both",
+                        (0.023, -0.0045 * size, 0.001),
+                        (0, 2 * size, 1.5 - size),
+                        (0, -1.2 * size, -2),
+                        (0, 0, 0.8),
+                    ),
                     right_foot=replace(PLAIN, heel=9.0 * size),
                     overshoot=0.0,
                     flow=0.02,
@@ -140,9 +218,24 @@ BOTH = (
         "weight_both",
         "fidget",
         "roll_shoulders",
-        go(0.42, **off("weight_both", (0, -0.003, -0.006), (1, 0, 0), (7, -3, 2), (1, 2, 2)), overshoot=0.0, flow=0.14),
-        go(0.44, **off("weight_both", (0.003, 0, 0.0), (0, 1, 0), (1, 4, 5), (-1, -3, -3)), overshoot=0.0, flow=0.16),
-        go(0.46, **off("weight_both", (0, 0.002, 0.010), (-2, 0, 0), (-7, 1, -3), (4, 0, 2)), overshoot=0.0, flow=0.12),
+        go(
+            0.42,
+            **off("weight_both", (0, -0.003, -0.006), (1, 0, 0), (7, -3, 2), (1, 2, 2)),
+            overshoot=0.0,
+            flow=0.14,
+        ),
+        go(
+            0.44,
+            **off("weight_both", (0.003, 0, 0.0), (0, 1, 0), (1, 4, 5), (-1, -3, -3)),
+            overshoot=0.0,
+            flow=0.16,
+        ),
+        go(
+            0.46,
+            **off("weight_both", (0, 0.002, 0.010), (-2, 0, 0), (-7, 1, -3), (4, 0, 2)),
+            overshoot=0.0,
+            flow=0.12,
+        ),
         home(0.75, overshoot=0.05),
         tags="stretch",
         likelihood=0.5,
@@ -151,17 +244,42 @@ BOTH = (
         "weight_both",
         "fidget",
         "sway",
-        go(0.62, **off("weight_both", (0.020, -0.002, 0.006), (0.5, 1, 1.2), (0, -0.5, -2.2), (0, -1, 0.6)), overshoot=0.0, flow=0.08),
-        go(0.84, **off("weight_both", (-0.024, -0.003, 0.010), (1, -1.5, -1.5), (0.5, 1, 2.6), (0, 1, -0.8)), overshoot=0.0, flow=0.10),
-        go(0.62, **off("weight_both", (-0.004, -0.002, -0.010), (-0.5, -0.5, 0), (1, 0, 0.5), (0, 0, 0)), overshoot=0.0, flow=0.10),
+        go(
+            0.62,
+            **off("weight_both", (0.020, -0.002, 0.006), (0.5, 1, 1.2), (0, -0.5, -2.2), (0, -1, 0.6)),
+            overshoot=0.0,
+            flow=0.08,
+        ),
+        go(
+            0.84,
+            **off("weight_both", (-0.024, -0.003, 0.010), (1, -1.5, -1.5), (0.5, 1, 2.6), (0, 1, -0.8)),
+            overshoot=0.0,
+            flow=0.10,
+        ),
+        go(
+            0.62,
+            **off("weight_both", (-0.004, -0.002, -0.010), (-0.5, -0.5, 0), (1, 0, 0.5), (0, 0, 0)),
+            overshoot=0.0,
+            flow=0.10,
+        ),
         home(0.7),
     ),
     body_clip(
         "weight_both",
         "fidget",
         "look_down",
-        go(0.60, hold=0.55, **off("weight_both", (-0.010, -0.005, -0.012), (1, -2, -0.8), (8, -2, 2), (13, -4, -2)), overshoot=0.02),
-        go(0.40, **off("weight_both", (-0.006, -0.004, -0.008), (0.5, -1, -0.4), (4, -1, 1), (2, 3, 0)), overshoot=0.0, flow=0.14),
+        go(
+            0.60,
+            hold=0.55,
+            **off("weight_both", (-0.010, -0.005, -0.012), (1, -2, -0.8), (8, -2, 2), (13, -4, -2)),
+            overshoot=0.02,
+        ),
+        go(
+            0.40,
+            **off("weight_both", (-0.006, -0.004, -0.008), (0.5, -1, -0.4), (4, -1, 1), (2, 3, 0)),
+            overshoot=0.0,
+            flow=0.14,
+        ),
         home(0.8),
         tags="thinking sad",
         likelihood=0.5,
@@ -174,8 +292,19 @@ LEANING = (
         "weight_left",
         "gesture",
         "dip",
-        go(0.28, **off("weight_left", (0.002, 0.003, 0), (-0.5, 0, -0.5), (-2, 0, 0), (-1, 0, 0)), overshoot=0.0, flow=0.06),
-        go(0.28, hold=0.36, **off("weight_left", (0.002, -0.012, 0.006), (2, -2, 0.5), (5, -2, 0), (0, 2, 0)), peak=0.52, overshoot=0.07),
+        go(
+            0.28,
+            **off("weight_left", (0.002, 0.003, 0), (-0.5, 0, -0.5), (-2, 0, 0), (-1, 0, 0)),
+            overshoot=0.0,
+            flow=0.06,
+        ),
+        go(
+            0.28,
+            hold=0.36,
+            **off("weight_left", (0.002, -0.012, 0.006), (2, -2, 0.5), (5, -2, 0), (0, 2, 0)),
+            peak=0.52,
+            overshoot=0.07,
+        ),
         home(0.8),
         tags="emphasis",
         likelihood=1.2,
@@ -192,8 +321,18 @@ LEANING = (
         "weight_left",
         "fidget",
         "settle",
-        go(0.42, **off("weight_left", (-0.022, 0.004, 0.002), (0, -1.5, -2.2), (0, 1, 3), (0, 0.5, -1)), overshoot=0.0, flow=0.08),
-        go(0.50, hold=0.1, **off("weight_left", (0.009, -0.006, 0.0), (0, 1, 0.8), (1, -0.5, -1.2), (1, 0, 0.5)), overshoot=0.05),
+        go(
+            0.42,
+            **off("weight_left", (-0.022, 0.004, 0.002), (0, -1.5, -2.2), (0, 1, 3), (0, 0.5, -1)),
+            overshoot=0.0,
+            flow=0.08,
+        ),
+        go(
+            0.50,
+            hold=0.1,
+            **off("weight_left", (0.009, -0.006, 0.0), (0, 1, 0.8), (1, -0.5, -1.2), (1, 0, 0.5)),
+            overshoot=0.05,
+        ),
         home(0.75),
     ),
     body_clip(
@@ -229,7 +368,12 @@ LEANING = (
         "weight_right",
         "gesture",
         "dip",
-        go(0.28, **off("weight_right", (-0.002, 0.003, 0), (-0.5, 0, 0.5), (-2, 0, 0), (-1, 0, 0)), overshoot=0.0, flow=0.06),
+        go(
+            0.28,
+            **off("weight_right", (-0.002, 0.003, 0), (-0.5, 0, 0.5), (-2, 0, 0), (-1, 0, 0)),
+            overshoot=0.0,
+            flow=0.06,
+        ),
         go(
             0.27,
             hold=0.34,
@@ -245,7 +389,11 @@ LEANING = (
         "weight_right",
         "gesture",
         "lean_back",
-        go(0.56, hold=0.55, **off("weight_right", (-0.006, -0.004, 0.012), (-3, -2, -0.5), (-6, -4, 2), (5, 4, -2))),
+        go(
+            0.56,
+            hold=0.55,
+            **off("weight_right", (-0.006, -0.004, 0.012), (-3, -2, -0.5), (-6, -4, 2), (5, 4, -2)),
+        ),
         home(0.95),
         tags="doubt negative",
     ),
@@ -253,8 +401,18 @@ LEANING = (
         "weight_right",
         "fidget",
         "settle",
-        go(0.40, **off("weight_right", (0.020, 0.004, 0.002), (0, 1.5, 2.0), (0, -1, -2.8), (0, -0.5, 1)), overshoot=0.0, flow=0.08),
-        go(0.52, hold=0.1, **off("weight_right", (-0.008, -0.006, 0.0), (0, -1, -0.8), (1, 0.5, 1.2), (1, 0, -0.5)), overshoot=0.05),
+        go(
+            0.40,
+            **off("weight_right", (0.020, 0.004, 0.002), (0, 1.5, 2.0), (0, -1, -2.8), (0, -0.5, 1)),
+            overshoot=0.0,
+            flow=0.08,
+        ),
+        go(
+            0.52,
+            hold=0.1,
+            **off("weight_right", (-0.008, -0.006, 0.0), (0, -1, -0.8), (1, 0.5, 1.2), (1, 0, -0.5)),
+            overshoot=0.05,
+        ),
         home(0.75),
     ),
     body_clip(
@@ -284,8 +442,19 @@ LEANING = (
         "lean_forward",
         "gesture",
         "press_in",
-        go(0.30, **off("lean_forward", (0, 0.002, 0), (-1.5, 0, 0), (-2, 0, 0), (1, 0, 0)), overshoot=0.0, flow=0.08),
-        go(0.30, hold=0.40, **off("lean_forward", (0.003, -0.008, 0.010), (3, 1, 0), (5, 2, 0), (-4, -1, 1)), peak=0.52, overshoot=0.06),
+        go(
+            0.30,
+            **off("lean_forward", (0, 0.002, 0), (-1.5, 0, 0), (-2, 0, 0), (1, 0, 0)),
+            overshoot=0.0,
+            flow=0.08,
+        ),
+        go(
+            0.30,
+            hold=0.40,
+            **off("lean_forward", (0.003, -0.008, 0.010), (3, 1, 0), (5, 2, 0), (-4, -1, 1)),
+            peak=0.52,
+            overshoot=0.06,
+        ),
         home(0.8),
         tags="emphasis interest",
         likelihood=1.2,
@@ -294,7 +463,11 @@ LEANING = (
         "lean_forward",
         "gesture",
         "ease_back",
-        go(0.58, hold=0.50, **off("lean_forward", (-0.005, 0.005, 0.016), (-5, -1, 0), (-7, -2, 1), (8, 2, -2))),
+        go(
+            0.58,
+            hold=0.50,
+            **off("lean_forward", (-0.005, 0.005, 0.016), (-5, -1, 0), (-7, -2, 1), (8, 2, -2)),
+        ),
         home(0.95),
         tags="doubt",
     ),
@@ -302,8 +475,18 @@ LEANING = (
         "lean_forward",
         "fidget",
         "settle",
-        go(0.44, **off("lean_forward", (0.016, 0.002, 0.008), (-2, 2, 1.5), (-2, -1, -2.5), (2, -1, 1)), overshoot=0.0, flow=0.10),
-        go(0.52, hold=0.1, **off("lean_forward", (-0.012, -0.004, -0.004), (1, -1, -1), (1.5, 1, 2), (-1, 0, -1)), overshoot=0.04),
+        go(
+            0.44,
+            **off("lean_forward", (0.016, 0.002, 0.008), (-2, 2, 1.5), (-2, -1, -2.5), (2, -1, 1)),
+            overshoot=0.0,
+            flow=0.10,
+        ),
+        go(
+            0.52,
+            hold=0.1,
+            **off("lean_forward", (-0.012, -0.004, -0.004), (1, -1, -1), (1.5, 1, 2), (-1, 0, -1)),
+            overshoot=0.04,
+        ),
         home(0.75),
     ),
 )
@@ -315,7 +498,10 @@ def _feet_back(posture: Posture) -> list[Step]:
         foot = getattr(posture, side)
         if foot != PLAIN:
             up = {side: lifted(foot, PLAIN)}
-            return [go(0.16, **up, overshoot=0.0, flow=0.1), go(0.17, **{side: PLAIN}, overshoot=0.0, flow=0.4)]
+            return [
+                go(0.16, **up, overshoot=0.0, flow=0.1),
+                go(0.17, **{side: PLAIN}, overshoot=0.0, flow=0.4),
+            ]
     return []
 
 
@@ -325,7 +511,10 @@ def _feet_out(posture: Posture) -> list[Step]:
         foot = getattr(posture, side)
         if foot != PLAIN:
             up = {side: lifted(PLAIN, foot)}
-            return [go(0.16, **up, overshoot=0.0, flow=0.1), go(0.17, **{side: foot}, overshoot=0.0, flow=0.5)]
+            return [
+                go(0.16, **up, overshoot=0.0, flow=0.1),
+                go(0.17, **{side: foot}, overshoot=0.0, flow=0.5),
+            ]
     return []
 
 
@@ -338,9 +527,19 @@ def way(leaves: str, arrives: str) -> Recipe:
     steps = _feet_back(a)
     seconds = 0.52 + 1.6 * away
     across = {k: tuple((np.array(getattr(a, k)) + getattr(b, k)) / 2) for k in ("hips", "spine")}
-    steps.append(go(seconds * 0.6, shift=tuple(low), head=middle, **across, overshoot=0.0, flow=seconds * 0.25))
     steps.append(
-        go(seconds * 0.7, shift=b.shift, hips=b.hips, spine=b.spine, head=b.head, overshoot=0.04, flow=0.35 if _feet_out(b) else 0.0)
+        go(seconds * 0.6, shift=tuple(low), head=middle, **across, overshoot=0.0, flow=seconds * 0.25)
+    )
+    steps.append(
+        go(
+            seconds * 0.7,
+            shift=b.shift,
+            hips=b.hips,
+            spine=b.spine,
+            head=b.head,
+            overshoot=0.04,
+            flow=0.35 if _feet_out(b) else 0.0,
+        )
     )
     steps += _feet_out(b)
     steps.append(home(0.1, overshoot=0.0))

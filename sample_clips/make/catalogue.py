@@ -15,9 +15,10 @@ BASE = ("hands_at_sides__stance", 0)
 
 @dataclass(frozen=True)
 class Entry:
-    """One clip. layer: body, arms or head. kind: stance, gesture, fidget or transition. stance, end_stance: where it
-    begins and ends. limb: left, right or both. start, end, blend_in, blend_out: suggested timing, seconds in the clip.
-    likelihood: how often it is picked against others of its kind; 1 is usual."""
+    """One clip. layer: body, arms or head. kind: stance, gesture, fidget or transition. stance, end_stance:
+    where it begins and ends. limb: left, right or both. start, end, blend_in, blend_out: suggested timing,
+    seconds in the clip. likelihood: how often it is picked against others of its kind; 1 is usual.
+    """
 
     name: str
     layer: str
@@ -48,7 +49,9 @@ def catalogue() -> tuple[Entry, ...]:
 
 
 def _entry(recipe: Recipe) -> Entry:
-    seconds = tracks.schedule(recipe.steps, tracks.lead_of(recipe.layer))[1] if recipe.steps else recipe.seconds
+    seconds = (
+        tracks.schedule(recipe.steps, tracks.lead_of(recipe.layer))[1] if recipe.steps else recipe.seconds
+    )
     start = 0.0 if recipe.kind == "stance" else MOTION_STARTS
     blend_in, blend_out = BLENDS[recipe.kind]
     return Entry(

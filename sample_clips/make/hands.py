@@ -1,7 +1,8 @@
 """Hand shapes: how far each finger curls, as degrees an animator would type.
 
-A finger is (knuckle, middle, tip, spread): the first three curl into the palm, spread goes towards the thumb's side.
-The thumb is (oppose, abduct, middle, tip): oppose swings it in front of the palm, abduct takes it away from the index.
+A finger is (knuckle, middle, tip, spread): the first three curl into the palm, spread goes towards the
+thumb's side. The thumb is (oppose, abduct, middle, tip): oppose swings it in front of the palm, abduct takes
+it away from the index.
 """
 
 from __future__ import annotations

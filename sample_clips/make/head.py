@@ -12,14 +12,35 @@ from sample_clips.make.tracks import Step
 
 
 def head_clip(
-    stance: str, kind: str, action: str, *steps: Step, number: int = 1, limb: str = "both", tags: str = "", **more: Any
+    stance: str,
+    kind: str,
+    action: str,
+    *steps: Step,
+    number: int = 1,
+    limb: str = "both",
+    tags: str = "",
+    **more: Any,
 ) -> Recipe:
     """Return a recipe named `stance__action_01`."""
-    return Recipe(f"{stance}__{action}_{number:02d}", "head", kind, stance, stance, steps, limb, tuple(tags.split()), **more)
+    return Recipe(
+        f"{stance}__{action}_{number:02d}",
+        "head",
+        kind,
+        stance,
+        stance,
+        steps,
+        limb,
+        tuple(tags.split()),
+        **more,
+    )
 
 
-def to(stance: str, seconds: float, pitch: float = 0.0, turn: float = 0.0, lean: float = 0.0, **more: Any) -> Step:
-    """Return a step of the head by degrees from its stance; the spine goes a little of the way unless told otherwise."""
+def to(
+    stance: str, seconds: float, pitch: float = 0.0, turn: float = 0.0, lean: float = 0.0, **more: Any
+) -> Step:
+    """Return a step of the head by degrees from its stance; the spine goes a little of the way unless told
+    otherwise.
+    """
     posture = HEAD[stance]
     spine = more.pop("spine", (0.08 * pitch, 0.10 * turn, 0.08 * lean))
     head = tuple(np.array(posture.head) + (pitch, turn, lean))
@@ -27,22 +48,79 @@ def to(stance: str, seconds: float, pitch: float = 0.0, turn: float = 0.0, lean:
 
 
 def nod(
-    stance: str, depths: tuple[float, ...], quick: float = 0.19, rise: float = 2.5, turn: float = 0.0, lean: float = 0.0, **more: Any
+    stance: str,
+    depths: tuple[float, ...],
+    quick: float = 0.19,
+    rise: float = 2.5,
+    turn: float = 0.0,
+    lean: float = 0.0,
+    **more: Any,
 ) -> list[Step]:
-    """Return a nod's steps: a small lift, then down and up once for each depth (degrees), each less quick than the last."""
-    steps = [to(stance, 0.20, -rise, 0.3 * turn, 0.3 * lean, overshoot=0.0, flow=0.03, brows=more.get("brows", 0.0))]
+    """Return a nod's steps: a small lift, then down and up once for each depth (degrees), each less quick
+    than the last.
+    """
+    steps = [
+        to(
+            stance,
+            0.20,
+            -rise,
+            0.3 * turn,
+            0.3 * lean,
+            overshoot=0.0,
+            flow=0.03,
+            brows=more.get("brows", 0.0),
+        )
+    ]
     for i, depth in enumerate(depths):
         slow = 1 + 0.14 * i
         steps.append(
-            to(stance, quick * slow, depth, turn, lean, hold=more.get("hold", 0.0), overshoot=0.04, peak=0.46, lids=more.get("lids", 6.0))
+            to(
+                stance,
+                quick * slow,
+                depth,
+                turn,
+                lean,
+                hold=more.get("hold", 0.0),
+                overshoot=0.04,
+                peak=0.46,
+                lids=more.get("lids", 6.0),
+            )
         )
         if i + 1 < len(depths):
-            steps.append(to(stance, quick * slow * 1.1, -0.25 * depth, turn * 0.6, lean * 0.6, overshoot=0.0, flow=0.02, lids=1.0))
-    return [*steps, to(stance, quick * 1.5, -0.16 * depths[-1], 0.2 * turn, 0.3 * lean, overshoot=0.0, flow=0.10, lids=0.0), home(0.42)]
+            steps.append(
+                to(
+                    stance,
+                    quick * slow * 1.1,
+                    -0.25 * depth,
+                    turn * 0.6,
+                    lean * 0.6,
+                    overshoot=0.0,
+                    flow=0.02,
+                    lids=1.0,
+                )
+            )
+    return [
+        *steps,
+        to(
+            stance,
+            quick * 1.5,
+            -0.16 * depths[-1],
+            0.2 * turn,
+            0.3 * lean,
+            overshoot=0.0,
+            flow=0.10,
+            lids=0.0,
+        ),
+        home(0.42),
+    ]
 
 
-def shake(stance: str, sizes: tuple[float, ...], quick: float = 0.20, pitch: float = 2.0, lean: float = 0.0) -> list[Step]:
-    """Return a shake's steps: turns to one side and the other (degrees, left is plus), with the chin a little down."""
+def shake(
+    stance: str, sizes: tuple[float, ...], quick: float = 0.20, pitch: float = 2.0, lean: float = 0.0
+) -> list[Step]:
+    """Return a shake's steps: turns to one side and the other (degrees, left is plus), with the chin a little
+    down.
+    """
     steps = []
     for i, size in enumerate(sizes):
         first = 0.75 if i == 0 else 1.0
@@ -65,10 +143,31 @@ S = "head_straight"
 STRAIGHT = (
     Recipe("head_straight__stance", "head", "stance", S, S, seconds=6.0),
     head_clip(S, "gesture", "nod_single", *nod(S, (10.0,)), tags="positive agree", likelihood=1.4),
-    head_clip(S, "gesture", "nod_single", *nod(S, (8.0,), 0.27, 1.5, turn=-2, lean=3, hold=0.12), number=2, tags="positive acknowledge"),
+    head_clip(
+        S,
+        "gesture",
+        "nod_single",
+        *nod(S, (8.0,), 0.27, 1.5, turn=-2, lean=3, hold=0.12),
+        number=2,
+        tags="positive acknowledge",
+    ),
     head_clip(S, "gesture", "nod_double", *nod(S, (11.0, 7.5)), tags="positive agree", likelihood=1.2),
-    head_clip(S, "gesture", "nod_small", *nod(S, (4.5, 3.2), 0.17, 1.0, lean=1), tags="positive listen", likelihood=1.4),
-    head_clip(S, "gesture", "nod_emphatic", *nod(S, (16.0, 9.0, 6.5), 0.20, 4.0, brows=5.0), tags="positive emphasis", likelihood=0.7),
+    head_clip(
+        S,
+        "gesture",
+        "nod_small",
+        *nod(S, (4.5, 3.2), 0.17, 1.0, lean=1),
+        tags="positive listen",
+        likelihood=1.4,
+    ),
+    head_clip(
+        S,
+        "gesture",
+        "nod_emphatic",
+        *nod(S, (16.0, 9.0, 6.5), 0.20, 4.0, brows=5.0),
+        tags="positive emphasis",
+        likelihood=0.7,
+    ),
     head_clip(S, "gesture", "shake", *shake(S, (15, -17, 14, -10)), tags="negative disagree"),
     head_clip(S, "gesture", "shake_small", *shake(S, (6, -7, 4.5), 0.18, 1.0, 1.5), tags="negative doubt"),
     head_clip(
@@ -92,7 +191,10 @@ STRAIGHT = (
             limb={"lf": "left", "rt": "right"}[side],
             tags="thinking aside",
         )
-        for side, sign, size, down, tilt, hold in (("lf", 1, 27, 1.0, -3.0, 0.60), ("rt", -1, 24, 4.0, -4.0, 0.72))
+        for side, sign, size, down, tilt, hold in (
+            ("lf", 1, 27, 1.0, -3.0, 0.60),
+            ("rt", -1, 24, 4.0, -4.0, 0.72),
+        )
     ),
     head_clip(
         S,
@@ -111,7 +213,19 @@ STRAIGHT = (
         "double_take",
         to(S, 0.34, 3.0, 22.0, -2.0, hold=0.10, overshoot=0.02),
         to(S, 0.30, 1.0, 3.0, 0.0, hold=0.05, overshoot=0.0),
-        to(S, 0.20, -5.0, 26.0, 2.0, hold=0.50, peak=0.38, overshoot=0.07, brows=9.0, lids=-4.0, spine=(-1.5, 4.0, 0)),
+        to(
+            S,
+            0.20,
+            -5.0,
+            26.0,
+            2.0,
+            hold=0.50,
+            peak=0.38,
+            overshoot=0.07,
+            brows=9.0,
+            lids=-4.0,
+            spine=(-1.5, 4.0, 0),
+        ),
         home(0.7),
         tags="surprise",
         limb="left",
@@ -138,7 +252,12 @@ STRAIGHT = (
         limb="left",
     ),
     head_clip(
-        S, "fidget", "settle", to(S, 0.42, 3.5, -3.0, 3.0, overshoot=0.0, flow=0.1), to(S, 0.44, -1.5, 1.5, -2.0, hold=0.1), home(0.55)
+        S,
+        "fidget",
+        "settle",
+        to(S, 0.42, 3.5, -3.0, 3.0, overshoot=0.0, flow=0.1),
+        to(S, 0.44, -1.5, 1.5, -2.0, hold=0.1),
+        home(0.55),
     ),
 )
 
@@ -149,10 +268,28 @@ def tilted(stance: str, sign: int) -> tuple[Recipe, ...]:
     return (
         Recipe(f"{t}__stance", "head", "stance", t, t, seconds=5.6 if sign > 0 else 6.2),
         head_clip(
-            t, "gesture", "nod_single", *nod(t, (8.5,), 0.21, 2.0, turn=2.0 * sign, lean=-2.0 * sign), tags="positive agree", likelihood=1.3
+            t,
+            "gesture",
+            "nod_single",
+            *nod(t, (8.5,), 0.21, 2.0, turn=2.0 * sign, lean=-2.0 * sign),
+            tags="positive agree",
+            likelihood=1.3,
         ),
-        head_clip(t, "gesture", "nod_double", *nod(t, (8.0, 5.5), 0.18, 1.5, lean=-1.5 * sign), tags="positive listen", likelihood=1.2),
-        head_clip(t, "gesture", "shake_small", *shake(t, (6.5 * sign, -8.0 * sign, 5.0 * sign), 0.19, 1.5), tags="negative doubt"),
+        head_clip(
+            t,
+            "gesture",
+            "nod_double",
+            *nod(t, (8.0, 5.5), 0.18, 1.5, lean=-1.5 * sign),
+            tags="positive listen",
+            likelihood=1.2,
+        ),
+        head_clip(
+            t,
+            "gesture",
+            "shake_small",
+            *shake(t, (6.5 * sign, -8.0 * sign, 5.0 * sign), 0.19, 1.5),
+            tags="negative doubt",
+        ),
         head_clip(
             t,
             "gesture",
@@ -188,8 +325,13 @@ def way(leaves: str, arrives: str) -> Recipe:
     far = abs(b.head[2] - a.head[2])
     middle = (np.array(a.head) + b.head) / 2 + (3.0 + 0.08 * far, 0, 0)
     spine = tuple((np.array(a.spine) + b.spine) / 2)
-    steps = (go(0.30 + 0.004 * far, head=tuple(middle), spine=spine, overshoot=0.0, flow=0.14, lids=7.0), home(0.44, overshoot=0.05))
-    return Recipe(f"{leaves}__to__{arrives.removeprefix('head_')}", "head", "transition", leaves, arrives, steps)
+    steps = (
+        go(0.30 + 0.004 * far, head=tuple(middle), spine=spine, overshoot=0.0, flow=0.14, lids=7.0),
+        home(0.44, overshoot=0.05),
+    )
+    return Recipe(
+        f"{leaves}__to__{arrives.removeprefix('head_')}", "head", "transition", leaves, arrives, steps
+    )
 
 
 WAYS = tuple(way(a, b) for a in HEAD for b in HEAD if a != b)

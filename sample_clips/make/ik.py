@@ -1,7 +1,7 @@
 """Two-bone limbs that reach a target, for any number of frames at once; and the twist of a forearm.
 
-Everything about an arm is worked out for the left one in the space of the upper chest; the right one is its mirror
-image (see `rig.mirrored`).
+Everything about an arm is worked out for the left one in the space of the upper chest; the right one is its
+mirror image (see `rig.mirrored`).
 """
 
 from __future__ import annotations
@@ -38,11 +38,13 @@ def frame(along: Any, side: Any) -> Array:
 _ARM_REST = rotation.conjugate(frame(ARM_AXIS, PALM))
 
 
-def two_bones(root: Array, target: Array, pole: Array, upper: float, lower: float) -> tuple[Array, Array, Array]:
+def two_bones(
+    root: Array, target: Array, pole: Array, upper: float, lower: float
+) -> tuple[Array, Array, Array]:
     """Return the directions of both bones and the axis the middle joint bends about, each `[..., 3]`.
 
-    root, target: where the limb begins and should end. pole: the direction in which the middle joint sticks out.
-    A target out of reach is reached for.
+    root, target: where the limb begins and should end. pole: the direction in which the middle joint sticks
+    out. A target out of reach is reached for.
     """
     to = np.asarray(target, float) - root
     distance = np.linalg.norm(to, axis=-1, keepdims=True)
@@ -58,24 +60,34 @@ def two_bones(root: Array, target: Array, pole: Array, upper: float, lower: floa
 
 
 def arm(wrist: Any, pole: Any, collar: Any) -> tuple[Array, Array, Array]:
-    """Return local rotations of the left upper arm and forearm, and the forearm's in the chest's space, each `[..., 4]`.
+    """Return local rotations of the left upper arm and forearm, and the forearm's in the chest's space, each
+    `[..., 4]`.
 
-    wrist: its place from the upper chest's joint, metres. pole: where the elbow points. collar: the collarbone's rotation.
+    wrist: its place from the upper chest's joint, metres. pole: where the elbow points. collar: the
+    collarbone's rotation.
     """
     root = _COLLAR + rotation.rotate(collar, _SHOULDER)
     first, second, hinge = two_bones(root, np.asarray(wrist, float), np.asarray(pole, float), _UPPER, _LOWER)
     upper = rotation.multiply(frame(first, hinge), _ARM_REST)
     lower = rotation.multiply(frame(second, hinge), _ARM_REST)
-    return rotation.multiply(rotation.conjugate(collar), upper), rotation.multiply(rotation.conjugate(upper), lower), lower
+    return (
+        rotation.multiply(rotation.conjugate(collar), upper),
+        rotation.multiply(rotation.conjugate(upper), lower),
+        lower,
+    )
 
 
 def raised(lift: Any, forwards: Any) -> Array:
-    """Return the left collarbone's rotation `[..., 4]` that raises the shoulder and brings it forwards by degrees."""
+    """Return the left collarbone's rotation `[..., 4]` that raises the shoulder and brings it forwards by
+    degrees.
+    """
     return rotation.multiply(about((0, 1, 0), -np.asarray(forwards, float)), about((0, 0, 1), lift))
 
 
 def collarbone(upper: Any, collar: Any, shrug: float = 0.0, reach: float = 0.0) -> Array:
-    """Return how the left collarbone follows an upper arm: it rises with it and comes forwards when it reaches across."""
+    """Return how the left collarbone follows an upper arm: it rises with it and comes forwards when it
+    reaches across.
+    """
     direction = rotation.rotate(rotation.multiply(collar, upper), ARM_AXIS)
     angle = np.degrees(np.arccos(np.clip(-direction[..., 1], -1, 1)))  # of the upper arm from hanging
     lift = shrug + 0.16 * np.maximum(0, angle - 32)
@@ -91,12 +103,16 @@ def twist_of(q: Any, axis: Any) -> Array:
 
 
 def share_twist(lower: Any, hand: Any) -> tuple[Array, Array]:
-    """Move most of the hand's turning about the forearm into the forearm; both are left local rotations `[..., 4]`."""
+    """Move most of the hand's turning about the forearm into the forearm; both are left local rotations
+    `[..., 4]`.
+    """
     twist = rotation.power(twist_of(hand, ARM_AXIS), FOREARM_SHARE)
     return rotation.multiply(lower, twist), rotation.multiply(rotation.conjugate(twist), hand)
 
 
-def leg(side: str, hips: Array, hips_place: Array, ankle: Array, knee: Array, foot: Array) -> tuple[Array, Array, Array]:
+def leg(
+    side: str, hips: Array, hips_place: Array, ankle: Array, knee: Array, foot: Array
+) -> tuple[Array, Array, Array]:
     """Return local rotations of thigh, shin and foot, each `[..., 4]`.
 
     hips, hips_place: the pelvis in model space. ankle: where it should be. knee: where the knee points.
@@ -110,7 +126,11 @@ def leg(side: str, hips: Array, hips_place: Array, ankle: Array, knee: Array, fo
     thigh = rotation.multiply(frame(first, hinge), rotation.conjugate(frame(offsets[1], x_axis)))
     shin = rotation.multiply(frame(second, hinge), rotation.conjugate(frame(offsets[2], x_axis)))
     inverse = rotation.conjugate
-    return rotation.multiply(inverse(hips), thigh), rotation.multiply(inverse(thigh), shin), rotation.multiply(inverse(shin), foot)
+    return (
+        rotation.multiply(inverse(hips), thigh),
+        rotation.multiply(inverse(thigh), shin),
+        rotation.multiply(inverse(shin), foot),
+    )
 
 
 BALL = {side: REST[at(side + "Toes")] for side in ("Left", "Right")}

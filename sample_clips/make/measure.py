@@ -1,4 +1,6 @@
-"""Numbers that tell whether a clip could be a person's: speeds, jumps, sliding feet, hands inside the body, wrists past their limits."""
+"""Numbers that tell whether a clip could be a person's: speeds, jumps, sliding feet, hands inside the body,
+wrists past their limits.
+"""
 
 from __future__ import annotations
 
@@ -29,11 +31,12 @@ TORSO = (
 
 @dataclass(frozen=True)
 class Measures:
-    """hand_speed: m/s, peak of either wrist. turn_speed, turn_jerkiness: deg/s peak of any joint, and the largest change of it
-    between two frames. slide: metres a planted foot's ball moves. inside: metres a hand, wrist or forearm is inside the
-    torso (negative: its nearest distance). together: the nearest the two forearms come, metres.
-    wrist: degrees (most bent to the palm, most bent back, most to the thumb, most to the little finger).
-    turned: degrees the palm is turned up and down. elbow: degrees (least, most) bent."""
+    """hand_speed: m/s, peak of either wrist. turn_speed, turn_jerkiness: deg/s peak of any joint, and the
+    largest change of it between two frames. slide: metres a planted foot's ball moves. inside: metres a hand,
+    wrist or forearm is inside the torso (negative: its nearest distance). together: the nearest the two
+    forearms come, metres. wrist: degrees (most bent to the palm, most bent back, most to the thumb, most to
+    the little finger). turned: degrees the palm is turned up and down. elbow: degrees (least, most) bent.
+    """
 
     hand_speed: float
     turn_speed: float
@@ -80,7 +83,10 @@ def measure(clip: Clip) -> Measures:
     turning = rotation.log(rotation.multiply(rotation.conjugate(local[:-1]), local[1:])) * (180 / np.pi) * FPS
     inside, wrist, turned, elbow = [], [], [], []
     for side in SIDES:
-        points = [p[:, at(side + "LowerArm")] * (1 - f) + p[:, at(side + "Hand")] * f for f in (0.0, 0.33, 0.67, 1.0)]
+        points = [
+            p[:, at(side + "LowerArm")] * (1 - f) + p[:, at(side + "Hand")] * f
+            for f in (0.0, 0.33, 0.67, 1.0)
+        ]
         points += [p[:, at(f"{side}{finger}{bone}")] for finger in FINGERS for bone in (1, 3)]
         radii = np.array([0.036, 0.034, 0.030, 0.022] + [0.010] * 10)
         inside.append((_inside_torso(np.stack(points, 1), r, p) + radii).max())
@@ -95,10 +101,14 @@ def measure(clip: Clip) -> Measures:
         turned.append(-np.degrees((rotation.log(lower_twist) + rotation.log(twist)) @ ARM_AXIS))
         wrist.append((swing @ np.cross(ARM_AXIS, PALM), swing @ PALM))
     feet = p[:, [at("LeftToes"), at("RightToes")]]
-    planted = (feet[..., 1] < feet[..., 1].min() + 0.0015)[:-1] & (feet[..., 1] < feet[..., 1].min() + 0.0015)[1:]
+    planted = (feet[..., 1] < feet[..., 1].min() + 0.0015)[:-1] & (
+        feet[..., 1] < feet[..., 1].min() + 0.0015
+    )[1:]
     slide = np.where(planted, np.linalg.norm(np.diff(feet[..., [0, 2]], axis=0), axis=-1), 0).max(initial=0)
     bend, sideways = (np.stack([w[i] for w in wrist]) for i in (0, 1))
-    together = _segments(p[:, at("LeftLowerArm")], p[:, at("LeftHand")], p[:, at("RightLowerArm")], p[:, at("RightHand")])
+    together = _segments(
+        p[:, at("LeftLowerArm")], p[:, at("LeftHand")], p[:, at("RightLowerArm")], p[:, at("RightHand")]
+    )
     return Measures(
         hand_speed=float(speed.max(initial=0)),
         turn_speed=float(np.linalg.norm(turning, axis=-1).max(initial=0)),

@@ -13,12 +13,26 @@ BEAT = READY.moved(0.012, -0.085, 0.05, bend=20, turn=4)
 BIG_READY = Hand(at=(0.265, 1.275, 0.235), turn=-4, bend=-16, shape="open", elbow=WIDE)
 BIG_BEAT = Hand(at=(0.285, 1.085, 0.335), turn=18, bend=8, shape="flat", elbow=LOW)
 OPEN_PALM = Hand(at=(0.315, 1.105, 0.275), turn=64, bend=-10, side=-6, shape="open", elbow=LOW)
-SHRUGGED = Hand(at=(0.345, 1.185, 0.205), turn=84, bend=-26, side=-8, shape="spread", elbow=(0.35, -0.85, -0.45), shrug=11)
+SHRUGGED = Hand(
+    at=(0.345, 1.185, 0.205), turn=84, bend=-26, side=-8, shape="spread", elbow=(0.35, -0.85, -0.45), shrug=11
+)
 POINT_YOU = Hand(at=(0.145, 1.225, 0.425), turn=-38, bend=-4, shape="point", elbow=(0.6, -0.75, 0.0))
 POINT_COCKED = Hand(at=(0.205, 1.255, 0.235), turn=-20, bend=-18, shape="loose_point", elbow=LOW)
-POINT_ME = Hand(at=(0.112, 1.215, 0.205), fingers=(-0.90, 0.18, -0.40), palm=(0.37, 0.05, -0.93), shape="loose_point", elbow=WIDE)
+POINT_ME = Hand(
+    at=(0.112, 1.215, 0.205),
+    fingers=(-0.90, 0.18, -0.40),
+    palm=(0.37, 0.05, -0.93),
+    shape="loose_point",
+    elbow=WIDE,
+)
 POINT_ASIDE = Hand(at=(0.475, 1.255, 0.185), turn=-22, bend=-5, shape="point", elbow=(0.3, -0.85, -0.4))
-ON_HEART = Hand(at=(0.039, 1.244, 0.121), fingers=(-0.915, 0.38, -0.133), palm=(-0.106, 0.013, -0.994), shape="flat", elbow=WIDE)
+ON_HEART = Hand(
+    at=(0.039, 1.244, 0.121),
+    fingers=(-0.915, 0.38, -0.133),
+    palm=(-0.106, 0.013, -0.994),
+    shape="flat",
+    elbow=WIDE,
+)
 COUNTING = Hand(at=(0.225, 1.360, 0.195), turn=-58, bend=-6, shape="fist", elbow=(0.45, -0.85, -0.1))
 WAVING = Hand(at=(0.325, 1.480, 0.150), turn=-74, bend=-10, shape="spread", elbow=(0.75, -0.65, -0.1))
 STOPPING = Hand(at=(0.165, 1.265, 0.385), turn=-70, bend=-58, shape="flat", elbow=(0.7, -0.7, 0.0))

@@ -1,8 +1,9 @@
 """A posture as an animator describes it, and its joints' rotations.
 
-Hands are placed in the space of the chest, but in the numbers of the whole figure at rest: (out, up, forwards) in
-metres, where out is the hand's own side, up is height above the floor (hip bone 1.0, belly 1.1, chest 1.3, chin 1.48)
-and forwards is from the body's middle. The same `Hand` therefore serves either side, and leans with the torso.
+Hands are placed in the space of the chest, but in the numbers of the whole figure at rest: (out, up,
+forwards) in metres, where out is the hand's own side, up is height above the floor (hip bone 1.0, belly 1.1,
+chest 1.3, chin 1.48) and forwards is from the body's middle. The same `Hand` therefore serves either side,
+and leans with the torso.
 """
 
 from __future__ import annotations
@@ -14,7 +15,21 @@ import numpy as np
 
 from metagraph.motion import rotation
 from sample_clips.make import hands, ik
-from sample_clips.make.rig import ARM_AXIS, JOINTS, NECK, PALM, REST, SIDES, SPINE, Angles, Array, about, at, mirrored, turned
+from sample_clips.make.rig import (
+    ARM_AXIS,
+    JOINTS,
+    NECK,
+    PALM,
+    REST,
+    SIDES,
+    SPINE,
+    Angles,
+    Array,
+    about,
+    at,
+    mirrored,
+    turned,
+)
 
 SPINE_SHARE = (0.28, 0.36, 0.36)  # how a bend of the whole spine falls on Spine, Chest, UpperChest
 NECK_SHARE = (0.42, 0.58)  # and one of the head on Neck, Head
@@ -26,9 +41,10 @@ class Hand:
     """One hand: where its wrist is, and how it is held.
 
     at: the wrist's (out, up, forwards), metres. turn: degrees the palm turns up from thumb-up (minus: down).
-    bend: degrees the wrist bends to the palm (minus: back). side: degrees towards the thumb (minus: the little finger).
-    fingers, palm: directions (out, up, forwards) that replace turn, bend and side. elbow: where the elbow points.
-    shape: of the fingers. shrug, reach: degrees the shoulder is raised, and brought forwards.
+    bend: degrees the wrist bends to the palm (minus: back). side: degrees towards the thumb (minus: the
+    little finger). fingers, palm: directions (out, up, forwards) that replace turn, bend and side. elbow:
+    where the elbow points. shape: of the fingers. shrug, reach: degrees the shoulder is raised, and brought
+    forwards.
     """
 
     at: tuple[float, float, float]
@@ -43,15 +59,23 @@ class Hand:
     palm: tuple[float, float, float] | None = None
 
     def moved(self, out: float = 0.0, up: float = 0.0, forwards: float = 0.0, **changes: Any) -> Hand:
-        """Return the hand moved by metres, with other fields changed; turn, bend, side, shrug and reach are added to."""
-        added = {k: getattr(self, k) + v for k, v in changes.items() if k in ("turn", "bend", "side", "shrug", "reach")}
+        """Return the hand moved by metres, with other fields changed; turn, bend, side, shrug and reach are
+        added to.
+        """
+        added = {
+            k: getattr(self, k) + v
+            for k, v in changes.items()
+            if k in ("turn", "bend", "side", "shrug", "reach")
+        }
         x, y, z = self.at
         return replace(self, at=(x + out, y + up, z + forwards), **{**changes, **added})
 
 
 @dataclass(frozen=True)
 class Foot:
-    """One foot: the ball's shift from rest (out, forwards; metres), lift (m), turn outwards and heel raise (degrees)."""
+    """One foot: the ball's shift from rest (out, forwards; metres), lift (m), turn outwards and heel raise
+    (degrees).
+    """
 
     out: float = 0.012
     forwards: float = 0.0
@@ -62,8 +86,9 @@ class Foot:
 
 @dataclass(frozen=True)
 class Posture:
-    """The whole figure. spine, head, hips: (pitch, turn, lean) degrees. shift: the hips' (left, up, forwards) from rest,
-    metres. brows: degrees raised; lids: degrees closed."""
+    """The whole figure. spine, head, hips: (pitch, turn, lean) degrees. shift: the hips' (left, up, forwards)
+    from rest, metres. brows: degrees raised; lids: degrees closed.
+    """
 
     left: Hand
     right: Hand
@@ -80,7 +105,9 @@ class Posture:
 def elbow_of(hand: Hand) -> tuple[Array, float]:
     """Return where a hand's elbow is, (out, up, forwards) in metres, and how far the wrist is from it."""
     collar, upper, _ = (arm_rotations(hand)[name] for name in ("Shoulder", "UpperArm", "LowerArm"))
-    shoulder = REST[at("LeftShoulder")] + rotation.rotate(collar, REST[at("LeftUpperArm")] - REST[at("LeftShoulder")])
+    shoulder = REST[at("LeftShoulder")] + rotation.rotate(
+        collar, REST[at("LeftUpperArm")] - REST[at("LeftShoulder")]
+    )
     bone = REST[at("LeftLowerArm")] - REST[at("LeftUpperArm")]
     elbow = shoulder + rotation.rotate(rotation.multiply(collar, upper), bone)
     return elbow, float(np.linalg.norm(np.array(hand.at) - elbow))
@@ -95,17 +122,28 @@ def arm_rotations(hand: Hand) -> dict[str, Array]:
         collar = ik.collarbone(upper, collar, hand.shrug, hand.reach)
     upper, lower, forearm = ik.arm(wrist, hand.elbow, collar)
     if hand.fingers is not None and hand.palm is not None:
-        aim = rotation.multiply(ik.frame(np.array(hand.fingers), np.array(hand.palm)), rotation.conjugate(ik.frame(ARM_AXIS, PALM)))
+        aim = rotation.multiply(
+            ik.frame(np.array(hand.fingers), np.array(hand.palm)),
+            rotation.conjugate(ik.frame(ARM_AXIS, PALM)),
+        )
         turn = rotation.multiply(rotation.conjugate(forearm), aim)
     else:
         bent = rotation.multiply(about(np.cross(ARM_AXIS, PALM), hand.bend), about(PALM, hand.side))
         turn = rotation.multiply(about(ARM_AXIS, -hand.turn), bent)
     lower, turn = ik.share_twist(lower, turn)
-    return {"Shoulder": collar, "UpperArm": upper, "LowerArm": lower, "Hand": turn, **hands.finger_rotations(hand.shape)}
+    return {
+        "Shoulder": collar,
+        "UpperArm": upper,
+        "LowerArm": lower,
+        "Hand": turn,
+        **hands.finger_rotations(hand.shape),
+    }
 
 
 def solve(posture: Posture) -> Array:
-    """Return local rotations `[J, 4]` of everything but the legs, which `channels` and `legs` place frame by frame."""
+    """Return local rotations `[J, 4]` of everything but the legs, which `channels` and `legs` place frame by
+    frame.
+    """
     out = rotation.identity((JOINTS,))
     out[at("Hips")] = turned(posture.hips)
     for names, shares, angles in ((SPINE, SPINE_SHARE, posture.spine), (NECK, NECK_SHARE, posture.head)):
@@ -122,11 +160,15 @@ def solve(posture: Posture) -> Array:
 def channels(posture: Posture) -> Array:
     """Return what is interpolated as plain numbers `[13]`: the hips' shift and both feet."""
     feet = (posture.left_foot, posture.right_foot)
-    return np.array([*posture.shift, *(v for f in feet for v in (f.out, f.forwards, f.turn, f.lift, f.heel))], float)
+    return np.array(
+        [*posture.shift, *(v for f in feet for v in (f.out, f.forwards, f.turn, f.lift, f.heel))], float
+    )
 
 
 def legs(rotations: Array, numbers: Array) -> tuple[Array, Array]:
-    """Place the legs: return `rotations [F, J, 4]` with feet where `numbers [F, 13]` say, and the root's places `[F, 3]`."""
+    """Place the legs: return `rotations [F, J, 4]` with feet where `numbers [F, 13]` say, and the root's
+    places `[F, 3]`.
+    """
     out = rotations.copy()
     root = REST[0] + numbers[:, :3]
     hips = out[:, 0]

@@ -1,4 +1,6 @@
-"""The two sample projects: a finished one, and one whose clips wait to be labelled. `python -m sample_clips.make.projects`."""
+"""The two sample projects: a finished one, and one whose clips wait to be labelled. `python -m
+sample_clips.make.projects`.
+"""
 
 from __future__ import annotations
 
@@ -50,7 +52,9 @@ GREETING = a.Performance(
 
 
 def practice() -> Project:
-    """Return a project of all clips, none of them placed; its base pose is chosen, since practice is about dropping."""
+    """Return a project of all clips, none of them placed; its base pose is chosen, since practice is about
+    dropping.
+    """
     empty = Project(name="practice")
     imported = import_files(empty, HERE, [HERE / "clips"])
     if imported.failures:
@@ -62,7 +66,9 @@ def practice() -> Project:
 
 
 def sample() -> Project:
-    """Return the finished project: every clip of the catalogue placed with its timing, tags and likelihood, and a few lines to say."""
+    """Return the finished project: every clip of the catalogue placed with its timing, tags and likelihood,
+    and a few lines to say.
+    """
     project = edits.rename_project(practice(), "sample")
     clips = {c.name: c.id for c in project.clips.values()}
     entries = catalogue()
@@ -75,7 +81,10 @@ def sample() -> Project:
             ids[(layer, name)] = list(project.graphs[layer].stances)[-1]
     for entry in sorted(entries, key=lambda e: ("stance", "gesture", "fidget", "transition").index(e.kind)):
         project = _place(project, entry, clips[entry.name], ids)
-    lines = {name: msgspec.structs.replace(line, asks=WITH_LINES.get(name, ())) for name, line in sample_lines().items()}
+    lines = {
+        name: msgspec.structs.replace(line, asks=WITH_LINES.get(name, ()))
+        for name, line in sample_lines().items()
+    }
     project = staging.add_performance(replace(project, lines=lines), GREETING)[0]
     return add_conversation(project, conversation())[0]
 
@@ -84,7 +93,10 @@ def conversation() -> Conversation:
     """Return the sample conversation as it is read from its sound and words (see `make.talk`)."""
     folder = HERE / "conversation"
     read = read_conversation([folder / "talk.ogg"], [folder / "talk.json"], HERE, "Office").conversation
-    sides = tuple(msgspec.structs.replace(side, name=name) for side, name in zip(read.sides, ("Ada", "Ben"), strict=True))
+    sides = tuple(
+        msgspec.structs.replace(side, name=name)
+        for side, name in zip(read.sides, ("Ada", "Ben"), strict=True)
+    )
     return msgspec.structs.replace(read, sides=sides)
 
 

@@ -23,9 +23,9 @@ HOME: Any = object()
 class Recipe:
     """One clip. kind: stance, gesture, fidget or transition. stance, end: where it begins and ends.
 
-    limb: left, right or both. tags: what it means. seconds: a stance's length. drag: how loosely the hands follow.
-    life: how much the holds move. later: the arm that is a little late.
-    together: neither is. pins: (side, joint) pairs, hands kept where they lie on a joint, in place of the stance's.
+    limb: left, right or both. tags: what it means. seconds: a stance's length. drag: how loosely the hands
+    follow. life: how much the holds move. later: the arm that is a little late. together: neither is. pins:
+    (side, joint) pairs, hands kept where they lie on a joint, in place of the stance's.
     """
 
     name: str
@@ -46,7 +46,9 @@ class Recipe:
 
 
 def go(seconds: float, hold: float = 0.0, **change: Any) -> Step:
-    """Return a step; `rt`, `lf`, `spine`, `head`, `hips` ... change the posture, the rest are the step's own fields."""
+    """Return a step; `rt`, `lf`, `spine`, `head`, `hips` ... change the posture, the rest are the step's own
+    fields.
+    """
     own = {f.name for f in fields(Step)} - {"seconds", "change", "hold"}
     short = {"rt": "right", "lf": "left", "rt_foot": "right_foot", "lf_foot": "left_foot"}
     named = {short.get(k, k): v for k, v in change.items() if k not in own}
@@ -55,17 +57,25 @@ def go(seconds: float, hold: float = 0.0, **change: Any) -> Step:
 
 def home(seconds: float = 0.75, **timing: Any) -> Step:
     """Return the step back to the stance, everything at once."""
-    return Step(seconds, {f.name: HOME for f in fields(Posture)}, **{"peak": 0.44, "overshoot": 0.02, **timing})
+    return Step(
+        seconds, {f.name: HOME for f in fields(Posture)}, **{"peak": 0.44, "overshoot": 0.02, **timing}
+    )
 
 
 def counter(posture: Posture, stance: Posture) -> Posture:
-    """Let the torso answer the hands: it turns with the one in front, leans from the one raised; the head half undoes it."""
+    """Let the torso answer the hands: it turns with the one in front, leans from the one raised; the head
+    half undoes it.
+    """
     left = np.array(posture.left.at) - stance.left.at
     right = np.array(posture.right.at) - stance.right.at
     forwards, raised = right[2] - left[2], right[1] - left[1]
     turn = float(np.clip(9.0 * forwards, -5, 5))
     lean = float(np.clip(-5.0 * raised, -3, 3))
-    pitch = float(np.clip(1.5 - 7.0 * min(left[1], right[1]), -2.5, 1.5)) if left[1] > 0.05 and right[1] > 0.05 else 0.0
+    pitch = (
+        float(np.clip(1.5 - 7.0 * min(left[1], right[1]), -2.5, 1.5))
+        if left[1] > 0.05 and right[1] > 0.05
+        else 0.0
+    )
     spine = tuple(np.array(posture.spine) + (pitch, turn, lean))
     head = tuple(np.array(posture.head) + (-0.7 * pitch, -0.75 * turn, -0.45 * lean))
     return replace(posture, spine=spine, head=head)  # type: ignore[arg-type]
@@ -79,7 +89,11 @@ def postures_of(recipe: Recipe) -> list[Posture]:
         change: Mapping[str, Any] = {k: getattr(last, k) if v is HOME else v for k, v in step.change.items()}
         now = replace(now, **change)
         is_home = now in (first, last)
-        out.append(counter(now, last if recipe.kind == "transition" else first) if recipe.layer == "arms" and not is_home else now)
+        out.append(
+            counter(now, last if recipe.kind == "transition" else first)
+            if recipe.layer == "arms" and not is_home
+            else now
+        )
     if now != last:
         raise ValueError(f"{recipe.name} does not end in its stance")
     return out
@@ -87,11 +101,20 @@ def postures_of(recipe: Recipe) -> list[Posture]:
 
 LIFE = {  # degrees of drift in a stance, by layer; gestures drift a little less
     "arms": {"Spine": 0.35, "Chest": 0.45, "UpperChest": 0.5, "Neck": 0.5, "Head": 0.8}
-    | {s + j: d for s in SIDES for j, d in (("Shoulder", 0.35), ("UpperArm", 0.45), ("LowerArm", 0.55), ("Hand", 1.1))},
+    | {
+        s + j: d
+        for s in SIDES
+        for j, d in (("Shoulder", 0.35), ("UpperArm", 0.45), ("LowerArm", 0.55), ("Hand", 1.1))
+    },
     "head": {"Chest": 0.12, "UpperChest": 0.2, "Neck": 0.7, "Head": 1.0},
     "body": {"Hips": 0.35, "Spine": 0.45, "Chest": 0.5, "UpperChest": 0.5, "Neck": 0.4, "Head": 0.55},
 }
-FINGER_LIFE = {s + f + b: d for s in SIDES for f in ("Thumb", "Index", "Middle", "Ring", "Little") for b, d in (("1", 1.2), ("2", 1.6))}
+FINGER_LIFE = {
+    s + f + b: d
+    for s in SIDES
+    for f in ("Thumb", "Index", "Middle", "Ring", "Little")
+    for b, d in (("1", 1.2), ("2", 1.6))
+}
 STILL_HANDS = {"arms_crossed", "hands_clasped", "hand_to_chin", "on_hips"}  # hands that rest on something
 
 
@@ -116,7 +139,9 @@ def drifts(recipe: Recipe) -> dict[str, float]:
 
 
 def animate(recipe: Recipe) -> Clip:
-    """Return the clip. It begins and ends exactly in its stances, and moves only the joints its layer reaches."""
+    """Return the clip. It begins and ends exactly in its stances, and moves only the joints its layer
+    reaches.
+    """
     postures = postures_of(recipe)
     if recipe.steps:
         moves, seconds = tracks.schedule(recipe.steps, tracks.lead_of(recipe.layer))
@@ -126,7 +151,11 @@ def animate(recipe: Recipe) -> Clip:
     times = np.arange(frames) / FPS
     seed = tracks.seed_of(recipe.name)
     later = recipe.later or ("Left" if seed % 2 else "Right")
-    lags = tracks.lag_array(recipe.layer, later, (0.02 + 0.04 * (seed % 97) / 97) if recipe.limb == "both" and not recipe.together else 0.0)
+    lags = tracks.lag_array(
+        recipe.layer,
+        later,
+        (0.02 + 0.04 * (seed % 97) / 97) if recipe.limb == "both" and not recipe.together else 0.0,
+    )
     rotations, numbers = tracks.blend(postures, moves, times, lags)
     rotations = secondary.life(rotations, seed, drifts(recipe), recipe.kind == "stance")
     if recipe.layer == "arms":
@@ -150,7 +179,9 @@ def _arms(recipe: Recipe, rotations: Array) -> Array:
     if recipe.pins is not None or recipe.stance != recipe.end:
         pins = recipe.pins or ()
     else:
-        moved = {side for side in SIDES for step in recipe.steps if step.change.get(side.lower(), HOME) is not HOME}
+        moved = {
+            side for side in SIDES for step in recipe.steps if step.change.get(side.lower(), HOME) is not HOME
+        }
         pins = tuple((side, joint) for side, joint in PINS.get(recipe.stance, ()) if side not in moved)
     for side, joint in pins:
         rotations = secondary.pin(rotations, side, joint)

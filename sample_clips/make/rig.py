@@ -1,7 +1,7 @@
 """The mannequin's joints by name, its measures, and the few rotation helpers every module here shares.
 
-Angles are degrees throughout `sample_clips.make`, in the order (pitch, turn, lean): pitch bends forwards, turn goes to
-the character's left, lean tips to its right.
+Angles are degrees throughout `sample_clips.make`, in the order (pitch, turn, lean): pitch bends forwards,
+turn goes to the character's left, lean tips to its right.
 """
 
 from __future__ import annotations

@@ -1,6 +1,8 @@
-"""Sculpting with distance fields: shapes, their smooth union, and a triangle mesh of the size each place deserves.
+"""Sculpting with distance fields: shapes, their smooth union, and a triangle mesh of the size each place
+deserves.
 
-A field is a function of points `[N, 3]` (metres) to signed distances `[N]`, negative inside. Everything is deterministic.
+A field is a function of points `[N, 3]` (metres) to signed distances `[N]`, negative inside. Everything is
+deterministic.
 """
 
 from __future__ import annotations
@@ -21,9 +23,15 @@ def _v(x: Sequence[float] | Array) -> Array:
 
 
 def cone(
-    a: Sequence[float] | Array, b: Sequence[float] | Array, ra: float, rb: float, flat: Sequence[float] | Array | None = None
+    a: Sequence[float] | Array,
+    b: Sequence[float] | Array,
+    ra: float,
+    rb: float,
+    flat: Sequence[float] | Array | None = None,
 ) -> Field:
-    """A rod from `a` to `b` with round ends of radii `ra`, `rb`. flat: scale of the space across, such as (1, 1, 1.2)."""
+    """A rod from `a` to `b` with round ends of radii `ra`, `rb`. flat: scale of the space across, such as (1,
+    1, 1.2).
+    """
     a, b = _v(a), _v(b)
     scale = np.ones(3) if flat is None else _v(flat)
 
@@ -41,7 +49,9 @@ def rods(points: Sequence[Sequence[float] | Array], radii: Sequence[float], k: f
     return union([cone(points[i], points[i + 1], radii[i], radii[i + 1]) for i in range(len(points) - 1)], k)
 
 
-def ellipsoid(centre: Sequence[float] | Array, radii: Sequence[float] | Array, turn: Array | None = None) -> Field:
+def ellipsoid(
+    centre: Sequence[float] | Array, radii: Sequence[float] | Array, turn: Array | None = None
+) -> Field:
     """turn: `[3, 3]` whose rows are the ellipsoid's axes."""
     c, r = _v(centre), _v(radii)
 
@@ -53,7 +63,9 @@ def ellipsoid(centre: Sequence[float] | Array, radii: Sequence[float] | Array, t
     return field
 
 
-def box(centre: Sequence[float] | Array, half: Sequence[float] | Array, round_: float, turn: Array | None = None) -> Field:
+def box(
+    centre: Sequence[float] | Array, half: Sequence[float] | Array, round_: float, turn: Array | None = None
+) -> Field:
     """A box with edges rounded by `round_`; `half` sizes include the rounding."""
     c, h = _v(centre), _v(half) - round_
 
@@ -70,7 +82,9 @@ def plane(point: Sequence[float] | Array, normal: Sequence[float] | Array) -> Fi
     return lambda p: np.asarray((p - c) @ n)
 
 
-def torus(centre: Sequence[float], normal: Sequence[float], radii: tuple[float, float], minor: float) -> Field:
+def torus(
+    centre: Sequence[float], normal: Sequence[float], radii: tuple[float, float], minor: float
+) -> Field:
     """A ring; `radii` are its half widths along X and across it."""
     c, n = _v(centre), _v(normal) / np.linalg.norm(_v(normal))
     x = np.array([1.0, 0, 0])
@@ -132,7 +146,8 @@ def gradient(field: Field, points: Array, step: float = 4e-4) -> Array:
 
 
 def polygonise(field: Field, low: Sequence[float], high: Sequence[float], cell: float) -> tuple[Array, Array]:
-    """Return positions `[V, 3]` and triangles `[N, 3]` of the zero surface: one vertex in each cell it passes (surface nets).
+    """Return positions `[V, 3]` and triangles `[N, 3]` of the zero surface: one vertex in each cell it passes
+    (surface nets).
 
     Only blocks near the surface are evaluated finely.
     """
@@ -141,7 +156,10 @@ def polygonise(field: Field, low: Sequence[float], high: Sequence[float], cell: 
     count = np.ceil((high_ - low_) / (cell * block)).astype(int)
     shape = count * block + 1
     values = np.full(shape, np.inf, np.float32)
-    centres = np.stack(np.meshgrid(*[low_[i] + (np.arange(count[i]) + 0.5) * cell * block for i in range(3)], indexing="ij"), -1)
+    centres = np.stack(
+        np.meshgrid(*[low_[i] + (np.arange(count[i]) + 0.5) * cell * block for i in range(3)], indexing="ij"),
+        -1,
+    )
     coarse = field(centres.reshape(-1, 3)).reshape(tuple(count))
     values[:-1, :-1, :-1] = np.repeat(np.repeat(np.repeat(np.sign(coarse), block, 0), block, 1), block, 2)
     values[~np.isfinite(values)] = 1
@@ -156,7 +174,12 @@ def polygonise(field: Field, low: Sequence[float], high: Sequence[float], cell: 
 
     inside = values < 0
     corners = np.stack(np.meshgrid(*[[0, 1]] * 3, indexing="ij"), -1).reshape(-1, 3)
-    total = sum(inside[c[0] : shape[0] - 1 + c[0], c[1] : shape[1] - 1 + c[1], c[2] : shape[2] - 1 + c[2]].astype(np.int8) for c in corners)
+    total = sum(
+        inside[c[0] : shape[0] - 1 + c[0], c[1] : shape[1] - 1 + c[1], c[2] : shape[2] - 1 + c[2]].astype(
+            np.int8
+        )
+        for c in corners
+    )
     cells = np.argwhere((total > 0) & (total < 8))
     at = np.full(shape - 1, -1, np.int64)
     at[tuple(cells.T)] = np.arange(len(cells))
@@ -181,7 +204,12 @@ def polygonise(field: Field, low: Sequence[float], high: Sequence[float], cell: 
         u, v = (axis + 1) % 3, (axis + 2) % 3
         first = np.moveaxis(inside, axis, 0)
         edges = np.argwhere(np.moveaxis(first[:-1] != first[1:], 0, axis))
-        edges = edges[(edges[:, u] > 0) & (edges[:, v] > 0) & (edges[:, u] < shape[u] - 1) & (edges[:, v] < shape[v] - 1)]
+        edges = edges[
+            (edges[:, u] > 0)
+            & (edges[:, v] > 0)
+            & (edges[:, u] < shape[u] - 1)
+            & (edges[:, v] < shape[v] - 1)
+        ]
         quad = []
         for du, dv in ((-1, -1), (0, -1), (0, 0), (-1, 0)):
             c = edges.copy()
@@ -196,7 +224,9 @@ def polygonise(field: Field, low: Sequence[float], high: Sequence[float], cell: 
     return positions[used], corners_of.reshape(-1, 3)
 
 
-def remesh(field: Field, positions: Array, triangles: Array, size: Callable[[Array], Array], rounds: int = 3) -> tuple[Array, Array]:
+def remesh(
+    field: Field, positions: Array, triangles: Array, size: Callable[[Array], Array], rounds: int = 3
+) -> tuple[Array, Array]:
     """Thin a fine mesh out to edges of about `size(points)` metres, then even it on the surface."""
     positions, triangles = _collapse(positions, triangles, size(positions))
     for _ in range(rounds):
@@ -282,7 +312,12 @@ def _collapse(positions: Array, triangles: Array, size: Array) -> tuple[Array, A
                 old = normal(place[a], place[b], place[c])
                 new = normal(*(middle if w == x else place[w] for w in (a, b, c)))
                 dot = old[0] * new[0] + old[1] * new[1] + old[2] * new[2]
-                if dot <= 0.35 * ((old[0] ** 2 + old[1] ** 2 + old[2] ** 2) * (new[0] ** 2 + new[1] ** 2 + new[2] ** 2)) ** 0.5:
+                if (
+                    dot
+                    <= 0.35
+                    * ((old[0] ** 2 + old[1] ** 2 + old[2] ** 2) * (new[0] ** 2 + new[1] ** 2 + new[2] ** 2))
+                    ** 0.5
+                ):
                     turned = True
                     break
             if turned:
@@ -306,7 +341,9 @@ def _collapse(positions: Array, triangles: Array, size: Array) -> tuple[Array, A
 
 
 def _flip(positions: Array, triangles: Array) -> Array:
-    """Turn edges whose opposite angles sum to more than half a turn (Delaunay), where the surface is flat enough."""
+    """Turn edges whose opposite angles sum to more than half a turn (Delaunay), where the surface is flat
+    enough.
+    """
     tris = triangles.tolist()
     for _ in range(4):
         edges: dict[tuple[int, int], int] = {}

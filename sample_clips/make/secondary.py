@@ -1,4 +1,6 @@
-"""What the animator does not key: the wrist that drags behind, the hand that stays on the hip, the life in a hold."""
+"""What the animator does not key: the wrist that drags behind, the hand that stays on the hip, the life in a
+hold.
+"""
 
 from __future__ import annotations
 
@@ -7,7 +9,19 @@ import numpy as np
 from metagraph.motion import rotation
 from metagraph.motion.skeleton import Pose
 from sample_clips.make import ik
-from sample_clips.make.rig import ARM_AXIS, FPS, PALM, SIDES, SKELETON, THUMB_SIDE, Array, about, at, flipped, mirrored
+from sample_clips.make.rig import (
+    ARM_AXIS,
+    FPS,
+    PALM,
+    SIDES,
+    SKELETON,
+    THUMB_SIDE,
+    Array,
+    about,
+    at,
+    flipped,
+    mirrored,
+)
 from sample_clips.make.skeleton import FINGERS
 from sample_clips.make.tracks import ease, wander
 
@@ -51,11 +65,15 @@ def drag(rotations: Array, amount: float = 1.0) -> Array:
     for side in SIDES:
         hand = at(side + "Hand")
         velocity = np.gradient(places[:, hand], 1 / FPS, axis=0)
-        # In the hand's own axes: backwards and forwards of the palm it flaps, towards the thumb it hardly gives.
+        # In the hand's own axes: backwards and forwards of the palm it flaps, towards the thumb it hardly
+        # gives.
         local = rotation.rotate(rotation.conjugate(turns[:, hand]), velocity)
         local = local if side == "Left" else flipped(local)
         curl_way, side_way = local @ PALM, local @ THUMB_SIDE
-        lag = np.clip(_springy(-DRAG * amount * np.stack([curl_way, side_way], -1)), -DRAG_MOST, DRAG_MOST) * window
+        lag = (
+            np.clip(_springy(-DRAG * amount * np.stack([curl_way, side_way], -1)), -DRAG_MOST, DRAG_MOST)
+            * window
+        )
         if np.abs(lag).max() < 0.05:
             continue
         q = rotation.multiply(about(np.cross(ARM_AXIS, PALM), lag[:, 0]), about(PALM, lag[:, 1] * 0.7))
@@ -69,7 +87,9 @@ def drag(rotations: Array, amount: float = 1.0) -> Array:
 
 
 def pin(rotations: Array, side: str, joint: str, weight: Array | float = 1.0) -> Array:
-    """Keep a hand where it is on the first frame relative to a joint, by `weight [F]`; `rotations [F, J, 4]`."""
+    """Keep a hand where it is on the first frame relative to a joint, by `weight [F]`; `rotations [F, J,
+    4]`.
+    """
     out = rotations.copy()
     turns, places = globals_of(rotations)
     chest, hand, base = at("UpperChest"), at(side + "Hand"), at(joint)
@@ -84,8 +104,12 @@ def pin(rotations: Array, side: str, joint: str, weight: Array | float = 1.0) ->
     return reach(out, side, wrist, hand_turn, turns, places, chest)
 
 
-def reach(out: Array, side: str, wrist: Array, hand_turn: Array, turns: Array, places: Array, chest: int) -> Array:
-    """Move one arm so that its wrist is at `wrist [F, 3]` turned as `hand_turn [F, 4]`; the elbow stays on its side."""
+def reach(
+    out: Array, side: str, wrist: Array, hand_turn: Array, turns: Array, places: Array, chest: int
+) -> Array:
+    """Move one arm so that its wrist is at `wrist [F, 3]` turned as `hand_turn [F, 4]`; the elbow stays on
+    its side.
+    """
     inverse = rotation.conjugate
     to_chest = inverse(turns[:, chest])
     wrist_c = rotation.rotate(to_chest, wrist - places[:, chest])
@@ -107,7 +131,9 @@ def life(rotations: Array, seed: int, sizes: dict[str, float], loop: bool, every
     """Add slow unsteady drifts to the joints named, each of about `sizes` degrees; still at both ends."""
     out = rotations.copy()
     generator = np.random.default_rng(seed)
-    drifts = wander(generator, len(rotations), every, 3 * len(sizes), loop).reshape(len(rotations), len(sizes), 3)
+    drifts = wander(generator, len(rotations), every, 3 * len(sizes), loop).reshape(
+        len(rotations), len(sizes), 3
+    )
     for i, (name, size) in enumerate(sizes.items()):
         joint = at(name)
         out[:, joint] = rotation.multiply(out[:, joint], rotation.exp(np.radians(size) * drifts[:, i]))

@@ -1,7 +1,8 @@
-"""The mannequin's forms as distance fields on its skeleton's joints: head, hair, hands, sweater, trousers, shoes.
+"""The mannequin's forms as distance fields on its skeleton's joints: head, hair, hands, sweater, trousers,
+shoes.
 
-`JOINT` are the joints' places in the rest pose (metres). The figure is 1.72 m tall, faces +Z, its left is at +X.
-Left-hand parts are made at x > 0 and mirrored.
+`JOINT` are the joints' places in the rest pose (metres). The figure is 1.72 m tall, faces +Z, its left is at
++X. Left-hand parts are made at x > 0 and mirrored.
 """
 
 from __future__ import annotations
@@ -13,7 +14,18 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from sample_clips.make.sculpt import Field, common, cone, ellipsoid, mirrored, plane, rods, smooth_min, union, without
+from sample_clips.make.sculpt import (
+    Field,
+    common,
+    cone,
+    ellipsoid,
+    mirrored,
+    plane,
+    rods,
+    smooth_min,
+    union,
+    without,
+)
 from sample_clips.make.skeleton import ARM, FINGERS, mannequin_skeleton
 
 Array = NDArray[Any]
@@ -77,7 +89,11 @@ def face_form() -> Field:
         ],
         0.034,
     )
-    form = without(form, mirrored(ellipsoid(JOINT["LeftEye"] + [0.0010, 0.0010, 0.0220], (0.0210, 0.0140, 0.0140))), 0.018)
+    form = without(
+        form,
+        mirrored(ellipsoid(JOINT["LeftEye"] + [0.0010, 0.0010, 0.0220], (0.0210, 0.0140, 0.0140))),
+        0.018,
+    )
     nose = union(
         [
             cone((0, 1.6100, 0.0835), (0, 1.5765, 0.1005), 0.0046, 0.0078),
@@ -88,7 +104,11 @@ def face_form() -> Field:
     )
     form = union([form, nose], 0.014)
     neck = union(
-        [cone((0, 1.395, -0.034), (0, 1.460, -0.025), 0.056, 0.0420), cone((0, 1.460, -0.025), (0, 1.550, -0.012), 0.0420, 0.0410)], 0.02
+        [
+            cone((0, 1.395, -0.034), (0, 1.460, -0.025), 0.056, 0.0420),
+            cone((0, 1.460, -0.025), (0, 1.550, -0.012), 0.0420, 0.0410),
+        ],
+        0.02,
     )
     return union([form, neck], 0.024)
 
@@ -107,7 +127,13 @@ def head() -> Field:
 
     def lip(points: list[tuple[float, float]], radii: list[float], out: float) -> Field:
         """A rod along (x, y) points, standing `out` metres out of the face."""
-        return mirrored(rods([(x, y, front(form, x, y) - r + out) for (x, y), r in zip(points, radii, strict=True)], radii, 0.002))
+        return mirrored(
+            rods(
+                [(x, y, front(form, x, y) - r + out) for (x, y), r in zip(points, radii, strict=True)],
+                radii,
+                0.002,
+            )
+        )
 
     lips = union(
         [
@@ -123,7 +149,8 @@ def head() -> Field:
         0.008,
     )
     face = union([face, mirrored(ear)], 0.008)
-    # The lids' shells come through the face: their crease is cut by the depth buffer, crisper than by triangles.
+    # The lids' shells come through the face: their crease is cut by the depth buffer, crisper than by
+    # triangles.
     return without(face, _mouth_slit, 0.003)
 
 
@@ -140,15 +167,27 @@ def hair() -> Field:
 
 
 def _hairline(p: Array) -> Array:
-    """From the forehead past the temple, in front of the ear and down to the nape: positive where there is no hair."""
-    forehead, temple = plane((0, 1.6730, 0.078), (0, -0.45, 1.0))(p), plane((0, 1.60, 0.010), (0, 0.10, 1.0))(p)
+    """From the forehead past the temple, in front of the ear and down to the nape: positive where there is no
+    hair.
+    """
+    forehead, temple = (
+        plane((0, 1.6730, 0.078), (0, -0.45, 1.0))(p),
+        plane((0, 1.60, 0.010), (0, 0.10, 1.0))(p),
+    )
     nape = plane((0, 1.5600, -0.060), (0, -1.0, 0.62))(p)
     return -smooth_min(-smooth_min(forehead, temple, 0.020), -nape, 0.020)
 
 
 def _turned(yaw: float, roll: float = 0.0, pitch: float = 0.0) -> Array:
     """Rows are axes turned about Y, then Z, then X (radians)."""
-    cy, sy, cr, sr, cp, sp = np.cos(yaw), np.sin(yaw), np.cos(roll), np.sin(roll), np.cos(pitch), np.sin(pitch)
+    cy, sy, cr, sr, cp, sp = (
+        np.cos(yaw),
+        np.sin(yaw),
+        np.cos(roll),
+        np.sin(roll),
+        np.cos(pitch),
+        np.sin(pitch),
+    )
     y = np.array([[cy, 0, -sy], [0, 1, 0], [sy, 0, cy]])
     z = np.array([[cr, sr, 0], [-sr, cr, 0], [0, 0, 1]])
     x = np.array([[1, 0, 0], [0, cp, sp], [0, -sp, cp]])
@@ -187,9 +226,21 @@ def palm() -> Field:
         end = finger_points(finger)[0]
         start = wrist + ARM * 0.012 + (end - wrist) * [0, 0, 0.55]
         bones.append(cone(start, end - PALM_UP * 0.001, 0.0130, 0.0108))
-    heel = ellipsoid(wrist + ARM * 0.040 - PALM_UP * 0.004, (0.036, 0.0135, 0.026), np.stack([ARM, PALM_UP, [0, 0, 1]]))
-    thenar = cone(wrist + ARM * 0.012 + np.array([0, 0, 0.010]) - PALM_UP * 0.004, finger_points("Thumb")[0], 0.0140, 0.0132)
-    little = cone(wrist + ARM * 0.018 + np.array([0, 0, -0.020]), wrist + ARM * 0.064 + np.array([0, 0, -0.030]), 0.0115, 0.0100)
+    heel = ellipsoid(
+        wrist + ARM * 0.040 - PALM_UP * 0.004, (0.036, 0.0135, 0.026), np.stack([ARM, PALM_UP, [0, 0, 1]])
+    )
+    thenar = cone(
+        wrist + ARM * 0.012 + np.array([0, 0, 0.010]) - PALM_UP * 0.004,
+        finger_points("Thumb")[0],
+        0.0140,
+        0.0132,
+    )
+    little = cone(
+        wrist + ARM * 0.018 + np.array([0, 0, -0.020]),
+        wrist + ARM * 0.064 + np.array([0, 0, -0.030]),
+        0.0115,
+        0.0100,
+    )
     wrist_rod = cone(wrist - ARM * 0.060, wrist + ARM * 0.006, 0.0225, 0.0205, flat=(1, 1.12, 0.94))
     return union([union([*bones, heel, little], 0.012), thenar, wrist_rod], 0.020)
 
@@ -205,7 +256,9 @@ def hand() -> Field:
     def field(p: Array) -> Array:
         flat = base(p)
         # Each finger grows out of the palm smoothly, but no web grows between two fingers.
-        joined = [union([lambda _, d=flat: d, f], 0.014 if i == 0 else 0.009)(p) for i, f in enumerate(fingers)]
+        joined = [
+            union([lambda _, d=flat: d, f], 0.014 if i == 0 else 0.009)(p) for i, f in enumerate(fingers)
+        ]
         return np.asarray(np.min(joined, axis=0))
 
     return field
@@ -260,7 +313,11 @@ def pelvis() -> Field:
 
 def leg() -> Field:
     hip, knee, ankle = JOINT["LeftUpperLeg"], JOINT["LeftLowerLeg"], JOINT["LeftFoot"]
-    rod = rods([hip + [-0.008, 0.0, 0.0], knee + [0, 0, 0.002], ankle + [0, -0.03, 0.004]], [0.0770, 0.0560, 0.0450], 0.010)
+    rod = rods(
+        [hip + [-0.008, 0.0, 0.0], knee + [0, 0, 0.002], ankle + [0, -0.03, 0.004]],
+        [0.0770, 0.0560, 0.0450],
+        0.010,
+    )
     calf = ellipsoid(knee * 0.70 + ankle * 0.30 + [0.002, 0, -0.010], (0.050, 0.130, 0.053))
     return common(union([rod, calf], 0.03), plane((0, 0.080, 0), (0, -1, 0.10)), 0.006)
 

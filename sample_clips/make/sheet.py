@@ -42,17 +42,30 @@ def _balls(turns: Array, places: Array) -> Array:
         for end in ends:
             n = max(2, int(np.linalg.norm(end - places[joint]) / 0.012))
             for f in np.linspace(0, 1, n):
-                out.append(np.array([*(places[joint] * (1 - f) + end * f), radii[0] * (1 - f) + radii[1] * f, colour]))
+                out.append(
+                    np.array(
+                        [*(places[joint] * (1 - f) + end * f), radii[0] * (1 - f) + radii[1] * f, colour]
+                    )
+                )
     angles = np.linspace(0, 2 * np.pi, 22, endpoint=False)
     for name, up, wide, deep, forwards in TORSO:
         joint = at(name)
-        ring = np.stack([(wide - 0.03) * np.cos(angles), 0 * angles + up, forwards + (deep - 0.03) * np.sin(angles)], -1)
+        ring = np.stack(
+            [(wide - 0.03) * np.cos(angles), 0 * angles + up, forwards + (deep - 0.03) * np.sin(angles)], -1
+        )
         for p in places[joint] + rotation.rotate(turns[joint], ring):
             out.append(np.array([*p, 0.032, 0]))
     head = at("Head")
-    for p, r in (((0, 0.10, 0.02), 0.088), ((0, 0.06, 0.03), 0.075), ((0, 0.0, 0.05), 0.040), ((0, -0.05, -0.01), 0.05)):
+    for p, r in (
+        ((0, 0.10, 0.02), 0.088),
+        ((0, 0.06, 0.03), 0.075),
+        ((0, 0.0, 0.05), 0.040),
+        ((0, -0.05, -0.01), 0.05),
+    ):
         out.append(np.array([*(places[head] + rotation.rotate(turns[head], np.array(p))), r, 0]))
-    out.append(np.array([*(places[head] + rotation.rotate(turns[head], np.array([0, 0.075, 0.112]))), 0.014, 3]))
+    out.append(
+        np.array([*(places[head] + rotation.rotate(turns[head], np.array([0, 0.075, 0.112]))), 0.014, 3])
+    )
     return np.array(out)
 
 
@@ -60,8 +73,18 @@ COLOURS = np.array([(205, 205, 200), (110, 160, 235), (235, 130, 110), (90, 60, 
 VIEWS = {"front": 0.0, "left": 90.0, "right": -90.0, "quarter": 35.0}
 
 
-def draw(image: Any, rotations: Array, root: Array, box: tuple[int, int, int, int], view: str, low: float, high: float) -> None:
-    """Draw one pose `[J, 4]` into the image's box (x, y, width, height), showing heights `low` to `high` (m)."""
+def draw(
+    image: Any,
+    rotations: Array,
+    root: Array,
+    box: tuple[int, int, int, int],
+    view: str,
+    low: float,
+    high: float,
+) -> None:
+    """Draw one pose `[J, 4]` into the image's box (x, y, width, height), showing heights `low` to `high`
+    (m).
+    """
     from PIL import Image, ImageDraw
 
     translations = np.array(SKELETON.rest_translations)
@@ -69,7 +92,8 @@ def draw(image: Any, rotations: Array, root: Array, box: tuple[int, int, int, in
     turns, places = SKELETON.globals(Pose(rotations, translations))
     balls = _balls(turns, places)
     angle = np.radians(VIEWS[view])
-    # The camera stands in front: the character's left is on the picture's right. Turning it shows the other sides.
+    # The camera stands in front: the character's left is on the picture's right. Turning it shows the other
+    # sides.
     across = balls[:, 0] * np.cos(angle) - balls[:, 2] * np.sin(angle)
     depth = balls[:, 0] * np.sin(angle) + balls[:, 2] * np.cos(angle)
     width, height = box[2:]
@@ -88,7 +112,11 @@ def draw(image: Any, rotations: Array, root: Array, box: tuple[int, int, int, in
 
 
 def sheet(
-    clip: Any, path: Path | str, columns: int = 10, views: tuple[str, ...] = ("front", "left"), size: tuple[int, int] = (190, 230)
+    clip: Any,
+    path: Path | str,
+    columns: int = 10,
+    views: tuple[str, ...] = ("front", "left"),
+    size: tuple[int, int] = (190, 230),
 ) -> None:
     """Write a PNG of the clip: a row for each view, a column for each time."""
     from PIL import Image, ImageDraw

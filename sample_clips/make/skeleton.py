@@ -1,7 +1,8 @@
-"""The mannequin's skeleton: 61 joints, 1.72 m, facing +Z with its left at +X, arms 42 degrees below the horizontal.
+"""The mannequin's skeleton: 61 joints, 1.72 m, facing +Z with its left at +X, arms 42 degrees below the
+horizontal.
 
-Every rest rotation is the identity, so a local rotation turns about the character's own axes: +X raises the front of
-a forward-pointing joint downwards, +Y turns to its left, +Z tilts its head to its right shoulder.
+Every rest rotation is the identity, so a local rotation turns about the character's own axes: +X raises the
+front of a forward-pointing joint downwards, +Y turns to its left, +Z tilts its head to its right shoulder.
 """
 
 from __future__ import annotations
@@ -38,7 +39,9 @@ def _joints() -> list[tuple[str, str | None, np.ndarray]]:
     for side, s in (("Left", 1.0), ("Right", -1.0)):
         mirror = np.array([s, 1, 1])
 
-        def add(name: str, parent: str, at: np.ndarray, side: str = side, mirror: np.ndarray = mirror) -> None:
+        def add(
+            name: str, parent: str, at: np.ndarray, side: str = side, mirror: np.ndarray = mirror
+        ) -> None:
             out.append((side + name, parent, at * mirror))
 
         eye = np.array([0.0315, 1.603, 0.068])

@@ -1,4 +1,6 @@
-"""The example study: training, and tasks of 10 and 20 sample clips with their right answers. `python -m sample_clips.make.study`."""
+"""The example study: training, and tasks of 10 and 20 sample clips with their right answers. `python -m
+sample_clips.make.study`.
+"""
 
 from __future__ import annotations
 
@@ -13,24 +15,49 @@ FOLDER = HERE / "study"
 
 # As the paper's animator was shown: 2 stances, 1 gesture, 1 fidget, 2 transitions.
 TRAINING = (
-    "body_weight_both__stance", "body_weight_left__stance", "body_weight_both__lean_in_01", "body_weight_left__heel_lift_01",
-    "body_weight_both__to__weight_left", "body_weight_left__to__weight_both",
-)  # fmt: skip
+    "body_weight_both__stance",
+    "body_weight_left__stance",
+    "body_weight_both__lean_in_01",
+    "body_weight_left__heel_lift_01",
+    "body_weight_both__to__weight_left",
+    "body_weight_left__to__weight_both",
+)
 TASKS = {
     "ten": (
-        "hands_at_sides__stance", "on_hips__stance", "hands_at_sides__beat_small_rt_01", "hands_at_sides__open_palms_bt_01",
-        "hands_at_sides__adjust_sleeve_bt_01", "on_hips__shrug_bt_01", "on_hips__point_you_rt_01", "on_hips__readjust_bt_01",
-        "hands_at_sides__to__on_hips", "on_hips__to__hands_at_sides",
+        "hands_at_sides__stance",
+        "on_hips__stance",
+        "hands_at_sides__beat_small_rt_01",
+        "hands_at_sides__open_palms_bt_01",
+        "hands_at_sides__adjust_sleeve_bt_01",
+        "on_hips__shrug_bt_01",
+        "on_hips__point_you_rt_01",
+        "on_hips__readjust_bt_01",
+        "hands_at_sides__to__on_hips",
+        "on_hips__to__hands_at_sides",
     ),
     "twenty": (
-        "hands_at_sides__stance", "arms_crossed__stance", "hands_clasped__stance", "hands_at_sides__wave_hello_rt_01",
-        "hands_at_sides__shrug_bt_01", "arms_crossed__shrug_bt_01", "arms_crossed__point_you_rt_01", "hands_clasped__beat_small_bt_01",
-        "hands_clasped__open_palms_bt_01", "hands_at_sides__swing_arms_bt_01", "arms_crossed__rub_arm_rt_01",
-        "hands_clasped__rub_hands_bt_01", "hands_at_sides__to__arms_crossed", "arms_crossed__to__hands_at_sides",
-        "hands_at_sides__to__hands_clasped", "hands_clasped__to__hands_at_sides", "head_straight__stance", "head_straight__nod_single_01",
-        "head_straight__shake_01", "head_straight__neck_stretch_01",
+        "hands_at_sides__stance",
+        "arms_crossed__stance",
+        "hands_clasped__stance",
+        "hands_at_sides__wave_hello_rt_01",
+        "hands_at_sides__shrug_bt_01",
+        "arms_crossed__shrug_bt_01",
+        "arms_crossed__point_you_rt_01",
+        "hands_clasped__beat_small_bt_01",
+        "hands_clasped__open_palms_bt_01",
+        "hands_at_sides__swing_arms_bt_01",
+        "arms_crossed__rub_arm_rt_01",
+        "hands_clasped__rub_hands_bt_01",
+        "hands_at_sides__to__arms_crossed",
+        "arms_crossed__to__hands_at_sides",
+        "hands_at_sides__to__hands_clasped",
+        "hands_clasped__to__hands_at_sides",
+        "head_straight__stance",
+        "head_straight__nod_single_01",
+        "head_straight__shake_01",
+        "head_straight__neck_stretch_01",
     ),
-}  # fmt: skip
+}
 TITLES = {"ten": "Ten clips", "twenty": "Twenty clips"}
 
 HEAD = """\
@@ -94,13 +121,20 @@ def text() -> str:
     """Return the study file."""
     out = HEAD
     for condition, words in LEARN.items():
-        out += f"- condition: {condition}\n  minutes: 15\n  instructions: |\n{words}  clips:\n{clips(TRAINING)}"
+        out += (
+            f"- condition: {condition}\n  minutes: 15\n  instructions: |\n{words}  clips:\n{clips(TRAINING)}"
+        )
     out += "tasks:\n"
     for task, names in TASKS.items():
-        out += f"- id: {task}\n  title: {TITLES[task]}\n  minutes: {30 if task == 'ten' else 60}\n  reference: {task}{SUFFIX}\n"
-        out += "  instructions: Wire all clips, arms and head, each to the stance its name tells.\n" if task == "twenty" else (
-            "  instructions: Wire all clips, each to the stance its name tells.\n"
-        )  # fmt: skip
+        out += (
+            f"- id: {task}\n  title: {TITLES[task]}\n  minutes: {30 if task == 'ten' else 60}\n  "
+            f"reference: {task}{SUFFIX}\n"
+        )
+        out += (
+            "  instructions: Wire all clips, arms and head, each to the stance its name tells.\n"
+            if task == "twenty"
+            else ("  instructions: Wire all clips, each to the stance its name tells.\n")
+        )
         out += f"  clips:\n{clips(names)}"
     return out
 

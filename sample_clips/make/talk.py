@@ -1,9 +1,11 @@
-"""Speaks conversations of two with eSpeak NG: two channels, and when which word is said, as the synthesiser itself tells.
+"""Speaks conversations of two with eSpeak NG: two channels, and when which word is said, as the synthesiser
+itself tells.
 
     python -m sample_clips.make.talk
 
-What is written is known, too: which words make a phonemic clause and which of them is stressed, which are responses and hesitations.
-Writes `conversation/talk.ogg` and its words, `conversation/talk.json`; tests speak others. Needs eSpeak NG (apt-get install espeak-ng).
+What is written is known, too: which words make a phonemic clause and which of them is stressed, which are
+responses and hesitations. Writes `conversation/talk.ogg` and its words, `conversation/talk.json`; tests speak
+others. Needs eSpeak NG (apt-get install espeak-ng).
 """
 
 from __future__ import annotations
@@ -34,8 +36,10 @@ class MissingError(RuntimeError):
 
 @dataclass(frozen=True)
 class Turn:
-    """What one says without a pause. side: 0 or 1. after: seconds from the end of the turn before, less than 0 to talk into it.
-    clauses: each with its stressed word in *stars*; one of a kind other than clause says so before a colon: "response: uh-huh"."""
+    """What one says without a pause. side: 0 or 1. after: seconds from the end of the turn before, less than
+    0 to talk into it. clauses: each with its stressed word in *stars*; one of a kind other than clause says
+    so before a colon: "response: uh-huh".
+    """
 
     side: int
     after: float
@@ -44,7 +48,9 @@ class Turn:
 
 @dataclass(frozen=True)
 class Said:
-    """kind, start, end (seconds) and words of what was said; stress: from when to when its stressed word lasts, for a clause."""
+    """kind, start, end (seconds) and words of what was said; stress: from when to when its stressed word
+    lasts, for a clause.
+    """
 
     side: int
     kind: str
@@ -56,7 +62,9 @@ class Said:
 
 @dataclass(frozen=True)
 class Talk:
-    """samples `[2, N]`, `rate` a second. words: side -> (text, start, end). said: what was written, by side and start."""
+    """samples `[2, N]`, `rate` a second. words: side -> (text, start, end). said: what was written, by side
+    and start.
+    """
 
     samples: Array
     rate: int
@@ -95,10 +103,16 @@ def write_sound(path: Path, samples: Array, rate: int) -> None:
 def write_words(path: Path, talk: Talk) -> None:
     """Write the words as WhisperX does."""
     rows = [
-        {"start": a, "end": b, "text": text, "words": [{"word": text, "start": a, "end": b, "score": 0.9, "speaker": f"SPEAKER_0{side}"}],
-         "speaker": f"SPEAKER_0{side}"}
-        for side, words in enumerate(talk.words) for text, a, b in words
-    ]  # fmt: skip
+        {
+            "start": a,
+            "end": b,
+            "text": text,
+            "words": [{"word": text, "start": a, "end": b, "score": 0.9, "speaker": f"SPEAKER_0{side}"}],
+            "speaker": f"SPEAKER_0{side}",
+        }
+        for side, words in enumerate(talk.words)
+        for text, a, b in words
+    ]
     path.write_text(json.dumps({"segments": sorted(rows, key=lambda r: r["start"]), "language": "en"}))
 
 
@@ -130,10 +144,17 @@ def speak(turns: Sequence[Turn], noise: float = 0.0006, crosstalk: float | None 
 
 def _turn(turn: Turn, at: float) -> tuple[Array, list[tuple[str, float, float]], list[Said]]:
     """Return a turn's samples, its words and what they are, in seconds of the conversation."""
-    parts = [(c.partition(": ")[0] if ": " in c else "clause", c.partition(": ")[2] or c) for c in turn.clauses]
-    plain = [(kind, text.replace("*", "").split(), next((n for n, w in enumerate(text.split()) if "*" in w), None)) for kind, text in parts]
+    parts = [
+        (c.partition(": ")[0] if ": " in c else "clause", c.partition(": ")[2] or c) for c in turn.clauses
+    ]
+    plain = [
+        (kind, text.replace("*", "").split(), next((n for n, w in enumerate(text.split()) if "*" in w), None))
+        for kind, text in parts
+    ]
     # A mark before each word: eSpeak runs small words together, and tells of them as of one.
-    text = " ".join("<mark name='w'/>" + re.sub(r"\*(\w+)\*", _LOUD, word) for _, c in parts for word in c.split())
+    text = " ".join(
+        "<mark name='w'/>" + re.sub(r"\*(\w+)\*", _LOUD, word) for _, c in parts for word in c.split()
+    )
     samples, starts, end = synthesise(text, *VOICES[turn.side])
     count = sum(len(words) for _, words, _ in plain)
     if len(starts) != count:
@@ -150,8 +171,9 @@ def _turn(turn: Turn, at: float) -> tuple[Array, list[tuple[str, float, float]],
 
 
 def _apart(starts: Sequence[float], end: float, words: Sequence[str]) -> list[float]:
-    """Return when each word begins, and the end; one that is told of only when the next begins shares the time of the one before it, by
-    their letters."""
+    """Return when each word begins, and the end; one that is told of only when the next begins shares the
+    time of the one before it, by their letters.
+    """
     edges = [*starts, end]
     n = 0
     while n < len(words):
@@ -167,12 +189,20 @@ def _apart(starts: Sequence[float], end: float, words: Sequence[str]) -> list[fl
 
 class _Event(ctypes.Structure):
     _fields_ = (
-        ("type", ctypes.c_int), ("unique", ctypes.c_uint), ("text_position", ctypes.c_int), ("length", ctypes.c_int),
-        ("audio_position", ctypes.c_int), ("sample", ctypes.c_int), ("user_data", ctypes.c_void_p), ("ident", ctypes.c_int64),
-    )  # fmt: skip
+        ("type", ctypes.c_int),
+        ("unique", ctypes.c_uint),
+        ("text_position", ctypes.c_int),
+        ("length", ctypes.c_int),
+        ("audio_position", ctypes.c_int),
+        ("sample", ctypes.c_int),
+        ("user_data", ctypes.c_void_p),
+        ("ident", ctypes.c_int64),
+    )
 
 
-_CALLBACK = ctypes.CFUNCTYPE(ctypes.c_int, ctypes.POINTER(ctypes.c_short), ctypes.c_int, ctypes.POINTER(_Event))
+_CALLBACK = ctypes.CFUNCTYPE(
+    ctypes.c_int, ctypes.POINTER(ctypes.c_short), ctypes.c_int, ctypes.POINTER(_Event)
+)
 
 
 @cache
@@ -188,7 +218,9 @@ def _library() -> Any:
 
 @cache  # as spoken again, it may come out a sample longer
 def synthesise(text: str, voice: str, pitch: int, rate: int) -> tuple[Array, list[float], float]:
-    """Return SSML spoken: samples `[N]`, when each word begins and when the last ends, seconds. Silence at both ends is cut."""
+    """Return SSML spoken: samples `[N]`, when each word begins and when the last ends, seconds. Silence at
+    both ends is cut.
+    """
     library = _library()
     blocks: list[Array] = []
     starts: list[float] = []

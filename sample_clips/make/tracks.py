@@ -1,9 +1,9 @@
 """From steps to motion: each step is one move from posture to posture, and moves add up.
 
-A joint's rotation is `q0 * exp(w1 d1) * exp(w2 d2) ...`, where d is the turn one step asks for and w its progress from 0
-to 1. Because every step has its own progress, steps may overlap (flow), dip back before they go (anticipation), run
-over and come back (overshoot) and sag while they hold; and because every joint reads the progress at its own time,
-the hips lead, the arm follows the shoulder, and the fingers arrive last.
+A joint's rotation is `q0 * exp(w1 d1) * exp(w2 d2) ...`, where d is the turn one step asks for and w its
+progress from 0 to 1. Because every step has its own progress, steps may overlap (flow), dip back before they
+go (anticipation), run over and come back (overshoot) and sag while they hold; and because every joint reads
+the progress at its own time, the hips lead, the arm follows the shoulder, and the fingers arrive last.
 """
 
 from __future__ import annotations
@@ -29,10 +29,10 @@ REST_OUT = 0.02  # and in its last
 class Step:
     """One move. seconds: how long it takes. change: the posture's fields that change (`left`, `spine` ...).
 
-    hold: seconds it stays. peak: where in the move the speed is highest, 0.3 (fast start, long landing) to 0.65 (gathers
-    speed, lands hard). overshoot, anticipation: parts of the move beyond its end and back before its start.
-    flow: part of the move that the next one overlaps, so that a passing posture is passed and not stopped at.
-    sag: part of the move given back slowly while holding.
+    hold: seconds it stays. peak: where in the move the speed is highest, 0.3 (fast start, long landing) to
+    0.65 (gathers speed, lands hard). overshoot, anticipation: parts of the move beyond its end and back
+    before its start. flow: part of the move that the next one overlaps, so that a passing posture is passed
+    and not stopped at. sag: part of the move given back slowly while holding.
     """
 
     seconds: float
@@ -94,7 +94,9 @@ def settling(step: Step) -> float:
 
 
 def schedule(steps: Sequence[Step], lead: float) -> tuple[list[Move], float]:
-    """Return the moves and the clip's duration, a whole number of frames. lead: seconds the leading joints run ahead."""
+    """Return the moves and the clip's duration, a whole number of frames. lead: seconds the leading joints
+    run ahead.
+    """
     first = steps[0]
     cursor = LEAD_IN + lead + (0.45 * first.seconds if first.anticipation else 0.0)
     moves, over = [], 0.0
@@ -112,7 +114,12 @@ def schedule(steps: Sequence[Step], lead: float) -> tuple[list[Move], float]:
 def _lags() -> dict[str, float]:
     lags = {"Hips": -0.05, "Spine": -0.06, "Chest": -0.045, "UpperChest": -0.03, "Neck": 0.02, "Head": 0.035}
     for side in SIDES:
-        lags |= {side + "Shoulder": -0.035, side + "UpperArm": 0.0, side + "LowerArm": 0.02, side + "Hand": 0.05}
+        lags |= {
+            side + "Shoulder": -0.035,
+            side + "UpperArm": 0.0,
+            side + "LowerArm": 0.02,
+            side + "Hand": 0.05,
+        }
         for i, finger in enumerate(FINGERS):
             for bone in (1, 2, 3):
                 lags[f"{side}{finger}{bone}"] = 0.06 + 0.007 * i + 0.014 * bone
@@ -120,7 +127,13 @@ def _lags() -> dict[str, float]:
 
 
 LAG = _lags()  # arms: the torso begins, the finger tips arrive last; seconds
-HEAD_LAG = {"Head": 0.0, "Neck": 0.02, "UpperChest": 0.05, "Chest": 0.065, "Spine": 0.075}  # a look begins with the head
+HEAD_LAG = {
+    "Head": 0.0,
+    "Neck": 0.02,
+    "UpperChest": 0.05,
+    "Chest": 0.065,
+    "Spine": 0.075,
+}  # a look begins with the head
 BODY_LAG = {"Hips": 0.0, "Spine": 0.03, "Chest": 0.05, "UpperChest": 0.07, "Neck": 0.09, "Head": 0.105}
 LAGS: dict[str, dict[str, float]] = {"arms": LAG, "head": HEAD_LAG, "body": BODY_LAG}
 
@@ -141,8 +154,12 @@ def lag_array(layer: str, later_side: str = "", later: float = 0.0) -> Array:
     return out
 
 
-def blend(postures: Sequence[poses.Posture], moves: Sequence[Move], times: Array, lags: Array) -> tuple[Array, Array]:
-    """Return rotations `[F, J, 4]` and channels `[F, 13]` of moves through postures (one more than there are moves)."""
+def blend(
+    postures: Sequence[poses.Posture], moves: Sequence[Move], times: Array, lags: Array
+) -> tuple[Array, Array]:
+    """Return rotations `[F, J, 4]` and channels `[F, 13]` of moves through postures (one more than there are
+    moves).
+    """
     keyed = np.stack([poses.solve(p) for p in postures])
     numbers = np.stack([poses.channels(p) for p in postures])
     turns = rotation.log(rotation.multiply(rotation.conjugate(keyed[:-1]), keyed[1:]))

@@ -24,7 +24,9 @@ def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
     for item in items:
         if Path(__file__).parent in item.path.parents:
             item.add_marker(pytest.mark.qt_log_level_fail("WARNING"))
-            item.add_marker(pytest.mark.qt_log_ignore("root_visual"))  # Xvfb has no transparent windows for dragged pictures
+            item.add_marker(
+                pytest.mark.qt_log_ignore("root_visual")
+            )  # Xvfb has no transparent windows for dragged pictures
 
 
 @pytest.fixture(scope="session")
@@ -89,14 +91,29 @@ class Driver(Handles):
 
     # --- the hand
 
-    def click(self, place: tuple[QWidget, QPoint], modifier: Qt.KeyboardModifier = Qt.KeyboardModifier.NoModifier) -> None:
+    def click(
+        self, place: tuple[QWidget, QPoint], modifier: Qt.KeyboardModifier = Qt.KeyboardModifier.NoModifier
+    ) -> None:
         widget, point = place
         QTest.mouseClick(widget, Qt.MouseButton.LeftButton, modifier, point)
 
-    def drag(self, start: tuple[QWidget, QPoint], end: tuple[QWidget, QPoint], until: Callable[[], bool]) -> None:
+    def drag(
+        self, start: tuple[QWidget, QPoint], end: tuple[QWidget, QPoint], until: Callable[[], bool]
+    ) -> None:
         """A true drag through the X server, from press to release, until something has come of it."""
         a, b = start[0].mapToGlobal(start[1]), end[0].mapToGlobal(end[1])
-        words = ["xdotool", "mousemove", str(a.x()), str(a.y()), "sleep", ".08", "mousedown", "1", "sleep", ".08"]
+        words = [
+            "xdotool",
+            "mousemove",
+            str(a.x()),
+            str(a.y()),
+            "sleep",
+            ".08",
+            "mousedown",
+            "1",
+            "sleep",
+            ".08",
+        ]
         for n in range(1, 9):
             x, y = a.x() + (b.x() - a.x()) * n / 8, a.y() + (b.y() - a.y()) * n / 8
             words += ["mousemove", str(round(x)), str(round(y)), "sleep", ".04"]
@@ -109,7 +126,12 @@ class Driver(Handles):
                 self.pause(20)
             process.wait(5)
 
-    def key(self, key: Qt.Key, modifier: Qt.KeyboardModifier = Qt.KeyboardModifier.NoModifier, widget: QWidget | None = None) -> None:
+    def key(
+        self,
+        key: Qt.Key,
+        modifier: Qt.KeyboardModifier = Qt.KeyboardModifier.NoModifier,
+        widget: QWidget | None = None,
+    ) -> None:
         QTest.keyClick(widget or self.window, key, modifier)  # type: ignore[call-overload]
 
     def bar(self, action: str, part: float) -> tuple[QWidget, QPoint]:
@@ -129,7 +151,11 @@ class Driver(Handles):
         data = QMimeData()
         data.setUrls([QUrl.fromLocalFile(str(p)) for p in paths])
         more = Qt.DropAction.CopyAction, data, Qt.MouseButton.LeftButton, Qt.KeyboardModifier.NoModifier
-        for event in (QDragEnterEvent(point, *more), QDragMoveEvent(point, *more), QDropEvent(QPointF(point), *more)):
+        for event in (
+            QDragEnterEvent(point, *more),
+            QDragMoveEvent(point, *more),
+            QDropEvent(QPointF(point), *more),
+        ):
             QApplication.sendEvent(widget, event)
             if not event.isAccepted():
                 QApplication.sendEvent(widget, QDragLeaveEvent())
@@ -139,7 +165,9 @@ class Driver(Handles):
     def pick(self, menu: QMenu, *texts: str) -> None:
         """Choose an entry of a menu by its words, through its submenus."""
         for text in texts:
-            action = next((a for a in menu.actions() if a.text().replace("&", "").split("\t")[0] == text), None)
+            action = next(
+                (a for a in menu.actions() if a.text().replace("&", "").split("\t")[0] == text), None
+            )
             assert action is not None, f"no {text!r} among {[a.text() for a in menu.actions()]}"
             assert action.isEnabled(), text
             if action.menu() is None:
@@ -154,8 +182,12 @@ class Driver(Handles):
 
 
 @pytest.fixture
-def drive(qapp: object, qtbot: object, monkeypatch: pytest.MonkeyPatch, request: pytest.FixtureRequest) -> Iterator[Driver]:
-    """A window with nothing in it. Its clips have pictures in journeys only: the process that draws them costs more than most tests."""
+def drive(
+    qapp: object, qtbot: object, monkeypatch: pytest.MonkeyPatch, request: pytest.FixtureRequest
+) -> Iterator[Driver]:
+    """A window with nothing in it. Its clips have pictures in journeys only: the process that draws them
+    costs more than most tests.
+    """
     if sys.platform.startswith("linux"):
         if QGuiApplication.platformName() != "xcb":
             pytest.skip("needs an X screen (Xvfb): real drags and OpenGL widgets do not work on others")
@@ -169,7 +201,9 @@ def drive(qapp: object, qtbot: object, monkeypatch: pytest.MonkeyPatch, request:
     from app.stage.thumbnails import Thumbnails
 
     def styled(app: QApplication, look: Theme) -> None:
-        """The application outlives each window here: the same style again would only polish every widget anew."""
+        """The application outlives each window here: the same style again would only polish every widget
+        anew.
+        """
         if app.styleSheet() != style_sheet(look):
             apply(app, look)
 
@@ -190,7 +224,9 @@ def drive(qapp: object, qtbot: object, monkeypatch: pytest.MonkeyPatch, request:
     window.activateWindow()
     # Without a window manager a click gives the window the keyboard.
     corner = window.statusBar().mapToGlobal(QPoint(300, 8))
-    subprocess.run(["xdotool", "mousemove", str(corner.x()), str(corner.y()), "click", "1"], check=True, timeout=10)
+    subprocess.run(
+        ["xdotool", "mousemove", str(corner.x()), str(corner.y()), "click", "1"], check=True, timeout=10
+    )
     qtbot.waitUntil(window.isActiveWindow, timeout=5000)  # type: ignore[attr-defined]
     qtbot.wait(100)  # type: ignore[attr-defined]
     yield Driver(window, qtbot)

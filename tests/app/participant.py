@@ -1,8 +1,10 @@
-"""A scripted participant: does a labelling task in the real window with real events, in either condition, and counts its hands' work.
+"""A scripted participant: does a labelling task in the real window with real events, in either condition, and
+counts its hands' work.
 
-It knows what is right and makes no mistake; how it goes about it is what an expert would do: one clip after another, dragged from the
-library, stance by stance, found by typing the stance's name once. Scrolling the library has no operator in the model and is not counted.
-Thoughts (M) are placed by rule: one before each clip, one before each link or other setting, one before each command.
+It knows what is right and makes no mistake; how it goes about it is what an expert would do: one clip after
+another, dragged from the library, stance by stance, found by typing the stance's name once. Scrolling the
+library has no operator in the model and is not counted. Thoughts (M) are placed by rule: one before each
+clip, one before each link or other setting, one before each command.
 """
 
 from __future__ import annotations
@@ -38,8 +40,9 @@ class Task:
 
 @dataclass(frozen=True)
 class Result:
-    """operators: how many of each class. predicted: seconds an expert takes. seconds: by the clock. ours: processor seconds of the program.
-    score: beside the reference."""
+    """operators: how many of each class. predicted: seconds an expert takes. seconds: by the clock. ours:
+    processor seconds of the program. score: beside the reference.
+    """
 
     condition: str
     clips: int
@@ -51,19 +54,27 @@ class Result:
 
 
 def task(sample: Project, clips: int) -> Task:
-    """Return the task to place the first clips of the sample: stance by stance, so that few make a whole graph, too. Timing stays as it
-    is when clips are dropped."""
+    """Return the task to place the first clips of the sample: stance by stance, so that few make a whole
+    graph, too. Timing stays as it is when clips are dropped.
+    """
     chosen, layers = [], [sample.graphs[x] for x in ("arms", "head", "body")]
     for graph in layers:
         known: list[str] = []
         for stance in graph.stances:
             known.append(stance)
             chosen += graph.of(stance, "stance")
-            ways = [a for s in known for a in graph.of(s, "transition") if stance in (a.stance, a.end_stance) and a.end_stance in known]
+            ways = [
+                a
+                for s in known
+                for a in graph.of(s, "transition")
+                if stance in (a.stance, a.end_stance) and a.end_stance in known
+            ]
             chosen += ways
             chosen += [a for kind in ("gesture", "fidget") for a in graph.of(stance, kind)]
     chosen = chosen[:clips]
-    bare = Project(name="task", skeleton=sample.skeleton, clips={a.clip: sample.clips[a.clip] for a in chosen})
+    bare = Project(
+        name="task", skeleton=sample.skeleton, clips={a.clip: sample.clips[a.clip] for a in chosen}
+    )
     reference, stances = bare, {}
     for action in chosen:
         if action.stance not in stances and action.kind == "stance":
@@ -72,12 +83,16 @@ def task(sample: Project, clips: int) -> Task:
             stances[action.stance] = list(reference.graphs[action.layer].stances)[-1]
         else:
             end = stances[action.end_stance] if action.kind == "transition" else None
-            reference = edits.place(reference, [action.clip], action.layer, action.kind, stances[action.stance], end)
+            reference = edits.place(
+                reference, [action.clip], action.layer, action.kind, stances[action.stance], end
+            )
     return Task(bare, reference)
 
 
 class Participant:
-    """drive: the window and a hand, as tests have it. The window shows the task's project in the condition's editor."""
+    """drive: the window and a hand, as tests have it. The window shows the task's project in the condition's
+    editor.
+    """
 
     def __init__(self, drive: Any, given: Task) -> None:
         self.drive, self.given = drive, given
@@ -135,8 +150,14 @@ class Participant:
         counts["M"] = self.thoughts
         found = score(normal(project), normal(self.given.reference))
         return Result(
-            condition, len(project.clips), counts, predicted(counts), time.monotonic() - started, time.process_time() - ours, found
-        )  # fmt: skip
+            condition,
+            len(project.clips),
+            counts,
+            predicted(counts),
+            time.monotonic() - started,
+            time.process_time() - ours,
+            found,
+        )
 
     def _wanted(self) -> list[Any]:
         return list(self.given.reference.actions())
@@ -158,7 +179,11 @@ class Participant:
         def end(wanted: str) -> None:
             if d.session.place.other() != made[wanted]:
                 self.think()
-                names = [s for s in d.document.project.graphs[d.session.place.layer].stances if s != d.session.place.stance()]
+                names = [
+                    s
+                    for s in d.document.project.graphs[d.session.place.layer].stances
+                    if s != d.session.place.stance()
+                ]
                 QTimer.singleShot(60, lambda: self._choose(names.index(made[wanted])))
                 self.click(d.canvas, d.canvas.layout_now().nodes["transition"].other.center().toPoint())
                 d.wait(lambda: d.session.place.other() == made[wanted])
@@ -173,7 +198,10 @@ class Participant:
                 self.find(name)
                 self.drop(name, d.middle())
                 made[action.stance] = list(d.document.project.graphs[layer].stances)[-1]
-            for action in sorted((a for a in mine if a.kind != "stance"), key=lambda a: (list(made).index(a.stance), a.end_stance or "")):
+            for action in sorted(
+                (a for a in mine if a.kind != "stance"),
+                key=lambda a: (list(made).index(a.stance), a.end_stance or ""),
+            ):
                 self.find(self._prefix(action.clip))
                 stance(action.stance)
                 if action.kind == "transition":
@@ -202,7 +230,11 @@ class Participant:
             self._room(canvas, across, -(-len(mine) // across))
             state: dict[str, str] = {}
             for number, action in enumerate(mine):
-                self.find(reference.clips[action.clip].name if action.kind == "stance" else self._prefix(action.clip))
+                self.find(
+                    reference.clips[action.clip].name
+                    if action.kind == "stance"
+                    else self._prefix(action.clip)
+                )
                 at = canvas.view.to(self._spot(number, across)).toPoint()
                 self.drop(reference.clips[action.clip].name, (canvas, at))
                 state[action.id] = list(canvas.scene().manual.states)[-1]
@@ -231,7 +263,11 @@ class Participant:
         out = []
         for source in mine:
             for target in mine:
-                if source.id != target.id and ends_in(source) == target.stance and (whole or "stance" in (source.kind, target.kind)):
+                if (
+                    source.id != target.id
+                    and ends_in(source) == target.stance
+                    and (whole or "stance" in (source.kind, target.kind))
+                ):
                     out.append((source.id, target.id))
         return out
 
@@ -271,7 +307,9 @@ class Participant:
             self._press(inspector.limb.button(LIMBS.index(action.limb)))
 
     def _on_request(self, at_the_end: bool) -> None:
-        """Let the link that was just drawn wait for its trigger, which is named after where it leads, and for the end of what plays."""
+        """Let the link that was just drawn wait for its trigger, which is named after where it leads, and for
+        the end of what plays.
+        """
         inspector = self.drive.editor.inspector
         self.think()
         self._press(inspector.when)

@@ -1,4 +1,6 @@
-"""A day's work in the real window, on clips nobody here made: import, drop, time, undo, save, crash, reopen, export."""
+"""A day's work in the real window, on clips nobody here made: import, drop, time, undo, save, crash, reopen,
+export.
+"""
 
 from __future__ import annotations
 
@@ -51,7 +53,9 @@ def import_folder(drive, *paths: Path) -> None:
     drive.pause(300)
 
 
-def test_the_alien_is_imported_dropped_timed_saved_killed_reopened_and_exported(drive, shared_data, tmp_path, monkeypatch):
+def test_the_alien_is_imported_dropped_timed_saved_killed_reopened_and_exported(
+    drive, shared_data, tmp_path, monkeypatch
+):
     alien = shared_data / "sumerian-hosts" / "glTF" / "animations" / "alien"
     import_folder(drive, alien)
     project = drive.document.project
@@ -77,7 +81,11 @@ def test_the_alien_is_imported_dropped_timed_saved_killed_reopened_and_exported(
     drive.drag(drive.card("angry"), drive.node("fidget"), lambda: drive.names("fidget") == ["angry"])
     drive.library.search.setText("stand_talk")
     drive.pause(100)
-    drive.drag(drive.card("stand_talk"), drive.middle(), lambda: drive.names("stance") == ["stand_idle", "stand_talk"])
+    drive.drag(
+        drive.card("stand_talk"),
+        drive.middle(),
+        lambda: drive.names("stance") == ["stand_idle", "stand_talk"],
+    )
     first = next(iter(drive.document.project.graphs["arms"].stances))
     QTest.keyClick(drive.window, Qt.Key.Key_1, Qt.KeyboardModifier.ControlModifier)
     drive.wait(lambda: drive.session.place.stance() == first)
@@ -110,13 +118,19 @@ def test_the_alien_is_imported_dropped_timed_saved_killed_reopened_and_exported(
     box = plot.plotItem.vb
 
     def at(seconds: float) -> tuple:
-        point = plot.mapFromScene(box.mapViewToScene(line.pos().__class__(seconds, box.viewRect().center().y())))
+        point = plot.mapFromScene(
+            box.mapViewToScene(line.pos().__class__(seconds, box.viewRect().center().y()))
+        )
         return plot.viewport(), QPoint(point.x(), point.y())
 
     whole = drive.document.project.span(gesture)[1]
     undone = drive.document.undo_stack.count()
     drive.drag(
-        at(line.value()), at(4.0), lambda: drive.document.project.action(gesture.id).timing.end is not None and not drive.window.isHidden()
+        at(line.value()),
+        at(4.0),
+        lambda: (
+            drive.document.project.action(gesture.id).timing.end is not None and not drive.window.isHidden()
+        ),
     )
     drive.wait(lambda: abs((drive.document.project.action(gesture.id).timing.end or whole) - 4.0) < 0.15)
     assert drive.document.undo_stack.count() == undone + 1, "one drag is one step"
@@ -124,7 +138,9 @@ def test_the_alien_is_imported_dropped_timed_saved_killed_reopened_and_exported(
     # Undo and redo.
     QTest.keyClick(drive.window, Qt.Key.Key_Z, Qt.KeyboardModifier.ControlModifier)
     assert drive.document.project.action(gesture.id).timing.end is None
-    QTest.keyClick(drive.window, Qt.Key.Key_Z, Qt.KeyboardModifier.ControlModifier | Qt.KeyboardModifier.ShiftModifier)
+    QTest.keyClick(
+        drive.window, Qt.Key.Key_Z, Qt.KeyboardModifier.ControlModifier | Qt.KeyboardModifier.ShiftModifier
+    )
     assert drive.document.project.action(gesture.id).timing.end is not None
 
     # The preview runs the plan.
@@ -145,11 +161,15 @@ def test_the_alien_is_imported_dropped_timed_saved_killed_reopened_and_exported(
     drive.document.close_journal()  # as closing this window would
     killed = edit_and_be_killed(path, tmp_path)
     assert killed == gesture.id
-    assert open_project(path).project.action(gesture.id).likelihood == 1.0, "what was not saved is not in the file"
+    assert open_project(path).project.action(gesture.id).likelihood == 1.0, (
+        "what was not saved is not in the file"
+    )
 
     # Reopening offers the edit.
     asked = []
-    monkeypatch.setattr(QMessageBox, "question", lambda *a, **k: (asked.append(a[2]), QMessageBox.StandardButton.Yes)[1])
+    monkeypatch.setattr(
+        QMessageBox, "question", lambda *a, **k: (asked.append(a[2]), QMessageBox.StandardButton.Yes)[1]
+    )
     drive.files.open(path)
     drive.wait(lambda: drive.document.project.action(gesture.id).likelihood == 2.5, 30)
     assert asked
@@ -161,7 +181,9 @@ def test_the_alien_is_imported_dropped_timed_saved_killed_reopened_and_exported(
 
 
 def edit_and_be_killed(path: Path, tmp_path: Path) -> str:
-    """Open the project in a process of its own, make one edit there, kill -9; return the edited action's id."""
+    """Open the project in a process of its own, make one edit there, kill -9; return the edited action's
+    id.
+    """
     script = f"""
 import sys
 sys.path.insert(0, {str(ROOT)!r})
@@ -184,8 +206,14 @@ def edit():
 QTimer.singleShot(50, edit)
 app.exec()
 """
-    environment = {**os.environ, "XDG_DATA_HOME": str(tmp_path / "other"), "XDG_CONFIG_HOME": str(tmp_path / "other")}
-    process = subprocess.Popen([sys.executable, "-c", script], stdout=subprocess.PIPE, text=True, env=environment, cwd=ROOT)
+    environment = {
+        **os.environ,
+        "XDG_DATA_HOME": str(tmp_path / "other"),
+        "XDG_CONFIG_HOME": str(tmp_path / "other"),
+    }
+    process = subprocess.Popen(
+        [sys.executable, "-c", script], stdout=subprocess.PIPE, text=True, env=environment, cwd=ROOT
+    )
     try:
         return process.stdout.readline().strip()
     finally:
@@ -194,21 +222,33 @@ app.exec()
         process.stdout.close()
 
 
-def test_sitting_down_and_standing_up_are_transitions_between_two_stances(drive, shared_data, tmp_path, monkeypatch):
+def test_sitting_down_and_standing_up_are_transitions_between_two_stances(
+    drive, shared_data, tmp_path, monkeypatch
+):
     import_folder(drive, shared_data / "kaykit-rogue")
     QTest.keyClick(drive.window, Qt.Key.Key_1, Qt.KeyboardModifier.AltModifier)
     assert drive.session.place.layer == "body"
     drive.library.search.setText("idle")
     drive.pause(100)
     drive.drag(drive.card("Unarmed_Idle"), drive.middle(), lambda: drive.names("stance") == ["Unarmed_Idle"])
-    drive.drag(drive.card("Sit_Chair_Idle"), drive.middle(), lambda: drive.names("stance") == ["Unarmed_Idle", "Sit_Chair_Idle"])
+    drive.drag(
+        drive.card("Sit_Chair_Idle"),
+        drive.middle(),
+        lambda: drive.names("stance") == ["Unarmed_Idle", "Sit_Chair_Idle"],
+    )
     sitting = drive.session.place.stance()
     drive.library.search.setText("sit_chair")
     drive.pause(100)
-    drive.drag(drive.card("Sit_Chair_StandUp"), drive.node("transition"), lambda: drive.names("transition") == ["Sit_Chair_StandUp"])
+    drive.drag(
+        drive.card("Sit_Chair_StandUp"),
+        drive.node("transition"),
+        lambda: drive.names("transition") == ["Sit_Chair_StandUp"],
+    )
     QTest.keyClick(drive.window, Qt.Key.Key_1, Qt.KeyboardModifier.ControlModifier)
     drive.wait(lambda: drive.session.place.stance() != sitting)
-    drive.drag(drive.card("Sit_Chair_Down"), drive.node("transition"), lambda: len(drive.names("transition")) == 2)
+    drive.drag(
+        drive.card("Sit_Chair_Down"), drive.node("transition"), lambda: len(drive.names("transition")) == 2
+    )
     drive.library.search.setText("cheer")
     drive.pause(100)
     drive.drag(drive.card("Cheer"), drive.node("gesture"), lambda: drive.names("gesture") == ["Cheer"])
@@ -218,7 +258,11 @@ def test_sitting_down_and_standing_up_are_transitions_between_two_stances(drive,
 
     # Asked to sit, the character sits.
     drive.performance.requests.ask(a.Go(stance=sitting, at=1.0))
-    drive.wait(lambda: any(c.action.name == "Sit_Chair_Down" for c in drive.performance.shown.plan.layers["body"].cues))
+    drive.wait(
+        lambda: any(
+            c.action.name == "Sit_Chair_Down" for c in drive.performance.shown.plan.layers["body"].cues
+        )
+    )
 
     drive.document.save(tmp_path / "rogue.metagraph.yaml")
     export_and_check(drive, tmp_path / "export")

@@ -1,4 +1,6 @@
-"""From an annotated video to a character that does the same: import, look, change a number, perform - in the real window."""
+"""From an annotated video to a character that does the same: import, look, change a number, perform - in the
+real window.
+"""
 
 from __future__ import annotations
 
@@ -39,7 +41,13 @@ def choose(drive, table, row: int, words: str) -> None:
 
 def test_an_annotation_is_imported_learned_changed_and_performed(drive, tmp_path, monkeypatch):
     drive.files.open(SAMPLE, template=True)
-    drive.wait(lambda: len(drive.document.project.clips) == 152 and bool(drive.performance.shown.plan.layers["arms"].cues), 60)
+    drive.wait(
+        lambda: (
+            len(drive.document.project.clips) == 152
+            and bool(drive.performance.shown.plan.layers["arms"].cues)
+        ),
+        60,
+    )
 
     # While its tab lies behind another it works nothing out and leaves the dock as low as it is.
     height = drive.docks["timeline"].height()
@@ -71,7 +79,11 @@ def test_an_annotation_is_imported_learned_changed_and_performed(drive, tmp_path
     drive.wait(lambda: drive.window.findChild(AnnotateDialog) is None)
     assert drive.document.undo_stack.count() == before + 1
     project = drive.document.project
-    assert set(project.markov) == {"body", "arms", "head"} and project.markov["head"].tags == ("positive", "negative", "")
+    assert set(project.markov) == {"body", "arms", "head"} and project.markov["head"].tags == (
+        "positive",
+        "negative",
+        "",
+    )
 
     # The heat map shows what was learned, beside what was seen.
     panel = drive.models
@@ -82,20 +94,40 @@ def test_an_annotation_is_imported_learned_changed_and_performed(drive, tmp_path
     # It is performed as it was seen: the same kinds at the same times, other actions with another seed.
     kept = drive.performance.requests.kept
     assert kept is not None and kept.name == "casual talk"
-    drive.wait(lambda: drive.performance.shown.length == kept.length and bool(drive.performance.shown.plan.layers["head"].cues), 30)
+    drive.wait(
+        lambda: (
+            drive.performance.shown.length == kept.length
+            and bool(drive.performance.shown.plan.layers["head"].cues)
+        ),
+        30,
+    )
     cues = drive.performance.shown.plan.layers["head"].cues
     assert len(cues) == 46
-    assert np.median([abs(c.start - a.at) for c, a in zip(cues, (x for x in kept.asks if x.layer == "head"), strict=True)]) < 0.3
+    assert (
+        np.median(
+            [
+                abs(c.start - a.at)
+                for c, a in zip(cues, (x for x in kept.asks if x.layer == "head"), strict=True)
+            ]
+        )
+        < 0.3
+    )
     names = [c.action.name for c in cues]
     drive.document.edit("Change seed", lambda p: edits.set_settings(p, seed=77))
     drive.wait(lambda: [c.action.name for c in drive.performance.shown.plan.layers["head"].cues] != names, 30)
-    assert [c.action.kind for c in drive.performance.shown.plan.layers["head"].cues] == [c.action.kind for c in cues]
+    assert [c.action.kind for c in drive.performance.shown.plan.layers["head"].cues] == [
+        c.action.kind for c in cues
+    ]
 
     # A cell is dragged upward: one step, the row evens out, and undo brings the number back.
     heat, steps = panel.heat, drive.document.undo_stack.count()
     old = heat.model.matrix[2][3]
     middle = heat.grid().cell(2, 3).center().toPoint()
-    drive.drag((heat, middle), (heat, middle - QPoint(0, 64)), lambda: drive.document.project.markov["arms"].matrix[2][3] > old + 0.3)
+    drive.drag(
+        (heat, middle),
+        (heat, middle - QPoint(0, 64)),
+        lambda: drive.document.project.markov["arms"].matrix[2][3] > old + 0.3,
+    )
     drive.wait(lambda: drive.models._before is None)
     assert drive.document.undo_stack.count() == steps + 1
     row = drive.document.project.markov["arms"].matrix[2]
@@ -103,7 +135,9 @@ def test_an_annotation_is_imported_learned_changed_and_performed(drive, tmp_path
     assert heat.model.matrix[2] == row
     QTest.keyClick(drive.window, Qt.Key.Key_Z, Qt.KeyboardModifier.ControlModifier)
     assert drive.document.project.markov["arms"].matrix[2][3] == old
-    QTest.keyClick(drive.window, Qt.Key.Key_Z, Qt.KeyboardModifier.ControlModifier | Qt.KeyboardModifier.ShiftModifier)
+    QTest.keyClick(
+        drive.window, Qt.Key.Key_Z, Qt.KeyboardModifier.ControlModifier | Qt.KeyboardModifier.ShiftModifier
+    )
 
     # A number is typed: shortcuts of the window (1 labels as stance) do not get in the way.
     drive.click((heat, heat.grid().cell(0, 0).center().toPoint()))
@@ -115,10 +149,18 @@ def test_an_annotation_is_imported_learned_changed_and_performed(drive, tmp_path
     # Without a performance on stage the changed models improvise: rest, then what the matrix says.
     drive.session.onstage.set_performance(None)
     drive.wait(
-        lambda: drive.performance.requests.kept is None and any(m.written for m in drive.performance.shown.plan.layers["arms"].metas), 30
+        lambda: (
+            drive.performance.requests.kept is None
+            and any(m.written for m in drive.performance.shown.plan.layers["arms"].metas)
+        ),
+        30,
     )
     known = set(drive.document.project.markov["arms"].states)
-    assert {(m.request.limb, m.request.kind) for m in drive.performance.shown.plan.layers["arms"].metas if m.written} <= known
+    assert {
+        (m.request.limb, m.request.kind)
+        for m in drive.performance.shown.plan.layers["arms"].metas
+        if m.written
+    } <= known
 
     # All of it is saved.
     path = tmp_path / "talk.metagraph.yaml"

@@ -29,7 +29,13 @@ def test_ten_clips_are_done_without_a_mistake(drive, sample, condition):
     given = task(sample, 10)
     bare(drive, given, condition)
     result = Participant(drive, given).do(condition)
-    print(condition, dict(result.operators), f"{result.predicted:.0f} s predicted", result.score.count("missing"), "missing")
+    print(
+        condition,
+        dict(result.operators),
+        f"{result.predicted:.0f} s predicted",
+        result.score.count("missing"),
+        "missing",
+    )
     assert result.score.extra == result.score.wrong == 0 and result.score.placed == 10
     assert result.score.essential_right == result.score.essential > 0
     assert (result.score.f1 == 1.0 and not result.score.mistakes) or condition == "manual"

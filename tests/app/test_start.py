@@ -43,7 +43,15 @@ sys.exit(app.exec())
 @pytest.mark.gl
 def test_the_first_picture_waits_for_no_heavy_import_and_the_panels_follow(qapp, tmp_path):
     environment = {**os.environ, "XDG_DATA_HOME": str(tmp_path), "XDG_CONFIG_HOME": str(tmp_path)}
-    done = subprocess.run([sys.executable, "-c", START], cwd=ROOT, env=environment, capture_output=True, text=True, timeout=60, check=False)
+    done = subprocess.run(
+        [sys.executable, "-c", START],
+        cwd=ROOT,
+        env=environment,
+        capture_output=True,
+        text=True,
+        timeout=60,
+        check=False,
+    )
     assert done.returncode == 0, done.stderr
     first, ready = done.stdout.splitlines()
     assert first == "first:"
@@ -52,6 +60,12 @@ def test_the_first_picture_waits_for_no_heavy_import_and_the_panels_follow(qapp,
 
 
 def test_the_domain_starts_without_a_window():
-    code = f"import metagraph, app.cli.parser, sys; print(*(m for m in {(*HEAVY, 'PySide6', 'numpy')!r} if m in sys.modules))"
-    done = subprocess.run([sys.executable, "-c", code], cwd=ROOT, capture_output=True, text=True, timeout=60, check=True)
+    code = (
+        f"import metagraph, app.cli.parser, sys; print(*(m for m in {(*HEAVY, 'PySide6', 'numpy')!r} "
+        "if m "
+        "in sys.modules))"
+    )
+    done = subprocess.run(
+        [sys.executable, "-c", code], cwd=ROOT, capture_output=True, text=True, timeout=60, check=True
+    )
     assert done.stdout.strip() == ""

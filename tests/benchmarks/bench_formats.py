@@ -1,9 +1,9 @@
 """How fast clips are read, beside other readers: `python tests/benchmarks/bench_formats.py`.
 
-BVH: 10,000 frames. GLB: clips with few joints. Peers are used when they can be imported: upc-pymotion, bvh, bvhtoolbox,
-bvhio, pygltflib. Every round runs each reader once, in turn; medians of five rounds. Import and compile times are not
-counted, on either side. Results differ: ours gives names, parents, offsets, float32 quaternions and translations in
-metres; the peers give Euler angles, text or trees (said beside each).
+BVH: 10,000 frames. GLB: clips with few joints. Peers are used when they can be imported: upc-pymotion, bvh,
+bvhtoolbox, bvhio, pygltflib. Every round runs each reader once, in turn; medians of five rounds. Import and
+compile times are not counted, on either side. Results differ: ours gives names, parents, offsets, float32
+quaternions and translations in metres; the peers give Euler angles, text or trees (said beside each).
 """
 
 from __future__ import annotations
@@ -41,7 +41,9 @@ def invented(frames: int) -> Clip:
     t = np.arange(frames)[:, None] / 30
     phase = np.arange(len(skeleton))
     axes = np.random.default_rng(1).normal(size=(len(skeleton), 3))
-    rotations = rotation.from_axis_angle(np.broadcast_to(axes, (frames, len(skeleton), 3)), 0.4 * np.sin(t + phase))
+    rotations = rotation.from_axis_angle(
+        np.broadcast_to(axes, (frames, len(skeleton), 3)), 0.4 * np.sin(t + phase)
+    )
     root = skeleton.rest_translations[0] + 0.1 * np.sin(t * [1, 2, 3])
     return Clip("invented", skeleton, 30, rotations, root[:, None])
 
@@ -58,7 +60,9 @@ def long_bvh(folder: Path) -> tuple[Path, str]:
         text = file.read_text()
         rows += text[re.search(r"Frame Time:.*\n", text).end() :].strip().splitlines()  # type: ignore[union-attr]
     head = files[0].read_text().split("MOTION")[0]
-    path.write_text(f"{head}MOTION\nFrames: {FRAMES}\nFrame Time: 0.0333333\n" + "\n".join(rows[:FRAMES]) + "\n")
+    path.write_text(
+        f"{head}MOTION\nFrames: {FRAMES}\nFrame Time: 0.0333333\n" + "\n".join(rows[:FRAMES]) + "\n"
+    )
     return path, "real clips end to end, 22 joints, 132 channels"
 
 
@@ -155,14 +159,21 @@ def main() -> None:
         read_bvh(path)  # imports the compiled loops before the clock starts, as the peers are
 
         times = race(bvh_readers(path))
-        report(times, "ours: clip with f32 quaternions", lambda s: f"{FRAMES / s:10.0f} frames/s {size / s:6.0f} MB/s")
+        report(
+            times,
+            "ours: clip with f32 quaternions",
+            lambda s: f"{FRAMES / s:10.0f} frames/s {size / s:6.0f} MB/s",
+        )
 
         clip = invented(96)
         files = []
         for i in range(20):
             files.append(folder / f"clip{i}.glb")
             write_glb(files[-1], [clip.renamed(f"clip{i}")], quantize=False, tolerance=0)
-        print(f"\nGLB, 20 files of one clip, 96 frames, 61 joints each, {files[0].stat().st_size / 1e3:.0f} kB a file")
+        print(
+            f"\nGLB, 20 files of one clip, 96 frames, 61 joints each, {files[0].stat().st_size / 1e3:.0f} kB "
+            "a file"
+        )
         times = race(glb_readers(files))
         report(times, "ours: clips", lambda s: f"{1e3 * s / len(files):8.3f} ms a clip")
 

@@ -1,8 +1,9 @@
-"""Milliseconds of edits and checks in a graph of ten thousand actions: python tests/benchmarks/bench_graph.py [actions]
+"""Milliseconds of edits and checks in a graph of ten thousand actions: python tests/benchmarks/bench_graph.py
+[actions]
 
-An edit counts from the call until the index, the uses of a clip and the action by its id are there again; "compare" is
-what telling the project from the one before costs then. Medians. "one layer" has all actions in the arms layer, a hundred
-stances: the worst case.
+An edit counts from the call until the index, the uses of a clip and the action by its id are there again;
+"compare" is what telling the project from the one before costs then. Medians. "one layer" has all actions in
+the arms layer, a hundred stances: the worst case.
 """
 
 from __future__ import annotations
@@ -37,7 +38,14 @@ def large(actions: int, layers: Sequence[Layer], stances: int) -> Project:
             for s in range(stances):
                 some = own[k::4][s::stances]
                 if some:
-                    project = edits.place(project, some, layer, kind, ids[s], ids[(s + 1) % stances] if kind == "transition" else None)
+                    project = edits.place(
+                        project,
+                        some,
+                        layer,
+                        kind,
+                        ids[s],
+                        ids[(s + 1) % stances] if kind == "transition" else None,
+                    )
     return project
 
 
@@ -56,11 +64,17 @@ def bench_edits(project: Project, title: str) -> None:
     stances = list(arms.stances)
     gestures = [a.id for a in arms.actions.values() if a.kind == "gesture"]
     cases: dict[str, Callable[[Project, int], Project]] = {
-        "timing of one": lambda p, i: edits.update_actions(p, [gestures[i]], timing={"blend_in": 0.1 + i * 1e-3}),
-        "timing of 100": lambda p, i: edits.update_actions(p, gestures[:100], timing={"blend_in": 0.1 + i * 1e-3}),
+        "timing of one": lambda p, i: edits.update_actions(
+            p, [gestures[i]], timing={"blend_in": 0.1 + i * 1e-3}
+        ),
+        "timing of 100": lambda p, i: edits.update_actions(
+            p, gestures[:100], timing={"blend_in": 0.1 + i * 1e-3}
+        ),
         "likelihood": lambda p, i: edits.update_actions(p, [gestures[-i]], likelihood=2.0 + i),
         "place": lambda p, i: edits.place(p, [f"c{i}"], "arms", "gesture", stances[3]),
-        "place 100": lambda p, i: edits.place(p, [f"c{n}" for n in range(100)], "arms", "fidget", stances[i % 20]),
+        "place 100": lambda p, i: edits.place(
+            p, [f"c{n}" for n in range(100)], "arms", "fidget", stances[i % 20]
+        ),
         "move": lambda p, i: edits.move_actions(p, [gestures[i]], "fidget", stances[(i + 1) % 20]),
         "remove": lambda p, i: edits.remove_actions(p, [gestures[200 + i]]),
         "rename clip": lambda p, i: edits.rename_clip(p, f"c{i}", f"new {i}"),
@@ -86,7 +100,10 @@ def bench_edits(project: Project, title: str) -> None:
             if after is not before:
                 taken.append(middle - start)
             before = after
-        print(f"  {name:40} {statistics.median(taken) * 1e3:8.3f} {max(taken) * 1e3:8.3f} {statistics.median(compared) * 1e3:8.3f}")
+        print(
+            f"  {name:40} {statistics.median(taken) * 1e3:8.3f} {max(taken) * 1e3:8.3f} "
+            f"{statistics.median(compared) * 1e3:8.3f}"
+        )
 
 
 def main() -> None:
@@ -107,7 +124,10 @@ def main() -> None:
     print(f"  {f'expand.size: {counted.connections} connections':40} {median(lambda: size(spread), 9):8.2f}")
     arms = spread.graphs["arms"]
     listed = sum(1 for _ in connections(spread, arms))
-    print(f"  {f'expand.connections, listing {listed}':40} {median(lambda: sum(1 for _ in connections(spread, arms)), 3):8.1f}")
+    print(
+        f"  {f'expand.connections, listing {listed}':40} "
+        f"{median(lambda: sum(1 for _ in connections(spread, arms)), 3):8.1f}"
+    )
 
 
 if __name__ == "__main__":

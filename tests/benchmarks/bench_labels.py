@@ -1,9 +1,9 @@
 """How often labels are proposed rightly: python tests/benchmarks/bench_labels.py
 
-With names and motion, with names alone and with names hidden, on the sample clips and on labelled sets made by others, by field. A stance
-counts as right where most clips proposed for it are of that stance. Then with wrong names: a fifth of the clips swap names with clips of
-another kind, stance or layer, by five seeds; how many of those are flagged, and how many of the others. Prints the tables of
-docs/labels.md.
+With names and motion, with names alone and with names hidden, on the sample clips and on labelled sets made
+by others, by field. A stance counts as right where most clips proposed for it are of that stance. Then with
+wrong names: a fifth of the clips swap names with clips of another kind, stance or layer, by five seeds; how
+many of those are flagged, and how many of the others. Prints the tables of docs/labels.md.
 """
 
 from __future__ import annotations
@@ -34,7 +34,9 @@ SETS = ("sample_clips", "kaykit-rogue", "robot-expressive", "sumerian-hosts", "b
 
 def projects(name: str) -> list[Project]:
     """Return a set's clips as projects, one for each skeleton."""
-    folder = ROOT / "sample_clips" / "clips" if name == "sample_clips" else ROOT.parent / "shared" / "data" / name
+    folder = (
+        ROOT / "sample_clips" / "clips" if name == "sample_clips" else ROOT.parent / "shared" / "data" / name
+    )
     files = gather([folder]) if folder.is_dir() else []
     out = []
     while files:
@@ -70,16 +72,26 @@ def count(project: Project, truth: Mapping[str, Any], found: Proposals) -> tuple
 
 
 def swapped(project: Project, truth: Mapping[str, Any], seed: int) -> tuple[Project, set[str]]:
-    """Return a project in which a fifth of the labelled clips swapped names with one of another kind, stance or layer; and which did."""
+    """Return a project in which a fifth of the labelled clips swapped names with one of another kind, stance
+    or layer; and which did.
+    """
     draw = random.Random(seed)
-    told = {i: truth[c.name] for i, c in project.clips.items() if truth.get(c.name) and truth[c.name]["kind"] is not None}
+    told = {
+        i: truth[c.name]
+        for i, c in project.clips.items()
+        if truth.get(c.name) and truth[c.name]["kind"] is not None
+    }
     order = [*told]
     draw.shuffle(order)
     clips, lying = dict(project.clips), set[str]()
     for one in order:
         if len(lying) >= max(2, len(order) / 5):
             break
-        unlike = (i for i in order if not {i, one} & lying and any(told[i][f] != told[one][f] for f in ("kind", "stance", "layer")))
+        unlike = (
+            i
+            for i in order
+            if not {i, one} & lying and any(told[i][f] != told[one][f] for f in ("kind", "stance", "layer"))
+        )
         other = next(unlike, None)
         if other is not None:
             lying |= {one, other}
@@ -89,7 +101,9 @@ def swapped(project: Project, truth: Mapping[str, Any], seed: int) -> tuple[Proj
 
 
 def flagged(project: Project, truth: Mapping[str, Any]) -> Counter[str]:
-    """Return how many clips with wrong and with right names there were, with a conflict told, and unsure (or with one)."""
+    """Return how many clips with wrong and with right names there were, with a conflict told, and unsure (or
+    with one).
+    """
     out = Counter[str]()
     for seed in range(SEEDS):
         wrong, lying = swapped(project, truth, seed)
@@ -133,7 +147,10 @@ def main() -> None:
                 cells = " | ".join(f"{right[f]}/{there[f]}" if there[f] else "–" for f in FIELDS)
                 rows[way].append(f"| {name} | {cells} | {placed}/{clips} |")
     for way, lines in rows.items():
-        print(f"\n### With {way}\n\n| set | kind | stance | end stance | layer | limb | placed |\n|---|---|---|---|---|---|---|")
+        print(
+            f"\n### With {way}\n\n| set | kind | stance | end stance | layer | limb | placed "
+            "|\n|---|---|---|---|---|---|---|"
+        )
         print("\n".join(lines))
     columns = ("set", "wrong: told", "wrong: told or unsure", "right: told", "right: told or unsure")
     print(f"\n### With wrong names\n\n| {' | '.join(columns)} |\n|---|---|---|---|---|")

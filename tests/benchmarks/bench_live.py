@@ -1,10 +1,10 @@
 """The live session under load: python tests/benchmarks/bench_live.py [flood|soak] [seconds]
 
-flood: a client in a process of its own sends 10,000 requests a second over WebSocket, one to a message and then a hundred to a
-message, while this process ticks at 60 Hz as a window would, planning and posing; the lines are in a child process
-(`Relay`). Counted are replies; measured is how long a tick holds the window up. Then the same in one process, as `metagraph live`.
-soak: an hour of session time, simulated, 100 requests a second from three clients, valid and hostile; memory after 10 and after 60
-minutes, and what a tick costs.
+flood: a client in a process of its own sends 10,000 requests a second over WebSocket, one to a message and
+then a hundred to a message, while this process ticks at 60 Hz as a window would, planning and posing; the
+lines are in a child process (`Relay`). Counted are replies; measured is how long a tick holds the window up.
+Then the same in one process, as `metagraph live`. soak: an hour of session time, simulated, 100 requests a
+second from three clients, valid and hostile; memory after 10 and after 60 minutes, and what a tick costs.
 """
 
 from __future__ import annotations
@@ -59,10 +59,17 @@ def framed(data: bytes) -> bytes:
 def requests(listed: bool) -> tuple[list[bytes], int]:
     """Frames to send again and again, and how many requests each holds."""
     some = [
-        {"do": "gesture", "tags": ["beat"]}, {"do": "gesture", "layer": "body"}, {"do": "nod"}, {"do": "look", "to": "user"},
-        {"do": "place", "name": "user", "point": [0.1, 1.6, 2]}, {"do": "fidget"}, {"do": "stance", "stance": "on hips"},
-        {"do": "action", "action": "nobody_01"}, {"do": "gesture", "in": 30, "id": "later"}, {"do": "say", "text": "Well, well."},
-    ]  # fmt: skip
+        {"do": "gesture", "tags": ["beat"]},
+        {"do": "gesture", "layer": "body"},
+        {"do": "nod"},
+        {"do": "look", "to": "user"},
+        {"do": "place", "name": "user", "point": [0.1, 1.6, 2]},
+        {"do": "fidget"},
+        {"do": "stance", "stance": "on hips"},
+        {"do": "action", "action": "nobody_01"},
+        {"do": "gesture", "in": 30, "id": "later"},
+        {"do": "say", "text": "Well, well."},
+    ]
     if listed:
         return [framed(json.dumps([some[n % len(some)] for n in range(100)]).encode())], 100
     return [framed(json.dumps(ask).encode()) for ask in some], 1
@@ -78,7 +85,9 @@ def client(port: int, listed: bool, seconds: float, result: Any) -> None:
     inbox, outbox = bytearray(), bytearray()
     begin = time.perf_counter()
     bursts = 0
-    while time.perf_counter() - begin < seconds + 5 and (replies < sent or time.perf_counter() - begin < seconds):
+    while time.perf_counter() - begin < seconds + 5 and (
+        replies < sent or time.perf_counter() - begin < seconds
+    ):
         now = time.perf_counter() - begin
         while bursts * BURST <= now and bursts * BURST < seconds:
             bursts += 1
@@ -188,7 +197,11 @@ def flood(seconds: float) -> None:
 
             await server.run(step)
             await server.close()
-            report(f"one process, {'a hundred to a message' if listed else 'one to a message'}", ours.recv(), ticks)
+            report(
+                f"one process, {'a hundred to a message' if listed else 'one to a message'}",
+                ours.recv(),
+                ticks,
+            )
             process.join()
 
         asyncio.run(play())
@@ -219,7 +232,10 @@ def soak(seconds: float, rate: int = 100) -> None:
     states: dict[str, int] = {}
     begin = time.perf_counter()
     shown = 60.0
-    print(f"{rate} requests a second\n minute    asked answered  events   memory    tape   tick   95 %   most  ms of processor time")
+    print(
+        f"{rate} requests a second\n minute    asked answered  events   memory    tape   tick   95 %   most  "
+        "ms of processor time"
+    )
     for n in range(1, int(seconds * 60) + 1):
         now = n / 60
         for _ in range(int(now * rate) - int((n - 1) / 60 * rate)):
@@ -240,9 +256,11 @@ def soak(seconds: float, rate: int = 100) -> None:
             shown += 600.0 if now >= 600.0 else 540.0
             some = sorted(ticks)
             print(
-                f"{now / 60:7.0f} {asked:8d} {answered:8d} {events:7d} {resident():6.0f} MB {len(session.tape) / 2**20:4.1f} MB"
-                f" {some[len(some) // 2]:6.2f} {some[int(0.95 * len(some))]:6.2f} {some[-1]:6.1f}", flush=True
-            )  # fmt: skip
+                f"{now / 60:7.0f} {asked:8d} {answered:8d} {events:7d} {resident():6.0f} MB "
+                f"{len(session.tape) / 2**20:4.1f} MB"
+                f" {some[len(some) // 2]:6.2f} {some[int(0.95 * len(some))]:6.2f} {some[-1]:6.1f}",
+                flush=True,
+            )
             ticks.clear()
     print(f"took {time.perf_counter() - begin:.0f} s; replies: {states}")
 

@@ -1,8 +1,10 @@
-"""What an hour of an open window costs: 2,400 looks at 10,000 clip files for changes, without the 1.5 s between them.
+"""What an hour of an open window costs: 2,400 looks at 10,000 clip files for changes, without the 1.5 s
+between them.
 
     .venv/bin/python tests/benchmarks/bench_memory.py [looks] [clips]
 
-Prints resident memory before and after (Linux), and the median time of a look on its thread and on the window's.
+Prints resident memory before and after (Linux), and the median time of a look on its thread and on the
+window's.
 """
 
 from __future__ import annotations
@@ -40,7 +42,10 @@ def main(looks: int, clips: int) -> None:
         for name in names:
             (Path(folder) / name).touch()
         document, jobs = Document(), Jobs()
-        entries = {f"c{n}": ClipEntry(f"c{n}", name, f"{folder}/{name}", motion=object()) for n, name in enumerate(names)}  # type: ignore[arg-type]
+        entries = {
+            f"c{n}": ClipEntry(f"c{n}", name, f"{folder}/{name}", motion=object())
+            for n, name in enumerate(names)
+        }  # type: ignore[arg-type]
         document.project = Project("many", clips=entries)
         watcher = Watcher(document, jobs)
         here: list[float] = []
@@ -63,8 +68,14 @@ def main(looks: int, clips: int) -> None:
         each = (time.perf_counter() - begun) / looks
         gc.collect()
         after = resident()
-        print(f"{looks} looks at {clips} clips: {before:.1f} MB before, {after:.1f} MB after ({after - before:+.1f} MB)")
-        print(f"a look: {each * 1000:.0f} ms in all, {statistics.median(here[20:]) * 1000:.2f} ms of them on the window's thread")
+        print(
+            f"{looks} looks at {clips} clips: {before:.1f} MB before, {after:.1f} MB after "
+            f"({after - before:+.1f} MB)"
+        )
+        print(
+            f"a look: {each * 1000:.0f} ms in all, {statistics.median(here[20:]) * 1000:.2f} ms of them on "
+            "the window's thread"
+        )
         jobs.stop()
 
 

@@ -1,7 +1,8 @@
 """Mimicry: python tests/benchmarks/bench_mimicry.py
 
-A frame of keypoints taken in, in space and in a picture, beside one pose of the character (what every picture of the preview costs);
-what beginning costs, reading the sample recordings, and mimicking a minute. Medians of interleaved rounds.
+A frame of keypoints taken in, in space and in a picture, beside one pose of the character (what every picture
+of the preview costs); what beginning costs, reading the sample recordings, and mimicking a minute. Medians of
+interleaved rounds.
 """
 
 from __future__ import annotations
@@ -34,7 +35,10 @@ def timed(work: Callable[[], object]) -> float:
 
 def main() -> None:
     project = open_project(ROOT / "sample_clips" / "sample.metagraph.yaml").project
-    files = {"a picture": FOLDER / "conversation.openpose.json", "space": FOLDER / "conversation.mediapipe.jsonl"}
+    files = {
+        "a picture": FOLDER / "conversation.openpose.json",
+        "space": FOLDER / "conversation.mediapipe.jsonl",
+    }
     seen = {name: read_keypoints(path) for name, path in files.items()}
     plan = make_plan(project, 60.0)
 
@@ -49,13 +53,18 @@ def main() -> None:
         begin += 1000.0
         for name, work in works.items():
             rounds.setdefault(name, []).append(timed(work) / 200)
-        rounds.setdefault("pose", []).append(timed(lambda: [pose_at(plan, project, n * 0.3) for n in range(100)]) / 100)
+        rounds.setdefault("pose", []).append(
+            timed(lambda: [pose_at(plan, project, n * 0.3) for n in range(100)]) / 100
+        )
     pose = statistics.median(rounds["pose"])
     print(f"one pose of the character      {pose * 1e3:8.3f} ms")
     for name in works:
         took = statistics.median(rounds[name])
         print(f"a frame seen in {name:15} {took * 1e3:8.3f} ms   {took / pose:5.2f} of a pose")
-    print(f"beginning to mimic             {statistics.median(timed(lambda: Mimic(project)) for _ in range(9)) * 1e3:8.1f} ms")
+    print(
+        "beginning to mimic             "
+        f"{statistics.median(timed(lambda: Mimic(project)) for _ in range(9)) * 1e3:8.1f} ms"
+    )
     for name, path in files.items():
         took = statistics.median(timed(lambda path=path: read_keypoints(path)) for _ in range(5))  # type: ignore[misc]
         print(f"reading {len(seen[name]):5} frames of {name:9} {took * 1e3:8.1f} ms")

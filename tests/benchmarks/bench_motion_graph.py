@@ -1,11 +1,14 @@
-"""How long motion graphs take to build and search: python tests/benchmarks/bench_motion_graph.py [scale [frames ...]]
+"""How long motion graphs take to build and search: python tests/benchmarks/bench_motion_graph.py [scale
+[frames ...]]
 
-Side by side with a straightforward NumPy reading of the paper on the same data, and with SciPy's components: 25 joints, 50,568 frames at
-30 Hz, smooth synthetic motion with rests, at thresholds that accept 11 % and 1 % of all pairs; then, where ../shared/data is, the real
-takes there. The straightforward one compares a few rows with all others, and its time is multiplied; its edges are compared one by one.
+Side by side with a straightforward NumPy reading of the paper on the same data, and with SciPy's components:
+25 joints, 50,568 frames at 30 Hz, smooth synthetic motion with rests, at thresholds that accept 11 % and 1 %
+of all pairs; then, where ../shared/data is, the real takes there. The straightforward one compares a few rows
+with all others, and its time is multiplied; its edges are compared one by one.
 
-With `scale`: the cost against the number of frames, 10k to 1M, each in a process of its own so that its peak memory is its own, best of
-several for the small ones; without numbers behind it that is drawn as docs/motion-graph-scale.svg.
+With `scale`: the cost against the number of frames, 10k to 1M, each in a process of its own so that its peak
+memory is its own, best of several for the small ones; without numbers behind it that is drawn as
+docs/motion-graph-scale.svg.
 """
 
 from __future__ import annotations
@@ -36,7 +39,9 @@ ROWS = 12  # the straightforward one compares
 
 
 def synthetic(frames: int, joints: int = 25, seed: int = 1) -> States:
-    """Smooth motion with rests: each joint wanders about a rest pose, now and then everything stands still for a while."""
+    """Smooth motion with rests: each joint wanders about a rest pose, now and then everything stands still
+    for a while.
+    """
     chance = np.random.default_rng(seed)
     knots = frames // 15 + 3
     way = np.cumsum(chance.normal(0, 0.03, (knots, joints, 3)), axis=0)
@@ -44,7 +49,10 @@ def synthetic(frames: int, joints: int = 25, seed: int = 1) -> States:
     way = np.cumsum(np.where(moving[:, None, None], np.diff(way, axis=0, prepend=0), 0.0), axis=0)
     rest = chance.normal(0, 0.4, (1, joints, 3))
     starts = np.linspace(0, frames, max(2, frames // 2500) + 1).astype(int)
-    places32, velocities = np.empty((frames, joints, 3), np.float32), np.empty((frames, joints, 3), np.float32)
+    places32, velocities = (
+        np.empty((frames, joints, 3), np.float32),
+        np.empty((frames, joints, 3), np.float32),
+    )
     for a, b in itertools.pairwise(starts):  # take by take, so that the whole is never in memory in 64 bits
         t = np.arange(a, b) / 15
         place = t.astype(int)
@@ -59,11 +67,17 @@ def limit_for(states: States, keys: Array, share: float) -> float:
     """Return the threshold that accepts about a share of all pairs of key states."""
     chance = np.random.default_rng(2)
     a, b = (chance.choice(keys, 600) for _ in range(2))
-    return float(np.quantile([np.linalg.norm(x - terms_of(states, b), axis=-1).sum(-1) for x in terms_of(states, a)], share))
+    return float(
+        np.quantile(
+            [np.linalg.norm(x - terms_of(states, b), axis=-1).sum(-1) for x in terms_of(states, a)], share
+        )
+    )
 
 
 def straightforward(states: States, keys: Array, limit: float) -> Any:
-    """Return what finds the targets of some key states, as equations 3 and 4 say, in 64 bits; what is the same for all is made before."""
+    """Return what finds the targets of some key states, as equations 3 and 4 say, in 64 bits; what is the
+    same for all is made before.
+    """
     into = keys[~np.isin(keys, states.starts[:-1])]
     places, velocities = states.places[into - 1].astype(float), states.velocities[into - 1].astype(float)
 
@@ -98,11 +112,15 @@ def compared(name: str, states: States, limit: float) -> MotionGraph:
     plain = straightforward(states, keys, limit)
     theirs, found = timed(lambda: plain(rows), 3)
     theirs *= len(keys) / ROWS
-    odd = sum(len(set(mine) ^ set(whole.targets[whole.starts[i] : whole.starts[i + 1]])) for i, mine in zip(rows, found, strict=True))
+    odd = sum(
+        len(set(mine) ^ set(whole.targets[whole.starts[i] : whole.starts[i + 1]]))
+        for i, mine in zip(rows, found, strict=True)
+    )
     share = len(whole.targets) / len(keys) ** 2
     kept, edges = graph.size
     print(
-        f"| {name} | {len(states):,} | {len(keys):,} | {share:.2%} | {edges:,} | {kept:,} | {ours:.2f} s | {theirs:,.0f} s | "
+        f"| {name} | {len(states):,} | {len(keys):,} | {share:.2%} | {edges:,} | {kept:,} | {ours:.2f} s | "
+        f"{theirs:,.0f} s | "
         f"{theirs / ours:,.0f} | {odd} of {sum(map(len, found)):,} |",
         flush=True,
     )
@@ -124,13 +142,16 @@ def components(states: States, limit: float) -> None:
     theirs, (_, labels) = timed(lambda: connected_components(matrix, True, "strong"))
     same = bool((graph.kept == (labels == np.bincount(labels).argmax())).all())
     print(
-        f"largest component of {len(every[0]):,} edges: {ours:.2f} s with the rest cut away; SciPy {theirs:.2f} s for the labels, "
+        f"largest component of {len(every[0]):,} edges: {ours:.2f} s with the rest cut away; SciPy "
+        f"{theirs:.2f} s for the labels, "
         f"{making:.2f} s for its matrix: {(theirs + making) / ours:.1f} times; the same states: {same}"
     )
 
 
 def speech(frames: int, seed: int = 3) -> tuple[Heard, list[Segment]]:
-    """Return what is heard at states, and 15 s of other speech of the same kind: clauses, answers, hesitations, as irregular as talk."""
+    """Return what is heard at states, and 15 s of other speech of the same kind: clauses, answers,
+    hesitations, as irregular as talk.
+    """
     chance = np.random.default_rng(seed)
     kinds, peaks, at = np.ones(frames, np.uint8), np.zeros(frames, bool), 5
     while at < frames - 120:
@@ -155,7 +176,9 @@ def searched(name: str, graph: MotionGraph) -> None:
     sound, segments = speech(len(graph.states))
     want = wanted(segments, 15.0)
     exact, path = timed(lambda: best(graph, sound, want), 2)
-    print(f"\n15 s of speech, {name}: exact {exact:.2f} s, cost {path.cost:.3f}, {len(path.jumps)} transitions")
+    print(
+        f"\n15 s of speech, {name}: exact {exact:.2f} s, cost {path.cost:.3f}, {len(path.jumps)} transitions"
+    )
     begun = time.perf_counter()
     greedy(graph, sound, want)
     first = time.perf_counter() - begun
@@ -169,8 +192,10 @@ def searched(name: str, graph: MotionGraph) -> None:
         costs.append(other.cost / path.cost)
         seconds.append(took)
     print(
-        f"greedy, 200 kept, 20 seeds: median {1000 * np.median(seconds):.0f} ms, best {1000 * min(seconds):.0f} ms (the first of a graph "
-        f"{1000 * first:.0f} ms); cost {np.median(costs):.2f} times the least, {min(costs):.2f} to {max(costs):.2f}; {failed} found nothing"
+        f"greedy, 200 kept, 20 seeds: median {1000 * np.median(seconds):.0f} ms, best "
+        f"{1000 * min(seconds):.0f} ms (the first of a graph "
+        f"{1000 * first:.0f} ms); cost {np.median(costs):.2f} times the least, {min(costs):.2f} to "
+        f"{max(costs):.2f}; {failed} found nothing"
     )
 
 
@@ -193,22 +218,37 @@ def one_size(size: int) -> dict[str, Any]:
         plain = straightforward(states, keys, given.limit)
         theirs = timed(lambda: plain(rows), 3)[0] * len(keys) / len(rows)
     kept, edges = graph.size
-    return {"frames": size, "keys": len(keys), "kept": kept, "edges": edges, "seconds": seconds, "gib": peak, "numpy": theirs}
+    return {
+        "frames": size,
+        "keys": len(keys),
+        "kept": kept,
+        "edges": edges,
+        "seconds": seconds,
+        "gib": peak,
+        "numpy": theirs,
+    }
 
 
 def scale(sizes: list[int]) -> list[dict[str, Any]]:
-    print("| frames | key states | transitions | states kept | seconds | peak memory | NumPy, from 3 rows | ratio |")
+    print(
+        "| frames | key states | transitions | states kept | seconds | peak memory | NumPy, from 3 rows | "
+        "ratio |"
+    )
     print("|---|---|---|---|---|---|---|---|", flush=True)
     rows = []
     for size in sizes:
-        code = f"import sys; sys.path.insert(0, {str(Path(__file__).parent)!r}); import bench_motion_graph as b, json; "
+        code = (
+            f"import sys; sys.path.insert(0, {str(Path(__file__).parent)!r}); import bench_motion_graph "
+            "as b, json; "
+        )
         code += f"print(json.dumps(b.one_size({size})))"
         done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
         r = json.loads(done.stdout)
         rows.append(r)
         beside = f"{r['numpy']:,.0f} s | {r['numpy'] / r['seconds']:,.0f}" if r["numpy"] else " | "
         print(
-            f"| {size:,} | {r['keys']:,} | {r['edges']:,} | {r['kept']:,} | {r['seconds']:.2f} | {r['gib']:.2f} GiB | {beside} |",
+            f"| {size:,} | {r['keys']:,} | {r['edges']:,} | {r['kept']:,} | {r['seconds']:.2f} | "
+            f"{r['gib']:.2f} GiB | {beside} |",
             flush=True,
         )
     return rows
@@ -226,16 +266,19 @@ def drawn(rows: list[dict[str, Any]]) -> str:
         return bottom - (bottom - top) * (np.log10(value) - low) / (high - low)
 
     style = (
-        "text{font:12px system-ui,sans-serif;fill:#57606a}.t{font-weight:600;fill:#24292f}line{stroke:#d0d7de}"
+        "text{font:12px "
+        "system-ui,sans-serif;fill:#57606a}.t{font-weight:600;fill:#24292f}line{stroke:#d0d7de}"
         ".a{stroke:#0969da;fill:#0969da}.b{stroke:#8250df;fill:#8250df}.c{stroke:#bf5b04;fill:#bf5b04}polyline{"
         "stroke-width:2.5}text.a,text.b,text.c{stroke:none}@media(prefers-color-scheme:dark){text{fill:#9198a1}.t{fill:#e6edf3}"
         "line{stroke:#3d444d}.a{stroke:#4493f8;fill:#4493f8}.b{stroke:#ab7df8;fill:#ab7df8}.c{stroke:#f0883e;fill:#f0883e}}"
     )
     cores = os.cpu_count()
     out = [
-        "<svg xmlns='http://www.w3.org/2000/svg' viewBox='0 0 640 390' role='img' aria-label='Cost of a motion graph against its frames'>",
+        "<svg xmlns='http://www.w3.org/2000/svg' viewBox='0 0 640 390' role='img' aria-label='Cost of a "
+        "motion graph against its frames'>",
         f"<style>{style}</style>",
-        f"<text class='t' x='{left}' y='22'>Building a motion graph of 25 joints on {cores} cores, largest component and all</text>",
+        f"<text class='t' x='{left}' y='22'>Building a motion graph of 25 joints on {cores} cores, largest "
+        "component and all</text>",
     ]
     for power in range(int(low), int(high) + 1):
         at = y(10.0**power)
@@ -243,13 +286,26 @@ def drawn(rows: list[dict[str, Any]]) -> str:
         out.append(f"<text x='{left - 8}' y='{at + 4:.1f}' text-anchor='end'>{10.0**power:g}</text>")
     for frames, words in ((1e4, "10k"), (3e4, "30k"), (1e5, "100k"), (3e5, "300k"), (1e6, "1M frames")):
         out.append(f"<text x='{x(frames):.1f}' y='{bottom + 20}' text-anchor='middle'>{words}</text>")
-    for css, field, words in (("c", "numpy", "NumPy, seconds"), ("a", "seconds", "seconds"), ("b", "gib", "peak GiB")):
+    for css, field, words in (
+        ("c", "numpy", "NumPy, seconds"),
+        ("a", "seconds", "seconds"),
+        ("b", "gib", "peak GiB"),
+    ):
         known = [(x(r["frames"]), y(r[field])) for r in rows if r[field]]
-        out.append(f"<polyline class='{css}' style='fill:none' points='{' '.join(f'{a:.1f},{b:.1f}' for a, b in known)}'/>")
+        out.append(
+            f"<polyline class='{css}' style='fill:none' "
+            f"points='{' '.join(f'{a:.1f},{b:.1f}' for a, b in known)}'/>"
+        )
         out += [f"<circle class='{css}' cx='{a:.1f}' cy='{b:.1f}' r='3.5'/>" for a, b in known]
         shown = [r for r in rows if r[field]][-1][field]
-        out.append(f"<text class='{css}' x='{known[-1][0] + 10:.1f}' y='{known[-1][1] + 4:.1f}'>{words}: {shown:,.3g}</text>")
-    what = f"{SHARE:.1%} of pairs of key states near enough, the {MOST} cheapest of each kept; best runs, NumPy from three rows"
+        out.append(
+            f"<text class='{css}' x='{known[-1][0] + 10:.1f}' y='{known[-1][1] + 4:.1f}'>{words}: "
+            f"{shown:,.3g}</text>"
+        )
+    what = (
+        f"{SHARE:.1%} of pairs of key states near enough, the {MOST} cheapest of each kept; best runs, "
+        "NumPy from three rows"
+    )
     out.append(f"<text x='{left}' y='{bottom + 46}'>{what}</text></svg>")
     return "\n".join(out) + "\n"
 
@@ -261,7 +317,17 @@ def main() -> None:
         if not given:
             (ROOT / "docs" / "motion-graph-scale.svg").write_text(drawn(rows))
         return
-    heads = ("data", "frames", "key states", "pairs accepted", "transitions", "states kept", "ours, with SCC", "NumPy, without", "ratio")
+    heads = (
+        "data",
+        "frames",
+        "key states",
+        "pairs accepted",
+        "transitions",
+        "states kept",
+        "ours, with SCC",
+        "NumPy, without",
+        "ratio",
+    )
     print(f"| {' | '.join((*heads, 'edges that differ'))} |")
     print("|---|---|---|---|---|---|---|---|---|---|")
     build(synthetic(3000))  # compiles

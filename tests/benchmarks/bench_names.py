@@ -1,9 +1,11 @@
-"""How often labels read from names are right, by set and field, and whether confidences are: python tests/benchmarks/bench_names.py [-v]
+"""How often labels read from names are right, by set and field, and whether confidences are: python
+tests/benchmarks/bench_names.py [-v]
 
-Truth: tests/suggest/truth/*.json, written by hand. right/said/there: guesses that are right, guesses made, labels there are. A
-label nobody can tell (null) is not counted, except as "needless": guesses made where there is none. "looked at": the patterns
-were written or bettered with that set in mind. "first read": what was right when the set was read for the first time, before any
-pattern was changed for it: what to expect of names never seen. -v lists what is wrong.
+Truth: tests/suggest/truth/*.json, written by hand. right/said/there: guesses that are right, guesses made,
+labels there are. A label nobody can tell (null) is not counted, except as "needless": guesses made where
+there is none. "looked at": the patterns were written or bettered with that set in mind. "first read": what
+was right when the set was read for the first time, before any pattern was changed for it: what to expect of
+names never seen. -v lists what is wrong.
 """
 
 from __future__ import annotations
@@ -29,7 +31,9 @@ BINS = ((0.0, 0.6), (0.6, 0.75), (0.75, 0.85), (0.85, 0.93), (0.93, 1.01))
 
 @dataclass
 class Score:
-    """Of one field in one set: how many labels there are, guessed, guessed rightly; guesses where there is none."""
+    """Of one field in one set: how many labels there are, guessed, guessed rightly; guesses where there is
+    none.
+    """
 
     there: int = 0
     said: int = 0
@@ -72,7 +76,11 @@ def measure(table: dict[str, Any]) -> dict[str, Score]:
                 score.right += right
                 score.confidences.append((guess.confidence, right))
             if guess is None or guess.value != wanted:
-                got = "nothing" if guess is None else f"'{guess.value}' ({guess.confidence:.2f}: {guess.reason})"
+                got = (
+                    "nothing"
+                    if guess is None
+                    else f"'{guess.value}' ({guess.confidence:.2f}: {guess.reason})"
+                )
                 score.wrong.append(f"{clip}: {name} '{wanted}', read as {got}")
     return scores
 
@@ -83,20 +91,35 @@ def calibration(scores: list[Score]) -> Iterator[tuple[float, float, int, float,
     for low, high in BINS:
         chosen = [(c, right) for c, right in all_of if low <= c < high]
         if chosen:
-            yield low, high, len(chosen), statistics.mean(c for c, _ in chosen), statistics.mean(r for _, r in chosen)
+            yield (
+                low,
+                high,
+                len(chosen),
+                statistics.mean(c for c, _ in chosen),
+                statistics.mean(r for _, r in chosen),
+            )
 
 
 def main() -> None:
     of_looked: dict[bool, list[Score]] = {True: [], False: []}
-    print(f"{'set':18s} {'looked at':10s}" + "".join(f"{name:>24s}" for name in FIELDS) + "   (right/said/there +needless)")
+    print(
+        f"{'set':18s} {'looked at':10s}"
+        + "".join(f"{name:>24s}" for name in FIELDS)
+        + "   (right/said/there +needless)"
+    )
     for table in truths():
         scores = measure(table)
         of_looked[table["looked_at"]] += scores.values()
         cells = [
-            f"{s.right}/{s.said}/{s.there}" + (f" +{s.needless}" if s.needless else "") + (f" {s.accuracy:6.1%}" if s.there else "      -")
+            f"{s.right}/{s.said}/{s.there}"
+            + (f" +{s.needless}" if s.needless else "")
+            + (f" {s.accuracy:6.1%}" if s.there else "      -")
             for s in scores.values()
         ]
-        print(f"{table['set']:18s} {'yes' if table['looked_at'] else 'no':10s}" + "".join(f"{c:>24s}" for c in cells))
+        print(
+            f"{table['set']:18s} {'yes' if table['looked_at'] else 'no':10s}"
+            + "".join(f"{c:>24s}" for c in cells)
+        )
         if "-v" in sys.argv:
             for score in scores.values():
                 print(*(f"    {line}" for line in score.wrong), sep="\n")
@@ -104,10 +127,16 @@ def main() -> None:
     for table in truths():
         if first := table.get("first_read"):
             print(
-                f"{table['set']:28s} " + "   ".join(f"{name} {right}/{there} {right / there:.1%}" for name, (right, there) in first.items())
+                f"{table['set']:28s} "
+                + "   ".join(
+                    f"{name} {right}/{there} {right / there:.1%}" for name, (right, there) in first.items()
+                )
             )
     for looked, scores_of in of_looked.items():
-        print(f"\nconfidence, sets {'looked at' if looked else 'not looked at'}: bin, guesses, mean confidence, right")
+        print(
+            f"\nconfidence, sets {'looked at' if looked else 'not looked at'}: bin, guesses, mean "
+            "confidence, right"
+        )
         for low, high, count, mean, right in calibration(scores_of):
             print(f"  {low:.2f}..{min(high, 1):.2f} {count:5d} {mean:7.2f} {right:7.1%}")
     names = [n for table in truths() for n in table["clips"]]

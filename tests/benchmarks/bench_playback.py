@@ -1,8 +1,8 @@
 """Planning and posing: python tests/benchmarks/bench_playback.py [characters]
 
-Plan of one hour; one pose of one character; a frame of a crowd in which everyone has a plan and a time of their own, against
-the same work in plain NumPy, batched over characters; what the life layers add to a frame. Medians on the sample project;
-crowds in interleaved runs of ten frames, as a crowd plays frame after frame.
+Plan of one hour; one pose of one character; a frame of a crowd in which everyone has a plan and a time of
+their own, against the same work in plain NumPy, batched over characters; what the life layers add to a frame.
+Medians on the sample project; crowds in interleaved runs of ten frames, as a crowd plays frame after frame.
 """
 
 from __future__ import annotations
@@ -38,7 +38,9 @@ FAR = 1e7  # seconds between the plans of two characters on the one time line on
 
 
 class Batched:
-    """The crowd's work as one would write it in plain NumPy: everything laid out beforehand, no loop over characters."""
+    """The crowd's work as one would write it in plain NumPy: everything laid out beforehand, no loop over
+    characters.
+    """
 
     def __init__(self, project: Project, plans: list[Plan]) -> None:
         self.rig = rig(project)
@@ -70,13 +72,33 @@ class Batched:
             for rest in plan.layers[layer].rests:
                 start, end = project.span(rest.action)
                 assert rest.action.timing.blend_in == 0, "the sample's loops have no seams"
-                rests.append((n * FAR + rest.fade_start, rest.fade, rest.start, start, end - start, *frames(rest.action)))
+                rests.append(
+                    (
+                        n * FAR + rest.fade_start,
+                        rest.fade,
+                        rest.start,
+                        start,
+                        end - start,
+                        *frames(rest.action),
+                    )
+                )
             for cue in plan.layers[layer].cues:
                 mask = anatomy.mask(project, cue.action)
                 if mask is not None and not any(mask is m for m in masks):
                     masks.append(mask)
                 kept = next((i for i, m in enumerate(masks) if m is mask), 0)
-                cues.append((n * FAR + cue.start, cue.start, cue.end, cue.entry, cue.blend_in, cue.blend_out, kept, *frames(cue.action)))
+                cues.append(
+                    (
+                        n * FAR + cue.start,
+                        cue.start,
+                        cue.end,
+                        cue.entry,
+                        cue.blend_in,
+                        cue.blend_out,
+                        kept,
+                        *frames(cue.action),
+                    )
+                )
         return {
             "joints": reach.joints,
             "rests": np.array(rests).T,
@@ -98,7 +120,14 @@ class Batched:
             translations[:, joints] += away
         return Pose(rotation.normalize(rotations), translations)
 
-    def _sample(self, tables: dict[str, Any], first: np.ndarray, frames: np.ndarray, fps: np.ndarray, seconds: np.ndarray) -> Any:
+    def _sample(
+        self,
+        tables: dict[str, Any],
+        first: np.ndarray,
+        frames: np.ndarray,
+        fps: np.ndarray,
+        seconds: np.ndarray,
+    ) -> Any:
         at = np.clip(seconds * fps, 0, frames - 1)
         low = np.minimum(at.astype(np.int64), np.maximum(0, frames - 2).astype(np.int64))
         w = (at - low).astype(np.float32)[:, None, None]
@@ -117,7 +146,10 @@ class Batched:
         rising, falling = playing & (times < cue[1] + cue[4]), playing & (times >= cue[2] - cue[5])
         masked = playing & (cue[6] > 0)
         joints = len(tables["joints"])
-        rotations, translations = np.empty((len(times), joints, 4), np.float32), np.empty((len(times), joints, 3), np.float32)
+        rotations, translations = (
+            np.empty((len(times), joints, 4), np.float32),
+            np.empty((len(times), joints, 3), np.float32),
+        )
         need = np.flatnonzero(~playing | rising | falling | masked)
         stance: Any = None
         if len(need):
@@ -183,7 +215,10 @@ def crowded(project: Project, copies: int) -> Project:
 
 def lively(project: Project) -> None:
     """What the life layers cost one character that talks and looks about: a frame of each kind in turn."""
-    text = "Well, I think that we should go there tomorrow, because the weather will be fine and everybody has time."
+    text = (
+        "Well, I think that we should go there tomorrow, because the weather will be fine and everybody "
+        "has time."
+    )
     asks = [Speech(f"s{n}", 9.0 * n, 9.0 * n + 7.5, None, text) for n in range(60)]
     looks = [LookAt(f"l{n}", 7.0 * n, 7.0 * n + 4.0, (np.sin(n), 1.5, 1.0)) for n in range(80)]
     plan = make_plan(project, 600.0)
@@ -200,14 +235,23 @@ def lively(project: Project) -> None:
         bare.append(clock(lambda at=at: pose_at(plan, project, at, alive=False)))  # type: ignore[misc]
         whole.append(clock(lambda at=at: pose_at(plan, project, at)))  # type: ignore[misc]
         began = time.perf_counter()
-        running = replace(running, life=schedule(project.life, running.track, {}, 1, 12.0 + now, running.life, now))
+        running = replace(
+            running, life=schedule(project.life, running.track, {}, 1, 12.0 + now, running.life, now)
+        )
         planned.append((time.perf_counter() - began) * 1e3)
     times = np.arange(3600) / 60
     print("\none character, talking and looking about")
     row("a frame of the layers", bare)
-    row("a frame of layers and life", whole, f"life adds {statistics.median(whole) - statistics.median(bare):.3f}")
+    row(
+        "a frame of layers and life",
+        whole,
+        f"life adds {statistics.median(whole) - statistics.median(bare):.3f}",
+    )
     row("what drawing life ahead adds to a tick", planned, f"mean {statistics.mean(planned):.3f}")
-    row("one minute at 60 fps, a frame", [clock(lambda: pose_at(plan, project, times)) / 3600 for _ in range(3)])
+    row(
+        "one minute at 60 fps, a frame",
+        [clock(lambda: pose_at(plan, project, times)) / 3600 for _ in range(3)],
+    )
     hour = [clock(lambda: schedule(project.life, track, {}, 1, 3600.0, Schedule(), 0.0)) for _ in range(5)]
     row("an hour of life, drawn at once", hour)
 
@@ -217,21 +261,37 @@ def main() -> None:
     sample = open_project(ROOT / "sample_clips" / "sample.metagraph.yaml").project
     assert sample.skeleton is not None
     joints = len(sample.skeleton)
-    print(f"sample project: {joints} joints, three layers; {os.cpu_count()} cores\n  {'':46} {'median':>9} {'best':>9}  ms")
+    print(
+        f"sample project: {joints} joints, three layers; {os.cpu_count()} cores\n  {'':46} {'median':>9} "
+        f"{'best':>9}  ms"
+    )
 
     hour = make_plan(sample, 3600)
     cues = sum(len(lane.cues) for lane in hour.layers.values())
     row("plan of one hour", [clock(lambda: make_plan(sample, 3600)) for _ in range(7)], f"{cues} cues")
     many = crowded(sample, 24)
     most = max(len(bucket) for graph in many.graphs.values() for bucket in graph.index.values())
-    row("plan of one hour, hundreds of candidates", [clock(lambda: make_plan(many, 3600)) for _ in range(3)], f"up to {most} a draw")
-    row("extend an hour's plan by a minute", [clock(lambda: extend(sample, hour, 3590, (), 3660)) for _ in range(7)])
+    row(
+        "plan of one hour, hundreds of candidates",
+        [clock(lambda: make_plan(many, 3600)) for _ in range(3)],
+        f"up to {most} a draw",
+    )
+    row(
+        "extend an hour's plan by a minute",
+        [clock(lambda: extend(sample, hour, 3590, (), 3660)) for _ in range(7)],
+    )
 
     times = np.random.default_rng(1).uniform(0, 3600, 400)
     pose_at(hour, sample, times, alive=False)
-    row("pose_at without life, one time", [clock(lambda t=t: pose_at(hour, sample, t, alive=False)) for t in times])  # type: ignore[misc]
+    row(
+        "pose_at without life, one time",
+        [clock(lambda t=t: pose_at(hour, sample, t, alive=False)) for t in times],
+    )  # type: ignore[misc]
     minute = np.arange(3600) / 60
-    row("the same, one minute at 60 fps, a frame", [clock(lambda: pose_at(hour, sample, minute, alive=False)) / 3600 for _ in range(3)])
+    row(
+        "the same, one minute at 60 fps, a frame",
+        [clock(lambda: pose_at(hour, sample, minute, alive=False)) / 3600 for _ in range(3)],
+    )
     lively(sample)
 
     plans = [make_plan(sample, 60, seed=seed) for seed in range(count)]
@@ -239,12 +299,17 @@ def main() -> None:
     crowd = Crowd(sample, plans)
     laid = (time.perf_counter() - start) * 1e3
     first = clock(lambda: crowd.globals(0.0))
-    print(f"\n{count} characters, each its own plan and time (laid out in {laid:.0f} ms, first frame with numba's import {first:.0f} ms)")
+    print(
+        f"\n{count} characters, each its own plan and time (laid out in {laid:.0f} ms, first frame with "
+        f"numba's import {first:.0f} ms)"
+    )
     batched = Batched(sample, plans)
     moments = np.random.default_rng(2).uniform(0, 60, count)
     ours, theirs = crowd.poses(moments), batched.poses(moments)
     turn = rotation.angle_between(ours.rotations.astype(float), theirs.rotations.astype(float)).max()
-    print(f"  they agree to {turn:.1e} radians, {np.abs(ours.translations - theirs.translations).max():.1e} m")
+    print(
+        f"  they agree to {turn:.1e} radians, {np.abs(ours.translations - theirs.translations).max():.1e} m"
+    )
     frame, model = crowd.poses(moments), crowd.globals(moments)  # each frame is written over the last
     works: list[tuple[list[float], Callable[[np.ndarray], object]]] = [
         ([], lambda at: crowd.poses(at, frame)),
@@ -258,12 +323,20 @@ def main() -> None:
                 taken.append(clock(lambda at=(moments + k / 60) % 60, work=work: work(at)))  # type: ignore[misc]
     compiled, plain, both, globally = (taken for taken, _ in works)
     row("Crowd.poses", compiled)
-    row("plain NumPy, batched", plain, f"{statistics.median(plain) / statistics.median(compiled):.1f} times as long")
+    row(
+        "plain NumPy, batched",
+        plain,
+        f"{statistics.median(plain) / statistics.median(compiled):.1f} times as long",
+    )
     row("Crowd.globals", both)
     row(
-        "plain NumPy, batched, and Skeleton.globals", globally, f"{statistics.median(globally) / statistics.median(both):.1f} times as long"
+        "plain NumPy, batched, and Skeleton.globals",
+        globally,
+        f"{statistics.median(globally) / statistics.median(both):.1f} times as long",
     )
-    some = [clock(lambda n=n: pose_at(plans[n], sample, moments[n], alive=False)) for n in range(min(count, 300))]  # type: ignore[misc]
+    some = [
+        clock(lambda n=n: pose_at(plans[n], sample, moments[n], alive=False)) for n in range(min(count, 300))
+    ]  # type: ignore[misc]
     row("pose_at for each, all of them", [statistics.median(some) * count])
 
 

@@ -1,8 +1,10 @@
-"""Milliseconds a frame of the preview draws, without a display: python tests/benchmarks/bench_preview.py [frames]
+"""Milliseconds a frame of the preview draws, without a display: python tests/benchmarks/bench_preview.py
+[frames]
 
-Each frame has its own pose, background, grid, shadow and smoothed edges; `glFinish` ends it. Median and quickest of the
-frames. "cpu" is the processor time of all threads: what stays the same when the machine is busy with other things (divide
-it by the cores software rendering has). "with read" adds the copy of the picture that a window does not need.
+Each frame has its own pose, background, grid, shadow and smoothed edges; `glFinish` ends it. Median and
+quickest of the frames. "cpu" is the processor time of all threads: what stays the same when the machine is
+busy with other things (divide it by the cores software rendering has). "with read" adds the copy of the
+picture that a window does not need.
 """
 
 from __future__ import annotations
@@ -30,7 +32,9 @@ def crowd(skeleton: Skeleton, count: int, seconds: float) -> tuple[np.ndarray, n
     phase = np.arange(count) * 0.7 + seconds * 3
     rotations = np.tile(skeleton.rest_rotations, (count, 1, 1))
     for name, sign in (("LeftUpperArm", 1), ("RightUpperArm", -1)):
-        rotations[:, skeleton.index(name)] = rotation.from_axis_angle(np.array([0.0, 0, 1]), sign * (0.5 * np.sin(phase) - 0.3))
+        rotations[:, skeleton.index(name)] = rotation.from_axis_angle(
+            np.array([0.0, 0, 1]), sign * (0.5 * np.sin(phase) - 0.3)
+        )
     translations = np.tile(skeleton.rest_translations, (count, 1, 1))
     side = int(np.ceil(np.sqrt(count)))
     translations[:, 0, 0] += (np.arange(count) % side - (side - 1) / 2) * 0.9
@@ -43,13 +47,18 @@ def main() -> None:
     character = read_character(ROOT / "sample_clips" / "mannequin.glb")
     skeleton = character.skeleton
     figures = {"mannequin": SkinnedFigure(character), "sticks": StickFigure(skeleton)}
-    print(f"{'figure':10} {'people':>6} {'size':>10} {'draw median':>12} {'quickest':>9} {'cpu':>7} {'with read':>10}  ms")
+    print(
+        f"{'figure':10} {'people':>6} {'size':>10} {'draw median':>12} {'quickest':>9} {'cpu':>7} "
+        f"{'with read':>10}  ms"
+    )
     for size in ((960, 540), (1280, 720)):
         with Offscreen(*size) as offscreen:
             for name, figure in figures.items():
                 for count in (1, 10, 100):
                     rounds = max(5, frames // (1 if count == 1 else 2 if count == 10 else 5))
-                    camera = Camera().frame(Scene((Actor(figure, *crowd(skeleton, count, 0)),)).bounds(), size[0] / size[1])
+                    camera = Camera().frame(
+                        Scene((Actor(figure, *crowd(skeleton, count, 0)),)).bounds(), size[0] / size[1]
+                    )
                     drawn, read, used = [], [], []
                     for i in range(rounds + 2):
                         scene = Scene((Actor(figure, *crowd(skeleton, count, i / 30)),))
@@ -62,10 +71,15 @@ def main() -> None:
                         read.append(time.perf_counter() - middle)
                     d, r = np.array(drawn[2:]) * 1e3, np.array(read[2:]) * 1e3
                     print(
-                        f"{name:10} {count:6} {size[0]:5}x{size[1]:<4} {np.median(d):12.1f} {d.min():9.1f} {np.median(r):10.1f}", flush=True
+                        f"{name:10} {count:6} {size[0]:5}x{size[1]:<4} {np.median(d):12.1f} {d.min():9.1f} "
+                        f"{np.median(r):10.1f}",
+                        flush=True,
                     )
             if size[0] == 960:
-                print(f"({offscreen.description}, {len(character.triangles)} triangles, {len(character.positions)} vertices)")
+                print(
+                    f"({offscreen.description}, {len(character.triangles)} triangles, "
+                    f"{len(character.positions)} vertices)"
+                )
 
 
 if __name__ == "__main__":

@@ -1,7 +1,9 @@
-"""Saving, opening and recovering projects, and the export: python tests/benchmarks/bench_projects.py [actions]
+"""Saving, opening and recovering projects, and the export: python tests/benchmarks/bench_projects.py
+[actions]
 
-A project of 10,000 actions (no argument) on the sample's 152 clips. open: the project file alone, without reading clips. recover: the
-file and a journal of 1,000 edits. edit: what the journal adds to one edit. export: the sample project with its mesh. Medians.
+A project of 10,000 actions (no argument) on the sample's 152 clips. open: the project file alone, without
+reading clips. recover: the file and a journal of 1,000 edits. edit: what the journal adds to one edit.
+export: the sample project with its mesh. Medians.
 """
 
 from __future__ import annotations
@@ -73,7 +75,11 @@ def main() -> None:
         each, now = [], project
         for n in range(EDITS):
             chosen = ids[n * 7919 % len(ids)]
-            after = edits.remove_actions(now, [chosen]) if n % 4 == 3 else edits.update_actions(now, [chosen], likelihood=1.0 + n)
+            after = (
+                edits.remove_actions(now, [chosen])
+                if n % 4 == 3
+                else edits.update_actions(now, [chosen], likelihood=1.0 + n)
+            )
             begun = time.perf_counter()
             journal.edit(now, after)
             each.append(time.perf_counter() - begun)
@@ -83,10 +89,17 @@ def main() -> None:
         print(f"journal, one edit  {statistics.median(each) * 1e3:8.2f} ms, {size / EDITS:.0f} bytes")
         print(f"recover {EDITS} edits {median(lambda: recover(journal_path(path), path)):8.0f} ms")
         sample = open_project(SAMPLE).project
-        print(f"open the sample    {median(lambda: open_project(SAMPLE)):8.0f} ms, {len(sample.clips)} clips read")
+        print(
+            f"open the sample    {median(lambda: open_project(SAMPLE)):8.0f} ms, {len(sample.clips)} clips "
+            "read"
+        )
         mesh = SAMPLE.with_name("mannequin.glb")
         made = export(sample, folder / "export", expanded=True, character=mesh)
-        print(f"export the sample  {median(lambda: export(sample, folder / 'export', expanded=True, character=mesh)):8.0f} ms", end=", ")
+        print(
+            "export the sample  "
+            f"{median(lambda: export(sample, folder / 'export', expanded=True, character=mesh)):8.0f} ms",
+            end=", ",
+        )
         print(f"JSON {made.json.stat().st_size / 1e6:.2f} MB, GLB {made.glb.stat().st_size / 1e6:.2f} MB")
         print(f"read it back       {median(lambda: read_export(made.json)):8.0f} ms")
 

@@ -1,7 +1,9 @@
-"""How long bringing clips onto another character, and mirroring them, take: python tests/benchmarks/bench_retarget.py
+"""How long bringing clips onto another character, and mirroring them, take: python
+tests/benchmarks/bench_retarget.py
 
-150 clips of 3 seconds at 30 frames a second on a skeleton of 61 joints, onto one of 134 joints when ../shared/data is here, else
-onto the same figure in another size. Prints seconds: proposing the joint map, retargeting and mirroring all, medians of three.
+150 clips of 3 seconds at 30 frames a second on a skeleton of 61 joints, onto one of 134 joints when
+../shared/data is here, else onto the same figure in another size. Prints seconds: proposing the joint map,
+retargeting and mirroring all, medians of three.
 """
 
 from __future__ import annotations
@@ -36,7 +38,15 @@ def clips(skeleton: Skeleton) -> list[Clip]:
     for n in range(CLIPS):
         turns = 0.2 * np.sin(x + rng.random((1, len(skeleton), 1))) * rng.normal(size=(1, len(skeleton), 3))
         root = np.tile(skeleton.rest_translations[:1], (FRAMES, 1, 1))
-        out.append(Clip(f"clip {n}", skeleton, 30, rotation.multiply(skeleton.rest_rotations, rotation.exp(turns)), root))
+        out.append(
+            Clip(
+                f"clip {n}",
+                skeleton,
+                30,
+                rotation.multiply(skeleton.rest_rotations, rotation.exp(turns)),
+                root,
+            )
+        )
     return out
 
 

@@ -1,8 +1,9 @@
 """What is guessed from motion alone: python tests/benchmarks/bench_suggest.py
 
-How often kind, stance, end stance, layer and limb are right with the names hidden - on the sample clips, where the guesses were tuned,
-and on labelled sets made by others, which showed what to look out for - and how long traits and guesses of a thousand clips take.
-A stance counts as right where most members of the group that was discovered are of that stance.
+How often kind, stance, end stance, layer and limb are right with the names hidden - on the sample clips,
+where the guesses were tuned, and on labelled sets made by others, which showed what to look out for - and how
+long traits and guesses of a thousand clips take. A stance counts as right where most members of the group
+that was discovered are of that stance.
 """
 
 from __future__ import annotations
@@ -42,7 +43,9 @@ Truth = Mapping[str, Mapping[str, Any]]
 
 
 def truth_of(project: Project) -> Truth:
-    """Return clip id -> what a project says of it; the limb of arms and head only, where it means something."""
+    """Return clip id -> what a project says of it; the limb of arms and head only, where it means
+    something.
+    """
     return {
         a.clip: {
             "kind": a.kind,
@@ -55,7 +58,9 @@ def truth_of(project: Project) -> Truth:
     }
 
 
-def right(truth: Truth, traits: Mapping[str, Traits], stances: Any) -> tuple[Counter[str], Counter[str], list[str]]:
+def right(
+    truth: Truth, traits: Mapping[str, Traits], stances: Any
+) -> tuple[Counter[str], Counter[str], list[str]]:
     """Return how many of each of FIELDS are right, of how many, and the clips whose kind is not."""
     meant = {}
     for shapes in stances.values():
@@ -65,7 +70,9 @@ def right(truth: Truth, traits: Mapping[str, Traits], stances: Any) -> tuple[Cou
                 if m in truth and truth[m]["kind"] is not None:
                     x = traits[m].layers[shape.layer]
                     ends = distance(shape, x.names, x.last) < distance(shape, x.names, x.first)
-                    votes[truth[m]["end_stance" if ends and truth[m]["kind"] == "transition" else "stance"]] += 1
+                    votes[
+                        truth[m]["end_stance" if ends and truth[m]["kind"] == "transition" else "stance"]
+                    ] += 1
             meant[id(shape)] = shape.id or (votes.most_common(1)[0][0] if votes else None)
     good: Counter[str] = Counter()
     count: Counter[str] = Counter()
@@ -91,7 +98,10 @@ def right(truth: Truth, traits: Mapping[str, Traits], stances: Any) -> tuple[Cou
 
 
 def row(name: str, good: Counter[str], count: Counter[str]) -> str:
-    cells = (f"{good[f]:4d}/{count[f]:<4d}{100 * good[f] / count[f]:5.1f} %" if count[f] else f"{'-':>15}" for f in FIELDS)
+    cells = (
+        f"{good[f]:4d}/{count[f]:<4d}{100 * good[f] / count[f]:5.1f} %" if count[f] else f"{'-':>15}"
+        for f in FIELDS
+    )
     return f"{name:33}" + " ".join(f"{cell:>16}" for cell in cells)
 
 
@@ -115,17 +125,28 @@ def others() -> Sequence[tuple[str, Truth, dict[str, Clip]]]:
 
 
 def noisy(clip: Clip, seed: int) -> Clip:
-    """Return a clip with a little noise on every rotation, so that nothing that is known of the first holds of it."""
+    """Return a clip with a little noise on every rotation, so that nothing that is known of the first holds
+    of it.
+    """
     draw = np.random.default_rng(seed)
-    turn = np.concatenate([draw.normal(0, 0.002, (*clip.rotations.shape[:-1], 3)), np.ones((*clip.rotations.shape[:-1], 1))], axis=-1)
+    turn = np.concatenate(
+        [draw.normal(0, 0.002, (*clip.rotations.shape[:-1], 3)), np.ones((*clip.rotations.shape[:-1], 1))],
+        axis=-1,
+    )
     rotations = rotation.normalize(rotation.multiply(clip.rotations, turn))
     return Clip(f"{clip.name} {seed}", clip.skeleton, clip.fps, rotations, clip.translations, clip.translated)
 
 
 def drifting(clip: Clip, seed: int, degrees: float) -> Clip:
-    """Return a clip whose joints slowly turn away by some degrees (standard deviation) from first to last frame, as captured ones do."""
+    """Return a clip whose joints slowly turn away by some degrees (standard deviation) from first to last
+    frame, as captured ones do.
+    """
     draw = np.random.default_rng(seed)
-    half = np.radians(draw.normal(0, degrees, (1, len(clip.skeleton), 3))) / 2 * np.linspace(-0.5, 0.5, clip.frames)[:, None, None]
+    half = (
+        np.radians(draw.normal(0, degrees, (1, len(clip.skeleton), 3)))
+        / 2
+        * np.linspace(-0.5, 0.5, clip.frames)[:, None, None]
+    )
     turn = np.concatenate([half, np.ones((*half.shape[:2], 1))], axis=-1)
     rotations = rotation.normalize(rotation.multiply(clip.rotations, turn))
     return Clip(clip.name, clip.skeleton, clip.fps, rotations, clip.translations, clip.translated)
@@ -136,11 +157,18 @@ def main() -> None:
     traits, truth = traits_of(project), truth_of(project)
     print(f"{'names hidden':33}" + " ".join(f"{f:>16}" for f in FIELDS))
     wrong: list[str] = []
-    for name, stances in (("sample, its stances known", known(project, traits)), ("sample, stances discovered", discovered(traits))):
+    for name, stances in (
+        ("sample, its stances known", known(project, traits)),
+        ("sample, stances discovered", discovered(traits)),
+    ):
         good, count, wrong = right(truth, traits, stances)
         print(row(name, good, count))
     for degrees in (0.3, 1.0):
-        slow = {ident: drifting(e.motion, n, degrees) for n, (ident, e) in enumerate(project.clips.items()) if e.motion is not None}
+        slow = {
+            ident: drifting(e.motion, n, degrees)
+            for n, (ident, e) in enumerate(project.clips.items())
+            if e.motion is not None
+        }
         found = {ident: traits_of([clip])[clip.name] for ident, clip in slow.items()}
         good, count, _ = right(truth, found, discovered(found))
         print(row(f"sample, joints drift {degrees} degrees", good, count))
@@ -170,17 +198,27 @@ def main() -> None:
     for t in found.values():
         guess(t, stances)
     end = time.perf_counter()
-    print(f"\n{len(many)} clips, {sum(c.frames for c in many)} frames of {len(many[0].skeleton)} joints: traits {middle - start:.2f} s, "
-          f"stances {later - middle:.2f} s, guesses {end - later:.2f} s, all {end - start:.2f} s")  # fmt: skip
-    waiting = edits.add_clips(Project(), [(f"{n}.glb", 0, "", noisy(clip, n + 1000)) for n, clip in enumerate(many)])
+    print(
+        f"\n{len(many)} clips, {sum(c.frames for c in many)} frames of {len(many[0].skeleton)} joints: "
+        f"traits {middle - start:.2f} s, "
+        f"stances {later - middle:.2f} s, guesses {end - later:.2f} s, all {end - start:.2f} s"
+    )
+    waiting = edits.add_clips(
+        Project(), [(f"{n}.glb", 0, "", noisy(clip, n + 1000)) for n, clip in enumerate(many)]
+    )
     start, busy = time.perf_counter(), time.process_time()
     proposals = propose(waiting)
     middle = time.perf_counter()
     taken = accept(waiting, proposals)
-    print(f"proposing labels for {len(waiting.clips)} clips: {middle - start:.2f} s, placing {len(taken.placed)}: "
-          f"{time.perf_counter() - middle:.2f} s; {time.process_time() - busy:.2f} s of a processor")  # fmt: skip
+    print(
+        f"proposing labels for {len(waiting.clips)} clips: {middle - start:.2f} s, placing "
+        f"{len(taken.placed)}: "
+        f"{time.perf_counter() - middle:.2f} s; {time.process_time() - busy:.2f} s of a processor"
+    )
     some = examples_of(project, traits)
-    examples = [Example((*e.words, f"w{n % 40}"), e.measures, e.labels) for n in range(33) for e in some][:5000]
+    examples = [Example((*e.words, f"w{n % 40}"), e.measures, e.labels) for n in range(33) for e in some][
+        :5000
+    ]
     start = time.perf_counter()
     alike = Alike(examples)
     for e in examples[:1000]:
@@ -193,7 +231,10 @@ def main() -> None:
     start = time.perf_counter()
     for layer in LAYERS:
         matrix(project, layer)
-    print(f"compatibility of {len(project.clips)} clips with all stances: {first:.2f} s, again {time.perf_counter() - start:.2f} s")
+    print(
+        f"compatibility of {len(project.clips)} clips with all stances: {first:.2f} s, again "
+        f"{time.perf_counter() - start:.2f} s"
+    )
 
 
 if __name__ == "__main__":

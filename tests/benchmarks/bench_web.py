@@ -1,7 +1,8 @@
 """How soon the web page shows its first pose: python tests/benchmarks/bench_web.py [project]
 
-From the navigation to the first frame drawn, in headless Chromium with a software renderer, from a server on this machine; median of
-five, of the sample project (152 clips) or another. Needs Node, Chromium and what tests/package.json names.
+From the navigation to the first frame drawn, in headless Chromium with a software renderer, from a server on
+this machine; median of five, of the sample project (152 clips) or another. Needs Node, Chromium and what
+tests/package.json names.
 """
 
 from __future__ import annotations
@@ -29,11 +30,18 @@ def main() -> None:
     web.three_js = lambda folder: three
     with tempfile.TemporaryDirectory() as place:
         folder = Path(place)
-        made = registry.write(project, "web", folder, path.parent / project.character if project.character else None)
+        made = registry.write(
+            project, "web", folder, path.parent / project.character if project.character else None
+        )
         shown = {"run": "performance.getEntriesByName('first pose')[0].startTime"}
         opened = {"url": "", "until": "performance.getEntriesByName('first pose').length"}
         (folder / "steps.json").write_text(json.dumps([opened, shown] * RUNS))
-        command = ["node", str(ROOT / "tests" / "engines" / "run" / "browser.mjs"), str(folder), str(folder / "steps.json")]
+        command = [
+            "node",
+            str(ROOT / "tests" / "engines" / "run" / "browser.mjs"),
+            str(folder),
+            str(folder / "steps.json"),
+        ]
         told = subprocess.run(command, capture_output=True, text=True, check=True).stdout.splitlines()
         size = sum(p.stat().st_size for p in made.files if p.suffix in (".json", ".glb")) / 1e6
     times = [row["value"] for row in map(json.loads, told) if "value" in row]

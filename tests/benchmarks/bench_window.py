@@ -1,11 +1,13 @@
-"""How the window feels, in figures: python tests/benchmarks/bench_window.py [cold] [stalls] [edits] [proposing]
+"""How the window feels, in figures: python tests/benchmarks/bench_window.py [cold] [stalls] [edits]
+[proposing]
 
-cold: seconds from starting the process to the first painted window, and to the first painted character of the sample project.
-stalls: the longest time the window's thread did not come round while the sample project is opened, edited and looked at, and
-pictures a second in the preview. edits: milliseconds from an edit to the last view that followed it, and to the painted window,
-in the sample project and in one of 10,000 actions. proposing: how late a timer of 5 ms on the window's thread comes while a job
-proposes labels for 1,000 clips, while all of them are compared with the stances, and while the table of that is scrolled; the
-preview stands still, as drawing it without a graphics card would be all that is seen.
+cold: seconds from starting the process to the first painted window, and to the first painted character of the
+sample project. stalls: the longest time the window's thread did not come round while the sample project is
+opened, edited and looked at, and pictures a second in the preview. edits: milliseconds from an edit to the
+last view that followed it, and to the painted window, in the sample project and in one of 10,000 actions.
+proposing: how late a timer of 5 ms on the window's thread comes while a job proposes labels for 1,000 clips,
+while all of them are compared with the stances, and while the table of that is scrolled; the preview stands
+still, as drawing it without a graphics card would be all that is seen.
 
 Without a screen everything runs in Xvfb. Nothing of the user's is touched.
 """
@@ -54,12 +56,23 @@ def cold(rounds: int = 5) -> None:
     found = []
     for _ in range(rounds + 1):
         out = subprocess.run(
-            [sys.executable, "-c", COLD, str(time.time())], cwd=ROOT, capture_output=True, text=True, check=True, timeout=60
+            [sys.executable, "-c", COLD, str(time.time())],
+            cwd=ROOT,
+            capture_output=True,
+            text=True,
+            check=True,
+            timeout=60,
         )
         found.append([float(x) for x in out.stdout.split()[-3:]])
     window, character, modules = zip(*found[1:], strict=True)  # the first one compiled the modules
-    print(f"cold start to the first painted window      median {statistics.median(window):.2f} s, quickest {min(window):.2f} s")
-    print(f"cold start to the first painted character   median {statistics.median(character):.2f} s, quickest {min(character):.2f} s")
+    print(
+        f"cold start to the first painted window      median {statistics.median(window):.2f} s, quickest "
+        f"{min(window):.2f} s"
+    )
+    print(
+        f"cold start to the first painted character   median {statistics.median(character):.2f} s, quickest "
+        f"{min(character):.2f} s"
+    )
     print(f"modules then {modules[0]:.0f}\n")
 
 
@@ -83,7 +96,13 @@ def opened(window: object) -> None:
     from app.project.files import SAMPLE
 
     window.files.open(SAMPLE, template=True)
-    wait(lambda: bool(window.document.project.clips) and window.performance.skeleton() is not None and not window.jobs.running)
+    wait(
+        lambda: (
+            bool(window.document.project.clips)
+            and window.performance.skeleton() is not None
+            and not window.jobs.running
+        )
+    )
 
 
 def stalls() -> None:
@@ -118,11 +137,14 @@ def stalls() -> None:
         linger(seconds)
 
     def select() -> None:
-        window.session.jump(action=next(a.id for a in window.document.project.actions() if a.kind == "gesture"))
+        window.session.jump(
+            action=next(a.id for a in window.document.project.actions() if a.kind == "gesture")
+        )
 
     def timing() -> None:
         window.document.edit(
-            "Change timing", lambda p: edits.update_actions(p, window.session.selection.actions, timing={"blend_in": 0.33})
+            "Change timing",
+            lambda p: edits.update_actions(p, window.session.selection.actions, timing={"blend_in": 0.33}),
         )
 
     phase("first paint", 1.0)
@@ -138,13 +160,18 @@ def stalls() -> None:
     phase("another stance", 1.0, lambda: window.do("stance_2"))
     phase("the machine", 1.5, lambda: window.show("machine"))
     phase("light theme", 2.0, lambda: window.do("theme"))
-    phase("import 152 clips", 4.0, lambda: window.importing.import_paths([str(ROOT / "sample_clips" / "clips")]))
+    phase(
+        "import 152 clips", 4.0, lambda: window.importing.import_paths([str(ROOT / "sample_clips" / "clips")])
+    )
     phase("save", 1.0, lambda: window.document.save(Path(tempfile.mkdtemp()) / "saved.metagraph.yaml"))
     timer.stop()
     print(f"{'phase':18} {'longest gap':>12} {'over 50 ms':>11}")
     for name, found in gaps.items():
         print(f"{name:18} {max(found):9.1f} ms {sum(g > 50 for g in found):11}")
-    print(f"preview in the window ({window.preview.view.width()} x {window.preview.view.height()}): {rate:.1f} pictures a second\n")
+    print(
+        f"preview in the window ({window.preview.view.width()} x {window.preview.view.height()}): {rate:.1f} "
+        "pictures a second\n"
+    )
     _close(window)
 
 
@@ -163,13 +190,18 @@ def large(project: object, count: int) -> object:
     return project
 
 
-def changes(action: str, stance: str, layer: str, clips: list[str]) -> list[tuple[str, Callable[[object], object] | None]]:
+def changes(
+    action: str, stance: str, layer: str, clips: list[str]
+) -> list[tuple[str, Callable[[object], object] | None]]:
     """Return edits by name, each different every time it is made; None stands for undo."""
     from metagraph.graph import edits
 
     numbers = iter(range(1, 1000))
     return [
-        ("timing", lambda p: edits.update_actions(p, (action,), timing={"blend_in": 0.1 + next(numbers) / 1000})),
+        (
+            "timing",
+            lambda p: edits.update_actions(p, (action,), timing={"blend_in": 0.1 + next(numbers) / 1000}),
+        ),
         ("likelihood", lambda p: edits.update_actions(p, (action,), likelihood=1 + next(numbers) / 1000)),
         ("drop 20 clips", lambda p: edits.place(p, clips, layer, "fidget", stance)),
         ("rename a stance", lambda p: edits.rename_stance(p, stance, f"stance {next(numbers)}")),
@@ -217,14 +249,17 @@ def edit_latency() -> None:
                 QApplication.processEvents()
                 painted.append((time.perf_counter() - start) * 1e3)
             print(
-                f"{count:6} actions  {name:16} edit and slots: median {statistics.median(followed):6.1f}, longest {max(followed):6.1f} ms;"
+                f"{count:6} actions  {name:16} edit and slots: median {statistics.median(followed):6.1f}, "
+                f"longest {max(followed):6.1f} ms;"
                 f"  painted: median {statistics.median(painted):6.1f}, longest {max(painted):6.1f} ms"
             )
     _close(window)
 
 
 def again(project: object, count: int) -> object:
-    """A project of `count` clips, none placed: a project's clips again and again under other names, each a clip of its own."""
+    """A project of `count` clips, none placed: a project's clips again and again under other names, each a
+    clip of its own.
+    """
     from metagraph.graph import edits
     from metagraph.graph.model import Project
     from metagraph.motion.clip import Clip
@@ -234,7 +269,14 @@ def again(project: object, count: int) -> object:
     for n in range(count):
         c = motions[n % len(motions)]
         name = f"{c.name} {n}"
-        made.append((f"{name}.glb", 0, "", Clip(name, c.skeleton, c.fps, c.rotations.copy(), c.translations, c.translated)))
+        made.append(
+            (
+                f"{name}.glb",
+                0,
+                "",
+                Clip(name, c.skeleton, c.fps, c.rotations.copy(), c.translations, c.translated),
+            )
+        )
     return edits.add_clips(Project("many"), made)
 
 
@@ -282,7 +324,10 @@ def proposing() -> None:
     phase("nothing runs", 3.0)
     project = window.document.project
     window.jobs.start(
-        "Proposing labels", lambda job: propose(project, cancelled=lambda: job.cancelled, progress=job.tell), found.append, print
+        "Proposing labels",
+        lambda job: propose(project, cancelled=lambda: job.cancelled, progress=job.tell),
+        found.append,
+        print,
     )
     phase("proposing labels", 0.0, lambda: bool(found))
     placing: list[object] = []
@@ -290,7 +335,11 @@ def proposing() -> None:
     phase("placing all (thread)", 0.0, lambda: bool(placing))
     window.document.edit("Place", lambda _: placing[0])
     judged = window.compatibility
-    phase("looking for jumps", 0.5, lambda: judged.judged is not None and judged.judged.measured["arms"].labelled > 0)
+    phase(
+        "looking for jumps",
+        0.5,
+        lambda: judged.judged is not None and judged.judged.measured["arms"].labelled > 0,
+    )
     window.do("compatibility")
     dialog = next(w for w in QApplication.topLevelWidgets() if type(w).__name__ == "MatrixDialog")
     phase("comparing clips", 0.0, lambda: dialog.model.rows is not None and dialog.model.rowCount() == CLIPS)
@@ -305,11 +354,17 @@ def proposing() -> None:
     phase("scrolling the table", 4.0)
     mover.stop()
     timer.stop()
-    print(f"{'phase, with ' + str(CLIPS) + ' clips':26} {'takes':>8} {'95 % late by':>14} {'longest':>12} {'over 50 ms':>11}")
+    print(
+        f"{'phase, with ' + str(CLIPS) + ' clips':26} {'takes':>8} {'95 % late by':>14} {'longest':>12} "
+        f"{'over 50 ms':>11}"
+    )
     for name, delays in late.items():
         ranked = sorted(delays)
         most = ranked[min(len(ranked) - 1, int(len(ranked) * 0.95))]
-        print(f"{name:26} {took[name]:6.1f} s {most:11.1f} ms {ranked[-1]:9.1f} ms {sum(d > 50 for d in delays):11}")
+        print(
+            f"{name:26} {took[name]:6.1f} s {most:11.1f} ms {ranked[-1]:9.1f} ms "
+            f"{sum(d > 50 for d in delays):11}"
+        )
     _close(window)
 
 
@@ -321,12 +376,19 @@ def _close(window: object) -> None:
 def main() -> None:
     chosen = sys.argv[1:] or ["cold", "stalls", "edits", "proposing"]
     if sys.platform.startswith("linux") and not os.environ.get("DISPLAY") and shutil.which("xvfb-run"):
-        os.execvp("xvfb-run", ["xvfb-run", "-a", "-s", "-screen 0 1920x1200x24", sys.executable, __file__, *chosen])
+        os.execvp(
+            "xvfb-run", ["xvfb-run", "-a", "-s", "-screen 0 1920x1200x24", sys.executable, __file__, *chosen]
+        )
     if "METAGRAPH_BENCH" in os.environ:
         {"stalls": stalls, "edits": edit_latency, "proposing": proposing}[chosen[0]]()
         return
     with tempfile.TemporaryDirectory() as folder:
-        os.environ.update(XDG_DATA_HOME=folder, XDG_CONFIG_HOME=folder, PYTHONPYCACHEPREFIX=f"{folder}/cache", METAGRAPH_BENCH="1")
+        os.environ.update(
+            XDG_DATA_HOME=folder,
+            XDG_CONFIG_HOME=folder,
+            PYTHONPYCACHEPREFIX=f"{folder}/cache",
+            METAGRAPH_BENCH="1",
+        )
         os.environ.pop("PYTHONDONTWRITEBYTECODE", None)  # modules are compiled once, as they are for people
         subprocess.run(
             [

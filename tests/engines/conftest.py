@@ -13,7 +13,9 @@ ROOT = Path(__file__).resolve().parents[2]
 
 @pytest.fixture(scope="session")
 def sample_export(sample: Project, tmp_path_factory: pytest.TempPathFactory) -> Path:
-    """A folder called sample: the sample project's export with its character, and vectors. Written once; tests change copies."""
+    """A folder called sample: the sample project's export with its character, and vectors. Written once;
+    tests change copies.
+    """
     from metagraph.engines.export import export
     from metagraph.engines.vectors import write_vectors
 

@@ -1,7 +1,7 @@
 """Runtimes with one rule broken, and the conformance vectors that must notice.
 
-What notices a mutant is known once it was found, so that each is written down with a hint, `folder: case`: that case is tried
-before all others. A hint that has grown stale costs time and nothing else.
+What notices a mutant is known once it was found, so that each is written down with a hint, `folder: case`:
+that case is tried before all others. A hint that has grown stale costs time and nothing else.
 """
 
 from __future__ import annotations
@@ -20,13 +20,17 @@ def broken(path: Path, rule: str, instead: str) -> str:
 
 
 def folders_to_try(hint: str | None, folders: list[Path], scratch: Path) -> list[Path]:
-    """Return the folders of vectors, with one before them that has the hint's case alone. scratch: where such folders are made."""
+    """Return the folders of vectors, with one before them that has the hint's case alone. scratch: where such
+    folders are made.
+    """
     name, _, case = (hint or "").partition(": ")
     return [*(only(each, case, scratch) for each in folders if each.name == name), *folders]
 
 
 def only(folder: Path, case: str, scratch: Path) -> Path:
-    """Return a folder with a folder's export and those of its vectors that have a name; "hashes" are what comes before the cases."""
+    """Return a folder with a folder's export and those of its vectors that have a name; "hashes" are what
+    comes before the cases.
+    """
     target = scratch / f"{folder.name}-{re.sub('[^a-z0-9]+', '-', case)}"
     if not target.exists():
         vectors = json.loads((folder / "vectors.json").read_bytes())

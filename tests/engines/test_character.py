@@ -1,4 +1,6 @@
-"""The library as a runtime: ten lines play an export, without Qt, and nothing that is asked can break the loop."""
+"""The library as a runtime: ten lines play an export, without Qt, and nothing that is asked can break the
+loop.
+"""
 
 from __future__ import annotations
 
@@ -89,7 +91,16 @@ def test_a_leap_is_an_hour_at_most_and_what_is_no_time_is_ignored(stick: Project
 
 
 @pytest.mark.parametrize(
-    "odd", [None, 3, "nod", [], {"do": "nod", "after": 10**400}, {"do": "nod", "after": True}, {"do": "nod", "at": 10**400}]
+    "odd",
+    [
+        None,
+        3,
+        "nod",
+        [],
+        {"do": "nod", "after": 10**400},
+        {"do": "nod", "after": True},
+        {"do": "nod", "at": 10**400},
+    ],
 )
 def test_what_is_no_request_is_refused(stick: Project, odd: Any) -> None:
     character = Character(stick)
@@ -99,7 +110,9 @@ def test_what_is_no_request_is_refused(stick: Project, odd: Any) -> None:
     assert character.answer(ident).state == "refused"
 
 
-def test_a_fault_of_the_planner_does_not_stop_the_game(stick: Project, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_a_fault_of_the_planner_does_not_stop_the_game(
+    stick: Project, monkeypatch: pytest.MonkeyPatch
+) -> None:
     character = Character(stick)
     plan = character.plan
     with monkeypatch.context() as broken:
@@ -159,7 +172,21 @@ fields = st.sampled_from(
     ]
 )
 words = st.sampled_from(
-    ["gesture", "fidget", "action", "stance", "change", "nod", "look", "blink", "say", "mode", "place", "withdraw", "bml"]
+    [
+        "gesture",
+        "fidget",
+        "action",
+        "stance",
+        "change",
+        "nod",
+        "look",
+        "blink",
+        "say",
+        "mode",
+        "place",
+        "withdraw",
+        "bml",
+    ]
 )
 
 
@@ -196,10 +223,15 @@ def test_the_readme_is_true(sample_export: Path, tmp_path: Path) -> None:
         (tmp_path / path.name.replace("sample", "talk")).write_bytes(
             path.read_bytes().replace(b'"glb": "sample.glb"', b'"glb": "talk.glb"')
         )
-    hidden = "import sys\nfor name in ('PySide6', 'moderngl', 'pyqtgraph', 'trimesh', 'numba', 'av'): sys.modules[name] = None\n"
+    hidden = (
+        "import sys\nfor name in ('PySide6', 'moderngl', 'pyqtgraph', 'trimesh', 'numba', 'av'): "
+        "sys.modules[name] = None\n"
+    )
     shown = []
     for block in blocks:
-        done = subprocess.run([sys.executable, "-c", hidden + block], cwd=tmp_path, capture_output=True, text=True, timeout=120)
+        done = subprocess.run(
+            [sys.executable, "-c", hidden + block], cwd=tmp_path, capture_output=True, text=True, timeout=120
+        )
         assert done.returncode == 0, done.stderr
         shown.append(done.stdout)
     assert shown[0].startswith("planned") and shown[1] == "[]\n"

@@ -22,47 +22,100 @@ CONFORMANCE = Path(engines.__file__).with_name("conformance")
 SEED, AHEAD, RECENT = 5, 20.0, 5.0  # a short memory, so that much is forgotten within the script
 STEPS = (0.013, 0.047, 0.2, 0.111, 0.029)  # seconds between updates
 FRAMES = 500
-UNHEARD = 120  # more updates, quarters of a minute apart, after which it is asked for the first time again what happened
+# more updates, quarters of a minute apart, after which it is asked for the first time again what happened
+UNHEARD = 120
 SHOWN = range(49, FRAMES, 50)  # frames at which answers, poses and morph targets are compared
 
 ASKED: dict[int, list[Any]] = {
-    0: [{"do": "gesture"}, {"do": "look", "to": "door"}, {"do": "say", "text": "Well, hello over there.", "after": 2.0, "at": 30}],
-    20: [{"do": "gesture", "id": "g", "tags": ["greeting"], "priority": 2}, {"do": "fidget", "layer": "head"}],
+    0: [
+        {"do": "gesture"},
+        {"do": "look", "to": "door"},
+        {"do": "say", "text": "Well, hello over there.", "after": 2.0, "at": 30},
+    ],
+    20: [
+        {"do": "gesture", "id": "g", "tags": ["greeting"], "priority": 2},
+        {"do": "fidget", "layer": "head"},
+    ],
     45: [
-        {"do": "dance"}, {"do": "gesture", "after": -1}, {"do": "gesture", "after": None}, {"do": "gesture", "after": 1e9},
-        {"do": "gesture", "layer": "legs", "id": "bad"}, {"do": "gesture", "at": "soon"}, "nod", None, [], 3, {},
-        {"do": "bml", "bml": "<bml/>"}, {"do": "gesture", "id": "x" * 201}, {"do": "action", "action": "no such"}, {"do": "nod", "id": 7},
+        {"do": "dance"},
+        {"do": "gesture", "after": -1},
+        {"do": "gesture", "after": None},
+        {"do": "gesture", "after": 1e9},
+        {"do": "gesture", "layer": "legs", "id": "bad"},
+        {"do": "gesture", "at": "soon"},
+        "nod",
+        None,
+        [],
+        3,
+        {},
+        {"do": "bml", "bml": "<bml/>"},
+        {"do": "gesture", "id": "x" * 201},
+        {"do": "action", "action": "no such"},
+        {"do": "nod", "id": 7},
         {"do": "nod", "id": "", "after": 0.4},
     ],
     80: [{"do": "stance", "stance": "on hips", "stay": True, "id": "stay"}],
     90: [{"do": "fidget", "layer": "head", "id": "r", "duration": 9, "resume": True, "after": 1.5}],
     100: [{"do": "shake", "priority": 5, "after": 4}],
-    130: [{"do": "say", "line": "hello", "id": "say"}, {"do": "look", "to": "user", "duration": 1.5, "priority": 3}],
+    130: [
+        {"do": "say", "line": "hello", "id": "say"},
+        {"do": "look", "to": "user", "duration": 1.5, "priority": 3},
+    ],
     170: [{"do": "say", "text": "No, wait!"}],
-    200: [{"do": "withdraw", "what": "g"}, {"do": "withdraw", "what": "stay", "id": "w"}, {"do": "gesture", "id": "g", "after": 1.5}],
+    200: [
+        {"do": "withdraw", "what": "g"},
+        {"do": "withdraw", "what": "stay", "id": "w"},
+        {"do": "gesture", "id": "g", "after": 1.5},
+    ],
     260: [
-        {"do": "mode", "mode": "listening"}, {"do": "place", "name": "door", "point": [-1, 1.2, 1]}, {"do": "blink"}, {"do": "shake"},
+        {"do": "mode", "mode": "listening"},
+        {"do": "place", "name": "door", "point": [-1, 1.2, 1]},
+        {"do": "blink"},
+        {"do": "shake"},
         {"do": "gesture", "layer": "body", "id": "b", "resume": True, "duration": 6},
     ],
-    300: [{"do": "gesture", "id": "later", "after": 25}, {"do": "action", "action": "wave", "after": 2, "hold": 1}],
+    300: [
+        {"do": "gesture", "id": "later", "after": 25},
+        {"do": "action", "action": "wave", "after": 2, "hold": 1},
+    ],
     330: [{"do": "change"}, {"do": "action", "action": "shrug", "stroke": 30.5}],
     340: [{"do": "withdraw", "what": "later"}],
     360: [{"do": "gesture", "id": "g", "after": "x"}, {"do": "say", "line": 7, "id": "seven"}],
     400: [{"do": "gesture", "after": 3.0}, {"do": "withdraw"}],
-    430: [{"do": "stance", "stance": "crossed"}, {"do": "mode"}, {"do": "say", "line": "hello", "gestures": False, "after": 1}],
-}  # fmt: skip
+    430: [
+        {"do": "stance", "stance": "crossed"},
+        {"do": "mode"},
+        {"do": "say", "line": "hello", "gestures": False, "after": 1},
+    ],
+}
 
 
 def script() -> list[dict[str, Any]]:
-    """Return the steps: now (null for NaN), what is asked before that update, whether events are asked for and all is shown after it."""
+    """Return the steps: now (null for NaN), what is asked before that update, whether events are asked for
+    and all is shown after it.
+    """
     out: list[dict[str, Any]] = []
     now = 0.0
     for frame in range(FRAMES):
         told = {98: None, 151: now - 3.0}.get(frame, now)
-        looks = [{"do": "look", "to": "ahead" if frame % 2 else "door", "priority": frame % 3}] if frame % 13 == 12 else []
-        out.append({"now": told, "ask": [*ASKED.get(frame, []), *looks], "hear": frame % 7 == 6, "show": frame in SHOWN})
+        looks = (
+            [{"do": "look", "to": "ahead" if frame % 2 else "door", "priority": frame % 3}]
+            if frame % 13 == 12
+            else []
+        )
+        out.append(
+            {
+                "now": told,
+                "ask": [*ASKED.get(frame, []), *looks],
+                "hear": frame % 7 == 6,
+                "show": frame in SHOWN,
+            }
+        )
         now += STEPS[frame % len(STEPS)]
-    unheard = [{"now": now + 15.0 * n, "ask": [], "hear": n == UNHEARD, "show": n == UNHEARD} for n in range(1, UNHEARD + 1)]
+    unheard = [
+        {"now": now + 15.0 * n, "ask": [], "hear": n == UNHEARD, "show": n == UNHEARD}
+        for n in range(1, UNHEARD + 1)
+    ]
     leap = {"now": 1e9, "ask": [], "hear": True, "show": True}
     return [*out, *unheard, leap, leap]
 
@@ -78,8 +131,14 @@ def in_python(export: Path, steps: list[dict[str, Any]], folder: Path) -> dict[s
         if step["show"]:
             answers = [character.answer(ident) for ident in [*out["ids"], "nobody"]]
             pose = character.pose()
-            shown = {"now": character.now, "answers": [[a.state, a.at, a.until, list(a.what), bool(a.why)] for a in answers]}
-            shown |= {"rotations": pose.rotations.tolist(), "positions": character.project.skeleton.globals(pose)[1].tolist()}
+            shown = {
+                "now": character.now,
+                "answers": [[a.state, a.at, a.until, list(a.what), bool(a.why)] for a in answers],
+            }
+            shown |= {
+                "rotations": pose.rotations.tolist(),
+                "positions": character.project.skeleton.globals(pose)[1].tolist(),
+            }
             out["shown"].append(shown | {"morphs": character.morphs()})
     return out
 
@@ -114,7 +173,13 @@ console.log(JSON.stringify(out));
 
 def in_javascript(export: Path, steps: list[dict[str, Any]], folder: Path) -> dict[str, Any]:
     (folder / "game.mjs").write_text(JAVASCRIPT)
-    command = ["node", str(folder / "game.mjs"), str(RUNTIMES / "javascript"), str(export), str(folder / "steps.json")]
+    command = [
+        "node",
+        str(folder / "game.mjs"),
+        str(RUNTIMES / "javascript"),
+        str(export),
+        str(folder / "steps.json"),
+    ]
     return told([*command, str(SEED), str(AHEAD), str(RECENT)])
 
 
@@ -197,7 +262,17 @@ def in_csharp(export: Path, steps: list[dict[str, Any]], folder: Path) -> dict[s
     command = ["mcs", "-optimize", f"-out:{folder / 'game.exe'}", *map(str, sources)]
     made = subprocess.run(command, capture_output=True, text=True, timeout=120, check=False)
     assert made.returncode == 0, made.stdout + made.stderr
-    return told(["mono", str(folder / "game.exe"), str(export), str(folder / "texts.json"), str(SEED), str(AHEAD), str(RECENT)])
+    return told(
+        [
+            "mono",
+            str(folder / "game.exe"),
+            str(export),
+            str(folder / "texts.json"),
+            str(SEED),
+            str(AHEAD),
+            str(RECENT),
+        ]
+    )
 
 
 GODOT = """extends SceneTree
@@ -241,13 +316,21 @@ def in_godot(export: Path, steps: list[dict[str, Any]], folder: Path) -> dict[st
     (folder / "game.gd").write_text(GODOT)
     options = {"seed": SEED, "ahead": AHEAD, "recent": RECENT}
     (folder / "args.json").write_text(json.dumps({"export": str(export), "steps": steps, "options": options}))
-    return told(["godot3-server", "--no-window", "-s", "game.gd"], cwd=folder, env={**os.environ, "HOME": str(folder), "LC_ALL": "C.UTF-8"})
+    return told(
+        ["godot3-server", "--no-window", "-s", "game.gd"],
+        cwd=folder,
+        env={**os.environ, "HOME": str(folder), "LC_ALL": "C.UTF-8"},
+    )
 
 
 def told(command: list[str], **more: Any) -> dict[str, Any]:
     """Run a command; return the JSON of its last line."""
-    done = subprocess.run(command, capture_output=True, text=True, errors="replace", timeout=300, check=False, **more)
-    assert done.returncode == 0 and "SCRIPT ERROR" not in done.stdout + done.stderr, (done.stdout + done.stderr)[-3000:]
+    done = subprocess.run(
+        command, capture_output=True, text=True, errors="replace", timeout=300, check=False, **more
+    )
+    assert done.returncode == 0 and "SCRIPT ERROR" not in done.stdout + done.stderr, (
+        done.stdout + done.stderr
+    )[-3000:]
     found: dict[str, Any] = json.loads(done.stdout.strip().splitlines()[-1].removeprefix("OUT "))
     return found
 
@@ -292,9 +375,12 @@ def test_the_script_has_something_of_everything(wanted: Made) -> None:
 
 needs_node = pytest.mark.skipif(shutil.which("node") is None, reason="needs Node 18 or newer")
 needs_mono = pytest.mark.skipif(
-    shutil.which("mcs") is None or shutil.which("mono") is None, reason="needs Mono's compiler and runtime (mcs, mono)"
+    shutil.which("mcs") is None or shutil.which("mono") is None,
+    reason="needs Mono's compiler and runtime (mcs, mono)",
 )
-needs_godot = pytest.mark.skipif(shutil.which("godot3-server") is None, reason="needs Godot 3 (godot3-server)")
+needs_godot = pytest.mark.skipif(
+    shutil.which("godot3-server") is None, reason="needs Godot 3 (godot3-server)"
+)
 
 
 @pytest.mark.parametrize(
@@ -318,11 +404,15 @@ def test_a_character_is_the_same_in_every_language(
             asked = [*python["ids"], "nobody"][number], ours["now"]
             assert [mine[0], *mine[3:]] == [other[0], *other[3:]], asked
             assert [x is None for x in mine[1:3]] == [x is None for x in other[1:3]], asked
-            assert [x or 0.0 for x in mine[1:3]] == pytest.approx([x or 0.0 for x in other[1:3]], abs=1e-6), asked
+            assert [x or 0.0 for x in mine[1:3]] == pytest.approx([x or 0.0 for x in other[1:3]], abs=1e-6), (
+                asked
+            )
         turned = rotation.angle_between(np.array(ours["rotations"]), np.array(theirs["rotations"]))
         assert np.degrees(turned).max() < 0.05
         assert np.abs(np.array(ours["positions"]) - np.array(theirs["positions"])).max() < 1e-4
         for name in ours["morphs"].keys() | theirs["morphs"].keys():
-            assert ours["morphs"].get(name, 0.0) == pytest.approx(theirs["morphs"].get(name, 0.0), abs=1e-3), name
+            assert ours["morphs"].get(name, 0.0) == pytest.approx(
+                theirs["morphs"].get(name, 0.0), abs=1e-3
+            ), name
     assert [[e[0], *e[2:]] for e in python["events"]] == [[e[0], *e[2:]] for e in found["events"]]
     assert [e[1] for e in python["events"]] == pytest.approx([e[1] for e in found["events"]], abs=1e-6)

@@ -1,4 +1,6 @@
-"""Exports: they validate, they come back equal, their GLB holds every clip, and broken ones are refused with a path."""
+"""Exports: they validate, they come back equal, their GLB holds every clip, and broken ones are refused with
+a path.
+"""
 
 from __future__ import annotations
 
@@ -77,7 +79,10 @@ def khronos(*files: Path, warnings: bool = True) -> None:
     if shutil.which("node") is None or not (ROOT / "tests" / "node_modules" / "gltf-validator").is_dir():
         pytest.skip("needs Node and the Khronos glTF validator (python3 run.py test fetches it where npm is)")
     out = subprocess.run(
-        ["node", str(Path(__file__).with_name("validate.mjs")), *map(str, files)], capture_output=True, text=True, check=True
+        ["node", str(Path(__file__).with_name("validate.mjs")), *map(str, files)],
+        capture_output=True,
+        text=True,
+        check=True,
     )
     reports = [json.loads(line) for line in out.stdout.splitlines()]
     assert len(reports) == len(files)
@@ -133,7 +138,9 @@ def test_the_glb_holds_every_used_clip_under_its_name_and_the_mesh(sample: Proje
 
 def test_motion_in_the_glb_is_the_clips_motion(sample: Project, exported: Any) -> None:
     for made, entry in zip(
-        read_gltf_clips(exported.glb), (sample.clips[c] for c in read_export(exported.json, motions=False).clips), strict=True
+        read_gltf_clips(exported.glb),
+        (sample.clips[c] for c in read_export(exported.json, motions=False).clips),
+        strict=True,
     ):
         assert entry.motion is not None
         assert (made.frames, made.fps) == (entry.frames, entry.fps)
@@ -162,9 +169,14 @@ def test_the_expanded_columns_are_the_connections_of_the_machine(sample: Project
         columns = document["expanded"][layer]
         rows = [
             (columns["states"][s], columns["states"][t], leave, blend)
-            for s, t, leave, blend in zip(columns["from"], columns["to"], columns["leave"], columns["blend"], strict=True)
+            for s, t, leave, blend in zip(
+                columns["from"], columns["to"], columns["leave"], columns["blend"], strict=True
+            )
         ]
-        expected = [(x.source, x.target, -1 if x.leave is None else x.leave, x.blend) for x in connections(sample, sample.graphs[layer])]
+        expected = [
+            (x.source, x.target, -1 if x.leave is None else x.leave, x.blend)
+            for x in connections(sample, sample.graphs[layer])
+        ]
         assert rows == expected
         total += len(rows)
     assert total == size(sample).connections
@@ -187,7 +199,11 @@ def test_the_index_and_the_transitions_say_what_the_graph_says(sample: Project, 
 def test_the_constants_are_those_the_planner_uses(exported: Any) -> None:
     document = json.loads(exported.json.read_bytes())
     numbers = document["randomness"]
-    assert (numbers["offset"], numbers["prime"], numbers["test"]) == (choice.OFFSET, choice.PRIME, choice.key32(1, "a", "b"))
+    assert (numbers["offset"], numbers["prime"], numbers["test"]) == (
+        choice.OFFSET,
+        choice.PRIME,
+        choice.key32(1, "a", "b"),
+    )
     assert document["planner"]["blend"] == "3x^2-2x^3"
     assert np.allclose(ease(np.array([0.25])), 3 * 0.25**2 - 2 * 0.25**3)
 
@@ -215,7 +231,11 @@ def document_of(project: Project, expanded: bool = False) -> bytes:
 
 
 # Many random projects have no clips yet, and are passed over.
-@settings(max_examples=60, deadline=None, suppress_health_check=[HealthCheck.function_scoped_fixture, HealthCheck.filter_too_much])
+@settings(
+    max_examples=60,
+    deadline=None,
+    suppress_health_check=[HealthCheck.function_scoped_fixture, HealthCheck.filter_too_much],
+)
 @given(projects(14), st.booleans())
 def test_any_graph_validates_and_comes_back(tmp_path: Path, project: Project, expanded: bool) -> None:
     assume(project.skeleton is not None)
@@ -226,7 +246,9 @@ def test_any_graph_validates_and_comes_back(tmp_path: Path, project: Project, ex
 
 
 def small() -> Project:
-    project = edits.add_clips(Project("a/b: ü*"), [(f"{n}.glb", 0, "", clip(n)) for n in ("idle", "wave", "idle")])
+    project = edits.add_clips(
+        Project("a/b: ü*"), [(f"{n}.glb", 0, "", clip(n)) for n in ("idle", "wave", "idle")]
+    )
     project = edits.add_stance(project, "arms", "rest", ["c1"])
     return edits.place(project, ["c2"], "arms", "gesture", "s4")
 
@@ -246,14 +268,21 @@ def test_the_files_are_named_after_the_project_in_letters_every_system_takes(tmp
 
 
 def test_clips_of_one_frame_and_long_ones_come_back_as_themselves(tmp_path: Path) -> None:
-    project = edits.add_clips(Project("p"), [("a", 0, "", clip("still", 1)), ("b", 0, "", clip("wave", 9)), ("c", 0, "", clip("nod", 12))])
+    project = edits.add_clips(
+        Project("p"),
+        [("a", 0, "", clip("still", 1)), ("b", 0, "", clip("wave", 9)), ("c", 0, "", clip("nod", 12))],
+    )
     project = edits.add_stance(project, "arms", "rest", ["c1"])
     project = edits.place(project, ["c2", "c3"], "arms", "gesture", "s4")
     back = read_export(export(project, tmp_path).json)
     assert [e.motion.frames for e in back.clips.values() if e.motion] == [1, 9, 12]
     save_project(back, tmp_path / "p.metagraph.yaml")
     again = open_project(tmp_path / "p.metagraph.yaml").project
-    assert [again.clips[c].motion.frames if again.clips[c].motion else None for c in again.clips] == [None, 9, 12]  # never a wrong one
+    assert [again.clips[c].motion.frames if again.clips[c].motion else None for c in again.clips] == [
+        None,
+        9,
+        12,
+    ]  # never a wrong one
 
 
 @pytest.mark.parametrize(
@@ -264,7 +293,10 @@ def test_clips_of_one_frame_and_long_ones_come_back_as_themselves(tmp_path: Path
         (lambda p: edits.remove_stance(p, "s4"), "nothing to export"),
         (lambda p: edits.update_actions(p, ["a6"], timing={"end": 99.0}), "'wave' plays 0.00-99.00 s"),
         (lambda p: edits.update_actions(p, ["a6"], likelihood=0.0), "can never be chosen"),
-        (lambda p: replace(p, clips={**p.clips, "c2": replace(p.clips["c2"], motion=None)}), "the file of clip 'wave' is missing"),
+        (
+            lambda p: replace(p, clips={**p.clips, "c2": replace(p.clips["c2"], motion=None)}),
+            "the file of clip 'wave' is missing",
+        ),
     ],
 )
 def test_errors_stop_an_export_with_the_words_of_the_problem(tmp_path: Path, spoil: Any, words: str) -> None:
@@ -332,12 +364,20 @@ WRONG: list[tuple[tuple[Any, ...], Any, str, str]] = [
 
 @pytest.fixture(scope="module")
 def plain(tmp_path_factory: pytest.TempPathFactory) -> Path:
-    project = edits.set_markov(small(), Markov("arms", (("both", "gesture"), ("both", "fidget")), ((0.5, 0.5), (1.0, 0.0))))
+    project = edits.set_markov(
+        small(), Markov("arms", (("both", "gesture"), ("both", "fidget")), ((0.5, 0.5), (1.0, 0.0)))
+    )
     return export(edits.set_weight(project, "arms", "face", 0.5), tmp_path_factory.mktemp("plain")).json
 
 
-@pytest.mark.parametrize(("where", "value", "path", "remedy"), WRONG, ids=lambda x: ".".join(map(str, x)) if isinstance(x, tuple) else "")
-def test_a_wrong_field_is_named_by_its_path(plain: Path, where: tuple[Any, ...], value: Any, path: str, remedy: str) -> None:
+@pytest.mark.parametrize(
+    ("where", "value", "path", "remedy"),
+    WRONG,
+    ids=lambda x: ".".join(map(str, x)) if isinstance(x, tuple) else "",
+)
+def test_a_wrong_field_is_named_by_its_path(
+    plain: Path, where: tuple[Any, ...], value: Any, path: str, remedy: str
+) -> None:
     document = json.loads(plain.read_bytes())
     inside = document
     for key in where[:-1]:
@@ -357,7 +397,9 @@ def test_a_wrong_field_is_named_by_its_path(plain: Path, where: tuple[Any, ...],
     assert remedy in caught.value.remedy and caught.value.remedy
 
 
-@pytest.mark.parametrize("content", [b"", b"{", b"[]", b"null", b"\xff\xfe", b"[" * 100_000, b'{"metagraph": 1}', b"glTF"])
+@pytest.mark.parametrize(
+    "content", [b"", b"{", b"[]", b"null", b"\xff\xfe", b"[" * 100_000, b'{"metagraph": 1}', b"glTF"]
+)
 def test_other_files_are_refused(tmp_path: Path, content: bytes) -> None:
     (tmp_path / "x.json").write_bytes(content)
     with pytest.raises(FileError) as caught:
@@ -376,14 +418,22 @@ def test_a_file_that_is_not_there_and_a_glb_that_is_not_there_are_told(plain: Pa
 
 
 JUNK = st.one_of(
-    st.none(), st.booleans(), st.integers(-3, 10**20), st.floats(allow_nan=False, allow_infinity=False), st.text(max_size=4),
-    st.just([]), st.just({}), st.just([[]]),
-)  # fmt: skip
+    st.none(),
+    st.booleans(),
+    st.integers(-3, 10**20),
+    st.floats(allow_nan=False, allow_infinity=False),
+    st.text(max_size=4),
+    st.just([]),
+    st.just({}),
+    st.just([[]]),
+)
 
 
 @settings(max_examples=200, deadline=None, suppress_health_check=[HealthCheck.function_scoped_fixture])
 @given(st.randoms(use_true_random=False), JUNK)
-def test_whatever_stands_in_a_field_an_export_is_read_or_refused(plain: Path, chance: random.Random, junk: Any) -> None:
+def test_whatever_stands_in_a_field_an_export_is_read_or_refused(
+    plain: Path, chance: random.Random, junk: Any
+) -> None:
     document: Any = copy.deepcopy(json.loads(plain.read_bytes()))
     inside = document
     while True:

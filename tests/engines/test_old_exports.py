@@ -1,4 +1,5 @@
-"""Exports written by earlier versions load and play, in the library and in JavaScript; what they lack takes its usual value.
+"""Exports written by earlier versions load and play, in the library and in JavaScript; what they lack takes
+its usual value.
 
 `old/<format>/` holds exports as they were written then; they are never made anew.
 """
@@ -55,7 +56,18 @@ def test_the_runtimes_agree_on_an_old_export(export: Path, tmp_path: Path) -> No
 def test_all_that_was_ever_added_may_be_missing(tmp_path: Path) -> None:
     data = json.loads((STICK / "stick.json").read_bytes())
     shutil.copy(STICK / "stick.glb", tmp_path)
-    for field in ("rig", "voices", "life", "face", "points", "lines", "performances", "roles", "parts", "expanded"):
+    for field in (
+        "rig",
+        "voices",
+        "life",
+        "face",
+        "points",
+        "lines",
+        "performances",
+        "roles",
+        "parts",
+        "expanded",
+    ):
         data.pop(field, None)
     for field in ("memory", "rest", "lookahead", "hurry", "least_blend"):
         data["planner"].pop(field)

@@ -1,4 +1,6 @@
-"""Exports of clips nobody here made: their vectors hold for the library and in JavaScript, odd skeletons and faces included."""
+"""Exports of clips nobody here made: their vectors hold for the library and in JavaScript, odd skeletons and
+faces included.
+"""
 
 from __future__ import annotations
 
@@ -29,7 +31,9 @@ PLACED: tuple[tuple[Kind, bool, bool, int], ...] = (  # kind, from the first sta
 def project_of(files: list[Path], name: str) -> Project:
     """Return a project with two stances a layer, whatever the clips show."""
     project = import_files(Project(name), None, files).into(Project(name))
-    clips = [i for i, e in project.clips.items() if e.motion is not None and e.motion.skeleton == project.skeleton]
+    clips = [
+        i for i, e in project.clips.items() if e.motion is not None and e.motion.skeleton == project.skeleton
+    ]
     take = cycle(clips)
     for layer in LAYERS:
         for stance in ("rest", "other"):
@@ -37,13 +41,21 @@ def project_of(files: list[Path], name: str) -> Project:
         a, b = project.graphs[layer].stances
         for kind, first, leads, count in PLACED:
             here, there = (a, b) if first else (b, a)
-            project = edits.place(project, [next(take) for _ in range(count)], layer, kind, here, there if leads else None)
+            project = edits.place(
+                project, [next(take) for _ in range(count)], layer, kind, here, there if leads else None
+            )
     return project
 
 
 @pytest.mark.parametrize(
     ("folder", "pattern"),
-    [("sumerian-hosts", "adult_male"), ("sumerian-hosts", "alien"), ("kaykit-rogue", ""), ("robot-expressive", ""), ("bandai-namco-1", "")],
+    [
+        ("sumerian-hosts", "adult_male"),
+        ("sumerian-hosts", "alien"),
+        ("kaykit-rogue", ""),
+        ("robot-expressive", ""),
+        ("bandai-namco-1", ""),
+    ],
 )
 def test_vectors_of_real_clips_hold(shared_data: Path, tmp_path: Path, folder: str, pattern: str) -> None:
     files = [path for path in gather([shared_data / folder]) if pattern in path.as_posix()]

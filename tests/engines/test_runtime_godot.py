@@ -1,4 +1,6 @@
-"""The Godot runtime: it conforms on a real engine, says what is wrong with bad input, never fails in play, and its rules are tested."""
+"""The Godot runtime: it conforms on a real engine, says what is wrong with bad input, never fails in play,
+and its rules are tested.
+"""
 
 from __future__ import annotations
 
@@ -22,7 +24,9 @@ ADDON = Path(engines.__file__).with_name("runtimes") / "godot" / "addons"
 FOLDERS = sorted(path for path in Path(engines.__file__).with_name("conformance").iterdir() if path.is_dir())
 STICK = next(folder for folder in FOLDERS if folder.name == "stick")
 GODOT = shutil.which("godot3-server")
-needs_godot = pytest.mark.skipif(GODOT is None, reason="godot3-server is not here (apt install godot3-server)")
+needs_godot = pytest.mark.skipif(
+    GODOT is None, reason="godot3-server is not here (apt install godot3-server)"
+)
 
 
 @pytest.fixture
@@ -35,10 +39,14 @@ def game(tmp_path: Path) -> Path:
 
 
 def godot(game: Path, script: str, *words: object, fails: bool = False) -> tuple[int, str]:
-    """Run a script of the project until it quits; return its exit code and what it printed. fails: whether it runs into an error."""
+    """Run a script of the project until it quits; return its exit code and what it printed. fails: whether it
+    runs into an error.
+    """
     env = {**os.environ, "HOME": str(game), "LC_ALL": "C.UTF-8"}
     command = [str(GODOT), "--no-window", "-s", script, *map(str, words)]
-    done = subprocess.run(command, cwd=game, env=env, capture_output=True, text=True, errors="replace", timeout=300)
+    done = subprocess.run(
+        command, cwd=game, env=env, capture_output=True, text=True, errors="replace", timeout=300
+    )
     told = done.stdout + done.stderr
     assert ("SCRIPT ERROR" in told) == fails, told[-2000:]
     return done.returncode, done.stdout
@@ -47,7 +55,9 @@ def godot(game: Path, script: str, *words: object, fails: bool = False) -> tuple
 def run(game: Path, body: str, *words: object, fails: bool = False) -> Any:
     """Run a function body that fills `out`, with `words()`, and return `out`."""
     lines = "\n".join("\t" + line for line in body.strip().splitlines())
-    (game / "test.gd").write_text(f"{HEAD}\nfunc _init():\n\tvar out = []\n{lines}\n\tprint('OUT ' + to_json(out))\n\tquit()\n")
+    (game / "test.gd").write_text(
+        f"{HEAD}\nfunc _init():\n\tvar out = []\n{lines}\n\tprint('OUT ' + to_json(out))\n\tquit()\n"
+    )
     (game / "words.json").write_text(json.dumps(words, ensure_ascii=False))
     code, told = godot(game, "test.gd", fails=fails)
     assert code == 0, told
@@ -104,7 +114,11 @@ def test_vectors_that_are_broken_fail(game: Path, tmp_path: Path) -> None:
 MUTATIONS = {
     "the curve of blends": ("util.gd", "x * x * (3.0 - 2.0 * x)", "x"),
     "uses are counted": ("pick.gd", "used.get(ident, 0) + 1", "1"),
-    "ties go by id": ("replan.gd", "-meta.request.priority, meta.request.id, meta.part]", "-meta.request.priority, meta.part]"),
+    "ties go by id": (
+        "replan.gd",
+        "-meta.request.priority, meta.request.id, meta.part]",
+        "-meta.request.priority, meta.part]",
+    ),
     "layers multiply on the right": (
         "pose.gd",
         "rotations[joint] * (turn if each[1] == 1 else Turns.power(turn, each[1]))",
@@ -113,10 +127,22 @@ MUTATIONS = {
     "the hash": ("choice.gd", "value ^= value >> 13", "value ^= value >> 12"),
     "a remainder has a key of its own": ("replan.gd", "last.part + 1 if kept else last.part", "last.part"),
     "holds hurry": ("shape.gd", "(hold_to - hold_from) / settings.hurry", "(hold_to - hold_from)"),
-    "the head sets off after the eyes": ("gaze.gd", "settle((gone - HEAD_LAG) / aim.head)", "settle(gone / aim.head)"),
+    "the head sets off after the eyes": (
+        "gaze.gd",
+        "settle((gone - HEAD_LAG) / aim.head)",
+        "settle(gone / aim.head)",
+    ),
     "a blink shuts what is open": ("solve.gd", "shut + blink * (1.0 - shut)", "shut + blink"),
-    "the other arm keeps to the stance": ("graph.gd", 'parts[joint] == "arms" and sides[joint] == other', "false"),
-    "what is forgotten of life": ("planner.gd", "changes.life = Schedule.since(plan.life, seconds)", "changes.life = plan.life"),
+    "the other arm keeps to the stance": (
+        "graph.gd",
+        'parts[joint] == "arms" and sides[joint] == other',
+        "false",
+    ),
+    "what is forgotten of life": (
+        "planner.gd",
+        "changes.life = Schedule.since(plan.life, seconds)",
+        "changes.life = plan.life",
+    ),
 }
 
 # A case that notices each, tried first.
@@ -163,14 +189,24 @@ def test_the_single_cases_that_notice_mutants_pass_where_nothing_is_broken(game:
 def test_a_bad_export_is_one_error_with_place_and_remedy(game: Path, tmp_path: Path) -> None:
     good = json.loads(PERFORM.read_bytes())
     glb = PERFORM.with_suffix(".glb").read_bytes()
-    renamed = {**good, "joints": [{**j, "name": j["name"] + "x", "parent": j["parent"] and j["parent"] + "x"} for j in good["joints"]]}
+    renamed = {
+        **good,
+        "joints": [
+            {**j, "name": j["name"] + "x", "parent": j["parent"] and j["parent"] + "x"}
+            for j in good["joints"]
+        ],
+    }
     late = {**good, "joints": good["joints"][::-1]}
     cases = {
         "newer": (json.dumps({**good, "metagraph": 2}), glb, "update the runtime"),
         "text": ("{nothing", glb, "not JSON"),
         "list": ("[]", glb, "not JSON"),
         "other": ('{"asset": {"version": "2.0"}}', glb, "$.metagraph"),
-        "field": (json.dumps({k: v for k, v in good.items() if k != "planner"}), glb, "$.planner: it is missing"),
+        "field": (
+            json.dumps({k: v for k, v in good.items() if k != "planner"}),
+            glb,
+            "$.planner: it is missing",
+        ),
         "order": (json.dumps(late), glb, "after its parent"),
         "short": (json.dumps(good), glb[: len(glb) // 2], "cut short"),
         "nothing": (json.dumps(good), b"", "no GLB"),
@@ -228,7 +264,9 @@ for path in words():
 
 
 @needs_godot
-def test_a_clip_that_the_glb_lacks_is_told_and_its_actions_show_their_stance(game: Path, tmp_path: Path) -> None:
+def test_a_clip_that_the_glb_lacks_is_told_and_its_actions_show_their_stance(
+    game: Path, tmp_path: Path
+) -> None:
     shutil.copy(PERFORM, tmp_path / "lacking.json")
     raw = PERFORM.with_suffix(".glb").read_bytes()
     (length,) = struct.unpack_from("<I", raw, 12)
@@ -238,7 +276,9 @@ def test_a_clip_that_the_glb_lacks_is_told_and_its_actions_show_their_stance(gam
     text += b" " * (-len(text) % 4)
     rest = raw[20 + length :]
     size = 20 + len(text) + len(rest)
-    (tmp_path / "lacking.glb").write_bytes(raw[:8] + struct.pack("<III", size, len(text), 0x4E4F534A) + text + rest)
+    (tmp_path / "lacking.glb").write_bytes(
+        raw[:8] + struct.pack("<III", size, len(text), 0x4E4F534A) + text + rest
+    )
     body = """
 var graph = read(words()[0])
 var character = Character.new(graph, {})
@@ -307,19 +347,49 @@ out.append([first, named, none, same, told, character.now, character.answer(firs
 @needs_godot
 def test_malformed_requests_are_refused_and_nothing_fails(game: Path) -> None:
     wrong: list[Any] = [
-        None, 3, "gesture", [], {}, {"do": 1}, {"do": "fly"}, {"do": "gesture", "layer": "legs"}, {"do": "gesture", "tags": "x"},
-        {"do": "gesture", "tags": [1]}, {"do": "gesture", "priority": 1.5}, {"do": "gesture", "at": -1}, {"do": "gesture", "at": "now"},
-        {"do": "gesture", "hold": 1e9}, {"do": "gesture", "prepare": 1}, {"do": "gesture", "colour": "red"}, {"do": "action"},
-        {"do": "action", "action": ""}, {"do": "stance", "stance": None}, {"do": "look", "to": [1, 2]}, {"do": "look", "to": [1, 2, "3"]},
-        {"do": "look", "amount": 2}, {"do": "say"}, {"do": "say", "line": 1.5}, {"do": "say", "line": "none"}, {"do": "mode", "mode": "x"},
-        {"do": "place", "name": "x"}, {"do": "place", "point": [1, 2, 3]}, {"do": "blink", "after": "x"},
-        {"do": "stance", "stance": "none"}, {"do": "bml", "bml": ""}, {"do": "gesture", "tags": ["none such"]},
-    ]  # fmt: skip
+        None,
+        3,
+        "gesture",
+        [],
+        {},
+        {"do": 1},
+        {"do": "fly"},
+        {"do": "gesture", "layer": "legs"},
+        {"do": "gesture", "tags": "x"},
+        {"do": "gesture", "tags": [1]},
+        {"do": "gesture", "priority": 1.5},
+        {"do": "gesture", "at": -1},
+        {"do": "gesture", "at": "now"},
+        {"do": "gesture", "hold": 1e9},
+        {"do": "gesture", "prepare": 1},
+        {"do": "gesture", "colour": "red"},
+        {"do": "action"},
+        {"do": "action", "action": ""},
+        {"do": "stance", "stance": None},
+        {"do": "look", "to": [1, 2]},
+        {"do": "look", "to": [1, 2, "3"]},
+        {"do": "look", "amount": 2},
+        {"do": "say"},
+        {"do": "say", "line": 1.5},
+        {"do": "say", "line": "none"},
+        {"do": "mode", "mode": "x"},
+        {"do": "place", "name": "x"},
+        {"do": "place", "point": [1, 2, 3]},
+        {"do": "blink", "after": "x"},
+        {"do": "stance", "stance": "none"},
+        {"do": "bml", "bml": ""},
+        {"do": "gesture", "tags": ["none such"]},
+    ]
     right: list[Any] = [
-        {"do": "gesture"}, {"do": "gesture", "at": None, "limb": None, "stroke": 9}, {"do": "say", "text": "Größe, ты 日本 🙂!"},
-        {"do": "look", "to": "user", "duration": 2}, {"do": "blink"}, {"do": "mode", "mode": None}, {"do": "withdraw"},
+        {"do": "gesture"},
+        {"do": "gesture", "at": None, "limb": None, "stroke": 9},
+        {"do": "say", "text": "Größe, ты 日本 🙂!"},
+        {"do": "look", "to": "user", "duration": 2},
+        {"do": "blink"},
+        {"do": "mode", "mode": None},
+        {"do": "withdraw"},
         {"do": "place", "name": "x", "point": [1, 2, 3]},
-    ]  # fmt: skip
+    ]
     body = """
 var character = Character.new(read(words()[0]), {"idle": false})
 var ids = []
@@ -367,9 +437,21 @@ def test_letters_are_read_as_python_reads_them(game: Path) -> None:
     from metagraph.playback.life.voice import voice_from_text
 
     texts = [
-        "Hello there, how are you?", "Thought - tion sch.", "Größe über Straße!", "Ποιος είσαι; Ξέρω.", "Хорошо, ещё щука",
-        "日本語が好き", "한국어 말", "naïve e\u0301te\u0301", "x2 30 (ok)", "  \u3000blank\u00a0 ", "🙂 fun", "…", "Հայերեն", "ĲŉǄ",
-    ]  # fmt: skip
+        "Hello there, how are you?",
+        "Thought - tion sch.",
+        "Größe über Straße!",
+        "Ποιος είσαι; Ξέρω.",
+        "Хорошо, ещё щука",
+        "日本語が好き",
+        "한국어 말",
+        "naïve e\u0301te\u0301",
+        "x2 30 (ok)",
+        "  \u3000blank\u00a0 ",
+        "🙂 fun",
+        "…",
+        "Հայերեն",
+        "ĲŉǄ",
+    ]
     body = """
 var graph = read(words()[0])
 var Voice = load("res://addons/metagraph/core/voice.gd")
@@ -379,11 +461,17 @@ for text in words()[1]:
 	var pieces = Letters.spelled(graph.text, text, 2.0)
 	out.append([pieces.pieces, pieces.peaks, pieces.strengths, voice.accents, voice.weights])
 """
-    for text, (pieces, peaks, strengths, accents, weights) in zip(texts, run(game, body, str(PERFORM), texts), strict=True):
+    for text, (pieces, peaks, strengths, accents, weights) in zip(
+        texts, run(game, body, str(PERFORM), texts), strict=True
+    ):
         expected, their_peaks, their_strengths, _ = spelled(text, 2.0)
         assert [p[2] for p in pieces] == [p.viseme for p in expected], text
         voice = voice_from_text(text, 2.0)
-        for ours, theirs in ((peaks, their_peaks), (strengths, their_strengths), (accents, voice.accents.tolist())):
+        for ours, theirs in (
+            (peaks, their_peaks),
+            (strengths, their_strengths),
+            (accents, voice.accents.tolist()),
+        ):
             assert ours == pytest.approx(theirs, abs=1e-5), text
         assert len(weights) == len(voice.weights)
         for ours, theirs in zip(weights, voice.weights.tolist(), strict=True):
@@ -393,7 +481,20 @@ for text in words()[1]:
 @needs_godot
 def test_seconds_are_written_as_python_writes_them(game: Path) -> None:
     chance = random.Random(2)
-    numbers = [1.0005, 1.0015, 2.0625, 2.1875, 1.9995, 1.99951, 12.0005, 3.5, 7.0, 1.0624999999, 1000.0625, 1.4375]
+    numbers = [
+        1.0005,
+        1.0015,
+        2.0625,
+        2.1875,
+        1.9995,
+        1.99951,
+        12.0005,
+        3.5,
+        7.0,
+        1.0624999999,
+        1000.0625,
+        1.4375,
+    ]
     numbers += [round(chance.uniform(1, 2000) * 16000) / 16000 for _ in range(200)]
     numbers += [chance.uniform(1, 500) for _ in range(200)]
     body = """
@@ -489,7 +590,9 @@ func _iteration(_delta):
 
 
 def test_every_script_for_godot_4_is_gdscript_2() -> None:
-    parser = pytest.importorskip("gdtoolkit.parser", reason="gdtoolkit is not here (pip install gdtoolkit)").parser
+    parser = pytest.importorskip(
+        "gdtoolkit.parser", reason="gdtoolkit is not here (pip install gdtoolkit)"
+    ).parser
     scripts = sorted(path for path in ADDON.rglob("*.gd") if path.parent.name != "godot3")
     assert len(scripts) > 30
     for path in scripts:
@@ -499,10 +602,39 @@ def test_every_script_for_godot_4_is_gdscript_2() -> None:
 def test_what_differs_between_the_engines_is_in_the_shims_alone() -> None:
     """Words that only one of the two knows, or that mean different things in both."""
     apart = (
-        "Quat(", "Quaternion(", "PoolByteArray", "PackedByteArray", "File.", "FileAccess", "JSON.", ".to_utf8", ".empty()", ".is_empty()",
-        ".remove(", ".remove_at(", "deg2rad", "deg_to_rad", ".slice(", ".instance()", "yield(", "await ", ".xform(", "ord(", "char(",
-        " min(", " max(", " clamp(", "(min(", "(max(", ".sort_custom(", "stepify", "TYPE_REAL", "TYPE_FLOAT", "OS.get_ticks", "Time.",
-    )  # fmt: skip
+        "Quat(",
+        "Quaternion(",
+        "PoolByteArray",
+        "PackedByteArray",
+        "File.",
+        "FileAccess",
+        "JSON.",
+        ".to_utf8",
+        ".empty()",
+        ".is_empty()",
+        ".remove(",
+        ".remove_at(",
+        "deg2rad",
+        "deg_to_rad",
+        ".slice(",
+        ".instance()",
+        "yield(",
+        "await ",
+        ".xform(",
+        "ord(",
+        "char(",
+        " min(",
+        " max(",
+        " clamp(",
+        "(min(",
+        "(max(",
+        ".sort_custom(",
+        "stepify",
+        "TYPE_REAL",
+        "TYPE_FLOAT",
+        "OS.get_ticks",
+        "Time.",
+    )
     core = ADDON / "metagraph" / "core"
     for path in [*core.glob("*.gd"), ADDON / "metagraph" / "conformance.gd"]:
         if path.name.startswith("shim"):

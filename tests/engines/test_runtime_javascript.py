@@ -1,4 +1,6 @@
-"""The JavaScript runtime: it conforms, refuses what is wrong as it says, plays in three.js, and its conformance vectors would notice."""
+"""The JavaScript runtime: it conforms, refuses what is wrong as it says, plays in three.js, and its
+conformance vectors would notice.
+"""
 
 from __future__ import annotations
 
@@ -32,7 +34,11 @@ pytestmark = pytest.mark.skipif(NODE is None, reason="needs Node 18 or newer")
 
 def conformance(*folders: Path, runtime: Path = RUNTIME) -> subprocess.CompletedProcess[str]:
     return subprocess.run(
-        ["node", str(runtime / "conformance.mjs"), *map(str, folders)], capture_output=True, text=True, timeout=120, check=False
+        ["node", str(runtime / "conformance.mjs"), *map(str, folders)],
+        capture_output=True,
+        text=True,
+        timeout=120,
+        check=False,
     )
 
 
@@ -53,8 +59,19 @@ const say = (data) => console.log(JSON.stringify(data));
 
 def run(script: str, folder: Path = STICK, *arguments: str) -> Any:
     """Return what a script prints as JSON; it has HEAD's names, `folder` and the arguments in `rest`."""
-    command = ["node", "--expose-gc", "--input-type=module", "-e", HEAD + script, str(RUNTIME), str(folder), *arguments]
-    done = subprocess.run(command, capture_output=True, text=True, timeout=120, check=False, cwd=ROOT / "tests")
+    command = [
+        "node",
+        "--expose-gc",
+        "--input-type=module",
+        "-e",
+        HEAD + script,
+        str(RUNTIME),
+        str(folder),
+        *arguments,
+    ]
+    done = subprocess.run(
+        command, capture_output=True, text=True, timeout=120, check=False, cwd=ROOT / "tests"
+    )
     assert done.returncode == 0, done.stderr
     return json.loads(done.stdout)
 
@@ -69,7 +86,9 @@ def test_it_does_what_the_shipped_vectors_say(folder: Path) -> None:
 
 
 def rarely(document: dict[str, Any]) -> None:
-    """Change an export so that it needs what few do: long spacing, ways of equal length, eyes that joints do not turn."""
+    """Change an export so that it needs what few do: long spacing, ways of equal length, eyes that joints do
+    not turn.
+    """
     arms, body, head = (document["layers"][layer] for layer in ("arms", "body", "head"))
     actions = {a["name"]: a for layer in (arms, body, head) for a in layer["actions"]}
     for name in ("wave", "point", "shrug", "beat"):
@@ -77,8 +96,15 @@ def rarely(document: dict[str, Any]) -> None:
     arms["markov"]["states"][0] = ["left", "gesture"]
     arms["stances"].append({"id": "s900", "name": "far away"})
     arms["actions"].append(actions["crossed"] | {"id": "a900", "stance": "s900"})
-    for ident, start, end in (("a901", "s21", "s28"), ("a902", "s28", "s900"), ("a903", "s25", "s900"), ("a904", "s25", "s900")):
-        arms["actions"].append(actions["to crossed"] | {"id": ident, "name": ident, "stance": start, "end_stance": end})
+    for ident, start, end in (
+        ("a901", "s21", "s28"),
+        ("a902", "s28", "s900"),
+        ("a903", "s25", "s900"),
+        ("a904", "s25", "s900"),
+    ):
+        arms["actions"].append(
+            actions["to crossed"] | {"id": ident, "name": ident, "stance": start, "end_stance": end}
+        )
     document["face"]["channels"] = {"eye_left": "", "eye_right": ""}
 
 
@@ -88,16 +114,40 @@ def rare_cases(eyes: list[float]) -> Iterator[Case]:
         yield Case("the models", "", (Step(0, 60),), seed=seed, idle=True)
         gestures = tuple({"do": "gesture", "id": f"g{n}", "at": 3.0 * n} for n in range(12))
         yield Case("spacing", "", (Step(0, 50, gestures),), seed=seed)
-        yield Case("a way", "", (Step(0, 20, ({"do": "stance", "stance": "far away", "id": "go", "at": 1.0},)),), seed=seed)
-    said = Step(0, 20, ({"do": "say", "line": "hello", "id": "say", "at": 2.0}, {"do": "gesture", "id": "g", "at": 6}))
-    yield Case("withdrawn with its parts", "", (said, Step(0.5, 20, ({"do": "withdraw", "what": "say", "id": "w"},))), alive=(True,))
+        yield Case(
+            "a way",
+            "",
+            (Step(0, 20, ({"do": "stance", "stance": "far away", "id": "go", "at": 1.0},)),),
+            seed=seed,
+        )
+    said = Step(
+        0, 20, ({"do": "say", "line": "hello", "id": "say", "at": 2.0}, {"do": "gesture", "id": "g", "at": 6})
+    )
+    yield Case(
+        "withdrawn with its parts",
+        "",
+        (said, Step(0.5, 20, ({"do": "withdraw", "what": "say", "id": "w"},))),
+        alive=(True,),
+    )
     cut = Step(2.5, 20, ({"do": "withdraw", "what": "say", "id": "w"},))
     yield Case("cut short", "", (said, cut), times=(2.9, 3.0, 3.05, 3.1, 3.15, 3.2), alive=(True,))
     text = "Well, whatever do you think of all the wonderful things that I have told you about today?"
     for seed in range(3):
-        yield Case("a long speech", "", (Step(0, 20, ({"do": "say", "text": text, "id": "say", "at": 2.0},)),), seed=seed, alive=(True,))
+        yield Case(
+            "a long speech",
+            "",
+            (Step(0, 20, ({"do": "say", "text": text, "id": "say", "at": 2.0},)),),
+            seed=seed,
+            alive=(True,),
+        )
     for away in (0.1, 0.2):
-        near = {"do": "look", "to": [eyes[0] + 0.03, eyes[1] + 0.02, eyes[2] + away], "id": "look", "at": 1.0, "strict": True}
+        near = {
+            "do": "look",
+            "to": [eyes[0] + 0.03, eyes[1] + 0.02, eyes[2] + away],
+            "id": "look",
+            "at": 1.0,
+            "strict": True,
+        }
         yield Case("something near", "", (Step(0, 20, (near,)),), times=(1.5, 3.0), alive=(True,))
 
 
@@ -127,10 +177,19 @@ def test_it_does_what_few_exports_need(rare: Path) -> None:
 
 
 TEXTS = [
-    "Hello! How are you?", "Through the queue, one rhythm at a time...", "Straße, ﬁne, İstanbul ıl", "ΑΒΓ ρέμα θάλασσας",
+    "Hello! How are you?",
+    "Through the queue, one rhythm at a time...",
+    "Straße, ﬁne, İstanbul ıl",
+    "ΑΒΓ ρέμα θάλασσας",
     "Это ещё не всё, эхо",
-    "日本語 2024 ② ²³", "naïve café — déjà-vu…", "हिन्दी ตัวอย่าง 각각", "a", "", "  . ", "x̂́y̶ 'tis’",
-]  # fmt: skip
+    "日本語 2024 ② ²³",
+    "naïve café — déjà-vu…",
+    "हिन्दी ตัวอย่าง 각각",
+    "a",
+    "",
+    "  . ",
+    "x̂́y̶ 'tis’",
+]
 
 
 def test_letters_become_the_same_mouth_shapes() -> None:
@@ -152,7 +211,11 @@ def test_letters_become_the_same_mouth_shapes() -> None:
 
 def test_seconds_that_key_draws_are_written_as_python_writes_them() -> None:
     times = [n / 16 for n in range(1, 200)] + [n * 0.37 for n in range(200)] + [1e5 + 0.0625, 2.0005, 1.0015]
-    found = run('const { thousandths } = await of("pick.js"); say(JSON.parse(rest[0]).map(thousandths))', STICK, json.dumps(times))
+    found = run(
+        'const { thousandths } = await of("pick.js"); say(JSON.parse(rest[0]).map(thousandths))',
+        STICK,
+        json.dumps(times),
+    )
     assert found == [f"{x:.3f}" for x in times]
 
 
@@ -162,7 +225,8 @@ def test_seconds_that_key_draws_are_written_as_python_writes_them() -> None:
 def refused(folder: Path, change: str) -> str:
     return str(
         run(
-            f"let json = text; let bytes = glb; {change}; try {{ load(json, bytes, 'x.json'); say(''); }} catch (e) {{ say(e.message); }}",
+            f"let json = text; let bytes = glb; {change}; try {{ load(json, bytes, 'x.json'); say(''); }} "
+            f"catch (e) {{ say(e.message); }}",
             folder,
         )
     )
@@ -171,21 +235,28 @@ def refused(folder: Path, change: str) -> str:
 @pytest.mark.parametrize(
     ("change", "words"),
     [
-        ("json = json.replace(/\"metagraph\":\\s*1/, '\"metagraph\": 2')", ("x.json at metagraph", "Update the runtime")),
+        ("json = json.replace(/\"metagraph\":\\s*1/, '\"metagraph\": "
+         "2')", ("x.json at metagraph", "Update the runtime")),
         ("json = json.slice(0, 100)", ("x.json", "is not JSON", "Export it again")),
         ("json = '[]'", ("x.json at metagraph", "is missing")),
         ("json = 'null'", ("x.json at metagraph", "is missing")),
-        ("const d = JSON.parse(json); delete d.layers.arms; json = JSON.stringify(d)", ("x.json at layers.arms", "is missing")),
-        ("const d = JSON.parse(json); delete d.planner; json = JSON.stringify(d)", ("x.json at planner", "is missing")),
-        ("const d = JSON.parse(json); d.layers.arms.actions = 3; json = JSON.stringify(d)", ("x.json", "cannot be understood")),
+        ("const d = JSON.parse(json); delete d.layers.arms; json = "
+         "JSON.stringify(d)", ("x.json at layers.arms", "is missing")),
+        ("const d = JSON.parse(json); delete d.planner; json = "
+         "JSON.stringify(d)", ("x.json at planner", "is missing")),
+        ("const d = JSON.parse(json); d.layers.arms.actions = 3; json = "
+         "JSON.stringify(d)", ("x.json", "cannot be understood")),
         ("const d = JSON.parse(json); d.joints.pop(); json = JSON.stringify(d)", ("x.json", "base pose")),
         ("bytes = glb.subarray(0, glb.length - 1000)", ("stick.glb", "cut short", "copy both files")),
         ("bytes = glb.subarray(0, 10)", ("stick.glb", "is no GLB")),
         ("bytes = new Uint8Array(1000)", ("stick.glb", "is no GLB")),
-        ("const d = JSON.parse(json); d.joints.forEach((j) => j.name += 1); json = JSON.stringify(d)", ("none of the export's joints",)),
+        ("const d = JSON.parse(json); d.joints.forEach((j) => j.name += 1); json = "
+         "JSON.stringify(d)", ("none of the export's joints",)),
     ],
 )  # fmt: skip
-def test_a_file_that_cannot_be_loaded_is_refused_with_place_and_remedy(change: str, words: tuple[str, ...]) -> None:
+def test_a_file_that_cannot_be_loaded_is_refused_with_place_and_remedy(
+    change: str, words: tuple[str, ...]
+) -> None:
     message = refused(STICK, change)
     assert all(word in message for word in words), message
 
@@ -246,7 +317,8 @@ def test_whatever_is_changed_in_an_export_is_refused_or_plays() -> None:
 
 def test_unknown_fields_of_an_export_are_passed_over() -> None:
     script = (
-        "const d = JSON.parse(text); d.news = 1; d.layers.arms.news = 2; d.joints[0].news = []; say(load(JSON.stringify(d), glb).problems)"
+        "const d = JSON.parse(text); d.news = 1; d.layers.arms.news = 2; d.joints[0].news = []; "
+        "say(load(JSON.stringify(d), glb).problems)"
     )
     assert run(script) == []
 
@@ -263,7 +335,9 @@ def changed(folder: Path, target: Path, change: Any) -> Path:
     head = json.dumps(document).encode()
     head += b" " * (-len(head) % 4)
     rest = raw[20 + length :]
-    path.write_bytes(struct.pack("<4sIIII", b"glTF", 2, 20 + len(head) + len(rest), len(head), 0x4E4F534A) + head + rest)
+    path.write_bytes(
+        struct.pack("<4sIIII", b"glTF", 2, 20 + len(head) + len(rest), len(head), 0x4E4F534A) + head + rest
+    )
     return copy
 
 
@@ -325,15 +399,40 @@ def test_a_character_answers_and_tells_what_happens() -> None:
 
 
 MALFORMED = [
-    None, 3, "nod", [], {}, {"do": "dance"}, {"do": 3}, {"do": "gesture", "layer": "legs"}, {"do": "gesture", "tags": "positive"},
-    {"do": "gesture", "at": -1}, {"do": "gesture", "at": "soon"}, {"do": "gesture", "at": 1e300}, {"do": "gesture", "priority": 1.5},
-    {"do": "gesture", "extra": 1}, {"do": "action"}, {"do": "action", "action": ""}, {"do": "action", "action": "nothing of the name"},
-    {"do": "stance", "stance": "nowhere at all"}, {"do": "look", "to": [1, 2]}, {"do": "look", "to": [1, 2, None]},
-    {"do": "look", "amount": 7}, {"do": "say"}, {"do": "say", "line": "no such line"}, {"do": "place", "name": "x"},
+    None,
+    3,
+    "nod",
+    [],
+    {},
+    {"do": "dance"},
+    {"do": 3},
+    {"do": "gesture", "layer": "legs"},
+    {"do": "gesture", "tags": "positive"},
+    {"do": "gesture", "at": -1},
+    {"do": "gesture", "at": "soon"},
+    {"do": "gesture", "at": 1e300},
+    {"do": "gesture", "priority": 1.5},
+    {"do": "gesture", "extra": 1},
+    {"do": "action"},
+    {"do": "action", "action": ""},
+    {"do": "action", "action": "nothing of the name"},
+    {"do": "stance", "stance": "nowhere at all"},
+    {"do": "look", "to": [1, 2]},
+    {"do": "look", "to": [1, 2, None]},
+    {"do": "look", "amount": 7},
+    {"do": "say"},
+    {"do": "say", "line": "no such line"},
+    {"do": "place", "name": "x"},
     {"do": "mode", "mode": "sleeping"},
-    {"do": "gesture", "after": -3}, {"do": "gesture", "after": "1"}, {"do": "bml", "bml": "<bml/>"}, {"do": "gesture", "id": "x" * 300},
-    {"do": "gesture", "duration": None, "limb": "tail"}, {"do": "__proto__"}, {"do": "constructor"}, {"do": "gesture", "hold": 1e9},
-]  # fmt: skip
+    {"do": "gesture", "after": -3},
+    {"do": "gesture", "after": "1"},
+    {"do": "bml", "bml": "<bml/>"},
+    {"do": "gesture", "id": "x" * 300},
+    {"do": "gesture", "duration": None, "limb": "tail"},
+    {"do": "__proto__"},
+    {"do": "constructor"},
+    {"do": "gesture", "hold": 1e9},
+]
 
 
 def test_what_cannot_be_understood_is_refused_with_words_and_never_thrown() -> None:
@@ -376,7 +475,10 @@ def test_a_fault_of_its_own_does_not_stop_the_game() -> None:
 
 
 def test_bml_is_not_understood_by_a_runtime() -> None:
-    script = "const plan = hear(load(text, glb), emptyPlan(1), 0, [{ do: 'bml', bml: '<bml/>', id: 'b' }], 5); say(plan.reports.at(-1))"
+    script = (
+        "const plan = hear(load(text, glb), emptyPlan(1), 0, [{ do: 'bml', bml: '<bml/>', id: 'b' }], "
+        "5); say(plan.reports.at(-1))"
+    )
     assert run(script)["outcome"] == "not-understood"
 
 
@@ -472,10 +574,14 @@ def test_the_readme_plays(tmp_path: Path) -> None:
         shutil.copy(STICK / f"stick.{kind}", tmp_path / f"character.{kind}")
     code = (RUNTIME / "README.md").read_text().split("```js\n")[1].split("```")[0]
     (tmp_path / "play.mjs").write_text(code)
-    done = subprocess.run(["node", "play.mjs"], cwd=tmp_path, capture_output=True, text=True, timeout=60, check=False)
+    done = subprocess.run(
+        ["node", "play.mjs"], cwd=tmp_path, capture_output=True, text=True, timeout=60, check=False
+    )
     assert done.returncode == 0, done.stderr
     assert "begin" in done.stdout
-    assert "state: 'done'" in done.stdout or "state: 'planned'" in done.stdout or "state: 'late'" in done.stdout
+    assert (
+        "state: 'done'" in done.stdout or "state: 'planned'" in done.stdout or "state: 'late'" in done.stdout
+    )
 
 
 # --- three.js
@@ -489,7 +595,10 @@ def renamed(document: Any) -> None:
 
 def test_it_plays_in_three_js(tmp_path: Path) -> None:
     if not (ROOT / "tests" / "node_modules" / "three").is_dir():
-        pytest.skip("needs three.js: npm install --prefix tests --no-save --no-package-lock three@0.187.0 gltf-validator@2.0.0-dev.3.10")
+        pytest.skip(
+            "needs three.js: npm install --prefix tests --no-save --no-package-lock three@0.187.0 "
+            "gltf-validator@2.0.0-dev.3.10"
+        )
     copy = changed(VARIED, tmp_path, renamed)
     path = copy / "varied.json"
     path.write_text(path.read_text().replace('"Head"', '"He ad:1.x"'))
@@ -545,82 +654,257 @@ MUTATIONS = [
     ("life/gaze.js", "x * x * (3 - 2 * x)", "x", "the blending curve"),
     ("choice.js", "return close(plain);", "return plain;", "the zero byte that closes a word"),
     ("choice.js", "value ^= value >>> 13;", "value ^= value >>> 12;", "the mixing"),
-    ("choice.js", "UTF8.encode(word).reduce", "[...word].map((c) => c.charCodeAt(0)).reduce", "bytes of UTF-8"),
+    (
+        "choice.js",
+        "UTF8.encode(word).reduce",
+        "[...word].map((c) => c.charCodeAt(0)).reduce",
+        "bytes of UTF-8",
+    ),
     ("choice.js", "/ weights[n];", "* weights[n];", "the weight of a candidate"),
-    ("pick.js", "Math.max(this.count(a.id, now), 1)", "(1 + this.count(a.id, now))", "the count under a likelihood"),
+    (
+        "pick.js",
+        "Math.max(this.count(a.id, now), 1)",
+        "(1 + this.count(a.id, now))",
+        "the count under a likelihood",
+    ),
     ("pick.js", "return alpha * (this.uses.get(id) ?? 0);", "return this.uses.get(id) ?? 0;", "alpha"),
     ("pick.js", "a.spacing ?? (this.settings.neverTwice ? 1 : 0)", "a.spacing ?? 0", "never the same twice"),
     ("pick.js", "needs[n] - less", "needs[n] - 2 * less", "spacing that gives way by one"),
-    ("pick.js", "this.graph.of(stance, \"transition\")", "[...this.graph.of(stance, \"transition\")].reverse()", "the first short way"),
-    ("pick.js", "if (action.endStance !== goal) continue;", "if (action.endStance !== goal || before.size > 2) continue;", "ways"),
+    (
+        "pick.js",
+        'this.graph.of(stance, "transition")',
+        '[...this.graph.of(stance, "transition")].reverse()',
+        "the first short way",
+    ),
+    (
+        "pick.js",
+        "if (action.endStance !== goal) continue;",
+        "if (action.endStance !== goal || before.size > 2) continue;",
+        "ways",
+    ),
     ("pick.js", "hop ? `${keyOf(meta)}/${hop}` : keyOf(meta)", "keyOf(meta)", "the key of a hop"),
-    ("pick.js", "exact = [exact, found, every].find", "exact = [exact, every].find", "the model's wishes, one after the other"),
-    ("pick.js", "Math.max(shape.shortest, Math.min(limit, wish) - shape.start)", "shape.length", "the earliest exit"),
+    (
+        "pick.js",
+        "exact = [exact, found, every].find",
+        "exact = [exact, every].find",
+        "the model's wishes, one after the other",
+    ),
+    (
+        "pick.js",
+        "Math.max(shape.shortest, Math.min(limit, wish) - shape.start)",
+        "shape.length",
+        "the earliest exit",
+    ),
     ("pick.js", "Math.max(0, left) + action.blendOut", "Math.max(0, left)", "blending out of an early exit"),
-    ("pick.js", "found.ready - Math.max(action.blendIn, leastBlend)", "found.ready", "where a gesture without preparation begins"),
+    (
+        "pick.js",
+        "found.ready - Math.max(action.blendIn, leastBlend)",
+        "found.ready",
+        "where a gesture without preparation begins",
+    ),
     ("pick.js", "request.stroke - (found.stroke - entry)", "request.stroke", "a stroke in time"),
     ("pick.js", "(holdTo - holdFrom) / hurry", "holdTo - holdFrom", "how short a hold can be"),
-    ("pick.js", "if (shape.entry > action.start) into", "if (false) into", "the least blend of what is cut into"),
-    ("pick.js", "const squeeze = blends > 0 ? Math.min(1, length / blends) : 1;", "const squeeze = 1;", "blends that must fit"),
+    (
+        "pick.js",
+        "if (shape.entry > action.start) into",
+        "if (false) into",
+        "the least blend of what is cut into",
+    ),
+    (
+        "pick.js",
+        "const squeeze = blends > 0 ? Math.min(1, length / blends) : 1;",
+        "const squeeze = 1;",
+        "blends that must fit",
+    ),
     ("pick.js", "a.cooldown <= 0 || this.cooled(a)", "true || this.cooled(a)", "cooling down"),
     ("pick.js", "waits > this.settings.wait", "false", "how long what was asked for waits"),
     ("pick.js", "const until = cue.end - cue.blendOut;", "const until = cue.end;", "when a loop begins anew"),
     ("plan.js", "held * ((cue.holdTo - cue.holdFrom) / cue.hold)", "held", "the stretch of a hold"),
     ("replan.js", "y.request.priority - x.request.priority ||", "", "priority at equal starts"),
     ("replan.js", "|| compareText(x.request.id, y.request.id)", "", "ids at equal starts and priorities"),
-    ("replan.js", "start: meta.end, part: kept ? last.part + 1 : last.part", "start: meta.end, part: last.part", "the key of a remainder"),
+    (
+        "replan.js",
+        "start: meta.end, part: kept ? last.part + 1 : last.part",
+        "start: meta.end, part: last.part",
+        "the key of a remainder",
+    ),
     ("replan.js", "const resumes = last.request.resume &&", "const resumes =", "what goes on after a cut"),
-    ("replan.js", "const kept = meta.start - last.start >= settings.shortest;", "const kept = true;", "the shortest part worth keeping"),
+    (
+        "replan.js",
+        "const kept = meta.start - last.start >= settings.shortest;",
+        "const kept = true;",
+        "the shortest part worth keeping",
+    ),
     ("replan.js", "late > settings.wait", "late > 1e9", "what is past"),
-    ("replan.js", "if (other.start - start >= shortest) {", "if (other.start > start) {", "gaps for what models write"),
+    (
+        "replan.js",
+        "if (other.start - start >= shortest) {",
+        "if (other.start > start) {",
+        "gaps for what models write",
+    ),
     ("markov.js", "0.35 + 1.3 *", "0.3 + 1.3 *", "the gap between what a model writes"),
     ("markov.js", "return 1 + 2 * u;", "return 1 + u;", "how long what a model writes lasts"),
-    ("markov.js", "draw < model.positive + model.negative", "draw < model.negative", "the share of negative gestures"),
-    ("planner.js", "Math.max(length, request.stroke - request.start + FITS)", "length", "the window of a stroke"),
-    ("planner.js", "const leaves = (m) => m.written &&", "const leaves = (m) => false &&", "staying in a stance"),
-    ("planner.js", "(m.written ? latest : Math.max(latest, m.end))", "latest", "time that models leave to what runs"),
-    ("hear.js", "const fixed = now > 0 ? now + graph.settings.lookahead : 0;", "const fixed = now;", "the lookahead"),
-    ("hear.js", "owners(id).some((owner) => gone.has(owner))", "gone.has(id)", "parts that are withdrawn with their owner"),
-    ("understand.js", "Math.max(0, stroke - longestLead(graph, layer, tags))", "at", "how early a gesture with a stroke may begin"),
+    (
+        "markov.js",
+        "draw < model.positive + model.negative",
+        "draw < model.negative",
+        "the share of negative gestures",
+    ),
+    (
+        "planner.js",
+        "Math.max(length, request.stroke - request.start + FITS)",
+        "length",
+        "the window of a stroke",
+    ),
+    (
+        "planner.js",
+        "const leaves = (m) => m.written &&",
+        "const leaves = (m) => false &&",
+        "staying in a stance",
+    ),
+    (
+        "planner.js",
+        "(m.written ? latest : Math.max(latest, m.end))",
+        "latest",
+        "time that models leave to what runs",
+    ),
+    (
+        "hear.js",
+        "const fixed = now > 0 ? now + graph.settings.lookahead : 0;",
+        "const fixed = now;",
+        "the lookahead",
+    ),
+    (
+        "hear.js",
+        "owners(id).some((owner) => gone.has(owner))",
+        "gone.has(id)",
+        "parts that are withdrawn with their owner",
+    ),
+    (
+        "understand.js",
+        "Math.max(0, stroke - longestLead(graph, layer, tags))",
+        "at",
+        "how early a gesture with a stroke may begin",
+    ),
     ("understand.js", "tags: [word, ...tags]", "tags", "the tag of a nod"),
     ("words.js", "aversion_rate: 1.1,", "aversion_rate: 1,", "the idle manner"),
     ("words.js", "breath_rate: [14,", "breath_rate: [15,", "the usual rate of breath"),
-    ("pose.js", "rotations, 4 * joint, added.rotations, 4 * i)", "added.rotations, 4 * i, rotations, 4 * joint)", "the side of offsets"),
-    ("words.js", 'LAYERS = ["body", "arms", "head"]', 'LAYERS = ["head", "arms", "body"]', "the order of the layers"),
-    ("pose.js", "power(added.rotations, 4 * i, weights[i])", "power(added.rotations, 4 * i, 1)", "weights of turns"),
+    (
+        "pose.js",
+        "rotations, 4 * joint, added.rotations, 4 * i)",
+        "added.rotations, 4 * i, rotations, 4 * joint)",
+        "the side of offsets",
+    ),
+    (
+        "words.js",
+        'LAYERS = ["body", "arms", "head"]',
+        'LAYERS = ["head", "arms", "body"]',
+        "the order of the layers",
+    ),
+    (
+        "pose.js",
+        "power(added.rotations, 4 * i, weights[i])",
+        "power(added.rotations, 4 * i, 1)",
+        "weights of turns",
+    ),
     ("pose.js", "entering ? cue.entry : cue.last", "cue.entry", "the edge a cue is led out from"),
     ("pose.js", "w * added.translations", "added.translations", "weights of translations"),
     ("pose.js", "Math.min(period + phase, length)", "phase", "the seam of a loop"),
-    ("pose.js", "action.end - action.start - seam;", "action.end - action.start;", "the period of a loop with a seam"),
-    ("pose.js", "if (at === 0 || rest.fadeStart + rest.fade <= time) return stance;", "return stance;", "the fade from loop to loop"),
-    ("pose.js", "for (let s = 0; s < action.still.length; s++) {", "for (let s = 0; s < 0; s++) {", "the other arm of a one-armed action"),
+    (
+        "pose.js",
+        "action.end - action.start - seam;",
+        "action.end - action.start;",
+        "the period of a loop with a seam",
+    ),
+    (
+        "pose.js",
+        "if (at === 0 || rest.fadeStart + rest.fade <= time) return stance;",
+        "return stance;",
+        "the fade from loop to loop",
+    ),
+    (
+        "pose.js",
+        "for (let s = 0; s < action.still.length; s++) {",
+        "for (let s = 0; s < 0; s++) {",
+        "the other arm of a one-armed action",
+    ),
     ("life/evaluate.js", "const INHALE = 0.4;", "const INHALE = 0.5;", "the shape of a breath"),
     ("life/evaluate.js", "(whole - gone) / life.blink_open", "1", "the shape of a blink"),
-    ("life/evaluate.js", "channels[n] = shut[n] - already;", "channels[n] = shut[n];", "lids that a clip has shut already"),
+    (
+        "life/evaluate.js",
+        "channels[n] = shut[n] - already;",
+        "channels[n] = shut[n];",
+        "lids that a clip has shut already",
+    ),
     ("life/evaluate.js", "MORPH_LOOK = 30 * RADIANS", "MORPH_LOOK = 25 * RADIANS", "morph targets of a look"),
-    ("life/solve.js", "const SMALL = 15 * RADIANS;", "const SMALL = 10 * RADIANS;", "the head's part of a turn"),
-    ("life/solve.js", "turns[3 * n + k] *= lookers[n].share", "turns[3 * n + k] *= 1 / lookers.length", "the shares of neck and chest"),
+    (
+        "life/solve.js",
+        "const SMALL = 15 * RADIANS;",
+        "const SMALL = 10 * RADIANS;",
+        "the head's part of a turn",
+    ),
+    (
+        "life/solve.js",
+        "turns[3 * n + k] *= lookers[n].share",
+        "turns[3 * n + k] *= 1 / lookers.length",
+        "the shares of neck and chest",
+    ),
     ("life/solve.js", "const TILT_SHARE = 0.8;", "const TILT_SHARE = 1;", "the head's part up and down"),
     ("life/solve.js", "shut + blink * (1 - shut)", "Math.max(shut, blink)", "what a blink closes"),
     ("life/solve.js", "const NEAREST = 0.25;", "const NEAREST = 0;", "things nearer than the nose"),
     ("life/gaze.js", "const HEAD_LAG = 0.04;", "const HEAD_LAG = 0;", "the head that follows the eyes"),
     ("life/gaze.js", "const SPRING = 8;", "const SPRING = 6;", "how the head settles"),
     ("life/gaze.js", "if (since > starts[n]) scale", "if (false) scale", "a look that ends an aversion"),
-    ("life/gaze.js", "EYE_TIME_PER_DEGREE] = [0.021, 0.0022]", "EYE_TIME_PER_DEGREE] = [0.021, 0.003]", "how fast eyes jump"),
+    (
+        "life/gaze.js",
+        "EYE_TIME_PER_DEGREE] = [0.021, 0.0022]",
+        "EYE_TIME_PER_DEGREE] = [0.021, 0.003]",
+        "how fast eyes jump",
+    ),
     ("life/schedule.js", "const FIXATION = 0.2;", "const FIXATION = 0.3;", "the shortest fixation"),
     ("life/schedule.js", "const AFTER_BLINK = 1;", "const AFTER_BLINK = 3;", "blinks on stressed syllables"),
-    ("life/schedule.js", "(first ? shut + 0.1 : AFTER_BLINK / calm)", "AFTER_BLINK / calm", "the blink that opens a speech"),
+    (
+        "life/schedule.js",
+        "(first ? shut + 0.1 : AFTER_BLINK / calm)",
+        "AFTER_BLINK / calm",
+        "the blink that opens a speech",
+    ),
     ("life/schedule.js", "if (strict || rate <= 0) return 0;", "if (rate <= 0) return 0;", "strict looks"),
-    ("life/schedule.js", "AVERSION_GAPS = [0.6, 0.8]", "AVERSION_GAPS = [0.5, 1]", "the time between aversions"),
+    (
+        "life/schedule.js",
+        "AVERSION_GAPS = [0.6, 0.8]",
+        "AVERSION_GAPS = [0.5, 1]",
+        "the time between aversions",
+    ),
     ("life/schedule.js", "UPRIGHT] = [1.2, 4, 0.6]", "UPRIGHT] = [1.2, 4, 0.5]", "jumps up and down"),
-    ("life/wanted.js", "look.priority > what.priority", "false", "looks that wait beneath a more important one"),
+    (
+        "life/wanted.js",
+        "look.priority > what.priority",
+        "false",
+        "looks that wait beneath a more important one",
+    ),
     ("life/track.js", "if (speech.priority < last.priority) continue;", "", "a lesser speech"),
-    ("life/mouth.js", "const [EARLY, LATE] = [0.075, 0.065];", "const [EARLY, LATE] = [0.05, 0.065];", "how early a mouth shapes itself"),
-    ("life/mouth.js", "const CLOSING = 0.12;", "const CLOSING = 0.3;", "a mouth that closes where speech was cut"),
+    (
+        "life/mouth.js",
+        "const [EARLY, LATE] = [0.075, 0.065];",
+        "const [EARLY, LATE] = [0.05, 0.065];",
+        "how early a mouth shapes itself",
+    ),
+    (
+        "life/mouth.js",
+        "const CLOSING = 0.12;",
+        "const CLOSING = 0.3;",
+        "a mouth that closes where speech was cut",
+    ),
     ("life/letters.js", "th TH", "th DD", "spelling"),
     ("life/letters.js", "const silentE = ", "const silentE = false && ", "the silent e"),
-    ("glb.js", "slerp(out, o, values, a, values, b, part);", "slerp(out, o, values, a, values, b, 0);", "keys that were thinned out"),
-]  # fmt: skip
+    (
+        "glb.js",
+        "slerp(out, o, values, a, values, b, part);",
+        "slerp(out, o, values, a, values, b, 0);",
+        "keys that were thinned out",
+    ),
+]
 
 # A case that notices each, tried first; the others follow where it does not.
 NOTICED_BY = {
@@ -691,7 +975,9 @@ HINTS = {about: case for case, noticed in NOTICED_BY.items() for about in notice
 @pytest.fixture(scope="module")
 def node() -> Iterator[Answering]:
     """One Node that tries all mutants."""
-    with started("node", Path(__file__).parent / "run" / "mutants.mjs", stdin=subprocess.PIPE, stdout=subprocess.PIPE) as process:
+    with started(
+        "node", Path(__file__).parent / "run" / "mutants.mjs", stdin=subprocess.PIPE, stdout=subprocess.PIPE
+    ) as process:
         yield Answering(process)
 
 
@@ -705,9 +991,19 @@ def test_what_tries_mutants_finds_no_fault_with_what_is_whole(
     assert found == {"fault": "", "difference": ""}
 
 
-@pytest.mark.parametrize(("file", "rule", "instead", "about"), MUTATIONS, ids=[m[3].replace(" ", "-") for m in MUTATIONS])
+@pytest.mark.parametrize(
+    ("file", "rule", "instead", "about"), MUTATIONS, ids=[m[3].replace(" ", "-") for m in MUTATIONS]
+)
 def test_the_vectors_notice_when_a_rule_is_broken(
-    node: Answering, single: Path, tmp_path: Path, sample_export: Path, rare: Path, file: str, rule: str, instead: str, about: str
+    node: Answering,
+    single: Path,
+    tmp_path: Path,
+    sample_export: Path,
+    rare: Path,
+    file: str,
+    rule: str,
+    instead: str,
+    about: str,
 ) -> None:
     changed = broken(RUNTIME / file, rule, instead)
     runtime = tmp_path / "javascript"  # of its own: a module is loaded once from a place

@@ -1,4 +1,6 @@
-"""The C# runtime: it conforms, refuses what is wrong as it says, fits Unity's types, and its conformance vectors would notice."""
+"""The C# runtime: it conforms, refuses what is wrong as it says, fits Unity's types, and its conformance
+vectors would notice.
+"""
 
 from __future__ import annotations
 
@@ -34,16 +36,29 @@ STICK = ROOT / "metagraph" / "engines" / "conformance" / "stick"
 CORE = sorted((RUNTIME / "Core").rglob("*.cs"))
 
 pytestmark = pytest.mark.skipif(
-    shutil.which("mcs") is None or shutil.which("mono") is None, reason="needs Mono's compiler and runtime (mcs, mono)"
+    shutil.which("mcs") is None or shutil.which("mono") is None,
+    reason="needs Mono's compiler and runtime (mcs, mono)",
 )
 
 
 def compiled(out: Path, *sources: Path, references: tuple[Path, ...] = ()) -> Path:
     """Compile sources, warnings as errors, at a language level that every Unity since 2019 has."""
     kind = "library" if out.suffix == ".dll" else "exe"
-    command = ["mcs", "-langversion:7.2", "-warn:4", "-warnaserror", "-optimize", f"-target:{kind}", f"-out:{out}"]
+    command = [
+        "mcs",
+        "-langversion:7.2",
+        "-warn:4",
+        "-warnaserror",
+        "-optimize",
+        f"-target:{kind}",
+        f"-out:{out}",
+    ]
     done = subprocess.run(
-        [*command, *(f"-r:{r}" for r in references), *map(str, sources)], capture_output=True, text=True, timeout=120, check=False
+        [*command, *(f"-r:{r}" for r in references), *map(str, sources)],
+        capture_output=True,
+        text=True,
+        timeout=120,
+        check=False,
     )
     assert done.returncode == 0, done.stdout + done.stderr
     return out
@@ -69,17 +84,23 @@ class Host:
 
     def compile(self, out: Path, *sources: Path) -> None:
         """Compile a program. Raises AssertionError with what the compiler says where it cannot."""
-        code, said = self._ask("compile", "-langversion:7.2", "-warn:0", "-target:exe", f"-out:{out}", *sources)
+        code, said = self._ask(
+            "compile", "-langversion:7.2", "-warn:0", "-target:exe", f"-out:{out}", *sources
+        )
         assert code == 0, said
 
     def run(self, program: Path, *arguments: object) -> tuple[int, str]:
-        """Return a program's exit code, -1 for an exception, and what it printed. Programs need names of their own."""
+        """Return a program's exit code, -1 for an exception, and what it printed. Programs need names of
+        their own.
+        """
         return self._ask("run", program, *arguments)
 
 
 @pytest.fixture(scope="module")
 def host(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Host]:
-    program = compiled(tmp_path_factory.mktemp("host") / "host.exe", Path(__file__).parent / "run" / "Host.cs")
+    program = compiled(
+        tmp_path_factory.mktemp("host") / "host.exe", Path(__file__).parent / "run" / "Host.cs"
+    )
     with started("mono", program, stdin=subprocess.PIPE, stdout=subprocess.PIPE) as process:
         yield Host(process)
 
@@ -101,7 +122,9 @@ def core(tmp_path_factory: pytest.TempPathFactory) -> Path:
 
 @pytest.fixture(scope="module")
 def conformance(core: Path) -> Path:
-    return compiled(core.with_name("conformance.exe"), RUNTIME / "Conformance" / "Conformance.cs", references=(core,))
+    return compiled(
+        core.with_name("conformance.exe"), RUNTIME / "Conformance" / "Conformance.cs", references=(core,)
+    )
 
 
 @pytest.fixture(scope="module")
@@ -256,7 +279,9 @@ def test_the_culture_of_the_machine_does_not_matter(conformance: Path) -> None:
     assert mono(conformance, STICK, LANG="tr_TR.UTF-8", LC_ALL="tr_TR.UTF-8").returncode == 0
 
 
-def test_the_runner_fails_without_vectors_and_with_those_of_another_version(conformance: Path, tmp_path: Path) -> None:
+def test_the_runner_fails_without_vectors_and_with_those_of_another_version(
+    conformance: Path, tmp_path: Path
+) -> None:
     assert mono(conformance).returncode == 1
     assert mono(conformance, tmp_path).returncode == 1
     folder = shutil.copytree(STICK, tmp_path / "stick")
@@ -269,10 +294,28 @@ def test_the_runner_fails_without_vectors_and_with_those_of_another_version(conf
 
 def test_words_move_the_mouth_as_they_do_in_the_library(probe: Probe, tmp_path: Path) -> None:
     texts = [
-        "Hello there, how are you?", "  Straße - ¡Übergröße!  ", "Ты знаешь, это хорошо.", "日本語のテキスト 123 ½ ² ①", "नमस्ते दुनिया", "",
-        "αβγ Ελληνικά ώρα", "🙂 ok 🙂", "...", "(x)", "It's 'quoted' though", "İstanbul ılık", "שָׁלוֹם עולם", "العَرَبِيَّة", "tiếng Việt",
-        "the eye igh though tion ee nation queue", "\x1c hi \x1f", "한국어 텍스트", "ไทยภาษา", "e\u0301te\u0301", "x" * 200,
-    ]  # fmt: skip
+        "Hello there, how are you?",
+        "  Straße - ¡Übergröße!  ",
+        "Ты знаешь, это хорошо.",
+        "日本語のテキスト 123 ½ ² ①",
+        "नमस्ते दुनिया",
+        "",
+        "αβγ Ελληνικά ώρα",
+        "🙂 ok 🙂",
+        "...",
+        "(x)",
+        "It's 'quoted' though",
+        "İstanbul ılık",
+        "שָׁלוֹם עולם",
+        "العَرَبِيَّة",
+        "tiếng Việt",
+        "the eye igh though tion ee nation queue",
+        "\x1c hi \x1f",
+        "한국어 텍스트",
+        "ไทยภาษา",
+        "e\u0301te\u0301",
+        "x" * 200,
+    ]
     (tmp_path / "texts.json").write_text(json.dumps(texts))
     code, told = probe("voices", tmp_path / "texts.json")
     assert code == 0, told
@@ -319,8 +362,10 @@ def test_a_newer_format_is_refused_and_says_what_to_do(probe: Probe, tmp_path: P
         (lambda d: "[1]", "should be an object"),
         (lambda d: "[" * 5000, "nested too deeply"),
         (lambda d: {k: v for k, v in d.items() if k != "layers"}, "'layers' is missing"),
-        (lambda d: d["layers"]["arms"]["actions"][2].pop("blend_in"), "stick.json.layers.arms.actions[2]: 'blend_in' is missing"),
-        (lambda d: d["layers"]["arms"]["actions"][2].update(kind="dance"), "actions[2].kind: should be one of stance"),
+        (lambda d: d["layers"]["arms"]["actions"][2].pop("blend_in"), "stick.json.layers.arms.actions[2]: "
+                                                                      "'blend_in' is missing"),
+        (lambda d: d["layers"]["arms"]["actions"][2].update(kind="dance"), "actions[2].kind: should be one "
+                                                                           "of stance"),
         (lambda d: d["layers"]["head"]["actions"][0].update(id=d["layers"]["head"]["actions"][1]["id"]), "is used twice"),
         (lambda d: d["layers"]["head"]["actions"][0].update(clip="c999"), "is no clip"),
         (lambda d: d["joints"][1].update(parent="Tail"), "should stand before it"),
@@ -334,18 +379,24 @@ def test_a_newer_format_is_refused_and_says_what_to_do(probe: Probe, tmp_path: P
         (lambda d: d.update(life={"blinks": 1e9}), "life.blinks: is out of range"),
     ],
 )  # fmt: skip
-def test_a_broken_json_is_refused_by_the_place_that_is_wrong(probe: Probe, tmp_path: Path, change: Any, words: str) -> None:
+def test_a_broken_json_is_refused_by_the_place_that_is_wrong(
+    probe: Probe, tmp_path: Path, change: Any, words: str
+) -> None:
     assert words in refused(probe, altered(tmp_path, change))
 
 
 def test_fields_that_nobody_knows_are_passed_over(probe: Probe, tmp_path: Path) -> None:
-    path = altered(tmp_path, lambda d: d["layers"]["arms"]["actions"][0].update(mood=[{}]) or {**d, "later": 1})
+    path = altered(
+        tmp_path, lambda d: d["layers"]["arms"]["actions"][0].update(mood=[{}]) or {**d, "later": 1}
+    )
     assert probe("load", path) == (0, "")
 
 
 @pytest.mark.parametrize("kept", [0, 3, 19, 40, 2000, 0.5, 0.9, 0.999])
 def test_a_cut_off_glb_is_refused(probe: Probe, tmp_path: Path, kept: float) -> None:
-    assert "stick.glb" in refused(probe, altered(tmp_path, glb=lambda b: b[: int(kept * len(b)) if isinstance(kept, float) else kept]))
+    assert "stick.glb" in refused(
+        probe, altered(tmp_path, glb=lambda b: b[: int(kept * len(b)) if isinstance(kept, float) else kept])
+    )
 
 
 def test_a_glb_whose_data_is_shorter_than_it_says_is_refused(probe: Probe, tmp_path: Path) -> None:
@@ -358,7 +409,9 @@ def test_a_glb_whose_data_is_shorter_than_it_says_is_refused(probe: Probe, tmp_p
 
 def test_a_foreign_glb_is_refused(probe: Probe, tmp_path: Path) -> None:
     assert "has no joint" in refused(probe, altered(tmp_path, lambda d: d["joints"][-1].update(name="Tail")))
-    assert "not a binary glTF" in refused(probe, altered(tmp_path, glb=lambda b: b"glTF but not really, this is text"))
+    assert "not a binary glTF" in refused(
+        probe, altered(tmp_path, glb=lambda b: b"glTF but not really, this is text")
+    )
 
 
 def test_actions_of_a_clip_that_is_missing_show_their_stance(probe: Probe, tmp_path: Path) -> None:
@@ -404,9 +457,18 @@ def live(probe: Probe, tmp_path: Path, steps: list[Any]) -> dict[str, list[Any]]
 
 ASKED: dict[int, list[dict[str, Any]]] = {
     0: [{"do": "gesture", "id": "a", "after": 1.0}],
-    31: [{"do": "gesture", "id": "b", "layer": "head", "priority": 2}, {"do": "say", "id": "c", "text": "and now for something else"}],
-    90: [{"do": "look", "id": "d", "to": [1, 1.5, 1], "duration": 2}, {"do": "gesture", "id": "e", "after": 30.0}],
-    130: [{"do": "withdraw", "id": "f", "what": "e"}, {"do": "gesture", "id": "b", "layer": "arms", "at": 20}],
+    31: [
+        {"do": "gesture", "id": "b", "layer": "head", "priority": 2},
+        {"do": "say", "id": "c", "text": "and now for something else"},
+    ],
+    90: [
+        {"do": "look", "id": "d", "to": [1, 1.5, 1], "duration": 2},
+        {"do": "gesture", "id": "e", "after": 30.0},
+    ],
+    130: [
+        {"do": "withdraw", "id": "f", "what": "e"},
+        {"do": "gesture", "id": "b", "layer": "arms", "at": 20},
+    ],
     300: [{"do": "change", "id": "g", "layer": "arms"}, {"do": "blink", "id": "h"}],
 }
 
@@ -426,7 +488,9 @@ def test_a_character_plans_what_the_library_hears(probe: Probe, tmp_path: Path) 
             plan = hear(project, plan, now, [ask_from(ask) for ask in asks], plan.end if far else now + 20)
         if now - cut >= 15:
             cut, plan = now, since(plan, now - 30)
-    expected = [[layer, c.action.id, c.start, c.end, c.meta] for layer in LAYERS for c in plan.layers[layer].cues]
+    expected = [
+        [layer, c.action.id, c.start, c.end, c.meta] for layer in LAYERS for c in plan.layers[layer].cues
+    ]
     assert [[*x[:2], *x[4:]] for x in found["cue"]] == [[*x[:2], *x[4:]] for x in expected]
     assert np.allclose([x[2:4] for x in found["cue"]], [x[2:4] for x in expected], atol=1e-6)
     answers = {ident: state for ident, state, *_ in found["answer"]}
@@ -436,37 +500,78 @@ def test_a_character_plans_what_the_library_hears(probe: Probe, tmp_path: Path) 
 
 def test_what_begins_ends_and_is_told_once(probe: Probe, tmp_path: Path) -> None:
     found = live(
-        probe, tmp_path, [[n * 0.3, [{"do": "gesture", "id": "a"}, {"do": "say", "text": "hi there"}] if n == 2 else []] for n in range(90)]
+        probe,
+        tmp_path,
+        [
+            [n * 0.3, [{"do": "gesture", "id": "a"}, {"do": "say", "text": "hi there"}] if n == 2 else []]
+            for n in range(90)
+        ],
     )
     times = [at for *_, at in found["event"]]
     assert times == sorted(times)
     begun = [(layer, meta, action) for kind, layer, action, meta, _ in found["event"] if kind == "begin"]
     ended = [(layer, meta, action) for kind, layer, action, meta, _ in found["event"] if kind == "end"]
     assert len(begun) - len(ended) in range(4)  # at most one of each layer still plays
-    assert begun[: len(ended) - 4] == ended[: len(ended) - 4] or sorted(ended) == sorted(b for b in begun if b in ended)
+    assert begun[: len(ended) - 4] == ended[: len(ended) - 4] or sorted(ended) == sorted(
+        b for b in begun if b in ended
+    )
     assert [x for x in begun if x[1] == "a"]
     assert [x[2] for x in begun if x[0] == "speech"] == ["hi there"]
 
 
 SENSELESS: list[Any] = [
-    "", "null", "[]", "7", "{", '{"do":"gesture"} x', "[" * 9000, '{"do":"gesture","id":"\\ud800"}', {}, {"do": 1}, {"do": "dance"},
-    {"do": "gesture", "layer": "legs"}, {"do": "gesture", "layer": None}, {"do": "gesture", "tags": "positive"},
+    "",
+    "null",
+    "[]",
+    "7",
+    "{",
+    '{"do":"gesture"} x',
+    "[" * 9000,
+    '{"do":"gesture","id":"\\ud800"}',
+    {},
+    {"do": 1},
+    {"do": "dance"},
+    {"do": "gesture", "layer": "legs"},
+    {"do": "gesture", "layer": None},
+    {"do": "gesture", "tags": "positive"},
     {"do": "gesture", "tags": [1]},
-    {"do": "gesture", "mood": 1}, {"do": "gesture", "priority": 1.5}, {"do": "gesture", "priority": 1001}, {"do": "gesture", "at": True},
-    {"do": "gesture", "at": -1}, {"do": "gesture", "at": 1e7}, {"do": "gesture", "hold": 601}, {"do": "gesture", "prepare": 1},
-    {"do": "gesture", "after": "soon"}, {"do": "gesture", "after": -1},
-    {"do": "gesture", "id": "x" * 201}, {"do": "action"}, {"do": "action", "action": "juggle"}, {"do": "action", "action": ""},
-    {"do": "stance", "stance": "lotus"}, {"do": "stance"}, {"do": "look", "to": [1, 2]}, {"do": "look", "to": ""},
+    {"do": "gesture", "mood": 1},
+    {"do": "gesture", "priority": 1.5},
+    {"do": "gesture", "priority": 1001},
+    {"do": "gesture", "at": True},
+    {"do": "gesture", "at": -1},
+    {"do": "gesture", "at": 1e7},
+    {"do": "gesture", "hold": 601},
+    {"do": "gesture", "prepare": 1},
+    {"do": "gesture", "after": "soon"},
+    {"do": "gesture", "after": -1},
+    {"do": "gesture", "id": "x" * 201},
+    {"do": "action"},
+    {"do": "action", "action": "juggle"},
+    {"do": "action", "action": ""},
+    {"do": "stance", "stance": "lotus"},
+    {"do": "stance"},
+    {"do": "look", "to": [1, 2]},
+    {"do": "look", "to": ""},
     {"do": "look", "amount": 2},
-    {"do": "say"}, {"do": "say", "line": "no such line"}, {"do": "say", "line": 1.5}, {"do": "mode", "mode": "angry"},
-    {"do": "place", "name": "door"}, {"do": "place", "name": "door", "point": [0, 0, None]}, {"do": "withdraw", "what": None},
-    {"do": "nod", "tags": ["no such tag"]}, {"do": "gesture", "tags": ["no such tag"]}, {"do": "bml", "bml": "<bml/>"},
-]  # fmt: skip
+    {"do": "say"},
+    {"do": "say", "line": "no such line"},
+    {"do": "say", "line": 1.5},
+    {"do": "mode", "mode": "angry"},
+    {"do": "place", "name": "door"},
+    {"do": "place", "name": "door", "point": [0, 0, None]},
+    {"do": "withdraw", "what": None},
+    {"do": "nod", "tags": ["no such tag"]},
+    {"do": "gesture", "tags": ["no such tag"]},
+    {"do": "bml", "bml": "<bml/>"},
+]
 
 
 @pytest.fixture(scope="module")
 def refusals(probe: Probe, tmp_path_factory: pytest.TempPathFactory) -> list[Any]:
-    """What became of every senseless request; asked for all at once, since each start of the program takes a while."""
+    """What became of every senseless request; asked for all at once, since each start of the program takes a
+    while.
+    """
     found = live(probe, tmp_path_factory.mktemp("refusals"), [[0, SENSELESS], [0.1, []], [40, []]])
     assert found["now"] == [[40.0]]
     return found["answer"]
@@ -645,7 +750,9 @@ def scene(core: Path) -> Path:
     engine.write_text(ENGINE)
     program.write_text(SCENE)
     types = compiled(core.with_name("UnityEngine.dll"), engine)
-    component = compiled(core.with_name("component.dll"), RUNTIME / "Unity" / "MetagraphCharacter.cs", references=(core, types))
+    component = compiled(
+        core.with_name("component.dll"), RUNTIME / "Unity" / "MetagraphCharacter.cs", references=(core, types)
+    )
     return compiled(core.with_name("scene.exe"), program, references=(core, types, component))
 
 
@@ -672,16 +779,24 @@ def test_what_the_readme_shows_compiles(scene: Path) -> None:
     shown = [block.split("```")[0] for block in (RUNTIME / "README.md").read_text().split("```csharp")[1:]]
     assert len(shown) == 2
     source = scene.with_name("readme.cs")
-    inner = "public static class Shown { public static void Main() { float seconds = 0; " + shown[1] + " System.Console.Write(pose); } }"
+    inner = (
+        "public static class Shown { public static void Main() { float seconds = 0; "
+        + shown[1]
+        + " System.Console.Write(pose); } }"
+    )
     source.write_text("using UnityEngine; using System.IO; using Metagraph;\n" + shown[0] + inner)
-    references = tuple(scene.with_name(name) for name in ("metagraph.dll", "UnityEngine.dll", "component.dll"))
+    references = tuple(
+        scene.with_name(name) for name in ("metagraph.dll", "UnityEngine.dll", "component.dll")
+    )
     compiled(scene.with_name("readme.exe"), source, references=references)
 
 
 def test_the_package_is_one_that_unity_can_take() -> None:
     package = json.loads((RUNTIME / "package.json").read_bytes())
     assert package["unity"] == "2019.4"
-    core, unity = (json.loads(next((RUNTIME / part).glob("*.asmdef")).read_bytes()) for part in ("Core", "Unity"))
+    core, unity = (
+        json.loads(next((RUNTIME / part).glob("*.asmdef")).read_bytes()) for part in ("Core", "Unity")
+    )
     assert core["noEngineReferences"]
     assert unity["references"] == [core["name"]]
     assert not any("UnityEngine" in path.read_text() for path in CORE)
@@ -691,9 +806,19 @@ def test_the_package_is_one_that_unity_can_take() -> None:
 
 MUTATIONS = [
     ("Basics.cs", "x * x * (3 - 2 * x)", "x", "the blending curve"),
-    ("Choice.cs", "return unchecked(value * Prime); // the closing zero byte", "return value;", "the zero byte that closes a word"),
+    (
+        "Choice.cs",
+        "return unchecked(value * Prime); // the closing zero byte",
+        "return value;",
+        "the zero byte that closes a word",
+    ),
     ("Choice.cs", "value ^= value >> 13;", "value ^= value >> 12;", "the mixing"),
-    ("Pick.cs", "Math.Max(Count(a.Id, now), 1.0)", "(Count(a.Id, now) + 1.0)", "the count under a likelihood"),
+    (
+        "Pick.cs",
+        "Math.Max(Count(a.Id, now), 1.0)",
+        "(Count(a.Id, now) + 1.0)",
+        "the count under a likelihood",
+    ),
     ("Pick.cs", "int usual = settings.NeverTwice ? 1 : 0;", "int usual = 0;", "never the same twice"),
     ("Pick.cs", "Math.Max(shape.Shortest, until - shape.Start)", "shape.Length", "the earliest exit"),
     ("Pick.cs", "/ settings.Hurry);", ");", "how short a hold can be"),
@@ -701,28 +826,61 @@ MUTATIONS = [
     ("Pick.cs", "a.Cooldown <= 0 ||", "a.Cooldown <= 1e9 ||", "cooling down"),
     ("Pick.cs", "waits > settings.Wait", "waits > 1e9", "how long what was asked for waits"),
     ("Pick.cs", "Basics.ThreeDecimals(change)", "Basics.Words(change)", "the decimals that key a loop"),
-    ("Steps.cs", "some.Exists(a => a.Id != again)", "some.Exists(a => a.Id != again + 1)", "models that do not repeat themselves"),
+    (
+        "Steps.cs",
+        "some.Exists(a => a.Id != again)",
+        "some.Exists(a => a.Id != again + 1)",
+        "models that do not repeat themselves",
+    ),
     ("Planner.cs", "return meta.Written &&", "return meta.Part > 99 &&", "staying in a stance"),
     ("Plan.cs", "held * ((HoldTo - HoldFrom) / Hold)", "held", "the stretch of a hold"),
     ("Replan.cs", "b.Request.Priority.CompareTo(a.Request.Priority)", "0", "priority at equal starts"),
-    ("Replan.cs", "Basics.Compare(a.Request.Id, b.Request.Id)", "Basics.Compare(b.Request.Id, a.Request.Id)",
-     "ids at equal starts and priorities"),
+    (
+        "Replan.cs",
+        "Basics.Compare(a.Request.Id, b.Request.Id)",
+        "Basics.Compare(b.Request.Id, a.Request.Id)",
+        "ids at equal starts and priorities",
+    ),
     ("Replan.cs", "kept ? last.Part + 1 : last.Part", "last.Part", "the key of a remainder"),
     ("Replan.cs", "bool resumes = last.Request.Resume &&", "bool resumes =", "what goes on after a cut"),
     ("Markov.cs", "0.35 + 1.3 *", "0.3 + 1.3 *", "the gap between what a model writes"),
     ("Hear.cs", "now + graph.Planner.Lookahead", "now", "the lookahead"),
     ("Hear.cs", "ForEach(past.Remember)", "ForEach(cue => { })", "the uses of what was forgotten"),
-    ("Pose.cs", "composed[j] *= weight == 1 ? found.Turns[j] : found.Turns[j].Power(weight);",
-     "composed[j] = (weight == 1 ? found.Turns[j] : found.Turns[j].Power(weight)) * composed[j];", "the order in which layers add"),
-    ("Pose.cs", "entering ? cue.Entry : cue.ClipSeconds(cue.End)", "cue.ClipSeconds(cue.End)", "the edge a clip is led in from"),
+    (
+        "Pose.cs",
+        "composed[j] *= weight == 1 ? found.Turns[j] : found.Turns[j].Power(weight);",
+        "composed[j] = (weight == 1 ? found.Turns[j] : found.Turns[j].Power(weight)) * composed[j];",
+        "the order in which layers add",
+    ),
+    (
+        "Pose.cs",
+        "entering ? cue.Entry : cue.ClipSeconds(cue.End)",
+        "cue.ClipSeconds(cue.End)",
+        "the edge a clip is led in from",
+    ),
     ("Pose.cs", "old = 1 - Basics.Ease(phase / seam);", "old = 0.0;", "the seam of a loop"),
     ("Clip.cs", "Basics.Clamp((time - keys[low]) / gap, 0, 1)", "0.0", "keys that were thinned out"),
     ("Loading.cs", "joint.Side == other", "joint.Side != other", "the arm that a gesture leaves alone"),
-    ("Life/Gaze.cs", "private const double HeadLag = 0.04;", "private const double HeadLag = 0.0;", "a head that sets off later"),
-    ("Life/Schedule.cs", "first ? shut + 0.1 : AfterBlink / calm", "AfterBlink / calm", "a blink at the first stressed syllable"),
+    (
+        "Life/Gaze.cs",
+        "private const double HeadLag = 0.04;",
+        "private const double HeadLag = 0.0;",
+        "a head that sets off later",
+    ),
+    (
+        "Life/Schedule.cs",
+        "first ? shut + 0.1 : AfterBlink / calm",
+        "AfterBlink / calm",
+        "a blink at the first stressed syllable",
+    ),
     ("Life/Solve.cs", "shut + blink * (1 - shut)", "shut + blink", "lids that meet and go no farther"),
-    ("Life/Voice.cs", "private const double Early = 0.075", "private const double Early = 0.065", "mouths that are early"),
-]  # fmt: skip
+    (
+        "Life/Voice.cs",
+        "private const double Early = 0.075",
+        "private const double Early = 0.065",
+        "mouths that are early",
+    ),
+]
 
 # A case that notices each, tried first; the others follow where it does not.
 NOTICED_BY = {
@@ -760,14 +918,18 @@ def program_of(host: Host, out: Path, sources: list[Path]) -> Path:
     return out
 
 
-def test_what_tries_mutants_finds_no_fault_with_what_is_whole(host: Host, single: Path, tmp_path: Path) -> None:
+def test_what_tries_mutants_finds_no_fault_with_what_is_whole(
+    host: Host, single: Path, tmp_path: Path
+) -> None:
     program = program_of(host, tmp_path / "whole.exe", CORE)
     tried = [folder for hint in NOTICED_BY for folder in folders_to_try(hint, VECTORS, single)[:1]]
     code, told = host.run(program, *tried)
     assert code == 0, told[:2000]
 
 
-@pytest.mark.parametrize(("file", "rule", "instead", "about"), MUTATIONS, ids=[m[3].replace(" ", "-") for m in MUTATIONS])
+@pytest.mark.parametrize(
+    ("file", "rule", "instead", "about"), MUTATIONS, ids=[m[3].replace(" ", "-") for m in MUTATIONS]
+)
 def test_the_vectors_notice_when_a_rule_is_broken(
     host: Host, single: Path, tmp_path: Path, file: str, rule: str, instead: str, about: str
 ) -> None:
@@ -775,6 +937,8 @@ def test_the_vectors_notice_when_a_rule_is_broken(
     changed = tmp_path / path.name
     changed.write_text(broken(path, rule, instead), encoding="utf-8")
     number = [m[3] for m in MUTATIONS].index(about)
-    program = program_of(host, tmp_path / f"mutant{number}.exe", [*(other for other in CORE if other != path), changed])
+    program = program_of(
+        host, tmp_path / f"mutant{number}.exe", [*(other for other in CORE if other != path), changed]
+    )
     hinted = folders_to_try(HINTS.get(about), VECTORS, single)
     assert any(host.run(program, folder)[0] != 0 for folder in hinted), about

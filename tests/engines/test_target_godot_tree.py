@@ -1,4 +1,6 @@
-"""Godot's AnimationTree: the file for Godot 3 is played by Godot 3; the one for Godot 4 is whole and says the same."""
+"""Godot's AnimationTree: the file for Godot 3 is played by Godot 3; the one for Godot 4 is whole and says the
+same.
+"""
 
 from __future__ import annotations
 
@@ -34,12 +36,16 @@ HERE = Path(__file__).parent
 ADDON = Path(engines.__file__).with_name("runtimes") / "godot" / "addons"
 MANNEQUIN = HERE.parents[1] / "sample_clips" / "mannequin.glb"
 GODOT = shutil.which("godot3-server")
-needs_godot = pytest.mark.skipif(GODOT is None, reason="godot3-server is not here (apt install godot3-server)")
+needs_godot = pytest.mark.skipif(
+    GODOT is None, reason="godot3-server is not here (apt install godot3-server)"
+)
 
 
 @pytest.fixture(scope="module")
 def folder(sample: Project, tmp_path_factory: pytest.TempPathFactory) -> Path:
-    """The sample as the target writes it, in a Godot project with the runtime, whose GLB reader the test borrows."""
+    """The sample as the target writes it, in a Godot project with the runtime, whose GLB reader the test
+    borrows.
+    """
     place = tmp_path_factory.mktemp("game")
     shutil.copytree(ADDON, place / "addons")
     (place / "project.godot").write_text('config_version=4\n\n[application]\n\nconfig/name="test"\n')
@@ -54,14 +60,20 @@ def play(folder: Path, sample: Project, animations: set[str], *steps: dict[str, 
     assert sample.skeleton is not None
     stem, built = stem_of(sample), machines(sample)
     order = {
-        "glb": f"res://{stem}.glb", "tree": f"res://{stem}.godot3.tres", "layers": [m.layer for m in built],
+        "glb": f"res://{stem}.glb",
+        "tree": f"res://{stem}.godot3.tres",
+        "layers": [m.layer for m in built],
         "bones": {joint: old_name(joint) for joint in sample.skeleton.names},
-        "loops": [s.name for m in built for s in m.states if s.loop], "play": sorted(animations), "steps": steps,
-    }  # fmt: skip
+        "loops": [s.name for m in built for s in m.states if s.loop],
+        "play": sorted(animations),
+        "steps": steps,
+    }
     (folder / "order.json").write_text(json.dumps(order))
     env = {**os.environ, "HOME": str(folder), "LC_ALL": "C.UTF-8"}
     command = [str(GODOT), "--no-window", "-s", "godot_tree.gd", "res://order.json"]
-    done = subprocess.run(command, cwd=folder, env=env, capture_output=True, text=True, errors="replace", timeout=300)
+    done = subprocess.run(
+        command, cwd=folder, env=env, capture_output=True, text=True, errors="replace", timeout=300
+    )
     told = done.stdout + done.stderr
     assert done.returncode == 0 and "SCRIPT ERROR" not in told, told[-3000:]
     return [json.loads(line) for line in done.stdout.splitlines() if line.startswith("{")]
@@ -95,7 +107,10 @@ def test_godot_rests_changes_stance_and_comes_back_from_a_gesture(folder: Path, 
     arms, head = layer_of(sample, "arms"), layer_of(sample, "head")
     nod = next(s.name for s in head.states if "nod_emphatic" in s.name)
     wave = next(s.name for s in arms.states if "wave_hello" in s.name)
-    seen = {s.name for m in machines(sample) for s in m.states if s.loop or s.action.kind == "transition"} | {nod, wave}
+    seen = {s.name for m in machines(sample) for s in m.states if s.loop or s.action.kind == "transition"} | {
+        nod,
+        wave,
+    }
     rest, going, there, nodding, after, waving, back = play(
         folder, sample, seen,
         {"seconds": 1.0},
@@ -109,7 +124,9 @@ def test_godot_rests_changes_stance_and_comes_back_from_a_gesture(folder: Path, 
     assert rest["states"] == {m.layer: m.start.name for m in machines(sample)}
     assert sample.skeleton is not None
     alone = sample.skeleton.globals(resting(sample, 1.0))[1]
-    preview = sample.skeleton.globals(pose_at(make_plan(sample, 5.0, idle=False), sample, 1.0, alive=False))[1]
+    preview = sample.skeleton.globals(pose_at(make_plan(sample, 5.0, idle=False), sample, 1.0, alive=False))[
+        1
+    ]
     for place, joint in enumerate(sample.skeleton.names):
         position = np.array(rest["joints"][joint]["position"])
         assert np.linalg.norm(position - alone[place]) < 1e-4, joint
@@ -118,26 +135,36 @@ def test_godot_rests_changes_stance_and_comes_back_from_a_gesture(folder: Path, 
     assert there["states"]["arms"] == "arms_on_hips" == nodding["states"]["arms"]
     assert nodding["states"]["head"] == nod
     assert after["states"] == there["states"]
-    was, now = ({joint: np.array(row["joints"][joint]["rotation"]) for joint in ("Head", "LeftHand")} for row in (there, nodding))
+    was, now = (
+        {joint: np.array(row["joints"][joint]["rotation"]) for joint in ("Head", "LeftHand")}
+        for row in (there, nodding)
+    )
     assert abs(was["Head"] @ now["Head"]) < 0.9999 and abs(was["LeftHand"] @ now["LeftHand"]) > 0.9995
     assert waving["states"]["arms"] == wave  # by the transition to its stance
     assert back["states"] == {**there["states"], "arms": arms.start.name}
 
 
 @needs_godot
-def test_travel_goes_from_every_state_to_every_stance_by_as_few_transitions_as_the_planner(folder: Path, sample: Project) -> None:
+def test_travel_goes_from_every_state_to_every_stance_by_as_few_transitions_as_the_planner(
+    folder: Path, sample: Project
+) -> None:
     asked = [
         (machine, state, machine.rest(goal), stances)
         for machine in machines(sample)
         for state in machine.states
         for goal in machine.stances
-        if (stances := chain(machine.graph, str(ends_in(state.action)), goal)) is not None and state is not machine.rest(goal)
+        if (stances := chain(machine.graph, str(ends_in(state.action)), goal)) is not None
+        and state is not machine.rest(goal)
     ]
     rows = [[machine.layer, state.name, goal.name] for machine, state, goal, _ in asked]
     seen = {layer_of(sample, "body").start.name}  # layers without a track to move stand still
-    for (machine, state, goal, stances), way in zip(asked, play(folder, sample, seen, {"ways": rows})[0]["ways"], strict=True):
+    for (machine, state, goal, stances), way in zip(
+        asked, play(folder, sample, seen, {"ways": rows})[0]["ways"], strict=True
+    ):
         named = {s.name: s.action for s in machine.states}
-        assert way and way[-1] == goal.name and all(named[name].kind in ("transition", "stance") for name in way)
+        assert (
+            way and way[-1] == goal.name and all(named[name].kind in ("transition", "stance") for name in way)
+        )
         assert sum(named[name].kind == "transition" for name in way) == len(stances), (state.name, way)
 
 
@@ -160,7 +187,9 @@ func _init():
     (folder / "count.gd").write_text(lines % stem_of(sample))
     env = {**os.environ, "HOME": str(folder), "LC_ALL": "C.UTF-8"}
     command = [str(GODOT), "--no-window", "-s", "count.gd"]
-    done = subprocess.run(command, cwd=folder, env=env, capture_output=True, text=True, errors="replace", timeout=120)
+    done = subprocess.run(
+        command, cwd=folder, env=env, capture_output=True, text=True, errors="replace", timeout=120
+    )
     found = json.loads(next(line for line in done.stdout.splitlines() if line.startswith("{")))
     for machine in machines(sample):
         pairs = {(a.source.name, a.target.name) for a in machine.arrows}
@@ -183,7 +212,10 @@ def resources(text: str) -> list[tuple[str, str, dict[str, str]]]:
     return out
 
 
-@pytest.mark.parametrize(("ending", "reference"), [(".tres", r'SubResource\("(\d+)"\)'), (".godot3.tres", r"SubResource\( (\d+) \)")])
+@pytest.mark.parametrize(
+    ("ending", "reference"),
+    [(".tres", r'SubResource\("(\d+)"\)'), (".godot3.tres", r"SubResource\( (\d+) \)")],
+)
 def test_resources_are_there_before_they_are_named_and_states_before_transitions(
     folder: Path, sample: Project, ending: str, reference: str
 ) -> None:
@@ -196,7 +228,11 @@ def test_resources_are_there_before_they_are_named_and_states_before_transitions
         known.add(ident)
     assert len(known) == len(found)
     clips = {clip.name for clip in read_gltf_clips(folder / f"{stem_of(sample)}.glb")}
-    named = [fields["animation"].lstrip("&").strip('"') for kind, _, fields in found if kind == "AnimationNodeAnimation"]
+    named = [
+        fields["animation"].lstrip("&").strip('"')
+        for kind, _, fields in found
+        if kind == "AnimationNodeAnimation"
+    ]
     assert len(named) == len(set(named)) and set(named) == clips
     built = machines(sample)
     trees = [fields for kind, _, fields in found if kind == "AnimationNodeStateMachine"]
@@ -208,12 +244,18 @@ def test_resources_are_there_before_they_are_named_and_states_before_transitions
         assert len(ends) % 3 == 0
         pairs = [(a.strip('"'), b.strip('"')) for a, b in zip(ends[::3], ends[1::3], strict=True)]
         assert len(pairs) == len(set(pairs))
-        assert set(pairs) - {("Start", machine.start.name)} == {(a.source.name, a.target.name) for a in machine.arrows}
+        assert set(pairs) - {("Start", machine.start.name)} == {
+            (a.source.name, a.target.name) for a in machine.arrows
+        }
     kinds = [kind for kind, _, _ in found]
-    assert kinds.count("AnimationNodeStateMachineTransition") <= 20  # shared, not one for each of the thousands
+    assert (
+        kinds.count("AnimationNodeStateMachineTransition") <= 20
+    )  # shared, not one for each of the thousands
 
 
-def test_the_tree_adds_every_layer_to_nothing_and_filters_what_it_moves(folder: Path, sample: Project) -> None:
+def test_the_tree_adds_every_layer_to_nothing_and_filters_what_it_moves(
+    folder: Path, sample: Project
+) -> None:
     found = resources((folder / f"{stem_of(sample)}.tres").read_text())
     wires = json.loads(found[-1][2]["node_connections"])
     assert len(wires) % 3 == 0
@@ -227,23 +269,35 @@ def test_the_tree_adds_every_layer_to_nothing_and_filters_what_it_moves(folder: 
     assert filters == [[f"Skeleton3D:{joint}" for joint in m.joints] for m in machines(sample)]
 
 
-def test_gestures_and_transitions_alone_end_by_themselves_and_loops_loop(folder: Path, sample: Project) -> None:
+def test_gestures_and_transitions_alone_end_by_themselves_and_loops_loop(
+    folder: Path, sample: Project
+) -> None:
     found = resources((folder / f"{stem_of(sample)}.tres").read_text())
     by_id = {ident: fields for _, ident, fields in found}
     trees = [fields for kind, _, fields in found if kind == "AnimationNodeStateMachine"]
     for machine, fields in zip(machines(sample), trees, strict=True):
         ends = re.split(r",\s*", fields["transitions"].strip("[]"))
-        auto = {ends[n].strip('"') for n in range(0, len(ends), 3) if "advance_mode" in by_id[re.findall(r"\d+", ends[n + 2])[0]]}
+        auto = {
+            ends[n].strip('"')
+            for n in range(0, len(ends), 3)
+            if "advance_mode" in by_id[re.findall(r"\d+", ends[n + 2])[0]]
+        }
         assert auto == {s.name for s in machine.states if s.action.kind != "stance"} | {"Start"}
     for kind, _, fields in found:
         if kind == "AnimationNodeAnimation":
-            state = next(s for m in machines(sample) for s in m.states if f'&"{s.name}"' == fields["animation"])
+            state = next(
+                s for m in machines(sample) for s in m.states if f'&"{s.name}"' == fields["animation"]
+            )
             assert (fields.get("loop_mode") == "1") == state.loop
-            assert not state.loop or float(fields["timeline_length"]) == pytest.approx(state.seconds, abs=1e-3)
+            assert not state.loop or float(fields["timeline_length"]) == pytest.approx(
+                state.seconds, abs=1e-3
+            )
 
 
 def test_godot_4_composes_as_the_contract_does(sample: Project) -> None:
-    """Its rule: offsets from the rest are multiplied in the tree's order, each only for the tracks its filter lets pass."""
+    """Its rule: offsets from the rest are multiplied in the tree's order, each only for the tracks its filter
+    lets pass.
+    """
     assert sample.skeleton is not None
     base = base_pose(sample)
     turns, shifts = np.array(base.rotations, float), np.array(base.translations, float)
@@ -253,17 +307,27 @@ def test_godot_4_composes_as_the_contract_does(sample: Project) -> None:
         pose = clip.pose_at(sample.span(machine.start.action)[0] + 1.0)
         for joint in machine.joints:
             n = sample.skeleton.index(joint)
-            turns[n] = rotation.multiply(turns[n], rotation.multiply(rotation.conjugate(base.rotations[n]), pose.rotations[n]))
+            turns[n] = rotation.multiply(
+                turns[n], rotation.multiply(rotation.conjugate(base.rotations[n]), pose.rotations[n])
+            )
             shifts[n] += pose.translations[n] - base.translations[n]
     got = sample.skeleton.globals(Pose(turns, shifts))[1]
-    preview = sample.skeleton.globals(pose_at(make_plan(sample, 5.0, idle=False), sample, 1.0, alive=False))[1]
+    preview = sample.skeleton.globals(pose_at(make_plan(sample, 5.0, idle=False), sample, 1.0, alive=False))[
+        1
+    ]
     assert np.abs(got - preview).max() < 1e-4
 
 
-def test_a_joint_has_one_layer_in_godot_3_and_the_next_where_its_own_does_not_reach_it(sample: Project) -> None:
+def test_a_joint_has_one_layer_in_godot_3_and_the_next_where_its_own_does_not_reach_it(
+    sample: Project,
+) -> None:
     alone = owned(sample, machines(sample))
     every = [joint for joints in alone.values() for joint in joints]
-    assert len(every) == len(set(every)) and sample.skeleton is not None and set(every) == set(sample.skeleton.names)
+    assert (
+        len(every) == len(set(every))
+        and sample.skeleton is not None
+        and set(every) == set(sample.skeleton.names)
+    )
     assert "Spine" in alone["body"] and "LeftHand" in alone["arms"] and "Head" in alone["head"]
     without = edits.set_weight(sample, "head", "head", 0.0)
     assert "Head" in owned(without, machines(without))["body"]
@@ -276,7 +340,11 @@ def test_states_of_other_stances_stand_further_off_than_those_that_lead_to_a_sta
         assert len({place for _, place in places}) == len(places) == len(machine.states)
         for goal in machine.stances:
             block = [np.array(p) for s, p in places if ends_in(s.action) == goal]
-            leading = [np.array(p) for s, p in places if s.action.kind == "transition" and s.action.end_stance == goal]
+            leading = [
+                np.array(p)
+                for s, p in places
+                if s.action.kind == "transition" and s.action.end_stance == goal
+            ]
             away = [float(np.linalg.norm(p - block[0])) for p in block]
             assert away == sorted(away) and np.array_equal(
                 leading, block[1 : 1 + len(leading)]
@@ -288,7 +356,8 @@ def test_states_of_other_stances_stand_further_off_than_those_that_lead_to_a_sta
 
 @pytest.mark.parametrize(
     ("joint", "bone"),
-    [("Hips", "hips"), ("LeftThumb1", "left_thumb_1"), ("LeftUpperArm", "left_upper_arm"), ("mixamorig:LeftArm", "mixamorig_left_arm"),
+    [("Hips", "hips"), ("LeftThumb1", "left_thumb_1"), ("LeftUpperArm", "left_upper_arm"),
+     ("mixamorig:LeftArm", "mixamorig_left_arm"),
      ("RightToeBase", "right_toe_base"), ("Spine02", "spine_02"), ("upperarm_l", "upperarm_l")],
 )  # fmt: skip
 def test_bones_are_named_as_godot_3_imports_them(joint: str, bone: str) -> None:
@@ -296,14 +365,19 @@ def test_bones_are_named_as_godot_3_imports_them(joint: str, bone: str) -> None:
 
 
 def test_a_skeleton_of_two_roots_hangs_below_the_node_that_holds_them(sample: Project) -> None:
-    assert sample.skeleton is not None and paths_of(sample, "LeftHand", 3) == ("Skeleton:LeftHand", "Skeleton:left_hand")
+    assert sample.skeleton is not None and paths_of(sample, "LeftHand", 3) == (
+        "Skeleton:LeftHand",
+        "Skeleton:left_hand",
+    )
     parents = sample.skeleton.parents.copy()
     parents[sample.skeleton.index("LeftUpperLeg")] = -1
     two = replace(sample, skeleton=replace(sample.skeleton, parents=parents))
     assert paths_of(two, "LeftHand", 4) == ("Armature/Skeleton3D:LeftHand",)
 
 
-def test_the_guide_names_every_state_and_the_losses_say_what_godot_does_not(folder: Path, sample: Project) -> None:
+def test_the_guide_names_every_state_and_the_losses_say_what_godot_does_not(
+    folder: Path, sample: Project
+) -> None:
     text = (folder / f"{stem_of(sample)}.godot.md").read_text()
     assert all(f"`{s.name}`" in text for m in machines(sample) for s in m.states)
     told = [words for loss in TARGETS[0].losses if (words := loss.told(sample))]

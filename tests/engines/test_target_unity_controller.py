@@ -1,5 +1,6 @@
-"""Unity's text assets. There is no Unity here: what is checked is that the files are whole, that all they refer to is there, and that
-they say what the machine says."""
+"""Unity's text assets. There is no Unity here: what is checked is that the files are whole, that all they
+refer to is there, and that they say what the machine says.
+"""
 
 from __future__ import annotations
 
@@ -35,7 +36,9 @@ class Loader(getattr(yaml, "CBaseLoader", yaml.BaseLoader)):  # type: ignore[mis
     """Reads every scalar as text, as Unity, which knows each field's type."""
 
 
-Loader.add_multi_constructor("tag:unity3d.com,2011:", lambda loader, klass, node: (klass, loader.construct_mapping(node, deep=True)))
+Loader.add_multi_constructor(
+    "tag:unity3d.com,2011:", lambda loader, klass, node: (klass, loader.construct_mapping(node, deep=True))
+)
 
 
 KEY = r"      - serializedVersion: 2\n"
@@ -48,7 +51,9 @@ class Objects(dict[str, tuple[str, dict[str, Any]]]):
     def __init__(self, path: Path, ends: bool = False) -> None:
         """ends: of curves only the last keys, which is read many times as fast."""
         words = path.read_text("utf-8")
-        head, *documents = re.split(r"^--- ", ALL_BUT_LAST.sub("", words) if ends else words, flags=re.MULTILINE)
+        head, *documents = re.split(
+            r"^--- ", ALL_BUT_LAST.sub("", words) if ends else words, flags=re.MULTILINE
+        )
         assert head == "%YAML 1.1\n%TAG !u! tag:unity3d.com,2011:\n"
         for document in documents:
             match = re.match(r"!u!(\d+) &(\d+)\n", document)
@@ -84,14 +89,21 @@ def named(made: Made, ending: str) -> Path:
 
 def guids(made: Made) -> dict[str, Path]:
     """The guid in each `.meta` -> its file."""
-    found = {re.findall(r"^guid: (\w{32})$", p.read_text(), re.M)[0]: p.with_suffix("") for p in made.files if p.suffix == ".meta"}
+    found = {
+        re.findall(r"^guid: (\w{32})$", p.read_text(), re.M)[0]: p.with_suffix("")
+        for p in made.files
+        if p.suffix == ".meta"
+    }
     assert len(found) == sum(p.suffix == ".meta" for p in made.files)
     return found
 
 
 def states_of(controller: Objects, layer: str) -> dict[str, dict[str, Any]]:
     found = next(fields for fields in controller.of(1107) if fields["m_Name"] == layer)
-    return {state["m_Name"]: state for state in (controller.at(child["m_State"]) for child in found["m_ChildStates"])}
+    return {
+        state["m_Name"]: state
+        for state in (controller.at(child["m_State"]) for child in found["m_ChildStates"])
+    }
 
 
 def motion_of(made: Made, state: dict[str, Any], ends: bool = False) -> dict[str, Any]:
@@ -105,7 +117,10 @@ def evaluated(curves: list[dict[str, Any]], times: Array) -> dict[str, Array]:
     for one in curves:
         keys = one["curve"]["m_Curve"]
         at = np.array([float(key["time"]) for key in keys])
-        values, into, away = (np.array([[float(v) for v in key[f].values()] for key in keys]) for f in ("value", "inSlope", "outSlope"))
+        values, into, away = (
+            np.array([[float(v) for v in key[f].values()] for key in keys])
+            for f in ("value", "inSlope", "outSlope")
+        )
         assert (np.diff(at) > 0).all()
         low = np.clip(np.searchsorted(at, times, side="right") - 1, 0, max(0, len(at) - 2))
         high = np.minimum(low + 1, len(at) - 1)
@@ -120,7 +135,10 @@ def evaluated(curves: list[dict[str, Any]], times: Array) -> dict[str, Array]:
 
 def paths(skeleton: Skeleton) -> dict[str, str]:
     """Joint -> its path."""
-    return {name: "/".join(skeleton.names[at] for at in skeleton.chain(j)) for j, name in enumerate(skeleton.names)}
+    return {
+        name: "/".join(skeleton.names[at] for at in skeleton.chain(j))
+        for j, name in enumerate(skeleton.names)
+    }
 
 
 # --- whole files
@@ -132,11 +150,14 @@ def test_every_file_has_a_meta_of_its_kind_and_all_there_is_is_said(made: Made) 
     kinds = {".anim": 7400000, ".controller": 9100000, ".mask": 31900000}
     for path in made.files:
         if path.suffix in kinds:
-            assert f"NativeFormatImporter:\n  externalObjects: {{}}\n  mainObjectFileID: {kinds[path.suffix]}\n" in (
-                path.with_name(path.name + ".meta").read_text()
+            assert (
+                f"NativeFormatImporter:\n  externalObjects: {{}}\n  mainObjectFileID: {kinds[path.suffix]}\n"
+                in (path.with_name(path.name + ".meta").read_text())
             )
             assert f"--- !u!{kinds[path.suffix] // 100000} &{kinds[path.suffix]}\n" in path.read_text()
-            assert f"\n  m_Name: {path.stem}\n" in path.read_text()  # Unity wants assets called as their files are
+            assert (
+                f"\n  m_Name: {path.stem}\n" in path.read_text()
+            )  # Unity wants assets called as their files are
 
 
 def test_whatever_is_referred_to_is_there(made: Made, controller: Objects) -> None:
@@ -159,7 +180,9 @@ def test_two_exports_are_equal_to_the_byte(sample: Project, made: Made, tmp_path
     assert all(a.read_bytes() == b.read_bytes() for a, b in zip(again.files, made.files, strict=True))
 
 
-def test_there_is_a_clip_for_each_state_and_one_of_the_base_pose_and_they_are_small(sample: Project, made: Made) -> None:
+def test_there_is_a_clip_for_each_state_and_one_of_the_base_pose_and_they_are_small(
+    sample: Project, made: Made
+) -> None:
     clips = [path for path in made.files if path.suffix == ".anim"]
     assert len(clips) == sum(len(machine.states) for machine in machines(sample)) + 1
     assert sum(path.stat().st_size for path in clips) / len(clips) < 0.15e6
@@ -168,11 +191,15 @@ def test_there_is_a_clip_for_each_state_and_one_of_the_base_pose_and_they_are_sm
 # --- the machine
 
 
-def test_layers_have_parameters_masks_and_ways_to_blend(sample: Project, made: Made, controller: Objects) -> None:
+def test_layers_have_parameters_masks_and_ways_to_blend(
+    sample: Project, made: Made, controller: Objects
+) -> None:
     (whole,) = controller.of(91)
     found = {p["m_Name"]: p["m_Type"] for p in whole["m_AnimatorParameters"]}
     layers = ("body", "arms", "head")
-    assert found == {f"{la}_{w}": t for la in layers for w, t in (("stance", "3"), ("action", "3"), ("play", "9"))}
+    assert found == {
+        f"{la}_{w}": t for la in layers for w, t in (("stance", "3"), ("action", "3"), ("play", "9"))
+    }
     assert [(la["m_Name"], la["m_BlendingMode"]) for la in whole["m_AnimatorLayers"]] == [
         ("base", "0"), ("body", "0"), ("arms", "1"), ("head", "1"),
     ]  # fmt: skip
@@ -187,7 +214,12 @@ def test_layers_have_parameters_masks_and_ways_to_blend(sample: Project, made: M
 def told(arrow: Arrow, machine: Machine, seconds: float) -> list[tuple[Any, ...]]:
     """What an arrow's transitions must be: source, target, exit, blend, conditions."""
     leave = arrow.leave or 0.0
-    whole = (arrow.source.name, arrow.target.name, round(leave / seconds, 5) if leave else None, round(arrow.blend, 5))
+    whole = (
+        arrow.source.name,
+        arrow.target.name,
+        round(leave / seconds, 5) if leave else None,
+        round(arrow.blend, 5),
+    )
     if arrow.on == "done":
         return [(*whole, ())]
     pull = ((1, f"{machine.layer}_play", 0),) if arrow.on == "action" else ()
@@ -200,12 +232,25 @@ def found(controller: Objects, machine: Machine) -> list[tuple[Any, ...]]:
         for one in map(controller.at, state["m_Transitions"]):
             assert one["m_HasFixedDuration"] == "1"
             leave = round(float(one["m_ExitTime"]), 5) if one["m_HasExitTime"] == "1" else None
-            conditions = tuple((int(c["m_ConditionMode"]), c["m_ConditionEvent"], int(c["m_EventTreshold"])) for c in one["m_Conditions"])
-            out.append((name, controller.at(one["m_DstState"])["m_Name"], leave, round(float(one["m_TransitionDuration"]), 5), conditions))
+            conditions = tuple(
+                (int(c["m_ConditionMode"]), c["m_ConditionEvent"], int(c["m_EventTreshold"]))
+                for c in one["m_Conditions"]
+            )
+            out.append(
+                (
+                    name,
+                    controller.at(one["m_DstState"])["m_Name"],
+                    leave,
+                    round(float(one["m_TransitionDuration"]), 5),
+                    conditions,
+                )
+            )
     return out
 
 
-def test_states_and_transitions_are_those_of_the_machine(sample: Project, made: Made, controller: Objects) -> None:
+def test_states_and_transitions_are_those_of_the_machine(
+    sample: Project, made: Made, controller: Objects
+) -> None:
     built = machines(sample)
     seconds = {clip.name: clip.duration for clip in animations(sample, built)}
     counted = 0
@@ -216,12 +261,18 @@ def test_states_and_transitions_are_those_of_the_machine(sample: Project, made: 
         rows = found(controller, machine)
         assert len(rows) == len(wanted)
         for mine, theirs in zip(sorted(rows, key=str), sorted(wanted, key=str), strict=True):
-            assert mine[:2] == theirs[:2] and mine[3:] == theirs[3:] and mine[2] == pytest.approx(theirs[2], abs=2e-5)
+            assert (
+                mine[:2] == theirs[:2]
+                and mine[3:] == theirs[3:]
+                and mine[2] == pytest.approx(theirs[2], abs=2e-5)
+            )
         counted += len(wanted)
     assert counted == len(controller.of(1101))
 
 
-def test_what_is_asked_for_goes_before_going_back_and_loops_are_left_at_once(sample: Project, controller: Objects) -> None:
+def test_what_is_asked_for_goes_before_going_back_and_loops_are_left_at_once(
+    sample: Project, controller: Objects
+) -> None:
     for machine in machines(sample):
         for name, state in states_of(controller, machine.layer).items():
             leaving = [controller.at(one) for one in state["m_Transitions"]]
@@ -265,7 +316,9 @@ def pairs(project: Project) -> list[tuple[Machine, State, Clip]]:
     return [(m, s, clip) for (m, s), clip in zip(states, animations(project, built), strict=True)]
 
 
-def test_curves_mirrored_back_are_the_machines_clips(sample: Project, made: Made, controller: Objects) -> None:
+def test_curves_mirrored_back_are_the_machines_clips(
+    sample: Project, made: Made, controller: Objects
+) -> None:
     skeleton = sample.skeleton
     assert skeleton is not None
     path = paths(skeleton)
@@ -277,7 +330,10 @@ def test_curves_mirrored_back_are_the_machines_clips(sample: Project, made: Made
         assert {*turns} == {path[joint] for joint in machine.joints}
         for joint in machine.joints:
             there = rotation.normalize(turns[path[joint]])
-            assert np.degrees(rotation.angle_between(there, pose.rotations[:, skeleton.index(joint)])).max() < 0.1, (state.name, joint)
+            assert (
+                np.degrees(rotation.angle_between(there, pose.rotations[:, skeleton.index(joint)])).max()
+                < 0.1
+            ), (state.name, joint)
         for joint, shift in evaluated(fields["m_PositionCurves"], times).items():
             place = skeleton.index(joint.split("/")[-1])
             assert np.abs(shift - pose.translations[:, place]).max() < 0.001
@@ -302,7 +358,9 @@ def test_clips_have_their_lengths_loop_where_they_loop_and_are_additive_to_the_b
             assert known[settings["m_AdditiveReferencePoseClip"]["guid"]].name == "base.anim"
 
 
-def test_layers_put_together_as_unity_does_are_the_previews_pose(sample: Project, made: Made, controller: Objects) -> None:
+def test_layers_put_together_as_unity_does_are_the_previews_pose(
+    sample: Project, made: Made, controller: Objects
+) -> None:
     skeleton, at = sample.skeleton, np.array([1.0])
     assert skeleton is not None
     joint = {path: name for name, path in paths(skeleton).items()}
@@ -323,7 +381,9 @@ def test_layers_put_together_as_unity_does_are_the_previews_pose(sample: Project
         for name, t in shifted.items():
             shifts[name] = t if machine.layer == "body" else shifts[name] + t - moved[name]
     rotations = rotation.normalize(np.stack([turns[name] for name in skeleton.names]))
-    translations = np.stack([shifts.get(name, skeleton.rest_translations[j]) for j, name in enumerate(skeleton.names)])
+    translations = np.stack(
+        [shifts.get(name, skeleton.rest_translations[j]) for j, name in enumerate(skeleton.names)]
+    )
     wanted = pose_at(make_plan(sample, 5.0, idle=False), sample, 1.0, alive=False)
     _, mine = skeleton.globals(replace(wanted, rotations=rotations, translations=translations))
     _, theirs = skeleton.globals(wanted)
@@ -335,7 +395,22 @@ def test_layers_put_together_as_unity_does_are_the_previews_pose(sample: Project
 
 @pytest.mark.parametrize(
     "name",
-    ["plain", "", "two words", 'a "quoted" one', "it's", "a: b", "mixamorig:Hips", "- dash", "# no", "é ß", "手", "🙂", "a\nb", "{x}"],
+    [
+        "plain",
+        "",
+        "two words",
+        'a "quoted" one',
+        "it's",
+        "a: b",
+        "mixamorig:Hips",
+        "- dash",
+        "# no",
+        "é ß",
+        "手",
+        "🙂",
+        "a\nb",
+        "{x}",
+    ],
 )
 def test_names_survive_yaml(name: str) -> None:
     assert yaml.load(f"m_Name: {text(name)}\nm_Next: 1", Loader) == {"m_Name": name, "m_Next": "1"}
@@ -347,7 +422,9 @@ def test_joints_of_any_name_are_found_by_path(toy: Any, tmp_path: Path) -> None:
     skeleton = toy.skeleton
     odd = tuple(f"rig:{name} “é” #{j}: 'x'" for j, name in enumerate(skeleton.names))
     renamed = Skeleton(odd, skeleton.parents, skeleton.rest_rotations, skeleton.rest_translations)
-    project = edits.add_clips(Project('odd "name": é'), [("a.glb", 0, "", replace(toy.clip("rest loop"), skeleton=renamed))])
+    project = edits.add_clips(
+        Project('odd "name": é'), [("a.glb", 0, "", replace(toy.clip("rest loop"), skeleton=renamed))]
+    )
     clip = next(iter(project.clips))
     project = edits.set_base(edits.add_stance(project, "arms", "rest: 'é'", [clip]), clip)
     made = write(project, tmp_path, "naïve_talk")

@@ -1,4 +1,6 @@
-"""The web page in a real browser: it plays what the preview shows, takes requests, shows the plan, and says what is wrong."""
+"""The web page in a real browser: it plays what the preview shows, takes requests, shows the plan, and says
+what is wrong.
+"""
 
 from __future__ import annotations
 
@@ -26,19 +28,27 @@ HERE = Path(__file__).parent
 MODULES = HERE.parent / "node_modules"
 SAMPLES = HERE.parents[1] / "sample_clips"
 CONFORMANCE = HERE.parents[1] / "metagraph" / "engines" / "conformance"
-CHROMIUM = os.environ.get("CHROMIUM") or next((c for c in ("chromium", "chromium-browser", "google-chrome") if shutil.which(c)), None)
+CHROMIUM = os.environ.get("CHROMIUM") or next(
+    (c for c in ("chromium", "chromium-browser", "google-chrome") if shutil.which(c)), None
+)
 SEED, TIME = 7, 12.3
 
 
 def browse(folder: Path, *steps: dict[str, Any]) -> tuple[list[Any], list[str]]:
-    """Run steps in a page of a folder; return the values its `run` steps gave, and the errors the browser told."""
+    """Run steps in a page of a folder; return the values its `run` steps gave, and the errors the browser
+    told.
+    """
     if CHROMIUM is None or shutil.which("node") is None or not (MODULES / "playwright-core").is_dir():
         pytest.skip("needs Chromium, Node and playwright-core (python3 run.py test fetches what it can)")
     script = folder / "steps.json"
     script.write_text(json.dumps(steps))
     environ = {**os.environ, "CHROMIUM": shutil.which(CHROMIUM) or CHROMIUM}
     done = subprocess.run(
-        ["node", str(HERE / "run" / "browser.mjs"), str(folder), str(script)], capture_output=True, text=True, timeout=180, env=environ
+        ["node", str(HERE / "run" / "browser.mjs"), str(folder), str(script)],
+        capture_output=True,
+        text=True,
+        timeout=180,
+        env=environ,
     )
     assert done.returncode == 0, done.stderr[-2000:]
     rows = [json.loads(line) for line in done.stdout.splitlines()]
@@ -70,7 +80,9 @@ PICTURE = """(() => { const { stage } = metagraph; stage.scene.background.set("#
   stage.draw(); return [stage.canvas.clientWidth, stage.canvas.clientHeight, stage.canvas.toDataURL("image/png")]; })()"""
 
 
-def test_the_page_poses_the_character_as_the_preview_does_and_its_picture_matches(sample: Project, page: Path) -> None:
+def test_the_page_poses_the_character_as_the_preview_does_and_its_picture_matches(
+    sample: Project, page: Path
+) -> None:
     (_, joints, picture), errors = browse(page, OPEN, SEEK, {"run": JOINTS}, {"run": PICTURE})
     assert not errors
     project = read_export(page / "sample.json", resolved=True)
@@ -90,7 +102,12 @@ def test_the_page_poses_the_character_as_the_preview_does_and_its_picture_matche
     theirs = np.abs(shown - [255, 0, 255]).sum(-1) > 40
     with Offscreen(width, height) as stage:
         actor = Actor(figure_of(sample, SAMPLES), rotations, positions)
-        ours = stage.render(Scene((actor,), ground=False, shadow=False, background=(0.0, 0.0, 0.0, 0.0)), Camera())[..., 3] > 40
+        ours = (
+            stage.render(
+                Scene((actor,), ground=False, shadow=False, background=(0.0, 0.0, 0.0, 0.0)), Camera()
+            )[..., 3]
+            > 40
+        )
     overlap = (ours & theirs).sum() / (ours | theirs).sum()
     assert overlap > 0.96, overlap
 
@@ -108,9 +125,12 @@ def test_buttons_ask_and_the_answers_and_the_plan_show_it(page: Path) -> None:
         {"wait": 400},
         {"run": lanes},
         {"run": state},
-        {"until": "[...document.querySelectorAll('button[aria-pressed=true]')].some((b) => b.textContent === 'arms crossed')"},
+        {
+            "until": "[...document.querySelectorAll('button[aria-pressed=true]')].some((b) => b.textContent "
+            "=== 'arms crossed')"
+        },
         {"run": "[...document.querySelectorAll('button[aria-pressed=true]')].map((b) => b.textContent)"},
-    )  # fmt: skip
+    )
     assert not errors
     cues, answers = after
     assert [name for name, _ in cues][:2] == ["wave_hello_rt_01", "to arms crossed"]
@@ -162,7 +182,10 @@ def test_what_is_missing_newer_or_cut_short_is_told_in_the_page(page: Path, tmp_
 
 def test_the_vectors_hold_in_the_browser(page: Path, sample_export: Path, tmp_path: Path) -> None:
     shutil.copytree(page, tmp_path / "page")
-    shutil.copy(HERE.parents[1] / "metagraph" / "engines" / "runtimes" / "javascript" / "conformance.mjs", tmp_path / "page" / "metagraph")
+    shutil.copy(
+        HERE.parents[1] / "metagraph" / "engines" / "runtimes" / "javascript" / "conformance.mjs",
+        tmp_path / "page" / "metagraph",
+    )
     shutil.copytree(CONFORMANCE, tmp_path / "page" / "conformance")
     shutil.copytree(sample_export, tmp_path / "page" / "conformance" / "sample")
     (tmp_path / "page" / "vectors.html").write_text("<!doctype html><title>vectors</title>")
@@ -211,7 +234,9 @@ def test_an_npm_that_fails_is_as_none(tmp_path: Path, monkeypatch: pytest.Monkey
 
 def test_lines_that_cannot_be_read_are_left_out_and_told(sample: Project, tmp_path: Path) -> None:
     report = registry.write(sample, "metagraph", tmp_path, base=tmp_path)
-    assert sum("the sound of line" in words for words in report.warnings) == len([x for x in sample.lines.values() if x.audio])
+    assert sum("the sound of line" in words for words in report.warnings) == len(
+        [x for x in sample.lines.values() if x.audio]
+    )
     report = registry.write(sample, "metagraph", tmp_path, base=SAMPLES)
     lines = json.loads((tmp_path / "sample.json").read_bytes())["lines"]
     assert all((tmp_path / line["audio"]).is_file() for line in lines.values())

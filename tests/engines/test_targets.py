@@ -36,7 +36,12 @@ def run(script: str, package: str, *arguments: Any) -> list[Any]:
     """Run one of `tests/engines/run` in Node; return what it prints, a JSON a line."""
     if shutil.which("node") is None or not (MODULES / package).is_dir():
         pytest.skip(f"needs Node and {package} (python3 run.py test fetches it where npm is)")
-    done = subprocess.run(["node", str(HERE / "run" / script), *map(str, arguments)], capture_output=True, text=True, timeout=120)
+    done = subprocess.run(
+        ["node", str(HERE / "run" / script), *map(str, arguments)],
+        capture_output=True,
+        text=True,
+        timeout=120,
+    )
     assert done.returncode == 0, done.stderr[-2000:]
     return [json.loads(line) for line in done.stdout.splitlines() if line.startswith("{")]
 
@@ -119,13 +124,19 @@ def test_a_stance_is_reached_from_every_other_by_following_its_arrows(sample: Pr
             for begin in machine.stances:
                 at, hops = begin, 0
                 while at != goal and hops <= len(machine.stances):
-                    ways = [a for a in machine.leaving[machine.rest(at).name] if a.on == "stance" and number in a.values]
+                    ways = [
+                        a
+                        for a in machine.leaving[machine.rest(at).name]
+                        if a.on == "stance" and number in a.values
+                    ]
                     assert len(ways) == 1
                     at, hops = str(ends_in(ways[0].target.action)), hops + 1
                 assert at == goal
 
 
-def test_animations_are_the_parts_that_play_on_nodes_that_stand_in_the_base_pose(sample: Project, written: Any) -> None:
+def test_animations_are_the_parts_that_play_on_nodes_that_stand_in_the_base_pose(
+    sample: Project, written: Any
+) -> None:
     built = machines(sample)
     made = animations(sample, built)
     assert [c.name for c in made] == [s.name for m in built for s in m.states]
@@ -143,7 +154,9 @@ def test_animations_are_the_parts_that_play_on_nodes_that_stand_in_the_base_pose
 # --- engines
 
 
-def test_playcanvas_rests_as_the_preview_does_changes_stance_and_adds_a_gesture(sample: Project, written: Any, tmp_path: Path) -> None:
+def test_playcanvas_rests_as_the_preview_does_changes_stance_and_adds_a_gesture(
+    sample: Project, written: Any, tmp_path: Path
+) -> None:
     report = written("playcanvas")
     numbers = json.loads(named(report, "numbers.json").read_bytes())
     stance = numbers["arms"]["stance"]["on hips"]
@@ -156,17 +169,29 @@ def test_playcanvas_rests_as_the_preview_does_changes_stance_and_adds_a_gesture(
         {"seconds": 0.5, "integers": {"head_action": nod}, "triggers": ["head_play"]},
         {"seconds": 4.0},
     )
-    rest, going, there, nodding, after = run("playcanvas.mjs", "playcanvas", named(report, "graph.json"), named(report, ".glb"), script)
+    rest, going, there, nodding, after = run(
+        "playcanvas.mjs", "playcanvas", named(report, "graph.json"), named(report, ".glb"), script
+    )
     assert sample.skeleton is not None
-    _, positions = sample.skeleton.globals(pose_at(make_plan(sample, 5.0, idle=False), sample, 1.0, alive=False))
+    _, positions = sample.skeleton.globals(
+        pose_at(make_plan(sample, 5.0, idle=False), sample, 1.0, alive=False)
+    )
     for place, joint in enumerate(sample.skeleton.names):
         assert np.linalg.norm(np.array(rest["joints"][joint]["position"]) - positions[place]) < 0.003, joint
     assert going["states"]["arms"].startswith("arms_to_on_hips")
     assert there["states"]["arms"] == "arms_on_hips"
-    assert nodding["states"] == {**there["states"], "head": nodding["states"]["head"]} and "head_nod" in nodding["states"]["head"]
+    assert (
+        nodding["states"] == {**there["states"], "head": nodding["states"]["head"]}
+        and "head_nod" in nodding["states"]["head"]
+    )
     assert after["states"] == there["states"]
-    head, hand = (np.array([row["joints"][joint]["rotation"] for row in (there, nodding)]) for joint in ("Head", "LeftHand"))
-    assert abs(head[0] @ head[1]) < 0.9999 and abs(hand[0] @ hand[1]) > 0.9995  # the head moves, what the arms do goes on
+    head, hand = (
+        np.array([row["joints"][joint]["rotation"] for row in (there, nodding)])
+        for joint in ("Head", "LeftHand")
+    )
+    assert (
+        abs(head[0] @ head[1]) < 0.9999 and abs(hand[0] @ hand[1]) > 0.9995
+    )  # the head moves, what the arms do goes on
 
 
 def test_xstate_goes_to_a_stance_and_plays_a_gesture_on_its_clock(written: Any, tmp_path: Path) -> None:
@@ -192,14 +217,26 @@ def test_babylon_plays_the_behaviour_graph_without_code(written: Any, tmp_path: 
     events = json.loads(named(report, "events.json").read_bytes())
     wave, go = (next(e for e in events if word in e) for word in ("wave_hello", "arms_to_on_hips"))
     script = steps(
-        tmp_path, {"seconds": 1.0}, {"seconds": 1.0, "events": [wave]}, {"seconds": 3.0}, {"seconds": 4.0, "events": [go]},
+        tmp_path,
+        {"seconds": 1.0},
+        {"seconds": 1.0, "events": [wave]},
+        {"seconds": 3.0},
+        {"seconds": 4.0, "events": [go]},
         {"seconds": 0.5, "events": [wave]},
-    )  # fmt: skip
-    rest, waving, back, hips, deaf = run("interactivity.mjs", "@babylonjs/loaders", named(report, ".glb"), script)
-    assert rest["playing"] == ["body_weight_both", "arms_hands_at_sides", "head_head_straight"] == back["playing"]
+    )
+    rest, waving, back, hips, deaf = run(
+        "interactivity.mjs", "@babylonjs/loaders", named(report, ".glb"), script
+    )
+    assert (
+        rest["playing"]
+        == ["body_weight_both", "arms_hands_at_sides", "head_head_straight"]
+        == back["playing"]
+    )
     assert waving["playing"][1] == wave.removeprefix("arms.action.")
     assert waving["joints"]["RightHand"][1] > rest["joints"]["RightHand"][1] + 0.3
-    assert hips["playing"][1] == "arms_on_hips" == deaf["playing"][1]  # a gesture of another stance is passed over
+    assert (
+        hips["playing"][1] == "arms_on_hips" == deaf["playing"][1]
+    )  # a gesture of another stance is passed over
 
 
 def test_the_scxml_is_run_by_qt(written: Any, qtbot: Any) -> None:
@@ -209,12 +246,16 @@ def test_the_scxml_is_run_by_qt(written: Any, qtbot: Any) -> None:
     machine.start()
     qtbot.waitUntil(lambda: "arms_hands_at_sides" in machine.activeStateNames(False), timeout=2000)
     machine.submitEvent("arms.stance.on_hips")
-    qtbot.waitUntil(lambda: any(n.startswith("arms_to_on_hips") for n in machine.activeStateNames(False)), timeout=2000)
+    qtbot.waitUntil(
+        lambda: any(n.startswith("arms_to_on_hips") for n in machine.activeStateNames(False)), timeout=2000
+    )
     qtbot.waitUntil(lambda: "arms_on_hips" in machine.activeStateNames(False), timeout=5000)
     machine.stop()
 
 
-def test_the_scxml_names_an_animation_a_blend_and_a_state_there_is_everywhere(sample: Project, written: Any) -> None:
+def test_the_scxml_names_an_animation_a_blend_and_a_state_there_is_everywhere(
+    sample: Project, written: Any
+) -> None:
     report = written("scxml")
     tree = ElementTree.parse(named(report, ".scxml"))
     main, ours = "{http://www.w3.org/2005/07/scxml}", "{urn:metagraph:scxml}"
@@ -238,7 +279,9 @@ def test_the_blocks_of_bml_say_what_was_kept(sample: Project, written: Any) -> N
     assert "hands at sides" in words["postures"]["arms"] and set(words["lines"]) == set(sample.lines)
 
 
-def test_the_gesture_map_runs_in_smartbodys_place_and_names_motions_that_are_there(sample: Project, written: Any) -> None:
+def test_the_gesture_map_runs_in_smartbodys_place_and_names_motions_that_are_there(
+    sample: Project, written: Any
+) -> None:
     report = written("smartbody")
     rows: list[tuple[str, ...]] = []
 

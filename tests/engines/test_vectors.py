@@ -1,4 +1,6 @@
-"""Conformance vectors: the shipped ones hold for this library, cover every rule, and fail where a rule is broken."""
+"""Conformance vectors: the shipped ones hold for this library, cover every rule, and fail where a rule is
+broken.
+"""
 
 from __future__ import annotations
 
@@ -28,7 +30,11 @@ FOLDERS = sorted(path for path in Path(engines.__file__).with_name("conformance"
 @pytest.fixture(scope="module", params=FOLDERS, ids=lambda path: path.name)
 def shipped(request: Any) -> tuple[Path, Project, dict[str, Any]]:
     folder: Path = request.param
-    return folder, read_export(folder / f"{folder.name}.json", resolved=True), json.loads((folder / vectors.NAME).read_bytes())
+    return (
+        folder,
+        read_export(folder / f"{folder.name}.json", resolved=True),
+        json.loads((folder / vectors.NAME).read_bytes()),
+    )
 
 
 def test_this_library_conforms_from_the_export_alone(shipped: Any) -> None:
@@ -45,7 +51,9 @@ def test_the_shipped_vectors_are_those_the_maker_makes(tmp_path: Path) -> None:
     assert json.loads(made.json.read_bytes()) == json.loads((folder / made.json.name).read_bytes())
     again, kept = json.loads(path.read_bytes()), json.loads((folder / vectors.NAME).read_bytes())
     assert [c["name"] for c in again["cases"]] == [c["name"] for c in kept["cases"]]
-    assert not vectors._unlike([c["plan"] for c in again["cases"]], [c["plan"] for c in kept["cases"]], "plan")
+    assert not vectors._unlike(
+        [c["plan"] for c in again["cases"]], [c["plan"] for c in kept["cases"]], "plan"
+    )
 
 
 def test_all_shipped_vectors_together_meet_every_outcome_the_planner_has() -> None:
@@ -54,15 +62,28 @@ def test_all_shipped_vectors_together_meet_every_outcome_the_planner_has() -> No
         for case in json.loads((folder / vectors.NAME).read_bytes())["cases"]:
             told += Counter(report[1] for report in case["plan"]["reports"])
     planner = {
-        "late", "cut", "resumed", "covered", "no-room", "no-candidate", "no-way", "no-stance", "past", "already-there", "cooling",
+        "late",
+        "cut",
+        "resumed",
+        "covered",
+        "no-room",
+        "no-candidate",
+        "no-way",
+        "no-stance",
+        "past",
+        "already-there",
+        "cooling",
         "not-understood",
-    }  # fmt: skip
+    }
     assert planner <= set(told)
 
 
 def test_the_vectors_look_at_every_combination_of_layers_and_at_empty_ones() -> None:
     names = {case["name"] for f in FOLDERS for case in json.loads((f / vectors.NAME).read_bytes())["cases"]}
-    assert {f"layers {x}" for x in ("body", "arms", "head", "body arms", "body head", "arms head", "body arms head")} <= names
+    assert {
+        f"layers {x}"
+        for x in ("body", "arms", "head", "body arms", "body head", "arms head", "body arms head")
+    } <= names
     sparse = next(f for f in FOLDERS if f.name == "sparse")
     assert json.loads((sparse / "sparse.json").read_bytes())["layers"]["head"]["stances"] == []
 
@@ -88,7 +109,11 @@ MUTATIONS: dict[str, tuple[Any, str, Any]] = {
     "the hash of draws": (choice, "key32", _broken_key32),
     "the counter of uses": (pick.Performer, "_count", lambda self, ident, now: 0.0),
     "never twice and spacing": (pick.Performer, "_spaced", lambda self, candidates: candidates),
-    "the loop's seam": (player, "loop_seconds", lambda p, a, t: (p.span(a)[0] + t * 0, p.span(a)[0] + t * 0, t * 0)),
+    "the loop's seam": (
+        player,
+        "loop_seconds",
+        lambda p, a, t: (p.span(a)[0] + t * 0, p.span(a)[0] + t * 0, t * 0),
+    ),
     "leading a clip in from its stance": (player, "_lead", lambda shown, stance, edge, weight: shown),
     "the cooldown": (pick.Performer, "_cooled", lambda self, action, stance: float("-inf")),
     "the shortest chain": (pick, "chain", lambda graph, start, goal: None),
@@ -132,7 +157,9 @@ def test_vectors_that_are_missing_broken_or_newer_are_told(tmp_path: Path) -> No
 
 def test_vectors_of_another_performance_are_told_apart(shipped: Any) -> None:
     _, project, data = shipped
-    case = json.loads(json.dumps(next(c for c in data["cases"] if any(of["cues"] for of in c["plan"]["layers"].values()))))
+    case = json.loads(
+        json.dumps(next(c for c in data["cases"] if any(of["cues"] for of in c["plan"]["layers"].values())))
+    )
     layer = next(of for of in case["plan"]["layers"].values() if of["cues"])
     layer["cues"][0]["start"] += 0.01
     assert any("start" in words for words in vectors.differences(project, case))

@@ -84,7 +84,8 @@ def refused(path: Path, text: str, *words: str) -> FileError:
     return caught.value
 
 
-# --- refused, with the line --------------------------------------------------------------------------------------------
+# --- refused, with the line
+# --------------------------------------------------------------------------------------------
 
 
 def test_a_file_with_no_frames_is_refused_with_its_line(path: Path) -> None:
@@ -104,7 +105,12 @@ def test_a_word_among_the_numbers_is_refused_with_its_line(path: Path) -> None:
 
 
 def test_a_short_row_in_the_middle_is_refused_with_its_line(path: Path) -> None:
-    refused(path, figure(rows="0 90 0 0 0 0 1 0 0\n0 90 0 0 0 0 1 0\n0 90 0 0 0 0 1 0 0\n", frames=3), "line 20", "9 numbers")
+    refused(
+        path,
+        figure(rows="0 90 0 0 0 0 1 0 0\n0 90 0 0 0 0 1 0\n0 90 0 0 0 0 1 0 0\n", frames=3),
+        "line 20",
+        "9 numbers",
+    )
 
 
 def test_far_fewer_rows_than_promised_are_refused(path: Path) -> None:
@@ -144,7 +150,8 @@ def test_a_missing_file_is_refused(tmp_path: Path) -> None:
         read_bvh(tmp_path / "none.bvh")
 
 
-# --- accepted, with a note ---------------------------------------------------------------------------------------------
+# --- accepted, with a note
+# ---------------------------------------------------------------------------------------------
 
 
 @pytest.mark.parametrize("frames", [1, 3])
@@ -166,7 +173,8 @@ def test_repeated_names_are_made_unique_with_a_note(path: Path) -> None:
     assert any("names of their own" in note for note in clip.notes)
 
 
-# --- accepted as they are ----------------------------------------------------------------------------------------------
+# --- accepted as they are
+# ----------------------------------------------------------------------------------------------
 
 
 @pytest.mark.parametrize("order", ["XYZ", "XZY", "YXZ", "YZX", "ZXY", "ZYX", "ZXZ"])
@@ -185,10 +193,16 @@ def test_every_channel_order_turns_the_first_named_axis_outermost(path: Path, or
         ("2 Zrotation Yrotation", "20 30", (20, 0, 30)),
         ("6 Zrotation Xrotation Yrotation Xposition Yposition Zposition", "20 40 30 1 2 3", (20, 40, 30)),
         ("6 Xposition Zrotation Yposition Xrotation Zposition Yrotation", "1 20 2 40 3 30", (20, 40, 30)),
-        ("9 Xposition Yposition Zposition Zrotation Xrotation Yrotation Xscale Yscale Zscale", "1 2 3 20 40 30 1 1 1", (20, 40, 30)),
+        (
+            "9 Xposition Yposition Zposition Zrotation Xrotation Yrotation Xscale Yscale Zscale",
+            "1 2 3 20 40 30 1 1 1",
+            (20, 40, 30),
+        ),
     ],
 )
-def test_any_number_of_channels_in_any_arrangement(path: Path, child: str, values: str, angles: tuple[float, ...]) -> None:
+def test_any_number_of_channels_in_any_arrangement(
+    path: Path, child: str, values: str, angles: tuple[float, ...]
+) -> None:
     clip = read(path, figure(rows=f"0 90 0 0 0 0 {values}\n" * 2, child=child))
     expected = rotation.from_euler(np.radians(angles), "ZXY")
     assert rotation.angle_between(clip.rotations[0, 1].astype(float), expected) < 1e-6
@@ -198,32 +212,50 @@ def test_any_number_of_channels_in_any_arrangement(path: Path, child: str, value
 
 
 def test_rotation_before_position_leaves_the_position_unturned(path: Path) -> None:
-    clip = read(path, figure(rows="10 20 30 1 2 3  0 0 0\n" * 2, root="6 Zrotation Xrotation Yrotation Xposition Yposition Zposition"))
+    clip = read(
+        path,
+        figure(
+            rows="10 20 30 1 2 3  0 0 0\n" * 2,
+            root="6 Zrotation Xrotation Yrotation Xposition Yposition Zposition",
+        ),
+    )
     np.testing.assert_allclose(clip.root[0], [0.01, 0.02, 0.03], atol=1e-7)
 
 
 def test_line_ends_tabs_exponents_signs_and_a_byte_order_mark_do_not_matter(path: Path) -> None:
     plain = read(path, figure(rows="0 90 0 0 0 0 10 -0.5 0\n0 90 0 0 0 0 20 100 0\n"))
-    odd = figure(rows="0 9.0e+1 -0 0 0 0 1E1 -.5 +0.\n\n\t0\t900e-1 0 0 0 0 20 1.0e2 0  \n\n").replace("\n", "\r\n")
+    odd = figure(rows="0 9.0e+1 -0 0 0 0 1E1 -.5 +0.\n\n\t0\t900e-1 0 0 0 0 20 1.0e2 0  \n\n").replace(
+        "\n", "\r\n"
+    )
     clip = read(path, "\ufeff" + odd)
     np.testing.assert_array_equal(clip.rotations, plain.rotations)
     np.testing.assert_array_equal(clip.translations, plain.translations)
 
 
 def test_numbers_of_many_digits_keep_their_precision(path: Path) -> None:
-    clip = read(path, figure(rows="0.12345678901234567890123 90 0 0 0 0 123456789012345678901234567890e-28 0 0\n" * 2), 1.0)
+    clip = read(
+        path,
+        figure(rows="0.12345678901234567890123 90 0 0 0 0 123456789012345678901234567890e-28 0 0\n" * 2),
+        1.0,
+    )
     assert clip.root[0, 0] == np.float32(0.12345678901234568)
-    assert abs(np.degrees(rotation.angle_between(clip.rotations[0, 1], rotation.IDENTITY)) - 12.345678901) < 1e-4
+    assert (
+        abs(np.degrees(rotation.angle_between(clip.rotations[0, 1], rotation.IDENTITY)) - 12.345678901) < 1e-4
+    )
 
 
 @pytest.mark.parametrize(
     ("time", "fps"),
     [
-        ("0.0333333", 30), (".0083333", 120), ("0.008333", 120), ("0.016667", 60), ("0.04", 25), ("0.033", 30),
-        ("0.016666666666666666", 60), ("0.0417083750417", 1 / 0.0417083750417), ("0.0333667", 1 / 0.0333667), ("1", 1),
+        ("0.0333333", 30), (".0083333", 120), ("0.008333", 120), ("0.016667", 60), ("0.04", 25),
+        ("0.033", 30),
+        ("0.016666666666666666", 60), ("0.0417083750417", 1 / 0.0417083750417),
+        ("0.0333667", 1 / 0.0333667), ("1", 1),
     ],
 )  # fmt: skip
-def test_frame_times_give_whole_rates_only_where_their_digits_say_so(path: Path, time: str, fps: float) -> None:
+def test_frame_times_give_whole_rates_only_where_their_digits_say_so(
+    path: Path, time: str, fps: float
+) -> None:
     assert read(path, figure(time=time)).fps == pytest.approx(fps, rel=1e-12)
 
 
@@ -233,21 +265,32 @@ def test_braces_and_keywords_may_stand_anywhere(path: Path) -> None:
 
 
 def test_several_roots_make_one_skeleton_with_several_roots(path: Path) -> None:
-    text = "HIERARCHY\nROOT a\n{\nOFFSET 0 0 0\nCHANNELS 1 Xrotation\n}\nROOT b\n{\nOFFSET 5 0 0\nCHANNELS 1 Yrotation\n}\n"
+    text = (
+        "HIERARCHY\nROOT a\n{\nOFFSET 0 0 0\nCHANNELS 1 Xrotation\n}\nROOT b\n{\nOFFSET 5 0 "
+        "0\nCHANNELS 1 "
+        "Yrotation\n}\n"
+    )
     clip = read(path, text + "MOTION\nFrames: 1\nFrame Time: 0.1\n10 20\n")
     assert clip.skeleton.parents.tolist() == [-1, -1]
     np.testing.assert_allclose(clip.skeleton.rest_translations[1], [0.05, 0, 0])
 
 
 def test_a_thousand_nested_joints_are_read(path: Path) -> None:
-    deep = "".join(f"{'JOINT' if i else 'ROOT'} j{i} {{ OFFSET 0 1 0 CHANNELS 1 Xrotation\n" for i in range(1000)) + "}" * 1000
+    deep = (
+        "".join(
+            f"{'JOINT' if i else 'ROOT'} j{i} {{ OFFSET 0 1 0 CHANNELS 1 Xrotation\n" for i in range(1000)
+        )
+        + "}" * 1000
+    )
     clip = read(path, f"HIERARCHY\n{deep}\nMOTION\nFrames: 1\nFrame Time: 0.1\n{'1 ' * 1000}\n")
     assert len(clip.skeleton) == 1000
 
 
 def test_a_position_that_follows_the_offset_is_dropped(path: Path) -> None:
     rows = "0 90 0 0 0 0  0 10 0 5 5 5\n" * 2
-    clip = read(path, figure(rows=rows, child="6 Xposition Yposition Zposition Zrotation Xrotation Yrotation"))
+    clip = read(
+        path, figure(rows=rows, child="6 Xposition Yposition Zposition Zrotation Xrotation Yrotation")
+    )
     assert clip.translated == (0,)
 
 
@@ -258,13 +301,16 @@ def test_the_first_frames_place_left_in_a_root_offset_does_not_make_another_skel
     assert one.skeleton.globals(one.skeleton.rest)[1][:, 1].min() == pytest.approx(0)
 
 
-# --- units and axes ----------------------------------------------------------------------------------------------------
+# --- units and axes
+# --------------------------------------------------------------------------------------------------
 
 
 def person(tmp_path: Path, metres: float, spin: np.ndarray | None = None) -> Path:
     """Write the mannequin's skeleton with `metres` per unit, as a standing clip turned by `spin`."""
     skeleton = mannequin_skeleton()
-    scaled = Skeleton(skeleton.names, skeleton.parents, skeleton.rest_rotations, skeleton.rest_translations / (metres * 100))
+    scaled = Skeleton(
+        skeleton.names, skeleton.parents, skeleton.rest_rotations, skeleton.rest_translations / (metres * 100)
+    )
     rotations = rotation.identity((3, len(skeleton))).astype(np.float32)
     root = np.tile(scaled.rest_translations[0], (3, 1))
     if spin is not None:
@@ -276,9 +322,12 @@ def person(tmp_path: Path, metres: float, spin: np.ndarray | None = None) -> Pat
 
 
 @pytest.mark.parametrize(
-    ("metres", "name"), [(1.0, "metres"), (0.01, "centimetres"), (0.0254, "inches"), (0.001, "millimetres"), (0.0564, "CMU")]
+    ("metres", "name"),
+    [(1.0, "metres"), (0.01, "centimetres"), (0.0254, "inches"), (0.001, "millimetres"), (0.0564, "CMU")],
 )
-def test_the_unit_is_the_one_that_makes_a_human_and_is_noted(tmp_path: Path, metres: float, name: str) -> None:
+def test_the_unit_is_the_one_that_makes_a_human_and_is_noted(
+    tmp_path: Path, metres: float, name: str
+) -> None:
     clip = read_bvh(person(tmp_path, metres))
     assert clip.skeleton.height == pytest.approx(mannequin_skeleton().height, rel=2e-3)
     assert any(name in note for note in clip.notes)
@@ -315,13 +364,16 @@ def test_a_bind_pose_left_on_the_first_frame_is_dropped_with_a_note(tmp_path: Pa
     arm = skeleton.index("LeftUpperArm")
     rotations[1:, arm] = rotation.from_axis_angle(np.tile([0, 0, 1.0], (29, 1)), -0.7 + 0.01 * np.arange(29))
     path = tmp_path / "walk.bvh"
-    write_bvh(Clip("walk", skeleton, 30, rotations, np.tile(skeleton.rest_translations[:1], (30, 1, 1))), path)
+    write_bvh(
+        Clip("walk", skeleton, 30, rotations, np.tile(skeleton.rest_translations[:1], (30, 1, 1))), path
+    )
     clip = read_bvh(path)
     assert clip.frames == 29
     assert any("bind pose" in note for note in clip.notes)
 
 
-# --- writing -----------------------------------------------------------------------------------------------------------
+# --- writing
+# --------------------------------------------------------------------------------------------------
 
 
 def test_written_and_read_back_the_motion_is_the_same(path: Path) -> None:
@@ -344,13 +396,19 @@ def test_writing_into_a_folder_that_cannot_be_made_is_refused(tmp_path: Path) ->
     (tmp_path / "file").write_text("")
     skeleton = Skeleton(("a",), np.array([-1]), rotation.identity((1,)), np.zeros((1, 3)))
     with pytest.raises(FileError, match="cannot be written"):
-        write_bvh(Clip("c", skeleton, 30, rotation.identity((1, 1)), np.zeros((1, 1, 3))), tmp_path / "file" / "clip.bvh")
+        write_bvh(
+            Clip("c", skeleton, 30, rotation.identity((1, 1)), np.zeros((1, 1, 3))),
+            tmp_path / "file" / "clip.bvh",
+        )
 
 
-# --- two parsers, one answer -------------------------------------------------------------------------------------------
+# --- two parsers, one answer
+# -------------------------------------------------------------------------------------------
 
 
-def test_a_large_file_split_between_two_threads_reads_as_a_small_one(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_a_large_file_split_between_two_threads_reads_as_a_small_one(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
     rng = np.random.default_rng(5)
     values = np.concatenate([rng.normal(size=(12000, 3)), rng.uniform(-720, 720, (12000, 6))], 1)
     text = "\n".join(" ".join(f"{v:.6g}" for v in row) for row in values)
@@ -361,7 +419,9 @@ def test_a_large_file_split_between_two_threads_reads_as_a_small_one(tmp_path: P
     choose(monkeypatch, True)
     fast = read_bvh(path, 0.01)
     assert path.stat().st_size > 700_000
-    side = np.sign(np.einsum("fji,fji->fj", fast.rotations, slow.rotations))[..., None]  # half turns may fall to either side
+    side = np.sign(np.einsum("fji,fji->fj", fast.rotations, slow.rotations))[
+        ..., None
+    ]  # half turns may fall to either side
     np.testing.assert_allclose(fast.rotations, slow.rotations * side, atol=2e-7)
     np.testing.assert_array_equal(fast.translations, slow.translations)
     assert (np.einsum("fji,fji->fj", fast.rotations[1:], fast.rotations[:-1]) >= 0).all()
@@ -450,17 +510,26 @@ def test_without_a_compiler_large_files_are_read_all_the_same_and_it_is_asked_fo
 
 
 def test_importing_the_reader_does_not_import_numba() -> None:
-    code = "import sys, metagraph.formats.bvh, metagraph.formats.clips; sys.exit('numba' in sys.modules or 'scipy' in sys.modules)"
-    assert subprocess.run([sys.executable, "-c", code], cwd=Path(__file__).parents[2], check=False).returncode == 0
+    code = (
+        "import sys, metagraph.formats.bvh, metagraph.formats.clips; sys.exit('numba' in sys.modules or "
+        "'scipy' in sys.modules)"
+    )
+    assert (
+        subprocess.run([sys.executable, "-c", code], cwd=Path(__file__).parents[2], check=False).returncode
+        == 0
+    )
 
 
-# --- real files --------------------------------------------------------------------------------------------------------
+# --- real files
+# --------------------------------------------------------------------------------------------------
 
 
 def test_real_files_read_as_people_of_human_size(shared_data: Path) -> None:
     from metagraph.motion.roles import find_roles, is_humanoid
 
-    files = sorted((shared_data / "edge-bvh").glob("*.bvh")) + sorted((shared_data / "bandai-namco-1").glob("*active*.bvh"))
+    files = sorted((shared_data / "edge-bvh").glob("*.bvh")) + sorted(
+        (shared_data / "bandai-namco-1").glob("*active*.bvh")
+    )
     assert len(files) > 15
     for file in files:
         clip = read_bvh(file)

@@ -81,7 +81,11 @@ def test_clip_files_are_found_below_a_folder_in_a_stable_order(tmp_path: Path) -
     for name in ("b.bvh", "A.glb", "sub/c.FBX", ".hidden/d.bvh", "e.txt", ".f.glb"):
         (tmp_path / name).parent.mkdir(exist_ok=True)
         (tmp_path / name).write_bytes(b"")
-    assert [p.relative_to(tmp_path).as_posix() for p in find_clip_files(tmp_path)] == ["A.glb", "b.bvh", "sub/c.FBX"]
+    assert [p.relative_to(tmp_path).as_posix() for p in find_clip_files(tmp_path)] == [
+        "A.glb",
+        "b.bvh",
+        "sub/c.FBX",
+    ]
     assert ".vrm" in SUFFIXES
 
 
@@ -90,7 +94,9 @@ def test_a_bad_file_among_many_fails_alone_with_its_reason(tmp_path: Path) -> No
         write_bvh(clip(), tmp_path / f"{i}.bvh")
     (tmp_path / "2.bvh").write_text("HIERARCHY\n")
     steps: list[tuple[int, int, str]] = []
-    report = import_clips(find_clip_files(tmp_path), lambda done, total, path: steps.append((done, total, path.name)))
+    report = import_clips(
+        find_clip_files(tmp_path), lambda done, total, path: steps.append((done, total, path.name))
+    )
     assert [p.name for p, _, _ in report.clips] == ["0.bvh", "1.bvh", "3.bvh", "4.bvh"]
     assert [f.path.name for f in report.failures] == ["2.bvh"]
     assert steps == [(i, 5, f"{i}.bvh") for i in range(5)] + [(5, 5, "4.bvh")]
@@ -125,7 +131,9 @@ def test_the_digest_is_the_sha_256_of_the_content(tmp_path: Path) -> None:
 
 
 @pytest.mark.parametrize("name", zoo.ANIMALS)
-def test_units_axes_rests_and_bind_poses_of_the_zoo_are_seen_through(zoo_files: dict[str, Path], name: str) -> None:
+def test_units_axes_rests_and_bind_poses_of_the_zoo_are_seen_through(
+    zoo_files: dict[str, Path], name: str
+) -> None:
     animal, clips = zoo.ANIMALS[name], read_clips(zoo_files[name])
     assert [c.name for c in clips] == (list(zoo.TAKES) if animal.kind == ".glb" else [name])
     for clip, take in zip(clips, zoo.TAKES, strict=False):
@@ -137,12 +145,25 @@ def test_units_axes_rests_and_bind_poses_of_the_zoo_are_seen_through(zoo_files: 
 
 
 def test_all_real_files_are_read_or_refused_in_words(shared_data: Path) -> None:
-    files = [f for f in find_clip_files(shared_data) if f.suffix != ".fbx" and ("bandai" not in str(f) or "_sad_" in f.name)]
+    files = [
+        f
+        for f in find_clip_files(shared_data)
+        if f.suffix != ".fbx" and ("bandai" not in str(f) or "_sad_" in f.name)
+    ]
     report = import_clips(files)
     assert len(report.clips) > 250
     # Four files hold a mesh and no motion.
-    assert sorted(f.path.name for f in report.failures) == ["alien.gltf", "fox.glb", "human-mannequin.glb", "seagull.glb"]
+    assert sorted(f.path.name for f in report.failures) == [
+        "alien.gltf",
+        "fox.glb",
+        "human-mannequin.glb",
+        "seagull.glb",
+    ]
     assert all("no animation" in f.cause for f in report.failures)
-    animals = {c.skeleton.fingerprint for p, _, c in report.clips if p.name in ("bird-animations.glb", "quad-creature-animations.glb")}
+    animals = {
+        c.skeleton.fingerprint
+        for p, _, c in report.clips
+        if p.name in ("bird-animations.glb", "quad-creature-animations.glb")
+    }
     people = {c.skeleton.fingerprint for p, _, c in report.clips if p.name == "human-addon-animations.glb"}
     assert len(animals) == 2 and not animals & people

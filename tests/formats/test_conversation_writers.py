@@ -1,4 +1,6 @@
-"""Conversations written for ELAN and Praat: files those programs take, and what is read back is what was written."""
+"""Conversations written for ELAN and Praat: files those programs take, and what is read back is what was
+written.
+"""
 
 from __future__ import annotations
 
@@ -18,7 +20,11 @@ from metagraph.formats.transcripts import read_transcript
 from metagraph.graph.conversation import SPOKEN, Conversation, Segment, Side, Word
 from metagraph.speech.textgrid import read_textgrid
 
-WRITERS: dict[str, Callable[[Conversation, Path], None]] = {".eaf": write_elan, ".TextGrid": write_textgrid, ".json": write_json}
+WRITERS: dict[str, Callable[[Conversation, Path], None]] = {
+    ".eaf": write_elan,
+    ".TextGrid": write_textgrid,
+    ".json": write_json,
+}
 
 
 def words(*rows: tuple[str, float, float]) -> tuple[Word, ...]:
@@ -29,7 +35,9 @@ ANN = Side(
     name="Ann",
     audio="sound/talk one.wav",
     channel=0,
-    words=words(('"so"', 0.5, 0.7), ("we", 0.7, 0.9), ("left & <ran>", 0.9, 1.4), ("home", 2, 2.2), ("then", 2.2, 3)),
+    words=words(
+        ('"so"', 0.5, 0.7), ("we", 0.7, 0.9), ("left & <ran>", 0.9, 1.4), ("home", 2, 2.2), ("then", 2.2, 3)
+    ),
     segments=(
         Segment("clause", 0.5, 1.4, 0.95, '"so" we left & <ran>'),
         Segment("hesitation", 1.4, 1.6, None, "uh"),
@@ -55,25 +63,38 @@ def test_elan_gets_its_media_and_ordered_time_slots(tmp_path: Path) -> None:
     root = ET.parse(tmp_path / "a.eaf").getroot()
     assert [e.tag for e in root] == ["HEADER", "TIME_ORDER", *["TIER"] * 6, "LINGUISTIC_TYPE"]
     (media,) = root.findall("HEADER/MEDIA_DESCRIPTOR")
-    assert media.get("RELATIVE_MEDIA_URL") == "./sound/talk one.wav" and media.get("MIME_TYPE") == "audio/x-wav"
-    assert (media.get("MEDIA_URL") or "").startswith("file:///") and (media.get("MEDIA_URL") or "").endswith("sound/talk%20one.wav")
+    assert (
+        media.get("RELATIVE_MEDIA_URL") == "./sound/talk one.wav" and media.get("MIME_TYPE") == "audio/x-wav"
+    )
+    assert (media.get("MEDIA_URL") or "").startswith("file:///") and (media.get("MEDIA_URL") or "").endswith(
+        "sound/talk%20one.wav"
+    )
     slots = {s.get("TIME_SLOT_ID"): int(s.get("TIME_VALUE") or -1) for s in root.iter("TIME_SLOT")}
     assert list(slots.values()) == sorted(slots.values())
     used = [m.get(f"TIME_SLOT_REF{n}") for m in root.iter("ALIGNABLE_ANNOTATION") for n in (1, 2)]
     assert sorted(used) == sorted(slots)  # each once: those that were shared would move together
     for tier in root.iter("TIER"):
-        spans = [(slots[m.get("TIME_SLOT_REF1")], slots[m.get("TIME_SLOT_REF2")]) for m in tier.iter("ALIGNABLE_ANNOTATION")]
+        spans = [
+            (slots[m.get("TIME_SLOT_REF1")], slots[m.get("TIME_SLOT_REF2")])
+            for m in tier.iter("ALIGNABLE_ANNOTATION")
+        ]
         assert all(a < b for a, b in spans) and all(x[1] <= y[0] for x, y in itertools.pairwise(spans))
     types = {t.get("LINGUISTIC_TYPE_ID") for t in root.iter("LINGUISTIC_TYPE")}
     assert {t.get("LINGUISTIC_TYPE_REF") for t in root.iter("TIER")} == types
-    assert [t.name for t in read_elan(tmp_path / "a.eaf").tiers][:3] == ["words@Ann", "segments@Ann", "peaks@Ann"]
+    assert [t.name for t in read_elan(tmp_path / "a.eaf").tiers][:3] == [
+        "words@Ann",
+        "segments@Ann",
+        "peaks@Ann",
+    ]
 
 
 def test_praat_gets_tiers_that_cover_the_whole_time(tmp_path: Path) -> None:
     write_textgrid(TALK, tmp_path / "a.TextGrid")
     grid = read_textgrid(tmp_path / "a.TextGrid")
     assert (grid.start, grid.end) == (0, 8.5)
-    assert [t.name for t in grid.tiers] == [f"{who} - {what}" for who in ("Ann", "Ben") for what in ("words", "segments", "peaks")]
+    assert [t.name for t in grid.tiers] == [
+        f"{who} - {what}" for who in ("Ann", "Ben") for what in ("words", "segments", "peaks")
+    ]
     for tier in grid.tiers:
         if tier.points:
             assert [i.start for i in tier.intervals] == ([0.95, 2] if tier.name.startswith("Ann") else [])
@@ -97,8 +118,9 @@ def test_a_place_that_cannot_be_written_says_so(tmp_path: Path) -> None:
 
 spoken = st.text(st.characters(codec="utf-8"), max_size=8)
 marks = st.lists(
-    st.tuples(st.sampled_from(SPOKEN), st.integers(0, 900), st.integers(40, 3000), st.floats(0, 1), spoken), max_size=5
-)  # fmt: skip
+    st.tuples(st.sampled_from(SPOKEN), st.integers(0, 900), st.integers(40, 3000), st.floats(0, 1), spoken),
+    max_size=5,
+)
 
 
 @settings(max_examples=80, suppress_health_check=[HealthCheck.function_scoped_fixture], deadline=None)
@@ -112,7 +134,14 @@ def test_any_conversation_keeps_its_segments(
         peak = round(start + share * length) / 1000 if kind == "clause" else None
         found.append(Segment(kind, start / 1000, end / 1000, peak, text))
         at = end
-    sides = (Side(name="A", segments=tuple(found), words=words(*((t, a / 1000, (a + b) / 1000) for t, a, b in texts))), Side(name="B"))
+    sides = (
+        Side(
+            name="A",
+            segments=tuple(found),
+            words=words(*((t, a / 1000, (a + b) / 1000) for t, a, b in texts)),
+        ),
+        Side(name="B"),
+    )
     made = Conversation(name="x", length=max(at / 1000, 1.0), sides=sides)
     for suffix, write in WRITERS.items():
         write(made, tmp_path / f"a{suffix}")

@@ -1,4 +1,6 @@
-"""Conversations from files: channels, files and transcripts brought together; what is wrong with them is said with a remedy."""
+"""Conversations from files: channels, files and transcripts brought together; what is wrong with them is said
+with a remedy.
+"""
 
 from __future__ import annotations
 
@@ -39,7 +41,11 @@ def counts(side: Side) -> dict[str, int]:
 
 def buzz(seconds: float, rate: int = RATE) -> Any:
     at = np.arange(int(seconds * rate)) / rate
-    return 0.2 * sum(np.sin(2 * np.pi * k * 130 * at) / k for k in range(1, 12)) * (np.sin(2 * np.pi * 0.5 * at) > 0)
+    return (
+        0.2
+        * sum(np.sin(2 * np.pi * k * 130 * at) / k for k in range(1, 12))
+        * (np.sin(2 * np.pi * 0.5 * at) > 0)
+    )
 
 
 def sound(path: Path, *channels: Any, rate: int = RATE) -> Path:
@@ -47,13 +53,18 @@ def sound(path: Path, *channels: Any, rate: int = RATE) -> Path:
     return path
 
 
-# --- what is brought together ----------------------------------------------------------------------------------------
+# --- what is brought together
+# ----------------------------------------------------------------------------------------
 
 
 def test_two_channels_and_one_transcript_make_two_sides(files: tuple[Path, Path]) -> None:
     read = read_conversation([files[0]], [files[1]], files[0].parent)
     made, spoken = read.conversation, talk.speak()
-    assert not read.notes and made.name == "talk" and made.length == pytest.approx(spoken.samples.shape[1] / spoken.rate, abs=0.01)
+    assert (
+        not read.notes
+        and made.name == "talk"
+        and made.length == pytest.approx(spoken.samples.shape[1] / spoken.rate, abs=0.01)
+    )
     for n, side in enumerate(made.sides):
         assert (side.audio, side.channel, side.name) == ("talk.wav", n, f"SPEAKER_0{n}")
         assert [(w.text, w.start, w.end) for w in side.words] == [
@@ -69,16 +80,25 @@ def test_speakers_are_brought_to_the_channel_they_are_heard_in(files: tuple[Path
     spoken = talk.speak()
     sound(files[0], spoken.samples[1], spoken.samples[0], rate=spoken.rate)
     made = read_conversation([files[0]], [files[1]]).conversation
-    assert [s.name for s in made.sides] == ["SPEAKER_01", "SPEAKER_00"] and [s.channel for s in made.sides] == [0, 1]
+    assert [s.name for s in made.sides] == ["SPEAKER_01", "SPEAKER_00"] and [
+        s.channel for s in made.sides
+    ] == [0, 1]
 
 
 def test_two_files_and_a_textgrid(tmp_path: Path) -> None:
     spoken = talk.speak()
-    audio = [sound(tmp_path / f"{n}.flac", s, rate=spoken.rate) for n, s in zip("ab", spoken.samples, strict=True)]
+    audio = [
+        sound(tmp_path / f"{n}.flac", s, rate=spoken.rate) for n, s in zip("ab", spoken.samples, strict=True)
+    ]
     talk.write_textgrid(tmp_path / "t.TextGrid", spoken)
     made = read_conversation(audio, [tmp_path / "t.TextGrid"], tmp_path.parent, "A talk").conversation
-    assert made.name == "A talk" and [s.audio for s in made.sides] == [f"{tmp_path.name}/a.flac", f"{tmp_path.name}/b.flac"]
-    assert [s.name for s in made.sides] == ["Ann", "Ben"] and [len(s.words) for s in made.sides] == [len(w) for w in spoken.words]
+    assert made.name == "A talk" and [s.audio for s in made.sides] == [
+        f"{tmp_path.name}/a.flac",
+        f"{tmp_path.name}/b.flac",
+    ]
+    assert [s.name for s in made.sides] == ["Ann", "Ben"] and [len(s.words) for s in made.sides] == [
+        len(w) for w in spoken.words
+    ]
 
 
 def test_a_transcript_a_side(files: tuple[Path, Path], tmp_path: Path) -> None:
@@ -90,7 +110,9 @@ def test_a_transcript_a_side(files: tuple[Path, Path], tmp_path: Path) -> None:
     assert said(swapped, "better than the other way round")
 
 
-def test_one_channel_is_shared_when_a_transcript_names_the_speakers(files: tuple[Path, Path], tmp_path: Path) -> None:
+def test_one_channel_is_shared_when_a_transcript_names_the_speakers(
+    files: tuple[Path, Path], tmp_path: Path
+) -> None:
     spoken = talk.speak()
     mono = sound(tmp_path / "mono.wav", spoken.samples.sum(0), rate=spoken.rate)
     read = read_conversation([mono], [files[1]])
@@ -127,11 +149,19 @@ def test_the_lists_are_kept_with_the_conversation(files: tuple[Path, Path]) -> N
 
 
 @pytest.mark.parametrize("suffix", [".eaf", ".TextGrid", ".json"])
-def test_what_was_corrected_by_hand_is_read_back(files: tuple[Path, Path], tmp_path: Path, suffix: str) -> None:
+def test_what_was_corrected_by_hand_is_read_back(
+    files: tuple[Path, Path], tmp_path: Path, suffix: str
+) -> None:
     made = read_conversation([files[0]], [files[1]], tmp_path).conversation
     first = made.sides[0]
-    segments = (Segment("response", 0.61, 1.5, None, "so I was"), Segment("clause", 1.5, 3.312, 2.9, "moved"), *first.segments[3:])
-    made = msgspec.structs.replace(made, sides=(msgspec.structs.replace(first, segments=segments), made.sides[1]))
+    segments = (
+        Segment("response", 0.61, 1.5, None, "so I was"),
+        Segment("clause", 1.5, 3.312, 2.9, "moved"),
+        *first.segments[3:],
+    )
+    made = msgspec.structs.replace(
+        made, sides=(msgspec.structs.replace(first, segments=segments), made.sides[1])
+    )
     path = tmp_path / f"out{suffix}"
     {
         ".eaf": lambda: write_elan(made, path, tmp_path),
@@ -145,7 +175,9 @@ def test_what_was_corrected_by_hand_is_read_back(files: tuple[Path, Path], tmp_p
         assert [(s.kind, s.text) for s in a.segments] == [(s.kind, s.text) for s in b.segments]
         for s, t in zip(a.segments, b.segments, strict=True):
             assert (t.start, t.end) == (pytest.approx(s.start, abs=6e-4), pytest.approx(s.end, abs=6e-4))
-            assert (s.peak is None) == (t.peak is None) and (s.peak is None or t.peak == pytest.approx(s.peak, abs=6e-4))
+            assert (s.peak is None) == (t.peak is None) and (
+                s.peak is None or t.peak == pytest.approx(s.peak, abs=6e-4)
+            )
 
 
 def test_a_cancelled_reading_ends(files: tuple[Path, Path]) -> None:
@@ -153,7 +185,8 @@ def test_a_cancelled_reading_ends(files: tuple[Path, Path]) -> None:
         read_conversation([files[0]], cancelled=lambda: True)
 
 
-# --- what is wrong ---------------------------------------------------------------------------------------------------
+# --- what is wrong
+# --------------------------------------------------------------------------------------------------
 
 
 def test_silence_says_so(tmp_path: Path) -> None:
@@ -165,20 +198,26 @@ def test_silence_says_so(tmp_path: Path) -> None:
     with pytest.raises(FileError, match="same sound in both channels"):
         read_conversation([sound(tmp_path / "b.wav", buzz(3), buzz(3))])
     one = read_conversation([sound(tmp_path / "c.wav", np.zeros(6 * RATE), buzz(6))])
-    assert said(one, "left channel is silent", "transcript") and said(one, "c.wav, left channel: it is silent", "microphone")
+    assert said(one, "left channel is silent", "transcript") and said(
+        one, "c.wav, left channel: it is silent", "microphone"
+    )
     assert one.conversation.sides[1].segments and not one.conversation.sides[0].segments
 
 
 def test_noise_says_so(tmp_path: Path) -> None:
     noise = 0.1 * np.random.default_rng(1).standard_normal((2, 4 * RATE))
     read = read_conversation([sound(tmp_path / "a.wav", *noise)])
-    assert said(read, "left channel: nothing stands out of a steady noise") and said(read, "right channel: nothing stands out")
+    assert said(read, "left channel: nothing stands out of a steady noise") and said(
+        read, "right channel: nothing stands out"
+    )
     assert all(not s.segments for s in read.conversation.sides)
 
 
 def test_clipping_says_how_much(tmp_path: Path) -> None:
     read = read_conversation([sound(tmp_path / "a.wav", np.clip(20 * buzz(4), -1, 1), buzz(4)[::-1])])
-    assert said(read, "left channel:", "% of the samples are cut off") and not said(read, "right channel:", "cut off")
+    assert said(read, "left channel:", "% of the samples are cut off") and not said(
+        read, "right channel:", "cut off"
+    )
 
 
 def test_an_mp3_named_wav_is_read_as_what_it_is(files: tuple[Path, Path], tmp_path: Path) -> None:
@@ -226,25 +265,37 @@ def test_words_past_the_end_are_left_out_and_told(files: tuple[Path, Path], tmp_
 def test_an_empty_transcript_leaves_it_to_loudness(files: tuple[Path, Path], tmp_path: Path) -> None:
     (tmp_path / "t.vtt").write_text("")
     read = read_conversation([files[0]], [tmp_path / "t.vtt"])
-    assert said(read, "t.vtt: it is empty") and said(read, "no words, so loudness tells") and read.conversation.sides[0].segments
+    assert (
+        said(read, "t.vtt: it is empty")
+        and said(read, "no words, so loudness tells")
+        and read.conversation.sides[0].segments
+    )
 
 
 def test_more_than_two_speakers_are_told(files: tuple[Path, Path], tmp_path: Path) -> None:
-    (tmp_path / "t.ctm").write_text("x A 1 0.5 so\nx A 2 0.5 we\nx B 11 0.4 yes\nx B 12 0.4 no\nx C 3 0.5 me\n")
+    (tmp_path / "t.ctm").write_text(
+        "x A 1 0.5 so\nx A 2 0.5 we\nx B 11 0.4 yes\nx B 12 0.4 no\nx C 3 0.5 me\n"
+    )
     read = read_conversation([files[0]], [tmp_path / "t.ctm"])
     assert said(read, "3 speakers", "'C'") and [s.name for s in read.conversation.sides] == ["A", "B"]
 
 
 def test_words_where_nothing_is_heard_are_told(files: tuple[Path, Path], tmp_path: Path) -> None:
     (tmp_path / "t.ctm").write_text(
-        "".join(f"x A {29.6 + 0.08 * n} 0.08 so\n" for n in range(8)) + "x B 23.5 0.4 she\nx B 24.1 0.4 takes\n"
+        "".join(f"x A {29.6 + 0.08 * n} 0.08 so\n" for n in range(8))
+        + "x B 23.5 0.4 she\nx B 24.1 0.4 takes\n"
     )
     assert said(read_conversation([files[0]], [tmp_path / "t.ctm"]), "lie where nothing is heard")
 
 
 @pytest.mark.skipif(not SPEECH.is_dir(), reason="the recordings of praatIO are not here")
 def test_real_recordings_make_sides() -> None:
-    read = read_conversation([SPEECH / "mary.wav", SPEECH / "bobby.wav"], [SPEECH / "mary.TextGrid", SPEECH / "bobby_words.TextGrid"])
+    read = read_conversation(
+        [SPEECH / "mary.wav", SPEECH / "bobby.wav"],
+        [SPEECH / "mary.TextGrid", SPEECH / "bobby_words.TextGrid"],
+    )
     mary, bobby = read.conversation.sides
-    assert [s.text for s in mary.segments] == ["mary rolled the barrel"] and mary.segments[0].peak == pytest.approx(0.6, abs=0.1)
+    assert [s.text for s in mary.segments] == ["mary rolled the barrel"] and mary.segments[
+        0
+    ].peak == pytest.approx(0.6, abs=0.1)
     assert bobby.segments and all(s.kind == "clause" for s in bobby.segments)

@@ -22,7 +22,9 @@ from tests.projects import SKELETON, clip, projects
 
 def small() -> Project:
     """One of everything."""
-    project = edits.add_clips(Project("small"), [(f"{n}.glb", 0, "ab" * 32, clip(n)) for n in ("idle", "wave", "sit", "down")])
+    project = edits.add_clips(
+        Project("small"), [(f"{n}.glb", 0, "ab" * 32, clip(n)) for n in ("idle", "wave", "sit", "down")]
+    )
     project = edits.add_stance(project, "arms", "rest", ["c1"])
     project = edits.add_stance(project, "arms", "seated", ["c3"])
     project = edits.place(project, ["c2"], "arms", "gesture", "s5")
@@ -46,11 +48,20 @@ def test_an_empty_project_comes_back() -> None:
 
 def test_what_is_at_its_default_is_left_out() -> None:
     action = to_data(small())["layers"]["arms"]["actions"][2]
-    assert action == {"id": "a9", "clip": "c2", "kind": "gesture", "stance": "s5", "name": "wave", "blend_out": 0.25}
+    assert action == {
+        "id": "a9",
+        "clip": "c2",
+        "kind": "gesture",
+        "stance": "s5",
+        "name": "wave",
+        "blend_out": 0.25,
+    }
 
 
 def test_times_are_rounded_to_a_microsecond_but_nothing_becomes_zero() -> None:
-    project = edits.update_actions(small(), ["a9"], likelihood=1.23456789e-9, timing={"start": 0.1 + 0.2, "end": 1 / 3})
+    project = edits.update_actions(
+        small(), ["a9"], likelihood=1.23456789e-9, timing={"start": 0.1 + 0.2, "end": 1 / 3}
+    )
     action = to_data(project)["layers"]["arms"]["actions"][2]
     assert (action["start"], action["end"], action["likelihood"]) == (0.3, 0.333333, 1.23457e-9)
 
@@ -108,7 +119,11 @@ WRONG: list[tuple[tuple[Any, ...], Any, str]] = [
     (("layers", "arms", "stances", 0), {"id": "s5"}, r"stances\[0\].name is missing"),
     (("layers", "arms", "stances", 1, "id"), "s5", "'s5' is used twice"),
     (("layers", "head", "stances"), [{"id": "s5", "name": "x"}], "'s5' is used twice"),
-    (("layers", "arms", "actions", 2, "kind"), "dance", r"actions\[2\].kind should be one of stance, gesture"),
+    (
+        ("layers", "arms", "actions", 2, "kind"),
+        "dance",
+        r"actions\[2\].kind should be one of stance, gesture",
+    ),
     (("layers", "arms", "actions", 2, "kind"), ["gesture"], "kind should be text"),
     (("layers", "arms", "actions", 2, "limb"), "tail", "limb should be one of left"),
     (("layers", "arms", "actions", 2, "likelyhood"), 2, "did you mean 'likelihood'"),
@@ -129,19 +144,51 @@ WRONG: list[tuple[tuple[Any, ...], Any, str]] = [
     (("settings",), {"alpha": "four"}, "settings.alpha should be a number"),
     (("settings",), {"speed": 1}, "settings.speed is not a field"),
     (("markov",), {"tail": {}}, "markov.tail is not a field"),
-    (("markov",), {"arms": {"states": ["left dance"], "matrix": [[1]]}}, "markov.arms.states should be one of"),
+    (
+        ("markov",),
+        {"arms": {"states": ["left dance"], "matrix": [[1]]}},
+        "markov.arms.states should be one of",
+    ),
     (("markov",), {"arms": {"states": [3], "matrix": [[1]]}}, "markov.arms.states should be one of"),
     (("markov",), {"arms": {"states": ["left gesture"], "matrix": []}}, "matrix should have 1 rows"),
     (("markov",), {"arms": {"states": [], "matrix": []}}, "matrix should have 1 rows"),
     (("markov",), {"arms": {"states": ["left gesture"], "matrix": [[0.5]]}}, "probabilities that sum to 1"),
     (("markov",), {"arms": {"states": ["left gesture"], "matrix": [1]}}, "should be 1 numbers"),
-    (("markov",), {"arms": {"states": ["left gesture"], "matrix": [[1]], "gap": 0}}, "markov.arms.gap should be"),
-    (("markov",), {"arms": {"states": ["left gesture"], "matrix": [[1]], "tags": ["x"]}}, "markov.arms.tags is not a field"),
-    (("markov",), {"arms": {"states": ["left gesture"], "matrix": [[1]], "lengths": [[1, 1], [1, 1]]}}, "lengths should be 1 pairs"),
-    (("markov",), {"arms": {"states": ["left gesture"], "matrix": [[1]], "lengths": [1]}}, "lengths should be 2 numbers"),
-    (("markov",), {"arms": {"states": ["left gesture"], "matrix": [[1]], "lengths": [[0, 1]]}}, "means above 0"),
-    (("markov",), {"arms": {"states": ["left gesture"], "matrix": [[1]], "lengths": [[1, -1]]}}, "deviations of 0 or more"),
-    (("markov",), {"arms": {"states": ["left gesture"], "matrix": [[1]], "lengths": [[1, float("nan")]]}}, "lengths should be 2 numbers"),
+    (
+        ("markov",),
+        {"arms": {"states": ["left gesture"], "matrix": [[1]], "gap": 0}},
+        "markov.arms.gap should be",
+    ),
+    (
+        ("markov",),
+        {"arms": {"states": ["left gesture"], "matrix": [[1]], "tags": ["x"]}},
+        "markov.arms.tags is not a field",
+    ),
+    (
+        ("markov",),
+        {"arms": {"states": ["left gesture"], "matrix": [[1]], "lengths": [[1, 1], [1, 1]]}},
+        "lengths should be 1 pairs",
+    ),
+    (
+        ("markov",),
+        {"arms": {"states": ["left gesture"], "matrix": [[1]], "lengths": [1]}},
+        "lengths should be 2 numbers",
+    ),
+    (
+        ("markov",),
+        {"arms": {"states": ["left gesture"], "matrix": [[1]], "lengths": [[0, 1]]}},
+        "means above 0",
+    ),
+    (
+        ("markov",),
+        {"arms": {"states": ["left gesture"], "matrix": [[1]], "lengths": [[1, -1]]}},
+        "deviations of 0 or more",
+    ),
+    (
+        ("markov",),
+        {"arms": {"states": ["left gesture"], "matrix": [[1]], "lengths": [[1, float("nan")]]}},
+        "lengths should be 2 numbers",
+    ),
     (("skeleton", 0, "parent"), "Head", "'Head' does not come before joint 'Hips'"),
     (("skeleton", 1, "name"), "Hips", "'Hips' is used twice"),
     (("skeleton", 1, "at"), [0, 1], r"skeleton\[1\].at should be 3 numbers"),
@@ -165,7 +212,11 @@ WRONG: list[tuple[tuple[Any, ...], Any, str]] = [
     (("manual", "arms", "links", 0, "source"), "m99", r"links\[0\].source 'm99' is not a state"),
     (("manual", "arms", "links", 1, "blend"), "long", r"links\[1\].blend should be a number"),
     (("manual", "head"), {"states": [{"id": "m11", "clip": "c1", "name": "x"}]}, "'m11' is used twice"),
-    (("manual", "head"), {"states": [{"id": "m90", "clip": "c1"}]}, r"manual.head.states\[0\].name is missing"),
+    (
+        ("manual", "head"),
+        {"states": [{"id": "m90", "clip": "c1"}]},
+        r"manual.head.states\[0\].name is missing",
+    ),
 ]
 
 
@@ -179,7 +230,9 @@ def broken(data: Any, where: tuple[Any, ...], value: Any) -> Any:
 
 
 @pytest.mark.parametrize(
-    ("where", "value", "message"), WRONG, ids=lambda x: str(x)[:40] if not isinstance(x, tuple) else ".".join(map(str, x))
+    ("where", "value", "message"),
+    WRONG,
+    ids=lambda x: str(x)[:40] if not isinstance(x, tuple) else ".".join(map(str, x)),
 )
 def test_a_wrong_field_is_named_with_what_is_wrong(where: tuple[Any, ...], value: Any, message: str) -> None:
     with pytest.raises(DataError) as caught:
@@ -198,15 +251,34 @@ def test_other_data_is_no_project(data: Any) -> None:
 
 def test_fields_left_empty_are_as_if_they_were_not_there() -> None:
     assert (
-        from_data({"metagraph": 1, "clips": None, "layers": None, "roles": None, "parts": None, "settings": None, "skeleton": None})
+        from_data(
+            {
+                "metagraph": 1,
+                "clips": None,
+                "layers": None,
+                "roles": None,
+                "parts": None,
+                "settings": None,
+                "skeleton": None,
+            }
+        )
         == Project()
     )
 
 
 JUNK = st.one_of(
-    st.none(), st.booleans(), st.integers(), st.floats(), st.text(max_size=5), st.just(10**400), st.just(-(10**20)),
-    st.lists(st.integers(), max_size=3), st.dictionaries(st.text(max_size=3), st.integers(), max_size=2), st.just({1: 2}), st.just([[[]]]),
-)  # fmt: skip
+    st.none(),
+    st.booleans(),
+    st.integers(),
+    st.floats(),
+    st.text(max_size=5),
+    st.just(10**400),
+    st.just(-(10**20)),
+    st.lists(st.integers(), max_size=3),
+    st.dictionaries(st.text(max_size=3), st.integers(), max_size=2),
+    st.just({1: 2}),
+    st.just([[[]]]),
+)
 
 
 @settings(max_examples=300, deadline=None)
@@ -228,7 +300,9 @@ def test_whatever_stands_in_a_field_the_error_says_where(chance: random.Random, 
         assert error.where
         assert len(str(error)) < 300
     else:
-        assert to_data(from_data(to_data(project))) == to_data(project)  # but for what lies below a microsecond
+        assert to_data(from_data(to_data(project))) == to_data(
+            project
+        )  # but for what lies below a microsecond
 
 
 def test_every_layer_is_there_whatever_the_data_holds() -> None:

@@ -14,7 +14,9 @@ from metagraph.formats import fbx
 from metagraph.formats.clips import read_clips
 from metagraph.motion.roles import find_roles, is_humanoid
 
-needs_ufbx = pytest.mark.skipif(importlib.util.find_spec("ufbx") is None, reason="the extra metagraph[fbx] is not installed")
+needs_ufbx = pytest.mark.skipif(
+    importlib.util.find_spec("ufbx") is None, reason="the extra metagraph[fbx] is not installed"
+)
 KAYDARA = b"Kaydara FBX Binary  \x00\x1a\x00" + (7400).to_bytes(4, "little")
 
 
@@ -26,14 +28,18 @@ def refused(path: Path, *words: str) -> None:
         assert word in str(caught.value)
 
 
-def test_without_the_library_the_error_says_what_to_install(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_without_the_library_the_error_says_what_to_install(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
     (tmp_path / "a.fbx").write_bytes(KAYDARA)
     monkeypatch.setattr(importlib.util, "find_spec", lambda name: None)
     refused(tmp_path / "a.fbx", "ufbx", "pip install metagraph[fbx]")
 
 
 @needs_ufbx
-@pytest.mark.parametrize("content", [KAYDARA, KAYDARA + b"\xff" * 200, b"; FBX 7.4.0 project file\nObjects: {"])
+@pytest.mark.parametrize(
+    "content", [KAYDARA, KAYDARA + b"\xff" * 200, b"; FBX 7.4.0 project file\nObjects: {"]
+)
 def test_a_broken_file_is_refused(tmp_path: Path, content: bytes) -> None:
     (tmp_path / "a.fbx").write_bytes(content)
     refused(tmp_path / "a.fbx")
@@ -42,7 +48,8 @@ def test_a_broken_file_is_refused(tmp_path: Path, content: bytes) -> None:
 @needs_ufbx
 def test_a_file_without_motion_is_refused(tmp_path: Path) -> None:
     (tmp_path / "a.fbx").write_text(
-        "; FBX 7.4.0 project file\nFBXHeaderExtension:  {\n\tFBXVersion: 7400\n}\nObjects:  {\n}\nConnections:  {\n}\n"
+        "; FBX 7.4.0 project file\nFBXHeaderExtension:  {\n\tFBXVersion: 7400\n}\nObjects:  "
+        "{\n}\nConnections:  {\n}\n"
     )
     refused(tmp_path / "a.fbx", "no animation")
 
@@ -73,7 +80,10 @@ def test_a_child_that_dies_hangs_or_talks_nonsense_costs_one_file_only(
 
 
 @needs_ufbx
-@pytest.mark.parametrize(("file", "tall"), [("fbx-pab/crossarms.fbx", 1.8), ("fbx-pab/walk.fbx", 1.8), ("mesh2motion-cmu/91_48.fbx", 1.5)])
+@pytest.mark.parametrize(
+    ("file", "tall"),
+    [("fbx-pab/crossarms.fbx", 1.8), ("fbx-pab/walk.fbx", 1.8), ("mesh2motion-cmu/91_48.fbx", 1.5)],
+)
 def test_real_files_are_people_in_metres_with_y_up(shared_data: Path, file: str, tall: float) -> None:
     (clip,) = read_clips(shared_data / file)
     roles = find_roles(clip.skeleton)
@@ -98,7 +108,9 @@ def test_joints_stand_where_the_library_itself_puts_them(shared_data: Path) -> N
     for node in nodes:
         if node.name in clip.skeleton:
             t = node.node_to_world.c3
-            np.testing.assert_allclose(positions[clip.skeleton.index(node.name)], (t.x, t.y, t.z), atol=1e-3, err_msg=node.name)
+            np.testing.assert_allclose(
+                positions[clip.skeleton.index(node.name)], (t.x, t.y, t.z), atol=1e-3, err_msg=node.name
+            )
 
 
 @needs_ufbx

@@ -1,4 +1,6 @@
-"""Broken and hostile files: a reader returns a value or raises a FileError that helps; nothing else, and in little memory."""
+"""Broken and hostile files: a reader returns a value or raises a FileError that helps; nothing else, and in
+little memory.
+"""
 
 from __future__ import annotations
 
@@ -35,12 +37,29 @@ def sample() -> tuple[Clip, Character]:
     rotations = rotation.identity((6, 6))
     rotations[:, 2] = rotation.from_axis_angle(np.tile([0, 1.0, 0], (6, 1)), 0.2 * np.arange(6))
     root = offsets[0] + 0.1 * np.arange(6)[:, None]
-    clip = Clip("nod", skeleton, 30, rotations, root[:, None], morphs=("smile",), weights=np.linspace(0, 1, 6)[:, None])
+    clip = Clip(
+        "nod",
+        skeleton,
+        30,
+        rotations,
+        root[:, None],
+        morphs=("smile",),
+        weights=np.linspace(0, 1, 6)[:, None],
+    )
     character = Character(
-        "c", skeleton, np.eye(3, dtype=np.float32), np.eye(3, dtype=np.float32), np.zeros((3, 2), np.float32),
-        np.zeros((3, 4), np.uint16), np.tile(np.float32([1, 0, 0, 0]), (3, 1)), np.array([[0, 1, 2]]),
-        (Material("m", image=b"\x89PNG\r\n\x1a\n"),), (Surface(0, 1, 0),), ("smile",), np.full((1, 3, 3), 0.1, np.float32),
-    )  # fmt: skip
+        "c",
+        skeleton,
+        np.eye(3, dtype=np.float32),
+        np.eye(3, dtype=np.float32),
+        np.zeros((3, 2), np.float32),
+        np.zeros((3, 4), np.uint16),
+        np.tile(np.float32([1, 0, 0, 0]), (3, 1)),
+        np.array([[0, 1, 2]]),
+        (Material("m", image=b"\x89PNG\r\n\x1a\n"),),
+        (Surface(0, 1, 0),),
+        ("smile",),
+        np.full((1, 3, 3), 0.1, np.float32),
+    )
     return clip, character
 
 
@@ -102,13 +121,37 @@ def test_noise(tmp_path: Path, data: bytes, suffix: str, head: bytes) -> None:
     check(tmp_path, suffix, head + data)
 
 
-# --- glTF: every value replaced by a hostile one -------------------------------------------------------------------------
+# --- glTF: every value replaced by a hostile one
+# -------------------------------------------------------------------------
 
-HOSTILE = (-1, 0, 1, 3, 255, 1 << 31, (1 << 63) - 1, 1 << 70, 1e308, -1e30, 0.5, None, "", "VEC4", "x" * 300, [], {}, [0] * 5, [[]], True)
+HOSTILE = (
+    -1,
+    0,
+    1,
+    3,
+    255,
+    1 << 31,
+    (1 << 63) - 1,
+    1 << 70,
+    1e308,
+    -1e30,
+    0.5,
+    None,
+    "",
+    "VEC4",
+    "x" * 300,
+    [],
+    {},
+    [0] * 5,
+    [[]],
+    True,
+)
 
 
 def places(value: Any) -> Iterator[tuple[Any, Any]]:
-    items: Any = value.items() if isinstance(value, dict) else enumerate(value) if isinstance(value, list) else ()
+    items: Any = (
+        value.items() if isinstance(value, dict) else enumerate(value) if isinstance(value, list) else ()
+    )
     for key, inner in list(items):
         yield value, key
         yield from places(inner)
@@ -148,7 +191,9 @@ def test_keys_and_vertices_may_be_any_bits(tmp_path: Path, seeds: dict[str, byte
     rng = np.random.default_rng(3)
     for _ in range(60):
         noise = rng.integers(0, 256, len(body), np.uint8)
-        mixed = np.where(rng.random(len(body)) < rng.choice([0.01, 0.1, 1.0]), noise, np.frombuffer(body, np.uint8))
+        mixed = np.where(
+            rng.random(len(body)) < rng.choice([0.01, 0.1, 1.0]), noise, np.frombuffer(body, np.uint8)
+        )
         check(tmp_path, ".glb", packed(document, mixed.astype(np.uint8).tobytes()))
     for special in (np.nan, np.inf, 3e38, 1e-45):
         check(tmp_path, ".glb", packed(document, np.full(len(body) // 4, special, "<f4").tobytes()))
@@ -166,7 +211,10 @@ def peak(reader: Callable[[Path], Any], path: Path) -> int:
 def hostile_documents() -> dict[str, Any]:
     """Small files that ask for the world."""
     base = {"asset": {"version": "2.0"}, "nodes": [{"name": "a"}]}
-    turn = {"channels": [{"sampler": 0, "target": {"node": 0, "path": "rotation"}}], "samplers": [{"input": 0, "output": 1}]}
+    turn = {
+        "channels": [{"sampler": 0, "target": {"node": 0, "path": "rotation"}}],
+        "samplers": [{"input": 0, "output": 1}],
+    }
     many = 1 << 22
     empty = {"componentType": 5126, "count": many, "type": "VEC4"}
     times = {"componentType": 5126, "count": many, "type": "SCALAR"}
@@ -177,9 +225,25 @@ def hostile_documents() -> dict[str, Any]:
     views = [{"buffer": 0, "byteLength": 8}, {"buffer": 0, "byteLength": 32, "byteOffset": 8}]
     return {
         "zeros": {**base, "animations": [turn] * 50, "accessors": [times, empty]},
-        "many takes of six hours": {**base, "animations": [turn] * 2000, "accessors": [two, key], "bufferViews": views},
-        "morphs": {**base, "nodes": [{"mesh": 0}], "meshes": [mesh], "accessors": [{**empty, "type": "VEC3", "count": 1 << 18}]},
-        "a long chain": {**base, "nodes": chain, "animations": [turn], "accessors": [two, key], "bufferViews": views},
+        "many takes of six hours": {
+            **base,
+            "animations": [turn] * 2000,
+            "accessors": [two, key],
+            "bufferViews": views,
+        },
+        "morphs": {
+            **base,
+            "nodes": [{"mesh": 0}],
+            "meshes": [mesh],
+            "accessors": [{**empty, "type": "VEC3", "count": 1 << 18}],
+        },
+        "a long chain": {
+            **base,
+            "nodes": chain,
+            "animations": [turn],
+            "accessors": [two, key],
+            "bufferViews": views,
+        },
         "a joint named a million times": {**base, "skins": [{"joints": [0] * 1000000}]},
         "a mesh in a thousand nodes": {
             **base,
@@ -207,7 +271,8 @@ def test_deeply_nested_json_is_refused(tmp_path: Path) -> None:
         check(tmp_path, ".gltf", b'{"asset":{"version":"2.0"},"nodes":[{"extras":' + inner)
 
 
-# --- BVH: every word replaced by a hostile one ----------------------------------------------------------------------------
+# --- BVH: every word replaced by a hostile one
+# ----------------------------------------------------------------------------
 
 WORDS = (
     "",
@@ -244,11 +309,16 @@ def test_every_word_of_a_bvh_file_may_be_hostile(tmp_path: Path, seeds: dict[str
 @pytest.mark.parametrize(
     "text",
     [
-        "HIERARCHY\n" + "ROOT a { OFFSET 0 0 0 CHANNELS 1 Xrotation\n" + "JOINT b { OFFSET 0 0 0 CHANNELS 0\n" * 3000 + "}" * 3001,
+        "HIERARCHY\n"
+        + "ROOT a { OFFSET 0 0 0 CHANNELS 1 Xrotation\n"
+        + "JOINT b { OFFSET 0 0 0 CHANNELS 0\n" * 3000
+        + "}" * 3001,
         "HIERARCHY\nROOT " + "a " * 100000,
         "HIERARCHY\nROOT a { OFFSET 0 0 0 CHANNELS 99999999999999999999 Xrotation }",
-        "HIERARCHY\nROOT a\n{\nOFFSET 0 0 0\nCHANNELS 1 Xrotation\n}\nMOTION\nFrames: 99999999999999999999\nFrame Time: 1\n1\n",
-        "HIERARCHY\nROOT a\n{\nOFFSET 0 0 0\nCHANNELS 1 Xrotation\n}\nMOTION\nFrames: 1\nFrame Time: 1e-300\n1\n",
+        "HIERARCHY\nROOT a\n{\nOFFSET 0 0 0\nCHANNELS 1 Xrotation\n}\nMOTION\nFrames: "
+        "99999999999999999999\nFrame Time: 1\n1\n",
+        "HIERARCHY\nROOT a\n{\nOFFSET 0 0 0\nCHANNELS 1 Xrotation\n}\nMOTION\nFrames: 1\nFrame Time: "
+        "1e-300\n1\n",
         "HIERARCHY\nROOT a\n{\nOFFSET 0 0 0\nCHANNELS 0\n}\nMOTION\nFrames: 1\nFrame Time: 1\n1\n",
     ],
 )

@@ -43,7 +43,9 @@ class Scene:
 
     def raw(self, data: bytes, **more: Any) -> int:
         self.data += b"\0" * (-len(self.data) % 4)
-        self.json["bufferViews"].append({"buffer": 0, "byteOffset": len(self.data), "byteLength": len(data), **more})
+        self.json["bufferViews"].append(
+            {"buffer": 0, "byteOffset": len(self.data), "byteLength": len(data), **more}
+        )
         self.data += data
         return len(self.json["bufferViews"]) - 1
 
@@ -69,7 +71,9 @@ class Scene:
             source = times if isinstance(times, int) else self.array(times)
             output = values if isinstance(values, int) else self.array(values)
             animation["samplers"].append({"input": source, "output": output, "interpolation": mode})
-            animation["channels"].append({"sampler": len(animation["samplers"]) - 1, "target": {"node": node, "path": path}})
+            animation["channels"].append(
+                {"sampler": len(animation["samplers"]) - 1, "target": {"node": node, "path": path}}
+            )
         self.json["animations"].append(animation)
 
     def glb(self, path: Path) -> Path:
@@ -107,7 +111,8 @@ def refused(scene: Scene, tmp_path: Path, *words: str) -> FileError:
     return caught.value
 
 
-# --- interpolation and accessors ---------------------------------------------------------------------------------------
+# --- interpolation and accessors
+# ---------------------------------------------------------------------------------------
 
 
 def test_linear_rotations_turn_at_constant_speed_between_far_keys(tmp_path: Path) -> None:
@@ -129,8 +134,17 @@ def test_steps_hold_until_the_next_key(tmp_path: Path) -> None:
 
 def test_cubic_splines_follow_hermite_curves_with_tangents_times_the_gap(tmp_path: Path) -> None:
     scene = Scene(bones())
-    out = [[0, 0, 0], [0, 1, 0], [1, 0, 0], [3, 0, 0], [2, 1, 0], [0, 0, 0]]  # in, value, out of two keys, 2 s apart
-    scene.animate("curve", (0, "translation", [0, 2], out, "CUBICSPLINE"), (1, "rotation", [0, 2], TURN, "LINEAR"))
+    out = [
+        [0, 0, 0],
+        [0, 1, 0],
+        [1, 0, 0],
+        [3, 0, 0],
+        [2, 1, 0],
+        [0, 0, 0],
+    ]  # in, value, out of two keys, 2 s apart
+    scene.animate(
+        "curve", (0, "translation", [0, 2], out, "CUBICSPLINE"), (1, "rotation", [0, 2], TURN, "LINEAR")
+    )
     clip = read_one(scene, tmp_path)
     u = np.linspace(0, 1, 61)
     expected = 2 * (u**3 - 2 * u**2 + u) * 1 + (3 * u**2 - 2 * u**3) * 2 + 2 * (u**3 - u**2) * 3
@@ -148,15 +162,26 @@ def test_normalised_integers_are_rotations(tmp_path: Path, dtype: str, scale: in
 
 def test_sparse_accessors_replace_what_they_name_even_without_a_base(tmp_path: Path) -> None:
     scene = Scene(bones())
-    indices, values = scene.raw(np.array([1], "<u2").tobytes()), scene.raw(np.array([[0, 2, 0]], "<f4").tobytes())
+    indices, values = (
+        scene.raw(np.array([1], "<u2").tobytes()),
+        scene.raw(np.array([[0, 2, 0]], "<f4").tobytes()),
+    )
     scene.json["accessors"].append(
         {
-            "componentType": 5126, "count": 3, "type": "VEC3",
-            "sparse": {"count": 1, "indices": {"bufferView": indices, "componentType": 5123}, "values": {"bufferView": values}},
+            "componentType": 5126,
+            "count": 3,
+            "type": "VEC3",
+            "sparse": {
+                "count": 1,
+                "indices": {"bufferView": indices, "componentType": 5123},
+                "values": {"bufferView": values},
+            },
         }
-    )  # fmt: skip
+    )
     scene.animate(
-        "jump", (0, "translation", [0, 1, 2], len(scene.json["accessors"]) - 1, "LINEAR"), (1, "rotation", [0, 2], TURN, "LINEAR")
+        "jump",
+        (0, "translation", [0, 1, 2], len(scene.json["accessors"]) - 1, "LINEAR"),
+        (1, "rotation", [0, 2], TURN, "LINEAR"),
     )
     clip = read_one(scene, tmp_path)
     np.testing.assert_allclose(clip.root[[0, 15, 30, 60], 1], [0, 1, 2, 0], atol=1e-6)
@@ -167,12 +192,15 @@ def test_strides_and_offsets_within_a_view_are_followed(tmp_path: Path) -> None:
     packed = np.zeros((2, 5), "<f4")
     packed[:, 1:] = TURN
     view = scene.raw(packed.tobytes(), byteStride=20)
-    scene.json["accessors"].append({"bufferView": view, "byteOffset": 4, "componentType": 5126, "count": 2, "type": "VEC4"})
+    scene.json["accessors"].append(
+        {"bufferView": view, "byteOffset": 4, "componentType": 5126, "count": 2, "type": "VEC4"}
+    )
     scene.animate("bend", (1, "rotation", [0, 1], len(scene.json["accessors"]) - 1, "LINEAR"))
     assert rotation.angle_between(read_one(scene, tmp_path).rotations[-1, 1].astype(float), TURN[1]) < 1e-6
 
 
-# --- names, rates, several animations -----------------------------------------------------------------------------------
+# --- names, rates, several animations
+# -----------------------------------------------------------------------------------
 
 
 def test_unnamed_and_default_names_become_the_files_and_stay_unique(tmp_path: Path) -> None:
@@ -188,7 +216,16 @@ def test_unnamed_and_default_names_become_the_files_and_stay_unique(tmp_path: Pa
 def test_the_frame_rate_is_found_from_the_keys(tmp_path: Path, fps: float) -> None:
     scene = Scene(bones())
     times = np.arange(101) / fps
-    scene.animate("wave", (1, "rotation", times, rotation.from_axis_angle(np.tile([0, 0, 1.0], (101, 1)), 0.01 * np.arange(101)), "LINEAR"))
+    scene.animate(
+        "wave",
+        (
+            1,
+            "rotation",
+            times,
+            rotation.from_axis_angle(np.tile([0, 0, 1.0], (101, 1)), 0.01 * np.arange(101)),
+            "LINEAR",
+        ),
+    )
     clip = read_one(scene, tmp_path)
     assert clip.fps == pytest.approx(fps, rel=1e-3)
     assert clip.frames == 101
@@ -207,19 +244,28 @@ def test_one_key_makes_one_frame(tmp_path: Path) -> None:
     assert read_one(scene, tmp_path).frames == 1
 
 
-# --- skeletons -----------------------------------------------------------------------------------------------------------
+# --- skeletons
+# --------------------------------------------------------------------------------------------------
 
 
 def test_scale_and_turn_of_an_armature_are_folded_into_the_top_joint(tmp_path: Path) -> None:
     nodes = bones()
     for node in nodes:
         node["translation"] = [100 * x for x in node["translation"]]
-    nodes.append({"name": "Armature", "children": [0], "scale": [0.01] * 3, "rotation": [-QUARTER, 0, 0, QUARTER]})
+    nodes.append(
+        {"name": "Armature", "children": [0], "scale": [0.01] * 3, "rotation": [-QUARTER, 0, 0, QUARTER]}
+    )
     scene = Scene(nodes)
-    scene.animate("bend", (0, "translation", [0, 1], [[0, 0, 100], [0, 0, 200]], "LINEAR"), (0, "rotation", [0, 1], TURN, "LINEAR"))
+    scene.animate(
+        "bend",
+        (0, "translation", [0, 1], [[0, 0, 100], [0, 0, 200]], "LINEAR"),
+        (0, "rotation", [0, 1], TURN, "LINEAR"),
+    )
     clip = read_one(scene, tmp_path)
     assert clip.skeleton.names == ("Hips", "Spine", "Head")
-    np.testing.assert_allclose(clip.skeleton.rest_translations, [[0, 0, -1], [0, 0.5, 0], [0, 0.3, 0]], atol=1e-9)
+    np.testing.assert_allclose(
+        clip.skeleton.rest_translations, [[0, 0, -1], [0, 0.5, 0], [0, 0.3, 0]], atol=1e-9
+    )
     np.testing.assert_allclose(clip.root[[0, -1]], [[0, 1, 0], [0, 2, 0]], atol=1e-6)
     expected = rotation.multiply(np.array([-QUARTER, 0, 0, QUARTER]), np.array(TURN[1]))
     assert rotation.angle_between(clip.rotations[-1, 0].astype(float), expected) < 1e-6
@@ -250,7 +296,11 @@ def test_uneven_and_animated_scale_are_noted(tmp_path: Path) -> None:
     nodes = bones()
     nodes[1]["scale"] = [1, 2, 1]
     scene = Scene(nodes)
-    scene.animate("bend", (1, "rotation", [0, 1], TURN, "LINEAR"), (2, "scale", [0, 1], [[1, 1, 1], [2, 2, 2]], "LINEAR"))
+    scene.animate(
+        "bend",
+        (1, "rotation", [0, 1], TURN, "LINEAR"),
+        (2, "scale", [0, 1], [[1, 1, 1], [2, 2, 2]], "LINEAR"),
+    )
     notes = " ".join(read_one(scene, tmp_path).notes)
     assert "scaled unevenly" in notes and "scale of 1 joints is animated" in notes
 
@@ -258,7 +308,11 @@ def test_uneven_and_animated_scale_are_noted(tmp_path: Path) -> None:
 def test_translations_that_stay_within_a_hundredth_of_a_millimetre_are_dropped(tmp_path: Path) -> None:
     scene = Scene(bones())
     still = [[0, 0.3, 0], [0, 0.3 + 5e-6, 0]]
-    scene.animate("bend", (2, "translation", [0, 1], still, "LINEAR"), (1, "translation", [0, 1], [[0, 0.5, 0], [0, 0.6, 0]], "LINEAR"))
+    scene.animate(
+        "bend",
+        (2, "translation", [0, 1], still, "LINEAR"),
+        (1, "translation", [0, 1], [[0, 0.5, 0], [0, 0.6, 0]], "LINEAR"),
+    )
     assert read_one(scene, tmp_path).translated == (0, 1)
 
 
@@ -320,7 +374,8 @@ def test_a_bind_pose_key_at_the_start_is_dropped_only_when_plain(tmp_path: Path)
         assert read_one(scene, tmp_path).frames == expected
 
 
-# --- morph targets, VRM --------------------------------------------------------------------------------------------------
+# --- morph targets, VRM
+# --------------------------------------------------------------------------------------------------
 
 
 def smiling() -> Scene:
@@ -334,7 +389,9 @@ def smiling() -> Scene:
             "extras": {"targetNames": ["smile", "blink"]},
         }
     ]
-    scene.animate("talk", (1, "rotation", [0, 1], TURN, "LINEAR"), (3, "weights", [0, 1], [0, 1, 1, 0], "LINEAR"))
+    scene.animate(
+        "talk", (1, "rotation", [0, 1], TURN, "LINEAR"), (3, "weights", [0, 1], [0, 1, 1, 0], "LINEAR")
+    )
     return scene
 
 
@@ -372,7 +429,8 @@ def test_files_that_are_not_vrm_state_no_roles(tmp_path: Path) -> None:
     assert vrm_roles(scene.glb(tmp_path / "me.glb")) == {}
 
 
-# --- text files and buffers ----------------------------------------------------------------------------------------------
+# --- text files and buffers
+# ----------------------------------------------------------------------------------------------
 
 
 def as_text(scene: Scene, uri: str) -> str:
@@ -388,14 +446,27 @@ def bending() -> Scene:
 
 def test_text_files_take_their_buffer_from_a_data_uri_or_a_file_beside_them(tmp_path: Path) -> None:
     scene, path = bending(), tmp_path / "bend.gltf"
-    path.write_text(as_text(scene, "data:application/octet-stream;base64," + base64.b64encode(scene.data).decode()))
+    path.write_text(
+        as_text(scene, "data:application/octet-stream;base64," + base64.b64encode(scene.data).decode())
+    )
     assert read_gltf_clips(path)[0].frames == 31
     (tmp_path / "my data.bin").write_bytes(scene.data)
     path.write_text(as_text(scene, "my%20data.bin"))
     assert read_gltf_clips(path)[0].frames == 31
 
 
-@pytest.mark.parametrize("uri", ["gone.bin", "../secret.bin", "/etc/hostname", "https://example.org/a.bin", "data:;base64,!!", "", "\x00"])
+@pytest.mark.parametrize(
+    "uri",
+    [
+        "gone.bin",
+        "../secret.bin",
+        "/etc/hostname",
+        "https://example.org/a.bin",
+        "data:;base64,!!",
+        "",
+        "\x00",
+    ],
+)
 def test_buffers_that_are_absent_or_elsewhere_are_refused(tmp_path: Path, uri: str) -> None:
     (tmp_path / "secret.bin").write_bytes(b"\0" * 1000)
     (tmp_path / "inner").mkdir()
@@ -406,7 +477,8 @@ def test_buffers_that_are_absent_or_elsewhere_are_refused(tmp_path: Path, uri: s
     assert caught.value.where and caught.value.remedy
 
 
-# --- refused -------------------------------------------------------------------------------------------------------------
+# --- refused
+# --------------------------------------------------------------------------------------------------
 
 
 @pytest.mark.parametrize("name", ["EXT_meshopt_compression", "KHR_draco_mesh_compression", "ACME_future"])
@@ -477,7 +549,8 @@ def test_the_wrong_number_of_values_is_refused(tmp_path: Path) -> None:
     refused(scene, tmp_path, "expected 3x4")
 
 
-# --- writing -------------------------------------------------------------------------------------------------------------
+# --- writing
+# --------------------------------------------------------------------------------------------------
 
 
 def moving(frames: int = 40, fps: float = 24.0) -> list[Clip]:
@@ -502,15 +575,28 @@ def figure() -> Character:
     positions = np.array([[0, 1, 0], [0.1, 1, 0], [0, 1.1, 0], [0, 1.7, 0]], np.float32)
     png = b"\x89PNG\r\n\x1a\n" + b"\0" * 20
     return Character(
-        "figure", skeleton, positions, np.tile(np.float32([0, 0, 1]), (4, 1)), np.zeros((4, 2), np.float32),
-        np.array([[0, 1, 0, 0], [0, 0, 0, 0], [3, 0, 0, 0], [5, 0, 0, 0]]), np.array([[0.5, 0.5, 0, 0]] + [[1, 0, 0, 0]] * 3, np.float32),
-        np.array([[0, 1, 2], [0, 2, 3]]), (Material("skin", (1, 0.5, 0.25, 1), png), Material("cloth", double_sided=True)),
-        (Surface(0, 1, 0), Surface(1, 1, 1)), ("smile",), np.full((1, 4, 3), 0.01, np.float32),
-    )  # fmt: skip
+        "figure",
+        skeleton,
+        positions,
+        np.tile(np.float32([0, 0, 1]), (4, 1)),
+        np.zeros((4, 2), np.float32),
+        np.array([[0, 1, 0, 0], [0, 0, 0, 0], [3, 0, 0, 0], [5, 0, 0, 0]]),
+        np.array([[0.5, 0.5, 0, 0]] + [[1, 0, 0, 0]] * 3, np.float32),
+        np.array([[0, 1, 2], [0, 2, 3]]),
+        (Material("skin", (1, 0.5, 0.25, 1), png), Material("cloth", double_sided=True)),
+        (Surface(0, 1, 0), Surface(1, 1, 1)),
+        ("smile",),
+        np.full((1, 4, 3), 0.01, np.float32),
+    )
 
 
 def assert_same(clip: Clip, back: Clip, tolerance: float) -> None:
-    assert (back.name, back.fps, back.frames, back.skeleton) == (clip.name, clip.fps, clip.frames, clip.skeleton)
+    assert (back.name, back.fps, back.frames, back.skeleton) == (
+        clip.name,
+        clip.fps,
+        clip.frames,
+        clip.skeleton,
+    )
     mine, theirs = clip.poses(), back.poses()
     side = np.sign(np.einsum("fji,fji->fj", mine.rotations, theirs.rotations))[..., None]
     assert np.abs(mine.rotations - theirs.rotations * side).max() <= tolerance
@@ -530,7 +616,15 @@ def test_a_written_character_reads_back_with_its_skin_morphs_and_materials(tmp_p
     skeleton = character.skeleton
     weights = np.linspace(0, 1, 9)[:, None]
     still = np.tile(skeleton.rest_translations[:1], (9, 1, 1))
-    clip = Clip("smile", skeleton, 30, rotation.identity((9, len(skeleton))), still, morphs=("smile",), weights=weights)
+    clip = Clip(
+        "smile",
+        skeleton,
+        30,
+        rotation.identity((9, len(skeleton))),
+        still,
+        morphs=("smile",),
+        weights=weights,
+    )
     write_glb(tmp_path / "figure.glb", [clip], character)
     back = read_character(tmp_path / "figure.glb")
     np.testing.assert_allclose(back.positions, character.positions, atol=1e-5)
@@ -566,7 +660,9 @@ def validator() -> tuple[str, str]:
     for folder in folders:
         if node and folder and (Path(folder) / "node_modules" / "gltf-validator").is_dir():
             return node, folder
-    pytest.skip("node or gltf-validator is missing (set METAGRAPH_GLTF_VALIDATOR to the folder with its node_modules)")
+    pytest.skip(
+        "node or gltf-validator is missing (set METAGRAPH_GLTF_VALIDATOR to the folder with its node_modules)"
+    )
 
 
 @pytest.mark.parametrize("quantize", [True, False])
@@ -574,22 +670,30 @@ def test_written_files_pass_the_khronos_validator(tmp_path: Path, quantize: bool
     node, folder = validator()
     write_glb(tmp_path / "clips.glb", moving(), quantize=quantize)
     character = figure()
-    image = base64.b64decode("iVBORw0KGgoAAAANSUhEUgAAAAEAAAABCAYAAAAfFcSJAAAADUlEQVR42mNk+M9QDwADhgGAWjR9awAAAABJRU5ErkJggg==")
+    image = base64.b64decode(
+        "iVBORw0KGgoAAAANSUhEUgAAAAEAAAABCAYAAAAfFcSJAAAADUlEQVR42mNk+M9QDwADhgGAWjR9awAAAABJRU5ErkJggg=="
+    )
     materials = (Material("skin", (1, 0.5, 0.25, 1), image), character.materials[1])
     fields = {f: getattr(character, f) for f in character.__dataclass_fields__}
-    write_glb(tmp_path / "figure.glb", moving(), Character(**{**fields, "materials": materials}), quantize=quantize)
+    write_glb(
+        tmp_path / "figure.glb", moving(), Character(**{**fields, "materials": materials}), quantize=quantize
+    )
     program = (
         "const v=require('gltf-validator'),fs=require('fs');(async()=>{for(const f of process.argv.slice(1))"
-        "{const r=await v.validateBytes(new Uint8Array(fs.readFileSync(f)));console.log(JSON.stringify(r.issues))}})()"
+        "{const r=await v.validateBytes(new "
+        "Uint8Array(fs.readFileSync(f)));console.log(JSON.stringify(r.issues))}})()"
     )
     files = [str(tmp_path / "clips.glb"), str(tmp_path / "figure.glb")]
-    done = subprocess.run([node, "-e", program, *files], cwd=folder, capture_output=True, text=True, check=True)
+    done = subprocess.run(
+        [node, "-e", program, *files], cwd=folder, capture_output=True, text=True, check=True
+    )
     for line in done.stdout.splitlines():
         issues = json.loads(line)
         assert issues["numErrors"] == 0 and issues["numWarnings"] == 0, issues["messages"][:5]
 
 
-# --- real files ----------------------------------------------------------------------------------------------------------
+# --- real files
+# --------------------------------------------------------------------------------------------------
 
 
 def by_the_book(path: Path, name: str, seconds: float) -> dict[str, np.ndarray]:
@@ -605,7 +709,10 @@ def by_the_book(path: Path, name: str, seconds: float) -> dict[str, np.ndarray]:
         start = view.get("byteOffset", 0) + accessor.get("byteOffset", 0)
         return np.frombuffer(blob, "<f4", accessor["count"] * width, start).reshape(-1, width).astype(float)
 
-    pose = [{"translation": (0, 0, 0), "rotation": (0, 0, 0, 1), "scale": (1, 1, 1), **node} for node in doc["nodes"]]
+    pose = [
+        {"translation": (0, 0, 0), "rotation": (0, 0, 0, 1), "scale": (1, 1, 1), **node}
+        for node in doc["nodes"]
+    ]
     animation = next(a for a in doc["animations"] if a["name"] == name)
     for channel in animation["channels"]:
         sampler = animation["samplers"][channel["sampler"]]
@@ -618,7 +725,12 @@ def by_the_book(path: Path, name: str, seconds: float) -> dict[str, np.ndarray]:
         mode = sampler.get("interpolation", "LINEAR")
         if mode == "CUBICSPLINE":
             p0, m0, p1, m1 = keys[3 * k + 1], gap * keys[3 * k + 2], keys[3 * k + 4], gap * keys[3 * k + 3]
-            value = (2 * u**3 - 3 * u**2 + 1) * p0 + (u**3 - 2 * u**2 + u) * m0 + (3 * u**2 - 2 * u**3) * p1 + (u**3 - u**2) * m1
+            value = (
+                (2 * u**3 - 3 * u**2 + 1) * p0
+                + (u**3 - 2 * u**2 + u) * m0
+                + (3 * u**2 - 2 * u**3) * p1
+                + (u**3 - u**2) * m1
+            )
         elif len(times) == 1 or (mode == "STEP" and u < 1):
             value = keys[k]
         elif channel["target"]["path"] == "rotation":
@@ -646,13 +758,17 @@ def by_the_book(path: Path, name: str, seconds: float) -> dict[str, np.ndarray]:
         ("mesh2motion-cmu/bird-animations.glb", "Fly", 9, 1.0),
     ],
 )
-def test_real_clips_put_every_joint_where_the_specification_does(shared_data: Path, file: str, name: str, frame: int, unit: float) -> None:
+def test_real_clips_put_every_joint_where_the_specification_does(
+    shared_data: Path, file: str, name: str, frame: int, unit: float
+) -> None:
     agrees_with_the_book(shared_data / file, name, frame, unit, rough="adult" in file)
 
 
 @pytest.mark.parametrize("name", [name for name, animal in zoo.ANIMALS.items() if animal.kind == ".glb"])
 @pytest.mark.parametrize("take", zoo.TAKES)
-def test_clips_of_the_zoo_put_every_joint_where_the_specification_does(zoo_files: dict[str, Path], name: str, take: str) -> None:
+def test_clips_of_the_zoo_put_every_joint_where_the_specification_does(
+    zoo_files: dict[str, Path], name: str, take: str
+) -> None:
     agrees_with_the_book(zoo_files[name], take, 17, 1.0)
 
 
@@ -661,19 +777,27 @@ def agrees_with_the_book(file: Path, name: str, frame: int, unit: float, rough: 
     rotations, positions = clip.skeleton.globals(clip.poses()[frame])
     expected = by_the_book(file, name, frame / clip.fps)
     for i, joint in enumerate(clip.skeleton.names):
-        np.testing.assert_allclose(positions[i], expected[joint][:3, 3] * unit, atol=2e-3 if rough else 2e-4, err_msg=joint)
+        np.testing.assert_allclose(
+            positions[i], expected[joint][:3, 3] * unit, atol=2e-3 if rough else 2e-4, err_msg=joint
+        )
         axes = expected[joint][:3, :3] / np.linalg.norm(expected[joint][:3, :3], axis=0)
-        np.testing.assert_allclose(rotation.to_matrix(rotations[i]), axes, atol=2e-2 if rough else 2e-3, err_msg=joint)
+        np.testing.assert_allclose(
+            rotation.to_matrix(rotations[i]), axes, atol=2e-2 if rough else 2e-3, err_msg=joint
+        )
 
 
-@pytest.mark.parametrize("file", ["characters/alien/alien.gltf", "characters/adult_female/cristine/cristine.gltf"])
+@pytest.mark.parametrize(
+    "file", ["characters/alien/alien.gltf", "characters/adult_female/cristine/cristine.gltf"]
+)
 def test_real_characters_stand_in_their_rest_pose(shared_data: Path, file: str) -> None:
     character = read_character(shared_data / "sumerian-hosts" / "glTF" / file)
     assert np.ptp(character.positions[:, 1]) == pytest.approx(1.2 if "alien" in file else 1.77, abs=0.03)
     assert np.abs(character.positions[:, 1].min()) < 0.02
     _, joints = character.skeleton.globals(character.skeleton.rest)
     strongest = character.joints[np.arange(len(character.joints)), character.weights.argmax(1)]
-    assert np.linalg.norm(character.positions - joints[strongest], axis=1).max() < 0.6  # every vertex is near its joint
+    assert (
+        np.linalg.norm(character.positions - joints[strongest], axis=1).max() < 0.6
+    )  # every vertex is near its joint
     assert any("texture left out" in note for note in character.notes)
 
 

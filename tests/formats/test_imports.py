@@ -22,15 +22,37 @@ from tests.projects import SKELETON, clip
 def stranger(name: str, joints: int = 9) -> Clip:
     """A clip of a character with other joints."""
     names = tuple(f"bone{n}" for n in range(joints))
-    skeleton = Skeleton(names, np.arange(-1, joints - 1), np.tile([0, 0, 0, 1.0], (joints, 1)), np.tile([0, 0.2, 0], (joints, 1)))
-    return Clip(name, skeleton, 30, np.tile(skeleton.rest_rotations, (5, 1, 1)), np.tile(skeleton.rest_translations[:1], (5, 1, 1)))
+    skeleton = Skeleton(
+        names,
+        np.arange(-1, joints - 1),
+        np.tile([0, 0, 0, 1.0], (joints, 1)),
+        np.tile([0, 0.2, 0], (joints, 1)),
+    )
+    return Clip(
+        name,
+        skeleton,
+        30,
+        np.tile(skeleton.rest_rotations, (5, 1, 1)),
+        np.tile(skeleton.rest_translations[:1], (5, 1, 1)),
+    )
 
 
 def face(name: str) -> Clip:
     """A clip of the head alone, on its own small skeleton."""
     keep = [0, 1, 2]
-    skeleton = Skeleton(SKELETON.names[:3], SKELETON.parents[:3], SKELETON.rest_rotations[keep], SKELETON.rest_translations[keep])
-    return Clip(name, skeleton, 30, np.tile(skeleton.rest_rotations, (8, 1, 1)), np.tile(skeleton.rest_translations[:1], (8, 1, 1)))
+    skeleton = Skeleton(
+        SKELETON.names[:3],
+        SKELETON.parents[:3],
+        SKELETON.rest_rotations[keep],
+        SKELETON.rest_translations[keep],
+    )
+    return Clip(
+        name,
+        skeleton,
+        30,
+        np.tile(skeleton.rest_rotations, (8, 1, 1)),
+        np.tile(skeleton.rest_translations[:1], (8, 1, 1)),
+    )
 
 
 @pytest.fixture
@@ -68,7 +90,9 @@ def test_nothing_is_nothing(tmp_path: Path) -> None:
 
 def test_a_stopped_import_keeps_what_was_read(folder: Path) -> None:
     seen: list[str] = []
-    result = import_files(Project(), folder, [folder], lambda done, total, path: seen.append(path.name), lambda: len(seen) == 2)
+    result = import_files(
+        Project(), folder, [folder], lambda done, total, path: seen.append(path.name), lambda: len(seen) == 2
+    )
     assert result.cancelled
     assert [name for name, *_ in result.loaded] == ["a.glb", "b.glb"]
 
@@ -85,7 +109,8 @@ def test_clips_of_another_character_are_left_out_with_the_reason(folder: Path) -
     result = import_files(project, folder, [folder / "odd.glb", folder / "a.glb"])
     assert len(result.loaded) == 1
     assert result.failures == (
-        "odd.glb: 2 clips are of another character: its joints have other names (it has 'bone0', the project has 'Hips'). "
+        "odd.glb: 2 clips are of another character: its joints have other names (it has 'bone0', the project "
+        "has 'Hips'). "
         "Import it into a project of its own.",
     )
 
@@ -125,7 +150,9 @@ def test_paths_are_relative_to_the_project_or_absolute_without_one(folder: Path)
     deep = folder / "deep"
     deep.mkdir()
     assert [n for n, *_ in import_files(Project(), deep, [folder / "a.glb"]).loaded] == ["../a.glb"]
-    assert [n for n, *_ in import_files(Project(), None, [folder / "a.glb"]).loaded] == [(folder / "a.glb").resolve().as_posix()]
+    assert [n for n, *_ in import_files(Project(), None, [folder / "a.glb"]).loaded] == [
+        (folder / "a.glb").resolve().as_posix()
+    ]
 
 
 def test_a_file_named_in_several_ways_is_gathered_once(folder: Path, monkeypatch: pytest.MonkeyPatch) -> None:
@@ -141,7 +168,9 @@ def test_a_linked_clip_keeps_the_name_of_the_link(folder: Path) -> None:
     assert [n for n, *_ in import_files(Project(), folder, [folder / "a.glb"]).loaded] == ["a.glb"]
 
 
-@pytest.mark.skipif(os.name == "nt" or os.uname().sysname == "Darwin", reason="file names are always text there")
+@pytest.mark.skipif(
+    os.name == "nt" or os.uname().sysname == "Darwin", reason="file names are always text there"
+)
 def test_a_file_whose_name_is_no_text_is_left_out_since_it_could_not_be_saved(folder: Path) -> None:
     shutil.copy(folder / "a.glb", os.fsencode(folder / "b") + b"\xff.glb")
     result = import_files(Project(), folder, [folder])
@@ -152,12 +181,22 @@ def test_a_file_whose_name_is_no_text_is_left_out_since_it_could_not_be_saved(fo
 def test_what_is_true_of_many_files_is_said_once(shared_data: Path) -> None:
     result = import_files(Project(), None, [shared_data / "bandai-namco-1"])
     assert len(result.notes) == 1
-    assert result.notes[0].startswith("63 files (dataset-1_bow_active_001.bvh ...): units taken for centimetres")
+    assert result.notes[0].startswith(
+        "63 files (dataset-1_bow_active_001.bvh ...): units taken for centimetres"
+    )
 
 
 def test_a_bvh_and_a_glb_of_one_character_go_together(tmp_path: Path) -> None:
-    straight = Skeleton(SKELETON.names, SKELETON.parents, np.tile([0, 0, 0, 1.0], (4, 1)), SKELETON.rest_translations)
-    motion = Clip("a", straight, 30, np.tile(straight.rest_rotations, (9, 1, 1)), np.tile(straight.rest_translations[:1], (9, 1, 1)))
+    straight = Skeleton(
+        SKELETON.names, SKELETON.parents, np.tile([0, 0, 0, 1.0], (4, 1)), SKELETON.rest_translations
+    )
+    motion = Clip(
+        "a",
+        straight,
+        30,
+        np.tile(straight.rest_rotations, (9, 1, 1)),
+        np.tile(straight.rest_translations[:1], (9, 1, 1)),
+    )
     write_bvh(motion, tmp_path / "a.bvh")
     write_glb(tmp_path / "b.glb", [motion.renamed("b")])
     result = import_files(Project(), tmp_path, [tmp_path])
@@ -169,7 +208,9 @@ def test_a_bvh_and_a_glb_of_one_character_go_together(tmp_path: Path) -> None:
     ("name", "pattern", "clips", "joints"),
     [("sumerian-hosts", "alien", 60, 93), ("kaykit-rogue", "", 69, 0), ("bandai-namco-1", "", 63, 22)],
 )
-def test_real_characters_come_in_whole(shared_data: Path, name: str, pattern: str, clips: int, joints: int) -> None:
+def test_real_characters_come_in_whole(
+    shared_data: Path, name: str, pattern: str, clips: int, joints: int
+) -> None:
     files = [p for p in gather([shared_data / name]) if pattern in p.as_posix()]
     result = import_files(Project(), None, files)
     project = result.into(Project())

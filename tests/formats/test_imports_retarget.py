@@ -1,4 +1,6 @@
-"""Clips of other skeletons on their way into a project: left out, asked about, or retargeted; and again when it is opened."""
+"""Clips of other skeletons on their way into a project: left out, asked about, or retargeted; and again when
+it is opened.
+"""
 
 from __future__ import annotations
 
@@ -45,8 +47,16 @@ def others(folder: Path) -> list[Path]:
 
 def stranger(name: str) -> Clip:
     names = tuple(f"bone{n}" for n in range(9))
-    skeleton = Skeleton(names, np.arange(-1, 8), np.tile([0, 0, 0, 1.0], (9, 1)), np.tile([0, 0.2, 0], (9, 1)))
-    return Clip(name, skeleton, 30, np.tile(skeleton.rest_rotations, (5, 1, 1)), np.tile(skeleton.rest_translations[:1], (5, 1, 1)))
+    skeleton = Skeleton(
+        names, np.arange(-1, 8), np.tile([0, 0, 0, 1.0], (9, 1)), np.tile([0, 0.2, 0], (9, 1))
+    )
+    return Clip(
+        name,
+        skeleton,
+        30,
+        np.tile(skeleton.rest_rotations, (5, 1, 1)),
+        np.tile(skeleton.rest_translations[:1], (5, 1, 1)),
+    )
 
 
 def test_without_a_word_they_are_left_out_and_the_remedy_is_named(folder: Path) -> None:
@@ -54,7 +64,9 @@ def test_without_a_word_they_are_left_out_and_the_remedy_is_named(folder: Path) 
     assert not result.loaded and not result.strangers and not result.joint_maps
     assert len(result.failures) == 2
     assert result.failures[0].startswith("other0.glb: its clip is of another character")
-    assert result.failures[0].endswith("Retarget it (import it with --retarget), or import it into a project of its own.")
+    assert result.failures[0].endswith(
+        "Retarget it (import it with --retarget), or import it into a project of its own."
+    )
 
 
 def test_asked_for_they_come_in_one_group_a_skeleton_with_a_proposed_map(folder: Path, sample: Any) -> None:
@@ -75,8 +87,10 @@ def test_said_yes_they_are_retargeted_and_the_map_is_kept(folder: Path, sample: 
     after = result.into(project)
     assert after.skeleton is project.skeleton and set(after.joint_maps) == {fingerprint(sample.skeleton)}
     new = [e for e in after.clips.values() if e.id not in project.clips]
-    assert all(e.brought_from == fingerprint(sample.skeleton) and e.motion.skeleton is project.skeleton for e in new)  # type: ignore[union-attr]
-    assert all("brought over from a skeleton of" in " ".join(e.motion.notes) for e in new)  # type: ignore[union-attr]
+    assert all(
+        e.brought_from == fingerprint(sample.skeleton) and e.motion.skeleton is project.skeleton for e in new
+    )  # type: ignore[union-attr]
+    assert all(("brought over from a skeleton of") in " ".join(e.motion.notes) for e in new)  # type: ignore[union-attr]
     assert not [p for p in check(after) if p.code == "other-skeleton"]
 
 
@@ -114,7 +128,9 @@ def test_what_cannot_be_mapped_says_what_is_missing(folder: Path) -> None:
     assert group.joint_map.missing and "--retarget" not in group.failures[0]
 
 
-def test_in_a_folder_of_two_characters_most_clips_decide_and_the_rest_is_retargeted(folder: Path, toy: Any) -> None:
+def test_in_a_folder_of_two_characters_most_clips_decide_and_the_rest_is_retargeted(
+    folder: Path, toy: Any
+) -> None:
     write_glb(folder / "third.glb", [toy.clip("third", 0.5)])
     result = import_files(Project(), folder, [folder], retarget="yes")
     after = result.into(Project())
@@ -139,7 +155,11 @@ def test_the_map_and_not_a_new_proposal_is_what_counts_on_opening(folder: Path, 
     project = start(folder)
     bringing = Bringing(project)
     (group,) = import_files(project, folder, others(folder), retarget="ask").strangers
-    less = group.joint_map.without("Neck") if group.joint_map.of("Neck") else group.joint_map.without(group.joint_map.pairs[-1].source)
+    less = (
+        group.joint_map.without("Neck")
+        if group.joint_map.of("Neck")
+        else group.joint_map.without(group.joint_map.pairs[-1].source)
+    )
     project = bring_over(bringing, group, less).into(project)
     path = folder / "p.metagraph.yaml"
     save_project(project, path, path)
@@ -180,7 +200,9 @@ def test_a_broken_map_is_told_with_its_place_and_the_project_still_opens(folder:
         path.write_text(good.replace(old, new, 1))
         opened = open_project(path)
         assert len(opened.project.clips) == 4
-        assert any(words in note and "that joint map is left out" in note for note in opened.notes), opened.notes
+        assert any(words in note and "that joint map is left out" in note for note in opened.notes), (
+            opened.notes
+        )
         assert any("its joint map is not in the project: import it again" in note for note in opened.notes)
 
 
@@ -192,7 +214,9 @@ def test_the_journal_keeps_maps_and_what_was_retargeted(folder: Path) -> None:
     assert from_data(apply(to_data(project), change)) == after
 
 
-def test_retargeted_clips_are_read_again_on_their_own_skeleton_to_correct_their_map(folder: Path, sample: Any) -> None:
+def test_retargeted_clips_are_read_again_on_their_own_skeleton_to_correct_their_map(
+    folder: Path, sample: Any
+) -> None:
     project = start(folder)
     assert strangers_of(project, folder) == ()
     project = import_files(project, folder, others(folder), retarget="yes").into(project)
@@ -243,7 +267,12 @@ def test_an_empty_project_has_nothing_to_bring_clips_onto(toy: Any) -> None:
 
 def test_a_bvh_in_another_size_with_the_same_joints_is_retargeted_too(folder: Path, toy: Any) -> None:
     project = start(folder)
-    large = Skeleton(toy.skeleton.names, toy.skeleton.parents, toy.skeleton.rest_rotations, toy.skeleton.rest_translations * 1.5)
+    large = Skeleton(
+        toy.skeleton.names,
+        toy.skeleton.parents,
+        toy.skeleton.rest_rotations,
+        toy.skeleton.rest_translations * 1.5,
+    )
     clip = toy.clip("large", 0.5)
     big = replace(clip, skeleton=large, translations=clip.translations * 1.5)
     write_bvh(big, folder / "large.bvh")
@@ -266,5 +295,7 @@ def test_stopped_it_keeps_what_was_retargeted(folder: Path) -> None:
     project = start(folder)
     (group,) = import_files(project, folder, others(folder), retarget="ask").strangers
     seen: list[int] = []
-    result = bring_over(Bringing(project), group, group.joint_map, lambda n, _: seen.append(n), lambda: len(seen) == 1)
+    result = bring_over(
+        Bringing(project), group, group.joint_map, lambda n, _: seen.append(n), lambda: len(seen) == 1
+    )
     assert result.cancelled and len(result.loaded) == 1

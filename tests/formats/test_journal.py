@@ -36,7 +36,9 @@ ROOT = Path(__file__).resolve().parents[2]
 
 
 def large(count: int) -> Project:
-    project = edits.add_clips(Project("large"), [(f"clips/{n}.glb", 0, "ab" * 32, clip(f"clip {n}")) for n in range(20)])
+    project = edits.add_clips(
+        Project("large"), [(f"clips/{n}.glb", 0, "ab" * 32, clip(f"clip {n}")) for n in range(20)]
+    )
     project = edits.add_stance(project, "arms", "rest", ["c1"])
     return edits.place(project, [f"c{1 + n % 20}" for n in range(count)], "arms", "gesture", "s21")
 
@@ -92,7 +94,9 @@ def test_what_was_removed_comes_back_to_its_place() -> None:
     after = edits.remove_actions(before, [a.id for a in list(before.graphs["arms"].actions.values())[:4]])
     change = changes(after, before)
     assert "actions_order" not in change["layers"]["arms"]
-    assert [a["id"] for a in apply(to_data(after), change)["layers"]["arms"]["actions"]] == list(before.graphs["arms"].actions)
+    assert [a["id"] for a in apply(to_data(after), change)["layers"]["arms"]["actions"]] == list(
+        before.graphs["arms"].actions
+    )
 
 
 # --- the file
@@ -275,7 +279,9 @@ def kept() -> Iterator[Callable[..., Journal]]:
 
 
 @pytest.mark.parametrize("written", [False, True])
-def test_edits_made_while_saving_are_known_whichever_file_a_crash_leaves(saved: Path, kept: Callable[..., Journal], written: bool) -> None:
+def test_edits_made_while_saving_are_known_whichever_file_a_crash_leaves(
+    saved: Path, kept: Callable[..., Journal], written: bool
+) -> None:
     path = journal_path(saved)
     states = [large(5)]
     for n in range(5):
@@ -328,7 +334,9 @@ def test_the_last_of_several_savings_counts(saved: Path, kept: Callable[..., Jou
     assert same(found[0], states[-1]) and found[1] == 2
 
 
-def test_edits_that_were_recovered_and_killed_before_the_next_are_there_still(saved: Path, kept: Callable[..., Journal]) -> None:
+def test_edits_that_were_recovered_and_killed_before_the_next_are_there_still(
+    saved: Path, kept: Callable[..., Journal]
+) -> None:
     journal, project = kept(journal_path(saved), saved), edits.rename_clip(large(5), "c1", "recovered")
     journal.begin(project, unsaved=3)
     found = recover(journal.path, saved)
@@ -336,7 +344,9 @@ def test_edits_that_were_recovered_and_killed_before_the_next_are_there_still(sa
     assert same(found[0], project) and found[1] == 3
 
 
-def test_a_project_in_a_journal_without_an_edit_is_nothing_to_recover(saved: Path, kept: Callable[..., Journal]) -> None:
+def test_a_project_in_a_journal_without_an_edit_is_nothing_to_recover(
+    saved: Path, kept: Callable[..., Journal]
+) -> None:
     journal = kept(journal_path(saved), saved)
     journal.begin(large(5))
     assert recover(journal.path, saved) is None
@@ -345,8 +355,13 @@ def test_a_project_in_a_journal_without_an_edit_is_nothing_to_recover(saved: Pat
 # --- sittings
 
 
-def test_a_journal_that_holds_its_project_is_read_though_the_file_has_changed(saved: Path, kept: Callable[..., Journal]) -> None:
-    journal, after = kept(journal_path(saved, "ab"), saved, new_owner()), edits.rename_clip(large(5), "c1", "mine")
+def test_a_journal_that_holds_its_project_is_read_though_the_file_has_changed(
+    saved: Path, kept: Callable[..., Journal]
+) -> None:
+    journal, after = (
+        kept(journal_path(saved, "ab"), saved, new_owner()),
+        edits.rename_clip(large(5), "c1", "mine"),
+    )
     before = file_digest(saved)
     journal.begin(large(5))
     journal.edit(large(5), after)
@@ -359,7 +374,9 @@ def test_a_journal_that_holds_its_project_is_read_though_the_file_has_changed(sa
         recover(journal.path, saved)
 
 
-def test_the_journal_of_a_sitting_that_goes_on_is_not_offered_and_those_of_dead_ones_are(saved: Path, kept: Callable[..., Journal]) -> None:
+def test_the_journal_of_a_sitting_that_goes_on_is_not_offered_and_those_of_dead_ones_are(
+    saved: Path, kept: Callable[..., Journal]
+) -> None:
     after, paths = edits.rename_clip(large(5), "c1", "x"), []
     for sitting in ("a1", "b2", ""):
         journal = kept(journal_path(saved, sitting), saved, new_owner() if sitting else None)
@@ -371,7 +388,9 @@ def test_the_journal_of_a_sitting_that_goes_on_is_not_offered_and_those_of_dead_
     assert sorted(left_journals(saved)) == sorted(paths)
 
 
-def test_the_journals_of_other_projects_beside_it_are_not_its_own(saved: Path, kept: Callable[..., Journal]) -> None:
+def test_the_journals_of_other_projects_beside_it_are_not_its_own(
+    saved: Path, kept: Callable[..., Journal]
+) -> None:
     for name in (f"a{saved.name}", f"{saved.name}.copy", "x"):
         journal = kept(journal_path(saved.with_name(name), "ab"), None)
         journal.begin(large(1), 1)
@@ -380,7 +399,9 @@ def test_the_journals_of_other_projects_beside_it_are_not_its_own(saved: Path, k
     assert left_journals(saved.parent / "no such folder" / "x") == []
 
 
-def test_beginning_anew_never_leaves_less_than_before(saved: Path, kept: Callable[..., Journal], monkeypatch: pytest.MonkeyPatch) -> None:
+def test_beginning_anew_never_leaves_less_than_before(
+    saved: Path, kept: Callable[..., Journal], monkeypatch: pytest.MonkeyPatch
+) -> None:
     journal, after = kept(journal_path(saved), saved), edits.rename_clip(large(5), "c1", "x")
     journal.edit(large(5), after)
 
@@ -441,7 +462,9 @@ def test_a_folder_that_cannot_be_written_is_told_in_words(tmp_path: Path) -> Non
 
 @settings(max_examples=60, deadline=None, suppress_health_check=[HealthCheck.function_scoped_fixture])
 @given(st.randoms(use_true_random=False))
-def test_a_journal_with_bytes_changed_gives_a_project_or_an_error_in_words(saved: Path, chance: random.Random) -> None:
+def test_a_journal_with_bytes_changed_gives_a_project_or_an_error_in_words(
+    saved: Path, chance: random.Random
+) -> None:
     path = journal_path(saved)
     written(saved, path, 3)
     content = bytearray(path.read_bytes())
@@ -496,11 +519,15 @@ def test_a_process_killed_between_edits_loses_none_that_was_finished(saved: Path
 
 
 def talk(words: int, segments: int) -> Project:
-    """A conversation whose first side has some words, three a segment; the second says as many, but is not segmented."""
+    """A conversation whose first side has some words, three a segment; the second says as many, but is not
+    segmented.
+    """
     said = tuple(Word(text=f"wörd{n}", start=n / 3, end=n / 3 + 0.3) for n in range(words))
     clauses = tuple(Segment("clause", float(n), n + 0.9, n + 0.1 + 0.2, "a b c") for n in range(segments))
     sides = (Side(name="Ada", words=said, segments=clauses, rates=Rates(clause=0.5)), Side(words=said))
-    return conversing.add_conversation(Project("talk"), Conversation(name="x", length=words / 3 + 1, sides=sides))[0]
+    return conversing.add_conversation(
+        Project("talk"), Conversation(name="x", length=words / 3 + 1, sides=sides)
+    )[0]
 
 
 def test_what_a_conversation_is_kept_as_is_what_its_type_says() -> None:
@@ -510,7 +537,9 @@ def test_what_a_conversation_is_kept_as_is_what_its_type_says() -> None:
     assert list(kept["sides"][0]) == list(plain["sides"][0]), "in the same order"
     assert kept["sides"][0]["words"][1] == {"text": "wörd1", "start": 0.333333, "end": 0.633333}
     assert kept["sides"][1] == {"words": kept["sides"][0]["words"]}
-    assert kept["sides"][0]["segments"] == [{**s, "peak": round(s["peak"], 6)} for s in plain["sides"][0]["segments"]]
+    assert kept["sides"][0]["segments"] == [
+        {**s, "peak": round(s["peak"], 6)} for s in plain["sides"][0]["segments"]
+    ]
 
 
 def test_edits_of_a_conversation_are_recovered_and_do_not_touch_its_words_again(tmp_path: Path) -> None:
@@ -520,7 +549,9 @@ def test_edits_of_a_conversation_are_recovered_and_do_not_touch_its_words_again(
     (ident,) = states[0].conversations
     for at in (0, 5, 7):
         states.append(conversing.move_segment(states[-1], ident, 0, at, 0.05))
-    states.append(conversing.change_side(states[-1], ident, 1, name="Ben \udcff"))  # what a name that is no text becomes
+    states.append(
+        conversing.change_side(states[-1], ident, 1, name="Ben \udcff")
+    )  # what a name that is no text becomes
     journal = Journal(tmp_path / "journal", None)
     journal.begin(states[0])
     before = data._rows_data.cache_info().misses

@@ -1,4 +1,6 @@
-"""Keypoints as programs write them: the same person out of every spelling, and a reason for what cannot be read."""
+"""Keypoints as programs write them: the same person out of every spelling, and a reason for what cannot be
+read.
+"""
 
 from __future__ import annotations
 
@@ -35,20 +37,31 @@ def flat(rows: list[list[float]]) -> list[float]:
 
 
 def openpose(*people: list[list[float]], key: str = "pose_keypoints_2d", **more: Any) -> dict[str, Any]:
-    return {"version": 1.3, "people": [{"person_id": [-1], key: flat(p), "face_keypoints_2d": [], **more} for p in people]}
+    return {
+        "version": 1.3,
+        "people": [{"person_id": [-1], key: flat(p), "face_keypoints_2d": [], **more} for p in people],
+    }
 
 
 def marks(names: str = "xyz") -> list[dict[str, float]]:
     """MediaPipe's world landmarks: from the hips, y down, z away from the camera."""
     at = figure("mediapipe") - [0, 0.95, 0]
-    return [{**dict(zip(names, (p * [1, -1, -1]).round(4).tolist(), strict=True)), "visibility": 0.8} for p in at]
+    return [
+        {**dict(zip(names, (p * [1, -1, -1]).round(4).tolist(), strict=True)), "visibility": 0.8} for p in at
+    ]
 
 
 @pytest.fixture
 def read(tmp_path: Path):
     def inner(data: Any, name: str = "talk.json", **options: Any) -> Keypoints:
         path = tmp_path / name
-        path.write_bytes(data if isinstance(data, bytes) else data.encode() if isinstance(data, str) else json.dumps(data).encode())
+        path.write_bytes(
+            data
+            if isinstance(data, bytes)
+            else data.encode()
+            if isinstance(data, str)
+            else json.dumps(data).encode()
+        )
         return read_keypoints(path, **options)
 
     return inner
@@ -59,7 +72,9 @@ def upright(found: Keypoints) -> None:
     assert (sure > 0).any()
     frames = sure[:, [PLACE[n] for n in ("nose", "left_hip", "left_shoulder", "right_shoulder")]].min(1) > 0
     assert (points[frames][:, PLACE["nose"], 1] > points[frames][:, PLACE["left_hip"], 1]).all()
-    assert (points[frames][:, PLACE["left_shoulder"], 0] > points[frames][:, PLACE["right_shoulder"], 0]).all()
+    assert (
+        points[frames][:, PLACE["left_shoulder"], 0] > points[frames][:, PLACE["right_shoulder"], 0]
+    ).all()
 
 
 # --- what cannot be read
@@ -144,13 +159,17 @@ def test_openposes_layouts_come_upright_with_their_names(read: Any, layout: str)
 
 def test_a_folder_is_read_in_the_order_of_its_numbers_with_gaps(tmp_path: Path) -> None:
     for number in (7, 100, 9):
-        (tmp_path / f"video_{number:012}_keypoints.json").write_text(json.dumps(openpose(picture("coco", x=number))))
+        (tmp_path / f"video_{number:012}_keypoints.json").write_text(
+            json.dumps(openpose(picture("coco", x=number)))
+        )
     (tmp_path / "notes.json.bak").write_text("{")
     found = read_keypoints(tmp_path, fps=10)
     assert found.times == pytest.approx([0, 0.2, 9.3])
     nose = found.points[:, 0, 0]
     assert nose.tolist() == [7, 9, 100]
-    assert read_keypoints(tmp_path).notes == ("how many frames a second there are is not said; 30 were taken",)
+    assert read_keypoints(tmp_path).notes == (
+        "how many frames a second there are is not said; 30 were taken",
+    )
 
 
 def test_a_broken_frame_in_a_folder_is_named(tmp_path: Path) -> None:
@@ -163,12 +182,16 @@ def test_zeros_are_what_was_not_found(read: Any) -> None:
     rows = picture("coco")
     rows[PLACE["left_wrist"]] = [0, 0, 0.7]
     found = read([openpose(rows)])
-    assert found.confidence[0, PLACE["left_wrist"]] == 0 and found.confidence[0].sum() == pytest.approx(16 * 0.9)
+    assert found.confidence[0, PLACE["left_wrist"]] == 0 and found.confidence[0].sum() == pytest.approx(
+        16 * 0.9
+    )
 
 
 def test_three_dimensions_are_read_where_they_are_and_turned_to_the_camera(read: Any) -> None:
     away = [[*(p * [1, -1, -1]), 0.8] for p in figure("openpose body_25")]
-    both = {"people": [{"pose_keypoints_2d": flat(picture("openpose body_25")), "pose_keypoints_3d": flat(away)}]}
+    both = {
+        "people": [{"pose_keypoints_2d": flat(picture("openpose body_25")), "pose_keypoints_3d": flat(away)}]
+    }
     found = read([both, {"people": []}])
     assert found.dims == 3 and found.confidence[1].sum() == 0
     assert found.points[0] == pytest.approx(figure("openpose body_25"))
@@ -231,9 +254,16 @@ def test_lines_with_a_head_are_read(read: Any) -> None:
     assert read("\n".join(lines) + "\n", "talk.jsonl").times == pytest.approx([0, 0.05, 0.1])
 
 
-@pytest.mark.parametrize(("unit", "key"), [(1, "t"), (1e3, "timestamp"), (1e6, "timestamp"), (1e3, "timestamp_ms"), (1, "time")])
+@pytest.mark.parametrize(
+    ("unit", "key"), [(1, "t"), (1e3, "timestamp"), (1e6, "timestamp"), (1e3, "timestamp_ms"), (1, "time")]
+)
 def test_times_are_seconds_whatever_they_are_counted_in(read: Any, unit: float, key: str) -> None:
-    found = read([{key: (1700000000 + n / 25) * unit if unit > 1 else n / 25, "worldLandmarks": marks()} for n in range(4)])
+    found = read(
+        [
+            {key: (1700000000 + n / 25) * unit if unit > 1 else n / 25, "worldLandmarks": marks()}
+            for n in range(4)
+        ]
+    )
     assert found.times == pytest.approx([0, 0.04, 0.08, 0.12], abs=1e-3)
 
 
@@ -262,7 +292,9 @@ def test_keypoints_of_coco_and_tensorflow_are_read(read: Any) -> None:
         [tensorflow] * 2,
     ):
         found = read(data, fps=10)
-        assert found.points[1, :, :2] == pytest.approx(np.array(rows)[:, :2] * [1, -1]) and found.confidence[0] == pytest.approx(0.9)
+        assert found.points[1, :, :2] == pytest.approx(np.array(rows)[:, :2] * [1, -1]) and found.confidence[
+            0
+        ] == pytest.approx(0.9)
         assert found.times == pytest.approx([0, 0.1])
 
 
@@ -270,7 +302,10 @@ def test_keypoints_of_coco_and_tensorflow_are_read(read: Any) -> None:
 
 
 def test_the_samples_are_read_whole() -> None:
-    flat_one, deep = read_keypoints(SAMPLES / "conversation.openpose.json"), read_keypoints(SAMPLES / "conversation.mediapipe.jsonl")
+    flat_one, deep = (
+        read_keypoints(SAMPLES / "conversation.openpose.json"),
+        read_keypoints(SAMPLES / "conversation.mediapipe.jsonl"),
+    )
     assert (len(flat_one), flat_one.dims, flat_one.notes) == (1200, 2, ())
     assert (len(deep), deep.dims, deep.notes) == (200, 3, ())
     for found in (flat_one, deep):
@@ -301,12 +336,42 @@ def test_files_with_bytes_changed_are_read_or_refused(tmp_path: Path) -> None:
         assert ((found.confidence >= 0) & (found.confidence <= 1)).all()
 
 
-leaves = st.none() | st.booleans() | st.integers(-(10**20), 10**20) | st.floats(allow_nan=False, allow_infinity=False) | st.text(max_size=5)
+leaves = (
+    st.none()
+    | st.booleans()
+    | st.integers(-(10**20), 10**20)
+    | st.floats(allow_nan=False, allow_infinity=False)
+    | st.text(max_size=5)
+)
 keys = st.sampled_from(
-    ["people", "landmarks", "worldLandmarks", "keypoints", "pose_keypoints_2d", "pose_keypoints_3d", "t", "timestampMs", "frame", "frames",
-     "fps", "width", "height", "x", "y", "z", "visibility", "landmark", "person_id", "image_id"]
-)  # fmt: skip
-trees = st.recursive(leaves, lambda inner: st.lists(inner, max_size=4) | st.dictionaries(keys, inner, max_size=4), max_leaves=25)
+    [
+        "people",
+        "landmarks",
+        "worldLandmarks",
+        "keypoints",
+        "pose_keypoints_2d",
+        "pose_keypoints_3d",
+        "t",
+        "timestampMs",
+        "frame",
+        "frames",
+        "fps",
+        "width",
+        "height",
+        "x",
+        "y",
+        "z",
+        "visibility",
+        "landmark",
+        "person_id",
+        "image_id",
+    ]
+)
+trees = st.recursive(
+    leaves,
+    lambda inner: st.lists(inner, max_size=4) | st.dictionaries(keys, inner, max_size=4),
+    max_leaves=25,
+)
 
 
 @given(trees)

@@ -1,4 +1,6 @@
-"""Locks: one window has a project file; what a crash left is taken over, what lives is not, wherever it runs."""
+"""Locks: one window has a project file; what a crash left is taken over, what lives is not, wherever it
+runs.
+"""
 
 from __future__ import annotations
 
@@ -111,8 +113,13 @@ def test_a_number_that_no_process_has_is_nobodys(saved: Path, pid: int) -> None:
 @pytest.mark.skipif(os.name == "nt", reason="there is no kill -9 on Windows")
 def test_a_killed_process_is_gone_at_once_and_a_stopped_one_is_not(saved: Path) -> None:
     code = "import sys, time; from pathlib import Path; from metagraph.formats.locking import *; "
-    code += "lock = Lock(Path(sys.argv[1]), new_owner()); lock.acquire(); print(lock.held, flush=True); time.sleep(60)"
-    child = subprocess.Popen([sys.executable, "-c", code, str(saved)], cwd=ROOT, stdout=subprocess.PIPE, text=True)
+    code += (
+        "lock = Lock(Path(sys.argv[1]), new_owner()); lock.acquire(); print(lock.held, flush=True); "
+        "time.sleep(60)"
+    )
+    child = subprocess.Popen(
+        [sys.executable, "-c", code, str(saved)], cwd=ROOT, stdout=subprocess.PIPE, text=True
+    )
     try:
         assert child.stdout is not None and child.stdout.readline() == "True\n"
         child.send_signal(signal.SIGSTOP)

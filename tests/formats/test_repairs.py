@@ -101,13 +101,18 @@ def test_an_unknown_repair_in_a_project_file_is_refused_with_its_place(bind: Pat
     assert error.value.where == "clips[0].as_is"
 
 
-def test_a_skipped_take_is_brought_in_keeps_the_others_numbers_and_can_go_again(toy: Any, tmp_path: Path) -> None:
+def test_a_skipped_take_is_brought_in_keeps_the_others_numbers_and_can_go_again(
+    toy: Any, tmp_path: Path
+) -> None:
     walk, nod = toy.clip("walk", 0.5), toy.clip("nod", 0.4)
     write_glb(tmp_path / "a.glb", [still(walk, "t-pose"), walk, still(walk, "a-pose"), nod])
     project = imported(tmp_path, "a.glb")
     assert [e.name for e in project.clips.values()] == ["walk", "nod"]
     found = repairs_of(project, project.clips)
-    assert [r.repair.words for r in found] == ["skipped 't-pose': one frame only", "skipped 'a-pose': one frame only"]
+    assert [r.repair.words for r in found] == [
+        "skipped 't-pose': one frame only",
+        "skipped 'a-pose': one frame only",
+    ]
     after = reread(project, tmp_path, [(found[1], False)]).into(project)
     assert [(e.name, e.take) for e in after.clips.values()] == [("walk", 0), ("nod", 1), ("a-pose", 3)]
     path = tmp_path / "p.metagraph.yaml"
@@ -134,7 +139,9 @@ def test_a_skipped_take_brought_in_is_refreshed_with_its_file(toy: Any, tmp_path
     assert [e.as_is for e in after.clips.values()] == [(), (ONE_FRAME,)]
 
 
-def test_a_name_from_the_file_gives_way_to_the_takes_own_unless_it_was_renamed(toy: Any, tmp_path: Path) -> None:
+def test_a_name_from_the_file_gives_way_to_the_takes_own_unless_it_was_renamed(
+    toy: Any, tmp_path: Path
+) -> None:
     write_glb(tmp_path / "walk.glb", [toy.clip("Take 001", 0.5)])
     project = imported(tmp_path, "walk.glb")
     assert project.clips["c1"].name == "walk"
@@ -155,7 +162,9 @@ def test_a_guessed_unit_can_be_centimetres_when_all_clips_change_alike(toy: Any,
     project = imported(tmp_path, "a.bvh", "b.bvh")
     assert [r.repair.name for r in repairs_of(project, project.clips)] == [UNIT, UNIT]
     one = reread(project, tmp_path, [(repairs_of(project, ["c1"])[0], False)])
-    assert one.count == 0 and one.failures == ("'a' would no longer fit the project's skeleton, so it stays as it is",)
+    assert one.count == 0 and one.failures == (
+        "'a' would no longer fit the project's skeleton, so it stays as it is",
+    )
     every = reread(project, tmp_path, [(r, False) for r in repairs_of(project, project.clips)])
     after = every.into(project)
     assert not every.failures and after.skeleton is not None and project.skeleton is not None
@@ -175,7 +184,10 @@ def metres(text: str) -> str:
     channels = [word for line in head.splitlines() if "CHANNELS" in line for word in line.split()[2:]]
     rows = motion.splitlines()
     for n, row in enumerate(rows[2:], 2):
-        values = [float(x) / (100 if c.endswith("position") else 1) for x, c in zip(row.split(), channels, strict=True)]
+        values = [
+            float(x) / (100 if c.endswith("position") else 1)
+            for x, c in zip(row.split(), channels, strict=True)
+        ]
         rows[n] = " ".join(map(str, values))
     return "\n".join([*lines, "MOTION", *rows]) + "\n"
 

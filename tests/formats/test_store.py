@@ -57,7 +57,9 @@ def test_a_project_comes_back_from_its_text_and_is_written_the_same_again(projec
 
 
 def grown() -> Project:
-    project = edits.add_clips(Project("grown"), [(f"clips/{n}.glb", 0, "ab" * 32, clip(f"clip {n}")) for n in range(30)])
+    project = edits.add_clips(
+        Project("grown"), [(f"clips/{n}.glb", 0, "ab" * 32, clip(f"clip {n}")) for n in range(30)]
+    )
     project = edits.add_stance(project, "arms", "rest", ["c1"])
     return edits.place(project, [f"c{n}" for n in range(2, 30)], "arms", "gesture", "s31")
 
@@ -105,7 +107,11 @@ def refused(text: str) -> FileError:
 @pytest.mark.parametrize(
     ("old", "new", "cause"),
     [
-        ("kind: gesture", "kind: dance", "layers.arms.actions[1].kind should be one of stance, gesture, fidget"),
+        (
+            "kind: gesture",
+            "kind: dance",
+            "layers.arms.actions[1].kind should be one of stance, gesture, fidget",
+        ),
         ("name: clip 3", "name: 3", "clips[3].name should be text, found 3"),
         ("name: clip 3", "colour: 3", "clips[3].colour is not a field known here"),
         ("frames: 31", "frames: many", "clips[0].frames should be a whole number, found 'many'"),
@@ -128,7 +134,9 @@ def test_a_wrong_line_is_named_with_field_cause_and_remedy(old: str, new: str, c
     assert error.where in [f"line {n}" for n in near]
 
 
-@pytest.mark.parametrize("text", ["", "[]", "hello", "- a", "3", "null", "---\n", "a: 1", "{", "\t", "%YAML 9.9\n--- {}"])
+@pytest.mark.parametrize(
+    "text", ["", "[]", "hello", "- a", "3", "null", "---\n", "a: 1", "{", "\t", "%YAML 9.9\n--- {}"]
+)
 def test_other_files_are_refused(text: str) -> None:
     refused(text)
 
@@ -155,7 +163,9 @@ def test_an_older_file_is_upgraded_step_by_step(monkeypatch: pytest.MonkeyPatch)
     text = text_of(grown()).replace("name: grown", "title: grown")
     with pytest.raises(FileError, match="title is not a field"):
         from_text(text, PATH)
-    monkeypatch.setattr(store, "UPGRADES", {1: lambda d: {k: v for k, v in first(dict(d)).items() if k != "title"}, 2: second})
+    monkeypatch.setattr(
+        store, "UPGRADES", {1: lambda d: {k: v for k, v in first(dict(d)).items() if k != "title"}, 2: second}
+    )
     assert from_text(text, PATH).name == "grown!"
     assert steps == [1, 2, 1, 2]
 
@@ -167,7 +177,27 @@ def test_a_file_with_letters_changed_is_read_or_refused(chance: random.Random, c
     for _ in range(count):
         at = chance.randrange(len(text))
         text[at] = chance.choice(
-            ["", "{", "}", "[", "]", ":", ",", '"', "'", "\n", " ", "-", "9", "\x00", "é", "&a ", "*a", "!!x ", text[at] * 2]
+            [
+                "",
+                "{",
+                "}",
+                "[",
+                "]",
+                ":",
+                ",",
+                '"',
+                "'",
+                "\n",
+                " ",
+                "-",
+                "9",
+                "\x00",
+                "é",
+                "&a ",
+                "*a",
+                "!!x ",
+                text[at] * 2,
+            ]
         )
     try:
         from_text("".join(text), PATH)
@@ -223,7 +253,9 @@ def test_a_failure_on_the_way_leaves_the_old_file_whole_and_nothing_beside_it(
     assert [p.name for p in tmp_path.iterdir()] == ["a.yaml"]
 
 
-def test_a_stop_on_the_way_leaves_nothing_beside_the_old_file_either(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_a_stop_on_the_way_leaves_nothing_beside_the_old_file_either(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
     def stop(*args: Any) -> None:
         raise KeyboardInterrupt
 
@@ -258,7 +290,9 @@ def test_the_umask_of_the_process_is_not_touched(tmp_path: Path, monkeypatch: py
 def test_a_read_only_file_is_not_replaced(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     path = tmp_path / "locked.yaml"
     path.write_text("checked in")
-    monkeypatch.setattr(os, "access", lambda *args: False)  # also for the administrator, who may write everything
+    monkeypatch.setattr(
+        os, "access", lambda *args: False
+    )  # also for the administrator, who may write everything
     with pytest.raises(FileError, match="it is read-only"):
         write_atomically(path, b"new")
     assert path.read_text() == "checked in"
@@ -321,10 +355,14 @@ def test_a_saved_project_opens_with_its_clips(home: Path) -> None:
     assert opened.notes == ()
     assert paths(opened.project) == ["clips/alone.bvh", "clips/two.glb", "clips/two.glb"]
     assert all(loaded(opened.project))
-    assert all(e.motion.skeleton is opened.project.skeleton for e in opened.project.clips.values() if e.motion)
+    assert all(
+        e.motion.skeleton is opened.project.skeleton for e in opened.project.clips.values() if e.motion
+    )
 
 
-def test_saving_in_place_leaves_the_paths_alone_wherever_one_works(home: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_saving_in_place_leaves_the_paths_alone_wherever_one_works(
+    home: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
     project = open_project(home / PATH).project
     before = (home / PATH).read_bytes()
     monkeypatch.chdir("/")
@@ -337,7 +375,9 @@ def test_saving_in_place_leaves_the_paths_alone_wherever_one_works(home: Path, m
 
 def test_saved_in_another_folder_the_clips_are_still_found(home: Path, tmp_path: Path) -> None:
     other = tmp_path / "elsewhere" / "deep" / PATH
-    project = save_project(edits.set_character(open_project(home / PATH).project, "body.glb"), other, home / PATH)
+    project = save_project(
+        edits.set_character(open_project(home / PATH).project, "body.glb"), other, home / PATH
+    )
     assert paths(project)[0] == "../../home/clips/alone.bvh"
     assert project.character == "../../home/body.glb"
     assert open_project(other).notes == ()
@@ -424,7 +464,9 @@ def test_paths_written_on_windows_are_understood(home: Path) -> None:
     opened = open_project(home / PATH)
     assert opened.notes == ()
     assert paths(opened.project)[1] == "clips/two.glb"
-    (home / PATH).write_text((home / PATH).read_text().replace('"clips\\\\two.glb"', '"D:\\\\shared\\\\two.glb"'))
+    (home / PATH).write_text(
+        (home / PATH).read_text().replace('"clips\\\\two.glb"', '"D:\\\\shared\\\\two.glb"')
+    )
     assert open_project(home / PATH).notes == ("'D:\\shared\\two.glb' has moved to 'clips/two.glb'",)
 
 
@@ -451,7 +493,9 @@ def test_relocating_finds_clips_anywhere_below_a_folder(home: Path, tmp_path: Pa
     assert paths(found)[0] == "../archive/alone.bvh"
 
 
-def test_relocating_takes_a_changed_file_of_the_same_name_from_the_likeliest_folder(home: Path, tmp_path: Path) -> None:
+def test_relocating_takes_a_changed_file_of_the_same_name_from_the_likeliest_folder(
+    home: Path, tmp_path: Path
+) -> None:
     shutil.rmtree(home / "clips")
     for name, frames in (("old/clips", 3), ("z/other", 4)):
         (tmp_path / name).mkdir(parents=True)

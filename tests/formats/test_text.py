@@ -49,9 +49,12 @@ def test_the_text_begins_by_saying_what_it_is() -> None:
 @pytest.mark.parametrize(
     ("text", "value"),
     [
-        ("yes", "yes"), ("off", "off"), ("~", None), ("", None), ("null", None), ("true", True), ("1e3", 1000.0), ("0x1F", "0x1F"),
-        ("010", 10), ("1_000", "1_000"), ("12:30:00", "12:30:00"), ("2024-01-01", "2024-01-01"), ("+.5", 0.5), ("-.inf", -math.inf),
-        ("'null'", "null"), ("\"1\"", "1"), ("1" * 40, float("1" * 40)), ("-7", -7), ("1.", 1.0), ("e5", "e5"), ("٣", "٣"),
+        ("yes", "yes"), ("off", "off"), ("~", None), ("", None), ("null", None), ("true", True),
+        ("1e3", 1000.0), ("0x1F", "0x1F"),
+        ("010", 10), ("1_000", "1_000"), ("12:30:00", "12:30:00"), ("2024-01-01", "2024-01-01"),
+        ("+.5", 0.5), ("-.inf", -math.inf),
+        ("'null'", "null"), ("\"1\"", "1"), ("1" * 40, float("1" * 40)), ("-7", -7), ("1.", 1.0),
+        ("e5", "e5"), ("٣", "٣"),
     ],
 )  # fmt: skip
 def test_what_people_write_by_hand_means_what_it_looks_like(text: str, value: Any) -> None:
@@ -64,7 +67,19 @@ def test_not_a_number_is_understood_so_that_it_can_be_refused_by_name() -> None:
 
 def test_every_field_has_its_line() -> None:
     lines = parse("a: 1\nb:\n- {c: 2,\n   d: 3}\n- [4]\n\ne: {'x.y': {z: 5}}\n")[1]
-    assert lines == {"": 1, "a": 1, "b": 3, "b[0]": 3, "b[0].c": 3, "b[0].d": 4, "b[1]": 5, "b[1][0]": 5, "e": 7, "e.x.y": 7, "e.x.y.z": 7}
+    assert lines == {
+        "": 1,
+        "a": 1,
+        "b": 3,
+        "b[0]": 3,
+        "b[0].c": 3,
+        "b[0].d": 4,
+        "b[1]": 5,
+        "b[1][0]": 5,
+        "e": 7,
+        "e.x.y": 7,
+        "e.x.y.z": 7,
+    }
 
 
 def test_windows_line_ends_and_block_style_are_read_alike() -> None:
@@ -73,12 +88,17 @@ def test_windows_line_ends_and_block_style_are_read_alike() -> None:
 
 
 LAUGHS = "a: &a [x, x]\n" + "".join(
-    f"{b}: &{b} [*{a}, *{a}, *{a}, *{a}, *{a}, *{a}]\n" for a, b in zip("abcdefghij", "bcdefghijk", strict=True)
+    f"{b}: &{b} [*{a}, *{a}, *{a}, *{a}, *{a}, *{a}]\n"
+    for a, b in zip("abcdefghij", "bcdefghijk", strict=True)
 )
 HOSTILE = {
     "billion laughs": (LAUGHS, 1, "anchors and aliases"),
     "an alias": ("a: 1\nb: *a", 2, "anchors and aliases"),
-    "a python object": ("a: 1\nb: !!python/object/apply:os.system ['true']", 2, "the tag tag:yaml.org,2002:python/object/apply:os.system"),
+    "a python object": (
+        "a: 1\nb: !!python/object/apply:os.system ['true']",
+        2,
+        "the tag tag:yaml.org,2002:python/object/apply:os.system",
+    ),
     "a tag of one's own": ("a: !x y", 1, "the tag !x"),
     "binary": ("a: !!binary aGk=", 1, "the tag"),
     "merge keys": ("a: &x {b: 1}\nc:\n  <<: *x", 1, "anchors"),

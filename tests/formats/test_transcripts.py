@@ -28,7 +28,10 @@ def read(tmp_path: Path) -> Reader:
 
 
 def rows(transcript: Transcript) -> dict[str, list[tuple[str, float, float]]]:
-    return {name: [(w.text, round(w.start, 3), round(w.end, 3)) for w in words] for name, words in transcript.speakers.items()}
+    return {
+        name: [(w.text, round(w.start, 3), round(w.end, 3)) for w in words]
+        for name, words in transcript.speakers.items()
+    }
 
 
 def grid(*tiers: tuple[str, list[tuple[float, float, str]]]) -> str:
@@ -39,7 +42,8 @@ def grid(*tiers: tuple[str, list[tuple[float, float, str]]]) -> str:
     return "\n".join(out)
 
 
-# --- what is nothing -------------------------------------------------------------------------------------------------
+# --- what is nothing
+# --------------------------------------------------------------------------------------------------
 
 
 @pytest.mark.parametrize("text", ["", " \n\n", "\ufeff"])
@@ -48,7 +52,9 @@ def test_an_empty_file_is_told(read: Reader, text: str) -> None:
     assert found.speakers == {} and found.notes == ("it is empty",)
 
 
-@pytest.mark.parametrize("text", ["WEBVTT\n", '{"segments": []}', '{"results": []}', "[]", grid(("words", [(0, 10, "")]))])
+@pytest.mark.parametrize(
+    "text", ["WEBVTT\n", '{"segments": []}', '{"results": []}', "[]", grid(("words", [(0, 10, "")]))]
+)
 def test_a_transcript_without_words_is_told(read: Reader, text: str) -> None:
     assert any("no words" in n for n in read(text).notes)
 
@@ -85,13 +91,21 @@ def test_what_is_no_transcript_says_what_place_and_remedy(read: Reader, text: st
     assert cause in str(caught.value) and caught.value.remedy
 
 
-# --- words -----------------------------------------------------------------------------------------------------------
+# --- words
+# --------------------------------------------------------------------------------------------------
 
 
 def test_words_out_of_order_and_overlapping_are_settled_and_told() -> None:
-    words = [Word(text=t, start=a, end=b) for t, a, b in (("b", 2, 3), ("a", 1, 2.5), ("c", 2.2, 2.9), ("d", 5, 5))]
+    words = [
+        Word(text=t, start=a, end=b) for t, a, b in (("b", 2, 3), ("a", 1, 2.5), ("c", 2.2, 2.9), ("d", 5, 5))
+    ]
     found, notes = settled(words)
-    assert [(w.text, w.start, w.end) for w in found] == [("a", 1, 2), ("b", 2, 2.2), ("c", 2.2, 2.9), ("d", 5, 5.02)]
+    assert [(w.text, w.start, w.end) for w in found] == [
+        ("a", 1, 2),
+        ("b", 2, 2.2),
+        ("c", 2.2, 2.9),
+        ("d", 5, 5.02),
+    ]
     assert any("out of order" in n for n in notes) and any("overlapped" in n for n in notes)
 
 
@@ -101,7 +115,8 @@ def test_a_word_within_another_is_left_out_and_told() -> None:
     assert all(b.start >= a.end - 1e-9 for a, b in pairwise(found))
 
 
-# --- tiers -----------------------------------------------------------------------------------------------------------
+# --- tiers
+# --------------------------------------------------------------------------------------------------
 
 
 def test_textgrid_tiers_are_speakers_and_phones_are_not(read: Reader) -> None:
@@ -117,31 +132,57 @@ def test_textgrid_tiers_are_speakers_and_phones_are_not(read: Reader) -> None:
 
 def test_tiers_named_after_speakers_hold_their_words(read: Reader) -> None:
     found = read(grid(("Ann", [(1, 2, "so we left")]), ("Ben", [(3, 3.5, "okay")])))
-    assert rows(found) == {"Ann": [("so", 1, 1.273), ("we", 1.273, 1.546), ("left", 1.546, 2)], "Ben": [("okay", 3, 3.5)]}
+    assert rows(found) == {
+        "Ann": [("so", 1, 1.273), ("we", 1.273, 1.546), ("left", 1.546, 2)],
+        "Ben": [("okay", 3, 3.5)],
+    }
     assert any("share those of their sentence" in n for n in found.notes)
 
 
 def test_overlapping_intervals_of_a_tier_are_settled_and_told(read: Reader) -> None:
     found = read(grid(("words", [(1, 2, "one"), (1.5, 3, "two")])))
-    assert rows(found) == {"": [("one", 1, 1.5), ("two", 1.5, 3)]} and any("overlapped" in n for n in found.notes)
+    assert rows(found) == {"": [("one", 1, 1.5), ("two", 1.5, 3)]} and any(
+        "overlapped" in n for n in found.notes
+    )
 
 
 def test_of_several_tiers_of_a_speaker_the_one_with_most_words_counts(read: Reader) -> None:
-    found = read(grid(("words", [(1, 2, "one"), (2, 3, "two")]), ("text", [(1, 3, "one two")]), ("word", [(1, 3, "eins")])))
-    assert rows(found) == {"": [("one", 1, 2), ("two", 2, 3)]} and any("tier 'word' left out" in n for n in found.notes)
+    found = read(
+        grid(
+            ("words", [(1, 2, "one"), (2, 3, "two")]),
+            ("text", [(1, 3, "one two")]),
+            ("word", [(1, 3, "eins")]),
+        )
+    )
+    assert rows(found) == {"": [("one", 1, 2), ("two", 2, 3)]} and any(
+        "tier 'word' left out" in n for n in found.notes
+    )
 
 
 def test_segments_of_ours_are_read_and_others_left_out(read: Reader) -> None:
     found = read(
         grid(
             ("Ann - words", [(1, 2, "hi")]),
-            ("Ann - segments", [(1, 2, "clause: hi"), (2, 3, "idle"), (2.5, 3, "Response"), (2.8, 4, "hesitation: uh"), (4, 5, "laugh")]),
+            (
+                "Ann - segments",
+                [
+                    (1, 2, "clause: hi"),
+                    (2, 3, "idle"),
+                    (2.5, 3, "Response"),
+                    (2.8, 4, "hesitation: uh"),
+                    (4, 5, "laugh"),
+                ],
+            ),
             ("Ann - peaks", [(1.25, 1.27, "peak")]),
             ("Ben - segments", [(0, 1, "gesture")]),
         )
     )
     assert found.segments == {
-        "Ann": (Segment("clause", 1, 2, 1.25, "hi"), Segment("response", 2.5, 3), Segment("hesitation", 3, 4, None, "uh"))
+        "Ann": (
+            Segment("clause", 1, 2, 1.25, "hi"),
+            Segment("response", 2.5, 3),
+            Segment("hesitation", 3, 4, None, "uh"),
+        )
     }
     assert any("'laugh' is none of" in n for n in found.notes) and any("overlapped" in n for n in found.notes)
 
@@ -151,41 +192,62 @@ def test_elan_tiers_are_speakers_and_gestures_are_not(tmp_path: Path) -> None:
     marks = {"words@Ann": "hello", "gestures@Ann": "beat", "Ben": "okay then"}
     slots = "".join(f'<TIME_SLOT TIME_SLOT_ID="t{n}" TIME_VALUE="{t}"/>' for n, t in enumerate((1000, 1500)))
     tiers = "".join(
-        f'<TIER TIER_ID="{name}"><ANNOTATION><ALIGNABLE_ANNOTATION ANNOTATION_ID="a{n}" TIME_SLOT_REF1="t0" TIME_SLOT_REF2="t1">'
+        f'<TIER TIER_ID="{name}"><ANNOTATION><ALIGNABLE_ANNOTATION ANNOTATION_ID="a{n}" TIME_SLOT_REF1="t0" '
+        'TIME_SLOT_REF2="t1">'
         f"<ANNOTATION_VALUE>{text}</ANNOTATION_VALUE></ALIGNABLE_ANNOTATION></ANNOTATION></TIER>"
         for n, (name, text) in enumerate(marks.items())
     )
-    path.write_text(f"<ANNOTATION_DOCUMENT><HEADER/><TIME_ORDER>{slots}</TIME_ORDER>{tiers}</ANNOTATION_DOCUMENT>")
-    assert rows(read_transcript(path)) == {"Ann": [("hello", 1, 1.5)]}  # a tier named so beats one that is not
+    path.write_text(
+        f"<ANNOTATION_DOCUMENT><HEADER/><TIME_ORDER>{slots}</TIME_ORDER>{tiers}</ANNOTATION_DOCUMENT>"
+    )
+    assert rows(read_transcript(path)) == {
+        "Ann": [("hello", 1, 1.5)]
+    }  # a tier named so beats one that is not
 
 
 @pytest.mark.skipif(not SPEECH.is_dir(), reason="the recordings of praatIO are not here")
 def test_real_textgrids_give_words() -> None:
-    assert [w.text for w in read_transcript(SPEECH / "mary.TextGrid").speakers[""]] == ["mary", "rolled", "the", "barrel"]
+    assert [w.text for w in read_transcript(SPEECH / "mary.TextGrid").speakers[""]] == [
+        "mary",
+        "rolled",
+        "the",
+        "barrel",
+    ]
     assert len(read_transcript(SPEECH / "bobby_words.TextGrid").speakers[""]) >= 4
 
 
-# --- subtitles -------------------------------------------------------------------------------------------------------
+# --- subtitles
+# --------------------------------------------------------------------------------------------------
 
 
 def test_webvtt_voices_are_speakers(read: Reader) -> None:
     found = read(
-        "WEBVTT - a talk\n\nSTYLE\n::cue {}\n\nNOTE hello\n\nintro\n00:01.000 --> 00:02.000 align:start\n<v Ann>Hi &amp; hello\n\n"
+        "WEBVTT - a talk\n\nSTYLE\n::cue {}\n\nNOTE hello\n\nintro\n00:01.000 --> 00:02.000 align:start\n<v "
+        "Ann>Hi &amp; hello\n\n"
         "00:00:03.000 --> 00:00:04.000\n<v.loud Ben Low>Oh</v>\n\n00:05.000 --> 00:06.000\n<i>still</i>\n"
     )
-    assert rows(found) == {"Ann": [("Hi", 1, 1.333), ("hello", 1.333, 2)], "Ben Low": [("Oh", 3, 4), ("still", 5, 6)]}
+    assert rows(found) == {
+        "Ann": [("Hi", 1, 1.333), ("hello", 1.333, 2)],
+        "Ben Low": [("Oh", 3, 4), ("still", 5, 6)],
+    }
 
 
 def test_word_times_inside_cues_count_and_rolling_captions_are_said_once(read: Reader) -> None:
     found = read(
-        "WEBVTT\n\n00:01.000 --> 00:03.000\nso<00:00:01.500><c> we</c><00:00:02.000><c> left</c>\n\n00:03.000 --> 00:03.010\nso we left\n\n"
+        "WEBVTT\n\n00:01.000 --> 00:03.000\nso<00:00:01.500><c> we</c><00:00:02.000><c> "
+        "left</c>\n\n00:03.000 --> 00:03.010\nso we left\n\n"
         "00:03.010 --> 00:05.000\nso we left\nand<00:00:04.000><c> then</c>\n"
     )
-    assert rows(found) == {"": [("so", 1, 1.5), ("we", 1.5, 2), ("left", 2, 3), ("and", 3.01, 4), ("then", 4, 5)]}
+    assert rows(found) == {
+        "": [("so", 1, 1.5), ("we", 1.5, 2), ("left", 2, 3), ("and", 3.01, 4), ("then", 4, 5)]
+    }
 
 
 def test_srt_names_before_colons_are_speakers(read: Reader) -> None:
-    found = read("1\r\n00:00:01,000 --> 00:00:02,000\r\nANN: Hi\r\n\r\n2\r\n00:00:02,500 --> 00:00:03,000\r\n{\\an8}- Ben: Yes\r\n\r\n")
+    found = read(
+        "1\r\n00:00:01,000 --> 00:00:02,000\r\nANN: Hi\r\n\r\n2\r\n00:00:02,500 --> 00:00:03,000\r\n{\\an8}- "
+        "Ben: Yes\r\n\r\n"
+    )
     assert rows(found) == {"ANN": [("Hi", 1, 2)], "Ben": [("Yes", 2.5, 3)]}
 
 
@@ -194,16 +256,29 @@ def test_one_colon_makes_no_speaker(read: Reader) -> None:
     assert [w.text for w in found.speakers[""]] == ["Note:", "this", "is", "all"]
 
 
-# --- JSON ------------------------------------------------------------------------------------------------------------
+# --- JSON
+# --------------------------------------------------------------------------------------------------
 
 
 def test_whisper_words_and_segments_without_words(read: Reader) -> None:
-    data = {"text": "x", "segments": [
-        {"start": 0, "end": 1, "text": " Hi there", "words": [
-            {"word": " Hi", "start": 0.1, "end": 0.4, "probability": 1}, {"word": " there.", "start": 0.5, "end": 0.9}]},
-        {"start": 2, "end": 3, "text": " we left"},
-    ]}  # fmt: skip
-    assert rows(read(json.dumps(data))) == {"": [("Hi", 0.1, 0.4), ("there.", 0.5, 0.9), ("we", 2, 2.375), ("left", 2.375, 3)]}
+    data = {
+        "text": "x",
+        "segments": [
+            {
+                "start": 0,
+                "end": 1,
+                "text": " Hi there",
+                "words": [
+                    {"word": " Hi", "start": 0.1, "end": 0.4, "probability": 1},
+                    {"word": " there.", "start": 0.5, "end": 0.9},
+                ],
+            },
+            {"start": 2, "end": 3, "text": " we left"},
+        ],
+    }
+    assert rows(read(json.dumps(data))) == {
+        "": [("Hi", 0.1, 0.4), ("there.", 0.5, 0.9), ("we", 2, 2.375), ("left", 2.375, 3)]
+    }
 
 
 def test_whisperx_speakers_and_words_without_times(read: Reader) -> None:
@@ -211,7 +286,10 @@ def test_whisperx_speakers_and_words_without_times(read: Reader) -> None:
         {"word": "in", "start": 0.2, "end": 0.4, "speaker": "A"}, {"word": "2014"},
         {"word": "we", "start": 1.0, "end": 1.2, "speaker": "B"}, {"word": "7"},
     ]}], "word_segments": []}  # fmt: skip
-    assert rows(read(json.dumps(data))) == {"A": [("in", 0.2, 0.4), ("2014", 0.4, 1.0), ("7", 1.2, 2)], "B": [("we", 1.0, 1.2)]}
+    assert rows(read(json.dumps(data))) == {
+        "A": [("in", 0.2, 0.4), ("2014", 0.4, 1.0), ("7", 1.2, 2)],
+        "B": [("we", 1.0, 1.2)],
+    }
 
 
 @pytest.mark.parametrize("key", ["words", "word_segments", None])
@@ -221,18 +299,36 @@ def test_words_alone_are_read(read: Reader, key: str | None) -> None:
 
 
 def test_ibm_speakers_come_by_their_labels(read: Reader) -> None:
-    data = {"result_index": 0, "results": [
-        {"final": True, "alternatives": [{"transcript": "so %HESITATION", "timestamps": [["so", 0.1, 0.3], ["%HESITATION", 0.3, 0.6]]}]},
-        {"final": False, "alternatives": [{"timestamps": [["no", 9, 10]]}]},
-        {"final": True, "alternatives": [{"timestamps": [["yes", 1.0, 1.2]]}]},
-    ], "speaker_labels": [
-        {"from": 0.1, "to": 0.3, "speaker": 0}, {"from": 0.3, "to": 0.6, "speaker": 0}, {"from": 1.0, "to": 1.2, "speaker": 1},
-    ]}  # fmt: skip
-    assert rows(read(json.dumps(data))) == {"0": [("so", 0.1, 0.3), ("%HESITATION", 0.3, 0.6)], "1": [("yes", 1.0, 1.2)]}
+    data = {
+        "result_index": 0,
+        "results": [
+            {
+                "final": True,
+                "alternatives": [
+                    {
+                        "transcript": "so %HESITATION",
+                        "timestamps": [["so", 0.1, 0.3], ["%HESITATION", 0.3, 0.6]],
+                    }
+                ],
+            },
+            {"final": False, "alternatives": [{"timestamps": [["no", 9, 10]]}]},
+            {"final": True, "alternatives": [{"timestamps": [["yes", 1.0, 1.2]]}]},
+        ],
+        "speaker_labels": [
+            {"from": 0.1, "to": 0.3, "speaker": 0},
+            {"from": 0.3, "to": 0.6, "speaker": 0},
+            {"from": 1.0, "to": 1.2, "speaker": 1},
+        ],
+    }
+    assert rows(read(json.dumps(data))) == {
+        "0": [("so", 0.1, 0.3), ("%HESITATION", 0.3, 0.6)],
+        "1": [("yes", 1.0, 1.2)],
+    }
     assert rows(read(json.dumps([data])))["1"] == [("yes", 1.0, 1.2)]
 
 
-# --- CTM -------------------------------------------------------------------------------------------------------------
+# --- CTM
+# --------------------------------------------------------------------------------------------------
 
 
 def test_ctm_channels_are_speakers(read: Reader) -> None:

@@ -17,22 +17,53 @@ from metagraph.formats.transcripts import read_transcript
 from metagraph.graph.conversation import Conversation, Segment, Side, Word
 
 TALK = Conversation(
-    name="t", length=9,
-    sides=(Side(name="Ann", audio="a.wav", words=(Word(text="so", start=1, end=1.2), Word(text="we", start=1.2, end=1.4)),
-                segments=(Segment("clause", 1, 1.4, 1.1, "so we"),)), Side(name="Ben", segments=(Segment("response", 2, 3),))),
-)  # fmt: skip
+    name="t",
+    length=9,
+    sides=(
+        Side(
+            name="Ann",
+            audio="a.wav",
+            words=(Word(text="so", start=1, end=1.2), Word(text="we", start=1.2, end=1.4)),
+            segments=(Segment("clause", 1, 1.4, 1.1, "so we"),),
+        ),
+        Side(name="Ben", segments=(Segment("response", 2, 3),)),
+    ),
+)
 SEEDS = {
-    ".vtt": "WEBVTT\n\n00:01.000 --> 00:02.000\n<v Ann>so<00:00:01.500> we\n\n00:03.000 --> 00:04.000\nBen: yes\n\n"
-            "00:05.000 --> 00:06.000\nAnn: no\n",
+    ".vtt": "WEBVTT\n\n00:01.000 --> 00:02.000\n<v Ann>so<00:00:01.500> we\n\n00:03.000 --> 00:04.000\nBen: "
+    "yes\n\n"
+    "00:05.000 --> 00:06.000\nAnn: no\n",
     ".srt": "1\n00:00:01,000 --> 00:00:02,000\nANN: so we\n\n2\n00:00:03,000 --> 00:00:04,000\n- BEN: yes\n",
     ".ctm": "a 1 0.5 0.2 so 0.9\na 2 0.7 0.2 we\n",
-    ".whisper": json.dumps({"segments": [
-        {"start": 0, "end": 1, "text": "a b", "speaker": "x", "words": [{"word": "a", "start": 0.1, "end": 0.3}, {"word": "b"}]}]}),
-    ".ibm": json.dumps({"results": [{"final": True, "alternatives": [{"timestamps": [["so", 0.1, 0.3]]}]}],
-                       "speaker_labels": [{"from": 0.1, "speaker": 1}]}),
-}  # fmt: skip
+    ".whisper": json.dumps(
+        {
+            "segments": [
+                {
+                    "start": 0,
+                    "end": 1,
+                    "text": "a b",
+                    "speaker": "x",
+                    "words": [{"word": "a", "start": 0.1, "end": 0.3}, {"word": "b"}],
+                }
+            ]
+        }
+    ),
+    ".ibm": json.dumps(
+        {
+            "results": [{"final": True, "alternatives": [{"timestamps": [["so", 0.1, 0.3]]}]}],
+            "speaker_labels": [{"from": 0.1, "speaker": 1}],
+        }
+    ),
+}
 
-HEADS = ("WEBVTT\n\n", "1\n00:00:01,000 --> 00:00:02,000\n", 'File type = "ooTextFile"\n', "<", "a 1 0.5 0.2 ", "")
+HEADS = (
+    "WEBVTT\n\n",
+    "1\n00:00:01,000 --> 00:00:02,000\n",
+    'File type = "ooTextFile"\n',
+    "<",
+    "a 1 0.5 0.2 ",
+    "",
+)
 
 
 def survives(path: Path) -> None:
@@ -54,7 +85,10 @@ def seeds(tmp_path_factory: pytest.TempPathFactory) -> dict[str, bytes]:
     write_elan(TALK, folder / "a.eaf")
     write_textgrid(TALK, folder / "a.TextGrid")
     write_json(TALK, folder / "a.json")
-    return {**{k: v.encode() for k, v in SEEDS.items()}, **{p.suffix: p.read_bytes() for p in folder.iterdir()}}
+    return {
+        **{k: v.encode() for k, v in SEEDS.items()},
+        **{p.suffix: p.read_bytes() for p in folder.iterdir()},
+    }
 
 
 @pytest.mark.parametrize("kind", [*SEEDS, ".eaf", ".TextGrid", ".json"])
@@ -72,7 +106,21 @@ def test_mutated_files_are_read_or_refused(seeds: dict[str, bytes], kind: str, t
                 del data[at : at + chance.randint(1, 30)]
             elif change == 2:
                 data[at:at] = chance.choice(
-                    [b'"', b"-", b"9" * 30, b"nan", b"1e309", b"null", b"{}", b"[]", b"\n", b" --> ", b"<", b"\xff\xfe", b"-1"]
+                    [
+                        b'"',
+                        b"-",
+                        b"9" * 30,
+                        b"nan",
+                        b"1e309",
+                        b"null",
+                        b"{}",
+                        b"[]",
+                        b"\n",
+                        b" --> ",
+                        b"<",
+                        b"\xff\xfe",
+                        b"-1",
+                    ]
                 )
             elif change == 3:
                 data[at:at] = data[chance.randrange(len(data) + 1) :][:60]
@@ -83,12 +131,27 @@ def test_mutated_files_are_read_or_refused(seeds: dict[str, bytes], kind: str, t
 
 
 KEYS = (
-    "segments", "words", "word", "text", "start", "end", "results", "alternatives", "timestamps", "speaker_labels", "from", "speaker",
-    "word_segments", "sides", "final",
-)  # fmt: skip
+    "segments",
+    "words",
+    "word",
+    "text",
+    "start",
+    "end",
+    "results",
+    "alternatives",
+    "timestamps",
+    "speaker_labels",
+    "from",
+    "speaker",
+    "word_segments",
+    "sides",
+    "final",
+)
 values = st.recursive(
     st.one_of(st.none(), st.booleans(), st.floats(), st.integers(-5, 10**400), st.text(max_size=6)),
-    lambda inner: st.one_of(st.lists(inner, max_size=3), st.dictionaries(st.sampled_from(KEYS), inner, max_size=4)),
+    lambda inner: st.one_of(
+        st.lists(inner, max_size=3), st.dictionaries(st.sampled_from(KEYS), inner, max_size=4)
+    ),
     max_leaves=12,
 )
 
@@ -107,7 +170,16 @@ def test_any_json_is_read_or_refused(tmp_path: Path, value: object) -> None:
 @settings(max_examples=100, suppress_health_check=[HealthCheck.function_scoped_fixture], deadline=None)
 @given(
     st.text(max_size=80),
-    st.sampled_from(["WEBVTT\n\n", "1\n00:00:01,000 --> 00:00:02,000\n", 'File type = "ooTextFile"\n', "<", "a 1 0.5 0.2 ", ""]),
+    st.sampled_from(
+        [
+            "WEBVTT\n\n",
+            "1\n00:00:01,000 --> 00:00:02,000\n",
+            'File type = "ooTextFile"\n',
+            "<",
+            "a 1 0.5 0.2 ",
+            "",
+        ]
+    ),
 )
 def test_any_text_is_read_or_refused(tmp_path: Path, text: str, head: str) -> None:
     path = tmp_path / "a.txt"

@@ -1,4 +1,6 @@
-"""Edits of many at once: patterns make names, properties are pasted in groups, a replaced clip keeps its settings."""
+"""Edits of many at once: patterns make names, properties are pasted in groups, a replaced clip keeps its
+settings.
+"""
 
 from __future__ import annotations
 
@@ -56,7 +58,9 @@ def test_a_text_is_replaced_only_where_it_stands(project: Project) -> None:
     first = gestures(project)[0]
     named = batch.rename(project, {first: "Wave_Lf 01"})
     assert batch.names_replaced(named, gestures(named), "_Lf", r"\1 left") == {first: r"Wave\1 left 01"}
-    assert batch.names_replaced(named, gestures(named), r"(\w+)_Lf (\d+)", r"\2 \1", regex=True) == {first: "01 Wave"}
+    assert batch.names_replaced(named, gestures(named), r"(\w+)_Lf (\d+)", r"\2 \1", regex=True) == {
+        first: "01 Wave"
+    }
     assert batch.names_replaced(named, ["nobody"], "Wave", "x") == {}
     with pytest.raises(EditError, match="no regular expression"):
         batch.names_replaced(named, gestures(named), "(", "x", regex=True)
@@ -70,13 +74,20 @@ def test_a_text_is_replaced_only_where_it_stands(project: Project) -> None:
 def test_pasting_gives_the_chosen_groups_and_nothing_else(project: Project) -> None:
     source, *others = gestures(project)
     project = edits.update_actions(
-        project, [source], tags=("loud",), likelihood=3.0, limb="left", timing={"blend_in": 0.07, "blend_out": 0.11}
+        project,
+        [source],
+        tags=("loud",),
+        likelihood=3.0,
+        limb="left",
+        timing={"blend_in": 0.07, "blend_out": 0.11},
     )
     after = batch.paste(project, source, others, ["tags", "blends"])
     for ident in others:
         before, now = project.action(ident), after.action(ident)
         assert before is not None and now is not None
-        assert now == replace(before, tags=("loud",), timing=replace(before.timing, blend_in=0.07, blend_out=0.11))
+        assert now == replace(
+            before, tags=("loud",), timing=replace(before.timing, blend_in=0.07, blend_out=0.11)
+        )
     assert after.action(source) == project.action(source)
 
 
@@ -85,7 +96,9 @@ def test_pasted_times_stay_within_the_clip(project: Project) -> None:
     action = project.action(other)
     assert action is not None
     length = project.clips[action.clip].duration
-    project = edits.update_actions(project, [source], timing={"start": length + 1.0, "end": length + 2.0, "stroke": length + 1.5})
+    project = edits.update_actions(
+        project, [source], timing={"start": length + 1.0, "end": length + 2.0, "stroke": length + 1.5}
+    )
     after = batch.paste(project, source, [other], ["part", "phases"]).action(other)
     assert after is not None
     assert (after.timing.start, after.timing.end) == (action.timing.start, action.timing.end)

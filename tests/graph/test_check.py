@@ -36,7 +36,11 @@ def healthy(toy: Any) -> Project:
     """The toy project with its one missing part: something to fidget and gesture with in "far"."""
     project = toy.project()
     project = edits.add_clips(
-        project, [("far.glb", 0, "", toy.clip("far beat", 1.0, 1.4)), ("f.glb", 0, "", toy.clip("far fidget", 1.0, 1.4))]
+        project,
+        [
+            ("far.glb", 0, "", toy.clip("far beat", 1.0, 1.4)),
+            ("f.glb", 0, "", toy.clip("far fidget", 1.0, 1.4)),
+        ],
     )
     far = toy.id(project, "far")
     project = edits.place(project, [entry(project, "far beat")], "arms", "gesture", far)
@@ -62,7 +66,11 @@ def test_errors_come_first_hints_last(healthy: Project, toy: Any) -> None:
     project = edits.add_stance(healthy, "arms", "bare")
     project = edits.update_actions(project, [toy.id(project, "far beat")], likelihood=0)
     severities = [p.severity for p in check(project)]
-    assert severities == sorted(severities, key=["error", "warning", "hint"].index) and set(severities) == {"error", "warning", "hint"}
+    assert severities == sorted(severities, key=["error", "warning", "hint"].index) and set(severities) == {
+        "error",
+        "warning",
+        "hint",
+    }
 
 
 def test_no_stance(toy: Any) -> None:
@@ -76,15 +84,21 @@ def test_file_missing(healthy: Project, toy: Any, name: str, severity: str) -> N
     ident = entry(project, name)
     project = replace(project, clips={**project.clips, ident: replace(project.clips[ident], motion=None)})
     problem = only(project, "file-missing")
-    assert (problem.severity, problem.clip) == (severity, ident) and project.clips[ident].path in problem.message
+    assert (problem.severity, problem.clip) == (severity, ident) and project.clips[
+        ident
+    ].path in problem.message
 
 
 def test_other_skeleton(healthy: Project, toy: Any) -> None:
     s = toy.skeleton
-    other = replace(toy.clip("big"), skeleton=Skeleton(s.names, s.parents, s.rest_rotations, s.rest_translations * 2))
+    other = replace(
+        toy.clip("big"), skeleton=Skeleton(s.names, s.parents, s.rest_rotations, s.rest_translations * 2)
+    )
     project = edits.add_clips(healthy, [("big.glb", 0, "", other)])
     problem = only(project, "other-skeleton")
-    assert problem.severity == "warning" and problem.clip == entry(project, "big") and "'big'" in problem.message
+    assert (
+        problem.severity == "warning" and problem.clip == entry(project, "big") and "'big'" in problem.message
+    )
     used = edits.with_motions(healthy, {entry(healthy, "rest short"): other})
     assert only(used, "other-skeleton").severity == "error"
 
@@ -127,7 +141,10 @@ def test_base_floats(healthy: Project, toy: Any, up: float, way: str) -> None:
 def test_base_twisted(healthy: Project, toy: Any) -> None:
     project = edits.add_stance(healthy, "body", "stand", [healthy.base.clip])
     project = edits.add_clips(project, [("base.glb", 0, "", lying(toy, 0, 0, np.radians(90)))])
-    assert "turned 90 degrees from stance 'stand'" in only(edits.set_base(project, entry(project, "base")), "base-twisted").message
+    assert (
+        "turned 90 degrees from stance 'stand'"
+        in only(edits.set_base(project, entry(project, "base")), "base-twisted").message
+    )
 
 
 def test_no_part(healthy: Project) -> None:
@@ -155,7 +172,9 @@ def test_dead_end_and_unreachable(healthy: Project, toy: Any) -> None:
 
 
 def test_a_single_stance_is_no_dead_end(toy: Any) -> None:
-    project = edits.add_stance(edits.add_clips(Project(), [("a.glb", 0, "", toy.clip("a", swing=0.1))]), "head", "still", ["c1"])
+    project = edits.add_stance(
+        edits.add_clips(Project(), [("a.glb", 0, "", toy.clip("a", swing=0.1))]), "head", "still", ["c1"]
+    )
     assert set(codes(project)) == {"no-gestures", "no-fidgets"}
 
 
@@ -178,25 +197,45 @@ def test_lost_stance(healthy: Project, toy: Any) -> None:
 
 
 def test_no_end_lost_end_and_circle(healthy: Project, toy: Any) -> None:
-    project = edits.place(healthy, [entry(healthy, "rest to up")], "arms", "transition", toy.id(healthy, "rest"), toy.id(healthy, "up"))
+    project = edits.place(
+        healthy,
+        [entry(healthy, "rest to up")],
+        "arms",
+        "transition",
+        toy.id(healthy, "rest"),
+        toy.id(healthy, "up"),
+    )
     ident = f"a{project.next_id - 1}"
     assert only(edits.update_actions(project, [ident], end_stance=None), "no-end").action == ident
     assert only(edits.update_actions(project, [ident], end_stance="s999"), "lost-end").action == ident
-    assert only(edits.update_actions(project, [ident], end_stance=toy.id(healthy, "rest")), "circle").severity == "warning"
+    assert (
+        only(edits.update_actions(project, [ident], end_stance=toy.id(healthy, "rest")), "circle").severity
+        == "warning"
+    )
 
 
 @pytest.mark.parametrize("likelihood", [0.0, -1.0, float("nan"), float("inf")])
 def test_likelihood(healthy: Project, toy: Any, likelihood: float) -> None:
-    problem = only(edits.update_actions(healthy, [toy.id(healthy, "far beat")], likelihood=likelihood), "likelihood")
+    problem = only(
+        edits.update_actions(healthy, [toy.id(healthy, "far beat")], likelihood=likelihood), "likelihood"
+    )
     assert problem.action == toy.id(healthy, "far beat")
 
 
 def test_mask(healthy: Project, toy: Any) -> None:
-    assert "'Tail'" in only(edits.update_actions(healthy, [toy.id(healthy, "far beat")], joints=("Head", "Tail")), "mask").message
+    assert (
+        "'Tail'"
+        in only(
+            edits.update_actions(healthy, [toy.id(healthy, "far beat")], joints=("Head", "Tail")), "mask"
+        ).message
+    )
 
 
 def test_lost_clip(healthy: Project, toy: Any) -> None:
-    assert only(edits.update_actions(healthy, [toy.id(healthy, "far beat")], clip="c999"), "lost-clip").clip == "c999"
+    assert (
+        only(edits.update_actions(healthy, [toy.id(healthy, "far beat")], clip="c999"), "lost-clip").clip
+        == "c999"
+    )
 
 
 @pytest.mark.parametrize(
@@ -218,7 +257,11 @@ def test_lost_clip(healthy: Project, toy: Any) -> None:
 )
 def test_trim_empty_blend_and_exit(healthy: Project, toy: Any, timing: dict[str, float], code: str) -> None:
     ident = toy.id(healthy, "far beat")
-    found = [p for p in check(edits.update_actions(healthy, [ident], timing=timing)) if not p.code.startswith("far")]
+    found = [
+        p
+        for p in check(edits.update_actions(healthy, [ident], timing=timing))
+        if not p.code.startswith("far")
+    ]
     assert [(p.code, p.action) for p in found] == [(code, ident)]
 
 

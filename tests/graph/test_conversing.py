@@ -1,4 +1,6 @@
-"""Edits of conversations: whatever is done to segments, they stay sorted, apart, inside the conversation, with their peaks inside."""
+"""Edits of conversations: whatever is done to segments, they stay sorted, apart, inside the conversation,
+with their peaks inside.
+"""
 
 from __future__ import annotations
 
@@ -12,7 +14,11 @@ from metagraph.graph.conversation import SHORTEST, SPOKEN, Conversation, Segment
 from metagraph.graph.edits import EditError
 from metagraph.graph.model import Project
 
-WORDS = (Word(text="we", start=1.0, end=1.2), Word(text="meet", start=1.3, end=1.6), Word(text="here", start=1.7, end=2.0))
+WORDS = (
+    Word(text="we", start=1.0, end=1.2),
+    Word(text="meet", start=1.3, end=1.6),
+    Word(text="here", start=1.7, end=2.0),
+)
 FIRST = (
     Segment("clause", 1.0, 2.0, 1.4, "we meet here"),
     Segment("hesitation", 2.5, 2.8, None, "um"),
@@ -61,9 +67,19 @@ def test_what_is_not_there_is_refused() -> None:
 
 def test_fields_and_rates_are_set_and_nothing_changes_where_they_are_the_same() -> None:
     before, ident = project()
-    after = c.set_rates(c.change_side(c.change_conversation(before, ident, distance=2), ident, 1, name=" Bea "), ident, 1, clause=0.62)
+    after = c.set_rates(
+        c.change_side(c.change_conversation(before, ident, distance=2), ident, 1, name=" Bea "),
+        ident,
+        1,
+        clause=0.62,
+    )
     of = after.conversations[ident]
-    assert (of.distance, of.sides[1].name, of.sides[1].rates.clause, of.sides[1].rates.response) == (2.0, "Bea", 0.62, 0.58)
+    assert (of.distance, of.sides[1].name, of.sides[1].rates.clause, of.sides[1].rates.response) == (
+        2.0,
+        "Bea",
+        0.62,
+        0.58,
+    )
     assert c.set_rates(after, ident, 1, clause=0.62) is after
     moved = c.change_side(before, ident, 1, project="other.metagraph.yaml")
     assert [s.project for s in moved.conversations[ident].sides] == [None, "other.metagraph.yaml"]
@@ -111,7 +127,10 @@ def test_a_split_parts_the_words_and_a_merge_makes_them_one_again() -> None:
 
 def test_a_split_without_timed_words_keeps_the_text_in_the_first_part() -> None:
     before, ident = project()
-    assert [s.text for s in segments(c.split_segment(before, ident, 0, 2, 3.5), ident)[2:]] == ["by the door", ""]
+    assert [s.text for s in segments(c.split_segment(before, ident, 0, 2, 3.5), ident)[2:]] == [
+        "by the door",
+        "",
+    ]
 
 
 def test_a_merge_with_a_clause_is_a_clause() -> None:
@@ -124,7 +143,9 @@ def test_a_new_segment_is_held_in_its_gap_and_takes_the_words_in_it() -> None:
     before, ident = project()
     after, at = c.add_segment(before, ident, 0, "response", 2.3, 1.99)
     assert (at, segments(after, ident)[1].start) == (1, 2.0)
-    after, at = c.add_segment(c.remove_segments(before, ident, {(0, 0)}), ident, 0, "clause", 1.25, 2.2, peak=9.0)
+    after, at = c.add_segment(
+        c.remove_segments(before, ident, {(0, 0)}), ident, 0, "clause", 1.25, 2.2, peak=9.0
+    )
     assert (at, segments(after, ident)[0].text, segments(after, ident)[0].peak) == (0, "meet here", 2.2)
 
 
@@ -136,7 +157,11 @@ def test_word_lists_label_anew_but_not_what_was_labelled_by_hand() -> None:
     assert [s.kind for s in segments(after, ident)] == ["response", "response", "response"]
     assert segments(after, ident, 1)[0].kind == "hesitation"
     assert after.conversations[ident].hesitations == ("yeah",)
-    assert [s.kind for s in segments(c.set_word_lists(after, ident, [], []), ident)] == ["clause", "clause", "response"]
+    assert [s.kind for s in segments(c.set_word_lists(after, ident, [], []), ident)] == [
+        "clause",
+        "clause",
+        "response",
+    ]
 
 
 def test_words_are_compared_without_case_hyphens_and_punctuation() -> None:
@@ -164,8 +189,17 @@ def edited(now: Project, ident: str, what: int, side: int, at: int, a: float, b:
     )[what]()
 
 
-@given(st.lists(st.tuples(st.integers(0, 8), st.integers(0, 1), st.integers(0, 6), times, times, st.sampled_from(SPOKEN)), max_size=25))
-def test_any_edits_keep_segments_sorted_apart_and_inside(steps: list[tuple[int, int, int, float, float, str]]) -> None:
+@given(
+    st.lists(
+        st.tuples(
+            st.integers(0, 8), st.integers(0, 1), st.integers(0, 6), times, times, st.sampled_from(SPOKEN)
+        ),
+        max_size=25,
+    )
+)
+def test_any_edits_keep_segments_sorted_apart_and_inside(
+    steps: list[tuple[int, int, int, float, float, str]],
+) -> None:
     now, ident = project()
     for step in steps:
         try:

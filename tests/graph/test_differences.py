@@ -30,14 +30,17 @@ def beat(toy, project: Project) -> str:
 @pytest.mark.parametrize(
     ("edit", "line"),
     [
-        (lambda p, i: edits.update_actions(p, [i("rest beat lf")], likelihood=2.5), f"{BEAT} likelihood 1 → 2.5"),
-        (lambda p, i: edits.update_actions(p, [i("rest beat lf")], tags=("positive",)), f"{BEAT} tags none → 'positive'"),
+        (lambda p, i: edits.update_actions(p, [i("rest beat lf")], likelihood=2.5), f"{BEAT} likelihood 1 → "
+                                                                                    "2.5"),
+        (lambda p, i: edits.update_actions(p, [i("rest beat lf")], tags=("positive",)), f"{BEAT} tags none → "
+                                                                                        "'positive'"),
         (
             lambda p, i: edits.update_actions(p, [i("rest beat lf")], name="beat"),
             "Gesture 'beat' (arms) changed: name 'rest beat lf' → 'beat'",
         ),
         (lambda p, i: edits.remove_actions(p, [i("rest cough")]), "Fidget 'rest cough' (arms) removed"),
-        (lambda p, i: edits.rename_stance(p, i("far"), "away"), "Stance 'away' (arms) changed: name 'far' → 'away'"),
+        (lambda p, i: edits.rename_stance(p, i("far"), "away"), "Stance 'away' (arms) changed: name 'far' → "
+                                                                "'away'"),
         (lambda p, i: edits.set_settings(p, seed=7), "Settings changed: seed 1 → 7"),
         (lambda p, i: edits.rename_project(p, "other"), "Name changed: 'toy' → 'other'"),
         (lambda p, i: edits.set_character(p, "a.glb"), "Character changed: none → 'a.glb'"),
@@ -54,7 +57,9 @@ def test_timing_is_told_by_its_own_fields(toy) -> None:
     before = toy.project()
     action = before.action(beat(toy, before))
     after = edits.update_actions(before, [action.id], timing=replace(action.timing, start=0.1, end=0.5))
-    assert differences(before, after) == ["Gesture 'rest beat lf' (arms) changed: start 0 → 0.1, end none → 0.5"]
+    assert differences(before, after) == [
+        "Gesture 'rest beat lf' (arms) changed: start 0 → 0.1, end none → 0.5"
+    ]
 
 
 def test_clips_that_came_and_went_are_named(toy) -> None:

@@ -22,7 +22,9 @@ EVERY: dict[str, Callable[[Project, Any], Project]] = {
     "remove_stance": lambda p, t: edits.remove_stance(p, t.id(p, "up")),
     "set_start": lambda p, t: edits.set_start(p, t.id(p, "far")),
     "place": lambda p, t: edits.place(p, ["c5", "c6"], "arms", "fidget", t.id(p, "far")),
-    "update_actions": lambda p, t: edits.update_actions(p, [t.id(p, "up yawn")], timing={"start": 0.1}, tags=("bored",)),
+    "update_actions": lambda p, t: edits.update_actions(
+        p, [t.id(p, "up yawn")], timing={"start": 0.1}, tags=("bored",)
+    ),
     "move_actions": lambda p, t: edits.move_actions(p, [t.id(p, "up yawn")], "gesture", t.id(p, "rest")),
     "update_each": lambda p, t: edits.update_each(
         p, {t.id(p, "up yawn"): {"likelihood": 2.0}, t.id(p, "up beat"): {"timing": {"end": 0.5}}}
@@ -48,7 +50,11 @@ def test_an_edit_leaves_the_given_project_as_it_was_and_undo_is_to_keep_it(name:
     after = EVERY[name](project, toy)
     assert after != project or name == "with_motions"
     assert project == twin
-    assert (project.clips, project.graphs) == before[:2] and project.graphs == before[2] and project.clips == before[3]
+    assert (
+        (project.clips, project.graphs) == before[:2]
+        and project.graphs == before[2]
+        and project.clips == before[3]
+    )
     assert EVERY[name](project, toy) == after, "the same edit gives the same project"
 
 
@@ -57,13 +63,17 @@ def test_an_edit_leaves_the_given_project_as_it_was_and_undo_is_to_keep_it(name:
 
 def test_the_first_clip_brings_the_skeleton_and_the_last_takes_it_away(toy: Any) -> None:
     project = edits.add_clips(Project(), [("a.glb", 0, "", toy.clip("a"))])
-    assert project.skeleton is toy.skeleton and project.clips["c1"] == ClipEntry("c1", "a", "a.glb", 0, "", 31, 30.0)
+    assert project.skeleton is toy.skeleton and project.clips["c1"] == ClipEntry(
+        "c1", "a", "a.glb", 0, "", 31, 30.0
+    )
     assert edits.remove_clips(project, ["c1"]).skeleton is None
     assert edits.add_clips(project, []) == project
 
 
 def test_a_clip_read_again_keeps_its_id_and_name(toy: Any) -> None:
-    project = edits.add_clips(Project(), [("a.glb", 0, "old", toy.clip("a")), ("a.glb", 1, "old", toy.clip("b"))])
+    project = edits.add_clips(
+        Project(), [("a.glb", 0, "old", toy.clip("a")), ("a.glb", 1, "old", toy.clip("b"))]
+    )
     project = edits.rename_clip(project, "c2", "mine")
     again = edits.add_clips(project, [("a.glb", 1, "new", toy.clip("b", 2.0))])
     assert list(again.clips) == ["c1", "c2"] and again.next_id == project.next_id
@@ -90,9 +100,12 @@ def test_ids_are_never_used_twice(toy: Any) -> None:
 @pytest.mark.parametrize(
     ("name", "limb"),
     [
-        ("wave_lf_01", "left"), ("wave_rt", "right"), ("beat_bt", "both"), ("LeftWave", "left"), ("waveRight", "right"), ("nod", "both"),
-        ("L_wave", "left"), ("wave-R", "right"), ("wave.l", "left"), ("beat both left", "both"), ("later", "both"), ("alert", "both"),
-        ("wave_left2", "left"), ("2h_wave", "both"), ("", "both"), ("right", "right"), ("Lift", "both"), ("LR_clap", "both"),
+        ("wave_lf_01", "left"), ("wave_rt", "right"), ("beat_bt", "both"), ("LeftWave", "left"),
+        ("waveRight", "right"), ("nod", "both"),
+        ("L_wave", "left"), ("wave-R", "right"), ("wave.l", "left"), ("beat both left", "both"),
+        ("later", "both"), ("alert", "both"),
+        ("wave_left2", "left"), ("2h_wave", "both"), ("", "both"), ("right", "right"), ("Lift", "both"),
+        ("LR_clap", "both"),
     ],
 )  # fmt: skip
 def test_the_limb_is_guessed_from_the_name(name: str, limb: Limb) -> None:
@@ -129,7 +142,9 @@ def test_names_of_stances_are_made_different_and_never_empty(toy: Any) -> None:
         edits.rename_project(project, "\t")
 
 
-@pytest.mark.parametrize("edit", [edits.remove_stance, edits.set_start, lambda p, s: edits.rename_stance(p, s, "x")])
+@pytest.mark.parametrize(
+    "edit", [edits.remove_stance, edits.set_start, lambda p, s: edits.rename_stance(p, s, "x")]
+)
 def test_a_stance_that_is_gone_is_said_to_be_gone(edit: Any, toy: Any) -> None:
     with pytest.raises(EditError, match="no longer in the project"):
         edit(toy.project(), "s999")
@@ -156,10 +171,22 @@ def test_refusals_say_what_to_do(toy: Any) -> None:
     rest, up = toy.id(project, "rest"), toy.id(project, "up")
     assert edits.refusal(project, [], "arms", "gesture", rest) == "nothing to place"
     assert edits.refusal(project, ["c999"], "arms", "gesture", rest) == "a clip that is not in this project"
-    assert edits.refusal(project, ["c1"], "head", "gesture", None) == "make a stance first: drop a clip on the middle of the head layer"
-    assert edits.refusal(project, ["c1"], "head", "gesture", rest) == "make a stance first: drop a clip on the middle of the head layer"
-    assert edits.refusal(project, ["c1"], "arms", "transition", rest) == "choose the stance this transition ends in first"
-    assert edits.refusal(project, ["c1"], "arms", "transition", rest, rest) == "a transition must end in another stance"
+    assert (
+        edits.refusal(project, ["c1"], "head", "gesture", None)
+        == "make a stance first: drop a clip on the middle of the head layer"
+    )
+    assert (
+        edits.refusal(project, ["c1"], "head", "gesture", rest)
+        == "make a stance first: drop a clip on the middle of the head layer"
+    )
+    assert (
+        edits.refusal(project, ["c1"], "arms", "transition", rest)
+        == "choose the stance this transition ends in first"
+    )
+    assert (
+        edits.refusal(project, ["c1"], "arms", "transition", rest, rest)
+        == "a transition must end in another stance"
+    )
     assert edits.refusal(project, ["c1"], "arms", "transition", rest, up) is None
     assert edits.refusal(project, ["c1"], "arms", "stance", None) is None
     with pytest.raises(EditError, match="choose the stance"):
@@ -189,7 +216,10 @@ def test_a_dropped_clip_gets_blends_of_at_most_a_quarter_and_its_limb_from_its_n
 
 
 def test_an_open_loop_gets_a_blended_seam(toy: Any) -> None:
-    project = edits.add_clips(Project(), [("open.glb", 0, "", toy.clip("open", 2.0, 0.0, 0.5)), ("one.glb", 0, "", toy.clip("one", 0.0))])
+    project = edits.add_clips(
+        Project(),
+        [("open.glb", 0, "", toy.clip("open", 2.0, 0.0, 0.5)), ("one.glb", 0, "", toy.clip("one", 0.0))],
+    )
     assert edits.default_timing(project.clips["c1"], "stance").blend_in == 0.4
     assert edits.default_timing(project.clips["c2"], "stance").blend_in == 0.0
     assert edits.default_timing(project.clips["c2"], "gesture") == Timing(blend_in=0.0, blend_out=0.0)
@@ -201,7 +231,11 @@ def test_updating_many_actions_changes_only_what_is_named(toy: Any) -> None:
     after = edits.update_actions(project, both, timing={"blend_in": 0.05}, likelihood=3.0)
     for ident in both[:2]:
         old, new = project.action(ident), after.action(ident)
-        assert (new.timing.blend_in, new.timing.blend_out, new.likelihood) == (0.05, old.timing.blend_out, 3.0)
+        assert (new.timing.blend_in, new.timing.blend_out, new.likelihood) == (
+            0.05,
+            old.timing.blend_out,
+            3.0,
+        )
     assert after.graphs["head"] is project.graphs["head"]
     assert edits.update_actions(project, both, timing=Timing(0.1)).action(both[0]).timing == Timing(0.1)
 
@@ -224,7 +258,10 @@ def test_moved_actions_keep_their_settings_and_a_moved_gesture_becomes_a_proper_
     way = edits.move_actions(project, [ident], "transition", up, toy.id(project, "far")).action(ident)
     assert way.end_stance == toy.id(project, "far")
     assert (
-        edits.move_actions(project, [toy.id(project, "rest to up")], "gesture", up).action(toy.id(project, "rest to up")).end_stance is None
+        edits.move_actions(project, [toy.id(project, "rest to up")], "gesture", up)
+        .action(toy.id(project, "rest to up"))
+        .end_stance
+        is None
     )
     with pytest.raises(EditError, match="ends in first"):
         edits.move_actions(project, [ident], "transition", up)
@@ -235,8 +272,14 @@ def test_moved_actions_keep_their_settings_and_a_moved_gesture_becomes_a_proper_
 def test_each_action_can_get_values_of_its_own(toy: Any) -> None:
     project = toy.project()
     beat, yawn = toy.id(project, "up beat"), toy.id(project, "up yawn")
-    after = edits.update_each(project, {beat: {"likelihood": 2.0}, yawn: {"tags": ("tired",)}, "a999": {"likelihood": 3.0}})
-    assert (after.action(beat).likelihood, after.action(yawn).tags, after.action(yawn).likelihood) == (2.0, ("tired",), 1.0)
+    after = edits.update_each(
+        project, {beat: {"likelihood": 2.0}, yawn: {"tags": ("tired",)}, "a999": {"likelihood": 3.0}}
+    )
+    assert (after.action(beat).likelihood, after.action(yawn).tags, after.action(yawn).likelihood) == (
+        2.0,
+        ("tired",),
+        1.0,
+    )
     assert edits.update_each(project, {beat: {"likelihood": 1.0}}) is project
 
 
@@ -256,10 +299,18 @@ def test_transitions_get_another_end_and_other_kinds_stay(toy: Any) -> None:
     project = toy.project()
     rest, up, far = (toy.id(project, n) for n in ("rest", "up", "far"))
     after = edits.set_ends(project, [toy.id(project, "rest to up"), toy.id(project, "up yawn")], far)
-    assert after.action(toy.id(project, "rest to up")).end_stance == far and after.action(toy.id(project, "up yawn")).end_stance is None
+    assert (
+        after.action(toy.id(project, "rest to up")).end_stance == far
+        and after.action(toy.id(project, "up yawn")).end_stance is None
+    )
     with pytest.raises(EditError, match="must end in another stance"):
         edits.set_ends(project, [toy.id(project, "up to far"), toy.id(project, "rest to up")], up)
-    assert edits.set_ends(project, [toy.id(project, "up to far")], rest).action(toy.id(project, "up to far")).end_stance == rest
+    assert (
+        edits.set_ends(project, [toy.id(project, "up to far")], rest)
+        .action(toy.id(project, "up to far"))
+        .end_stance
+        == rest
+    )
 
 
 def test_the_first_loop_of_all_gives_the_base_pose_unless_one_was_chosen(toy: Any) -> None:
@@ -267,16 +318,23 @@ def test_the_first_loop_of_all_gives_the_base_pose_unless_one_was_chosen(toy: An
     first = edits.add_stance(project, "head", "still", ["c2"])
     assert first.base == BasePose("c2", 0)
     assert edits.add_stance(first, "arms", "rest", ["c1"]).base == BasePose("c2", 0)
-    assert edits.add_stance(edits.set_base(project, "c1", 3), "head", "still", ["c2"]).base == BasePose("c1", 3)
+    assert edits.add_stance(edits.set_base(project, "c1", 3), "head", "still", ["c2"]).base == BasePose(
+        "c1", 3
+    )
     with_stance = edits.set_base(first, None)
-    assert edits.add_stance(with_stance, "arms", "rest", ["c1"]).base == BasePose(), "the rest pose was chosen after all"
+    assert edits.add_stance(with_stance, "arms", "rest", ["c1"]).base == BasePose(), (
+        "the rest pose was chosen after all"
+    )
 
 
 def test_actions_move_across_layers(toy: Any) -> None:
     project = edits.add_stance(toy.project(), "head", "still")
     ident, still = toy.id(project, "rest short"), toy.id(project, "still")
     after = edits.move_actions(project, [ident], "gesture", still)
-    assert ident not in after.graphs["arms"].actions and after.graphs["head"].of(still, "gesture")[0].layer == "head"
+    assert (
+        ident not in after.graphs["arms"].actions
+        and after.graphs["head"].of(still, "gesture")[0].layer == "head"
+    )
 
 
 def test_an_action_moved_between_nodes_keeps_its_place_among_those_placed_before_and_after(toy: Any) -> None:
@@ -311,7 +369,9 @@ def test_weights_and_frames_are_kept_in_range(toy: Any) -> None:
 def test_corrections_can_be_taken_back(toy: Any) -> None:
     project = toy.project()
     assert edits.set_role(edits.set_role(project, "head", "Neck"), "head", None) == project
-    assert edits.set_part(edits.set_part(project, ["Neck", "Head"], "spine"), ["Neck", "Head"], None) == project
+    assert (
+        edits.set_part(edits.set_part(project, ["Neck", "Head"], "spine"), ["Neck", "Head"], None) == project
+    )
 
 
 def test_motion_that_is_filled_in_does_not_count_as_a_change(toy: Any) -> None:

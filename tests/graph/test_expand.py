@@ -21,12 +21,16 @@ def test_an_empty_project_is_an_empty_machine() -> None:
 
 
 def test_a_lone_loop_is_connected_to_nothing(toy: Any) -> None:
-    project = edits.add_stance(edits.add_clips(Project(), [("a.glb", 0, "", toy.clip("a"))]), "arms", "rest", ["c1"])
+    project = edits.add_stance(
+        edits.add_clips(Project(), [("a.glb", 0, "", toy.clip("a"))]), "arms", "rest", ["c1"]
+    )
     assert size(project) == Size(1, 1, 0)
 
 
 def test_two_loops_lead_to_each_other_but_not_to_themselves(toy: Any) -> None:
-    project = edits.add_stance(edits.add_clips(Project(), [("a.glb", 0, "", toy.clip("a"))]), "arms", "rest", ["c1", "c1"])
+    project = edits.add_stance(
+        edits.add_clips(Project(), [("a.glb", 0, "", toy.clip("a"))]), "arms", "rest", ["c1", "c1"]
+    )
     assert size(project) == Size(1, 2, 2)
 
 
@@ -43,7 +47,9 @@ def test_broken_projects_are_counted_like_they_are_listed(toy: Any) -> None:
     graph = project.graphs["arms"]
     no_end = edits.update_actions(project, [toy.id(project, "rest to up")], end_stance=None)
     gone = edits.update_actions(project, [toy.id(project, "rest to up")], end_stance="s999")
-    itself = edits.update_actions(project, [toy.id(project, "rest to up")], end_stance=toy.id(project, "rest"))
+    itself = edits.update_actions(
+        project, [toy.id(project, "rest to up")], end_stance=toy.id(project, "rest")
+    )
     lost = project.with_graph(graph.but(stances={i: s for i, s in graph.stances.items() if s.name != "up"}))
     for broken in (no_end, gone, lost):
         assert size(broken).connections == listed(broken)

@@ -1,4 +1,6 @@
-"""Finding faces: the mannequin's joints, real hosts' joints shown by their clips, morph targets, corrections."""
+"""Finding faces: the mannequin's joints, real hosts' joints shown by their clips, morph targets,
+corrections.
+"""
 
 from __future__ import annotations
 
@@ -12,7 +14,17 @@ import pytest
 
 from metagraph.formats.imports import import_files
 from metagraph.graph import edits
-from metagraph.graph.face import CHANNELS, JAW_OPEN, LIDS, MOUTH, FaceRig, axes_of, find_face, morph_names, with_morphs
+from metagraph.graph.face import (
+    CHANNELS,
+    JAW_OPEN,
+    LIDS,
+    MOUTH,
+    FaceRig,
+    axes_of,
+    find_face,
+    morph_names,
+    with_morphs,
+)
 from metagraph.graph.life import Face, FacePose
 from metagraph.graph.model import Project
 from metagraph.motion import rotation
@@ -30,7 +42,11 @@ def degrees(face: FaceRig, project: Project, channel: str) -> dict[str, float]:
     """How far a channel turns each joint at 1."""
     assert project.skeleton is not None
     sizes = np.degrees(np.linalg.norm(face.turns[ROW[channel]], axis=1))
-    return {project.skeleton.names[j]: round(float(x), 3) for j, x in zip(face.joints, sizes, strict=True) if x > 0}
+    return {
+        project.skeleton.names[j]: round(float(x), 3)
+        for j, x in zip(face.joints, sizes, strict=True)
+        if x > 0
+    }
 
 
 # --- nothing there
@@ -52,7 +68,9 @@ def test_the_mannequins_lids_shut_as_far_as_its_maker_says(sample: Project) -> N
     assert degrees(face, sample, "upper_lid_left") == {"LeftUpperLid": 40.0}
     assert degrees(face, sample, "lower_lid_right") == {"RightLowerLid": 15.0}
     lids = face.turns[[ROW[c] for c in LIDS]].sum(1)
-    assert (lids[:2, 0] > 0).all() and (lids[2:, 0] < 0).all() and np.abs(lids[:, 1:]).max() < 1e-9, "about X, down and up"
+    assert (lids[:2, 0] > 0).all() and (lids[2:, 0] < 0).all() and np.abs(lids[:, 1:]).max() < 1e-9, (
+        "about X, down and up"
+    )
     assert not face.shifts.any(), "its lids turn about the eye itself"
 
 
@@ -104,11 +122,20 @@ def test_what_was_found_is_found_once(sample: Project) -> None:
 
 def test_lids_hung_elsewhere_go_round_the_eye() -> None:
     rows = [
-        ("Hips", -1, (0, 1, 0)), ("Spine", 0, (0, 0.2, 0)), ("Neck", 1, (0, 0.3, 0)), ("Head", 2, (0, 0.1, 0)),
-        ("LeftEye", 3, (0.03, 0.1, 0.05)), ("LeftUpperLid", 3, (0.03, 0.1, 0.0)), ("RightEye", 3, (-0.03, 0.1, 0.05)),
-        ("LeftUpperArm", 1, (0.2, 0.2, 0)), ("LeftLowerArm", 7, (0.3, 0, 0)), ("LeftHand", 8, (0.2, 0, 0)),
-        ("RightUpperArm", 1, (-0.2, 0.2, 0)), ("RightLowerArm", 10, (-0.3, 0, 0)), ("RightHand", 11, (-0.2, 0, 0)),
-    ]  # fmt: skip
+        ("Hips", -1, (0, 1, 0)),
+        ("Spine", 0, (0, 0.2, 0)),
+        ("Neck", 1, (0, 0.3, 0)),
+        ("Head", 2, (0, 0.1, 0)),
+        ("LeftEye", 3, (0.03, 0.1, 0.05)),
+        ("LeftUpperLid", 3, (0.03, 0.1, 0.0)),
+        ("RightEye", 3, (-0.03, 0.1, 0.05)),
+        ("LeftUpperArm", 1, (0.2, 0.2, 0)),
+        ("LeftLowerArm", 7, (0.3, 0, 0)),
+        ("LeftHand", 8, (0.2, 0, 0)),
+        ("RightUpperArm", 1, (-0.2, 0.2, 0)),
+        ("RightLowerArm", 10, (-0.3, 0, 0)),
+        ("RightHand", 11, (-0.2, 0, 0)),
+    ]
     names, parents, at = zip(*rows, strict=True)
     turns = rotation.from_axis_angle(np.tile([0.3, 0.5, 0.1], (len(rows), 1)), np.linspace(0, 1, len(rows)))
     skeleton = Skeleton(names, np.array(parents), turns, np.array(at, float))
@@ -122,7 +149,9 @@ def test_lids_hung_elsewhere_go_round_the_eye() -> None:
     local_t[joint] += face.shifts[0, place]
     after, moved = skeleton.globals(type(skeleton.rest)(local_r, local_t))
     eye = at_rest[skeleton.index("LeftEye")]
-    axes = axes_of(skeleton, {"left_eye": skeleton.index("LeftEye"), "right_eye": skeleton.index("RightEye")}, at_rest)
+    axes = axes_of(
+        skeleton, {"left_eye": skeleton.index("LeftEye"), "right_eye": skeleton.index("RightEye")}, at_rest
+    )
     turn = rotation.from_axis_angle(axes[0], np.radians(40.0))
     assert np.allclose(moved[joint], eye + rotation.rotate(turn, at_rest[joint] - eye), atol=1e-9)
     assert rotation.angle_between(after[joint], rotation.multiply(turn, before[joint])) < 1e-7
@@ -144,7 +173,9 @@ def test_a_character_without_sides_looks_along_z(toy: Any) -> None:
 # --- clips that show a face
 
 
-def shown(project: Project, skeleton: Skeleton, name: str, joint: str, angle: float, shift: float = 0.0) -> Project:
+def shown(
+    project: Project, skeleton: Skeleton, name: str, joint: str, angle: float, shift: float = 0.0
+) -> Project:
     """The project with a clip whose second frame turns a joint about X and shifts it along Y."""
     rotations = np.tile(skeleton.rest_rotations, (3, 1, 1))
     rotations[1, skeleton.index(joint)] = rotation.from_axis_angle([1.0, 0, 0], np.radians(angle))
@@ -152,7 +183,9 @@ def shown(project: Project, skeleton: Skeleton, name: str, joint: str, angle: fl
     moved = sorted({0, skeleton.index(joint)})
     translations = np.tile(skeleton.rest_translations[moved], (3, 1, 1))
     translations[1, -1, 1] += shift
-    return edits.add_clips(project, [(f"{name}.glb", 0, "", Clip(name, skeleton, 30, rotations, translations, tuple(moved)))])
+    return edits.add_clips(
+        project, [(f"{name}.glb", 0, "", Clip(name, skeleton, 30, rotations, translations, tuple(moved)))]
+    )
 
 
 def test_a_blink_clip_shows_how_far_lids_shut(sample: Project) -> None:
@@ -172,7 +205,12 @@ def test_a_frame_of_a_clip_bound_by_the_user_goes_before_what_was_found(sample: 
     project = shown(sample, skeleton, "say ah", "Jaw", 9.0)
     clip = list(project.clips)[-1]
     project = bound(
-        project, poses={"viseme_aa": FacePose(clip=clip), "viseme_O": FacePose(clip=clip, frame=2), "nonsense": FacePose(clip=clip)}
+        project,
+        poses={
+            "viseme_aa": FacePose(clip=clip),
+            "viseme_O": FacePose(clip=clip, frame=2),
+            "nonsense": FacePose(clip=clip),
+        },
     )
     face = find_face(project)
     assert degrees(face, project, "viseme_aa") == {"Jaw": pytest.approx(9.0, abs=0.01)}
@@ -183,14 +221,18 @@ def test_a_frame_of_a_clip_bound_by_the_user_goes_before_what_was_found(sample: 
 
 def test_a_pose_of_a_clip_that_is_gone_is_ignored(sample: Project) -> None:
     project = bound(sample, poses={"viseme_aa": FacePose(clip="c99999")})
-    assert degrees(find_face(project), project, "viseme_aa") == degrees(find_face(sample), sample, "viseme_aa")
+    assert degrees(find_face(project), project, "viseme_aa") == degrees(
+        find_face(sample), sample, "viseme_aa"
+    )
 
 
 # --- morph targets
 
 
 def test_morph_targets_go_before_joints_but_eyes_stay_joints(sample: Project) -> None:
-    project = with_morphs(sample, ["eyeBlinkLeft", "eyeBlinkRight", "jawOpen", "mouthFunnel", "eyeLookUpLeft"])
+    project = with_morphs(
+        sample, ["eyeBlinkLeft", "eyeBlinkRight", "jawOpen", "mouthFunnel", "eyeLookUpLeft"]
+    )
     face = find_face(project)
     assert {"blink_left", "viseme_aa"} <= face.morphs.keys() and "look_up_left" not in face.morphs
     assert len(face.joints) == 0 and len(face.eyes) == 2
@@ -211,9 +253,13 @@ def test_morph_targets_are_known_from_clips_memory_and_the_caller(toy: Any) -> N
 @pytest.mark.parametrize(("host", "upper"), [("adult_female", 2), ("alien", 3)])
 def test_real_hosts_show_their_faces_by_their_clips(shared_data: Path, host: str, upper: int) -> None:
     folder = shared_data / "sumerian-hosts" / "glTF" / "animations" / host
-    project = import_files(Project(), folder, [folder / f"{n}.glb" for n in ("stand_idle", "blink", "lipsync")]).into(Project())
+    project = import_files(
+        Project(), folder, [folder / f"{n}.glb" for n in ("stand_idle", "blink", "lipsync")]
+    ).into(Project())
     face = find_face(project)
-    assert len(face.eyes) == 2 and {f"viseme_{v}" for v in ("PP", "aa", "O", "SS")} <= set(face.joint_channels())
+    assert len(face.eyes) == 2 and {f"viseme_{v}" for v in ("PP", "aa", "O", "SS")} <= set(
+        face.joint_channels()
+    )
     lids = degrees(face, project, "upper_lid_left")
     assert len(lids) >= upper and max(lids.values()) > 40
     assert np.degrees(np.linalg.norm(face.turns, axis=-1)).max() < 90 and face.shifts.any()

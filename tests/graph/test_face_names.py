@@ -14,11 +14,36 @@ from metagraph.graph.face_names import VISEMES, clip_shapes, find_morphs
 from metagraph.graph.model import Project
 
 ARKIT = [
-    "eyeBlinkLeft", "eyeBlinkRight", "eyeWideLeft", "eyeWideRight", "eyeLookUpLeft", "eyeLookUpRight", "eyeLookDownLeft",
-    "eyeLookDownRight", "eyeLookInLeft", "eyeLookInRight", "eyeLookOutLeft", "eyeLookOutRight", "jawOpen", "mouthFunnel", "mouthPucker",
-    "mouthPressLeft", "mouthPressRight", "mouthRollLower", "mouthRollUpper", "mouthStretchLeft", "mouthStretchRight", "mouthSmileLeft",
-    "mouthSmileRight", "mouthLowerDownLeft", "mouthLowerDownRight", "mouthUpperUpLeft", "mouthUpperUpRight", "tongueOut", "browInnerUp",
-]  # fmt: skip
+    "eyeBlinkLeft",
+    "eyeBlinkRight",
+    "eyeWideLeft",
+    "eyeWideRight",
+    "eyeLookUpLeft",
+    "eyeLookUpRight",
+    "eyeLookDownLeft",
+    "eyeLookDownRight",
+    "eyeLookInLeft",
+    "eyeLookInRight",
+    "eyeLookOutLeft",
+    "eyeLookOutRight",
+    "jawOpen",
+    "mouthFunnel",
+    "mouthPucker",
+    "mouthPressLeft",
+    "mouthPressRight",
+    "mouthRollLower",
+    "mouthRollUpper",
+    "mouthStretchLeft",
+    "mouthStretchRight",
+    "mouthSmileLeft",
+    "mouthSmileRight",
+    "mouthLowerDownLeft",
+    "mouthLowerDownRight",
+    "mouthUpperUpLeft",
+    "mouthUpperUpRight",
+    "tongueOut",
+    "browInnerUp",
+]
 
 
 def test_a_mesh_without_morph_targets_has_no_channels() -> None:
@@ -32,7 +57,15 @@ def test_targets_that_mean_nothing_to_a_face_are_left_alone() -> None:
 def spellings(name: str) -> list[str]:
     snake = "".join("_" + c.lower() if c.isupper() else c for c in name)
     short = name.replace("Left", "_L").replace("Right", "_R")
-    return [name, name.upper(), snake, f"blendShape1.{name}", f"Face.{short}", f"BS_{name}", short.replace("_", ".")]
+    return [
+        name,
+        name.upper(),
+        snake,
+        f"blendShape1.{name}",
+        f"Face.{short}",
+        f"BS_{name}",
+        short.replace("_", "."),
+    ]
 
 
 @pytest.mark.parametrize("style", range(7))
@@ -49,8 +82,12 @@ def test_arkit_is_known_however_it_is_spelled(style: int) -> None:
 
 def test_towards_the_nose_is_to_the_right_for_the_left_eye() -> None:
     found = find_morphs(ARKIT)
-    assert found["look_right_left"] == (("eyeLookInLeft", 1.0),) and found["look_left_left"] == (("eyeLookOutLeft", 1.0),)
-    assert found["look_left_right"] == (("eyeLookInRight", 1.0),) and found["look_right_right"] == (("eyeLookOutRight", 1.0),)
+    assert found["look_right_left"] == (("eyeLookInLeft", 1.0),) and found["look_left_left"] == (
+        ("eyeLookOutLeft", 1.0),
+    )
+    assert found["look_left_right"] == (("eyeLookInRight", 1.0),) and found["look_right_right"] == (
+        ("eyeLookOutRight", 1.0),
+    )
 
 
 @pytest.mark.parametrize(
@@ -58,7 +95,16 @@ def test_towards_the_nose_is_to_the_right_for_the_left_eye() -> None:
     [
         ["A", "I", "U", "E", "O", "Blink", "Blink_L", "Blink_R"],
         ["aa", "ih", "ou", "ee", "oh", "blink", "blinkLeft", "blinkRight"],
-        ["Fcl_MTH_A", "Fcl_MTH_I", "Fcl_MTH_U", "Fcl_MTH_E", "Fcl_MTH_O", "Fcl_EYE_Close", "Fcl_EYE_Close_L", "Fcl_EYE_Close_R"],
+        [
+            "Fcl_MTH_A",
+            "Fcl_MTH_I",
+            "Fcl_MTH_U",
+            "Fcl_MTH_E",
+            "Fcl_MTH_O",
+            "Fcl_EYE_Close",
+            "Fcl_EYE_Close_L",
+            "Fcl_EYE_Close_R",
+        ],
     ],
 )
 def test_the_five_vowels_of_vrm_make_all_shapes_but_closed_lips(names: list[str]) -> None:
@@ -107,7 +153,9 @@ def test_any_names_are_survived(names: list[str]) -> None:
 
 
 def named(toy: Any, *names: str, path: str = "face.glb", seconds: float = 0.1) -> Project:
-    return edits.add_clips(Project(), [(path, n, "", toy.clip(name, seconds)) for n, name in enumerate(names)])
+    return edits.add_clips(
+        Project(), [(path, n, "", toy.clip(name, seconds)) for n, name in enumerate(names)]
+    )
 
 
 def shapes(project: Project) -> dict[str, str]:
@@ -119,9 +167,20 @@ def test_one_clip_called_a_is_no_mouth_shape(toy: Any) -> None:
 
 
 def test_a_family_of_marks_is_a_mouth(toy: Any) -> None:
-    found = shapes(named(toy, "@", "a", "e", "E", "f", "i", "k", "o", "O", "p", "r", "s", "S", "sil", "t", "T", "u"))
-    assert found["viseme_PP"] == "p" and found["viseme_CH"] == "S" and found["viseme_SS"] == "s" and found["viseme_TH"] == "T"
-    assert found["viseme_E"] == "E" and found["viseme_O"] == "o" and found["viseme_DD"] == found["viseme_nn"] == "t"
+    found = shapes(
+        named(toy, "@", "a", "e", "E", "f", "i", "k", "o", "O", "p", "r", "s", "S", "sil", "t", "T", "u")
+    )
+    assert (
+        found["viseme_PP"] == "p"
+        and found["viseme_CH"] == "S"
+        and found["viseme_SS"] == "s"
+        and found["viseme_TH"] == "T"
+    )
+    assert (
+        found["viseme_E"] == "E"
+        and found["viseme_O"] == "o"
+        and found["viseme_DD"] == found["viseme_nn"] == "t"
+    )
 
 
 def test_shapes_by_their_full_names_need_no_family(toy: Any) -> None:

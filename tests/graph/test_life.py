@@ -10,7 +10,19 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from metagraph.formats.data import from_data, struct_data, struct_from, to_data
-from metagraph.graph.life import DIALS, MANNER_DIALS, MANNERS, Dial, Face, FacePose, Life, Manner, limits, manner, with_life
+from metagraph.graph.life import (
+    DIALS,
+    MANNER_DIALS,
+    MANNERS,
+    Dial,
+    Face,
+    FacePose,
+    Life,
+    Manner,
+    limits,
+    manner,
+    with_life,
+)
 from metagraph.graph.model import MODES, Project
 
 TABLES = ((Life, DIALS), (Manner, MANNER_DIALS))
@@ -38,12 +50,16 @@ def test_dials_have_the_ranges_their_fields_accept(kind: Any, dials: tuple[Dial,
 
 
 @pytest.mark.parametrize(("kind", "dials"), TABLES)
-def test_what_turns_a_dial_off_lies_in_its_range_and_is_not_its_default(kind: Any, dials: tuple[Dial, ...]) -> None:
+def test_what_turns_a_dial_off_lies_in_its_range_and_is_not_its_default(
+    kind: Any, dials: tuple[Dial, ...]
+) -> None:
     for dial in dials:
         if dial.off is not None:
             assert dial.low <= dial.off <= dial.high
             assert dial.off != getattr(kind(), dial.name) or dial.name == "stillness"
-    assert {d.name for d in dials if d.off is None} <= {"blink_close", "blink_open"}, "all others are amounts and can be turned off"
+    assert {d.name for d in dials if d.off is None} <= {"blink_close", "blink_open"}, (
+        "all others are amounts and can be turned off"
+    )
 
 
 def test_a_blink_lasts_as_long_as_the_paper_says() -> None:
@@ -83,9 +99,15 @@ def test_life_at_its_defaults_takes_no_room_in_a_file() -> None:
 lives = st.builds(
     Life,
     on=st.booleans(),
-    **{d.name: st.floats(d.low, d.high).map(lambda x: round(x, 3)).filter(lambda x, d=d: d.low <= x <= d.high) for d in DIALS},
+    **{
+        d.name: st.floats(d.low, d.high)
+        .map(lambda x: round(x, 3))
+        .filter(lambda x, d=d: d.low <= x <= d.high)
+        for d in DIALS
+    },
     modes=st.dictionaries(
-        st.sampled_from(MODES), st.builds(Manner, blinks=st.sampled_from([0.0, 0.5, 1.0, 4.0]), saccades=st.sampled_from([1.0, 2.0]))
+        st.sampled_from(MODES),
+        st.builds(Manner, blinks=st.sampled_from([0.0, 0.5, 1.0, 4.0]), saccades=st.sampled_from([1.0, 2.0])),
     ),
 )
 
@@ -96,7 +118,11 @@ def test_whatever_is_set_comes_back_from_the_file(life: Life) -> None:
 
 
 def test_a_face_comes_back_from_the_file() -> None:
-    face = Face(channels={"jaw_open": "Chin", "blink": ""}, poses={"viseme_aa": FacePose(clip="c1", frame=3)}, morphs=("A", "I"))
+    face = Face(
+        channels={"jaw_open": "Chin", "blink": ""},
+        poses={"viseme_aa": FacePose(clip="c1", frame=3)},
+        morphs=("A", "I"),
+    )
     project = Project(face=face, life=with_life(Life(), mode="idle", blinks=0.5))
     again = from_data(to_data(project))
     assert again.face == face and again.life == project.life

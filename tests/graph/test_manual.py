@@ -49,7 +49,9 @@ def test_clips_that_are_dropped_together_stand_in_a_grid_and_the_first_is_the_st
 
 def test_the_first_state_gives_the_base_pose_as_the_first_stance_does() -> None:
     assert project().base.clip == "c1"
-    chosen = edits.set_base(edits.add_clips(Project(), [(f"{n}.glb", 0, "", clip(n)) for n in CLIPS]), "c3", 2)
+    chosen = edits.set_base(
+        edits.add_clips(Project(), [(f"{n}.glb", 0, "", clip(n)) for n in CLIPS]), "c3", 2
+    )
     assert m.add_states(chosen, ["c1"], "arms").base.clip == "c3"
 
 
@@ -82,7 +84,8 @@ def test_a_link_is_taken_when_its_source_has_finished_and_one_from_any_state_wai
 
 
 @pytest.mark.parametrize(
-    ("source", "target", "words"), [("m5", ANY, "other way round"), ("m5", "m99", "two states"), ("c1", "m5", "two states")]
+    ("source", "target", "words"),
+    [("m5", ANY, "other way round"), ("m5", "m99", "two states"), ("c1", "m5", "two states")],
 )
 def test_a_link_that_joins_no_two_states_is_refused(source: str, target: str, words: str) -> None:
     with pytest.raises(EditError, match=words):

@@ -17,7 +17,9 @@ from tests.projects import clip
 
 def sound() -> Project:
     """stand (m4, a loop) -> wave (m5) -> stand; links l7, l8."""
-    project = edits.add_clips(Project("sound"), [(f"{n}.glb", 0, "", clip(n)) for n in ("stand", "wave", "nod")])
+    project = edits.add_clips(
+        Project("sound"), [(f"{n}.glb", 0, "", clip(n)) for n in ("stand", "wave", "nod")]
+    )
     project = m.update_states(m.add_states(project, ["c1", "c2"], "arms"), ["m4"], loop=True)
     project = m.add_link(m.add_link(project, "arms", "m4", "m5"), "arms", "m5", "m4")
     return m.update_links(project, ["l6"], condition={"when": "request"})
@@ -38,7 +40,9 @@ def test_one_state_alone_is_no_dead_end() -> None:
 
 def with_link(project: Project, **fields: object) -> Project:
     manual = project.manual["arms"]
-    return project.with_manual(replace(manual, links={**manual.links, "l6": replace(manual.links["l6"], **fields)}))
+    return project.with_manual(
+        replace(manual, links={**manual.links, "l6": replace(manual.links["l6"], **fields)})
+    )
 
 
 WRONG: list[tuple[str, Callable[[Project], Project]]] = [
@@ -60,11 +64,13 @@ WRONG: list[tuple[str, Callable[[Project], Project]]] = [
     ("blend", lambda p: m.update_links(p, ["l7"], blend=3.0)),
     ("exit", lambda p: m.update_links(p, ["l7"], exit_time=3.0)),
     ("any-finished", lambda p: with_link(p, source=ANY, condition=Link("", "", "").condition)),
-]  # fmt: skip
+]
 
 
 @pytest.mark.parametrize(("code", "spoil"), WRONG, ids=[f"{n}-{code}" for n, (code, _) in enumerate(WRONG)])
-def test_each_problem_is_found_says_what_to_do_and_where(code: str, spoil: Callable[[Project], Project]) -> None:
+def test_each_problem_is_found_says_what_to_do_and_where(
+    code: str, spoil: Callable[[Project], Project]
+) -> None:
     problems = {p.code: p for p in check(spoil(sound()))}
     assert code in problems
     assert problems[code].message

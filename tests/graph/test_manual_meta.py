@@ -25,7 +25,9 @@ def drawn(loops: tuple[str, ...], *links: str) -> tuple[Project, dict[str, str]]
         a, b = text.strip("!").split(">")
         project = m.add_link(project, "arms", states[a], states[b])
         last = [*project.manual["arms"].links][-1]
-        project = m.update_links(project, [last], condition={"when": "finished" if text.endswith("!") else "request"})
+        project = m.update_links(
+            project, [last], condition={"when": "finished" if text.endswith("!") else "request"}
+        )
     return project, states
 
 
@@ -50,24 +52,40 @@ def test_an_empty_project_amounts_to_itself() -> None:
 
 def test_loops_gestures_fidgets_and_transitions_are_told_apart_by_their_links() -> None:
     project, states = drawn(
-        ("stand", "sit"), "stand>wave", "wave>stand!", "stand>look!", "look>stand!", "stand>down", "down>sit!", "sit>up", "up>stand!",
-    )  # fmt: skip
+        ("stand", "sit"),
+        "stand>wave",
+        "wave>stand!",
+        "stand>look!",
+        "look>stand!",
+        "stand>down",
+        "down>sit!",
+        "sit>up",
+        "up>stand!",
+    )
     made, missing, extra = as_meta(project)
     assert kinds(made) == {
-        "stand": ("stance", "stand"), "sit": ("stance", "sit"), "wave": ("gesture", "stand"), "look": ("fidget", "stand"),
-        "down": ("transition", "stand", "sit"), "up": ("transition", "sit", "stand"),
-    }  # fmt: skip
+        "stand": ("stance", "stand"),
+        "sit": ("stance", "sit"),
+        "wave": ("gesture", "stand"),
+        "look": ("fidget", "stand"),
+        "down": ("transition", "stand", "sit"),
+        "up": ("transition", "sit", "stand"),
+    }
     assert extra == frozenset()
     assert named(missing, states) == {
         "wave>look", "look>wave", "wave>down", "look>down", "up>wave", "up>look", "up>down", "down>up",
     }  # fmt: skip
-    assert made.graphs["arms"].start == next(s.id for s in made.graphs["arms"].stances.values() if s.name == "stand")
+    assert made.graphs["arms"].start == next(
+        s.id for s in made.graphs["arms"].stances.values() if s.name == "stand"
+    )
     assert made.manual == {}
     assert only_manual(project)
 
 
 def test_a_machine_drawn_as_the_meta_graph_expands_differs_in_nothing() -> None:
-    project, _ = drawn(("stand", "sit"), "stand>wave", "wave>stand!", "stand>down", "down>sit!", "sit>up", "up>stand!")
+    project, _ = drawn(
+        ("stand", "sit"), "stand>wave", "wave>stand!", "stand>down", "down>sit!", "sit>up", "up>stand!"
+    )
     made = as_meta(project)[0]
     again, states = edits.add_clips(made, ()), {a.name: a.id for a in made.actions()}
     again = m.add_states(again, [a.clip for a in made.actions()], "arms")
@@ -83,14 +101,18 @@ def test_a_machine_drawn_as_the_meta_graph_expands_differs_in_nothing() -> None:
 
 
 def test_loops_that_lead_to_each_other_and_to_the_same_things_are_of_one_stance() -> None:
-    project, _ = drawn(("stand", "sway"), "stand>sway", "sway>stand", "stand>wave", "sway>wave", "wave>stand!", "wave>sway!")
+    project, _ = drawn(
+        ("stand", "sway"), "stand>sway", "sway>stand", "stand>wave", "sway>wave", "wave>stand!", "wave>sway!"
+    )
     made = as_meta(project)[0]
     assert len(made.graphs["arms"].stances) == 1
     assert kinds(made)["sway"] == ("stance", "stand")
 
 
 def test_loops_that_lead_elsewhere_are_stances_of_their_own_and_the_link_between_is_lost() -> None:
-    project, states = drawn(("stand", "sit"), "stand>sit", "sit>stand", "stand>wave", "wave>stand!", "sit>nod", "nod>sit!")
+    project, states = drawn(
+        ("stand", "sit"), "stand>sit", "sit>stand", "stand>wave", "wave>stand!", "sit>nod", "nod>sit!"
+    )
     made, _, extra = as_meta(project)
     assert len(made.graphs["arms"].stances) == 2
     assert named(extra, states) == {"stand>sit", "sit>stand"}
@@ -131,7 +153,13 @@ def test_times_come_from_the_links() -> None:
     project = m.update_links(m.update_links(project, [first], blend=0.15), [last], blend=0.4, exit_time=0.6)
     project = m.update_states(project, [states["wave"]], start=0.1, end=0.9)
     timing = next(a for a in as_meta(project)[0].actions() if a.name == "wave").timing
-    assert (timing.start, timing.end, timing.blend_in, timing.blend_out, timing.earliest_exit) == (0.1, 0.9, 0.15, 0.4, 0.6)
+    assert (timing.start, timing.end, timing.blend_in, timing.blend_out, timing.earliest_exit) == (
+        0.1,
+        0.9,
+        0.15,
+        0.4,
+        0.6,
+    )
 
 
 def test_a_trigger_that_is_not_the_states_name_becomes_a_tag() -> None:

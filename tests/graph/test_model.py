@@ -30,7 +30,12 @@ def assert_derived_as_if_anew(project: Project) -> None:
 def test_an_empty_project_has_three_empty_layers() -> None:
     project = Project()
     assert list(project.graphs) == ["body", "arms", "head"]
-    assert list(project.actions()) == [] and project.action("a1") is None and project.stance("s1") is None and project.stance(None) is None
+    assert (
+        list(project.actions()) == []
+        and project.action("a1") is None
+        and project.stance("s1") is None
+        and project.stance(None) is None
+    )
     assert len(project.uses) == 0 and "c1" not in project.uses and project.uses.get("c1", ()) == ()
     with pytest.raises(KeyError):
         project.uses["c1"]
@@ -48,7 +53,9 @@ def test_values_cannot_be_changed(toy: Any) -> None:
 
 def test_weights_are_the_papers_until_changed() -> None:
     graph = MetaGraph("body")
-    assert [graph.weight(part) for part in PARTS] == [REACH["body"][part] for part in PARTS] == [1, 1, 0, 1, 1]
+    assert (
+        [graph.weight(part) for part in PARTS] == [REACH["body"][part] for part in PARTS] == [1, 1, 0, 1, 1]
+    )
     assert MetaGraph("arms", weights={"legs": 0.5}).weight("legs") == 0.5
 
 
@@ -62,7 +69,9 @@ def test_weights_are_the_papers_until_changed() -> None:
         (Timing(5, None), (2, 2)),
     ],
 )
-def test_what_plays_stays_inside_the_clip_and_never_ends_before_it_starts(timing: Timing, expected: tuple[float, float]) -> None:
+def test_what_plays_stays_inside_the_clip_and_never_ends_before_it_starts(
+    timing: Timing, expected: tuple[float, float]
+) -> None:
     project = Project(clips={"c1": ClipEntry("c1", "clip", "clip.glb", frames=61, fps=30)})
     action = Action("a1", "c1", "gesture", "arms", "s1", "clip", timing=timing)
     assert project.span(action) == expected
@@ -88,7 +97,9 @@ def steps(draw: st.DrawFn) -> list[tuple[Any, ...]]:
     pick = st.integers(0, 30)
     one = st.one_of(
         st.tuples(st.just("place"), pick, st.sampled_from(LAYERS), st.sampled_from(KINDS), pick, pick),
-        st.tuples(st.just("move"), st.lists(pick, min_size=1, max_size=4), st.sampled_from(KINDS), pick, pick),
+        st.tuples(
+            st.just("move"), st.lists(pick, min_size=1, max_size=4), st.sampled_from(KINDS), pick, pick
+        ),
         st.tuples(st.just("remove"), st.lists(pick, max_size=4)),
         st.tuples(st.just("update"), st.lists(pick, max_size=4), st.floats(0.1, 5)),
         st.tuples(st.just("reclip"), pick, pick),
@@ -110,11 +121,15 @@ def apply(project: Project, step: tuple[Any, ...]) -> Project:
     word, *rest = step
     if word == "place":
         own = list(project.graphs[rest[1]].stances)
-        return edits.place(project, [some(clips, rest[0])], rest[1], rest[2], some(own, rest[3]), some(own, rest[4]))
+        return edits.place(
+            project, [some(clips, rest[0])], rest[1], rest[2], some(own, rest[3]), some(own, rest[4])
+        )
     if word == "move":
         target = project.stance(some(stances, rest[2]))
         own = list(project.graphs[target.layer].stances) if target else []
-        return edits.move_actions(project, [some(actions, n) for n in rest[0]], rest[1], some(stances, rest[2]), some(own, rest[3]))
+        return edits.move_actions(
+            project, [some(actions, n) for n in rest[0]], rest[1], some(stances, rest[2]), some(own, rest[3])
+        )
     if word == "remove":
         return edits.remove_actions(project, [some(actions, n) for n in rest[0]])
     if word == "update":
@@ -130,7 +145,9 @@ def apply(project: Project, step: tuple[Any, ...]) -> Project:
 
 @given(steps())
 @settings(max_examples=60, deadline=None)
-def test_after_any_edits_the_index_is_what_building_it_anew_gives_and_old_projects_are_as_they_were(steps: list[tuple[Any, ...]]) -> None:
+def test_after_any_edits_the_index_is_what_building_it_anew_gives_and_old_projects_are_as_they_were(
+    steps: list[tuple[Any, ...]],
+) -> None:
     project = PROJECT
     history = [project]
     for layer in LAYERS:

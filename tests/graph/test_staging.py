@@ -38,7 +38,9 @@ def test_an_ask_is_added_changed_and_taken_back() -> None:
     assert staging.remove_asks(project, ident, ["r1"]).performances[ident].asks == ()
 
 
-@pytest.mark.parametrize("changes", [{"priority": "high"}, {"at": -1.0}, {"nonsense": 1}, {"limb": "tail"}, {"at": float("nan")}])
+@pytest.mark.parametrize(
+    "changes", [{"priority": "high"}, {"at": -1.0}, {"nonsense": 1}, {"limb": "tail"}, {"at": float("nan")}]
+)
 def test_what_an_ask_cannot_take_is_refused(changes: dict[str, object]) -> None:
     project, ident = staged(a.Gesture(id="x"))
     with pytest.raises(EditError):
@@ -46,9 +48,13 @@ def test_what_an_ask_cannot_take_is_refused(changes: dict[str, object]) -> None:
 
 
 @given(st.lists(st.floats(0, 100), min_size=1, max_size=5), st.floats(-200, 200))
-def test_moving_asks_keeps_their_distance_and_stays_after_the_beginning(times: list[float], by: float) -> None:
+def test_moving_asks_keeps_their_distance_and_stays_after_the_beginning(
+    times: list[float], by: float
+) -> None:
     project, ident = staged(*[a.Nod(id=f"n{n}", at=t) for n, t in enumerate(times)])
-    after = staging.move_asks(project, ident, [f"n{n}" for n in range(len(times))], by).performances[ident].asks
+    after = (
+        staging.move_asks(project, ident, [f"n{n}" for n in range(len(times))], by).performances[ident].asks
+    )
     gone = [x.at - t for x, t in zip(after, times, strict=True)]
     assert min(x.at for x in after) >= 0
     assert max(gone) - min(gone) < 2e-3
@@ -64,7 +70,10 @@ def test_an_ask_without_a_time_can_be_moved_and_one_with_a_stroke_moves_its_stro
 
 def test_a_performance_is_renamed_and_removed_and_nothing_else_is() -> None:
     project, ident = staged()
-    assert staging.change_performance(project, ident, name="  new   name ").performances[ident].name == "new name"
+    assert (
+        staging.change_performance(project, ident, name="  new   name ").performances[ident].name
+        == "new name"
+    )
     assert staging.change_performance(project, ident, name="talk") is project
     assert staging.remove_performance(project, ident).performances == {}
     for wrong in ({"name": "  "}, {"length": 0.0}, {"length": float("nan")}, {"seed": -1}):
@@ -76,7 +85,9 @@ def test_a_performance_is_renamed_and_removed_and_nothing_else_is() -> None:
 
 def test_a_line_renamed_is_called_by_its_new_id() -> None:
     project, ident = staged(a.Say(line=279), a.Say(line="280"))
-    project = staging.set_line(staging.set_line(project, "279", a.Line(text="Hello")), "280", a.Line(text="Bye"))
+    project = staging.set_line(
+        staging.set_line(project, "279", a.Line(text="Hello")), "280", a.Line(text="Bye")
+    )
     after = staging.rename_line(project, "279", "greeting")
     assert list(after.lines) == ["greeting", "280"]
     assert [x.line for x in after.performances[ident].asks] == ["greeting", "280"]

@@ -53,11 +53,15 @@ def test_a_motion_that_is_the_same_on_both_sides_has_no_twin(toy: Any) -> None:
     project = toy.project()
     ident = toy.id(project, "rest beat lf")
     rest = toy.skeleton.rest
-    still = Clip("still", toy.skeleton, 30, np.stack([rest.rotations] * 4), np.stack([rest.translations[:1]] * 4))
+    still = Clip(
+        "still", toy.skeleton, 30, np.stack([rest.rotations] * 4), np.stack([rest.translations[:1]] * 4)
+    )
     action = project.action(ident)
     assert action is not None
     project = edits.with_motions(project, {action.clip: still})
-    with pytest.raises(EditError, match=r"'rest beat lf' has no side: it is within 0.0 cm of its mirror image"):
+    with pytest.raises(
+        EditError, match=r"'rest beat lf' has no side: it is within 0.0 cm of its mirror image"
+    ):
         twin_clips(project, [ident])
 
 
@@ -77,7 +81,11 @@ def test_a_character_that_is_not_the_same_on_both_sides_is_said(toy: Any) -> Non
     offsets = toy.skeleton.rest_translations.copy()
     offsets[toy.skeleton.index("LeftHand")] *= 2
     lopsided = Skeleton(toy.skeleton.names, toy.skeleton.parents, toy.skeleton.rest_rotations, offsets)
-    clips = {i: replace(e, motion=replace(e.motion, skeleton=lopsided)) for i, e in project.clips.items() if e.motion}
+    clips = {
+        i: replace(e, motion=replace(e.motion, skeleton=lopsided))
+        for i, e in project.clips.items()
+        if e.motion
+    }
     project = replace(project, clips=clips, skeleton=lopsided)
     with pytest.raises(EditError, match="differ in length"):
         twin_clips(project, [toy.id(project, "rest wave rt")])
@@ -87,7 +95,12 @@ def test_a_twin_stands_beside_its_original_with_sides_exchanged(toy: Any) -> Non
     project = toy.project()
     ident = toy.id(project, "rest wave rt")
     project = edits.update_actions(
-        project, [ident], tags=("greeting", "right hand"), likelihood=2.5, joints=("RightUpperArm", "RightHand", "Head"), cooldown=3.0
+        project,
+        [ident],
+        tags=("greeting", "right hand"),
+        likelihood=2.5,
+        joints=("RightUpperArm", "RightHand", "Head"),
+        cooldown=3.0,
     )
     project = edits.update_actions(project, [ident], timing={"start": 0.1, "stroke": 0.5, "blend_in": 0.05})
     after = with_twins(project, [ident])
@@ -170,7 +183,11 @@ def test_a_clip_that_is_missing_the_original_or_of_another_length_is_refused(toy
     ident = toy.id(project, "rest wave rt")
     action = project.action(ident)
     assert action is not None
-    for clip, words in (("c999", "not in the project"), (action.clip, "its own twin"), (toy.id(project, "up beat"), None)):
+    for clip, words in (
+        ("c999", "not in the project"),
+        (action.clip, "its own twin"),
+        (toy.id(project, "up beat"), None),
+    ):
         clip = clip if words else project.action(clip).clip  # type: ignore[union-attr]
         with pytest.raises(EditError, match=words or "is not as long as"):
             place_twins(project, {ident: clip})
@@ -192,7 +209,12 @@ def test_the_twin_of_a_twin_is_the_original_but_for_its_ids(sample: Project, dat
 
 
 def test_names_keep_their_case() -> None:
-    assert [twin_name(n) for n in ("Wave_L", "wave_lf_01", "RightPoint", "nod")] == ["Wave_R", "wave_rt_01", "LeftPoint", "nod mirrored"]
+    assert [twin_name(n) for n in ("Wave_L", "wave_lf_01", "RightPoint", "nod")] == [
+        "Wave_R",
+        "wave_rt_01",
+        "LeftPoint",
+        "nod mirrored",
+    ]
 
 
 def test_a_mirrored_clip_can_be_written_and_read_back(sample: Project, tmp_path: Path) -> None:

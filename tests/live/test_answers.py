@@ -31,7 +31,9 @@ def test_found_together_is_what_is_answered_one_by_one(sample: Project) -> None:
             heard = read(msgspec.json.encode(valid(r)))
             assert isinstance(heard, Heard)
             if not isinstance(heard.message, a.Withdraw):
-                asks.append(msgspec.structs.replace(heard.message, id=f"x{len(asks)}", at=round(r.random() * 40, 2)))  # type: ignore[arg-type]
+                asks.append(
+                    msgspec.structs.replace(heard.message, id=f"x{len(asks)}", at=round(r.random() * 40, 2))
+                )  # type: ignore[arg-type]
         plan = perform(sample, asks, 25.0, idle=bool(seed % 2))
         found = find(plan, {ask.id for ask in asks})
         for ask in asks:

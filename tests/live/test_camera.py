@@ -36,7 +36,12 @@ def watch(session: LiveSession, talk: Any, until: float = 18.0, client: int = 1,
     out = []
     for time, points, sure in zip(*talk, strict=True):
         if time < until:
-            frame = {"do": "keypoints", "points": points.round(4).tolist(), "confidence": sure.round(2).tolist(), **wish}
+            frame = {
+                "do": "keypoints",
+                "points": points.round(4).tolist(),
+                "confidence": sure.round(2).tolist(),
+                **wish,
+            }
             out += sent(session, client, float(time) + TICK, frame)
     return out
 
@@ -49,7 +54,11 @@ def test_every_frame_is_answered_and_says_what_is_seen(sample: Project, talk: An
     assert replies[-1]["seen"] == {"body": "weight left", "arms": "arms crossed", "head": "head tilt left"}
     parts = [part for r in replies for part in r.get("parts", ())]
     assert [p["id"] for p in parts] == [f"mimic{n + 1}" for n in range(len(parts))]
-    assert {p["do"] for p in parts} == {"stance"} and {p["state"] for p in parts} <= {"planned", "late", "done"}
+    assert {p["do"] for p in parts} == {"stance"} and {p["state"] for p in parts} <= {
+        "planned",
+        "late",
+        "done",
+    }
     assert 6 <= len(parts) <= 9
 
 
@@ -59,7 +68,10 @@ def test_the_character_goes_where_the_person_is_and_stays(sample: Project, talk:
     arms = session.plan.layers["arms"]
     assert sample.graphs["arms"].stances[arms.stance_at(13.0)].name == "on hips"  # type: ignore[index]
     assert not [
-        c for layer in LAYERS for c in session.plan.layers[layer].cues if c.then != c.stance and c.meta.startswith("auto/") and c.start > 1
+        c
+        for layer in LAYERS
+        for c in session.plan.layers[layer].cues
+        if c.then != c.stance and c.meta.startswith("auto/") and c.start > 1
     ]
 
 
@@ -91,7 +103,12 @@ def test_each_client_has_a_camera_of_its_own(sample: Project, talk: Any) -> None
     session = LiveSession(sample)
     times, space, sure = talk
     for time, points, some in zip(times[:60], space, sure, strict=False):
-        frame = {"do": "keypoints", "points": points.round(4).tolist(), "confidence": some.round(2).tolist(), "mirror": False}
+        frame = {
+            "do": "keypoints",
+            "points": points.round(4).tolist(),
+            "confidence": some.round(2).tolist(),
+            "mirror": False,
+        }
         first, second = (
             sent(session, 1, float(time) + TICK, frame),
             sent(session, 2, float(time) + TICK * 1.5, {**frame, "layers": ["arms"]}),
@@ -135,7 +152,9 @@ FRAME = {"do": "keypoints", "points": [[0.1 * n, 0.2] for n in range(17)]}
         ({"in": 2}, "only what the character does can be put off"),
     ],
 )
-def test_what_is_no_frame_is_refused_with_the_reason(sample: Project, change: dict[str, Any], words: str) -> None:
+def test_what_is_no_frame_is_refused_with_the_reason(
+    sample: Project, change: dict[str, Any], words: str
+) -> None:
     (reply,) = sent(LiveSession(sample), 1, 0.1, {**FRAME, **change, "id": "k"})
     assert reply["id"] == "k" and words in reply["error"]
 

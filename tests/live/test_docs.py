@@ -37,7 +37,9 @@ def test_every_request_and_its_fields_are_in_the_table() -> None:
         word = parts[name]["properties"]["do"]["enum"][0]
         row = next((line for line in rows.splitlines() if re.match(rf"\| (`\w+`, )?`{word}`[, ]", line)), "")
         assert row, word
-        assert not [field for field in parts[name]["properties"] if field not in common and f"`{field}`" not in row], (word, row)
+        assert not [
+            field for field in parts[name]["properties"] if field not in common and f"`{field}`" not in row
+        ], (word, row)
     assert all(f"| `{field}` |" in rows for field in common - {"do"})
 
 
@@ -54,26 +56,42 @@ def test_every_address_is_listed_and_understood() -> None:
             continue
         assert osc.request(f"/metagraph/{word}", ("x",))["do"]
     known = re.findall(r'case ((?:"\w+"(?: \| )?)+):', Path(osc.__file__).read_text())
-    assert not {word for words in known for word in re.findall(r"\w+", words) if f"`/metagraph/{word}`" not in text}
+    assert not {
+        word for words in known for word in re.findall(r"\w+", words) if f"`/metagraph/{word}`" not in text
+    }
 
 
 def test_the_limits_are_the_codes() -> None:
     text = section("Limits")
     kib = 1024
     for number in (
-        f"{messages.LONGEST // kib} KiB", f"{messages.LONGEST_BML // kib} KiB",
+        f"{messages.LONGEST // kib} KiB",
+        f"{messages.LONGEST_BML // kib} KiB",
         f"{messages.LONGEST_MESSAGE // kib} KiB, {messages.MOST} requests",
-        f"| {limits.PER_TICK}, of which {limits.PLANNED_PER_TICK} change", f"| {limits.PENDING}, of all", f"| {limits.WAITING} of the same",
-        f"| {limits.FARTHEST:g} s |", f"| {limits.SPEECH} characters |", f"names | {limits.NAMES} |", f"clients | {hub.CLIENTS} |",
-        f"{hub.BACKLOG // kib // kib} MiB", f"{tape.MOST // kib // kib} MiB",
-    ):  # fmt: skip
+        f"| {limits.PER_TICK}, of which {limits.PLANNED_PER_TICK} change",
+        f"| {limits.PENDING}, of all",
+        f"| {limits.WAITING} of the same",
+        f"| {limits.FARTHEST:g} s |",
+        f"| {limits.SPEECH} characters |",
+        f"names | {limits.NAMES} |",
+        f"clients | {hub.CLIENTS} |",
+        f"{hub.BACKLOG // kib // kib} MiB",
+        f"{tape.MOST // kib // kib} MiB",
+    ):
         assert number in text, number
-    assert f"up to {messages.FASTEST:g}" in section("Poses") and f"within {hub.PROVE:g} seconds" in section("Who may ask")
+    assert f"up to {messages.FASTEST:g}" in section("Poses") and f"within {hub.PROVE:g} seconds" in section(
+        "Who may ask"
+    )
 
 
 def test_the_examples_are_json_as_it_is_sent() -> None:
     reply, pose = (json.loads(x) for x in re.findall(r"^```json\n(.*?)\n```$", PAGE, re.S | re.M))
-    assert set(reply) <= set(messages.Reply.__struct_fields__) and {"t", "root", "rotations", "weights"} == set(pose)
+    assert set(reply) <= set(messages.Reply.__struct_fields__) and {
+        "t",
+        "root",
+        "rotations",
+        "weights",
+    } == set(pose)
 
 
 @pytest.mark.parametrize(("tag", "name"), [("py", "client.py"), ("js", "client.mjs")])
@@ -86,7 +104,15 @@ def test_the_clients_on_the_page_are_the_files_and_ten_lines_long(tag: str, name
 @pytest.fixture(scope="module")
 def port() -> Iterator[str]:
     """A session in a process of its own; the port it listens on."""
-    words = ["live", ROOT / "sample_clips" / "sample.metagraph.yaml", "--json", "--port", "0", "--no-osc", "--no-stdin"]
+    words = [
+        "live",
+        ROOT / "sample_clips" / "sample.metagraph.yaml",
+        "--json",
+        "--port",
+        "0",
+        "--no-osc",
+        "--no-stdin",
+    ]
     with started(*metagraph(*words), stdout=subprocess.PIPE) as process:
         assert process.stdout is not None
         yield json.loads(process.stdout.readline())["websocket"].rpartition(":")[2]

@@ -18,7 +18,13 @@ class Wire:
     """A line that keeps what it is given. unread: bytes it pretends the other side has not read."""
 
     def __init__(self, formats: tuple[str, ...] = ("json", "binary")) -> None:
-        self.formats, self.sent, self.unread, self.closed, self.done = formats, list[tuple[bytes, bool]](), 0, tuple[int, str](), 0
+        self.formats, self.sent, self.unread, self.closed, self.done = (
+            formats,
+            list[tuple[bytes, bool]](),
+            0,
+            tuple[int, str](),
+            0,
+        )
 
     def send(self, messages: list[tuple[bytes, bool]]) -> None:
         self.sent += messages
@@ -62,7 +68,9 @@ def test_answers_go_back_in_the_order_of_the_requests(wire: Wire) -> None:
     batch = hub.take()
     assert batch is not None and batch.joined == (1,) and len(batch.asked) == 4
     hub.give(answered(batch))
-    assert wire.texts[0] == '"1:Nod"' and "not JSON" in wire.texts[1] and wire.texts[3:] == ['"1:Status"', "[]"]
+    assert (
+        wire.texts[0] == '"1:Nod"' and "not JSON" in wire.texts[1] and wire.texts[3:] == ['"1:Status"', "[]"]
+    )
     assert wire.done == 5
     assert json.loads(wire.texts[2])[0] == "1:Blink" and "an object" in json.loads(wire.texts[2])[1]["error"]
     assert hub.idle
@@ -152,7 +160,10 @@ def test_poses_a_line_cannot_carry_are_refused() -> None:
     number = hub.open(wire, 0.0)
     hub.message(number, '{"do":"hello","id":"h","poses":{"format":"binary"}}')
     hub.give(answered(hub.take()))
-    assert json.loads(wire.texts[0]) == {"id": "h", "error": "poses: this line carries them as json, not as binary"}
+    assert json.loads(wire.texts[0]) == {
+        "id": "h",
+        "error": "poses: this line carries them as json, not as binary",
+    }
 
 
 # --- tokens
@@ -211,7 +222,10 @@ def test_tokens_of_any_text_are_compared() -> None:
 def test_batches_and_results_survive_the_pipe() -> None:
     hub = Hub()
     number = hub.open(Wire(), 0.0)
-    hub.message(number, '[{"do":"look","to":[1,2,3],"in":2},{"do":"hello","poses":null},{"do":"bml","bml":"<bml/>"},{"do":"describe"}]')
+    hub.message(
+        number,
+        '[{"do":"look","to":[1,2,3],"in":2},{"do":"hello","poses":null},{"do":"bml","bml":"<bml/>"},{"do":"describe"}]',
+    )
     batch = hub.take()
     assert batch is not None
     again = unpack_batch(pack(batch))

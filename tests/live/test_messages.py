@@ -52,7 +52,12 @@ def test_the_sessions_own_questions_are_read() -> None:
     hello = read('{"do":"hello","token":"t","poses":{"rate":60,"format":"binary"},"events":true}')
     assert hello == Heard(Hello(token="t", poses=Poses(rate=60, format="binary"), events=True))
     off = read('{"do":"hello","poses":null}')
-    assert isinstance(off, Heard) and isinstance(off.message, Hello) and off.message.poses is None and off.message.events is msgspec.UNSET
+    assert (
+        isinstance(off, Heard)
+        and isinstance(off.message, Hello)
+        and off.message.poses is None
+        and off.message.events is msgspec.UNSET
+    )
 
 
 @pytest.mark.parametrize(
@@ -113,7 +118,11 @@ def test_a_list_is_several_requests_in_order() -> None:
 
 @pytest.mark.parametrize(
     ("data", "words"),
-    [("[1,", "not JSON"), ("[" + "1," * MOST + "1]", "at most 1000 requests"), ("[" + " " * LONGEST_MESSAGE, "at most 1024 KiB")],
+    [
+        ("[1,", "not JSON"),
+        ("[" + "1," * MOST + "1]", "at most 1000 requests"),
+        ("[" + " " * LONGEST_MESSAGE, "at most 1024 KiB"),
+    ],
 )
 def test_lists_that_cannot_be_taken_apart_are_refused_whole(data: str, words: str) -> None:
     with pytest.raises(a.AskError, match=words):
@@ -140,7 +149,10 @@ values = st.recursive(
 
 
 @given(
-    st.sampled_from(WORDS), st.dictionaries(st.sampled_from(["id", "at", "in", "tags", "layer", "to", "what", "poses", "point"]), values)
+    st.sampled_from(WORDS),
+    st.dictionaries(
+        st.sampled_from(["id", "at", "in", "tags", "layer", "to", "what", "poses", "point"]), values
+    ),
 )
 def test_any_fields_get_an_answer(word: str, fields: dict[str, object]) -> None:
     found = read(json.dumps(fields | {"do": word}))
@@ -153,9 +165,19 @@ def test_the_schema_says_what_is_read() -> None:
     validator = jsonschema.Draft202012Validator(schema())
     validator.check_schema(schema())
     for text in (
-        '{"do":"nod"}', '{"do":"nod","in":2}', '{"do":"hello","poses":null,"events":"all"}', '[{"do":"status"},{"do":"look","to":[1,2,3]}]',
-        '{"do":"dance"}', '{"do":"gesture","layer":"tail"}', '{"do":"nod","at":-1}', '{"do":"nod","in":-1}', '{"do":"look","to":[1,2]}',
-        '{"do":"hello","poses":{"rate":500}}', '{"do":"place","name":"","point":[0,0,0]}', "7", '{"do":"say","speed":1}',
-    ):  # fmt: skip
+        '{"do":"nod"}',
+        '{"do":"nod","in":2}',
+        '{"do":"hello","poses":null,"events":"all"}',
+        '[{"do":"status"},{"do":"look","to":[1,2,3]}]',
+        '{"do":"dance"}',
+        '{"do":"gesture","layer":"tail"}',
+        '{"do":"nod","at":-1}',
+        '{"do":"nod","in":-1}',
+        '{"do":"look","to":[1,2]}',
+        '{"do":"hello","poses":{"rate":500}}',
+        '{"do":"place","name":"","point":[0,0,0]}',
+        "7",
+        '{"do":"say","speed":1}',
+    ):
         requests, _ = split(text)
         assert validator.is_valid(json.loads(text)) == all(isinstance(read(r), Heard) for r in requests), text

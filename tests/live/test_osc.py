@@ -25,7 +25,11 @@ def said(address: str, *values: Any) -> Any:
     [
         ("gesture", (), a.Gesture()),
         ("gesture", ("head", "positive", "agree"), a.Gesture(layer="head", tags=("positive", "agree"))),
-        ("gesture", ("beat", "limb=left", "at=2.5", "prepare=false"), a.Gesture(tags=("beat",), limb="left", at=2.5, prepare=False)),
+        (
+            "gesture",
+            ("beat", "limb=left", "at=2.5", "prepare=false"),
+            a.Gesture(tags=("beat",), limb="left", at=2.5, prepare=False),
+        ),
         ("fidget", ("priority=3", "resume=true"), a.Fidget(priority=3, resume=True)),
         ("gesture", ("in=1",), Heard(a.Gesture(), 1.0)),
         ("fidget", ("body",), a.Fidget(layer="body")),
@@ -48,7 +52,11 @@ def said(address: str, *values: Any) -> Any:
         ("withdraw", ("x",), a.Withdraw(what="x")),
         ("hello", ("secret",), Hello(token="secret")),
         ("events", (1,), Hello(events=True)),
-        ("poses", (60.0, "Head", "space=model"), Hello(poses=Poses(rate=60.0, format="osc", joints=("Head",), space="model"))),
+        (
+            "poses",
+            (60.0, "Head", "space=model"),
+            Hello(poses=Poses(rate=60.0, format="osc", joints=("Head",), space="model")),
+        ),
         ("poses", (0,), Hello(poses=None)),
     ],
 )  # fmt: skip
@@ -56,7 +64,9 @@ def test_an_address_says_a_request(address: str, values: tuple[Any, ...], messag
     assert said(address, *values) == message
 
 
-@pytest.mark.parametrize("address", ["/metagraph/dance", "/other/nod", "", "/metagraph/", "/metagraph/action", "/metagraph/stance"])
+@pytest.mark.parametrize(
+    "address", ["/metagraph/dance", "/other/nod", "", "/metagraph/", "/metagraph/action", "/metagraph/stance"]
+)
 def test_other_addresses_say_none(address: str) -> None:
     with pytest.raises(OscError):
         request(address, ())
@@ -64,7 +74,11 @@ def test_other_addresses_say_none(address: str) -> None:
 
 @given(st.binary(max_size=200))
 def test_any_datagram_is_taken_apart_or_refused(data: bytes) -> None:
-    for each in (data, b"#bundle\0" + b"\0" * 7 + b"\1" + data, padded("/metagraph/gesture") + padded(",s") + data):
+    for each in (
+        data,
+        b"#bundle\0" + b"\0" * 7 + b"\1" + data,
+        padded("/metagraph/gesture") + padded(",s") + data,
+    ):
         for _, text in texts_of(each):
             assert isinstance(text, bytes | str | bool | OscError)
 

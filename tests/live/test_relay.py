@@ -38,7 +38,9 @@ def test_a_window_answers_clients_that_another_process_talks_to(sample: Project)
 
         def client() -> None:
             with connect(str(relay.ready.websocket)) as line:  # type: ignore[union-attr]
-                line.send('[{"do":"nod","id":"n"},{"do":"dance"},{"do":"hello","poses":{"rate":60,"format":"binary"}}]')
+                line.send(
+                    '[{"do":"nod","id":"n"},{"do":"dance"},{"do":"hello","poses":{"rate":60,"format":"binary"}}]'
+                )
                 got.append(json.loads(line.recv()))
                 got.append(line.recv())
                 line.send("nonsense")
@@ -51,7 +53,11 @@ def test_a_window_answers_clients_that_another_process_talks_to(sample: Project)
         thread.start()
         until(lambda: "over" in got, relay, session, begin)
         thread.join()
-        assert got[0][0]["state"] in ("planned", "late") and "error" in got[0][1] and got[0][2]["poses"]["rate"] == 60
+        assert (
+            got[0][0]["state"] in ("planned", "late")
+            and "error" in got[0][1]
+            and got[0][2]["poses"]["rate"] == 60
+        )
         assert got[1].startswith(b"MGP1") and "not JSON" in got[2]["error"]
         until(lambda: not session.clients, relay, session, begin)
     finally:
@@ -97,7 +103,8 @@ def test_closing_what_was_never_started_is_fine() -> None:
 def test_the_child_loads_nothing_of_the_planner() -> None:
     heavy = ("numpy", "numba", "PySide6", "yaml", "metagraph.playback")
     code = (
-        f"import sys, metagraph.live.relay, metagraph.live.websocket, metagraph.live.osc; print([m for m in {heavy} if m in sys.modules])"
+        "import sys, metagraph.live.relay, metagraph.live.websocket, metagraph.live.osc; print([m for m "
+        f"in {heavy} if m in sys.modules])"
     )
     done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, timeout=60)
     assert done.stdout.strip() == "[]", done.stderr

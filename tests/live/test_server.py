@@ -1,4 +1,6 @@
-"""The lines themselves, on this machine's loopback: WebSocket, OSC, JSON lines; who may come in, and who is hung up on."""
+"""The lines themselves, on this machine's loopback: WebSocket, OSC, JSON lines; who may come in, and who is
+hung up on.
+"""
 
 from __future__ import annotations
 
@@ -31,7 +33,9 @@ FREE = Options(port=0, osc=0)
 
 
 @asynccontextmanager
-async def serving(project: Project, options: Options = FREE) -> AsyncIterator[tuple[Server, Ready, LiveSession]]:
+async def serving(
+    project: Project, options: Options = FREE
+) -> AsyncIterator[tuple[Server, Ready, LiveSession]]:
     """A session that plays while the block runs."""
     server, session = Server(options, time.monotonic), LiveSession(project)
     ready = await server.open()
@@ -49,7 +53,9 @@ async def serving(project: Project, options: Options = FREE) -> AsyncIterator[tu
         await server.close()
 
 
-def play(project: Project, work: Callable[[Server, Ready, LiveSession], Awaitable[None]], options: Options = FREE) -> None:
+def play(
+    project: Project, work: Callable[[Server, Ready, LiveSession], Awaitable[None]], options: Options = FREE
+) -> None:
     async def run() -> None:
         async with serving(project, options) as (server, ready, session):
             await asyncio.wait_for(work(server, ready, session), 30)
@@ -70,7 +76,9 @@ def test_loopback_is_loopback(host: str) -> None:
     assert is_loopback(host) and checked(Options(host=host)).host == host
 
 
-@pytest.mark.parametrize("host", ["0.0.0.0", "::", "192.168.1.5", "example.org", "localhost.example.org", "127.0.0.1.example.org"])
+@pytest.mark.parametrize(
+    "host", ["0.0.0.0", "::", "192.168.1.5", "example.org", "localhost.example.org", "127.0.0.1.example.org"]
+)
 def test_nothing_listens_beyond_loopback_without_a_token(host: str) -> None:
     with pytest.raises(LiveError, match=r"a token is needed.*--token "):
         checked(Options(host=host))
@@ -113,7 +121,11 @@ def test_requests_over_websocket_are_answered_in_order(sample: Project) -> None:
         async with connect(str(ready.websocket)) as line:
             assert (await say(line, {"do": "nod", "id": "n"}))["state"] in ("planned", "late")
             both = await say(line, [{"do": "blink", "id": "b"}, {"do": "dance", "id": "d"}])
-            assert both[0]["state"] == "planned" and "Invalid value 'dance'" in both[1]["error"] and both[1]["id"] == "d"
+            assert (
+                both[0]["state"] == "planned"
+                and "Invalid value 'dance'" in both[1]["error"]
+                and both[1]["id"] == "d"
+            )
             assert "not JSON" in (await say(line, "nonsense"))["error"]
             assert "not JSON" in (await say(line, b"\xff\xfe"))["error"]
             for n in range(200):
@@ -149,7 +161,9 @@ def test_poses_are_streamed_as_json_and_as_packed_numbers(sample: Project) -> No
 
     async def work(server: Server, ready: Ready, session: LiveSession) -> None:
         async with connect(str(ready.websocket)) as line:
-            hello = await say(line, {"do": "hello", "poses": {"rate": 60, "format": "binary", "space": "model"}})
+            hello = await say(
+                line, {"do": "hello", "poses": {"rate": 60, "format": "binary", "space": "model"}}
+            )
             assert hello["poses"]["joints"] == list(sample.skeleton.names)  # type: ignore[union-attr]
             data = await line.recv()
             assert isinstance(data, bytes)
@@ -159,11 +173,23 @@ def test_poses_are_streamed_as_json_and_as_packed_numbers(sample: Project) -> No
             assert len(numbers) == 3 + 4 * joints + 3 * joints + morphs
             rotations, positions = sample.skeleton.globals(pose_at(session.plan, sample, seconds))  # type: ignore[union-attr]
             np.testing.assert_allclose(numbers[3 : 3 + 4 * joints].reshape(-1, 4), rotations, atol=1e-5)
-            np.testing.assert_allclose(numbers[3 + 4 * joints : 3 + 7 * joints].reshape(-1, 3), positions, atol=1e-5)
-            await line.send(json.dumps({"do": "hello", "id": "again", "poses": {"rate": 60, "joints": ["Head"], "translations": True}}))
+            np.testing.assert_allclose(
+                numbers[3 + 4 * joints : 3 + 7 * joints].reshape(-1, 3), positions, atol=1e-5
+            )
+            await line.send(
+                json.dumps(
+                    {
+                        "do": "hello",
+                        "id": "again",
+                        "poses": {"rate": 60, "joints": ["Head"], "translations": True},
+                    }
+                )
+            )
             texts = [json.loads(x) for x in [await line.recv() for _ in range(12)] if isinstance(x, str)]
             frame = next(x for x in texts if "t" in x and "rotations" in x)
-            assert len(frame["rotations"]) == 1 and len(frame["translations"]) == 1 and len(frame["root"]) == 3
+            assert (
+                len(frame["rotations"]) == 1 and len(frame["translations"]) == 1 and len(frame["root"]) == 3
+            )
             await line.send(json.dumps({"do": "hello", "id": "off", "poses": None}))
             while json.loads(await line.recv()).get("id") != "off":
                 pass
@@ -173,7 +199,9 @@ def test_poses_are_streamed_as_json_and_as_packed_numbers(sample: Project) -> No
     play(sample, work)
 
 
-def test_a_client_that_stops_reading_is_dropped_and_others_go_on(sample: Project, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_a_client_that_stops_reading_is_dropped_and_others_go_on(
+    sample: Project, monkeypatch: pytest.MonkeyPatch
+) -> None:
     monkeypatch.setattr(hubs, "BACKLOG", 200_000)
     monkeypatch.setattr(lines, "PART", 0.3)
 
@@ -185,7 +213,10 @@ def test_a_client_that_stops_reading_is_dropped_and_others_go_on(sample: Project
             bad.setblocking(False)
             key = "GET / HTTP/1.1\r\nHost: localhost\r\nUpgrade: websocket\r\nConnection: Upgrade\r\n"
             await asyncio.get_running_loop().sock_sendall(
-                bad, (key + "Sec-WebSocket-Key: AAAAAAAAAAAAAAAAAAAAAA==\r\nSec-WebSocket-Version: 13\r\n\r\n").encode()
+                bad,
+                (
+                    key + "Sec-WebSocket-Key: AAAAAAAAAAAAAAAAAAAAAA==\r\nSec-WebSocket-Version: 13\r\n\r\n"
+                ).encode(),
             )
             ask = b'{"do":"describe"}'
             frame = bytes([0x81, 0x80 | len(ask)]) + b"\0\0\0\0" + ask
@@ -213,7 +244,10 @@ def test_a_client_that_is_dropped_can_read_why(sample: Project) -> None:
             server.hub.drop(1, hubs.POLICY, hubs.SLOW)
             with pytest.raises(ConnectionClosed) as caught:
                 await line.recv()
-            assert caught.value.rcvd is not None and (caught.value.rcvd.code, caught.value.rcvd.reason) == (1008, hubs.SLOW)
+            assert caught.value.rcvd is not None and (caught.value.rcvd.code, caught.value.rcvd.reason) == (
+                1008,
+                hubs.SLOW,
+            )
 
     play(sample, work)
 
@@ -250,7 +284,9 @@ def test_the_end_is_said_to_clients(sample: Project) -> None:
 # --- who may come in
 
 
-@pytest.mark.parametrize("origin", ["http://localhost", "http://localhost:3000", "https://127.0.0.1:8080", "http://[::1]:5"])
+@pytest.mark.parametrize(
+    "origin", ["http://localhost", "http://localhost:3000", "https://127.0.0.1:8080", "http://[::1]:5"]
+)
 def test_pages_of_this_machine_may_connect(sample: Project, origin: str) -> None:
     async def work(server: Server, ready: Ready, session: LiveSession) -> None:
         async with connect(str(ready.websocket), origin=origin) as line:  # type: ignore[arg-type]
@@ -260,13 +296,23 @@ def test_pages_of_this_machine_may_connect(sample: Project, origin: str) -> None
 
 
 @pytest.mark.parametrize(
-    "origin", ["https://example.org", "null", "http://localhost.example.org", "http://127.0.0.1.example.org", "file://", "http://localhost@example.org"]
-)  # fmt: skip
+    "origin",
+    [
+        "https://example.org",
+        "null",
+        "http://localhost.example.org",
+        "http://127.0.0.1.example.org",
+        "file://",
+        "http://localhost@example.org",
+    ],
+)
 def test_other_web_pages_may_not(sample: Project, origin: str) -> None:
     async def work(server: Server, ready: Ready, session: LiveSession) -> None:
         with pytest.raises(InvalidStatus) as caught:
             await connect(str(ready.websocket), origin=origin)  # type: ignore[arg-type]
-        assert caught.value.response.status_code == 403 and b"may not connect" in (caught.value.response.body or b"")
+        assert caught.value.response.status_code == 403 and b"may not connect" in (
+            caught.value.response.body or b""
+        )
         assert not server.hub.clients
 
     play(sample, work)
@@ -275,7 +321,9 @@ def test_other_web_pages_may_not(sample: Project, origin: str) -> None:
 def test_pages_that_are_named_or_know_the_token_may(sample: Project) -> None:
     async def work(server: Server, ready: Ready, session: LiveSession) -> None:
         async with connect(str(ready.websocket), origin="null") as line:  # type: ignore[arg-type]
-            reply = await say(line, {"do": "hello", "token": "secret"} if server.hub.token else {"do": "status"})
+            reply = await say(
+                line, {"do": "hello", "token": "secret"} if server.hub.token else {"do": "status"}
+            )
             assert reply["state"] == "done"
 
     play(sample, work, Options(port=0, osc=None, origins=("null",)))
@@ -286,14 +334,20 @@ def test_a_name_that_was_bent_to_this_machine_is_turned_away(sample: Project) ->
     async def work(server: Server, ready: Ready, session: LiveSession) -> None:
         with pytest.raises(InvalidStatus) as caught:
             await connect(
-                str(ready.websocket).replace("127.0.0.1", "example.org"), host="127.0.0.1", port=int(str(ready.websocket)[-5:].strip(":"))
+                str(ready.websocket).replace("127.0.0.1", "example.org"),
+                host="127.0.0.1",
+                port=int(str(ready.websocket)[-5:].strip(":")),
             )
-        assert caught.value.response.status_code == 403 and b"connect to localhost" in (caught.value.response.body or b"")
+        assert caught.value.response.status_code == 403 and b"connect to localhost" in (
+            caught.value.response.body or b""
+        )
 
     play(sample, work)
 
 
-def test_the_token_is_asked_for_in_the_header_or_in_hello(sample: Project, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_the_token_is_asked_for_in_the_header_or_in_hello(
+    sample: Project, monkeypatch: pytest.MonkeyPatch
+) -> None:
     async def work(server: Server, ready: Ready, session: LiveSession) -> None:
         address = str(ready.websocket)
         async with connect(address, additional_headers={"Authorization": "Bearer secret"}) as line:
@@ -332,8 +386,13 @@ class Osc:
         self.line.setblocking(False)
 
     def send(self, address: str, *values: str | float | int) -> None:
-        tags = "," + "".join("s" if isinstance(v, str) else "f" if isinstance(v, float) else "i" for v in values)
-        parts = [padded(v) if isinstance(v, str) else struct.pack(">f" if isinstance(v, float) else ">i", v) for v in values]
+        tags = "," + "".join(
+            "s" if isinstance(v, str) else "f" if isinstance(v, float) else "i" for v in values
+        )
+        parts = [
+            padded(v) if isinstance(v, str) else struct.pack(">f" if isinstance(v, float) else ">i", v)
+            for v in values
+        ]
         self.line.send(padded(address) + padded(tags) + b"".join(parts))
 
     async def receive(self) -> bytes:
@@ -361,7 +420,9 @@ def test_requests_over_osc_are_planned_and_answered_to_who_wants_it(sample: Proj
         assert (await osc.ask("/metagraph/look", 0.1, 1.6, 2.0))["actions"] == ["look"]
         assert (await osc.ask("/metagraph/place", "user", 0, 1.5, 2.0))["actions"] == ["place"]
         assert (await osc.ask("/metagraph/text", "Hello", "there"))["actions"] == ["speech"]
-        assert (await osc.ask("/metagraph/json", '[{"do":"blink"},{"do":"mode","mode":"idle"}]'))[1]["actions"] == ["mode"]
+        assert (await osc.ask("/metagraph/json", '[{"do":"blink"},{"do":"mode","mode":"idle"}]'))[1][
+            "actions"
+        ] == ["mode"]
         assert (await osc.ask("/metagraph/status"))["clients"] == 1
         assert "too long for a datagram" in (await osc.ask("/metagraph/describe")).get("error", "") or True
         assert "there is no address" in (await osc.ask("/metagraph/dance"))["error"]
@@ -381,7 +442,12 @@ def test_poses_are_streamed_as_osc_bundles(sample: Project) -> None:
         osc = Osc(ready)
         osc.send("/metagraph/poses", 60.0, "Head", "Hips")
         messages = [m.message for m in OscPacket(await osc.receive()).messages]
-        assert [m.address for m in messages[:4]] == ["/metagraph/pose", "/metagraph/root", "/metagraph/joint", "/metagraph/joint"]
+        assert [m.address for m in messages[:4]] == [
+            "/metagraph/pose",
+            "/metagraph/root",
+            "/metagraph/joint",
+            "/metagraph/joint",
+        ]
         assert messages[2].params[0] == "Head" and len(messages[2].params) == 5
         pose = pose_at(session.plan, sample, messages[0].params[0])
         head = list(sample.skeleton.names).index("Head")  # type: ignore[union-attr]
@@ -431,7 +497,9 @@ def piped(project: Project, data: bytes) -> list[Any]:
         reading = loop.run_in_executor(None, read)
         writing = loop.run_in_executor(None, _write, feed, data)
         begin = time.monotonic()
-        await asyncio.wait_for(server.run(lambda batch: exchange(session, time.monotonic() - begin, batch)), 20)
+        await asyncio.wait_for(
+            server.run(lambda batch: exchange(session, time.monotonic() - begin, batch)), 20
+        )
         await server.close()
         await writing
         os.close(target)
@@ -451,8 +519,15 @@ def _write(feed: int, data: bytes) -> None:
 
 
 def test_lines_are_answered_and_the_end_of_input_is_the_end(sample: Project) -> None:
-    replies = piped(sample, b'{"do":"nod","id":"n"}\n\n  \r\nbad\n[{"do":"blink"},7]\n{"do":"status","id":"last"}')
-    assert replies[0]["id"] == "n" and "not JSON" in replies[1]["error"] and len(replies[2]) == 2 and replies[3]["id"] == "last"
+    replies = piped(
+        sample, b'{"do":"nod","id":"n"}\n\n  \r\nbad\n[{"do":"blink"},7]\n{"do":"status","id":"last"}'
+    )
+    assert (
+        replies[0]["id"] == "n"
+        and "not JSON" in replies[1]["error"]
+        and len(replies[2]) == 2
+        and replies[3]["id"] == "last"
+    )
     assert len(replies) == 4
 
 

@@ -40,7 +40,9 @@ def session(sample: Project) -> LiveSession:
     return out
 
 
-def ask(session: LiveSession, *requests: dict[str, Any] | str | bytes, client: int = 1, at: float | None = None) -> list[dict[str, Any]]:
+def ask(
+    session: LiveSession, *requests: dict[str, Any] | str | bytes, client: int = 1, at: float | None = None
+) -> list[dict[str, Any]]:
     """Send requests in one tick; return the replies."""
     for request in requests:
         session.receive(client, request if isinstance(request, str | bytes) else json.dumps(request))
@@ -97,7 +99,9 @@ def test_a_reply_says_why_not(session: LiveSession) -> None:
     assert "has no nonsense gesture" in one(session, {"do": "gesture", "tags": ["nonsense"]})["why"]
     assert "did you mean 'arms crossed'" in one(session, {"do": "stance", "stance": "arms crosed"})["why"]
     assert "did you mean 'shrug_bt_01'" in one(session, {"do": "action", "action": "shrug_bt_1"})["why"]
-    assert one(session, {"do": "say", "line": "nobodys"})["why"].startswith("there is no line 'nobodys'; there are ")
+    assert one(session, {"do": "say", "line": "nobodys"})["why"].startswith(
+        "there is no line 'nobodys'; there are "
+    )
     assert one(session, {"do": "dance"})["error"].startswith("do: Invalid value 'dance'")
 
 
@@ -135,7 +139,9 @@ def test_the_same_id_again_replaces_what_was_asked(session: LiveSession) -> None
     assert [c.start for c in session.plan.layers["head"].cues] == [6.0]
 
 
-@pytest.mark.parametrize("ident", ["a.1", "a+1", "c2/x", "", " ", "x" * 200, "Ünïcode", "\u0000", "#1", "~", "'"])
+@pytest.mark.parametrize(
+    "ident", ["a.1", "a+1", "c2/x", "", " ", "x" * 200, "Ünïcode", "\u0000", "#1", "~", "'"]
+)
 def test_any_id_can_be_used_and_withdrawn(session: LiveSession, ident: str) -> None:
     reply = one(session, {"do": "nod", "id": ident, "at": 5})
     assert reply["id"] == (ident or "#1") and reply["state"] == "planned"
@@ -145,12 +151,23 @@ def test_any_id_can_be_used_and_withdrawn(session: LiveSession, ident: str) -> N
 
 
 def test_an_id_that_looks_like_a_part_of_another_is_none(session: LiveSession) -> None:
-    ask(session, {"do": "nod", "id": "a", "at": 5}, {"do": "nod", "id": "a.1", "at": 9}, {"do": "withdraw", "what": "a"})
+    ask(
+        session,
+        {"do": "nod", "id": "a", "at": 5},
+        {"do": "nod", "id": "a.1", "at": 9},
+        {"do": "withdraw", "what": "a"},
+    )
     assert [c.start for c in session.plan.layers["head"].cues] == [9.0]
 
 
 def test_withdrawing_all_takes_back_ones_own_alone(session: LiveSession) -> None:
-    ask(session, {"do": "nod", "at": 5}, {"do": "say", "text": "hello", "at": 6}, {"do": "look", "at": 7}, client=1)
+    ask(
+        session,
+        {"do": "nod", "at": 5},
+        {"do": "say", "text": "hello", "at": 6},
+        {"do": "look", "at": 7},
+        client=1,
+    )
     ask(session, {"do": "nod", "at": 9}, client=2)
     assert one(session, {"do": "withdraw"}, client=1)["why"].startswith("3 taken back")
     assert [c.start for c in session.plan.layers["head"].cues] == [9.0]
@@ -210,18 +227,34 @@ def test_describe_says_what_may_be_asked(session: LiveSession) -> None:
     assert {s["name"] for s in reply["layers"]["arms"]["stances"]} >= {"on hips", "arms crossed"}
     assert reply["layers"]["arms"]["tags"]["beat"] > 3
     gesture = next(x for x in reply["layers"]["arms"]["actions"] if x["name"] == "wave_hello_rt_01")
-    assert gesture["kind"] == "gesture" and gesture["limb"] == "right" and gesture["seconds"] > 0.5 and "greeting" in gesture["tags"]
+    assert (
+        gesture["kind"] == "gesture"
+        and gesture["limb"] == "right"
+        and gesture["seconds"] > 0.5
+        and "greeting" in gesture["tags"]
+    )
     assert reply["joints"][0]["name"] == "Hips" and reply["joints"][0]["parent"] is None
     assert "gesture" in reply["words"]
     for action in reply["layers"]["arms"]["actions"][:20]:  # whatever it names can be asked for
-        assert one(session, {"do": "action", "action": action["id"], "at": 500})["state"] in ("planned", "late", "refused")
+        assert one(session, {"do": "action", "action": action["id"], "at": 500})["state"] in (
+            "planned",
+            "late",
+            "refused",
+        )
 
 
 def test_status_says_what_plays(session: LiveSession) -> None:
-    ask(session, {"do": "nod", "at": 5}, {"do": "say", "text": "hello there", "at": 5, "duration": 2.0}, {"do": "nod", "at": 50})
+    ask(
+        session,
+        {"do": "nod", "at": 5},
+        {"do": "say", "text": "hello there", "at": 5, "duration": 2.0},
+        {"do": "nod", "at": 50},
+    )
     events(session, 5.5)
     reply = one(session, {"do": "status"})
-    assert reply["playing"]["head"]["kind"] == "gesture" and reply["playing"]["arms"] == {"stance": "hands at sides"}
+    assert reply["playing"]["head"]["kind"] == "gesture" and reply["playing"]["arms"] == {
+        "stance": "hands at sides"
+    }
     assert reply["speaking"]["text"] == "hello there" and reply["waiting"] == 1 and reply["clients"] == 1
 
 
@@ -237,7 +270,8 @@ def test_a_session_without_clips_says_so() -> None:
 
 BLOCK = (
     '<bml id="b1"><speech id="s1" start="0.5"><text>Well <sync id="t"/> no</text></speech>'
-    '<gesture id="g" lexeme="open" stroke="s1:t"/><head id="h" lexeme="SHAKE" start="g:end"/><locomotion/></bml>'
+    '<gesture id="g" lexeme="open" stroke="s1:t"/><head id="h" lexeme="SHAKE" '
+    'start="g:end"/><locomotion/></bml>'
 )
 
 
@@ -247,26 +281,48 @@ def test_a_block_is_answered_as_a_whole_and_by_behaviour(session: LiveSession) -
     assert [(p["id"], p["do"], p["state"]) for p in reply["parts"]] == [
         ("s1", "say", "planned"), ("g", "gesture", "planned"), ("h", "shake", "planned"),
     ]  # fmt: skip
-    assert reply["at"] == min(p["at"] for p in reply["parts"]) and reply["until"] == max(p["until"] for p in reply["parts"])
+    assert reply["at"] == min(p["at"] for p in reply["parts"]) and reply["until"] == max(
+        p["until"] for p in reply["parts"]
+    )
     assert reply["parts"][0]["at"] == pytest.approx(session.now + 0.1 + 0.5, abs=1e-4)
 
 
 def test_a_block_that_cannot_be_read_is_told_with_its_line(session: LiveSession) -> None:
-    assert "line 1: a block has no <!DOCTYPE" in one(session, {"do": "bml", "bml": '<!DOCTYPE b [<!ENTITY a "x">]><bml/>'})["error"]
+    assert (
+        "line 1: a block has no <!DOCTYPE"
+        in one(session, {"do": "bml", "bml": '<!DOCTYPE b [<!ENTITY a "x">]><bml/>'})["error"]
+    )
     assert one(session, {"do": "bml", "bml": "<bml/>"})["why"] == "nothing in it was understood"
 
 
 def test_one_behaviour_that_cannot_be_met_does_not_spoil_the_others(session: LiveSession) -> None:
-    reply = one(session, {"do": "bml", "bml": '<bml><gesture id="x" lexeme="juggle"/><head id="h" lexeme="NOD"/></bml>'})
+    reply = one(
+        session,
+        {"do": "bml", "bml": '<bml><gesture id="x" lexeme="juggle"/><head id="h" lexeme="NOD"/></bml>'},
+    )
     assert reply["state"] == "planned" and [p["state"] for p in reply["parts"]] == ["refused", "planned"]
 
 
 def test_a_block_is_withdrawn_or_replaced_with_all_its_parts(session: LiveSession) -> None:
-    one(session, {"do": "bml", "id": "b", "bml": '<bml><head lexeme="NOD" start="5"/><gazeShift target="user" start="5"/></bml>'})
+    one(
+        session,
+        {
+            "do": "bml",
+            "id": "b",
+            "bml": '<bml><head lexeme="NOD" start="5"/><gazeShift target="user" start="5"/></bml>',
+        },
+    )
     assert session.plan.layers["head"].cues and session.plan.track.looks
     assert one(session, {"do": "withdraw", "what": "b"})["why"].startswith("2 taken back")
     assert not session.plan.layers["head"].cues and not session.plan.track.looks
-    one(session, {"do": "bml", "id": "b", "bml": '<bml><head lexeme="NOD" start="5"/><head lexeme="NOD" start="9"/></bml>'})
+    one(
+        session,
+        {
+            "do": "bml",
+            "id": "b",
+            "bml": '<bml><head lexeme="NOD" start="5"/><head lexeme="NOD" start="9"/></bml>',
+        },
+    )
     one(session, {"do": "nod", "id": "b", "at": 12})
     assert [c.start for c in session.plan.layers["head"].cues] == [12.0]
 
@@ -274,10 +330,15 @@ def test_a_block_is_withdrawn_or_replaced_with_all_its_parts(session: LiveSessio
 def test_a_block_may_replace_or_follow_what_its_client_asked_before(session: LiveSession) -> None:
     one(session, {"do": "nod", "at": 15}, client=2)
     first = one(session, {"do": "bml", "bml": '<bml><head lexeme="NOD" start="5"/></bml>'})
-    after = one(session, {"do": "bml", "bml": '<bml composition="APPEND"><head lexeme="NOD" start="0.5"/></bml>'})
+    after = one(
+        session, {"do": "bml", "bml": '<bml composition="APPEND"><head lexeme="NOD" start="0.5"/></bml>'}
+    )
     assert after["at"] == pytest.approx(first["until"] + 0.5, abs=1e-3)
     one(session, {"do": "bml", "bml": '<bml composition="REPLACE"><head lexeme="SHAKE" start="3"/></bml>'})
-    assert [round(c.start, 1) for c in session.plan.layers["head"].cues] == [round(session.now + 3.1, 1), 15.0]
+    assert [round(c.start, 1) for c in session.plan.layers["head"].cues] == [
+        round(session.now + 3.1, 1),
+        15.0,
+    ]
 
 
 # --- events
@@ -290,9 +351,18 @@ def test_who_listens_is_told_when_what_was_asked_starts_and_ends(session: LiveSe
     one(session, {"do": "gesture", "id": "other", "at": 3}, client=2)
     told = events(session, 8.0)
     assert {c for c, _ in told} == {1}
-    assert sorted((e.event, str(e.id)) for _, e in told) == [("ended", "n"), ("ended", "s"), ("started", "n"), ("started", "s")]
+    assert sorted((e.event, str(e.id)) for _, e in told) == [
+        ("ended", "n"),
+        ("ended", "s"),
+        ("started", "n"),
+        ("started", "s"),
+    ]
     started = told[0][1]
-    assert started.action == nod["actions"][0] and started.t == pytest.approx(3.0, abs=2 * TICK) and started.at == 3.0
+    assert (
+        started.action == nod["actions"][0]
+        and started.t == pytest.approx(3.0, abs=2 * TICK)
+        and started.at == 3.0
+    )
     assert next(e for _, e in told if e.id == "s").text == "hello"
 
 
@@ -304,7 +374,9 @@ def test_who_wants_all_is_told_of_others_too_but_not_their_ids(sample: Project) 
     assert {e.event for e in told} == {"started", "ended"} and {e.layer for e in told} == set(LAYERS)
     assert all(e.id is None for e in told)
     head = [e.at for e in told if e.layer == "head" and e.event == "started"]
-    assert head == [round(c.start, 4) for c in session.plan_at(15.0).layers["head"].cues if c.start <= session.now]
+    assert head == [
+        round(c.start, 4) for c in session.plan_at(15.0).layers["head"].cues if c.start <= session.now
+    ]
 
 
 def test_who_asked_is_told_when_something_more_important_changes_the_plan(session: LiveSession) -> None:
@@ -312,7 +384,9 @@ def test_who_asked_is_told_when_something_more_important_changes_the_plan(sessio
     one(session, {"do": "gesture", "id": "g", "at": 5}, client=1)
     session.receive(2, json.dumps({"do": "gesture", "at": 5, "priority": 9}))
     told = session.tick(session.now + TICK).events
-    assert [(c, e.event, e.id, e.state) for c, e in told] == [(1, "changed", "g", "late")] and (told[0][1].at or 0) > 5
+    assert [(c, e.event, e.id, e.state) for c, e in told] == [(1, "changed", "g", "late")] and (
+        told[0][1].at or 0
+    ) > 5
     assert "another client's request" in told[0][1].why
 
 
@@ -348,7 +422,9 @@ def test_a_layer_takes_only_so_many_waiting_requests(session: LiveSession) -> No
 def test_an_hours_script_fits_and_more_is_refused(session: LiveSession) -> None:
     states = []
     for n in range(0, 1040, 40):
-        states += [r["state"] for r in ask(session, *({"do": "nod", "at": 20 + 3 * k} for k in range(n, n + 40)))]
+        states += [
+            r["state"] for r in ask(session, *({"do": "nod", "at": 20 + 3 * k} for k in range(n, n + 40)))
+        ]
     assert states[: limits.PENDING] == ["planned"] * limits.PENDING
     assert set(states[limits.PENDING :]) == {"refused"}
 
@@ -356,7 +432,9 @@ def test_an_hours_script_fits_and_more_is_refused(session: LiveSession) -> None:
 def test_too_many_requests_at_once_are_told_to_come_again(session: LiveSession) -> None:
     replies = ask(session, *(["[" + ",".join(['{"do":"status"}'] * 1000) + "]"] * 3))
     assert len(replies) == 3000
-    assert [r["state"] for r in replies] == ["done"] * limits.PER_TICK + ["refused"] * (3000 - limits.PER_TICK)
+    assert [r["state"] for r in replies] == ["done"] * limits.PER_TICK + ["refused"] * (
+        3000 - limits.PER_TICK
+    )
     assert replies[-1]["why"] == limits.BUSY
 
 
@@ -423,7 +501,9 @@ def test_a_session_performs_again_exactly_as_it_was_played(seed: int, idle: bool
         assert [c for c in again.layers[layer].cues if c.start <= session.now][-len(live) :] == live
     for seconds, pose in shown.items():
         assert (pose_at(again, project, seconds).rotations == pose.rotations).all(), seconds
-        assert (pose_at(session.plan_at(seconds), project, seconds).rotations == pose.rotations).all(), seconds
+        assert (pose_at(session.plan_at(seconds), project, seconds).rotations == pose.rotations).all(), (
+            seconds
+        )
 
 
 def test_a_session_too_long_to_be_kept_says_so(session: LiveSession) -> None:
@@ -448,7 +528,9 @@ def test_an_edited_project_is_played_on(sample: Project) -> None:
     session = LiveSession(sample, idle=False)
     listen(session, 1)
     one(session, {"do": "action", "id": "w", "action": "wave_hello_rt_01", "at": 5}, client=1)
-    gone = edits.remove_actions(sample, [next(x.id for x in sample.actions() if x.name == "wave_hello_rt_01")])
+    gone = edits.remove_actions(
+        sample, [next(x.id for x in sample.actions() if x.name == "wave_hello_rt_01")]
+    )
     session.change(gone)
     told = session.tick(session.now + TICK).events
     assert [(e.event, e.id, e.state) for _, e in told] == [("changed", "w", "refused")]
@@ -474,8 +556,19 @@ def test_three_minutes_of_anything_are_answered_and_forgotten(sample: Project) -
             assert isinstance(reply, bytes) or bool(reply.error) != bool(reply.state), reply
             assert not isinstance(reply, Reply) or encode(reply)
         if n % 1200 == 0:
-            sizes.append((len(session.plan.reports), len(session.plan.requests), len(session.plan.track.items), len(session.ledger.known)))
-    assert max(s[0] for s in sizes) < 1000 and max(s[1] for s in sizes) < 1000 and max(s[3] for s in sizes) < 1000
+            sizes.append(
+                (
+                    len(session.plan.reports),
+                    len(session.plan.requests),
+                    len(session.plan.track.items),
+                    len(session.ledger.known),
+                )
+            )
+    assert (
+        max(s[0] for s in sizes) < 1000
+        and max(s[1] for s in sizes) < 1000
+        and max(s[3] for s in sizes) < 1000
+    )
     assert len(session.tape) < 2_000_000
     assert all(len(lane.metas) < 500 for lane in session.plan.layers.values())
 

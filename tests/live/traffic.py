@@ -9,9 +9,13 @@ from typing import Any
 
 WORDS = ("beat", "positive", "negative", "you", "greeting", "nonsense")
 STANCES = ("on hips", "arms crossed", "hands at sides", "head tilt left", "weight left", "nowhere")
-BOMB = '<!DOCTYPE b [<!ENTITY a "aaaaaaaaaa"><!ENTITY b "&a;&a;&a;&a;&a;&a;&a;&a;&a;&a;"><!ENTITY c "&b;&b;&b;&b;&b;&b;">]><bml>&c;</bml>'
+BOMB = (
+    '<!DOCTYPE b [<!ENTITY a "aaaaaaaaaa"><!ENTITY b "&a;&a;&a;&a;&a;&a;&a;&a;&a;&a;"><!ENTITY c '
+    '"&b;&b;&b;&b;&b;&b;">]><bml>&c;</bml>'
+)
 BLOCK = (
-    '<bml><speech id="s1" start="0.2"><text>Well <sync id="tm1"/> no</text></speech><gesture id="g" lexeme="SHRUG" stroke="s1:tm1"/>'
+    '<bml><speech id="s1" start="0.2"><text>Well <sync id="tm1"/> no</text></speech><gesture id="g" '
+    'lexeme="SHRUG" stroke="s1:tm1"/>'
     '<head lexeme="SHAKE" start="g:end"/><locomotion target="door"/></bml>'
 )
 CIRCLE = '<bml composition="REPLACE"><gesture id="a" start="b:end"/><gesture id="b" start="a:end"/></bml>'
@@ -19,7 +23,9 @@ CIRCLE = '<bml composition="REPLACE"><gesture id="a" start="b:end"/><gesture id=
 
 def valid(r: random.Random) -> dict[str, Any]:
     """What an agent asks for."""
-    when: dict[str, Any] = r.choice([{}, {}, {"in": round(r.random() * 20, 2)}, {"priority": r.randint(1, 5)}])
+    when: dict[str, Any] = r.choice(
+        [{}, {}, {"in": round(r.random() * 20, 2)}, {"priority": r.randint(1, 5)}]
+    )
     name: dict[str, Any] = {"id": f"id{r.randrange(40)}"} if r.random() < 0.5 else {}
     ask: dict[str, Any] = r.choice(
         [
@@ -32,7 +38,11 @@ def valid(r: random.Random) -> dict[str, Any]:
             {"do": "stance", "stance": r.choice(STANCES)},
             {"do": "change", "layer": "head"},
             {"do": "action", "action": r.choice(("shrug_bt_01", "bow_01", "no_such_action"))},
-            {"do": "look", "to": r.choice(("user", "ahead", [0.1, 1.5, 2.0])), "duration": r.choice((None, 2.0))},
+            {
+                "do": "look",
+                "to": r.choice(("user", "ahead", [0.1, 1.5, 2.0])),
+                "duration": r.choice((None, 2.0)),
+            },
             {"do": "place", "name": r.choice(("user", "door")), "point": [r.random(), 1.5, 2]},
             {"do": "blink"},
             {"do": "say", "text": "Well, I would not say so.", "duration": r.choice((None, 1.0))},

@@ -10,7 +10,13 @@ from metagraph.mimicry.measures import turned
 from metagraph.mimicry.points import PLACE
 from metagraph.motion import rotation
 
-FACE = {"nose": (0, 1.572, 0.125), "left_ear": (0.075, 1.6, 0), "right_ear": (-0.075, 1.6, 0), "left_eye": (0.03, 1.61, 0.1), "right_eye": (-0.03, 1.61, 0.1)}  # fmt: skip  # noqa: E501
+FACE = {
+    "nose": (0, 1.572, 0.125),
+    "left_ear": (0.075, 1.6, 0),
+    "right_ear": (-0.075, 1.6, 0),
+    "left_eye": (0.03, 1.61, 0.1),
+    "right_eye": (-0.03, 1.61, 0.1),
+}
 
 
 def face(turn: float = 0.0, pitch: float = 0.0) -> np.ndarray:

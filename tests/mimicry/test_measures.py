@@ -1,4 +1,6 @@
-"""Measures of a person: the same wherever they stand, however large they are and, in space, however they are turned."""
+"""Measures of a person: the same wherever they stand, however large they are and, in space, however they are
+turned.
+"""
 
 from __future__ import annotations
 
@@ -13,12 +15,24 @@ from metagraph.motion import rotation
 
 WIDTH = 0.72
 FIGURE = {
-    "nose": (0, 1.6, 0.1), "left_eye": (0.03, 1.64, 0.08), "right_eye": (-0.03, 1.64, 0.08), "left_ear": (0.07, 1.62, 0),
-    "right_ear": (-0.07, 1.62, 0), "left_shoulder": (0.18, 1.45, 0), "right_shoulder": (-0.18, 1.45, 0), "left_elbow": (0.25, 1.2, -0.03),
-    "right_elbow": (-0.25, 1.2, 0.02), "left_wrist": (0.1, 1.1, 0.2), "right_wrist": (-0.27, 0.95, 0.05), "left_hip": (0.1, 0.95, 0),
-    "right_hip": (-0.1, 0.95, 0), "left_knee": (0.1, 0.5, 0.02), "right_knee": (-0.1, 0.5, 0.02), "left_ankle": (0.12, 0.08, -0.02),
+    "nose": (0, 1.6, 0.1),
+    "left_eye": (0.03, 1.64, 0.08),
+    "right_eye": (-0.03, 1.64, 0.08),
+    "left_ear": (0.07, 1.62, 0),
+    "right_ear": (-0.07, 1.62, 0),
+    "left_shoulder": (0.18, 1.45, 0),
+    "right_shoulder": (-0.18, 1.45, 0),
+    "left_elbow": (0.25, 1.2, -0.03),
+    "right_elbow": (-0.25, 1.2, 0.02),
+    "left_wrist": (0.1, 1.1, 0.2),
+    "right_wrist": (-0.27, 0.95, 0.05),
+    "left_hip": (0.1, 0.95, 0),
+    "right_hip": (-0.1, 0.95, 0),
+    "left_knee": (0.1, 0.5, 0.02),
+    "right_knee": (-0.1, 0.5, 0.02),
+    "left_ankle": (0.12, 0.08, -0.02),
     "right_ankle": (-0.12, 0.08, -0.02),
-}  # fmt: skip
+}
 SURE = np.ones(17)
 
 
@@ -62,7 +76,9 @@ def test_arms_are_seen_from_the_torso_and_the_body_upright() -> None:
     upper = [PLACE[n] for n in POINTS if not n.endswith(("hip", "knee", "ankle"))]
     leaning[upper] = rotation.rotate(tilt, leaning[upper] - middle) + middle
     before, after = measures(figure()), measures(leaning)
-    rows = [n for n, measure in enumerate(m.MEASURES["arms"]) if not any(k.endswith("hip") for k in measure.minus)]
+    rows = [
+        n for n, measure in enumerate(m.MEASURES["arms"]) if not any(k.endswith("hip") for k in measure.minus)
+    ]
     assert np.allclose(before["arms"][rows], after["arms"][rows], atol=1e-9)
     assert not np.allclose(before["body"], after["body"], atol=0.05)
 

@@ -37,7 +37,9 @@ def talk(sample: Project) -> Talk:
     return played(sample)
 
 
-def feed(mimic: Mimic, points: Any, seconds: float, start: float = 0.0, sure: Any = None, goals: Any = None) -> list[Any]:
+def feed(
+    mimic: Mimic, points: Any, seconds: float, start: float = 0.0, sure: Any = None, goals: Any = None
+) -> list[Any]:
     """Show the same points for a while; return what is asked for."""
     out = []
     for n in range(round(seconds * FPS)):
@@ -75,11 +77,17 @@ def test_shapes_that_do_not_fit_are_refused(somebody: Project, points: Any, sure
 
 @settings(max_examples=40)
 @given(
-    hnp.arrays(float, st.tuples(st.sampled_from([17, 18, 25, 33]), st.sampled_from([2, 3])), elements=st.floats(allow_nan=True, width=64)),
+    hnp.arrays(
+        float,
+        st.tuples(st.sampled_from([17, 18, 25, 33]), st.sampled_from([2, 3])),
+        elements=st.floats(allow_nan=True, width=64),
+    ),
     st.floats(allow_nan=True),
     st.lists(st.floats(allow_nan=True), min_size=1, max_size=4),
 )
-def test_whatever_a_camera_says_nothing_breaks_nor_is_believed_for_ever(points: Any, sure: float, times: list[float]) -> None:
+def test_whatever_a_camera_says_nothing_breaks_nor_is_believed_for_ever(
+    points: Any, sure: float, times: list[float]
+) -> None:
     somebody = _SOMEBODY[0]
     mimic = Mimic(somebody, mirror=False, gaze=True)
     for time in times:
@@ -135,7 +143,9 @@ def test_hands_in_motion_are_in_no_stance(somebody: Project) -> None:
     raised, asks, moving = people.standing(somebody, "raised"), [], 0
     for n in range(150):
         moved = raised.copy()
-        moved[[PLACE["left_wrist"], PLACE["right_wrist"]]] += 0.1 * np.array([np.sin(n * 0.5), np.cos(n * 0.5), 0])
+        moved[[PLACE["left_wrist"], PLACE["right_wrist"]]] += 0.1 * np.array(
+            [np.sin(n * 0.5), np.cos(n * 0.5), 0]
+        )
         asks += mimic.feed(2.0 + n / FPS, moved)
         moving += mimic.judges["arms"].moving
     assert asks == [] and moving > 140
@@ -175,7 +185,11 @@ def test_in_a_mirror_the_other_side_is_meant(somebody: Project) -> None:
 
 def test_arms_are_known_whichever_hand_does_what(sample: Project) -> None:
     body = Mimic(sample).judges["arms"]
-    chin = next(n for n, s in enumerate(body.signature.stances) if sample.graphs["arms"].stances[s].name == "hand to chin")
+    chin = next(
+        n
+        for n, s in enumerate(body.signature.stances)
+        if sample.graphs["arms"].stances[s].name == "hand to chin"
+    )
     assert list(body.signature.of).count(chin) == 2
 
 
@@ -232,7 +246,9 @@ def test_frames_out_of_order_are_passed_over_and_gaps_begin_anew(somebody: Proje
 # --- what the character does
 
 
-def test_a_stance_the_character_is_not_in_is_asked_for_again_and_less_and_less_often(somebody: Project) -> None:
+def test_a_stance_the_character_is_not_in_is_asked_for_again_and_less_and_less_often(
+    somebody: Project,
+) -> None:
     mimic = Mimic(somebody, mirror=False, layers=["arms"])
     raised, down = people.stance(somebody, "arms", "raised"), people.stance(somebody, "arms", "down")
     asks = feed(mimic, people.standing(somebody, "raised"), 20.0, goals={"arms": down})
@@ -246,7 +262,9 @@ def test_a_stance_the_character_is_not_in_is_asked_for_again_and_less_and_less_o
 def test_asks_can_be_sent_as_they_are(somebody: Project) -> None:
     import msgspec
 
-    for ask in feed(Mimic(somebody, priority=4, prefix="cam", gaze=True), people.standing(somebody, "down"), 2.0):
+    for ask in feed(
+        Mimic(somebody, priority=4, prefix="cam", gaze=True), people.standing(somebody, "down"), 2.0
+    ):
         assert read_ask(msgspec.json.encode(ask)) == ask
         assert ask.id.startswith("cam") and ask.priority == 4
 
@@ -274,8 +292,12 @@ def frames(talk: Talk, dims: int, view: View, layout: str = "mediapipe") -> Iter
     return zip(times, points, sure, strict=True)
 
 
-def scored(talk: Talk, dims: int, view: View, mirror: bool = False, layout: str = "mediapipe") -> dict[str, tuple[float, int]]:
-    """Layer -> share of the time in which the stance that is seen is the true one, and how many changes too many are seen."""
+def scored(
+    talk: Talk, dims: int, view: View, mirror: bool = False, layout: str = "mediapipe"
+) -> dict[str, tuple[float, int]]:
+    """Layer -> share of the time in which the stance that is seen is the true one, and how many changes too
+    many are seen.
+    """
     project, plan = talk
     mimic = Mimic(project, mirror=mirror)
     said: dict[str, list[tuple[float, str | None]]] = {layer: [] for layer in LAYERS}
@@ -338,7 +360,9 @@ def test_a_camera_held_askew_is_got_used_to(talk: Talk) -> None:
 def test_at_a_desk_arms_and_head_are_mimicked_without_hips_and_legs(talk: Talk) -> None:
     project, plan = talk
     names = LAYOUTS["mediapipe"]
-    hidden = [n for n, name in enumerate(names) if any(w in name for w in ("hip", "knee", "ankle", "heel", "toes"))]
+    hidden = [
+        n for n, name in enumerate(names) if any(w in name for w in ("hip", "knee", "ankle", "heel", "toes"))
+    ]
     mimic = Mimic(project, mirror=False)
     good = {"arms": 0, "head": 0}
     rows = truth(project, plan)

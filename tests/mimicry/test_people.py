@@ -12,7 +12,9 @@ def person(x: float, size: float = 1.0, ident: int | None = None) -> Person:
     return Person(points, np.ones(4), ident)
 
 
-def followed(frames: list[list[Person]], times: list[float] | None = None, middle: float | None = None) -> list[float | None]:
+def followed(
+    frames: list[list[Person]], times: list[float] | None = None, middle: float | None = None
+) -> list[float | None]:
     times = [n / 25 for n in range(len(frames))] if times is None else times
     return [None if p is None else float(p.points[0, 0]) for p in follow(times, frames, middle)]
 

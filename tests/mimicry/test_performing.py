@@ -30,7 +30,9 @@ def talk(sample: Project) -> Keypoints:
 
 
 def shown(project: Project, kinds: list[tuple[str, float]], fps: float = 20.0) -> Keypoints:
-    points = np.concatenate([np.tile(people.standing(project, kind), (round(seconds * fps), 1, 1)) for kind, seconds in kinds])
+    points = np.concatenate(
+        [np.tile(people.standing(project, kind), (round(seconds * fps), 1, 1)) for kind, seconds in kinds]
+    )
     return Keypoints(np.arange(len(points)) / fps, points, np.ones(points.shape[:2]), POINTS, 3)
 
 
@@ -55,7 +57,9 @@ def test_the_performance_goes_through_the_stances_of_the_recording(sample: Proje
     for layer in LAYERS:
         good = total = 0
         for start, end, name in rows[layer]:
-            for at in np.arange(start + 3.0, end, 0.1):  # the character finishes what it does, then changes over
+            for at in np.arange(
+                start + 3.0, end, 0.1
+            ):  # the character finishes what it does, then changes over
                 total += 1
                 good += sample.graphs[layer].stances[plan.layers[layer].stance_at(at)].name == name  # type: ignore[index]
         assert good / total > 0.9, layer
@@ -91,11 +95,17 @@ def test_other_requests_are_mixed_in_and_met(sample: Project, talk: Keypoints) -
     assert found.performance.asks[:2] == asks
 
 
-def test_what_leads_the_character_away_is_taken_back_by_what_is_seen(sample: Project, talk: Keypoints) -> None:
+def test_what_leads_the_character_away_is_taken_back_by_what_is_seen(
+    sample: Project, talk: Keypoints
+) -> None:
     away = a.Go(id="away", stance="hands clasped", at=10.0, priority=3)
     found = mimic_performance(sample, talk, mirror=False, into=a.Performance(name="mixed", asks=(away,)))
     again = [s for s in found.sightings if s.again]
-    assert again and sample.graphs["arms"].stances[again[0].stance].name == "on hips" and 8.0 < again[0].at < 14.0
+    assert (
+        again
+        and sample.graphs["arms"].stances[again[0].stance].name == "on hips"
+        and 8.0 < again[0].at < 14.0
+    )
     plan = perform(sample, found.performance.asks, found.performance.length)
     assert sample.graphs["arms"].stances[plan.layers["arms"].stance_at(15.0)].name == "on hips"  # type: ignore[index]
 
@@ -103,23 +113,36 @@ def test_what_leads_the_character_away_is_taken_back_by_what_is_seen(sample: Pro
 def test_goals_are_where_the_character_is_or_goes_and_where_its_own_requests_lead(sample: Project) -> None:
     asks = [a.Go(id="mine1", stance="on hips", at=3.0), a.Go(id="other", stance="arms crossed", at=8.0)]
     plan = perform(sample, asks, 12.0, idle=False)
-    hips, crossed = (next(s.id for s in sample.graphs["arms"].stances.values() if s.name == n) for n in ("on hips", "arms crossed"))
+    hips, crossed = (
+        next(s.id for s in sample.graphs["arms"].stances.values() if s.name == n)
+        for n in ("on hips", "arms crossed")
+    )
     assert goals(plan, 0.0, "nobody")["arms"] == sample.graphs["arms"].start
-    assert goals(plan, 0.0, "mine")["arms"] == goals(plan, 3.2, "nobody")["arms"] == goals(plan, 6.0, "mine")["arms"] == hips
+    assert (
+        goals(plan, 0.0, "mine")["arms"]
+        == goals(plan, 3.2, "nobody")["arms"]
+        == goals(plan, 6.0, "mine")["arms"]
+        == hips
+    )
     assert goals(plan, 8.5, "mine")["arms"] == goals(plan, 11.0, "mine")["arms"] == crossed
     assert set(goals(plan, 0.0, "mine")) == set(LAYERS)
 
 
 def test_with_no_models_only_the_person_moves_the_character(somebody: Project) -> None:
     found = mimic_performance(
-        somebody, shown(somebody, [("down", 2), ("hips", 3)]), mirror=False, into=a.Performance(name="still", idle=False, length=5)
+        somebody,
+        shown(somebody, [("down", 2), ("hips", 3)]),
+        mirror=False,
+        into=a.Performance(name="still", idle=False, length=5),
     )
     assert not found.performance.idle
     plan = perform(somebody, found.performance.asks, 6.0, idle=False)
     assert [c.action.kind for c in plan.layers["arms"].cues] == ["transition"]
 
 
-def test_a_performance_is_mixed_into_with_its_seed_stances_and_what_was_told_on_the_way(sample: Project, talk: Keypoints) -> None:
+def test_a_performance_is_mixed_into_with_its_seed_stances_and_what_was_told_on_the_way(
+    sample: Project, talk: Keypoints
+) -> None:
     crossed = next(s.id for s in sample.graphs["arms"].stances.values() if s.name == "arms crossed")
     asks = (a.Nod(id="n", at=30.0, told=25.0), a.Gesture(id="mimic1", layer="head", at=3.0))
     into = a.Performance(name="talk", asks=asks, seed=7, stances={"arms": crossed}, length=10.0)
@@ -134,7 +157,9 @@ def test_a_performance_is_mixed_into_with_its_seed_stances_and_what_was_told_on_
 
 def test_progress_is_told_and_may_end_it(somebody: Project) -> None:
     told: list[tuple[int, int]] = []
-    mimic_performance(somebody, shown(somebody, [("down", 6)]), progress=lambda n, total: told.append((n, total)))
+    mimic_performance(
+        somebody, shown(somebody, [("down", 6)]), progress=lambda n, total: told.append((n, total))
+    )
     assert told == [(0, 120), (50, 120), (100, 120)]
 
     def stop(n: int, total: int) -> None:

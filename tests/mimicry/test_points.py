@@ -17,7 +17,11 @@ def test_every_layout_has_all_points_once_and_a_number_of_its_own(layout: str) -
 
 
 def test_openpose_and_mediapipe_count_as_they_say() -> None:
-    assert (len(LAYOUTS["openpose body_25"]), len(LAYOUTS["openpose coco"]), len(LAYOUTS["mediapipe"])) == (25, 18, 33)
+    assert (len(LAYOUTS["openpose body_25"]), len(LAYOUTS["openpose coco"]), len(LAYOUTS["mediapipe"])) == (
+        25,
+        18,
+        33,
+    )
     assert LAYOUTS["openpose body_25"][8] == "hips" and LAYOUTS["openpose body_25"][4] == "right_wrist"
     assert LAYOUTS["openpose coco"][7] == "left_wrist" and LAYOUTS["openpose coco"][16] == "right_ear"
     assert LAYOUTS["mediapipe"][15] == "left_wrist" and LAYOUTS["mediapipe"][24] == "right_hip"
@@ -34,7 +38,10 @@ def test_choosing_keeps_each_point_its_place(layout: str) -> None:
 
 
 def test_a_number_of_points_that_no_layout_has_is_refused_with_those_known() -> None:
-    with pytest.raises(ValueError, match=r"21 points .* 17 \(coco\), 18 \(openpose coco\), 25 \(openpose body_25\), 33 \(mediapipe\)"):
+    with pytest.raises(
+        ValueError,
+        match=r"21 points .* 17 \(coco\), 18 \(openpose coco\), 25 \(openpose body_25\), 33 \(mediapipe\)",
+    ):
         choose(np.zeros((21, 2)), np.zeros(21))
 
 
@@ -49,7 +56,10 @@ def test_a_mirror_changes_left_and_right_over_and_back() -> None:
 
 
 def test_recordings_mirror_as_their_points_do() -> None:
-    points, sure = np.random.default_rng(2).normal(size=(4, 33, 3)), np.random.default_rng(3).uniform(size=(4, 33))
+    points, sure = (
+        np.random.default_rng(2).normal(size=(4, 33, 3)),
+        np.random.default_rng(3).uniform(size=(4, 33)),
+    )
     seen = Keypoints(np.arange(4.0), points, sure, LAYOUTS["mediapipe"], 3)
     a, b = seen.mirrored().canonical, swap(*seen.canonical)
     assert (a[0] == b[0]).all() and (a[1] == b[1]).all()
@@ -59,4 +69,8 @@ def test_recordings_mirror_as_their_points_do() -> None:
 def test_points_a_recording_does_not_have_are_not_found() -> None:
     seen = Keypoints(np.zeros(1), np.ones((1, 2, 3)), np.ones((1, 2)), ("nose", "left_wrist"), 2)
     points, sure = seen.canonical
-    assert sure.sum() == 2 and points[0, POINTS.index("left_wrist"), 0] == 1 and points[0, POINTS.index("left_hip"), 0] == 0
+    assert (
+        sure.sum() == 2
+        and points[0, POINTS.index("left_wrist"), 0] == 1
+        and points[0, POINTS.index("left_hip"), 0] == 0
+    )

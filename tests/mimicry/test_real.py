@@ -24,7 +24,9 @@ ARMS = ("Idle", "Unarmed_Idle", "2H_Melee_Idle", "Blocking", "Sit_Chair_Idle")
 def project_of(path: Path, names: tuple[str, ...], layer: Layer) -> Project:
     """A project whose stances are clips of a file, the first its base pose and start."""
     clips = {clip.name: clip for clip in read_clips(path)}
-    project = edits.add_clips(Project("real", life=Life(on=False)), [(f"{n}.glb", 0, "", clips[n]) for n in names])
+    project = edits.add_clips(
+        Project("real", life=Life(on=False)), [(f"{n}.glb", 0, "", clips[n]) for n in names]
+    )
     ids = {entry.name: entry.id for entry in project.clips.values()}
     for name in names:
         project = edits.add_stance(project, layer, name, [ids[name]])
@@ -37,7 +39,18 @@ def poses_of(name: str, path: Path, frames: dict[str, int]) -> Project:
     project = Project(name, life=Life(on=False))
     moments = {n: round(at * clip.fps / 30) for n, at in frames.items()}
     held = [
-        (f"{n}.glb", 0, "", replace(clip, name=n, rotations=clip.rotations[[f, f]], translations=clip.translations[[f, f]], weights=None))
+        (
+            f"{n}.glb",
+            0,
+            "",
+            replace(
+                clip,
+                name=n,
+                rotations=clip.rotations[[f, f]],
+                translations=clip.translations[[f, f]],
+                weights=None,
+            ),
+        )
         for n, f in moments.items()
     ]
     project = edits.add_clips(project, held)
@@ -56,7 +69,9 @@ def test_arms_of_the_zoo_held_high_low_and_between(zoo_files: dict[str, Path], n
 
 
 def seen(project: Project, layer: Layer, dims: int, turn: float = 0.0) -> dict[str, str | None]:
-    """Stance -> the stance that is seen of somebody who plays its loop for 3 s, jittering by a hundredth of the torso's length."""
+    """Stance -> the stance that is seen of somebody who plays its loop for 3 s, jittering by a hundredth of
+    the torso's length.
+    """
     body, rng, out = Body(project), np.random.default_rng(3), {}
     for stance in project.graphs[layer].stances.values():
         clip = next(e.motion for e in project.clips.values() if e.name == stance.name)
@@ -64,8 +79,12 @@ def seen(project: Project, layer: Layer, dims: int, turn: float = 0.0) -> dict[s
         mimic = Mimic(project, mirror=False)
         times = np.arange(75) / 25
         points = body.points(clip.pose_at(np.mod(times, max(clip.duration, 0.01))))
-        shoulders, hips = (points[0, [PLACE[f"left_{n}"], PLACE[f"right_{n}"]]].mean(0) for n in ("shoulder", "hip"))
-        points = turned(points, turn) + rng.normal(size=points.shape) * 0.01 * np.linalg.norm(shoulders - hips)
+        shoulders, hips = (
+            points[0, [PLACE[f"left_{n}"], PLACE[f"right_{n}"]]].mean(0) for n in ("shoulder", "hip")
+        )
+        points = turned(points, turn) + rng.normal(size=points.shape) * 0.01 * np.linalg.norm(
+            shoulders - hips
+        )
         for time, where in zip(times, points, strict=True):
             mimic.feed(float(time), where[:, :dims], body.confidence)
         found = project.stance(mimic.seen.get(layer))
@@ -75,7 +94,9 @@ def seen(project: Project, layer: Layer, dims: int, turn: float = 0.0) -> dict[s
 
 @pytest.mark.parametrize("who", ["adult_female", "adult_male", "alien"])
 def test_heads_that_look_five_ways(shared_data: Path, who: str) -> None:
-    project = project_of(shared_data / "sumerian-hosts" / "glTF" / "animations" / who / "poi.glb", HEADS, "head")
+    project = project_of(
+        shared_data / "sumerian-hosts" / "glTF" / "animations" / who / "poi.glb", HEADS, "head"
+    )
     for turn in (0.0, 0.5):
         assert seen(project, "head", 3, turn) == {name: name for name in HEADS}
     if who != "alien":  # whose head is small beside the torso: to its sides it turns too little for a picture

@@ -69,7 +69,9 @@ def test_only_layers_that_are_wanted_and_have_loops_are_looked_at(somebody: Proj
 
 def test_stances_whose_clips_are_missing_are_left_out(somebody: Project) -> None:
     graph = somebody.graphs["arms"]
-    lost = next(a for a in graph.actions.values() if a.kind == "stance" and graph.stances[a.stance].name == "hips")
+    lost = next(
+        a for a in graph.actions.values() if a.kind == "stance" and graph.stances[a.stance].name == "hips"
+    )
     clips = {**somebody.clips, lost.clip: replace(somebody.clips[lost.clip], motion=None)}
     found, _ = signatures(replace(somebody, clips=clips), Body(somebody))
     names = [graph.stances[s].name for s in found["arms"].stances]

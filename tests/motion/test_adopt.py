@@ -17,8 +17,15 @@ PARENTS = [-1, 0, 1, 1, 3, 0]
 OFFSETS = np.array([[0, 1.0, 0], [0, 0.3, 0], [0, 0.3, 0], [0.2, 0.2, 0], [0.3, 0, 0], [0.1, -0.5, 0]])
 
 
-def skeleton(names: tuple[str, ...] = NAMES, parents: list[int] = PARENTS, scale: float = 1.0, offsets: np.ndarray = OFFSETS) -> Skeleton:
-    return Skeleton(names, np.array(parents), np.tile([0.0, 0, 0, 1], (len(names), 1)), offsets[: len(names)] * scale)
+def skeleton(
+    names: tuple[str, ...] = NAMES,
+    parents: list[int] = PARENTS,
+    scale: float = 1.0,
+    offsets: np.ndarray = OFFSETS,
+) -> Skeleton:
+    return Skeleton(
+        names, np.array(parents), np.tile([0.0, 0, 0, 1], (len(names), 1)), offsets[: len(names)] * scale
+    )
 
 
 def clip(on: Skeleton, angle: float = 0.5) -> Clip:
@@ -37,7 +44,9 @@ def test_the_same_skeleton_needs_nothing() -> None:
 def test_joints_in_another_order_find_their_places() -> None:
     order = [0, 5, 1, 3, 4, 2]
     parents = [-1, 0, 0, 2, 3, 2]
-    other = Skeleton(tuple(NAMES[i] for i in order), np.array(parents), np.tile([0.0, 0, 0, 1], (6, 1)), OFFSETS[order])
+    other = Skeleton(
+        tuple(NAMES[i] for i in order), np.array(parents), np.tile([0.0, 0, 0, 1], (6, 1)), OFFSETS[order]
+    )
     adopted = adopt(clip(other), skeleton())
     assert np.allclose(adopted.rotations[:, 2], clip(other).rotations[:, -1])
     assert np.allclose(adopted.rotations[:, 5], [0, 0, 0, 1])
@@ -66,18 +75,32 @@ def test_another_scale_is_named(scale: float) -> None:
 
 
 def test_a_joint_of_its_own_is_named() -> None:
-    more = Skeleton((*NAMES, "tail"), np.array([*PARENTS, 0]), np.tile([0.0, 0, 0, 1], (7, 1)), np.concatenate([OFFSETS, [[0, 0, -0.3]]]))
+    more = Skeleton(
+        (*NAMES, "tail"),
+        np.array([*PARENTS, 0]),
+        np.tile([0.0, 0, 0, 1], (7, 1)),
+        np.concatenate([OFFSETS, [[0, 0, -0.3]]]),
+    )
     assert difference(more, skeleton()) == "the project's skeleton has no joint 'tail'"
 
 
 def test_other_names_are_said_to_be_other_names() -> None:
     strange = skeleton(tuple(f"bone{i}" for i in range(6)))
-    assert difference(strange, skeleton()) == "its joints have other names (it has 'bone0', the project has 'hips')"
+    assert (
+        difference(strange, skeleton())
+        == "its joints have other names (it has 'bone0', the project has 'hips')"
+    )
 
 
 def test_another_hierarchy_is_said_with_both_parents() -> None:
-    assert difference(skeleton(parents=[-1, 0, 1, 1, 2, 0]), skeleton()) == "joint 'hand' hangs on 'head' instead of 'arm'"
-    assert difference(skeleton(), skeleton(parents=[-1, 0, 1, 1, -1, 0])) == "joint 'hand' hangs on 'arm' instead of 'nothing'"
+    assert (
+        difference(skeleton(parents=[-1, 0, 1, 1, 2, 0]), skeleton())
+        == "joint 'hand' hangs on 'head' instead of 'arm'"
+    )
+    assert (
+        difference(skeleton(), skeleton(parents=[-1, 0, 1, 1, -1, 0]))
+        == "joint 'hand' hangs on 'arm' instead of 'nothing'"
+    )
 
 
 def test_one_joint_can_be_adopted_by_one_joint() -> None:

@@ -13,13 +13,17 @@ from metagraph.motion import rotation
 from metagraph.motion.clip import Clip, ClipError
 from metagraph.motion.skeleton import Skeleton
 
-TWO = Skeleton(("a", "b"), np.array([-1, 0]), np.tile([0.0, 0, 0, 1], (2, 1)), np.array([[0, 1.0, 0], [0, 0.5, 0]]))
+TWO = Skeleton(
+    ("a", "b"), np.array([-1, 0]), np.tile([0.0, 0, 0, 1], (2, 1)), np.array([[0, 1.0, 0], [0, 0.5, 0]])
+)
 
 
 def clip(frames: int = 3, **changes: Any) -> Clip:
     angles = np.linspace(0, 1, frames) if frames > 1 else np.zeros(frames)
     rotations = (
-        np.tile(rotation.from_axis_angle([0.0, 0, 1], angles[:, None])[:, :1], (1, 2, 1)).reshape(frames, 2, 4)
+        np.tile(rotation.from_axis_angle([0.0, 0, 1], angles[:, None])[:, :1], (1, 2, 1)).reshape(
+            frames, 2, 4
+        )
         if frames
         else np.zeros((0, 2, 4))
     )

@@ -9,7 +9,9 @@ from metagraph.motion import features, rotation
 from metagraph.motion.clip import Clip
 from metagraph.motion.skeleton import Pose, Skeleton
 
-ARM = Skeleton(("root", "hand"), np.array([-1, 0]), np.tile([0.0, 0, 0, 1], (2, 1)), np.array([[0, 1.0, 0], [0.5, 0, 0]]))
+ARM = Skeleton(
+    ("root", "hand"), np.array([-1, 0]), np.tile([0.0, 0, 0, 1], (2, 1)), np.array([[0, 1.0, 0], [0.5, 0, 0]])
+)
 
 
 def turning(angles: np.ndarray, travel: float = 0.0, fps: float = 30.0) -> Clip:

@@ -26,7 +26,16 @@ def random_clip(skeleton: Skeleton, seed: int, frames: int = 3, morphs: tuple[st
     rotations = rotation.normalize(rng.normal(size=(frames, len(skeleton), 4)))
     moved = tuple(sorted({0, *rng.integers(0, len(skeleton), 3).tolist()}))
     translations = skeleton.rest_translations[list(moved)] + rng.normal(size=(frames, len(moved), 3)) * 0.1
-    return Clip("c", skeleton, 30, rotation.continuous(rotations), translations, moved, morphs, rng.random((frames, len(morphs))))
+    return Clip(
+        "c",
+        skeleton,
+        30,
+        rotation.continuous(rotations),
+        translations,
+        moved,
+        morphs,
+        rng.random((frames, len(morphs))),
+    )
 
 
 def twisted(skeleton: Skeleton, seed: int) -> Skeleton:
@@ -51,10 +60,13 @@ def apart(a: Clip, b: Clip) -> tuple[float, float]:
 @pytest.mark.parametrize(
     ("name", "twin"),
     [
-        ("wave_lf", "wave_rt"), ("Wave_RT_01", "Wave_LF_01"), ("LeftHand", "RightHand"), ("handLeft", "handRight"),
+        ("wave_lf", "wave_rt"), ("Wave_RT_01", "Wave_LF_01"), ("LeftHand", "RightHand"),
+        ("handLeft", "handRight"),
         ("UpperArm_L", "UpperArm_R"),
-        ("arm.r", "arm.l"), ("lHand", "rHand"), ("Palm2L", "Palm2R"), ("char:def_l_elbow", "char:def_r_elbow"), ("LEFT HAND", "RIGHT HAND"),
-        ("Lefthand", "Righthand"), ("point to the right", "point to the left"), ("bright", "bright"), ("loop", "loop"),
+        ("arm.r", "arm.l"), ("lHand", "rHand"), ("Palm2L", "Palm2R"),
+        ("char:def_l_elbow", "char:def_r_elbow"), ("LEFT HAND", "RIGHT HAND"),
+        ("Lefthand", "Righthand"), ("point to the "
+                                    "right", "point to the left"), ("bright", "bright"), ("loop", "loop"),
         ("take R2", "take R2"),
         ("wave_bt", "wave_bt"), ("", ""), ("leftover", "leftover"), ("mouthSmile_L", "mouthSmile_R"),
     ],
@@ -77,7 +89,9 @@ def test_every_joint_of_the_mannequin_has_its_twin_or_is_in_the_middle(sample: A
 
 def test_joints_whose_names_say_nothing_are_paired_by_where_they_are(toy: Any) -> None:
     names = tuple(f"j{i}" for i in range(len(toy.skeleton)))
-    skeleton = Skeleton(names, toy.skeleton.parents, toy.skeleton.rest_rotations, toy.skeleton.rest_translations)
+    skeleton = Skeleton(
+        names, toy.skeleton.parents, toy.skeleton.rest_rotations, toy.skeleton.rest_translations
+    )
     assert pairs_of(skeleton) == pairs_of(toy.skeleton)
 
 
@@ -90,7 +104,9 @@ def test_a_mirrored_pose_is_the_mirror_image(toy: Any) -> None:
 
 
 @given(st.integers(0, 2**31), st.integers(1, 4))
-def test_a_clip_mirrored_twice_is_itself_whatever_the_axes_of_its_bones(toy: Any, seed: int, frames: int) -> None:
+def test_a_clip_mirrored_twice_is_itself_whatever_the_axes_of_its_bones(
+    toy: Any, seed: int, frames: int
+) -> None:
     skeleton = twisted(toy.skeleton, seed)
     clip = random_clip(skeleton, seed, frames)
     degrees, metres = apart(clip, mirror(mirror(clip, pairs_of(skeleton)), pairs_of(skeleton)))
@@ -204,12 +220,16 @@ FILES = (
 
 
 @pytest.mark.parametrize("file", FILES)
-def test_real_clips_come_back_when_mirrored_twice_and_put_hands_where_the_others_were(shared_data: Path, file: str) -> None:
+def test_real_clips_come_back_when_mirrored_twice_and_put_hands_where_the_others_were(
+    shared_data: Path, file: str
+) -> None:
     mirrored_twice(shared_data / file)
 
 
 @pytest.mark.parametrize("name", ANIMALS)
-def test_clips_of_the_zoo_come_back_when_mirrored_twice_and_put_hands_where_the_others_were(zoo_files: dict[str, Path], name: str) -> None:
+def test_clips_of_the_zoo_come_back_when_mirrored_twice_and_put_hands_where_the_others_were(
+    zoo_files: dict[str, Path], name: str
+) -> None:
     mirrored_twice(zoo_files[name])
 
 
@@ -218,7 +238,9 @@ def mirrored_twice(file: Path) -> None:
         pairs = pairs_of(clip.skeleton)
         twin = mirror(clip, pairs)
         degrees, metres = apart(clip, mirror(twin, pairs))
-        assert degrees < 1e-4 and metres < 1e-6 * max(1, clip.skeleton.height)  # float32 metres of a tall robot
+        assert degrees < 1e-4 and metres < 1e-6 * max(
+            1, clip.skeleton.height
+        )  # float32 metres of a tall robot
         _, before = clip.skeleton.globals(clip.poses())
         _, after = clip.skeleton.globals(twin.poses())
         ends = ("wrist", "hand.L", "hand.R", "Hand", "wrist.l", "Palm2L", "hand_l", "lhand", "hand.l", "手首")

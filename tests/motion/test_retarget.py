@@ -37,9 +37,17 @@ def places(clip: Clip) -> np.ndarray:
 
 
 def rebuilt(
-    skeleton: Skeleton, *, scale: float = 1.0, lower: float = 1.0, arms_down: float = 0.0, axes: int | None = None, quarter: int = 0
+    skeleton: Skeleton,
+    *,
+    scale: float = 1.0,
+    lower: float = 1.0,
+    arms_down: float = 0.0,
+    axes: int | None = None,
+    quarter: int = 0,
 ) -> Skeleton:
-    """The toy's figure as another one: its size, its forearms and shins, its rest pose, its bones' axes, where it faces."""
+    """The toy's figure as another one: its size, its forearms and shins, its rest pose, its bones' axes,
+    where it faces.
+    """
     offsets = skeleton.rest_translations * scale
     local = skeleton.rest_rotations.copy()
     for name, sign in (("LeftUpperArm", -1), ("RightUpperArm", 1)):
@@ -64,8 +72,17 @@ def gesture(skeleton: Skeleton, seed: int, frames: int = 5) -> Clip:
     """A standing figure that moves all its joints a little, and its elbows and knees more."""
     rng = np.random.default_rng(seed)
     x = np.linspace(0, 1, frames)[:, None, None]
-    turns = np.sin(np.pi * (x + rng.random((1, len(skeleton), 1)))) * rng.normal(size=(1, len(skeleton), 3)) * 0.15
-    for name, axis, angle in (("LeftLowerArm", 1, -0.9), ("RightLowerArm", 1, 0.9), ("LeftLowerLeg", 0, 0.5), ("RightLowerLeg", 0, 0.5)):
+    turns = (
+        np.sin(np.pi * (x + rng.random((1, len(skeleton), 1))))
+        * rng.normal(size=(1, len(skeleton), 3))
+        * 0.15
+    )
+    for name, axis, angle in (
+        ("LeftLowerArm", 1, -0.9),
+        ("RightLowerArm", 1, 0.9),
+        ("LeftLowerLeg", 0, 0.5),
+        ("RightLowerLeg", 0, 0.5),
+    ):
         turns[:, skeleton.index(name), axis] += angle
     for name in ("LeftUpperLeg", "RightUpperLeg"):
         turns[:, skeleton.index(name), 0] -= 0.25
@@ -73,7 +90,8 @@ def gesture(skeleton: Skeleton, seed: int, frames: int = 5) -> Clip:
     return Clip("g", skeleton, 30, rotation.multiply(skeleton.rest_rotations, rotation.exp(turns)), root)
 
 
-# --- which joint is which --------------------------------------------------------------------------------------------
+# --- which joint is which
+# --------------------------------------------------------------------------------------------
 
 
 def test_a_skeleton_maps_to_itself_joint_by_joint_and_surely(sample: Any) -> None:
@@ -88,10 +106,17 @@ def test_fingers_are_paired_by_their_names_and_order_whatever_they_are_called(to
         names = (*toy.skeleton.names, first, second)
         parents = np.append(toy.skeleton.parents, [toy.skeleton.index("LeftHand"), len(toy.skeleton)])
         return Skeleton(
-            names, parents, np.tile(rotation.IDENTITY, (len(names), 1)), np.vstack([toy.skeleton.rest_translations, np.full((2, 3), 0.03)])
+            names,
+            parents,
+            np.tile(rotation.IDENTITY, (len(names), 1)),
+            np.vstack([toy.skeleton.rest_translations, np.full((2, 3), 0.03)]),
         )
 
-    for first, second in (("f_pinky.01.L", "f_pinky.02.L"), ("LeftHandRingPinky1", "LeftHandRingPinky2"), ("L_Finger4", "L_Finger41")):
+    for first, second in (
+        ("f_pinky.01.L", "f_pinky.02.L"),
+        ("LeftHandRingPinky1", "LeftHandRingPinky2"),
+        ("L_Finger4", "L_Finger41"),
+    ):
         found = proposed(hand(first, second), sample.skeleton)
         assert [found.of(n).target for n in (first, second)] == ["LeftLittle1", "LeftLittle2"]  # type: ignore[union-attr]
 
@@ -107,7 +132,13 @@ def test_a_map_is_written_and_read_back(sample: Any, toy: Any) -> None:
 
 
 @pytest.mark.parametrize(
-    "data", [{}, {"source": "a"}, {"source": "a", "target": "b", "pairs": [1]}, {"source": 1, "target": 2, "pairs": None}]
+    "data",
+    [
+        {},
+        {"source": "a"},
+        {"source": "a", "target": "b", "pairs": [1]},
+        {"source": 1, "target": 2, "pairs": None},
+    ],
 )
 def test_what_is_no_map_is_refused(data: dict[str, Any]) -> None:
     with pytest.raises(RetargetError, match="no joint map"):
@@ -130,12 +161,22 @@ def test_a_map_is_edited_by_hand_and_says_what_it_lacks(toy: Any) -> None:
     assert moved.of("Neck") is None
 
 
-def test_a_map_is_remembered_by_what_stays_the_same_in_every_file_and_size_of_a_rig(toy: Any, sample: Any) -> None:
-    same = Skeleton(*(getattr(toy.skeleton, f) for f in ("names", "parents", "rest_rotations", "rest_translations")))
-    assert fingerprint(same) == fingerprint(toy.skeleton) == fingerprint(rebuilt(toy.skeleton, scale=2, arms_down=1.0))
+def test_a_map_is_remembered_by_what_stays_the_same_in_every_file_and_size_of_a_rig(
+    toy: Any, sample: Any
+) -> None:
+    same = Skeleton(
+        *(getattr(toy.skeleton, f) for f in ("names", "parents", "rest_rotations", "rest_translations"))
+    )
+    assert (
+        fingerprint(same)
+        == fingerprint(toy.skeleton)
+        == fingerprint(rebuilt(toy.skeleton, scale=2, arms_down=1.0))
+    )
     assert fingerprint(sample.skeleton) != fingerprint(toy.skeleton)
     names = (*toy.skeleton.names[:-1], "Renamed")
-    renamed = Skeleton(names, toy.skeleton.parents, toy.skeleton.rest_rotations, toy.skeleton.rest_translations)
+    renamed = Skeleton(
+        names, toy.skeleton.parents, toy.skeleton.rest_rotations, toy.skeleton.rest_translations
+    )
     assert fingerprint(renamed) != fingerprint(toy.skeleton)
 
 
@@ -145,7 +186,8 @@ def test_a_retargeted_clip_knows_what_it_was_brought_from(toy: Any, sample: Any)
     assert toy.clip("c").brought_from == ""
 
 
-# --- what cannot be done ---------------------------------------------------------------------------------------------
+# --- what cannot be done
+# ---------------------------------------------------------------------------------------------
 
 
 def test_too_little_to_go_by_is_refused_in_words(toy: Any) -> None:
@@ -153,7 +195,9 @@ def test_too_little_to_go_by_is_refused_in_words(toy: Any) -> None:
     rope = Skeleton(names, np.array([-1, 0, 1]), np.tile(rotation.IDENTITY, (3, 1)), np.ones((3, 3)))
     clip = Clip("rope", rope, 30, np.tile(rotation.IDENTITY, (2, 3, 1)), np.zeros((2, 1, 3)))
     with pytest.raises(
-        RetargetError, match=r"'rope' cannot be brought onto this character: no hips in both, no head in both.* and \d+ more"
+        RetargetError,
+        match=r"'rope' cannot be brought onto this character: no hips in both, no head in both.* and \d+ "
+        r"more",
     ):
         retarget(clip, toy.skeleton, proposed(rope, toy.skeleton))
 
@@ -176,7 +220,8 @@ def test_a_target_whose_rest_pose_does_not_stand_needs_a_pose_that_does(toy: Any
     np.testing.assert_allclose(places(out), places(clip), atol=3e-4)
 
 
-# --- what comes out --------------------------------------------------------------------------------------------------
+# --- what comes out
+# --------------------------------------------------------------------------------------------------
 
 
 def test_onto_itself_a_clip_stays_what_it_is(sample: Any) -> None:
@@ -201,7 +246,9 @@ def test_size_rest_pose_bone_axes_and_facing_make_no_difference_to_the_motion(
 
 @given(st.integers(0, 2**31), st.floats(0.5, 2), st.floats(0.6, 1.5), st.floats(0, 1.2))
 @hypothesis_settings(max_examples=40)
-def test_there_and_back_a_clip_is_itself_within_two_degrees(toy: Any, seed: int, scale: float, lower: float, down: float) -> None:
+def test_there_and_back_a_clip_is_itself_within_two_degrees(
+    toy: Any, seed: int, scale: float, lower: float, down: float
+) -> None:
     target = rebuilt(toy.skeleton, scale=scale, lower=lower, arms_down=down, axes=seed)
     clip = gesture(toy.skeleton, seed)
     joint_map = proposed(toy.skeleton, target)
@@ -211,7 +258,9 @@ def test_there_and_back_a_clip_is_itself_within_two_degrees(toy: Any, seed: int,
 
 @given(st.integers(0, 2**31), st.floats(0.5, 2), st.floats(0.6, 1.5))
 @hypothesis_settings(max_examples=40)
-def test_wrists_and_ankles_keep_their_height_and_elbows_their_side(toy: Any, seed: int, scale: float, lower: float) -> None:
+def test_wrists_and_ankles_keep_their_height_and_elbows_their_side(
+    toy: Any, seed: int, scale: float, lower: float
+) -> None:
     target = rebuilt(toy.skeleton, scale=scale, lower=lower)
     clip = gesture(toy.skeleton, seed)
     out = retarget(clip, target, proposed(toy.skeleton, target))
@@ -221,19 +270,31 @@ def test_wrists_and_ankles_keep_their_height_and_elbows_their_side(toy: Any, see
     for side in ("Left", "Right"):
         high, low = (p[:, at(f"{side}Hand"), 1] - p[:, at(f"{side}UpperArm"), 1] for p in (after, before))
         np.testing.assert_allclose(high, arm * low, atol=0.03)
-        np.testing.assert_allclose(after[:, at(f"{side}Foot"), 1], scale * before[:, at(f"{side}Foot"), 1], atol=0.03)
+        np.testing.assert_allclose(
+            after[:, at(f"{side}Foot"), 1], scale * before[:, at(f"{side}Foot"), 1], atol=0.03
+        )
         for upper, middle, end in (("UpperArm", "LowerArm", "Hand"), ("UpperLeg", "LowerLeg", "Foot")):
             bends = []
             for p in (before, after):
                 a, b, c = (p[:, at(side + n)] for n in (upper, middle, end))
-                bend = b - a - (c - a) * (np.einsum("fi,fi->f", b - a, c - a) / np.einsum("fi,fi->f", c - a, c - a))[:, None]
+                bend = (
+                    b
+                    - a
+                    - (c - a)
+                    * (np.einsum("fi,fi->f", b - a, c - a) / np.einsum("fi,fi->f", c - a, c - a))[:, None]
+                )
                 bends.append(bend / np.linalg.norm(bend, axis=-1, keepdims=True))
             assert (np.einsum("fi,fi->f", *bends) > 0.8).all()
 
 
-def test_a_clip_of_one_frame_a_figure_without_a_neck_and_one_without_fingers_come_through(toy: Any, sample: Any) -> None:
+def test_a_clip_of_one_frame_a_figure_without_a_neck_and_one_without_fingers_come_through(
+    toy: Any, sample: Any
+) -> None:
     keep = [i for i, n in enumerate(toy.skeleton.names) if n != "Neck"]
-    parents = [keep.index(int(p)) if p in keep else (-1 if p < 0 else keep.index(1)) for p in toy.skeleton.parents[keep]]
+    parents = [
+        keep.index(int(p)) if p in keep else (-1 if p < 0 else keep.index(1))
+        for p in toy.skeleton.parents[keep]
+    ]
     bare = Skeleton(
         tuple(toy.skeleton.names[i] for i in keep),
         np.array(parents),
@@ -272,7 +333,9 @@ def test_a_rest_pose_that_hangs_in_the_air_or_lies_in_the_ground_still_puts_the_
     sunk = Skeleton(toy.skeleton.names, toy.skeleton.parents, toy.skeleton.rest_rotations, offsets)
     clip = toy.clip("c")
     out = retarget(clip, sunk, proposed(toy.skeleton, sunk))
-    np.testing.assert_allclose(places(out), places(clip) - [0, 0.05, 0], atol=2e-3)  # its lowest joint, the ankle, is on the ground
+    np.testing.assert_allclose(
+        places(out), places(clip) - [0, 0.05, 0], atol=2e-3
+    )  # its lowest joint, the ankle, is on the ground
     back = retarget(out, toy.skeleton, proposed(sunk, toy.skeleton))
     np.testing.assert_allclose(places(back), places(clip), atol=2e-3)
 
@@ -282,17 +345,26 @@ def test_faces_of_one_family_of_characters_move_on(toy: Any) -> None:
     names = (*toy.skeleton.names, "lip_upper")
     parents = np.append(toy.skeleton.parents, toy.skeleton.index("Head"))
     face = Skeleton(
-        names, parents, np.tile(rotation.IDENTITY, (len(names), 1)), np.vstack([toy.skeleton.rest_translations, [[0, 0.05, 0.1]]])
+        names,
+        parents,
+        np.tile(rotation.IDENTITY, (len(names), 1)),
+        np.vstack([toy.skeleton.rest_translations, [[0, 0.05, 0.1]]]),
     )
     clip = toy.clip("c")
     rotations = np.concatenate([clip.rotations, np.tile(rotation.IDENTITY, (clip.frames, 1, 1))], 1)
     lip = np.broadcast_to([0, 0.07, 0.1], (clip.frames, 3))
     clip = replace(
-        clip, skeleton=face, rotations=rotations, translations=np.stack([clip.translations[:, 0], lip], 1), translated=(0, len(names) - 1)
+        clip,
+        skeleton=face,
+        rotations=rotations,
+        translations=np.stack([clip.translations[:, 0], lip], 1),
+        translated=(0, len(names) - 1),
     )
     target = Skeleton(names, parents, face.rest_rotations, face.rest_translations * 2)
     out = retarget(clip, target, proposed(face, target))
-    np.testing.assert_allclose(out.poses().translations[:, -1], np.broadcast_to([0, 0.14, 0.2], (clip.frames, 3)), atol=1e-4)
+    np.testing.assert_allclose(
+        out.poses().translations[:, -1], np.broadcast_to([0, 0.14, 0.2], (clip.frames, 3)), atol=1e-4
+    )
 
 
 def test_what_was_done_is_noted(toy: Any, sample: Any) -> None:
@@ -300,14 +372,18 @@ def test_what_was_done_is_noted(toy: Any, sample: Any) -> None:
     assert "brought over from a skeleton of 16 joints: 16 are mapped" in out.notes[-1]
 
 
-# --- real characters -------------------------------------------------------------------------------------------------
+# --- real characters
+# --------------------------------------------------------------------------------------------------
 
 FILES: dict[str, tuple[str, Callable[[Clip], bool]]] = {
     "adult": ("sumerian-hosts/glTF/animations/adult_female/stand_idle.glb", lambda c: True),
     "alien": ("sumerian-hosts/glTF/animations/alien/gesture.glb", lambda c: c.name == "many"),
     "mesh2motion": ("mesh2motion-cmu/human-addon-animations.glb", lambda c: c.name == "YMCA"),
     "kaykit": ("kaykit-rogue/Rogue.glb", lambda c: c.name == "Interact"),
-    "robot": ("robot-expressive/RobotExpressive.glb", lambda c: c.name == "Walking"),  # the legs of its Idle do not reach its feet
+    "robot": (
+        "robot-expressive/RobotExpressive.glb",
+        lambda c: c.name == "Walking",
+    ),  # the legs of its Idle do not reach its feet
     "cmu": ("mesh2motion-cmu/91_50.fbx", lambda c: True),
     "bandai": ("bandai-namco-1/dataset-1_bow_angry_001.bvh", lambda c: True),
     "crossarms": ("fbx-pab/crossarms.fbx", lambda c: True),
@@ -315,14 +391,17 @@ FILES: dict[str, tuple[str, Callable[[Clip], bool]]] = {
 PAIRS = [(a, b) for a in ("sample", *FILES) for b in ("sample", *FILES) if a != b]
 if not (Path(__file__).parents[3] / "shared" / "data").is_dir():
     PAIRS = PAIRS[:1]  # where the clips are not, one skip says it for all pairs
-# Legs as short and hips as wide as the alien's cannot stand as the bowing actors do; their knees come back straighter.
+# Legs as short and hips as wide as the alien's cannot stand as the bowing actors do; their knees come back
+# straighter.
 SHORT = {("bandai", "alien"), ("alien", "bandai")}
 
 
 @cache
 def real(folder: Path, who: str) -> Clip:
     if who == "sample":
-        return read_clips(Path(__file__).parents[2] / "sample_clips/clips/hands_at_sides__air_quotes_bt_01.glb")[0]
+        return read_clips(
+            Path(__file__).parents[2] / "sample_clips/clips/hands_at_sides__air_quotes_bt_01.glb"
+        )[0]
     file, wanted = FILES[who]
     return next(c for c in read_clips(folder / file) if wanted(c))
 
@@ -358,17 +437,23 @@ def there_and_back(clip: Clip, other: Clip, degrees: float) -> None:
     out = retarget(clip, other.skeleton, joint_map, target_pose=pose)
     back = retarget(out, clip.skeleton, joint_map.reversed, source_pose=pose, target_pose=standing_pose(clip))
     joints = [clip.skeleton.index(p.source) for p in joint_map.pairs]
-    turned = rotation.angle_between(clip.skeleton.globals(clip.poses())[0], back.skeleton.globals(back.poses())[0])[:, joints]
+    turned = rotation.angle_between(
+        clip.skeleton.globals(clip.poses())[0], back.skeleton.globals(back.poses())[0]
+    )[:, joints]
     assert np.degrees(turned.mean()) < degrees
 
 
 @pytest.mark.parametrize(("one", "two"), PAIRS)
-def test_real_hands_and_feet_keep_their_height_and_planted_feet_stay(shared_data: Path, one: str, two: str) -> None:
+def test_real_hands_and_feet_keep_their_height_and_planted_feet_stay(
+    shared_data: Path, one: str, two: str
+) -> None:
     heights_and_feet(real(shared_data, one), real(shared_data, two))
 
 
 @pytest.mark.parametrize("zoo_pair", ZOO, indirect=True, ids="-".join)
-def test_hands_and_feet_of_the_zoo_keep_their_height_and_planted_feet_stay(zoo_pair: tuple[Clip, Clip]) -> None:
+def test_hands_and_feet_of_the_zoo_keep_their_height_and_planted_feet_stay(
+    zoo_pair: tuple[Clip, Clip],
+) -> None:
     heights_and_feet(*zoo_pair)
 
 
@@ -385,7 +470,9 @@ def heights_and_feet(clip: Clip, other: Clip) -> None:
         return float(np.mean([sum(np.linalg.norm(a - b) for a, b in pairwise(line)) for line in lines]))
 
     def scale(*parts: str) -> float:
-        return length(other.skeleton, pose, theirs, parts) / length(clip.skeleton, standing_pose(clip), ours, parts)
+        return length(other.skeleton, pose, theirs, parts) / length(
+            clip.skeleton, standing_pose(clip), ours, parts
+        )
 
     arm, leg = scale("upper_arm", "lower_arm", "hand"), scale("upper_leg", "lower_leg", "foot")
     tall = max(1.0, other.skeleton.height / 1.8)  # 3 cm on a person, as much more on a giant
@@ -398,11 +485,14 @@ def heights_and_feet(clip: Clip, other: Clip) -> None:
         assert np.abs((high - high.min()) - leg * (low - low.min())).max() < 0.03 * tall
         if clip.frames > 1:
             speeds = [
-                np.linalg.norm(np.diff(p[:, r[foot]], axis=0)[:, [0, 2]], axis=-1) * clip.fps for p, r in ((before, ours), (after, theirs))
+                np.linalg.norm(np.diff(p[:, r[foot]], axis=0)[:, [0, 2]], axis=-1) * clip.fps
+                for p, r in ((before, ours), (after, theirs))
             ]
             facing = clip.skeleton.globals(clip.poses())[0][:, ours[foot]]
             turning = np.degrees(rotation.angle_between(facing[1:], facing[:-1])) * clip.fps
-            planted = (low[1:] - low.min() < 0.02) & (speeds[0] < 0.05) & (turning < 15)  # a foot that pivots may shift
+            planted = (
+                (low[1:] - low.min() < 0.02) & (speeds[0] < 0.05) & (turning < 15)
+            )  # a foot that pivots may shift
             assert not planted.any() or (speeds[1][planted] - leg * speeds[0][planted]).max() < 0.06 * tall
 
 
@@ -417,5 +507,8 @@ def test_a_head_that_rests_back_to_front_looks_ahead(shared_data: Path, sample: 
     clip = real(shared_data, "robot")
     out = retarget(clip, sample.skeleton, proposed(clip.skeleton, sample.skeleton))
     turns, _ = out.skeleton.globals(out.poses())
-    head = rotation.multiply(turns[:, out.skeleton.index("Head")], rotation.conjugate(out.skeleton.globals(out.skeleton.rest)[0][5]))
+    head = rotation.multiply(
+        turns[:, out.skeleton.index("Head")],
+        rotation.conjugate(out.skeleton.globals(out.skeleton.rest)[0][5]),
+    )
     assert (rotation.rotate(head, np.array([0, 0, 1.0]))[:, 2] > 0.8).all()

@@ -9,14 +9,25 @@ import numpy as np
 import pytest
 
 from metagraph.motion import rotation
-from metagraph.motion.roles import PARTS, REQUIRED, ROLES, body_parts, find_roles, is_humanoid, joint_sides, missing_roles
+from metagraph.motion.roles import (
+    PARTS,
+    REQUIRED,
+    ROLES,
+    body_parts,
+    find_roles,
+    is_humanoid,
+    joint_sides,
+    missing_roles,
+)
 from metagraph.motion.skeleton import Skeleton
 from sample_clips.make.skeleton import mannequin_skeleton
 from tests.zoo import ANIMALS, FIGURE
 
 
 def tree(text: str) -> Skeleton:
-    """Build a skeleton from indented names; `<` and `>` copy a line and what is below it for left and right."""
+    """Build a skeleton from indented names; `<` and `>` copy a line and what is below it for left and
+    right.
+    """
     names: list[str] = []
     parents: list[int] = []
     stack: list[tuple[int, int]] = []
@@ -241,11 +252,19 @@ spine
 """
     )
     roles = {role: skeleton.names[joint] for role, joint in find_roles(skeleton).items()}
-    assert (roles["hips"], roles["spine"], roles["neck"], roles["head"]) == ("spine", "spine.001", "spine.004", "spine.006")
+    assert (roles["hips"], roles["spine"], roles["neck"], roles["head"]) == (
+        "spine",
+        "spine.001",
+        "spine.004",
+        "spine.006",
+    )
 
 
 def test_a_four_legged_animal_is_no_humanoid_and_its_missing_roles_say_why() -> None:
-    skeleton = tree("Hips\n Spine\n  Head\n  Front_Leg_Upper.L\n   Front_Foot.L\n Back_Leg_Upper.L\n  Back_Foot.L\n Tail\n")
+    skeleton = tree(
+        "Hips\n Spine\n  Head\n  Front_Leg_Upper.L\n   Front_Foot.L\n Back_Leg_Upper.L\n  Back_Foot.L\n "
+        "Tail\n"
+    )
     roles = find_roles(skeleton)
     assert not is_humanoid(roles)
     assert "left_hand" in missing_roles(roles)
@@ -260,7 +279,9 @@ def test_names_that_say_nothing_are_no_error(names: str) -> None:
 
 def test_a_skeleton_without_telling_names_is_known_by_its_shape() -> None:
     real = mannequin_skeleton()
-    plain = Skeleton(tuple(f"bone{i}" for i in range(len(real))), real.parents, real.rest_rotations, real.rest_translations)
+    plain = Skeleton(
+        tuple(f"bone{i}" for i in range(len(real))), real.parents, real.rest_rotations, real.rest_translations
+    )
     shaped, named = find_roles(plain), find_roles(real)
     assert is_humanoid(shaped)
     assert {role: named[role] for role in REQUIRED} == {role: shaped[role] for role in REQUIRED}
@@ -268,12 +289,28 @@ def test_a_skeleton_without_telling_names_is_known_by_its_shape() -> None:
 
 def test_a_bare_stick_figure_is_known_by_its_shape_and_its_toes_tell_left_from_right() -> None:
     places = {
-        0: (-1, (0, 1, 0)), 1: (0, (0, 0.2, 0)), 2: (1, (0, 0.2, 0)), 3: (2, (0, 0.1, 0)), 4: (3, (0, 0.1, 0)),
-        5: (2, (0.1, 0, 0)), 6: (5, (0.2, 0, 0)), 7: (6, (0.2, 0, 0)), 8: (7, (0.2, 0, 0)),
-        9: (2, (-0.1, 0, 0)), 10: (9, (-0.2, 0, 0)), 11: (10, (-0.2, 0, 0)), 12: (11, (-0.2, 0, 0)),
-        13: (0, (0.1, 0, 0)), 14: (13, (0, -0.45, 0)), 15: (14, (0, -0.45, 0)), 16: (15, (0, -0.1, 0.1)),
-        17: (0, (-0.1, 0, 0)), 18: (17, (0, -0.45, 0)), 19: (18, (0, -0.45, 0)), 20: (19, (0, -0.1, 0.1)),
-    }  # fmt: skip
+        0: (-1, (0, 1, 0)),
+        1: (0, (0, 0.2, 0)),
+        2: (1, (0, 0.2, 0)),
+        3: (2, (0, 0.1, 0)),
+        4: (3, (0, 0.1, 0)),
+        5: (2, (0.1, 0, 0)),
+        6: (5, (0.2, 0, 0)),
+        7: (6, (0.2, 0, 0)),
+        8: (7, (0.2, 0, 0)),
+        9: (2, (-0.1, 0, 0)),
+        10: (9, (-0.2, 0, 0)),
+        11: (10, (-0.2, 0, 0)),
+        12: (11, (-0.2, 0, 0)),
+        13: (0, (0.1, 0, 0)),
+        14: (13, (0, -0.45, 0)),
+        15: (14, (0, -0.45, 0)),
+        16: (15, (0, -0.1, 0.1)),
+        17: (0, (-0.1, 0, 0)),
+        18: (17, (0, -0.45, 0)),
+        19: (18, (0, -0.45, 0)),
+        20: (19, (0, -0.1, 0.1)),
+    }
     parents = np.array([p for p, _ in places.values()])
     offsets = np.array([o for _, o in places.values()], float)
     names = tuple(f"n{i}" for i in range(len(places)))
@@ -299,7 +336,8 @@ def test_required_roles_are_roles() -> None:
     assert set(REQUIRED) <= set(ROLES) and len(set(ROLES)) == len(ROLES)
 
 
-# --- real skeletons ----------------------------------------------------------------------------------------------------
+# --- real skeletons
+# --------------------------------------------------------------------------------------------------
 
 PEOPLE = {
     "kaykit-rogue/Rogue.glb": ("hips", "wrist.l", "upperarm.l"),
@@ -307,8 +345,16 @@ PEOPLE = {
     "mesh2motion-cmu/human-skeleton.glb": ("DEF-hips", "DEF-hand.L", "DEF-upper_arm.L"),
     "mesh2motion-cmu/human-addon-animations.glb": ("DEF-hips", "DEF-hand.L", "DEF-upper_arm.L"),
     "sumerian-hosts/glTF/animations/alien/stand_idle.glb": ("char:hips", "char:l_wrist", "char:l_shoulder"),
-    "sumerian-hosts/glTF/animations/adult_female/emote.glb": ("char:def_c_hip", "char:def_l_wrist", "char:def_l_shoulder"),
-    "sumerian-hosts/glTF/animations/adult_male/lipsync.glb": ("char:def_c_hip", "char:def_l_wrist", "char:def_l_shoulder"),
+    "sumerian-hosts/glTF/animations/adult_female/emote.glb": (
+        "char:def_c_hip",
+        "char:def_l_wrist",
+        "char:def_l_shoulder",
+    ),
+    "sumerian-hosts/glTF/animations/adult_male/lipsync.glb": (
+        "char:def_c_hip",
+        "char:def_l_wrist",
+        "char:def_l_shoulder",
+    ),
     "edge-bvh/01_01.bvh": ("Hips", "LeftHand", "LeftArm"),
     "edge-bvh/sample.bvh": ("Hips", "LeftWrist", "LeftShoulder"),
     "edge-bvh/bvh_test3.bvh": ("Hips", "LeftHand", "LeftArm"),
@@ -335,7 +381,9 @@ def test_real_people_have_the_roles_one_would_point_at(shared_data: Path, file: 
     assert named["right_hand"] != named["left_hand"]
     parts = body_parts(skeleton, roles)
     assert set(parts) >= {"legs", "spine", "arms", "head"}
-    assert joint_sides(skeleton, roles).count("left") == pytest.approx(joint_sides(skeleton, roles).count("right"), abs=3)
+    assert joint_sides(skeleton, roles).count("left") == pytest.approx(
+        joint_sides(skeleton, roles).count("right"), abs=3
+    )
 
 
 @pytest.mark.parametrize("name", ANIMALS)

@@ -17,7 +17,9 @@ HALF_TURNS = np.array([[1.0, 0, 0, 0], [0, 1.0, 0, 0], [0, 0, 1.0, 0], [-1.0, 0,
 EDGES = np.concatenate([[[0, 0, 0, 1.0], [0, 0, 0, -1.0], [1e-9, 0, 0, 1.0], [1e-4, 0, 0, -1.0]], HALF_TURNS])
 
 numbers = st.floats(-1, 1, allow_subnormal=False)
-unit = arrays(np.float64, 4, elements=numbers).filter(lambda q: np.linalg.norm(q) > 0.1).map(rotation.normalize)
+unit = (
+    arrays(np.float64, 4, elements=numbers).filter(lambda q: np.linalg.norm(q) > 0.1).map(rotation.normalize)
+)
 vector = arrays(np.float64, 3, elements=st.floats(-10, 10, allow_subnormal=False))
 
 
@@ -27,7 +29,9 @@ def same(a: np.ndarray, b: np.ndarray, within: float = 1e-6) -> bool:
 
 def test_a_zero_quaternion_becomes_the_identity() -> None:
     assert np.array_equal(rotation.normalize(np.zeros(4)), rotation.IDENTITY)
-    assert np.array_equal(rotation.normalize(np.zeros((2, 4), np.float32)), np.tile(rotation.IDENTITY, (2, 1)))
+    assert np.array_equal(
+        rotation.normalize(np.zeros((2, 4), np.float32)), np.tile(rotation.IDENTITY, (2, 1))
+    )
     assert rotation.normalize(np.zeros(4, np.float32)).dtype == np.float32
 
 
@@ -62,7 +66,9 @@ def test_matrices_and_quaternions_turn_a_vector_alike(q: np.ndarray, v: np.ndarr
 
 @given(unit, unit, vector)
 def test_a_product_turns_by_the_right_one_first(a: np.ndarray, b: np.ndarray, v: np.ndarray) -> None:
-    assert np.allclose(rotation.rotate(rotation.multiply(a, b), v), rotation.rotate(a, rotation.rotate(b, v)), atol=1e-9)
+    assert np.allclose(
+        rotation.rotate(rotation.multiply(a, b), v), rotation.rotate(a, rotation.rotate(b, v)), atol=1e-9
+    )
 
 
 @pytest.mark.parametrize("order", ORDERS)
@@ -94,7 +100,9 @@ def test_powers_add_up_and_go_the_short_way(q: np.ndarray, a: float, b: float) -
         return  # half a turn has no short way
     both = rotation.multiply(rotation.power(q, a), rotation.power(q, b))
     assert same(both, rotation.power(q, a + b), 1e-6)
-    assert rotation.angle_between(rotation.power(q, 0.5), rotation.IDENTITY) == pytest.approx(whole / 2, abs=1e-6)
+    assert rotation.angle_between(rotation.power(q, 0.5), rotation.IDENTITY) == pytest.approx(
+        whole / 2, abs=1e-6
+    )
 
 
 @given(arrays(np.float64, 3, elements=st.floats(-1.8, 1.8)))

@@ -15,7 +15,12 @@ REST = [0.0, 0, 0, 1]
 
 def skeleton(parents: list[int], offset: float = 1.0) -> Skeleton:
     count = len(parents)
-    return Skeleton(tuple(f"j{i}" for i in range(count)), np.array(parents), np.tile(REST, (count, 1)), np.tile([0, offset, 0], (count, 1)))
+    return Skeleton(
+        tuple(f"j{i}" for i in range(count)),
+        np.array(parents),
+        np.tile(REST, (count, 1)),
+        np.tile([0, offset, 0], (count, 1)),
+    )
 
 
 def test_one_joint_is_a_skeleton() -> None:

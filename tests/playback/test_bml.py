@@ -40,19 +40,34 @@ def test_an_empty_block_asks_for_nothing() -> None:
         ("<bml>&nbsp;</bml>", "not XML: undefined entity"),
         ("<speech/>", "line 1, <speech>: the first element must be <bml>"),
         ('<bml composition="MIX"/>', "MERGE, APPEND or REPLACE"),
-        ('<bml>\n<gesture id="g" lexeme="beat" start="soon"/></bml>', 'line 2, <gesture>: start="soon" is neither seconds nor'),
-        ('<bml><gesture id="g" stroke="s1:tm1"/></bml>', "there is no behaviour 's1' in this block; there are g"),
+        (
+            '<bml>\n<gesture id="g" lexeme="beat" start="soon"/></bml>',
+            'line 2, <gesture>: start="soon" is neither seconds nor',
+        ),
+        (
+            '<bml><gesture id="g" stroke="s1:tm1"/></bml>',
+            "there is no behaviour 's1' in this block; there are g",
+        ),
         ('<bml><gesture id="g" start="other:g1:end"/></bml>', "no behaviour 'other:g1'"),
         ('<bml><gesture id="g" start="h:end"/><gesture id="h" start="g:end"/></bml>', "waits for itself"),
         ('<bml><gesture id="g" start="this:start"/></bml>', "waits for itself"),
         ('<bml><gesture id="g"/><head id="g"/></bml>', "two behaviours 'g'"),
-        ('<bml><speech id="s"><text>a<sync id="t1"/>b</text></speech><head start="s:t9"/></bml>', "no sync point 't9'; its marks are t1"),
-        ('<bml><gesture metagraph:layer="legs" xmlns:metagraph="x"/></bml>', "layer: Invalid enum value 'legs'"),
+        (
+            '<bml><speech id="s"><text>a<sync id="t1"/>b</text></speech><head start="s:t9"/></bml>',
+            "no sync point 't9'; its marks are t1",
+        ),
+        (
+            '<bml><gesture metagraph:layer="legs" xmlns:metagraph="x"/></bml>',
+            "layer: Invalid enum value 'legs'",
+        ),
         ('<bml><gesture start="1e300"/></bml>', "<= 1000000"),
         ('<bml><gesture start="1e999"/></bml>', "neither seconds nor"),
         ('<bml><gesture metagraph:tags="[1]"/></bml>', "JSON list of texts"),
         ('<bml><wait duration="long"/></bml>', "duration is a number"),
-        ('<bml><constraint><synchronize ref="g:end"><sync ref="x"/></synchronize></constraint></bml>', "no sync point of a behaviour"),
+        (
+            '<bml><constraint><synchronize ref="g:end"><sync ref="x"/></synchronize></constraint></bml>',
+            "no sync point of a behaviour",
+        ),
         ("<bml>" + "<required>" * 50 + "</required>" * 50 + "</bml>", "more than 40 deep"),
         ("<bml>" + "<head/>" * 501 + "</bml>", "at most 500 behaviours"),
         ("<bml><speech><text>" + "<b/>" * 4001 + "</text></speech></bml>", "more than 4000 elements"),
@@ -67,7 +82,8 @@ def test_what_cannot_be_read_is_told_with_its_line_and_remedy(text: str, words: 
 @pytest.mark.parametrize(
     "text",
     [
-        '<!DOCTYPE bml [<!ENTITY a "aaaaaaaaaa"><!ENTITY b "&a;&a;&a;&a;&a;&a;&a;&a;&a;&a;">]><bml><speech>&b;</speech></bml>',
+        '<!DOCTYPE bml [<!ENTITY a "aaaaaaaaaa"><!ENTITY b '
+        '"&a;&a;&a;&a;&a;&a;&a;&a;&a;&a;">]><bml><speech>&b;</speech></bml>',
         '<!DOCTYPE bml [<!ENTITY f SYSTEM "file:///etc/hostname">]><bml><speech>&f;</speech></bml>',
         '<!DOCTYPE bml SYSTEM "http://localhost/bml.dtd"><bml/>',
         "<!DOCTYPE bml><bml/>",
@@ -106,7 +122,9 @@ def test_the_first_element_may_be_smartbodys_act() -> None:
 
 
 def test_namespaces_do_not_matter() -> None:
-    assert read_bml('<b:bml xmlns:b="http://www.bml-initiative.org/bml/bml-1.0"><b:head lexeme="NOD"/></b:bml>') == (a.Nod(),)
+    assert read_bml(
+        '<b:bml xmlns:b="http://www.bml-initiative.org/bml/bml-1.0"><b:head lexeme="NOD"/></b:bml>'
+    ) == (a.Nod(),)
 
 
 @pytest.mark.parametrize(
@@ -120,11 +138,16 @@ def test_namespaces_do_not_matter() -> None:
         ('<gesture lexeme="beat" start="500ms"/>', a.Gesture(tags=("beat",), at=0.5)),
         ('<gesture lexeme="beat" stroke="2"/>', a.Gesture(tags=("beat",), stroke=2.0)),
         ('<gesture lexeme="beat" start="1" end="3"/>', a.Gesture(tags=("beat",), at=1.0, duration=2.0)),
-        ('<gesture lexeme="beat" strokeEnd="2" relax="3.5"/>', a.Gesture(tags=("beat",), at=2 - GUESSED["strokeend"], hold=1.5)),
-        ('<gesture lexeme="beat" stroke="1" stroke-end="1.25" relax="2.5"/>', a.Gesture(tags=("beat",), stroke=1.0, hold=1.25)),
-        ('<gesture lexeme="beat" stroke="1" relax="this:strokeEnd+0.75"/>', a.Gesture(tags=("beat",), stroke=1.0, hold=0.75)),
-        ('<gesture id="g" lexeme="beat" start="g:ready" stroke="1"/>', a.Gesture(id="g", tags=("beat",), stroke=1.0, prepare=False)),
-        ('<gesture lexeme="beat" start="this:ready" ready="4"/>', a.Gesture(tags=("beat",), at=4.0, prepare=False)),
+        ('<gesture lexeme="beat" strokeEnd="2" '
+         'relax="3.5"/>', a.Gesture(tags=("beat",), at=2 - GUESSED["strokeend"], hold=1.5)),
+        ('<gesture lexeme="beat" stroke="1" stroke-end="1.25" '
+         'relax="2.5"/>', a.Gesture(tags=("beat",), stroke=1.0, hold=1.25)),
+        ('<gesture lexeme="beat" stroke="1" '
+         'relax="this:strokeEnd+0.75"/>', a.Gesture(tags=("beat",), stroke=1.0, hold=0.75)),
+        ('<gesture id="g" lexeme="beat" start="g:ready" '
+         'stroke="1"/>', a.Gesture(id="g", tags=("beat",), stroke=1.0, prepare=False)),
+        ('<gesture lexeme="beat" start="this:ready" '
+         'ready="4"/>', a.Gesture(tags=("beat",), at=4.0, prepare=False)),
         ('<gesture name="shrug_bt_01"/>', a.Play(action="shrug_bt_01")),
         ('<animation name="bow" start="1"/>', a.Play(action="bow", at=1.0)),
         ('<head lexeme="NOD" start="2"/>', a.Nod(at=2.0)),
@@ -134,7 +157,8 @@ def test_namespaces_do_not_matter() -> None:
         ('<posture stance="AtEase"/>', a.Go(stance="AtEase")),
         ('<postureShift start="3"><stance type="SITTING"/></postureShift>', a.Go(stance="SITTING", at=3.0)),
         ('<body posture="ChrIdle01"/>', a.Go(stance="ChrIdle01")),
-        ('<gaze target="user" influence="EYES" start="1" end="3"/>', a.Look(to="user", amount=0.25, at=1.0, duration=2.0)),
+        ('<gaze target="user" influence="EYES" start="1" '
+         'end="3"/>', a.Look(to="user", amount=0.25, at=1.0, duration=2.0)),
         ('<gazeShift target="0 1.6 2"/>', a.Look(to=(0.0, 1.6, 2.0))),
         ('<speech ref="279" start="1"/>', a.Say(line="279", at=1.0)),
         ("<speech><text>Hello <sync id='t'/> there,\n you</text></speech>", a.Say(text="Hello there, you")),
@@ -158,7 +182,10 @@ def test_a_behaviour_becomes_an_ask(inner: str, ask: a.AnyAsk) -> None:
         ('<face type="SMILE"/>', "only BLINK"),
         ("<speech/>", "says neither words"),
         ("<posture/>", "names no stance"),
-        ('<constraint><before ref="bml:start"/></constraint>', "of constraints <synchronize> and <after> are kept"),
+        (
+            '<constraint><before ref="bml:start"/></constraint>',
+            "of constraints <synchronize> and <after> are kept",
+        ),
     ],
 )
 def test_what_is_not_understood_is_left_out_with_a_note(inner: str, words: str) -> None:
@@ -193,7 +220,8 @@ def test_sync_points_of_other_behaviours_are_followed_with_offsets() -> None:
     text = (
         "<speech id='s1' start='1'><text>0123456 <sync id='tm1'/>89</text></speech>"
         "<gesture id='g1' lexeme='beat' stroke='s1:tm1+0.3'/><head lexeme='NOD' start='g1:stroke-0.2'/>"
-        "<gazeShift target='user' start='s1:end'/><wait id='w' start='s1:start' duration='2'/><gesture lexeme='open' start='w:end'/>"
+        "<gazeShift target='user' start='s1:end'/><wait id='w' start='s1:start' duration='2'/><gesture "
+        "lexeme='open' start='w:end'/>"
     )
     speech, beat, nod, look, after = block(text).asks
     mark = 1 + 8 / 11 * len("0123456 89") / SPOKEN
@@ -211,13 +239,16 @@ def test_a_gesture_others_wait_for_aims_at_the_stroke_they_were_told() -> None:
 
 
 def test_references_may_point_forwards_and_to_the_blocks_own_name() -> None:
-    nod, beat = block("<head lexeme='NOD' start='b:g:start + 1'/><gesture id='b:g' lexeme='beat' start='2'/>").asks
+    nod, beat = block(
+        "<head lexeme='NOD' start='b:g:start + 1'/><gesture id='b:g' lexeme='beat' start='2'/>"
+    ).asks
     assert (nod.at, beat.at) == (3.0, 2.0)
 
 
 def test_constraints_bring_sync_points_together() -> None:
     text = (
-        "<gesture id='g' lexeme='beat'/><speech id='s'><text><sync id='a'/>Yes</text></speech><head id='h' lexeme='NOD'/>"
+        "<gesture id='g' lexeme='beat'/><speech id='s'><text><sync id='a'/>Yes</text></speech><head id='h' "
+        "lexeme='NOD'/>"
         "<constraint><synchronize><sync ref='g:stroke+0.1'/><sync ref='s:start'/></synchronize>"
         "<after ref='s:end'><sync ref='h:start'/></after></constraint>"
     )
@@ -237,12 +268,17 @@ def test_constraints_bring_sync_points_together() -> None:
         ('<gesture lexeme="POLITE"/>', a.Gesture(layer="body", tags=("polite",))),
         ('<gesture lexeme="juggle"/>', a.Gesture(tags=("juggle",))),
         ('<head lexeme="disagree"/>', a.Gesture(layer="head", tags=("disagree",))),
-        ('<posture><pose part="ARMS" lexeme="CROSSED"/></posture>', a.Go(layer="arms", stance="arms crossed")),
+        (
+            '<posture><pose part="ARMS" lexeme="CROSSED"/></posture>',
+            a.Go(layer="arms", stance="arms crossed"),
+        ),
         ('<posture stance="LeanForward"/>', a.Go(layer="body", stance="lean forward")),
         ('<animation name="SHRUG-BT-01"/>', a.Play(action="shrug_bt_01")),
     ],
 )
-def test_lexemes_find_tags_names_and_stances_however_they_are_spelled(inner: str, expected: a.AnyAsk, sample: Project) -> None:
+def test_lexemes_find_tags_names_and_stances_however_they_are_spelled(
+    inner: str, expected: a.AnyAsk, sample: Project
+) -> None:
     assert one(inner, project=sample) == expected
 
 
@@ -250,7 +286,9 @@ def test_a_lexeme_that_is_no_tag_finds_an_action_called_so(sample: Project) -> N
     ask = one('<gesture lexeme="SHRUG" start="1"/>', project=sample)
     assert isinstance(ask, a.Play)
     action = sample.action(ask.action)
-    assert action is not None and action.name == "shrug_bt_01" and action.stance == sample.graphs["arms"].start
+    assert (
+        action is not None and action.name == "shrug_bt_01" and action.stance == sample.graphs["arms"].start
+    )
 
 
 def test_a_lexeme_prefers_the_hand_that_is_asked_for(sample: Project) -> None:
@@ -261,7 +299,9 @@ def test_a_lexeme_prefers_the_hand_that_is_asked_for(sample: Project) -> None:
 
 
 def test_lengths_come_from_the_projects_clips(sample: Project) -> None:
-    wave, nod = block("<animation id='w' name='wave_hello_rt_01'/><head lexeme='NOD' start='w:end'/>", project=sample).asks
+    wave, nod = block(
+        "<animation id='w' name='wave_hello_rt_01'/><head lexeme='NOD' start='w:end'/>", project=sample
+    ).asks
     action = next(x for x in sample.actions() if x.name == "wave_hello_rt_01")
     start, end = sample.span(action)
     assert wave == a.Play(id="w", action="wave_hello_rt_01")
@@ -270,9 +310,15 @@ def test_lengths_come_from_the_projects_clips(sample: Project) -> None:
 
 # --- out, and in again
 
-words = st.text(st.characters(codec="utf-8", exclude_categories=("Cs", "Cc", "Cn")), min_size=1, max_size=12).map(str.strip).filter(bool)
+words = (
+    st.text(st.characters(codec="utf-8", exclude_categories=("Cs", "Cc", "Cn")), min_size=1, max_size=12)
+    .map(str.strip)
+    .filter(bool)
+)
 seconds = st.none() | st.floats(0, 1e5)
-tags = st.lists(st.text(st.characters(codec="utf-8", exclude_categories=("Cs", "Cc", "Cn")), max_size=8), max_size=3).map(tuple)
+tags = st.lists(
+    st.text(st.characters(codec="utf-8", exclude_categories=("Cs", "Cc", "Cn")), max_size=8), max_size=3
+).map(tuple)
 common = {"at": seconds, "priority": st.integers(-1000, 1000)}
 phased = {"stroke": seconds, "hold": st.none() | st.floats(0, 600), "prepare": st.booleans()}
 timed = {"duration": seconds, "resume": st.booleans()}
@@ -286,7 +332,9 @@ plain = st.one_of(
     st.builds(a.Change, layer=layers, limb=limbs, duration=seconds, **common),
     st.builds(a.Nod, tags=tags, **common),
     st.builds(a.Shake, tags=tags, **common),
-    st.builds(a.Look, to=words | points, duration=seconds, amount=st.floats(0, 1), strict=st.booleans(), **common),
+    st.builds(
+        a.Look, to=words | points, duration=seconds, amount=st.floats(0, 1), strict=st.booleans(), **common
+    ),
     st.builds(a.Blink, **common),
     st.builds(a.Say, line=words, duration=seconds, gestures=st.booleans(), **common),
     st.builds(a.Say, text=words | st.just("two  spaces\n"), duration=seconds, **common),

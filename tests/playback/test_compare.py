@@ -1,4 +1,6 @@
-"""What was seen beside what is generated: the same within what chance allows, and found out where it is not."""
+"""What was seen beside what is generated: the same within what chance allows, and found out where it is
+not.
+"""
 
 from __future__ import annotations
 
@@ -22,7 +24,8 @@ def act(start: float, end: float, kind: str = "gesture", *tags: str) -> Act:
     return Act(start, end, "both", kind, tags)  # type: ignore[arg-type]
 
 
-# --- counting --------------------------------------------------------------------------------------------------------
+# --- counting
+# --------------------------------------------------------------------------------------------------
 
 
 def test_nothing_is_counted_as_nothing() -> None:
@@ -35,10 +38,17 @@ def test_nothing_is_counted_as_nothing() -> None:
 
 def test_acts_moves_lengths_and_rests_are_counted() -> None:
     found = tally(
-        [[act(0, 1), act(2, 5), act(5, 6, "fidget")], [act(0, 2, "fidget"), act(1, 3, "transition"), act(4, 5)]], [GESTURE, FIDGET], False
+        [
+            [act(0, 1), act(2, 5), act(5, 6, "fidget")],
+            [act(0, 2, "fidget"), act(1, 3, "transition"), act(4, 5)],
+        ],
+        [GESTURE, FIDGET],
+        False,
     )
     assert found.visits.tolist() == [3, 2]
-    assert found.moves.tolist() == [[1, 1], [0, 0]], "what comes by way of a state that is not asked for does not count"
+    assert found.moves.tolist() == [[1, 1], [0, 0]], (
+        "what comes by way of a state that is not asked for does not count"
+    )
     assert [x.tolist() for x in found.lengths] == [[1, 1, 3], [1, 2]]
     assert found.rests.tolist() == [0, 0, 1, 1]
     assert found.seconds == 11
@@ -51,7 +61,8 @@ def test_meaning_counts_where_it_is_part_of_the_states() -> None:
     assert tally(acts, [GESTURE], False).visits.tolist() == [2]
 
 
-# --- the long run ----------------------------------------------------------------------------------------------------
+# --- the long run
+# --------------------------------------------------------------------------------------------------
 
 
 @given(st.lists(st.lists(st.floats(0, 1), min_size=4, max_size=4), min_size=4, max_size=4))
@@ -89,7 +100,8 @@ def test_the_deviation_is_that_of_many_performances() -> None:
     assert (off.std(axis=0) > 0.7).all() and (off.std(axis=0) < 1.4).all()
 
 
-# --- the model and what it generates ---------------------------------------------------------------------------------
+# --- the model and what it generates
+# ---------------------------------------------------------------------------------
 
 
 @pytest.mark.parametrize("layer", LAYERS)
@@ -110,7 +122,9 @@ def test_an_hour_learned_anew_is_the_model_it_came_from() -> None:
     assert np.allclose(again.matrix, model.matrix, atol=0.03)
     assert np.allclose(again.lengths, model.lengths, rtol=0.1)
     assert again.gap == pytest.approx(model.gap, rel=0.03)
-    assert again.positive == pytest.approx(model.positive, abs=0.02) and again.negative == pytest.approx(model.negative, abs=0.02)
+    assert again.positive == pytest.approx(model.positive, abs=0.02) and again.negative == pytest.approx(
+        model.negative, abs=0.02
+    )
     found = compare(again, [acts], HOUR)
     assert found.observed is not None
     assert np.abs(found.generated.shares() - found.observed.shares()).max() < 4 * found.deviation.max()
@@ -131,7 +145,9 @@ def test_a_move_that_cannot_be_is_as_surprising_as_can_be() -> None:
     model = Markov("head", (("both", "gesture"), ("both", "fidget")), ((0.0, 1.0), (1.0, 0.0)))
     found = compare(model, None, 60)
     assert not found.move_surprises().any() and not found.surprises().any()
-    wrong = replace(found, generated=tally([[act(0, 1), act(2, 3), act(4, 5, "fidget")]], states_of(model), False))
+    wrong = replace(
+        found, generated=tally([[act(0, 1), act(2, 3), act(4, 5, "fidget")]], states_of(model), False)
+    )
     assert np.isinf(wrong.move_surprises()[0, 0])
 
 

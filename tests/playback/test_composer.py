@@ -41,7 +41,9 @@ def test_no_layers_give_the_base_pose_however_many_times(project: Project) -> No
     assert frame.compose({}, 0).rotations.shape == (0, 16, 4)
 
 
-def test_offsets_are_multiplied_on_the_right_body_first_then_arms_then_head(project: Project, toy: Any) -> None:
+def test_offsets_are_multiplied_on_the_right_body_first_then_arms_then_head(
+    project: Project, toy: Any
+) -> None:
     frame = rig(edits.set_base(project, "c2", 0))
     body, arms, head = turns(toy, [1, 0, 0], 0.5), turns(toy, [0, 1, 0], 0.4), turns(toy, [0, 0, 1], 0.3)
     pose = frame.compose({"head": head, "body": body, "arms": arms}, 1)  # the order given does not matter
@@ -51,7 +53,9 @@ def test_offsets_are_multiplied_on_the_right_body_first_then_arms_then_head(proj
     assert np.all(rotation.angle_between(pose.rotations[0], expected) < 1e-6)
     assert np.allclose(pose.translations[0], frame.ground.base.translations + 1.2, atol=1e-6)
     swapped = rotation.multiply(rotation.multiply(frame.ground.base.rotations, arms[0][0]), body[0][0])
-    assert not np.all(rotation.angle_between(frame.compose({"body": body, "arms": arms}, 1).rotations[0], swapped) < 1e-3)
+    assert not np.all(
+        rotation.angle_between(frame.compose({"body": body, "arms": arms}, 1).rotations[0], swapped) < 1e-3
+    )
 
 
 @pytest.mark.parametrize("weight", [0.0, 0.5, 1.0, 2.0])
@@ -97,7 +101,9 @@ def test_a_clip_of_another_skeleton_is_refused(toy: Any) -> None:
 
     s = toy.skeleton
     frame = rig(toy.project())
-    other = replace(toy.clip("big"), skeleton=Skeleton(s.names, s.parents, s.rest_rotations, s.rest_translations * 2))
+    other = replace(
+        toy.clip("big"), skeleton=Skeleton(s.names, s.parents, s.rest_rotations, s.rest_translations * 2)
+    )
     with pytest.raises(ValueError, match="'big' has another skeleton"):
         frame.ground.offsets(other, frame.reach["arms"])
 

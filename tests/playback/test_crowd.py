@@ -51,13 +51,19 @@ def test_weights_masks_seams_early_exits_and_missing_clips_agree_too(toy: Any) -
     project = toy.project()
     opened = edits.add_clips(project, [("open.glb", 0, "", toy.clip("open", 2.0, 0.0, 0.5))])
     clip = list(opened.clips)[-1]
-    project = edits.update_actions(opened, [toy.id(project, "rest loop")], clip=clip, timing={"blend_in": 0.4})
-    project = edits.update_actions(project, [toy.id(project, "rest long")], timing={"earliest_exit": 0.5, "blend_out": 0.3})
+    project = edits.update_actions(
+        opened, [toy.id(project, "rest loop")], clip=clip, timing={"blend_in": 0.4}
+    )
+    project = edits.update_actions(
+        project, [toy.id(project, "rest long")], timing={"earliest_exit": 0.5, "blend_out": 0.3}
+    )
     project = edits.update_actions(project, [toy.id(project, "rest scratch")], joints=("Head", "LeftHand"))
     project = edits.set_weight(edits.set_weight(project, "arms", "arms", 0.5), "arms", "legs", 1.7)
     missing = project.action(toy.id(project, "rest short")).clip
     project = replace(project, clips={**project.clips, missing: replace(project.clips[missing], motion=None)})
-    busy = [Request(f"r{n}", "arms", ("gesture", "fidget", "transition")[n % 3], n * 1.1, 0.4) for n in range(30)]
+    busy = [
+        Request(f"r{n}", "arms", ("gesture", "fidget", "transition")[n % 3], n * 1.1, 0.4) for n in range(30)
+    ]
     plans = [make_plan(project, 40, busy, seed) for seed in range(150)] + [Plan(1, 0.0)]
     assert_agrees(project, plans, np.random.default_rng(2).uniform(-1, 42, len(plans)))
 

@@ -33,21 +33,51 @@ def shown(plan: Plan) -> Any:
 
 some_asks = st.lists(
     st.one_of(
-        st.builds(a.Gesture, layer=st.sampled_from(LAYERS), tags=st.sampled_from([(), ("positive",), ("beat",)]),
-                  at=st.floats(0, 25).map(lambda x: round(x, 2)), priority=st.integers(0, 3), hold=st.sampled_from([None, 0.0, 2.5]),
-                  prepare=st.booleans(), resume=st.booleans(), duration=st.sampled_from([None, 4.0])),
-        st.builds(a.Gesture, stroke=st.floats(0, 25).map(lambda x: round(x, 2)), limb=st.sampled_from([None, "left", "right"])),
-        st.builds(a.Go, stance=st.sampled_from(["on hips", "arms crossed", "head tilt left", "weight left"]),
-                  at=st.floats(0, 25).map(lambda x: round(x, 2)), priority=st.integers(1, 2)),
+        st.builds(
+            a.Gesture,
+            layer=st.sampled_from(LAYERS),
+            tags=st.sampled_from([(), ("positive",), ("beat",)]),
+            at=st.floats(0, 25).map(lambda x: round(x, 2)),
+            priority=st.integers(0, 3),
+            hold=st.sampled_from([None, 0.0, 2.5]),
+            prepare=st.booleans(),
+            resume=st.booleans(),
+            duration=st.sampled_from([None, 4.0]),
+        ),
+        st.builds(
+            a.Gesture,
+            stroke=st.floats(0, 25).map(lambda x: round(x, 2)),
+            limb=st.sampled_from([None, "left", "right"]),
+        ),
+        st.builds(
+            a.Go,
+            stance=st.sampled_from(["on hips", "arms crossed", "head tilt left", "weight left"]),
+            at=st.floats(0, 25).map(lambda x: round(x, 2)),
+            priority=st.integers(1, 2),
+        ),
         st.builds(a.Nod, at=st.floats(0, 25).map(lambda x: round(x, 2))),
-        st.builds(a.Say, text=st.just("Well, I would not say so."), at=st.floats(0, 25).map(lambda x: round(x, 2))),
-        st.builds(a.Look, to=st.just((1.0, 1.2, 2.0)), at=st.floats(0, 25).map(lambda x: round(x, 2)), duration=st.just(2.0)),
+        st.builds(
+            a.Say, text=st.just("Well, I would not say so."), at=st.floats(0, 25).map(lambda x: round(x, 2))
+        ),
+        st.builds(
+            a.Look,
+            to=st.just((1.0, 1.2, 2.0)),
+            at=st.floats(0, 25).map(lambda x: round(x, 2)),
+            duration=st.just(2.0),
+        ),
     ),
     max_size=8,
-)  # fmt: skip
+)
 
 
-def in_ticks(project: Project, asks: list[Any], end: float, tick: float, ahead: float = 8.0, forget: float | None = None) -> list[Plan]:
+def in_ticks(
+    project: Project,
+    asks: list[Any],
+    end: float,
+    tick: float,
+    ahead: float = 8.0,
+    forget: float | None = None,
+) -> list[Plan]:
     """Play live: the plan at every tick, asks heard when they are told."""
     waiting = sorted(((ask.told or 0.0), n, ask) for n, ask in enumerate(asks))
     plan, out, now = Plan(project.settings.seed, 0.0), [], 0.0
@@ -89,7 +119,9 @@ def test_what_was_told_on_the_way_replays_as_it_was_heard(asks: list[Any], told:
     live = in_ticks(project, heard, END, 0.1)[-1]
     again = perform(project, heard, END + 8)
     for layer in LAYERS:
-        assert [c for c in live.layers[layer].cues if c.start < END] == [c for c in again.layers[layer].cues if c.start < END]
+        assert [c for c in live.layers[layer].cues if c.start < END] == [
+            c for c in again.layers[layer].cues if c.start < END
+        ]
 
 
 @settings(max_examples=8)
@@ -99,10 +131,14 @@ def test_forgetting_the_past_changes_nothing_to_come(asks: list[Any], memory: fl
     kept = in_ticks(project, asks, 200.0, 0.7)[-1]
     cut = in_ticks(project, asks, 200.0, 0.7, forget=70.0)[-1]
     for layer in LAYERS:
-        assert [c for c in kept.layers[layer].cues if c.end > 135] == [c for c in cut.layers[layer].cues if c.end > 135]
+        assert [c for c in kept.layers[layer].cues if c.end > 135] == [
+            c for c in cut.layers[layer].cues if c.end > 135
+        ]
         assert len(cut.layers[layer].cues) < len(kept.layers[layer].cues)
         assert all(m.end > 120 for m in cut.layers[layer].metas)
-    assert (pose_at(kept, project, [150.0, 199.0]).rotations == pose_at(cut, project, [150.0, 199.0]).rotations).all()
+    assert (
+        pose_at(kept, project, [150.0, 199.0]).rotations == pose_at(cut, project, [150.0, 199.0]).rotations
+    ).all()
 
 
 def test_what_is_before_now_and_the_lookahead_stays(sample: Project) -> None:
@@ -110,7 +146,9 @@ def test_what_is_before_now_and_the_lookahead_stays(sample: Project) -> None:
     plan = perform(project, [], 20)
     after = hear(project, plan, 5.0, [a.Gesture(id="x", priority=9)], 20)
     for layer in LAYERS:
-        assert [c for c in plan.layers[layer].cues if c.start < 7] == [c for c in after.layers[layer].cues if c.start < 7]
+        assert [c for c in plan.layers[layer].cues if c.start < 7] == [
+            c for c in after.layers[layer].cues if c.start < 7
+        ]
     assert answer(after, "x").at >= 7.0
 
 
@@ -124,7 +162,12 @@ def test_the_past_is_planned_from_nothing_when_nothing_was_shown(sample: Project
 def test_an_answer_says_when_and_what(sample: Project) -> None:
     plan = perform(sample, [a.Gesture(id="g", tags=("positive",), at=2.1, priority=3)], 20)
     said = answer(plan, "g")
-    assert said.state == "planned" and said.at == pytest.approx(2.1) and said.until > said.at and len(said.what) == 1
+    assert (
+        said.state == "planned"
+        and said.at == pytest.approx(2.1)
+        and said.until > said.at
+        and len(said.what) == 1
+    )
 
 
 def test_an_answer_says_why_not(sample: Project) -> None:
@@ -134,7 +177,11 @@ def test_an_answer_says_why_not(sample: Project) -> None:
 
 
 def test_words_nobody_knows_are_refused_with_a_hint(sample: Project) -> None:
-    plan = perform(sample, [a.Go(id="g", stance="arms crosed"), a.Play(id="p", action="shrug"), a.Say(id="s", line="279")], 5)
+    plan = perform(
+        sample,
+        [a.Go(id="g", stance="arms crosed"), a.Play(id="p", action="shrug"), a.Say(id="s", line="279")],
+        5,
+    )
     assert "did you mean 'arms crossed'" in answer(plan, "g").why
     assert "shrug" in answer(plan, "p").why
     assert answer(plan, "s").why == "there is no line '279'; there are hello, happy, maybe, you_first"
@@ -157,14 +204,18 @@ def test_far_asks_that_must_wait_for_others_are_late_not_refused(sample: Project
 
 
 def test_withdrawing_among_thousands_takes_back_what_belongs_together(sample: Project) -> None:
-    asks = [a.Nod(id=f"n{n}", at=100.0 + n) for n in range(500)] + [a.Nod(id=f"n7.{n}", at=900.0 + n) for n in range(1, 3)]
+    asks = [a.Nod(id=f"n{n}", at=100.0 + n) for n in range(500)] + [
+        a.Nod(id=f"n7.{n}", at=900.0 + n) for n in range(1, 3)
+    ]
     plan = perform(sample, asks, 20, idle=False)
     gone = hear(sample, plan, 1.0, [a.Withdraw(id=f"w{n}", what=f"n{n}") for n in range(400)], 20, idle=False)
     assert {r.id for r in gone.requests} == {f"n{n}" for n in range(400, 500)}
 
 
 def test_layers_that_an_ask_has_nothing_to_do_with_are_left_as_they_are(sample: Project) -> None:
-    plan = perform(sample, [a.Gesture(id="g", at=8.0), a.Go(id="s", stance="head tilt left", at=9.0, stay=True)], 20)
+    plan = perform(
+        sample, [a.Gesture(id="g", at=8.0), a.Go(id="s", stance="head tilt left", at=9.0, stay=True)], 20
+    )
     for ask, touched in (
         (a.Place(id="p", name="user", point=(0.0, 1.0, 2.0)), set()),
         (a.Say(id="w", text="hello"), set()),
@@ -181,7 +232,11 @@ def test_layers_that_an_ask_has_nothing_to_do_with_are_left_as_they_are(sample: 
 
 
 def test_a_withdrawn_ask_does_not_play_and_one_that_plays_goes_on(sample: Project) -> None:
-    asks = [a.Gesture(id="early", at=1.0, priority=2), a.Gesture(id="late", at=12.0, priority=2), a.Look(id="look", to="user", at=15.0)]
+    asks = [
+        a.Gesture(id="early", at=1.0, priority=2),
+        a.Gesture(id="late", at=12.0, priority=2),
+        a.Look(id="look", to="user", at=15.0),
+    ]
     plan = perform(sample, asks, 20, idle=False)
     after = hear(sample, plan, 1.5, [a.Withdraw(id="w")], 20, idle=False)
     assert [c.meta for c in after.layers["arms"].cues] == ["early"]
@@ -243,7 +298,9 @@ def test_the_models_leave_a_stance_that_is_to_be_kept_alone(sample: Project) -> 
     assert _left(kept, "body") == _left(free, "body")
 
 
-def test_staying_ends_with_the_next_stance_that_is_asked_for_or_when_it_is_taken_back(sample: Project) -> None:
+def test_staying_ends_with_the_next_stance_that_is_asked_for_or_when_it_is_taken_back(
+    sample: Project,
+) -> None:
     go = a.Go(id="g", stance="arms crossed", at=1.0, stay=True)
     other = perform(sample, [go, a.Go(id="h", stance="on hips", at=20.0, told=20.0)], 160)
     back = perform(sample, [go, a.Withdraw(id="w", what="g", told=20.0)], 160)
@@ -267,27 +324,42 @@ def test_what_is_to_be_kept_is_not_forgotten_with_the_past(sample: Project) -> N
     plan = perform(sample, [a.Go(id="g", stance="arms crossed", at=1.0, stay=True)], 60)
     whole = hear(sample, plan, 40.0, [], 160)
     cut = hear(sample, since(plan, 40.0), 40.0, [], 160)
-    assert [c.start for c in cut.layers["arms"].cues] == [c.start for c in whole.layers["arms"].cues if c.end >= 40]
+    assert [c.start for c in cut.layers["arms"].cues] == [
+        c.start for c in whole.layers["arms"].cues if c.end >= 40
+    ]
     assert _left(cut, "arms") == []
 
 
 def test_poses_are_bit_for_bit_the_same_live_in_ticks_of_16_ms_scrubbed_and_baked() -> None:
-    """Each pose is taken at its tick from the plan as it was then; later the whole is planned at once and posed in any order."""
-    project = replace(_SAMPLE[0], lines={"1": a.Line(text="Well, I would not say so.", duration=2.0, asks=(a.Nod(at=0.4),))})
+    """Each pose is taken at its tick from the plan as it was then; later the whole is planned at once and
+    posed in any order.
+    """
+    project = replace(
+        _SAMPLE[0], lines={"1": a.Line(text="Well, I would not say so.", duration=2.0, asks=(a.Nod(at=0.4),))}
+    )
     heard = [
-        a.Gesture(tags=("positive",), told=0.9, priority=3), a.Say(line="1", told=2.3), a.Look(to=(1.0, 1.4, 1.5), duration=1.5, told=4.0),
-        a.Go(stance="on hips", told=5.0), a.Gesture(hold=1.5, told=7.7), a.Behave(mode="listening", told=8.5), a.Blink(told=9.0),
-    ]  # fmt: skip
+        a.Gesture(tags=("positive",), told=0.9, priority=3),
+        a.Say(line="1", told=2.3),
+        a.Look(to=(1.0, 1.4, 1.5), duration=1.5, told=4.0),
+        a.Go(stance="on hips", told=5.0),
+        a.Gesture(hold=1.5, told=7.7),
+        a.Behave(mode="listening", told=8.5),
+        a.Blink(told=9.0),
+    ]
     end, tick = 12.0, 0.016
     plans = in_ticks(project, heard, end, tick, ahead=4.0, forget=3.0)
     live = [pose_at(plan, project, n * tick) for n, plan in enumerate(plans)]
-    whole = perform(project, [a.msgspec.structs.replace(x, id=f"ask{n}") for n, x in enumerate(heard)], end + 8)
+    whole = perform(
+        project, [a.msgspec.structs.replace(x, id=f"ask{n}") for n, x in enumerate(heard)], end + 8
+    )
     times = np.arange(len(plans)) * tick
     baked = pose_at(whole, project, times)
     shuffled = np.random.default_rng(3).permutation(len(times))
     scrubbed = {int(n): pose_at(whole, project, times[n]) for n in shuffled[:200]}
     for n, pose in enumerate(live):
-        assert (pose.rotations == baked.rotations[n]).all() and (pose.translations == baked.translations[n]).all(), n * tick
+        assert (pose.rotations == baked.rotations[n]).all() and (
+            pose.translations == baked.translations[n]
+        ).all(), n * tick
         if n in scrubbed:
             assert (pose.rotations == scrubbed[n].rotations).all()
     assert np.abs(np.diff(baked.rotations, axis=0)).max() > 1e-3, "it moves"

@@ -37,7 +37,9 @@ SAMPLE = Path(__file__).resolve().parents[2] / "sample_clips" / "annotation" / "
 
 def annotated(**tiers: list[tuple[float, float, str]]) -> dict[Layer, tuple[Act, ...]]:
     """Sequences of tiers whose roles and labels are as guessed."""
-    annotation = Annotation(tuple(Tier(name.replace("_", " "), tuple(Interval(*i) for i in some)) for name, some in tiers.items()))
+    annotation = Annotation(
+        tuple(Tier(name.replace("_", " "), tuple(Interval(*i) for i in some)) for name, some in tiers.items())
+    )
     roles = guess_roles(annotation)
     return sequences(annotation, roles, labels(annotation, roles))
 
@@ -52,7 +54,8 @@ def kinds(*words: str) -> list[Act]:
     return [act(1.5 * n, 1.5 * n + 1, *word.split(",")) for n, word in enumerate(words)]
 
 
-# --- sequences -------------------------------------------------------------------------------------------------------
+# --- sequences
+# --------------------------------------------------------------------------------------------------
 
 
 def test_an_annotation_without_anything_gives_no_layers_and_an_empty_tier_gives_an_empty_one() -> None:
@@ -62,7 +65,12 @@ def test_an_annotation_without_anything_gives_no_layers_and_an_empty_tier_gives_
 
 
 def test_intervals_become_acts_of_their_layer_and_limb() -> None:
-    found = annotated(LH=[(0, 1, "gesture")], RH=[(2, 3, "fidget"), (4, 5, "rest")], Head=[(0, 1, "nod")], Body=[(1, 2, "shift")])
+    found = annotated(
+        LH=[(0, 1, "gesture")],
+        RH=[(2, 3, "fidget"), (4, 5, "rest")],
+        Head=[(0, 1, "nod")],
+        Body=[(1, 2, "shift")],
+    )
     assert found == {
         "arms": (act(0, 1, "left gesture"), act(2, 3, "right fidget")),
         "head": (act(0, 1, "both gesture", "positive"),),
@@ -70,10 +78,16 @@ def test_intervals_become_acts_of_their_layer_and_limb() -> None:
     }
 
 
-@pytest.mark.parametrize(("start", "one"), [(1.0, True), (1.49, True), (1.5, False), (1.6, False), (2.5, False)])
+@pytest.mark.parametrize(
+    ("start", "one"), [(1.0, True), (1.49, True), (1.5, False), (1.6, False), (2.5, False)]
+)
 def test_arms_that_share_more_than_half_of_the_shorter_act_together(start: float, one: bool) -> None:
     found = annotated(LH=[(0, 2, "gesture")], RH=[(start, start + 1, "gesture")])["arms"]
-    assert found == ((act(0, max(2, start + 1)),) if one else (act(0, 2, "left gesture"), act(start, start + 1, "right gesture")))
+    assert found == (
+        (act(0, max(2, start + 1)),)
+        if one
+        else (act(0, 2, "left gesture"), act(start, start + 1, "right gesture"))
+    )
 
 
 @pytest.mark.parametrize(
@@ -91,22 +105,36 @@ def test_of_two_kinds_the_more_important_stays(left: str, right: str, both: str)
 
 
 def test_tags_of_the_less_important_kind_are_dropped_and_others_joined() -> None:
-    assert merged([act(0, 1, "left gesture", "positive"), act(0, 1, "right fidget", "calm")]) == (act(0, 1, "both gesture", "positive"),)
+    assert merged([act(0, 1, "left gesture", "positive"), act(0, 1, "right fidget", "calm")]) == (
+        act(0, 1, "both gesture", "positive"),
+    )
     assert merged([act(0, 1, "left gesture", "b", "a"), act(0, 1, "right gesture", "a", "c")]) == (
         act(0, 1, "both gesture", "b", "a", "c"),
     )
 
 
 def test_a_long_act_takes_in_the_short_ones_within_it_and_neighbours_stay_apart() -> None:
-    acts = [act(0, 10, "left gesture"), act(1, 2, "right fidget"), act(5, 6, "right fidget"), act(10, 11, "right gesture")]
+    acts = [
+        act(0, 10, "left gesture"),
+        act(1, 2, "right fidget"),
+        act(5, 6, "right fidget"),
+        act(10, 11, "right gesture"),
+    ]
     assert merged(acts) == (act(0, 10), act(10, 11, "right gesture"))
 
 
-spans = st.tuples(st.floats(0, 50), st.floats(0.05, 8), st.sampled_from(["left", "right", "both"]), st.sampled_from(["gesture", "fidget"]))
+spans = st.tuples(
+    st.floats(0, 50),
+    st.floats(0.05, 8),
+    st.sampled_from(["left", "right", "both"]),
+    st.sampled_from(["gesture", "fidget"]),
+)
 
 
 @given(st.lists(spans, max_size=25))
-def test_merged_acts_ascend_cover_the_same_time_and_no_two_are_mostly_the_same(some: list[tuple[float, float, str, str]]) -> None:
+def test_merged_acts_ascend_cover_the_same_time_and_no_two_are_mostly_the_same(
+    some: list[tuple[float, float, str, str]],
+) -> None:
     acts = [act(start, start + length, f"{limb} {kind}") for start, length, limb, kind in some]
     found = merged(acts)
     assert merged(found) == found
@@ -120,7 +148,13 @@ def test_merged_acts_ascend_cover_the_same_time_and_no_two_are_mostly_the_same(s
 
 
 def test_phases_become_one_gesture_whose_stroke_is_known() -> None:
-    phases = [(0, 0.4, "prep"), (0.4, 0.6, "pre-stroke hold"), (0.6, 1.0, "stroke"), (1.0, 1.5, "hold"), (1.5, 2, "retraction")]
+    phases = [
+        (0, 0.4, "prep"),
+        (0.4, 0.6, "pre-stroke hold"),
+        (0.6, 1.0, "stroke"),
+        (1.0, 1.5, "hold"),
+        (1.5, 2, "retraction"),
+    ]
     assert annotated(LH=phases)["arms"] == (Act(0, 2, "left", "gesture", (), 0.8),)
 
 
@@ -147,27 +181,50 @@ def test_phases_far_apart_are_of_two_gestures() -> None:
 
 def test_where_stances_are_annotated_the_changes_between_them_are_found() -> None:
     stances = [(0, 4, "left"), (4, 8, "left"), (8, 8.5, "right"), (8.5, 20, "middle"), (20, 24, "left")]
-    assert annotated(Head_stance=stances)["head"] == tuple(act(a, b, "both transition") for a, b in ((8, 8.5), (8.5, 9.5), (20, 21)))
+    assert annotated(Head_stance=stances)["head"] == tuple(
+        act(a, b, "both transition") for a, b in ((8, 8.5), (8.5, 9.5), (20, 21))
+    )
 
 
 def test_labels_that_were_said_otherwise_count() -> None:
     annotation = Annotation((Tier("LH", (Interval(0, 1, "Cup"), Interval(1, 2, "gesture"))),))
-    said = [Label("arms", "cup", 1, "fidget calm idle"), Label("arms", "gesture", 1, "ignore"), Label("head", "cup", 1, "gesture")]
-    assert sequences(annotation, {"LH": "arms"}, said) == {"arms": (act(0, 1, "both fidget", "calm", "idle"),)}
+    said = [
+        Label("arms", "cup", 1, "fidget calm idle"),
+        Label("arms", "gesture", 1, "ignore"),
+        Label("head", "cup", 1, "gesture"),
+    ]
+    assert sequences(annotation, {"LH": "arms"}, said) == {
+        "arms": (act(0, 1, "both fidget", "calm", "idle"),)
+    }
 
 
-# --- models ----------------------------------------------------------------------------------------------------------
+# --- models
+# --------------------------------------------------------------------------------------------------
 
 
 def test_transitions_are_counted_and_rows_sum_to_1() -> None:
-    model = learn("arms", [kinds("left gesture", "left gesture", "right fidget", "left gesture", "right fidget", "both transition")])
+    model = learn(
+        "arms",
+        [
+            kinds(
+                "left gesture",
+                "left gesture",
+                "right fidget",
+                "left gesture",
+                "right fidget",
+                "both transition",
+            )
+        ],
+    )
     assert states_of(model) == (("left", "gesture", ""), ("right", "fidget", ""), ("both", "transition", ""))
     assert np.allclose(model.matrix, [[1 / 3, 2 / 3, 0], [1 / 2, 0, 1 / 2], [1 / 2, 1 / 3, 1 / 6]])
     assert model.gap == 0.5
 
 
 def test_states_come_in_the_order_of_the_papers_figure() -> None:
-    words = [f"{limb} {kind}" for limb in ("both", "right", "left") for kind in ("transition", "fidget", "gesture")]
+    words = [
+        f"{limb} {kind}" for limb in ("both", "right", "left") for kind in ("transition", "fidget", "gesture")
+    ]
     assert learn("arms", [kinds(*words)]).states == ARMS.states
 
 
@@ -191,16 +248,31 @@ def test_what_follows_from_one_recording_to_the_next_does_not_count() -> None:
 
 
 def test_meaning_is_a_share_of_gestures_or_part_of_the_states() -> None:
-    acts = [kinds("both gesture,positive", "both gesture", "both gesture,negative", "both gesture,positive", "both fidget,positive")]
+    acts = [
+        kinds(
+            "both gesture,positive",
+            "both gesture",
+            "both gesture,negative",
+            "both gesture,positive",
+            "both fidget,positive",
+        )
+    ]
     shares = learn("head", acts)
     assert (shares.positive, shares.negative, shares.tags) == (0.5, 0.25, ())
     assert len(shares.states) == 2
     states = learn("head", acts, tagged=True)
-    assert [state_words(s, "head") for s in states_of(states)] == ["gesture", "gesture, positive", "gesture, negative", "fidget, positive"]
+    assert [state_words(s, "head") for s in states_of(states)] == [
+        "gesture",
+        "gesture, positive",
+        "gesture, negative",
+        "fidget, positive",
+    ]
     assert (states.positive, states.negative) == (0, 0)
     assert states.tags == ("", "positive", "negative", "positive")
     assert np.allclose(states.matrix, [[0, 0, 1, 0], [0.5, 0, 0, 0.5], [0, 1, 0, 0], [0.2, 0.4, 0.2, 0.2]])
-    assert learn("head", [kinds("both gesture")], tagged=True).tags == (), "no tags, no need to write them down"
+    assert learn("head", [kinds("both gesture")], tagged=True).tags == (), (
+        "no tags, no need to write them down"
+    )
 
 
 def test_lengths_are_means_and_deviations_and_one_alone_varies_as_the_others_do() -> None:
@@ -229,7 +301,11 @@ states = st.tuples(
 
 
 @given(
-    st.lists(st.lists(st.tuples(states, st.floats(0.02, 30), st.floats(0, 30)), max_size=12), min_size=1, max_size=3),
+    st.lists(
+        st.lists(st.tuples(states, st.floats(0.02, 30), st.floats(0, 30)), max_size=12),
+        min_size=1,
+        max_size=3,
+    ),
     st.booleans(),
     st.floats(0, 3),
 )
@@ -250,12 +326,17 @@ def test_every_model_that_is_learned_is_sound_and_can_be_saved(some, tagged: boo
     assert len(set(states_of(model))) == len(model.states) == len(model.lengths)
     assert markov_from("arms", markov_data(model), "markov") == model
     if smoothing == 0:
-        moves = {pair for acts in observed for pair in pairwise((a.limb, a.kind, " ".join(a.tags) if tagged else "") for a in acts)}
+        moves = {
+            pair
+            for acts in observed
+            for pair in pairwise((a.limb, a.kind, " ".join(a.tags) if tagged else "") for a in acts)
+        }
         place = {state: n for n, state in enumerate(states_of(model))}
         assert all(matrix[place[a], place[b]] > 0 for a, b in moves)
 
 
-# --- editing ---------------------------------------------------------------------------------------------------------
+# --- editing
+# --------------------------------------------------------------------------------------------------
 
 
 def test_setting_a_cell_evens_out_its_row_in_proportion_and_leaves_the_others() -> None:
@@ -266,7 +347,11 @@ def test_setting_a_cell_evens_out_its_row_in_proportion_and_leaves_the_others() 
 
 
 def test_where_nothing_else_could_follow_the_rest_is_shared_evenly() -> None:
-    model = Markov("head", (("both", "gesture"), ("both", "fidget"), ("both", "transition")), ((1.0, 0, 0), (0, 0, 0), (0, 1, 0)))
+    model = Markov(
+        "head",
+        (("both", "gesture"), ("both", "fidget"), ("both", "transition")),
+        ((1.0, 0, 0), (0, 0, 0), (0, 1, 0)),
+    )
     assert np.allclose(with_cell(model, 0, 0, 0.4).matrix[0], [0.4, 0.3, 0.3])
     assert np.allclose(with_cell(model, 1, 2, 0.4).matrix[1], [0.3, 0.3, 0.4])
     assert np.allclose(with_cell(model, 0, 1, 7.0).matrix[0], [0, 1, 0])
@@ -277,7 +362,11 @@ def test_where_nothing_else_could_follow_the_rest_is_shared_evenly() -> None:
 def test_a_state_can_be_added_and_taken_away_again() -> None:
     model = learn("arms", [kinds("left gesture", "right fidget", "left gesture")])
     more = with_state(model, ("right", "gesture", "positive"))
-    assert [state_words(s, "arms") for s in states_of(more)] == ["left gesture", "right gesture, positive", "right fidget"]
+    assert [state_words(s, "arms") for s in states_of(more)] == [
+        "left gesture",
+        "right gesture, positive",
+        "right fidget",
+    ]
     assert np.allclose(more.matrix, [[0, 0, 1], [1 / 3] * 3, [1, 0, 0]])
     assert more.lengths[1] == (1.0, 0.0)
     assert with_state(more, ("right", "gesture", "positive")) is more
@@ -286,11 +375,16 @@ def test_a_state_can_be_added_and_taken_away_again() -> None:
     assert alone.matrix == ((1.0,),) and without_state(alone, 0) is alone
 
 
-# --- performing ------------------------------------------------------------------------------------------------------
+# --- performing
+# --------------------------------------------------------------------------------------------------
 
 
 def test_acts_become_asks_with_their_times_and_back() -> None:
-    acts = (Act(0.5, 1.75, "left", "gesture", ("positive",), 1.0), act(2, 3, "right fidget"), act(4, 5, "both transition"))
+    acts = (
+        Act(0.5, 1.75, "left", "gesture", ("positive",), 1.0),
+        act(2, 3, "right fidget"),
+        act(4, 5, "both transition"),
+    )
     asks = asks_of("arms", acts)
     assert asks == (
         Gesture(id="arms1", at=0.5, layer="arms", tags=("positive",), limb="left", duration=1.25, stroke=1.0),
@@ -299,15 +393,21 @@ def test_acts_become_asks_with_their_times_and_back() -> None:
     )
     assert acts_of_asks("arms", asks) == acts
     assert acts_of_asks("head", asks) == ()
-    assert acts_of_asks("arms", [Nod(at=1.0), Gesture(layer="arms")]) == (), "what is asked for otherwise is nobody's act"
+    assert acts_of_asks("arms", [Nod(at=1.0), Gesture(layer="arms")]) == (), (
+        "what is asked for otherwise is nobody's act"
+    )
 
 
 def test_only_arms_are_asked_for_by_limb() -> None:
-    assert [ask.limb for ask in asks_of("head", kinds("both gesture", "both fidget", "both transition"))] == [None] * 3
+    assert [ask.limb for ask in asks_of("head", kinds("both gesture", "both fidget", "both transition"))] == [
+        None
+    ] * 3
 
 
 def test_a_performance_holds_every_layer_in_order_and_fills_nothing_in() -> None:
-    made = performance("talk", {"arms": kinds("left gesture", "left fidget"), "head": kinds("both gesture"), "body": []})
+    made = performance(
+        "talk", {"arms": kinds("left gesture", "left fidget"), "head": kinds("both gesture"), "body": []}
+    )
     assert [(ask.id, ask.at) for ask in made.asks] == [("arms1", 0.0), ("head1", 0.0), ("arms2", 1.5)]
     assert (made.name, made.length, made.idle, made.seed) == ("talk", 4.0, False, None)
     assert performance("nothing", {}).asks == ()
@@ -320,5 +420,7 @@ def test_the_sample_annotation_becomes_models_of_three_layers() -> None:
     roles = guess_roles(annotation)
     found = sequences(annotation, roles, labels(annotation, roles))
     assert {layer: len(acts) for layer, acts in found.items()} == {"arms": 52, "head": 46, "body": 12}
-    assert sum(a.limb == "both" for a in found["arms"]) == 20, "both hands seldom begin and end together, yet are one act"
+    assert sum(a.limb == "both" for a in found["arms"]) == 20, (
+        "both hands seldom begin and end together, yet are one act"
+    )
     assert [len(learn(layer, [acts], tagged=True).states) for layer, acts in found.items()] == [7, 3, 1]

@@ -15,14 +15,26 @@ from metagraph.graph.manual import ANY
 from metagraph.graph.model import PARTS, Life, Project
 from metagraph.motion import rotation
 from metagraph.motion.skeleton import Pose
-from metagraph.playback.manual import Fire, link_alone, make_manual_plan, manual_morphs_at, manual_pose_at, route, state_alone
+from metagraph.playback.manual import (
+    Fire,
+    link_alone,
+    make_manual_plan,
+    manual_morphs_at,
+    manual_pose_at,
+    route,
+    state_alone,
+)
 
 
 @pytest.fixture
 def drawn(toy: Any) -> Any:
-    """Make a machine on the arms layer, which reaches all joints, of states of the toy's clips and links as "rest loop>rest wave rt"."""
+    """Make a machine on the arms layer, which reaches all joints, of states of the toy's clips and links as
+    "rest loop>rest wave rt".
+    """
 
-    def make(*links: str, loops: tuple[str, ...] = ("rest loop",), start: str = "rest loop") -> tuple[Project, dict[str, str]]:
+    def make(
+        *links: str, loops: tuple[str, ...] = ("rest loop",), start: str = "rest loop"
+    ) -> tuple[Project, dict[str, str]]:
         project = toy.project()
         clips = {e.name: i for i, e in project.clips.items()}
         names = list(dict.fromkeys([start, *(n for x in links for n in x.split(">") if n != ANY)]))
@@ -49,7 +61,10 @@ def starts(plan: Any) -> list[float]:
 
 
 def apart(a: Pose, b: Pose) -> float:
-    return max(float(rotation.angle_between(a.rotations, b.rotations).max()), float(np.abs(a.translations - b.translations).max()))
+    return max(
+        float(rotation.angle_between(a.rotations, b.rotations).max()),
+        float(np.abs(a.translations - b.translations).max()),
+    )
 
 
 def alone(project: Project, name: str, seconds: Any) -> Pose:
@@ -74,7 +89,13 @@ def test_a_project_without_a_machine_plays_the_base_pose(toy: Any) -> None:
 def test_a_state_without_a_way_out_holds_its_last_frame(drawn: Any) -> None:
     project, _ = drawn(start="rest long", loops=())
     plan = make_manual_plan(project, 10)
-    assert apart(manual_pose_at(plan, project, np.array([2.4, 5.0, 9.0])), alone(project, "rest long", np.array([2.4] * 3))) < 1e-5
+    assert (
+        apart(
+            manual_pose_at(plan, project, np.array([2.4, 5.0, 9.0])),
+            alone(project, "rest long", np.array([2.4] * 3)),
+        )
+        < 1e-5
+    )
 
 
 def test_a_finished_link_ends_its_blend_with_its_source(drawn: Any) -> None:
@@ -87,7 +108,9 @@ def test_a_finished_link_ends_its_blend_with_its_source(drawn: Any) -> None:
 def test_a_finished_link_with_an_exit_time_begins_its_blend_there(drawn: Any) -> None:
     project, ids = drawn("rest long>rest loop", start="rest long")
     project = m.update_states(project, [ids["rest long"]], start=0.5)
-    plan = make_manual_plan(m.update_links(project, [ids["rest long>rest loop"]], blend=0.4, exit_time=1.5), 10)
+    plan = make_manual_plan(
+        m.update_links(project, [ids["rest long>rest loop"]], blend=0.4, exit_time=1.5), 10
+    )
     assert starts(plan) == [0, 1.0]
 
 
@@ -104,12 +127,20 @@ def test_both_clips_run_on_in_a_crossfade(drawn: Any) -> None:
     low, high = alone(project, "rest long", 1.25), alone(project, "up loop", 0.25)
     half = manual_pose_at(plan, project, 1.25)
     assert (
-        apart(half, Pose(rotation.nlerp(low.rotations, high.rotations, np.full(16, 0.5)), (low.translations + high.translations) / 2))
+        apart(
+            half,
+            Pose(
+                rotation.nlerp(low.rotations, high.rotations, np.full(16, 0.5)),
+                (low.translations + high.translations) / 2,
+            ),
+        )
         < 1e-3
     )
     assert apart(manual_pose_at(plan, project, 1.5001), alone(project, "up loop", 0.5001)) < 1e-3
     steps = manual_pose_at(plan, project, np.linspace(0.9, 1.6, 71))
-    assert float(rotation.angle_between(steps.rotations[1:], steps.rotations[:-1]).max()) < 0.08, "nothing jumps"
+    assert float(rotation.angle_between(steps.rotations[1:], steps.rotations[:-1]).max()) < 0.08, (
+        "nothing jumps"
+    )
 
 
 def test_a_request_is_taken_at_once_where_no_exit_time_says_otherwise(drawn: Any) -> None:
@@ -122,17 +153,29 @@ def test_a_request_is_taken_at_once_where_no_exit_time_says_otherwise(drawn: Any
 
 def test_a_request_with_an_exit_time_waits_for_it_each_time_round(drawn: Any) -> None:
     project, ids = drawn("rest loop>rest wave rt", "rest wave rt>rest loop")
-    project = m.update_links(project, [ids["rest loop>rest wave rt"]], condition={"when": "request"}, exit_time=0.5)
+    project = m.update_links(
+        project, [ids["rest loop>rest wave rt"]], condition={"when": "request"}, exit_time=0.5
+    )
     assert starts(make_manual_plan(project, 10, [Fire("arms", "rest wave rt", 3.3)]))[1] == 4.5
     assert starts(make_manual_plan(project, 10, [Fire("arms", "rest wave rt", 4.5)]))[1] == 4.5
 
 
 def test_a_request_leads_over_the_shortest_way(drawn: Any) -> None:
-    project, ids = drawn("rest loop>rest to up", "rest to up>up loop", "up loop>up beat", "up beat>up loop", loops=("rest loop", "up loop"))
-    project = m.update_links(project, [ids["rest loop>rest to up"], ids["up loop>up beat"]], condition={"when": "request"})
+    project, ids = drawn(
+        "rest loop>rest to up",
+        "rest to up>up loop",
+        "up loop>up beat",
+        "up beat>up loop",
+        loops=("rest loop", "up loop"),
+    )
+    project = m.update_links(
+        project, [ids["rest loop>rest to up"], ids["up loop>up beat"]], condition={"when": "request"}
+    )
     plan = make_manual_plan(project, 20, [Fire("arms", "up beat", 1.0)])
     assert names(project, plan) == ["rest loop", "rest to up", "up loop", "up beat", "up loop"]
-    assert route(project.manual["arms"], ids["rest loop"], "rest to up") == (project.link(ids["rest loop>rest to up"]),)
+    assert route(project.manual["arms"], ids["rest loop"], "rest to up") == (
+        project.link(ids["rest loop>rest to up"]),
+    )
 
 
 def test_a_request_that_leads_nowhere_is_reported_and_changes_nothing(drawn: Any) -> None:
@@ -143,7 +186,9 @@ def test_a_request_that_leads_nowhere_is_reported_and_changes_nothing(drawn: Any
 
 
 def test_a_link_from_any_state_is_open_from_each_but_its_own_target(drawn: Any) -> None:
-    project, ids = drawn("any>rest wave rt", "rest wave rt>rest loop", "rest loop>rest long", "rest long>rest loop")
+    project, ids = drawn(
+        "any>rest wave rt", "rest wave rt>rest loop", "rest loop>rest long", "rest long>rest loop"
+    )
     project = m.update_links(project, [ids["rest loop>rest long"]], condition={"when": "request"})
     plan = make_manual_plan(project, 10, [Fire("arms", "rest long", 0.5), Fire("arms", "rest wave rt", 1.0)])
     assert names(project, plan) == ["rest loop", "rest long", "rest wave rt", "rest loop"]
@@ -158,7 +203,9 @@ def test_no_blend_begins_while_another_runs(drawn: Any) -> None:
 
 
 def test_finished_links_are_drawn_by_weight_and_the_same_each_time(drawn: Any) -> None:
-    project, ids = drawn("rest loop>rest wave rt", "rest loop>rest short", "rest wave rt>rest loop", "rest short>rest loop")
+    project, ids = drawn(
+        "rest loop>rest wave rt", "rest loop>rest short", "rest wave rt>rest loop", "rest short>rest loop"
+    )
     project = m.update_links(project, [ids["rest loop>rest wave rt"]], condition={"weight": 4.0})
     plan = make_manual_plan(project, 600)
     assert plan == make_manual_plan(project, 600)
@@ -170,7 +217,11 @@ def test_finished_links_are_drawn_by_weight_and_the_same_each_time(drawn: Any) -
 
 def test_a_longer_plan_begins_as_a_shorter_one_and_the_past_stays(drawn: Any) -> None:
     project, _ids = drawn(
-        "rest loop>rest wave rt", "rest loop>rest short", "rest wave rt>rest loop", "rest short>rest loop", "any>rest cough"
+        "rest loop>rest wave rt",
+        "rest loop>rest short",
+        "rest wave rt>rest loop",
+        "rest short>rest loop",
+        "any>rest cough",
     )
     short, long = make_manual_plan(project, 30), make_manual_plan(project, 60)
     assert long.layers["arms"].played[: len(short.layers["arms"].played)] == short.layers["arms"].played
@@ -228,8 +279,14 @@ def test_a_state_is_looked_at_alone_and_a_link_with_what_is_around_it(drawn: Any
     project = m.update_links(project, [ids["rest long>rest loop"]], blend=0.4)
     link = link_alone(project, ids["rest long>rest loop"])
     assert [p.action.name for p in link.layers["arms"].played] == ["rest long", "rest loop"]
-    assert (link.layers["arms"].played[0].entry, link.layers["arms"].played[1].start) == (pytest.approx(1.0), 1.0)
-    assert [p.action.name for p in link_alone(project, ids["any>rest long"]).layers["arms"].played] == ["rest loop", "rest long"]
+    assert (link.layers["arms"].played[0].entry, link.layers["arms"].played[1].start) == (
+        pytest.approx(1.0),
+        1.0,
+    )
+    assert [p.action.name for p in link_alone(project, ids["any>rest long"]).layers["arms"].played] == [
+        "rest loop",
+        "rest long",
+    ]
     with pytest.raises(KeyError):
         state_alone(project, "m999")
 

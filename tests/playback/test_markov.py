@@ -135,7 +135,9 @@ def test_a_row_of_zeros_starts_again_from_any_state() -> None:
 def test_layers_and_seeds_draw_apart() -> None:
     a, b = write(ARMS, 1, 60)[0], write(ARMS, 2, 60)[0]
     assert [m.start for m in a] != [m.start for m in b]
-    assert [m.start for m in write(DEFAULTS["head"], 1, 60)[0]] != [m.start for m in write(DEFAULTS["body"], 1, 60)[0]]
+    assert [m.start for m in write(DEFAULTS["head"], 1, 60)[0]] != [
+        m.start for m in write(DEFAULTS["body"], 1, 60)[0]
+    ]
 
 
 def test_kinds_the_graph_has_not_are_passed_over() -> None:
@@ -145,9 +147,13 @@ def test_kinds_the_graph_has_not_are_passed_over() -> None:
 
 
 GOLDEN = [  # as written by version 0.1.0
-    "right fidget 0.9095 3.7285", "left fidget 5.5929 7.6896", "left fidget 9.6448 10.9422", "right fidget 12.0253 14.8396",
-    "both gesture 15.5645 17.3421", "right gesture 19.6849 22.2881",
-]  # fmt: skip
+    "right fidget 0.9095 3.7285",
+    "left fidget 5.5929 7.6896",
+    "left fidget 9.6448 10.9422",
+    "right fidget 12.0253 14.8396",
+    "both gesture 15.5645 17.3421",
+    "right gesture 19.6849 22.2881",
+]
 LENGTHS = ((0.8, 0.3), (2.5, 2.0), (1.2, 0.0))
 
 
@@ -160,14 +166,18 @@ def test_lengths_have_the_mean_and_deviation_the_model_says() -> None:
         drawn = np.array(seconds[kind])
         assert drawn.min() > 0
         assert abs(drawn.mean() - mean) <= 4 * deviation / np.sqrt(len(drawn)) + 1e-9
-        assert abs(drawn.std() - deviation) <= 0.15 * deviation + 1e-9  # a log-normal's tail makes this one slow to settle
+        assert (
+            abs(drawn.std() - deviation) <= 0.15 * deviation + 1e-9
+        )  # a log-normal's tail makes this one slow to settle
         assert np.allclose(drawn, mean) == (deviation == 0)
 
 
 def test_lengths_are_log_normal() -> None:
     model = replace(DEFAULTS["head"], lengths=((1.5, 0.9),) * 3)
     spread = np.log1p((0.9 / 1.5) ** 2)
-    z = (np.log([m.end - m.start for m in write(model, 8, 20000)[0]]) - np.log(1.5) + spread / 2) / np.sqrt(spread)
+    z = (np.log([m.end - m.start for m in write(model, 8, 20000)[0]]) - np.log(1.5) + spread / 2) / np.sqrt(
+        spread
+    )
     for level, share in ((-1.0, 0.1587), (0.0, 0.5), (1.0, 0.8413)):
         assert abs(np.mean(z < level) - share) < 4 * np.sqrt(share * (1 - share) / len(z))
 

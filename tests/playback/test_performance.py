@@ -75,21 +75,30 @@ def test_every_action_starts_and_ends_in_its_stance(performances: list[Performan
             assert stance == (cue.action.end_stance if cue.action.kind == "transition" else cue.action.stance)
             lane = performance.plan.layers[layer]
             assert lane.stance_at(cue.end) == stance
-            assert [r.stance for r in lane.rests if r.fade_start <= cue.end][-1] == stance, "and the loop below is the new stance's"
+            assert [r.stance for r in lane.rests if r.fade_start <= cue.end][-1] == stance, (
+                "and the loop below is the new stance's"
+            )
 
 
-def test_every_action_plays_from_its_start_to_its_end(performances: list[Performance], sample: Project) -> None:
+def test_every_action_plays_from_its_start_to_its_end(
+    performances: list[Performance], sample: Project
+) -> None:
     for _, cues, _ in lanes(performances):
         for cue in cues:
             start, end = sample.span(cue.action)
             assert cue.entry == start and cue.end - cue.start == pytest.approx(end - start)
 
 
-def test_no_clip_plays_twice_in_a_row_where_there_is_a_choice(performances: list[Performance], sample: Project) -> None:
+def test_no_clip_plays_twice_in_a_row_where_there_is_a_choice(
+    performances: list[Performance], sample: Project
+) -> None:
     for layer, cues, _ in lanes(performances):
         last: dict[tuple[str, str], str] = {}
         for before, after in pairwise(cues):
-            assert before.action.clip != after.action.clip or len(sample.graphs[layer].of(after.stance, after.action.kind)) == 1
+            assert (
+                before.action.clip != after.action.clip
+                or len(sample.graphs[layer].of(after.stance, after.action.kind)) == 1
+            )
         for cue in cues:  # nor among what its node plays, whatever lies between
             node = (cue.stance, cue.action.kind)
             assert last.get(node) != cue.action.id or len(sample.graphs[layer].of(*node)) == 1
@@ -101,7 +110,11 @@ def test_every_draw_was_made_with_the_formula(performances: list[Performance], s
     for performance in performances:
         for layer in LAYERS:
             uses: dict[str, float] = defaultdict(float)
-            made = {key: (weights, chosen) for key, weights, chosen in performance.draws if key.startswith(f"auto/{layer}/")}
+            made = {
+                key: (weights, chosen)
+                for key, weights, chosen in performance.draws
+                if key.startswith(f"auto/{layer}/")
+            }
             for cue in performance.plan.layers[layer].cues:
                 weights, chosen = made[cue.meta]
                 assert chosen == cue.action.id
@@ -110,8 +123,12 @@ def test_every_draw_was_made_with_the_formula(performances: list[Performance], s
                 uses[chosen] += 4
 
 
-def test_observed_frequencies_are_within_sampling_error_of_the_formula(performances: list[Performance], sample: Project) -> None:
-    """Each draw has known chances, so how often an action was drawn has a known mean and, draws being apart, a known variance."""
+def test_observed_frequencies_are_within_sampling_error_of_the_formula(
+    performances: list[Performance], sample: Project
+) -> None:
+    """Each draw has known chances, so how often an action was drawn has a known mean and, draws being apart,
+    a known variance.
+    """
     mean: dict[str, float] = defaultdict(float)
     variance: dict[str, float] = defaultdict(float)
     seen: dict[str, int] = defaultdict(int)
@@ -125,7 +142,8 @@ def test_observed_frequencies_are_within_sampling_error_of_the_formula(performan
                 variance[ident] += p * (1 - p)
     z = np.array([(seen[i] - mean[i]) / np.sqrt(variance[i]) for i in mean if variance[i] > 3])
     print(
-        f"\n{sum(seen.values())} draws of {len(mean)} actions: largest deviation {np.abs(z).max():.2f} sigma, z has variance {z.var():.2f}"
+        f"\n{sum(seen.values())} draws of {len(mean)} actions: largest deviation {np.abs(z).max():.2f} "
+        f"sigma, z has variance {z.var():.2f}"
     )
     assert len(z) > 90
     assert np.abs(z).max() < 4.5  # of some 140 actions: beyond 4.5 once in a thousand runs
@@ -137,17 +155,26 @@ def test_observed_frequencies_are_within_sampling_error_of_the_formula(performan
 
 def speeds(rotations: np.ndarray, translations: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
     """Radians a second `[F-1, J]` and metres a second `[F-1, J]` from poses at FPS."""
-    return rotation.angle_between(rotations[:-1], rotations[1:]) * FPS, np.linalg.norm(np.diff(translations, axis=0), axis=-1) * FPS
+    return rotation.angle_between(rotations[:-1], rotations[1:]) * FPS, np.linalg.norm(
+        np.diff(translations, axis=0), axis=-1
+    ) * FPS
 
 
 def only(plan: Plan, layer: Layer) -> Plan:
-    return Plan(plan.seed, plan.end, {name: lane if name == layer else type(lane)(name) for name, lane in plan.layers.items()})
+    return Plan(
+        plan.seed,
+        plan.end,
+        {name: lane if name == layer else type(lane)(name) for name, lane in plan.layers.items()},
+    )
 
 
 @pytest.mark.parametrize("layer", LAYERS)
-def test_at_cue_boundaries_no_joint_is_faster_than_in_the_clips(performances: list[Performance], sample: Project, layer: Layer) -> None:
-    """Within 0.1 s of where an action begins, is fully there, begins to leave or ends, each joint of the layer alone turns
-    and moves no faster than it does somewhere in the layer's own clips, but for 5 %: what the loop's swaying adds.
+def test_at_cue_boundaries_no_joint_is_faster_than_in_the_clips(
+    performances: list[Performance], sample: Project, layer: Layer
+) -> None:
+    """Within 0.1 s of where an action begins, is fully there, begins to leave or ends, each joint of the
+    layer alone turns and moves no faster than it does somewhere in the layer's own clips, but for 5 %: what
+    the loop's swaying adds.
     """
     joints = rig(sample).reach[layer].joints
     turn, move = np.zeros(len(joints)), np.zeros(len(joints))
@@ -159,7 +186,13 @@ def test_at_cue_boundaries_no_joint_is_faster_than_in_the_clips(performances: li
     worst = fastest = 0.0
     for performance in performances[:2]:
         plan = only(performance.plan, layer)
-        moments = np.array([m for c in plan.layers[layer].cues for m in (c.start, c.start + c.blend_in, c.end - c.blend_out, c.end)])
+        moments = np.array(
+            [
+                m
+                for c in plan.layers[layer].cues
+                for m in (c.start, c.start + c.blend_in, c.end - c.blend_out, c.end)
+            ]
+        )
         ticks = np.unique((moments[:, None] * FPS + np.arange(-6, 7)).astype(int))
         ticks = ticks[ticks >= 0]
         for run in np.split(ticks, np.flatnonzero(np.diff(ticks) > 1) + 1):
@@ -172,10 +205,15 @@ def test_at_cue_boundaries_no_joint_is_faster_than_in_the_clips(performances: li
             worst = max(worst, float((w / np.maximum(turn, np.radians(5))).max()))
             fastest = max(fastest, float(w.max()))
     most, own = np.degrees(fastest), np.degrees(turn.max())
-    print(f"\n{layer}: at boundaries at most {most:.0f} deg/s, in its clips {own:.0f}; worst joint {worst:.3f} times its own")
+    print(
+        f"\n{layer}: at boundaries at most {most:.0f} deg/s, in its clips {own:.0f}; worst joint {worst:.3f} "
+        "times its own"
+    )
 
 
-def test_composed_no_joint_is_faster_than_the_clips_of_all_layers_together(performances: list[Performance], sample: Project) -> None:
+def test_composed_no_joint_is_faster_than_the_clips_of_all_layers_together(
+    performances: list[Performance], sample: Project
+) -> None:
     """In model space, hands and head included: at 60 frames a second, no frame of two minutes jumps."""
     skeleton = sample.skeleton
     limit = np.zeros(len(skeleton))
@@ -196,4 +234,7 @@ def test_composed_no_joint_is_faster_than_the_clips_of_all_layers_together(perfo
         v = speeds(r, p)[1]
         assert (v <= limit * 1.05 + 0.01).all()
         fastest = max(fastest, float(v.max()))
-    print(f"\ncomposed: fastest joint {fastest:.2f} m/s; the clips of the layers together allow {limit.max():.2f}")
+    print(
+        f"\ncomposed: fastest joint {fastest:.2f} m/s; the clips of the layers together allow "
+        f"{limit.max():.2f}"
+    )

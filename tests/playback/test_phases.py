@@ -22,7 +22,9 @@ def swung(toy: Any, name: str, angles: list[float], fps: float = 30) -> Clip:
     turns = np.tile(toy.skeleton.rest_rotations, (len(angles), 1, 1))
     for joint, axis in (("LeftUpperArm", (0, 0, 1.0)), ("RightUpperArm", (0, 0, -1.0))):
         turns[:, toy.skeleton.index(joint)] = rotation.from_axis_angle(np.array(axis), np.array(angles))
-    return Clip(name, toy.skeleton, fps, turns, np.tile(toy.skeleton.rest_translations[:1], (len(angles), 1, 1)))
+    return Clip(
+        name, toy.skeleton, fps, turns, np.tile(toy.skeleton.rest_translations[:1], (len(angles), 1, 1))
+    )
 
 
 def eased(a: float, b: float, seconds: float, fps: float = 30) -> list[float]:
@@ -42,7 +44,15 @@ def placed(toy: Any, clip: Clip, **timing: Any) -> tuple[Project, Any]:
 
 def test_preparation_stroke_hold_and_retraction_are_where_they_were_made(toy: Any) -> None:
     """0.4 s up, 0.3 s of rest, a fast beat of 0.3 s, a hold of 0.6 s, 0.5 s back."""
-    angles = [0.0] * 4 + eased(0, 0.8, 0.4) + [0.8] * 9 + eased(0.8, 1.7, 0.3) + [1.7] * 18 + eased(1.7, 0, 0.5) + [0.0] * 4
+    angles = (
+        [0.0] * 4
+        + eased(0, 0.8, 0.4)
+        + [0.8] * 9
+        + eased(0.8, 1.7, 0.3)
+        + [1.7] * 18
+        + eased(1.7, 0, 0.5)
+        + [0.0] * 4
+    )
     found = phases(*placed(toy, swung(toy, "made", angles)))
     before = 3 / 30
     assert found.ready == pytest.approx(before + 0.7, abs=0.1)

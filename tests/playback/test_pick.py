@@ -1,4 +1,6 @@
-"""From meta actions to clips: candidates, the paper's three temporal cases, the draw, chains of transitions."""
+"""From meta actions to clips: candidates, the paper's three temporal cases, the draw, chains of
+transitions.
+"""
 
 from __future__ import annotations
 
@@ -21,7 +23,9 @@ def project(toy: Any) -> Project:
     return toy.project()
 
 
-def arms(project: Project, *requests: Request, end: float = 30.0, seed: int = 1, stance: str | None = None) -> tuple[LayerPlan, Plan]:
+def arms(
+    project: Project, *requests: Request, end: float = 30.0, seed: int = 1, stance: str | None = None
+) -> tuple[LayerPlan, Plan]:
     plan = make_plan(project, end, requests, seed, {"arms": stance} if stance else None, idle=False)
     return plan.layers["arms"], plan
 
@@ -34,14 +38,18 @@ def outcomes(plan: Plan) -> dict[str, str]:
     return {r.request: r.outcome for r in plan.reports}
 
 
-def ask(ident: str, start: float, duration: float | None = None, kind: Any = "gesture", **more: Any) -> Request:
+def ask(
+    ident: str, start: float, duration: float | None = None, kind: Any = "gesture", **more: Any
+) -> Request:
     return Request(ident, "arms", kind, start, duration, **more)
 
 
 def lengths(project: Project, toy: Any, **seconds: float) -> Project:
     """Give actions other lengths, by cutting their ends."""
     for name, length in seconds.items():
-        project = edits.update_actions(project, [toy.id(project, name.replace("_", " "))], timing={"end": length})
+        project = edits.update_actions(
+            project, [toy.id(project, name.replace("_", " "))], timing={"end": length}
+        )
     return project
 
 
@@ -51,13 +59,21 @@ def lengths(project: Project, toy: Any, **seconds: float) -> Project:
 def test_candidates_are_of_the_kind_and_the_stance(project: Project, toy: Any) -> None:
     seen = {names(arms(project, ask(f"r{n}", 0))[0])[0] for n in range(60)}
     assert seen == {"rest short", "rest beat lf", "rest wave rt", "rest long"}
-    assert {names(arms(project, ask(f"r{n}", 0, kind="fidget"))[0])[0] for n in range(30)} == {"rest scratch", "rest cough"}
+    assert {names(arms(project, ask(f"r{n}", 0, kind="fidget"))[0])[0] for n in range(30)} == {
+        "rest scratch",
+        "rest cough",
+    }
     up = toy.id(project, "up")
-    assert {names(arms(project, ask(f"r{n}", 0), stance=up)[0])[0] for n in range(30)} == {"up beat", "up point"}
+    assert {names(arms(project, ask(f"r{n}", 0), stance=up)[0])[0] for n in range(30)} == {
+        "up beat",
+        "up point",
+    }
 
 
 def test_tags_must_all_be_there_and_the_limb_must_be_the_one(project: Project, toy: Any) -> None:
-    project = edits.update_actions(project, [toy.id(project, "rest short"), toy.id(project, "rest long")], tags=("positive", "small"))
+    project = edits.update_actions(
+        project, [toy.id(project, "rest short"), toy.id(project, "rest long")], tags=("positive", "small")
+    )
     project = edits.update_actions(project, [toy.id(project, "rest long")], tags=("positive", "big"))
     for n in range(20):
         assert names(arms(project, ask(f"r{n}", 0, tags=("positive", "big")))[0]) == ["rest long"]
@@ -70,8 +86,14 @@ def test_what_is_not_there_is_reported_with_where_there_is_one(project: Project,
     plan, whole = arms(project, ask("r", 1, tags=("rare",)))
     assert not plan.cues and whole.reports[0].outcome == "no-candidate"
     assert whole.reports[0].message == "stance 'rest' has no rare gesture; there is one in 'up'"
-    assert arms(project, ask("r", 1, tags=("none",)))[1].reports[0].message == "stance 'rest' has no none gesture"
-    assert arms(project, ask("r", 1, limb="right", kind="fidget"))[1].reports[0].message == "stance 'rest' has no right fidget"
+    assert (
+        arms(project, ask("r", 1, tags=("none",)))[1].reports[0].message
+        == "stance 'rest' has no none gesture"
+    )
+    assert (
+        arms(project, ask("r", 1, limb="right", kind="fidget"))[1].reports[0].message
+        == "stance 'rest' has no right fidget"
+    )
 
 
 def test_an_action_of_no_likelihood_is_never_drawn_but_may_be_asked_for(project: Project, toy: Any) -> None:
@@ -84,7 +106,9 @@ def test_an_action_of_no_likelihood_is_never_drawn_but_may_be_asked_for(project:
 # --- the draw
 
 
-def test_the_chance_is_likelihood_over_uses(project: Project, toy: Any, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_the_chance_is_likelihood_over_uses(
+    project: Project, toy: Any, monkeypatch: pytest.MonkeyPatch
+) -> None:
     project = edits.update_actions(project, [toy.id(project, "rest long")], likelihood=2.5)
     project = edits.set_settings(project, never_twice=False)
     drawn: list[tuple[Mapping[str, float], str]] = []
@@ -124,7 +148,10 @@ def test_nothing_plays_twice_in_a_row_where_there_is_a_choice(project: Project) 
 
 
 def test_where_there_is_no_choice_it_plays_again(project: Project) -> None:
-    assert names(arms(project, *(ask(f"r{n}", n * 3.0, limb="left") for n in range(3)))[0]) == ["rest beat lf"] * 3
+    assert (
+        names(arms(project, *(ask(f"r{n}", n * 3.0, limb="left") for n in range(3)))[0])
+        == ["rest beat lf"] * 3
+    )
 
 
 def test_other_requests_do_not_reshuffle_a_draw(project: Project) -> None:
@@ -139,7 +166,9 @@ def test_other_requests_do_not_reshuffle_a_draw(project: Project) -> None:
 
 def test_case_1_an_action_that_ends_early_leaves_the_rest_to_the_stance(project: Project) -> None:
     plan, whole = arms(project, ask("a", 1, 6), ask("b", 8))
-    assert len(plan.cues) == 2 and plan.cues[0].start == 1 and plan.cues[0].end < 7 and plan.cues[1].start == 8
+    assert (
+        len(plan.cues) == 2 and plan.cues[0].start == 1 and plan.cues[0].end < 7 and plan.cues[1].start == 8
+    )
     assert whole.reports == ()
     assert plan.cue_at(7.5) is None and plan.stance_at(7.5) == plan.rests[0].stance
 
@@ -187,7 +216,10 @@ def test_blends_are_squeezed_to_fit(project: Project, toy: Any) -> None:
     ident = toy.id(project, "rest short")
     project = edits.update_actions(project, [ident], timing={"blend_in": 0.6, "blend_out": 0.3})
     [cue] = arms(project, ask("a", 1, action=ident))[0].cues
-    assert (cue.blend_in, cue.blend_out) == (pytest.approx(0.4), pytest.approx(0.2)) and cue.end - cue.start == pytest.approx(0.6)
+    assert (cue.blend_in, cue.blend_out) == (
+        pytest.approx(0.4),
+        pytest.approx(0.2),
+    ) and cue.end - cue.start == pytest.approx(0.6)
     project = edits.update_actions(project, [ident], timing={"blend_in": -1.0, "blend_out": 0.0})
     assert arms(project, ask("a", 1, action=ident))[0].cues[0].blend_in == 0
 
@@ -208,7 +240,9 @@ def test_an_action_of_another_stance_brings_the_transitions_along(project: Proje
     plan, whole = arms(project, ask("a", 1, action=ident))
     assert names(plan) == ["rest to up", "up to far", "rest loop"] and whole.reports == ()
     assert {c.meta for c in plan.cues} == {"a"}
-    assert all(a.end == b.start and a.then == b.stance for a, b in zip(plan.cues, plan.cues[1:], strict=False))
+    assert all(
+        a.end == b.start and a.then == b.stance for a, b in zip(plan.cues, plan.cues[1:], strict=False)
+    )
     assert plan.stance_at(29) == toy.id(project, "far")
 
 
@@ -227,11 +261,15 @@ def test_a_stance_the_layer_is_in_already_needs_nothing_and_says_so(project: Pro
 
 
 def test_any_transition_may_be_asked_for(project: Project, toy: Any) -> None:
-    plan, _ = arms(project, ask("a", 1, kind="transition"), ask("b", 5, kind="transition"), stance=toy.id(project, "up"))
+    plan, _ = arms(
+        project, ask("a", 1, kind="transition"), ask("b", 5, kind="transition"), stance=toy.id(project, "up")
+    )
     assert names(plan)[0] in ("up to rest", "up to far") and plan.cues[1].stance == plan.cues[0].then
 
 
-def test_the_rest_after_a_transition_is_the_new_stances_loop_from_its_beginning(project: Project, toy: Any) -> None:
+def test_the_rest_after_a_transition_is_the_new_stances_loop_from_its_beginning(
+    project: Project, toy: Any
+) -> None:
     plan, _ = arms(project, ask("a", 1, kind="transition", stance=toy.id(project, "up")))
     [cue], rest = plan.cues, plan.rests[-1]
     assert rest.action.name == "up loop" and rest.start == pytest.approx(cue.end - cue.blend_out)
@@ -247,16 +285,56 @@ def test_impossible_requests_are_reported_with_their_reason(project: Project, to
     nowhere = edits.update_actions(project, [toy.id(project, "rest to up")], end_stance="s999")
     far, up = toy.id(project, "far"), toy.id(project, "up")
     cases = [
-        (project, ask("r", 1, action="a999"), "unknown-action", "there is no action 'a999' in the arms layer"),
-        (project, ask("r", 1, kind="transition", stance="s999"), "no-stance", "there is no stance 's999' in the arms layer"),
-        (one_way, ask("r", 1, kind="transition", stance=far), "no-way", "no chain of transitions leads from 'rest' to 'far'"),
-        (one_way, ask("r", 1, action=toy.id(project, "far to up")), "no-way", "no chain of transitions leads from 'rest' to 'far'"),
-        (no_loop, ask("r", 1, kind="transition", stance=far), "no-way", "no chain of transitions leads from 'rest' to 'far'"),
-        (no_loop, ask("r", 1, action=toy.id(project, "up to far")), "no-stance", "'up to far' ends in a stance that has no loop"),
-        (nowhere, ask("r", 1, action=toy.id(project, "rest to up")), "no-stance", "'rest to up' ends in a stance that has no loop"),
-        (nowhere, ask("r", 1, kind="transition", stance=up), "no-way", "no chain of transitions leads from 'rest' to 'up'"),
+        (
+            project,
+            ask("r", 1, action="a999"),
+            "unknown-action",
+            "there is no action 'a999' in the arms layer",
+        ),
+        (
+            project,
+            ask("r", 1, kind="transition", stance="s999"),
+            "no-stance",
+            "there is no stance 's999' in the arms layer",
+        ),
+        (
+            one_way,
+            ask("r", 1, kind="transition", stance=far),
+            "no-way",
+            "no chain of transitions leads from 'rest' to 'far'",
+        ),
+        (
+            one_way,
+            ask("r", 1, action=toy.id(project, "far to up")),
+            "no-way",
+            "no chain of transitions leads from 'rest' to 'far'",
+        ),
+        (
+            no_loop,
+            ask("r", 1, kind="transition", stance=far),
+            "no-way",
+            "no chain of transitions leads from 'rest' to 'far'",
+        ),
+        (
+            no_loop,
+            ask("r", 1, action=toy.id(project, "up to far")),
+            "no-stance",
+            "'up to far' ends in a stance that has no loop",
+        ),
+        (
+            nowhere,
+            ask("r", 1, action=toy.id(project, "rest to up")),
+            "no-stance",
+            "'rest to up' ends in a stance that has no loop",
+        ),
+        (
+            nowhere,
+            ask("r", 1, kind="transition", stance=up),
+            "no-way",
+            "no chain of transitions leads from 'rest' to 'up'",
+        ),
         (nowhere, ask("r", 1, kind="transition"), "no-candidate", "stance 'rest' has no transition"),
-    ]  # fmt: skip
+    ]
     for given, request, outcome, message in cases:
         plan, whole = arms(given, request)
         assert not plan.cues
@@ -267,7 +345,9 @@ def test_impossible_requests_are_reported_with_their_reason(project: Project, to
 def test_a_transition_into_a_stance_without_a_loop_is_never_drawn(project: Project, toy: Any) -> None:
     broken = edits.remove_actions(project, [toy.id(project, "far loop")])
     for n in range(30):
-        assert names(arms(broken, ask(f"r{n}", 0, kind="transition"), stance=toy.id(project, "up"))[0]) == ["up to rest"]
+        assert names(arms(broken, ask(f"r{n}", 0, kind="transition"), stance=toy.id(project, "up"))[0]) == [
+            "up to rest"
+        ]
 
 
 def test_a_layer_with_no_loop_to_begin_in_stays_still_and_says_so(project: Project) -> None:
@@ -292,13 +372,21 @@ def test_what_the_model_writes_takes_what_there_is(toy: Any) -> None:
 
 
 def test_a_long_rest_changes_between_the_loops_of_its_stance(project: Project, toy: Any) -> None:
-    project = edits.place(project, [project.action(toy.id(project, "rest scratch")).clip], "arms", "stance", toy.id(project, "rest"))
+    project = edits.place(
+        project,
+        [project.action(toy.id(project, "rest scratch")).clip],
+        "arms",
+        "stance",
+        toy.id(project, "rest"),
+    )
     plan, _ = arms(project, end=120)
     assert {r.action.name for r in plan.rests} == {"rest loop", "rest scratch"}
     assert [r.fade_start for r in plan.rests] == sorted(r.fade_start for r in plan.rests)
     for before, after in zip(plan.rests, plan.rests[1:], strict=False):
         assert after.fade_start >= before.fade_start + before.fade, "one change at a time"
-        assert after.fade_start + after.fade == pytest.approx(after.start), "the new loop begins when it is fully there"
+        assert after.fade_start + after.fade == pytest.approx(after.start), (
+            "the new loop begins when it is fully there"
+        )
 
 
 def test_an_action_that_leaves_joints_alone_changes_the_rest_below_slowly(project: Project, toy: Any) -> None:
@@ -311,9 +399,13 @@ def test_an_action_that_leaves_joints_alone_changes_the_rest_below_slowly(projec
     assert (rest.fade_start, rest.fade) == (cue.start, pytest.approx(cue.end - cue.start))
 
 
-def test_what_is_wanted_once_waits_for_a_longer_action_and_what_is_wanted_then_is_dropped(project: Project, toy: Any) -> None:
+def test_what_is_wanted_once_waits_for_a_longer_action_and_what_is_wanted_then_is_dropped(
+    project: Project, toy: Any
+) -> None:
     long = toy.id(project, "rest long")
-    plan, whole = arms(project, ask("a", 1.0, action=long), ask("once", 1.4), ask("then", 1.6, 0.5, kind="fidget"))
+    plan, whole = arms(
+        project, ask("a", 1.0, action=long), ask("once", 1.4), ask("then", 1.6, 0.5, kind="fidget")
+    )
     assert [(c.meta, round(c.start, 3)) for c in plan.cues] == [("a", 1.0), ("once", 3.4)]
     assert outcomes(whole)["once"] == "queued" and outcomes(whole)["then"] == "covered"
     assert "waits 2.00 s for 'rest long'" in next(r.message for r in whole.reports if r.outcome == "queued")

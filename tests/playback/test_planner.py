@@ -23,7 +23,9 @@ def _project(toy: Any) -> None:
     global PROJECT
     project = toy.project()
     for clip in ("rest scratch", "rest cough"):  # a stance with several loops
-        project = edits.place(project, [project.action(toy.id(project, clip)).clip], "arms", "stance", toy.id(project, "rest"))
+        project = edits.place(
+            project, [project.action(toy.id(project, clip)).clip], "arms", "stance", toy.id(project, "rest")
+        )
     PROJECT = edits.update_actions(project, [toy.id(project, "rest long")], timing={"earliest_exit": 1.0})
 
 
@@ -32,7 +34,9 @@ def played(plan: Plan) -> Any:
 
 
 def told(plan: Plan) -> list[Any]:
-    """What was said about requests; what the models wrote is fitted in anew each time, and why it was left out may be said otherwise."""
+    """What was said about requests; what the models wrote is fitted in anew each time, and why it was left
+    out may be said otherwise.
+    """
     return sorted((r for r in plan.reports if not r.written), key=repr)
 
 
@@ -56,7 +60,9 @@ def test_a_layer_begins_where_it_is_told_to_else_at_its_start_else_where_there_i
     up, far = toy.id(PROJECT, "up"), toy.id(PROJECT, "far")
     assert make_plan(PROJECT, 5, stances={"arms": up}).layers["arms"].stance_at(0) == up
     assert make_plan(edits.set_start(PROJECT, far), 5).layers["arms"].stance_at(0) == far
-    assert make_plan(PROJECT, 5, stances={"arms": "s999"}).layers["arms"].stance_at(0) == toy.id(PROJECT, "rest")
+    assert make_plan(PROJECT, 5, stances={"arms": "s999"}).layers["arms"].stance_at(0) == toy.id(
+        PROJECT, "rest"
+    )
     loops = {a.id: None for a in PROJECT.graphs["arms"].of(toy.id(PROJECT, "rest"), "stance")}
     bare = edits.remove_actions(PROJECT, list(loops))
     assert make_plan(bare, 5).layers["arms"].stance_at(0) == up
@@ -72,13 +78,18 @@ def test_requests_beyond_the_horizon_wait_for_it() -> None:
 
 def test_something_important_beyond_the_horizon_is_known_already() -> None:
     near = make_plan(
-        PROJECT, 10, [Request("a", "arms", "gesture", 9.5, 0.7), Request("k", "arms", "gesture", 10.2, priority=5)], idle=False
+        PROJECT,
+        10,
+        [Request("a", "arms", "gesture", 9.5, 0.7), Request("k", "arms", "gesture", 10.2, priority=5)],
+        idle=False,
     )
     assert all(c.end <= 10.2 for c in near.layers["arms"].cues)
 
 
 def test_of_two_requests_of_one_id_the_later_counts() -> None:
-    plan = make_plan(PROJECT, 20, [Request("r", "arms", "gesture", 2.0), Request("r", "arms", "fidget", 5.0)], idle=False)
+    plan = make_plan(
+        PROJECT, 20, [Request("r", "arms", "gesture", 2.0), Request("r", "arms", "fidget", 5.0)], idle=False
+    )
     assert [(c.meta, c.start, c.action.kind) for c in plan.layers["arms"].cues] == [("r", 5.0, "fidget")]
     moved = extend(PROJECT, plan, 1.0, [Request("r", "arms", "gesture", 8.0)], 20, idle=False)
     assert [(c.meta, c.start) for c in moved.layers["arms"].cues] == [("r", 8.0)] and len(moved.requests) == 1
@@ -99,13 +110,27 @@ def test_the_running_action_is_kept_and_a_new_request_waits_for_it(toy: Any) -> 
 
 
 def test_a_request_for_the_far_past_is_told_to_be_past() -> None:
-    then = extend(PROJECT, make_plan(PROJECT, 30, idle=False), 20, [Request("old", "arms", "gesture", 3.0)], 30, idle=False)
+    then = extend(
+        PROJECT,
+        make_plan(PROJECT, 30, idle=False),
+        20,
+        [Request("old", "arms", "gesture", 3.0)],
+        30,
+        idle=False,
+    )
     assert not then.layers["arms"].cues and [r.outcome for r in then.reports] == ["past"]
 
 
 def test_new_requests_are_merged_with_what_was_planned() -> None:
     old = [Request("a", "arms", "gesture", 5.0), Request("b", "arms", "gesture", 10.0)]
-    plan = extend(PROJECT, make_plan(PROJECT, 20, old, idle=False), 1, [Request("c", "arms", "fidget", 7.5)], 20, idle=False)
+    plan = extend(
+        PROJECT,
+        make_plan(PROJECT, 20, old, idle=False),
+        1,
+        [Request("c", "arms", "fidget", 7.5)],
+        20,
+        idle=False,
+    )
     assert [c.meta for c in plan.layers["arms"].cues] == ["a", "c", "b"]
 
 
@@ -117,9 +142,14 @@ def test_a_chain_that_has_begun_is_finished(toy: Any) -> None:
 
 
 def test_a_meta_action_that_waits_for_a_long_clip_is_not_forgotten_meanwhile(toy: Any) -> None:
-    asked = [Request("a", "arms", "gesture", 1.0, 0.5, action=toy.id(PROJECT, "rest wave rt")), Request("b", "arms", "gesture", 1.8, 3.0)]
+    asked = [
+        Request("a", "arms", "gesture", 1.0, 0.5, action=toy.id(PROJECT, "rest wave rt")),
+        Request("b", "arms", "gesture", 1.8, 3.0),
+    ]
     plan = make_plan(PROJECT, 20, asked, idle=False)
-    assert [c.meta for c in plan.layers["arms"].cues] == ["a", "b"] and plan.layers["arms"].cues[1].start == pytest.approx(2.2)
+    assert [c.meta for c in plan.layers["arms"].cues] == ["a", "b"] and plan.layers["arms"].cues[
+        1
+    ].start == pytest.approx(2.2)
     assert played(extend(PROJECT, plan, 2.0, (), 20, idle=False)) == played(plan)
 
 
@@ -134,11 +164,15 @@ def test_what_was_told_stays_told(toy: Any) -> None:
     assert {r.request for r in plan.reports} >= {"long", "late", "lost"}
     for now in (1.0, 6.5, 20.0):
         plan = extend(PROJECT, plan, now, (), 30, idle=False)
-        assert {r.request for r in plan.reports} >= {"long", "late", "lost"} and len(set(plan.reports)) == len(plan.reports)
+        assert {r.request for r in plan.reports} >= {"long", "late", "lost"} and len(
+            set(plan.reports)
+        ) == len(plan.reports)
 
 
 def test_a_stance_that_was_removed_meanwhile_does_not_break_the_plan(toy: Any) -> None:
-    plan = make_plan(PROJECT, 20, [Request("go", "arms", "transition", 1.0, stance=toy.id(PROJECT, "up"))], idle=False)
+    plan = make_plan(
+        PROJECT, 20, [Request("go", "arms", "transition", 1.0, stance=toy.id(PROJECT, "up"))], idle=False
+    )
     without = edits.remove_stance(PROJECT, toy.id(PROJECT, "up"))
     then = extend(without, plan, 5.0, [Request("g", "arms", "gesture", 6.0)], 20, idle=False)
     assert then.layers["arms"].cues[-1].action.id in without.graphs["arms"].actions
@@ -148,7 +182,9 @@ request_rows = st.lists(
     st.tuples(
         st.floats(0, 40).map(lambda x: round(x, 2)),
         st.one_of(st.none(), st.floats(0, 8).map(lambda x: round(x, 2))),
-        st.sampled_from(["gesture", "fidget", "transition", "up", "far", "rest", "point", "impossible", "tag"]),
+        st.sampled_from(
+            ["gesture", "fidget", "transition", "up", "far", "rest", "point", "impossible", "tag"]
+        ),
         st.integers(1, 3),
         st.booleans(),
     ),
@@ -172,12 +208,16 @@ def build(rows: list[tuple[float, float | None, str, int, bool]], prefix: str = 
             more = {"action": "a999"}
         elif what == "tag":
             more = {"tags": ("none",)}
-        out.append(Request(f"{prefix}{n}", "arms", kind, start, duration, priority=priority, resume=resume, **more))
+        out.append(
+            Request(f"{prefix}{n}", "arms", kind, start, duration, priority=priority, resume=resume, **more)
+        )
     return out
 
 
 def assert_sound(plan: Plan, project: Project) -> None:
-    """No overlaps; every action starts in the stance the one before left; nothing asked for is silently lost."""
+    """No overlaps; every action starts in the stance the one before left; nothing asked for is silently
+    lost.
+    """
     for layer in LAYERS:
         lane = plan.layers[layer]
         stance = lane.rests[0].stance if lane.rests else None
@@ -202,7 +242,9 @@ def test_any_plan_is_sound(rows: list[Any], idle: bool, seed: int) -> None:
 
 @given(request_rows, st.lists(st.floats(0.1, 45), max_size=4), st.integers(0, 3), st.booleans())
 @settings(max_examples=100, deadline=None)
-def test_extending_with_nothing_new_is_planning_at_once(rows: list[Any], moments: list[float], seed: int, idle: bool) -> None:
+def test_extending_with_nothing_new_is_planning_at_once(
+    rows: list[Any], moments: list[float], seed: int, idle: bool
+) -> None:
     requests = build(rows)
     plan = whole = make_plan(PROJECT, 60, requests, seed, idle=idle)
     for now in sorted(moments):
@@ -213,7 +255,9 @@ def test_extending_with_nothing_new_is_planning_at_once(rows: list[Any], moments
 
 @given(st.lists(st.floats(0.1, 45), min_size=1, max_size=4), st.integers(0, 3))
 @settings(max_examples=30, deadline=None)
-def test_a_performance_planned_piece_by_piece_is_the_one_planned_at_once(moments: list[float], seed: int) -> None:
+def test_a_performance_planned_piece_by_piece_is_the_one_planned_at_once(
+    moments: list[float], seed: int
+) -> None:
     plan = make_plan(PROJECT, 15, seed=seed)
     end = 15.0
     for moment in sorted(moments):
@@ -226,7 +270,9 @@ def test_a_performance_planned_piece_by_piece_is_the_one_planned_at_once(moments
 
 @given(request_rows, request_rows, st.floats(0.1, 40), st.integers(0, 3))
 @settings(max_examples=60, deadline=None)
-def test_what_started_before_now_stays_exactly_as_it_was(rows: list[Any], more: list[Any], now: float, seed: int) -> None:
+def test_what_started_before_now_stays_exactly_as_it_was(
+    rows: list[Any], more: list[Any], now: float, seed: int
+) -> None:
     plan = make_plan(PROJECT, 60, build(rows), seed)
     then = extend(PROJECT, plan, now, build(more, "n"), 70)
     for layer in LAYERS:

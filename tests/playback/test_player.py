@@ -38,12 +38,17 @@ def everywhere(project: Project) -> Project:
 
 def apart(a: Pose, b: Pose) -> float:
     """The largest difference: radians or metres."""
-    return max(float(rotation.angle_between(a.rotations, b.rotations).max()), float(np.abs(a.translations - b.translations).max()))
+    return max(
+        float(rotation.angle_between(a.rotations, b.rotations).max()),
+        float(np.abs(a.translations - b.translations).max()),
+    )
 
 
 def shown(project: Project, toy: Any, name: str, start: float = 1.0) -> Plan:
     action = project.action(toy.id(project, name))
-    return make_plan(project, 10, [Request("r", action.layer, action.kind, start, action=action.id)], idle=False)
+    return make_plan(
+        project, 10, [Request("r", action.layer, action.kind, start, action=action.id)], idle=False
+    )
 
 
 # --- base + (clip - base) = clip
@@ -68,7 +73,9 @@ def test_whatever_the_base_pose_the_clip_comes_back(project: Project, toy: Any) 
 
 
 def test_a_trimmed_clip_begins_at_its_start(project: Project, toy: Any) -> None:
-    project = edits.update_actions(everywhere(project), [toy.id(project, "rest long")], timing={"start": 0.5, "blend_in": 0.0})
+    project = edits.update_actions(
+        everywhere(project), [toy.id(project, "rest long")], timing={"start": 0.5, "blend_in": 0.0}
+    )
     plan = shown(project, toy, "rest long")
     cue = plan.layers["arms"].cues[0]
     assert apart(pose_at(plan, project, cue.start), clip_pose_at(project, cue.action, 0.5)) < 1e-6
@@ -90,7 +97,9 @@ def test_one_time_and_many_forwards_and_backwards_agree(sample: Project) -> None
     times = np.linspace(-1, 32, 150)
     many = pose_at(plan, sample, times)
     backwards = pose_at(plan, sample, times[::-1])
-    assert np.array_equal(backwards.rotations[::-1], many.rotations) and np.array_equal(backwards.translations[::-1], many.translations)
+    assert np.array_equal(backwards.rotations[::-1], many.rotations) and np.array_equal(
+        backwards.translations[::-1], many.translations
+    )
     for n in reversed(range(len(times))):
         one = pose_at(plan, sample, times[n])
         assert np.abs(one.rotations - many.rotations[n]).max() < 1e-7
@@ -105,7 +114,9 @@ def test_poses_have_the_shape_of_the_times(project: Project, shape: tuple[int, .
 
 def test_before_the_beginning_and_after_the_end_the_stances_rest(project: Project, toy: Any) -> None:
     project = everywhere(project)
-    plan = make_plan(project, 10, [Request("r", "arms", "transition", 1, stance=toy.id(project, "up"))], idle=False)
+    plan = make_plan(
+        project, 10, [Request("r", "arms", "transition", 1, stance=toy.id(project, "up"))], idle=False
+    )
     rest, up = (project.action(toy.id(project, f"{n} loop")) for n in ("rest", "up"))
     assert apart(pose_at(plan, project, -0.5), clip_pose_at(project, rest, 1.5)) < 1e-6
     late = 1000.0 - plan.layers["arms"].rests[-1].start
@@ -174,7 +185,12 @@ def test_named_joints_are_the_only_ones_that_move(project: Project, toy: Any) ->
     project = edits.update_actions(project, [toy.id(project, "rest long")], joints=("RightUpperArm",))
     plan = shown(project, toy, "rest long")
     resting = Plan(plan.seed, plan.end, {**plan.layers, "arms": replace(plan.layers["arms"], cues=())})
-    moved = rotation.angle_between(pose_at(plan, project, 2.2).rotations, pose_at(resting, project, 2.2).rotations) > 1e-3
+    moved = (
+        rotation.angle_between(
+            pose_at(plan, project, 2.2).rotations, pose_at(resting, project, 2.2).rotations
+        )
+        > 1e-3
+    )
     assert [project.skeleton.names[j] for j in np.flatnonzero(moved)] == ["RightUpperArm"]
 
 
@@ -187,7 +203,9 @@ def test_the_blend_curve_starts_and_ends_flat_and_is_clamped() -> None:
 
 def test_a_cues_weight_is_0_outside_it_and_1_in_its_middle(project: Project, toy: Any) -> None:
     cue = shown(project, toy, "rest long").layers["arms"].cues[0]
-    times = np.array([cue.start - 0.01, cue.start, cue.start + cue.blend_in, cue.end - cue.blend_out, cue.end, cue.end + 1])
+    times = np.array(
+        [cue.start - 0.01, cue.start, cue.start + cue.blend_in, cue.end - cue.blend_out, cue.end, cue.end + 1]
+    )
     assert cue_weight(cue, times).tolist() == pytest.approx([0, 0, 1, 1, 0, 0])
     hard = replace(cue, blend_in=0.0, blend_out=0.0)
     assert cue_weight(hard, times).tolist() == [0, 1, 1, 1, 0, 0]
@@ -209,7 +227,9 @@ def test_nothing_jumps_where_actions_begin_blend_and_end(project: Project, toy: 
 
 def test_an_action_left_early_leads_to_its_stance_without_a_jump(project: Project, toy: Any) -> None:
     ident = toy.id(project, "rest long")
-    project = edits.update_actions(everywhere(project), [ident], timing={"earliest_exit": 0.9, "blend_out": 0.3})
+    project = edits.update_actions(
+        everywhere(project), [ident], timing={"earliest_exit": 0.9, "blend_out": 0.3}
+    )
     asked = [Request("a", "arms", "gesture", 1.0, 0.5, action=ident), Request("b", "arms", "gesture", 1.6)]
     plan = make_plan(project, 10, asked, idle=False)
     cue = plan.layers["arms"].cues[0]
@@ -219,15 +239,21 @@ def test_an_action_left_early_leads_to_its_stance_without_a_jump(project: Projec
 
 
 def test_a_clip_far_from_its_stance_is_led_in_and_out_too(project: Project, toy: Any) -> None:
-    project = edits.move_actions(everywhere(project), [toy.id(project, "up point")], "gesture", toy.id(project, "rest"))
+    project = edits.move_actions(
+        everywhere(project), [toy.id(project, "up point")], "gesture", toy.id(project, "rest")
+    )
     plan = shown(project, toy, "up point")
     cue = plan.layers["arms"].cues[0]
-    assert all(jump(plan, project, moment) < 2e-3 for moment in np.linspace(cue.start - 0.1, cue.end + 0.1, 60))
+    assert all(
+        jump(plan, project, moment) < 2e-3 for moment in np.linspace(cue.start - 0.1, cue.end + 0.1, 60)
+    )
     middle = (cue.start + cue.end) / 2
     assert apart(pose_at(plan, project, middle), clip_pose_at(project, cue.action, middle - cue.start)) < 1e-6
 
 
-def test_a_clip_that_begins_in_its_stance_keeps_its_own_speed_while_it_blends_in(project: Project, toy: Any) -> None:
+def test_a_clip_that_begins_in_its_stance_keeps_its_own_speed_while_it_blends_in(
+    project: Project, toy: Any
+) -> None:
     still = edits.add_clips(everywhere(project), [("still.glb", 0, "", toy.clip("still", 2.0, swing=0.0))])
     [clip] = [e.id for e in still.clips.values() if e.name == "still"]
     still = edits.update_actions(still, [toy.id(still, "rest loop")], clip=clip)
@@ -264,8 +290,12 @@ def test_a_seamed_loop_begins_anew_after_an_action_without_a_jump_even_where_the
 
 
 @pytest.mark.parametrize(("seconds", "seam"), [(0.0, 0.0), (1 / 30, 0.4), (2.0, -1.0)])
-def test_loops_of_one_frame_and_odd_seams_stay_within_their_clip(toy: Any, seconds: float, seam: float) -> None:
-    project = edits.add_stance(edits.add_clips(Project(), [("a.glb", 0, "", toy.clip("a", seconds))]), "arms", "rest", ["c1"])
+def test_loops_of_one_frame_and_odd_seams_stay_within_their_clip(
+    toy: Any, seconds: float, seam: float
+) -> None:
+    project = edits.add_stance(
+        edits.add_clips(Project(), [("a.glb", 0, "", toy.clip("a", seconds))]), "arms", "rest", ["c1"]
+    )
     [action] = project.actions()
     project = edits.update_actions(project, [action.id], timing={"blend_in": seam})
     [action] = project.actions()
@@ -286,7 +316,12 @@ def test_every_pose_is_finite_and_every_rotation_of_unit_length(times: list[floa
 def test_several_rests_at_one_moment_do_not_confuse_it(project: Project, toy: Any) -> None:
     plan = make_plan(project, 10, idle=False)
     rest = plan.layers["arms"].rests[0]
-    twice = LayerPlan("arms", (), (), (rest, Rest(rest.stance, rest.action, 1.0, 1.0, 0.0), Rest(rest.stance, rest.action, 1.0, 1.0, 0.5)))
+    twice = LayerPlan(
+        "arms",
+        (),
+        (),
+        (rest, Rest(rest.stance, rest.action, 1.0, 1.0, 0.0), Rest(rest.stance, rest.action, 1.0, 1.0, 0.5)),
+    )
     both = Plan(1, 10.0, {**plan.layers, "arms": twice})
     assert np.isfinite(pose_at(both, project, np.linspace(0, 3, 31)).rotations).all()
 

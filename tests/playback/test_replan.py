@@ -16,7 +16,9 @@ from metagraph.playback.replan import delay, replan
 SETTINGS = Settings(shortest=0.4, wait=4.0)
 
 
-def meta(ident: str, start: float, end: float, priority: int = 1, resume: bool = False, written: bool = False) -> MetaAction:
+def meta(
+    ident: str, start: float, end: float, priority: int = 1, resume: bool = False, written: bool = False
+) -> MetaAction:
     request = Request(ident, "arms", "gesture", start, end - start, priority=priority, resume=resume)
     return MetaAction(request, start, end, written=written)
 
@@ -36,7 +38,10 @@ def test_nothing_gives_nothing() -> None:
 
 
 def test_what_does_not_overlap_stays_as_it_is_in_order_of_start() -> None:
-    assert run(meta("b", 3, 4), meta("a", 0, 1), meta("c", 1, 3)) == ([("a", 0, 1), ("c", 1, 3), ("b", 3, 4)], {})
+    assert run(meta("b", 3, 4), meta("a", 0, 1), meta("c", 1, 3)) == (
+        [("a", 0, 1), ("c", 1, 3), ("b", 3, 4)],
+        {},
+    )
 
 
 def test_of_equal_importance_the_later_is_delayed() -> None:
@@ -51,7 +56,10 @@ def test_what_would_come_much_too_late_is_reported_instead() -> None:
 
 
 def test_a_long_action_is_cut_by_a_more_important_one_and_dropped() -> None:
-    assert run(meta("long", 0, 10), meta("nod", 3, 4, 2)) == ([("long", 0, 3), ("nod", 3, 4)], {"long": ["cut"]})
+    assert run(meta("long", 0, 10), meta("nod", 3, 4, 2)) == (
+        [("long", 0, 3), ("nod", 3, 4)],
+        {"long": ["cut"]},
+    )
 
 
 def test_a_long_action_is_cut_and_goes_on_with_its_remainder() -> None:
@@ -102,11 +110,18 @@ def test_what_nobody_asked_for_keeps_what_is_left_of_its_time_or_gives_way() -> 
     asked = meta("a", 0, 2)
     assert run(asked, meta("auto", 1, 3, 0, written=True))[0] == [("a", 0, 2), ("auto", 2, 3)]
     assert run(asked, meta("auto", 1, 2.3, 0, written=True)) == ([("a", 0, 2)], {"auto": ["covered"]})
-    assert run(meta("auto", 0, 3, 0, written=True), meta("a", 1, 2)) == ([("auto", 0, 1), ("a", 1, 2)], {"auto": ["cut"]})
+    assert run(meta("auto", 0, 3, 0, written=True), meta("a", 1, 2)) == (
+        [("auto", 0, 1), ("a", 1, 2)],
+        {"auto": ["cut"]},
+    )
 
 
 def test_a_request_of_no_duration_fits_anywhere() -> None:
-    assert run(meta("a", 1, 1), meta("b", 1, 1), meta("c", 0, 1))[0] == [("c", 0, 1), ("a", 1, 1), ("b", 1, 1)]
+    assert run(meta("a", 1, 1), meta("b", 1, 1), meta("c", 0, 1))[0] == [
+        ("c", 0, 1),
+        ("a", 1, 1),
+        ("b", 1, 1),
+    ]
 
 
 # --- the running action
@@ -155,7 +170,9 @@ def build(rows: list[tuple[float, float, int, bool, bool]]) -> list[MetaAction]:
 
 @given(requests)
 @settings(max_examples=300)
-def test_the_result_never_overlaps_and_no_request_is_silently_lost(rows: list[tuple[float, float, int, bool, bool]]) -> None:
+def test_the_result_never_overlaps_and_no_request_is_silently_lost(
+    rows: list[tuple[float, float, int, bool, bool]],
+) -> None:
     metas = build(rows)
     placed, reports = replan(metas, SETTINGS)
     assert all(a.end <= b.start for a, b in pairwise(placed))
@@ -181,7 +198,9 @@ def test_planning_a_meta_plan_again_changes_nothing(rows: list[tuple[float, floa
 
 
 @given(requests, st.randoms(use_true_random=False))
-def test_the_order_in_which_requests_arrive_does_not_matter(rows: list[tuple[float, float, int, bool, bool]], random: Any) -> None:
+def test_the_order_in_which_requests_arrive_does_not_matter(
+    rows: list[tuple[float, float, int, bool, bool]], random: Any
+) -> None:
     metas = build(rows)
     shuffled = list(metas)
     random.shuffle(shuffled)
@@ -189,7 +208,9 @@ def test_the_order_in_which_requests_arrive_does_not_matter(rows: list[tuple[flo
 
 
 @given(requests)
-def test_the_most_important_are_never_cut_and_start_on_time_unless_their_equals_are_in_the_way(rows: list[Any]) -> None:
+def test_the_most_important_are_never_cut_and_start_on_time_unless_their_equals_are_in_the_way(
+    rows: list[Any],
+) -> None:
     metas = build(rows)
     top = max((m.request.priority for m in metas), default=0)
     kings = [m for m in metas if m.request.priority == top]

@@ -19,7 +19,9 @@ LENGTH = 150.0
 
 
 def at_once(project: Project, asks: list[a.AnyAsk], end: float, idle: bool = True) -> Plan:
-    """Plan every group of asks to the very end: what performing means, in time that grows with the square of the length."""
+    """Plan every group of asks to the very end: what performing means, in time that grows with the square of
+    the length.
+    """
     groups: dict[float, list[a.AnyAsk]] = {0.0: []}
     for ask in asks:
         groups.setdefault(ask.told or 0.0, []).append(ask)
@@ -107,7 +109,11 @@ def test_the_work_of_an_hour_grows_with_the_hour_and_not_with_its_square(sample,
     counts = []
     for seconds in (300, 900):
         seen.clear()
-        perform(sample, [a.Nod(id=f"n{t}", at=t + 1.0, told=float(t)) for t in range(0, seconds, 4)], seconds + 5.0)
+        perform(
+            sample,
+            [a.Nod(id=f"n{t}", at=t + 1.0, told=float(t)) for t in range(0, seconds, 4)],
+            seconds + 5.0,
+        )
         counts.append(sum(seen))
     assert counts[1] < 4 * counts[0], "nine times the work would be the square"
 

@@ -36,7 +36,9 @@ def mannequin() -> Character:
 
 @pytest.fixture
 def golden() -> Callable[[str, np.ndarray], None]:
-    """Compare with `golden/<name>.png`: drivers differ a little along edges, so the mean and the share of far pixels count."""
+    """Compare with `golden/<name>.png`: drivers differ a little along edges, so the mean and the share of far
+    pixels count.
+    """
 
     def check(name: str, picture: np.ndarray) -> None:
         from PIL import Image
@@ -59,4 +61,6 @@ def chain(*names: str, length: float = 0.3) -> Skeleton:
     """A straight chain of joints upwards."""
     offsets = np.zeros((len(names), 3))
     offsets[1:, 1] = length
-    return Skeleton(tuple(names), np.arange(len(names)) - 1, np.tile([0.0, 0, 0, 1], (len(names), 1)), offsets)
+    return Skeleton(
+        tuple(names), np.arange(len(names)) - 1, np.tile([0.0, 0, 0, 1], (len(names), 1)), offsets
+    )

@@ -97,4 +97,6 @@ def test_the_presets_aim_where_they_say():
     assert whole.target == pytest.approx((0, 0.85, 0))
     assert face.distance < half.distance < whole.distance
     assert face.project([0, 1.6, 0.02], 1.0)[1] < 0.5
-    assert abs(whole_figure((-np.ones(3), np.ones(3)), 1.0, heading=1.0).yaw - whole.yaw) == pytest.approx(1.0)
+    assert abs(whole_figure((-np.ones(3), np.ones(3)), 1.0, heading=1.0).yaw - whole.yaw) == pytest.approx(
+        1.0
+    )

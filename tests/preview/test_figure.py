@@ -25,9 +25,15 @@ def character(skeleton: Skeleton, **changes) -> Character:
     weights = np.tile([1.0, 0, 0, 0], (count, 1))
     triangles = np.array([[0, min(1, count - 1), min(2, count - 1)]])
     values = {
-        "positions": positions, "normals": np.tile([0.0, 0, 1], (count, 1)), "uvs": np.zeros((count, 2)), "joints": joints,
-        "weights": weights, "triangles": triangles, "materials": (Material("m"),), "surfaces": (Surface(0, 1, 0),),
-    }  # fmt: skip
+        "positions": positions,
+        "normals": np.tile([0.0, 0, 1], (count, 1)),
+        "uvs": np.zeros((count, 2)),
+        "joints": joints,
+        "weights": weights,
+        "triangles": triangles,
+        "materials": (Material("m"),),
+        "surfaces": (Surface(0, 1, 0),),
+    }
     return Character("c", skeleton, **{**values, **changes})
 
 
@@ -85,7 +91,9 @@ def test_joints_in_another_order_are_matched_by_name():
         np.array([[0, 0, 0], [0, 0, 0], [0, 0.3, 0], [0, 0.3, 0.0]]),
     )
     figure = SkinnedFigure(character(own), project)
-    assert np.allclose(figure.palette(*bent(project, "b")), SkinnedFigure(character(own)).palette(*bent(own, "b")), atol=1e-6)
+    assert np.allclose(
+        figure.palette(*bent(project, "b")), SkinnedFigure(character(own)).palette(*bent(own, "b")), atol=1e-6
+    )
 
 
 def test_a_character_without_any_joint_of_the_skeleton_stands_in_its_rest_pose():
@@ -145,9 +153,12 @@ def test_weights_that_do_not_add_up_are_mended_and_materials_of_one_texture_are_
     skeleton = chain("a", "b", "c")
     weights = np.array([[0.5, 0, 0, 0], [0, 0, 0, 0], [np.nan, 0, 0, 0]])
     made = character(
-        skeleton, weights=weights, triangles=np.array([[0, 1, 2], [2, 1, 0]]),
-        materials=(Material("m", (1, 0, 0, 1)), Material("n", (0, 1, 0, 1))), surfaces=(Surface(0, 1, 0), Surface(1, 1, 1)),
-    )  # fmt: skip
+        skeleton,
+        weights=weights,
+        triangles=np.array([[0, 1, 2], [2, 1, 0]]),
+        materials=(Material("m", (1, 0, 0, 1)), Material("n", (0, 1, 0, 1))),
+        surfaces=(Surface(0, 1, 0), Surface(1, 1, 1)),
+    )
     mesh = SkinnedFigure(made).mesh
     assert np.allclose(mesh.vertices["weights"].sum(1), 1)
     assert len(mesh.batches) == 1
@@ -174,4 +185,6 @@ def test_a_coarse_mesh_keeps_the_extent_and_its_batches():
     less = coarse(mesh, 40)
     assert len(less.triangles) < len(mesh.triangles)
     assert sum(b.count for b in less.batches) == len(less.triangles)
-    assert np.ptp(less.vertices["position"], axis=0) == pytest.approx(np.ptp(mesh.vertices["position"], axis=0), rel=0.08)
+    assert np.ptp(less.vertices["position"], axis=0) == pytest.approx(
+        np.ptp(mesh.vertices["position"], axis=0), rel=0.08
+    )

@@ -13,15 +13,24 @@ from sample_clips.make.skeleton import mannequin_skeleton
 def rig(*rows: tuple[str, str | None]) -> Skeleton:
     names = [name for name, _ in rows]
     parents = [-1 if parent is None else names.index(parent) for _, parent in rows]
-    return Skeleton(tuple(names), np.array(parents), np.tile([0.0, 0, 0, 1], (len(rows), 1)), np.tile([0.0, 0.2, 0], (len(rows), 1)))
+    return Skeleton(
+        tuple(names),
+        np.array(parents),
+        np.tile([0.0, 0, 0, 1], (len(rows), 1)),
+        np.tile([0.0, 0.2, 0], (len(rows), 1)),
+    )
 
 
-@pytest.mark.parametrize("name", ["ik_foot_l", "LeftHand_end", "CTRL_Hips", "upperarm_twist_01_l", "Bip01 L Toe0Nub", "Site"])
+@pytest.mark.parametrize(
+    "name", ["ik_foot_l", "LeftHand_end", "CTRL_Hips", "upperarm_twist_01_l", "Bip01 L Toe0Nub", "Site"]
+)
 def test_rig_helpers_are_no_bones(name):
     assert joints.is_control(name)
 
 
-@pytest.mark.parametrize("name", ["Hips", "mixamorig:Spine1", "Bip01 L Thigh", "Head", "Pendulum", "LeftForeArm"])
+@pytest.mark.parametrize(
+    "name", ["Hips", "mixamorig:Spine1", "Bip01 L Thigh", "Head", "Pendulum", "LeftForeArm"]
+)
 def test_bones_are_not_taken_for_helpers_or_faces(name):
     assert not joints.is_control(name)
     assert not joints.is_face(name)
@@ -29,7 +38,12 @@ def test_bones_are_not_taken_for_helpers_or_faces(name):
 
 def test_sides_come_from_names_and_pass_down():
     skeleton = rig(
-        ("Hips", None), ("upperleg.L", "Hips"), ("shin", "upperleg.L"), ("RightUpLeg", "Hips"), ("l_arm", "Hips"), ("Neck", "Hips")
+        ("Hips", None),
+        ("upperleg.L", "Hips"),
+        ("shin", "upperleg.L"),
+        ("RightUpLeg", "Hips"),
+        ("l_arm", "Hips"),
+        ("Neck", "Hips"),
     )
     assert joints.sides(skeleton).tolist() == [0, 1, 1, -1, 1, 0]
 

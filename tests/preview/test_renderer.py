@@ -29,7 +29,9 @@ def posed(figure, turns, **options):
     skeleton = figure.skeleton
     rotations = skeleton.rest_rotations.copy()
     for joint, axis, degrees in turns:
-        rotations[skeleton.index(joint)] = rotation.from_axis_angle(np.array(axis, float), np.radians(degrees))
+        rotations[skeleton.index(joint)] = rotation.from_axis_angle(
+            np.array(axis, float), np.radians(degrees)
+        )
     return Actor(figure, *skeleton.globals(Pose(rotations, skeleton.rest_translations)), **options)
 
 
@@ -79,7 +81,10 @@ def test_an_actor_that_is_not_a_number_is_left_out(offscreen):
     figure = StickFigure(mannequin_skeleton())
     broken = resting(figure)
     broken = Actor(figure, broken.rotations, np.full_like(broken.positions, np.nan))
-    assert np.array_equal(offscreen.render(Scene((broken,)), Camera(), DARK, SIZE), offscreen.render(Scene(), Camera(), DARK, SIZE))
+    assert np.array_equal(
+        offscreen.render(Scene((broken,)), Camera(), DARK, SIZE),
+        offscreen.render(Scene(), Camera(), DARK, SIZE),
+    )
 
 
 def test_no_instances_are_no_picture_but_no_error(offscreen):
@@ -105,7 +110,9 @@ def test_a_crowd_in_one_actor_looks_like_as_many_actors(offscreen):
     crowd = Scene((Actor(figure, np.tile(rotations, (3, 1, 1)), positions + places[:, None]),))
     single = Scene(tuple(Actor(figure, rotations, positions + p) for p in places))
     camera = whole(crowd)
-    apart = np.abs(offscreen.render(crowd, camera, DARK, SIZE).astype(int) - offscreen.render(single, camera, DARK, SIZE))
+    apart = np.abs(
+        offscreen.render(crowd, camera, DARK, SIZE).astype(int) - offscreen.render(single, camera, DARK, SIZE)
+    )
     assert apart.mean() < 0.5
 
 
@@ -114,7 +121,8 @@ def test_a_ghost_is_between_nothing_and_the_figure(offscreen):
     solid = Scene((resting(figure),), shadow=False)
     camera = whole(solid)
     empty, ghost, full = (
-        offscreen.render(scene, camera, DARK, SIZE).astype(float) for scene in (Scene(), Scene((resting(figure, opacity=0.5),)), solid)
+        offscreen.render(scene, camera, DARK, SIZE).astype(float)
+        for scene in (Scene(), Scene((resting(figure, opacity=0.5),)), solid)
     )
     where = np.abs(full - empty).max(-1) > 80
     share = (ghost - empty)[where].sum() / (full - empty)[where].sum()
@@ -124,7 +132,9 @@ def test_a_ghost_is_between_nothing_and_the_figure(offscreen):
 def test_a_morph_moves_the_mesh_and_back(offscreen):
     skeleton = chain("a", "b", "c")
     positions = np.array([[-0.3, 0.0, 0], [0.3, 0.0, 0], [0, 0.6, 0]])
-    made = character(skeleton, positions=positions, morphs=("far",), morph_positions=np.full((1, 3, 3), [5.0, 0, 0]))
+    made = character(
+        skeleton, positions=positions, morphs=("far",), morph_positions=np.full((1, 3, 3), [5.0, 0, 0])
+    )
     figure = SkinnedFigure(made)
     camera = Camera(yaw=0, pitch=0).frame((np.array([-0.4, 0, -0.1]), np.array([0.4, 0.7, 0.1])), 4 / 3)
     plain = Scene((resting(figure),), background=(0, 0, 0, 1))
@@ -141,7 +151,9 @@ def test_the_ground_hides_what_is_below_it(offscreen):
     rotations, positions = figure.skeleton.globals(figure.skeleton.rest)
     camera = Camera(target=(0, 0, 0), pitch=0.6)
     under = Scene((Actor(figure, rotations, positions - [0, 0.5, 0]),), shadow=False)
-    assert np.array_equal(offscreen.render(under, camera, DARK, SIZE), offscreen.render(Scene(), camera, DARK, SIZE))
+    assert np.array_equal(
+        offscreen.render(under, camera, DARK, SIZE), offscreen.render(Scene(), camera, DARK, SIZE)
+    )
 
 
 @pytest.mark.parametrize("pitch", [-1.5, -0.4, 0.0, 0.4, 1.55])
@@ -194,7 +206,11 @@ def test_a_broken_texture_is_drawn_white(offscreen):
     from metagraph.motion.character import Material
 
     positions = np.array([[-0.3, 0.0, 0], [0.3, 0.0, 0], [0, 0.6, 0]])
-    figure = SkinnedFigure(character(chain("a", "b", "c"), positions=positions, materials=(Material("m", (1, 1, 1, 1), b"no picture"),)))
+    figure = SkinnedFigure(
+        character(
+            chain("a", "b", "c"), positions=positions, materials=(Material("m", (1, 1, 1, 1), b"no picture"),)
+        )
+    )
     scene = Scene((resting(figure),), background=(0, 0, 0, 1))
     camera = Camera(yaw=0, pitch=0).frame((np.array([-0.4, 0, -0.1]), np.array([0.4, 0.7, 0.1])), 4 / 3)
     assert offscreen.render(scene, camera, DARK, SIZE)[..., :3].max() > 120

@@ -20,7 +20,9 @@ def decoded(path):
     import av
 
     with av.open(str(path)) as container:
-        return [f.to_ndarray(format="rgb24") for f in container.decode(video=0)], float(container.streams.video[0].average_rate)
+        return [f.to_ndarray(format="rgb24") for f in container.decode(video=0)], float(
+            container.streams.video[0].average_rate
+        )
 
 
 def test_every_frame_comes_back_at_its_rate_and_brightness(tmp_path):
@@ -146,6 +148,8 @@ def test_a_video_has_its_sound_where_it_belongs(tmp_path):
 
 @pytest.mark.parametrize("seconds", [0.0, 0.3, 5.0])
 def test_sound_is_as_long_as_the_pictures(tmp_path, seconds):
-    write_video(tmp_path / "a.mp4", frames(30), 30, sound=(np.full(round(seconds * 22050), 0.1, np.float32), 22050))
+    write_video(
+        tmp_path / "a.mp4", frames(30), 30, sound=(np.full(round(seconds * 22050), 0.1, np.float32), 22050)
+    )
     samples, rate = heard(tmp_path / "a.mp4")
     assert len(samples) / rate == pytest.approx(1.0, abs=0.1)

@@ -16,7 +16,9 @@ NAMES = [name for name, _, _ in LINES]
 
 
 def test_there_is_a_sound_and_a_textgrid_for_every_line_and_nothing_else() -> None:
-    assert sorted(p.name for p in FOLDER.iterdir()) == sorted(f"{n}.{s}" for n in NAMES for s in ("flac", "TextGrid"))
+    assert sorted(p.name for p in FOLDER.iterdir()) == sorted(
+        f"{n}.{s}" for n in NAMES for s in ("flac", "TextGrid")
+    )
     assert sum(p.stat().st_size for p in FOLDER.iterdir()) < 150_000
 
 

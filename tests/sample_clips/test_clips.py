@@ -81,7 +81,9 @@ def test_a_clip_begins_and_ends_exactly_in_its_stances_at_rest(name: str) -> Non
 def test_a_clip_moves_only_what_its_layer_reaches(name: str) -> None:
     clip, base = on_disk(name), on_disk(BASE[0])
     others = [i for i, joint in enumerate(SKELETON.names) if joint not in REACH[ENTRIES[name].layer]]
-    turns = rotation.angle_between(clip.rotations[:, others].astype(float), base.rotations[BASE[1], others].astype(float))
+    turns = rotation.angle_between(
+        clip.rotations[:, others].astype(float), base.rotations[BASE[1], others].astype(float)
+    )
     assert np.degrees(turns.max()) < CLOSE
     if ENTRIES[name].layer != "body":
         assert np.abs(clip.root - base.root[BASE[1]]).max() < NEAR
@@ -104,7 +106,9 @@ def test_a_clip_moves_as_a_person_could(name: str) -> None:
 
 @pytest.mark.parametrize("name", NAMES)
 def test_hands_and_forearms_stay_outside_the_body_and_of_each_other(name: str) -> None:
-    assert measured(name).inside < 0.03  # the torso here is a rough one, and flesh gives a little where a hand rests
+    assert (
+        measured(name).inside < 0.03
+    )  # the torso here is a rough one, and flesh gives a little where a hand rests
     assert measured(name).together > 0.045
 
 
@@ -119,14 +123,18 @@ def test_planted_feet_do_not_slide_and_none_goes_into_the_ground(name: str) -> N
 @pytest.mark.parametrize("name", NAMES)
 def test_the_length_suits_the_kind(name: str) -> None:
     entry = ENTRIES[name]
-    low, high = {"stance": (5, 8), "gesture": (1.2, 3.4), "fidget": (1.5, 4.0), "transition": (0.7, 1.6)}[entry.kind]
+    low, high = {"stance": (5, 8), "gesture": (1.2, 3.4), "fidget": (1.5, 4.0), "transition": (0.7, 1.6)}[
+        entry.kind
+    ]
     assert low <= on_disk(name).duration <= high
     assert 0 <= entry.start < entry.end
     assert 0.1 <= entry.blend_in <= 0.3
     assert 0.1 <= entry.blend_out <= 0.3
 
 
-@pytest.mark.parametrize("stance", ["hands_at_sides", "on_hips", "arms_crossed", "hand_to_chin", "hands_clasped"])
+@pytest.mark.parametrize(
+    "stance", ["hands_at_sides", "on_hips", "arms_crossed", "hand_to_chin", "hands_clasped"]
+)
 def test_every_arms_stance_has_one_loop_four_gestures_and_two_fidgets(stance: str) -> None:
     assert len(entries("arms", stance, "stance")) == 1
     assert len(entries("arms", stance, "gesture")) >= 4
@@ -153,7 +161,11 @@ def test_every_stance_of_a_layer_can_be_reached_from_every_other(layer: str) -> 
         assert len(entries(layer, stance, "fidget")) >= 1
 
 
-ONE_ARMED = [n for n in NAMES if ENTRIES[n].kind == "gesture" and ENTRIES[n].layer == "arms" and ENTRIES[n].limb != "both"]
+ONE_ARMED = [
+    n
+    for n in NAMES
+    if ENTRIES[n].kind == "gesture" and ENTRIES[n].layer == "arms" and ENTRIES[n].limb != "both"
+]
 
 
 @pytest.mark.parametrize("name", ONE_ARMED)
@@ -161,7 +173,9 @@ def test_a_gesture_of_one_arm_leaves_the_other_in_its_stance(name: str) -> None:
     entry, clip = ENTRIES[name], on_disk(name)
     hand = at("RightHand" if entry.limb == "left" else "LeftHand")
     elbow = at("RightLowerArm" if entry.limb == "left" else "LeftLowerArm")
-    turns = rotation.angle_between(clip.rotations[:, [hand, elbow]].astype(float), clip.rotations[0, [hand, elbow]].astype(float))
+    turns = rotation.angle_between(
+        clip.rotations[:, [hand, elbow]].astype(float), clip.rotations[0, [hand, elbow]].astype(float)
+    )
     assert np.degrees(turns.max()) < 9
 
 

@@ -35,6 +35,8 @@ def test_a_task_begins_with_the_references_base_pose_and_character() -> None:
     study = read_study(FOLDER)
     project = make(study, study.plan.task("twenty").clips, "twenty", study.reference("twenty"))
     right = read_project(study.reference("twenty"))
-    assert project.clips[project.base.clip].name == right.clips[right.base.clip].name == "hands_at_sides__stance"
+    assert (
+        project.clips[project.base.clip].name == right.clips[right.base.clip].name == "hands_at_sides__stance"
+    )
     assert project.character is not None and project.character.endswith("mannequin.glb")
     assert not list(project.actions())

@@ -39,7 +39,10 @@ def test_the_truth_tells_of_every_stance_of_the_script_in_its_order(sample: Proj
 
 @pytest.mark.parametrize("name", NAMES[:2])
 def test_what_is_seen_in_the_files_is_the_truth(sample: Project, name: str) -> None:
-    found, rows = read_keypoints(OUT / name), json.loads((OUT / "conversation.truth.json").read_text(encoding="utf-8"))["layers"]
+    found, rows = (
+        read_keypoints(OUT / name),
+        json.loads((OUT / "conversation.truth.json").read_text(encoding="utf-8"))["layers"],
+    )
     mimic = Mimic(sample, mirror=False)
     good, total = dict.fromkeys(LAYERS, 0), dict.fromkeys(LAYERS, 0)
     for time, points, sure in zip(found.times, found.points, found.confidence, strict=True):
@@ -47,10 +50,14 @@ def test_what_is_seen_in_the_files_is_the_truth(sample: Project, name: str) -> N
         for layer in LAYERS:
             true = next((stance for start, end, stance in rows[layer] if start <= time < end), None)
             ident = mimic.seen.get(layer)
-            good[layer] += true is not None and ident is not None and sample.graphs[layer].stances[ident].name == true
+            good[layer] += (
+                true is not None and ident is not None and sample.graphs[layer].stances[ident].name == true
+            )
             total[layer] += true is not None
     assert good["arms"] / total["arms"] > 0.92 and good["head"] / total["head"] > 0.9
-    assert good["body"] / total["body"] > (0.92 if found.dims == 3 else 0.8)  # leaning towards a camera does not show in its picture
+    assert good["body"] / total["body"] > (
+        0.92 if found.dims == 3 else 0.8
+    )  # leaning towards a camera does not show in its picture
 
 
 def test_a_person_is_seen_whole_with_what_was_lost_left_out(sample: Project) -> None:

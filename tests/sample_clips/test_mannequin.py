@@ -36,7 +36,9 @@ def test_it_is_on_the_samples_skeleton(character):
 def test_weights_add_up_and_hold_only_numbers(character):
     assert np.isfinite(character.positions).all() and np.isfinite(character.normals).all()
     assert np.allclose(character.weights.sum(1), 1, atol=0.01)
-    assert np.linalg.norm(character.normals, axis=1) == pytest.approx(np.ones(len(character.normals)), abs=0.02)
+    assert np.linalg.norm(character.normals, axis=1) == pytest.approx(
+        np.ones(len(character.normals)), abs=0.02
+    )
 
 
 def test_it_stands_on_the_ground_and_is_as_tall_as_it_says(character):
@@ -48,14 +50,19 @@ def test_it_stands_on_the_ground_and_is_as_tall_as_it_says(character):
 
 def joints_of(character, chosen):
     """The joints that move the vertices `chosen` by a hundredth or more."""
-    return {character.skeleton.names[j] for j in np.unique(character.joints[chosen][character.weights[chosen] > 0.01])}
+    return {
+        character.skeleton.names[j]
+        for j in np.unique(character.joints[chosen][character.weights[chosen] > 0.01])
+    }
 
 
 def test_no_limb_pulls_at_another(character):
     p = character.positions
     left_leg, left_arm = (p[:, 1] < 0.7) & (p[:, 0] > 0.02), p[:, 0] > 0.45
     assert not any(n.startswith("Right") for n in joints_of(character, left_leg | left_arm))
-    assert joints_of(character, left_arm & (p[:, 1] < 1.2)) <= {n for n in character.skeleton.names if n.startswith("Left")}
+    assert joints_of(character, left_arm & (p[:, 1] < 1.2)) <= {
+        n for n in character.skeleton.names if n.startswith("Left")
+    }
 
 
 def test_a_fingers_end_is_moved_by_that_finger_alone(character):

@@ -27,7 +27,9 @@ def test_two_bones_reach_a_target_within_reach() -> None:
 
 
 def test_two_bones_stretch_towards_a_target_out_of_reach_without_becoming_quite_straight() -> None:
-    first, second, hinge = ik.two_bones(np.zeros(3), np.array([0.0, -2.0, 0.0]), np.array([0.0, 0, 1.0]), 0.3, 0.25)
+    first, second, hinge = ik.two_bones(
+        np.zeros(3), np.array([0.0, -2.0, 0.0]), np.array([0.0, 0, 1.0]), 0.3, 0.25
+    )
     end = ends(first, second, 0.3, 0.25)
     assert end[1] < -0.54
     assert 0.9 < first @ second < 1
@@ -68,7 +70,9 @@ def test_every_hand_shape_turns_all_fifteen_finger_joints(shape: str) -> None:
 
 
 @pytest.mark.parametrize("peak", [0.3, 0.42, 0.5, 0.65])
-def test_an_ease_goes_from_nothing_to_all_without_turning_back_and_is_fastest_at_its_peak(peak: float) -> None:
+def test_an_ease_goes_from_nothing_to_all_without_turning_back_and_is_fastest_at_its_peak(
+    peak: float,
+) -> None:
     u = np.linspace(0, 1, 401)
     w = tracks.ease(u, peak)
     assert w[0] == 0
@@ -103,7 +107,9 @@ def test_a_recipe_that_does_not_come_home_is_refused_by_name() -> None:
 
 
 def test_a_recipe_of_one_step_home_stands_still_but_for_its_life() -> None:
-    clip = animate(Recipe("still", "arms", "gesture", "hands_at_sides", "hands_at_sides", (home(0.8),), life=0.0))
+    clip = animate(
+        Recipe("still", "arms", "gesture", "hands_at_sides", "hands_at_sides", (home(0.8),), life=0.0)
+    )
     turns = rotation.angle_between(clip.rotations.astype(float), clip.rotations[:1].astype(float))
     assert np.degrees(turns.max()) < 0.1
 

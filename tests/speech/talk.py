@@ -1,4 +1,6 @@
-"""A conversation of two for tests, spoken by eSpeak NG (see `sample_clips.make.talk`); tests skip where it is not installed."""
+"""A conversation of two for tests, spoken by eSpeak NG (see `sample_clips.make.talk`); tests skip where it is
+not installed.
+"""
 
 from __future__ import annotations
 
@@ -11,11 +13,25 @@ from sample_clips.make import talk as maker
 from sample_clips.make.talk import RATE, MissingError, Said, Talk, Turn, write_sound, write_words
 
 __all__ = [
-    "RATE", "TURNS", "Said", "Talk", "Turn", "make_conversation", "speak", "synthesise", "write_sound", "write_textgrid", "write_words",
-]  # fmt: skip
+    "RATE",
+    "TURNS",
+    "Said",
+    "Talk",
+    "Turn",
+    "make_conversation",
+    "speak",
+    "synthesise",
+    "write_sound",
+    "write_textgrid",
+    "write_words",
+]
 
 TURNS = (
-    Turn(0, 0.6, ("so I was *walking* home", "from the *station* last night", "and there was this *enormous* dog")),
+    Turn(
+        0,
+        0.6,
+        ("so I was *walking* home", "from the *station* last night", "and there was this *enormous* dog"),
+    ),
     Turn(1, -1.2, ("response: uh-huh",)),
     Turn(0, 1.2, ("hesitation: uh",)),
     Turn(0, 0.5, ("it just *stood* there", "in the *middle* of the road")),
@@ -52,9 +68,13 @@ def synthesise(text: str, voice: str, pitch: int, rate: int) -> tuple[maker.Arra
         pytest.skip(str(error))
 
 
-def make_conversation(folder: Path, noise: float = 0.0006, crosstalk: float | None = None) -> tuple[Path, Path]:
-    """Write a conversation of two, half a minute long: a WAV with one channel a side, and its words as Whisper-style JSON with speakers.
-    Skips the test where eSpeak NG is not there. noise: how loud both rooms are; crosstalk: dB of the partner in each microphone."""
+def make_conversation(
+    folder: Path, noise: float = 0.0006, crosstalk: float | None = None
+) -> tuple[Path, Path]:
+    """Write a conversation of two, half a minute long: a WAV with one channel a side, and its words as
+    Whisper-style JSON with speakers. Skips the test where eSpeak NG is not there. noise: how loud both rooms
+    are; crosstalk: dB of the partner in each microphone.
+    """
     talk = speak(TURNS, noise, crosstalk)
     audio, words = folder / "talk.wav", folder / "talk.json"
     write_sound(audio, talk.samples, talk.rate)

@@ -50,7 +50,12 @@ def test_gain_does_not_matter() -> None:
 
 
 def test_a_click_and_a_hiss_are_not_spoken() -> None:
-    samples = with_sounds(6, (1.0, buzz(1.0)), (3.0, 0.5 * np.ones(80)), (4.0, 0.1 * np.random.default_rng(5).standard_normal(8000)))
+    samples = with_sounds(
+        6,
+        (1.0, buzz(1.0)),
+        (3.0, 0.5 * np.ones(80)),
+        (4.0, 0.1 * np.random.default_rng(5).standard_normal(8000)),
+    )
     assert len(activity(hear(samples, RATE), pitch(samples, RATE))) == 1
 
 

@@ -1,4 +1,6 @@
-"""Clauses, responses and hesitations: by word lists, by pauses, by stress; and how much of what was written is found in speech."""
+"""Clauses, responses and hesitations: by word lists, by pauses, by stress; and how much of what was written
+is found in speech.
+"""
 
 from __future__ import annotations
 
@@ -37,7 +39,9 @@ def kinds(text: str, **lists: tuple[str, ...]) -> list[tuple[str, str]]:
 
 
 def test_words_are_compared_without_case_punctuation_and_hyphens() -> None:
-    assert tokens("Uh-huh.") == tokens("uh huh") == ("uh", "huh") and tokens("%HESITATION ") == ("%hesitation",)
+    assert tokens("Uh-huh.") == tokens("uh huh") == ("uh", "huh") and tokens("%HESITATION ") == (
+        "%hesitation",
+    )
     assert tokens("I’m") == ("i'm",) and tokens("--") == () and tokens("'Yes!'") == ("yes",)
 
 
@@ -47,9 +51,15 @@ def test_the_longest_phrase_counts() -> None:
     assert Vocabulary(("you know that",)).at(said, 2) == 0 and Vocabulary(()).at(said, 0) == 0
 
 
-@pytest.mark.parametrize("text", ["yeah", "Uh-huh.", "uh huh", "I see", "Oh, wow!", "yeah yeah yeah", "mm-hmm", "I_see"])
+@pytest.mark.parametrize(
+    "text", ["yeah", "Uh-huh.", "uh huh", "I see", "Oh, wow!", "yeah yeah yeah", "mm-hmm", "I_see"]
+)
 def test_a_turn_of_response_words_alone_is_a_response(text: str) -> None:
-    assert [k for k, _ in kinds(f"so he left 1 {text} 1 then we went home")] == ["clause", "response", "clause"]
+    assert [k for k, _ in kinds(f"so he left 1 {text} 1 then we went home")] == [
+        "clause",
+        "response",
+        "clause",
+    ]
 
 
 def test_a_response_word_in_a_sentence_is_part_of_it() -> None:
@@ -79,17 +89,30 @@ def test_words_with_a_meaning_hesitate_only_where_speech_stops(text: str, hesita
 
 
 def test_the_lists_can_be_changed() -> None:
-    assert kinds("ja 1 äh 1 nein", responses=("ja",), hesitations=("äh",)) == [("response", "ja"), ("hesitation", "äh"), ("clause", "nein")]
+    assert kinds("ja 1 äh 1 nein", responses=("ja",), hesitations=("äh",)) == [
+        ("response", "ja"),
+        ("hesitation", "äh"),
+        ("clause", "nein"),
+    ]
     assert kinds("yeah 1 uh", responses=(), hesitations=()) == [("clause", "yeah"), ("clause", "uh")]
 
 
 def test_pauses_and_sentences_part_clauses() -> None:
-    assert kinds("he bought a car 0.4 she sold it") == [("clause", "he bought a car"), ("clause", "she sold it")]
-    assert kinds("he bought a car. She sold it") == [("clause", "he bought a car."), ("clause", "She sold it")]
+    assert kinds("he bought a car 0.4 she sold it") == [
+        ("clause", "he bought a car"),
+        ("clause", "she sold it"),
+    ]
+    assert kinds("he bought a car. She sold it") == [
+        ("clause", "he bought a car."),
+        ("clause", "She sold it"),
+    ]
 
 
 def test_long_runs_become_clauses_of_about_four_words() -> None:
-    text = "when we came to the river the boat was gone and nobody knew who had taken it because the keeper was asleep in his house"
+    text = (
+        "when we came to the river the boat was gone and nobody knew who had taken it because the keeper "
+        "was asleep in his house"
+    )
     found = kinds(text)
     assert " ".join(t for _, t in found) == text and 4 <= len(found) <= 8
     assert not any(t.split()[-1] in ("the", "a", "of", "and", "was", "in") for _, t in found)
@@ -108,7 +131,11 @@ def test_words_out_of_order_and_past_the_end_are_settled() -> None:
 def test_a_voiceless_clause_has_its_peak_where_it_is_loudest() -> None:
     samples = 0.001 * np.random.default_rng(0).standard_normal(16000 * 4)
     samples[24000:25600] *= 100
-    (found,) = segments([Word(text="hush", start=1, end=2)], Pitch(VOICELESS.times[:401], VOICELESS.hertz[:401]), hear(samples, 16000))
+    (found,) = segments(
+        [Word(text="hush", start=1, end=2)],
+        Pitch(VOICELESS.times[:401], VOICELESS.hertz[:401]),
+        hear(samples, 16000),
+    )
     assert found.peak == pytest.approx(1.55, abs=0.06)
 
 
@@ -129,7 +156,8 @@ def test_segments_never_overlap_whatever_the_words(rows: list[tuple[str, float, 
     assert all(s.end <= HEARD.duration for s in found)
 
 
-# --- in speech -------------------------------------------------------------------------------------------------------
+# --- in speech
+# --------------------------------------------------------------------------------------------------
 
 
 def heard_of(spoken: talk.Talk) -> list[tuple[Heard, Pitch]]:
@@ -149,10 +177,16 @@ def test_what_was_written_is_found_in_speech(bleed: float | None) -> None:
     for side in (0, 1):
         got, want = of_side(spoken, side, True), [s for s in spoken.said if s.side == side]
         for kind in ("response", "hesitation"):
-            assert [(s.start, s.end) for s in got if s.kind == kind] == [(s.start, s.end) for s in want if s.kind == kind]
+            assert [(s.start, s.end) for s in got if s.kind == kind] == [
+                (s.start, s.end) for s in want if s.kind == kind
+            ]
         clauses = [s for s in got if s.kind == "clause"]
         starts = {s.start for s in want if s.kind == "clause"}
-        written, found, begun = written + len(starts), found + len(clauses), begun + len(starts & {s.start for s in clauses})
+        written, found, begun = (
+            written + len(starts),
+            found + len(clauses),
+            begun + len(starts & {s.start for s in clauses}),
+        )
         sizes += [len(s.text.split()) for s in clauses]
         for s in want:  # the stressed word has a peak
             if s.stress is not None:
@@ -167,10 +201,20 @@ def test_without_words_pauses_and_short_answers_are_found(bleed: float | None) -
     for side in (0, 1):
         got = of_side(spoken, side, False)
         want = [s for s in spoken.said if s.side == side]
-        assert all(any(s.start < w.end + 0.1 and s.end > w.start - 0.1 for w in want) for s in got)  # nothing that was not said
-        missed = [w for w in want if w.kind != "hesitation" and not any(s.start < w.end and s.end > w.start for s in got)]
+        assert all(
+            any(s.start < w.end + 0.1 and s.end > w.start - 0.1 for w in want) for s in got
+        )  # nothing that was not said
+        missed = [
+            w
+            for w in want
+            if w.kind != "hesitation" and not any(s.start < w.end and s.end > w.start for s in got)
+        ]
         assert not missed
         answers = [w for w in want if w.kind == "response"]
-        right = [w for w in answers if any(s.kind == "response" and s.start < w.end and s.end > w.start for s in got)]
+        right = [
+            w
+            for w in answers
+            if any(s.kind == "response" and s.start < w.end and s.end > w.start for s in got)
+        ]
         assert len(right) >= len(answers) - 1
         assert all(b.start >= a.end for a, b in itertools.pairwise(got))

@@ -15,9 +15,13 @@ from metagraph.playback.running_plan import perform
 from metagraph.speech.drive import TOLERANCE, asks_of, drive, strokes
 
 
-def said(*own: Segment, partner: tuple[Segment, ...] = (), length: float = 60.0, **rates: float) -> Conversation:
+def said(
+    *own: Segment, partner: tuple[Segment, ...] = (), length: float = 60.0, **rates: float
+) -> Conversation:
     return Conversation(
-        name="talk", length=length, sides=(Side(name="Left", segments=own, rates=Rates(**rates)), Side(name="Right", segments=partner))
+        name="talk",
+        length=length,
+        sides=(Side(name="Left", segments=own, rates=Rates(**rates)), Side(name="Right", segments=partner)),
     )
 
 
@@ -26,7 +30,9 @@ def clause(start: float, end: float, text: str = "") -> Segment:
 
 
 def clauses(count: int, apart: float = 1.9) -> tuple[Segment, ...]:
-    return tuple(clause(round(1 + apart * n, 3), round(1 + apart * n + 1.3, 3), f"words {n}") for n in range(count))
+    return tuple(
+        clause(round(1 + apart * n, 3), round(1 + apart * n + 1.3, 3), f"words {n}") for n in range(count)
+    )
 
 
 def ids(asks: object, kind: type) -> set[str]:
@@ -39,7 +45,9 @@ def test_silence_asks_for_nothing_but_to_look_at_the_partner_and_to_fidget(sampl
     assert [a.mode for a in asks if isinstance(a, Behave)] == ["idle"]
 
 
-def test_at_a_rate_of_one_every_clause_asks_for_a_gesture_whose_stroke_is_at_its_peak(sample: Project) -> None:
+def test_at_a_rate_of_one_every_clause_asks_for_a_gesture_whose_stroke_is_at_its_peak(
+    sample: Project,
+) -> None:
     some = clauses(5)
     asks = [a for a in asks_of(said(*some, clause=1.0), 0, sample) if isinstance(a, Gesture)]
     assert [a.stroke for a in asks] == [s.peak for s in some]
@@ -54,7 +62,9 @@ def test_over_many_clauses_as_many_ask_for_a_gesture_as_the_rate_says(sample: Pr
     assert len(ids(asks_of(talk, 0, sample), Gesture)) / 2000 == pytest.approx(0.62, abs=0.03)
 
 
-def test_responses_of_ones_own_and_hesitations_of_the_partner_ask_for_nods_but_ones_own_hesitations_do_not(sample: Project) -> None:
+def test_responses_of_ones_own_and_hesitations_of_the_partner_ask_for_nods_but_ones_own_hesitations_do_not(
+    sample: Project,
+) -> None:
     own = (Segment("response", 2, 2.5, None, "yeah"), Segment("hesitation", 10, 10.4, None, "uh"))
     partner = (Segment("hesitation", 5, 5.4, None, "er"), Segment("response", 20, 20.4, None, "okay"))
     asks = asks_of(said(*own, partner=partner, response=1.0, hesitation=1.0), 0, sample)
@@ -88,12 +98,19 @@ def test_strokes_land_on_the_peaks_of_f0(sample: Project) -> None:
     assert max(abs(found[a.id] - a.stroke) for a in asked if a.stroke is not None) <= TOLERANCE
 
 
-def test_strokes_are_nearer_to_the_peaks_of_their_own_speech_than_to_those_of_shuffled_speech(sample: Project) -> None:
-    """The margin: at least five times as near, where shuffling turns the peaks round within the conversation."""
+def test_strokes_are_nearer_to_the_peaks_of_their_own_speech_than_to_those_of_shuffled_speech(
+    sample: Project,
+) -> None:
+    """The margin: at least five times as near, where shuffling turns the peaks round within the
+    conversation.
+    """
     rng = np.random.default_rng(3)
     starts = np.cumsum(rng.uniform(1.4, 3.2, 40))
     peaks = starts + rng.uniform(0.2, 1.0, 40)
-    some = tuple(Segment("clause", a, a + 1.2, p, f"w{n}") for n, (a, p) in enumerate(zip(starts.tolist(), peaks.tolist(), strict=True)))
+    some = tuple(
+        Segment("clause", a, a + 1.2, p, f"w{n}")
+        for n, (a, p) in enumerate(zip(starts.tolist(), peaks.tolist(), strict=True))
+    )
     length = float(starts[-1]) + 3
     _, plan = drive(said(*some, length=length), 0, sample)
     at = np.array(list(strokes(sample, plan).values()))
@@ -137,7 +154,9 @@ def test_whatever_is_said_every_ask_can_be_written_and_strokes_meet_their_peaks(
             assert abs(found[ask.id] - (ask.stroke or 0.0)) <= TOLERANCE
 
 
-def test_words_that_gestures_are_tagged_with_get_such_gestures_and_other_words_plain_ones(sample: Project) -> None:
+def test_words_that_gestures_are_tagged_with_get_such_gestures_and_other_words_plain_ones(
+    sample: Project,
+) -> None:
     words = ("I told you so", "it was that big", "the dog sat down", "and it went on")
     some = tuple(clause(1 + 3 * n, 2 + 3 * n, text) for n, text in enumerate(words))
     tags = [a.tags for a in asks_of(said(*some, clause=1.0), 0, sample) if isinstance(a, Gesture)]

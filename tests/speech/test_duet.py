@@ -15,8 +15,12 @@ RATE = 16000
 
 
 def talk(**changes: object) -> Conversation:
-    left = Side(name="Left", audio="talk.wav", channel=0, segments=(Segment("clause", 1.0, 2.0, 1.5, "hello there"),))
-    right = Side(name="Right", audio="talk.wav", channel=1, segments=(Segment("response", 2.2, 2.6, None, "yeah"),))
+    left = Side(
+        name="Left", audio="talk.wav", channel=0, segments=(Segment("clause", 1.0, 2.0, 1.5, "hello there"),)
+    )
+    right = Side(
+        name="Right", audio="talk.wav", channel=1, segments=(Segment("response", 2.2, 2.6, None, "yeah"),)
+    )
     return Conversation(name="talk", length=6.0, sides=(left, right), **changes)  # type: ignore[arg-type]
 
 
@@ -28,7 +32,9 @@ def folder(tmp_path: Path) -> Path:
     t = np.arange(6 * RATE) / RATE
     hum = 0.3 * np.sin(2 * np.pi * 150 * t) + 0.1 * np.sin(2 * np.pi * 700 * t)
     sound = np.stack([hum * ((t >= a) & (t < b)) for a, b in ((1.0, 2.0), (2.2, 2.6))], 1)
-    soundfile.write(tmp_path / "talk.wav", sound + np.random.default_rng(1).normal(0, 1e-4, sound.shape), RATE)
+    soundfile.write(
+        tmp_path / "talk.wav", sound + np.random.default_rng(1).normal(0, 1e-4, sound.shape), RATE
+    )
     return tmp_path
 
 
@@ -43,7 +49,9 @@ def test_each_side_speaks_with_its_own_channel(folder: Path) -> None:
 
 def test_a_channel_that_is_not_there_is_told_and_the_other_side_still_speaks(folder: Path) -> None:
     sides = talk().sides
-    odd = Conversation(name="talk", length=6.0, sides=(Side(name="Left", audio="talk.wav", channel=5), sides[1]))
+    odd = Conversation(
+        name="talk", length=6.0, sides=(Side(name="Left", audio="talk.wav", channel=5), sides[1])
+    )
     heard, notes = voices(odd, folder)
     assert heard[0] is None and heard[1] is not None
     assert len(notes) == 1 and "Left" in notes[0] and "2 channels" in notes[0]

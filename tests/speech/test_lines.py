@@ -29,7 +29,9 @@ Object class = "TextGrid"
 def folder(tmp_path: Path) -> Path:
     rng = np.random.default_rng(0)
     t = np.arange(16000) / 16000
-    tone = np.where((t > 0.35) & (t < 0.8), np.sin(2 * np.pi * 600 * t), 0) * 0.4 + 1e-3 * rng.normal(size=len(t))
+    tone = np.where((t > 0.35) & (t < 0.8), np.sin(2 * np.pi * 600 * t), 0) * 0.4 + 1e-3 * rng.normal(
+        size=len(t)
+    )
     soundfile.write(str(tmp_path / "good.wav"), tone, 16000)
     (tmp_path / "good.TextGrid").write_text(GRID.format(end=1.0))
     (tmp_path / "long.TextGrid").write_text(GRID.format(end=9.0))
@@ -46,7 +48,8 @@ def test_phones_shape_the_mouth_and_sound_the_syllables(folder: Path) -> None:
     voice = read_voice(folder / "good.wav", folder / "good.TextGrid")
     assert voice.duration == 1.0 and 0.4 < voice.peaks[0] < 0.8
     assert (
-        voice.weights[np.searchsorted(voice.times, 0.6)].argmax() == 10 and voice.weights[np.searchsorted(voice.times, 0.3)].argmax() == 1
+        voice.weights[np.searchsorted(voice.times, 0.6)].argmax() == 10
+        and voice.weights[np.searchsorted(voice.times, 0.3)].argmax() == 1
     )
 
 
@@ -57,7 +60,9 @@ def test_phones_that_go_on_after_the_sound_are_cut(folder: Path) -> None:
 
 def test_phones_alone_are_a_voice_with_a_syllable_for_each_vowel(folder: Path) -> None:
     voice = voice_from_phones(folder / "good.TextGrid")
-    assert voice.duration == 1.0 and voice.peaks.tolist() == pytest.approx([0.6]) and len(voice.strengths) == 1
+    assert (
+        voice.duration == 1.0 and voice.peaks.tolist() == pytest.approx([0.6]) and len(voice.strengths) == 1
+    )
 
 
 def test_a_line_without_files_has_no_voice(folder: Path) -> None:
@@ -68,9 +73,14 @@ def test_a_line_without_files_has_no_voice(folder: Path) -> None:
 
 def test_every_line_that_can_be_read_has_a_voice_and_every_other_a_note(folder: Path) -> None:
     before = project(
-        a=Line(audio="good.wav"), b=Line(audio="gone.wav"), c=Line(audio="bad.wav", text="still here"), d=Line(text="letters"),
-        e=Line(audio="good.wav", phones="bad.TextGrid"), f=Line(phones="good.TextGrid"), g=Line(audio="bad.wav", phones="good.TextGrid"),
-    )  # fmt: skip
+        a=Line(audio="good.wav"),
+        b=Line(audio="gone.wav"),
+        c=Line(audio="bad.wav", text="still here"),
+        d=Line(text="letters"),
+        e=Line(audio="good.wav", phones="bad.TextGrid"),
+        f=Line(phones="good.TextGrid"),
+        g=Line(audio="bad.wav", phones="good.TextGrid"),
+    )
     after, notes = load_voices(before, folder)
     assert set(after.voices) == {"a", "e", "f"} and after == before, "voices are no part of what is saved"
     assert len(notes) == 4 and len([n for n in notes if "line 'b'" in n and "gone.wav" in n]) == 1
@@ -93,11 +103,24 @@ def test_the_first_peak_of_a_samples_line_brings_a_blink() -> None:
 
 def blinks_at_the_first_peak(sound: Path) -> None:
     voice = read_voice(sound)
-    found = schedule(Project().life, track_of([Speech("s", 10.0, 10.0 + voice.duration, "m")]), {"m": voice}, 1, 20.0, Schedule(), 0.0)
+    found = schedule(
+        Project().life,
+        track_of([Speech("s", 10.0, 10.0 + voice.duration, "m")]),
+        {"m": voice},
+        1,
+        20.0,
+        Schedule(),
+        0.0,
+    )
     assert 10.0 + float(voice.peaks[0]) in found.blinks.starts
 
 
 def test_sound_is_not_loaded_before_it_is_needed() -> None:
     modules = "import sys, metagraph.speech.lines, metagraph.playback.life.evaluate"
     code = f"{modules}; print([m for m in ('soundfile', 'scipy', 'numba', 'av') if m in sys.modules])"
-    assert subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True).stdout.strip() == "[]"
+    assert (
+        subprocess.run(
+            [sys.executable, "-c", code], capture_output=True, text=True, check=True
+        ).stdout.strip()
+        == "[]"
+    )

@@ -22,7 +22,8 @@ def shapes(*tiers: Tier) -> list[str]:
 @pytest.mark.parametrize(
     ("labels", "known"),
     [
-        (["AA1", "B", "IY0"], True), (["aa", "b", "sil"], True), (["B", "PT", "AA1", "R", "IH1"], True), (["p", "t", "s"], False),
+        (["AA1", "B", "IY0"], True), (["aa", "b", "sil"], True), (["B", "PT", "AA1", "R", "IH1"], True),
+        (["p", "t", "s"], False),
         (["eI", "m", "@", "n"], False), (["ə", "r", "i"], False), ([], False), (["", "sil"], False),
     ],
 )  # fmt: skip
@@ -33,9 +34,12 @@ def test_arpabet_is_told_from_the_others(labels: list[str], known: bool) -> None
 @pytest.mark.parametrize(
     ("label", "arpabet", "want"),
     [
-        ("AA1", True, ["aa"]), ("ah0", True, ["aa"]), ("AY2", True, ["aa", "I"]), ("PT", True, ["PP", "DD"]), ("sil", True, []),
-        ("D", True, ["DD"]), ("D", False, ["TH"]), ("S", False, ["CH"]), ("S", True, ["SS"]), ("tʃ", False, ["CH"]), ("dʒ", False, ["CH"]),
-        ("aɪ", False, ["aa", "I"]), ("@", False, ["E"]), ("ŋ", False, ["kk"]), ("uː", False, ["U"]), ("ã", False, ["aa"]),
+        ("AA1", True, ["aa"]), ("ah0", True, ["aa"]), ("AY2", True, ["aa", "I"]),
+        ("PT", True, ["PP", "DD"]), ("sil", True, []),
+        ("D", True, ["DD"]), ("D", False, ["TH"]), ("S", False, ["CH"]), ("S", True, ["SS"]),
+        ("tʃ", False, ["CH"]), ("dʒ", False, ["CH"]),
+        ("aɪ", False, ["aa", "I"]), ("@", False, ["E"]), ("ŋ", False, ["kk"]), ("uː", False, ["U"]),
+        ("ã", False, ["aa"]),
         ("", False, []), ("<p:>", False, []), ("?!", False, ["kk"]),
     ],
 )  # fmt: skip
@@ -56,7 +60,11 @@ def test_a_diphthong_is_two_shapes_the_first_longer() -> None:
 def test_phones_are_found_by_name_and_go_before_words() -> None:
     words, phones = tier("words", "map", "pam"), tier("MAU", "m", "a", "p", "", "p", "a", "m")
     assert shapes(words, phones) == ["PP", "aa", "PP", "PP", "aa", "PP"]
-    assert shapes(tier("anything", "m", "a", "p"), tier("something", "mapped", "sounds")) == ["PP", "aa", "PP"]
+    assert shapes(tier("anything", "m", "a", "p"), tier("something", "mapped", "sounds")) == [
+        "PP",
+        "aa",
+        "PP",
+    ]
 
 
 def test_words_alone_are_spelled() -> None:
@@ -64,7 +72,11 @@ def test_words_alone_are_spelled() -> None:
 
 
 def test_points_and_empty_tiers_are_not_speech() -> None:
-    assert shapes(tier("phones", "a", "b", points=True)) == [] and shapes(tier("phones", "", "sil")) == [] and shapes() == []
+    assert (
+        shapes(tier("phones", "a", "b", points=True)) == []
+        and shapes(tier("phones", "", "sil")) == []
+        and shapes() == []
+    )
 
 
 @given(st.lists(st.tuples(st.text(max_size=8), st.lists(st.text(max_size=6), max_size=6)), max_size=4))

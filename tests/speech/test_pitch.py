@@ -30,7 +30,10 @@ def test_times_are_those_of_loudness() -> None:
     assert np.array_equal(pitch(samples, 16000).times, hear(np.asarray(samples), 16000).times)
 
 
-@pytest.mark.parametrize("samples", [np.zeros(0), np.zeros(3), np.zeros(16000), 0.1 * np.random.default_rng(1).standard_normal(48000)])
+@pytest.mark.parametrize(
+    "samples",
+    [np.zeros(0), np.zeros(3), np.zeros(16000), 0.1 * np.random.default_rng(1).standard_normal(48000)],
+)
 def test_silence_and_noise_have_none(samples: object) -> None:
     found = pitch(np.asarray(samples), 16000)
     assert np.isnan(found.hertz).all() and not peaks(found, 0, 10)
@@ -40,9 +43,9 @@ def test_pauses_between_voice_have_none() -> None:
     samples = np.concatenate([voice(np.full(8000, 150.0)), np.zeros(8000), voice(np.full(8000, 170.0))])
     found = pitch(samples, 16000)
     assert np.isnan(found.hertz[55:95]).all()
-    assert np.nanmedian(found.hertz[:45]) == pytest.approx(150, rel=0.01) and np.nanmedian(found.hertz[105:]) == pytest.approx(
-        170, rel=0.01
-    )
+    assert np.nanmedian(found.hertz[:45]) == pytest.approx(150, rel=0.01) and np.nanmedian(
+        found.hertz[105:]
+    ) == pytest.approx(170, rel=0.01)
 
 
 def test_a_voice_over_several_blocks_is_found_the_same() -> None:
@@ -71,7 +74,11 @@ def test_smoothing_bridges_short_voiceless_moments_and_no_pauses() -> None:
     hertz = np.full(100, 100.0)
     hertz[20:24], hertz[50:70] = np.nan, np.nan
     tones = smooth(Pitch(np.arange(100) * 0.01, hertz))
-    assert not np.isnan(tones[:50]).any() and np.isnan(tones[50:70]).all() and tones[10] == pytest.approx(12 * np.log2(100))
+    assert (
+        not np.isnan(tones[:50]).any()
+        and np.isnan(tones[50:70]).all()
+        and tones[10] == pytest.approx(12 * np.log2(100))
+    )
 
 
 def test_no_octave_is_mistaken_in_a_spoken_voice() -> None:
@@ -84,10 +91,15 @@ def test_no_octave_is_mistaken_in_a_spoken_voice() -> None:
         apart = []
         for n in known[::3]:
             start = int(found.times[n] * spoken.rate) - 512
-            frame = samples[max(start, 0) : start + 1024] * np.hanning(1024)[: len(samples[max(start, 0) : start + 1024])]
+            frame = (
+                samples[max(start, 0) : start + 1024]
+                * np.hanning(1024)[: len(samples[max(start, 0) : start + 1024])]
+            )
             alike = np.correlate(frame, frame, "full")[len(frame) - 1 :] / np.correlate(
                 np.hanning(len(frame)), np.hanning(len(frame)), "full"
             )[len(frame) - 1 :].clip(1e-3)
             first, last = int(spoken.rate / (1.9 * middle)), int(spoken.rate / (0.55 * middle))
-            apart.append(abs(12 * np.log2(found.hertz[n] / (spoken.rate / (first + int(alike[first:last].argmax()))))))
+            apart.append(
+                abs(12 * np.log2(found.hertz[n] / (spoken.rate / (first + int(alike[first:last].argmax())))))
+            )
         assert np.mean(np.array(apart) < 1.0) > 0.9

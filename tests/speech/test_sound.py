@@ -1,4 +1,6 @@
-"""Hearing: syllables whatever the level and the noise; mouth shapes roughly as the phones have them; broken files with a reason."""
+"""Hearing: syllables whatever the level and the noise; mouth shapes roughly as the phones have them; broken
+files with a reason.
+"""
 
 from __future__ import annotations
 
@@ -27,13 +29,19 @@ REAL = (("bobby", "bobby_phones"), ("mary", "mary"), ("damon_set_test", "damon_s
 
 
 def babble(
-    syllable: Array, gap: float = 0.08, length: float = 0.16, first: float = 700.0, second: float = 1200.0, rate: int = RATE
+    syllable: Array,
+    gap: float = 0.08,
+    length: float = 0.16,
+    first: float = 700.0,
+    second: float = 1200.0,
+    rate: int = RATE,
 ) -> Array:
     """Syllables of a buzz with two formants, as loud as `syllable` says, 0..1."""
     parts = [np.zeros(int(0.2 * rate))]
     t = np.arange(int(length * rate)) / rate
     buzz = sum(
-        np.sin(2 * np.pi * 120 * k * t) * (np.exp(-(((120 * k - first) / 150) ** 2)) + 0.5 * np.exp(-(((120 * k - second) / 200) ** 2)))
+        np.sin(2 * np.pi * 120 * k * t)
+        * (np.exp(-(((120 * k - first) / 150) ** 2)) + 0.5 * np.exp(-(((120 * k - second) / 200) ** 2)))
         for k in range(1, 30)
     )
     for loud in syllable:
@@ -76,7 +84,13 @@ def test_the_loudest_syllable_is_the_strongest() -> None:
 
 
 @pytest.mark.parametrize(
-    "samples", [np.zeros(RATE), np.full(RATE, 0.5), 1e-6 * np.ones(10), 1e-5 * np.random.default_rng(0).normal(size=RATE)]
+    "samples",
+    [
+        np.zeros(RATE),
+        np.full(RATE, 0.5),
+        1e-6 * np.ones(10),
+        1e-5 * np.random.default_rng(0).normal(size=RATE),
+    ],
 )
 def test_silence_says_nothing(samples: Array) -> None:
     heard = hear(samples, RATE)
@@ -96,7 +110,10 @@ def shown(samples: Array) -> dict[str, float]:
 
 
 def test_an_open_vowel_opens_the_mouth_and_a_close_one_does_not() -> None:
-    wide, narrow = shown(babble(np.ones(5), first=780, second=1250)), shown(babble(np.ones(5), first=300, second=900))
+    wide, narrow = (
+        shown(babble(np.ones(5), first=780, second=1250)),
+        shown(babble(np.ones(5), first=300, second=900)),
+    )
     assert wide.get("aa", 0) > 0.3 and narrow.get("aa", 0) == 0
 
 
@@ -108,7 +125,10 @@ def test_hiss_is_a_sibilant() -> None:
 
 
 def test_a_short_gap_is_a_stop_and_a_long_one_silence() -> None:
-    short, long = shapes_heard(hear(babble(np.ones(4), gap=0.04), RATE)), shapes_heard(hear(babble(np.ones(2), gap=0.6), RATE))
+    short, long = (
+        shapes_heard(hear(babble(np.ones(4), gap=0.04), RATE)),
+        shapes_heard(hear(babble(np.ones(2), gap=0.6), RATE)),
+    )
     assert {"PP", "DD"} & {p.viseme for p in short}
     gap = [p for p in long if 0.5 < p.start < 0.8]
     assert not gap
@@ -136,7 +156,9 @@ def syllables_in_vowels(sound: Path, grid: Path) -> None:
 
 
 @pytest.mark.parametrize(("name", "phones"), REAL)
-def test_the_mouth_guessed_from_sound_opens_when_the_phones_say_so(shared_data: Path, name: str, phones: str) -> None:
+def test_the_mouth_guessed_from_sound_opens_when_the_phones_say_so(
+    shared_data: Path, name: str, phones: str
+) -> None:
     folder = shared_data / "praatio-speech"
     mouth_opens(folder / f"{name}.wav", folder / f"{phones}.TextGrid")
 
@@ -193,7 +215,9 @@ def test_numbers_that_are_none_are_silence(tmp_path: Path) -> None:
         (b"hello", "sound"),
     ],
 )
-def test_a_file_that_is_no_sound_is_refused_with_a_remedy(tmp_path: Path, content: bytes | None, words: str) -> None:
+def test_a_file_that_is_no_sound_is_refused_with_a_remedy(
+    tmp_path: Path, content: bytes | None, words: str
+) -> None:
     path = tmp_path / "line.wav"
     if content is not None:
         path.write_bytes(content)

@@ -28,7 +28,12 @@ def spoken(toy: Any, tmp_path: Path) -> tuple[Project, Path]:
     soundfile.write(tmp_path / "one.wav", tone(1.0), 16000)
     soundfile.write(tmp_path / "two.flac", tone(2.0, 48000), 48000)
     (tmp_path / "bad.wav").write_bytes(b"RIFF nothing of the kind")
-    lines = {"1": a.Line(audio="one.wav"), "2": a.Line(audio="two.flac"), "3": a.Line(text="No sound."), "4": a.Line(audio="bad.wav")}
+    lines = {
+        "1": a.Line(audio="one.wav"),
+        "2": a.Line(audio="two.flac"),
+        "3": a.Line(text="No sound."),
+        "4": a.Line(audio="bad.wav"),
+    }
     project, notes = load_voices(replace(toy.project(), lines=lines), tmp_path)
     assert len(notes) == 1
     return project, tmp_path
@@ -41,7 +46,9 @@ def test_sounds_come_at_one_rate_and_a_broken_one_is_told_and_spoils_nothing(spo
     assert len(notes) == 1 and "'4'" in notes[0] and "bad.wav" in notes[0]
 
 
-@pytest.mark.parametrize(("rate", "wanted"), [(16000, 44100), (48000, 44100), (8000, 44100), (44100, 44100), (44100, 16000)])
+@pytest.mark.parametrize(
+    ("rate", "wanted"), [(16000, 44100), (48000, 44100), (8000, 44100), (44100, 44100), (44100, 16000)]
+)
 def test_another_rate_keeps_the_tone_and_its_strength(rate: int, wanted: int) -> None:
     out = resampled(tone(0.5, rate), rate, wanted)
     assert len(out) == round(0.5 * wanted)
@@ -51,7 +58,9 @@ def test_another_rate_keeps_the_tone_and_its_strength(rate: int, wanted: int) ->
 
 def test_lines_sound_where_they_are_said_and_one_that_is_cut_fades(spoken: Any) -> None:
     project, folder = spoken
-    plan = perform(project, [a.Say(line="2", at=1.0), a.Say(line="1", at=2.0), a.Say(text="mute", at=5.0)], 10)
+    plan = perform(
+        project, [a.Say(line="2", at=1.0), a.Say(line="1", at=2.0), a.Say(text="mute", at=5.0)], 10
+    )
     sounds, _ = line_sounds(project.lines, folder)
     parts = placed(plan, sounds)
     assert [(round(at, 3), round(len(s) / RATE, 2)) for at, s in parts] == [(1.0, 1.0), (2.0, 1.0)]
@@ -63,8 +72,14 @@ def test_lines_sound_where_they_are_said_and_one_that_is_cut_fades(spoken: Any) 
 
 
 @settings(max_examples=50)
-@given(st.lists(st.tuples(st.floats(0, 3), st.floats(0, 2)), max_size=4), st.integers(0, 4000), st.integers(1, 500))
-def test_any_piece_of_the_track_is_that_piece_of_the_whole(parts: list[tuple[float, float]], start: int, count: int) -> None:
+@given(
+    st.lists(st.tuples(st.floats(0, 3), st.floats(0, 2)), max_size=4),
+    st.integers(0, 4000),
+    st.integers(1, 500),
+)
+def test_any_piece_of_the_track_is_that_piece_of_the_whole(
+    parts: list[tuple[float, float]], start: int, count: int
+) -> None:
     sounds = [(at, np.full(round(length * 1000), 0.2, np.float32)) for at, length in parts]
     whole = mixed(sounds, 0, 5000, 1000)
     assert (mixed(sounds, start, count, 1000) == whole[start : start + count]).all()

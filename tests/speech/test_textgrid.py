@@ -1,4 +1,6 @@
-"""Praat's TextGrid: real files of both formats, broken ones with a reason, anything at all without a crash."""
+"""Praat's TextGrid: real files of both formats, broken ones with a reason, anything at all without a
+crash.
+"""
 
 from __future__ import annotations
 
@@ -111,7 +113,9 @@ def test_a_grid_without_tiers_is_empty(tmp_path: Path) -> None:
         (b"ooBinaryFile\x08TextGrid", "binary Praat file"),
     ],
 )
-def test_what_is_wrong_is_said_with_the_line_and_the_remedy(tmp_path: Path, text: str | bytes, words: str) -> None:
+def test_what_is_wrong_is_said_with_the_line_and_the_remedy(
+    tmp_path: Path, text: str | bytes, words: str
+) -> None:
     with pytest.raises(FileError, match=r"line\.TextGrid") as told:
         read(tmp_path, text)
     assert words in str(told.value) and "Praat" in str(told.value)
@@ -125,7 +129,9 @@ def test_a_file_that_is_not_there_is_named(tmp_path: Path) -> None:
 @settings(max_examples=150, suppress_health_check=[HealthCheck.function_scoped_fixture])
 @given(st.data())
 def test_a_damaged_file_is_read_or_refused(tmp_path: Path, data: st.DataObject) -> None:
-    whole = bytearray((SHORT if data.draw(st.booleans()) else LONG).encode(data.draw(st.sampled_from(["utf-8", "utf-16"]))))
+    whole = bytearray(
+        (SHORT if data.draw(st.booleans()) else LONG).encode(data.draw(st.sampled_from(["utf-8", "utf-16"])))
+    )
     for _ in range(data.draw(st.integers(1, 6))):
         at = data.draw(st.integers(0, len(whole)))
         if data.draw(st.booleans()):
@@ -145,4 +151,6 @@ def test_real_files_are_read(shared_data: Path) -> None:
         grid = read_textgrid(path)
         assert grid.end > 0 and grid.tiers, path.name
     mary = read_textgrid(shared_data / "praatio-speech" / "mary_longfile.TextGrid")
-    assert [t.name for t in mary.tiers] == ["phone", "word", "pitch"] and mary.tiers[1].intervals[1].text == "mary"
+    assert [t.name for t in mary.tiers] == ["phone", "word", "pitch"] and mary.tiers[1].intervals[
+        1
+    ].text == "mary"

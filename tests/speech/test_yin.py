@@ -1,7 +1,8 @@
 """YIN held to what librosa 0.11.0 finds, kept in yin_librosa.npz.
 
 For each case that is `librosa.yin(frames.reshape(-1), sr=rate, fmin=lowest, fmax=highest, frame_length=N,
-hop_length=N, center=False)`; for `pitch0` and `pitch1`, what `pitch` found of a conversation when it was made of that.
+hop_length=N, center=False)`; for `pitch0` and `pitch1`, what `pitch` found of a conversation when it was made
+of that.
 """
 
 from __future__ import annotations
@@ -39,7 +40,9 @@ def glides() -> Array:
     """Voices that rise or fall by up to an octave within a frame."""
     ends = np.geomspace(80, 160, 12)
     slopes = [np.geomspace(a, b, 512) for a in ends for b in (ends[0], ends[-1], 1.5 * a)]
-    return np.array([sum(np.sin(k * 2 * np.pi * np.cumsum(h) / 8000) / k for k in range(1, 5)) for h in slopes])
+    return np.array(
+        [sum(np.sin(k * 2 * np.pi * np.cumsum(h) / 8000) / k for k in range(1, 5)) for h in slopes]
+    )
 
 
 def frames_of(samples: Array, size: int, hop: int) -> Array:
@@ -91,15 +94,21 @@ def test_a_spoken_side_of_a_conversation_has_the_pitch_it_had_by_librosa(side: i
 
 @given(hertz=st.floats(62, 590), rate=st.sampled_from([8000, 8820, 11025]), gain=st.floats(1e-3, 1e3))
 @settings(max_examples=50, deadline=None)
-def test_any_tone_is_found_to_a_tenth_of_a_semitone_however_loud(hertz: float, rate: int, gain: float) -> None:
+def test_any_tone_is_found_to_a_tenth_of_a_semitone_however_loud(
+    hertz: float, rate: int, gain: float
+) -> None:
     frame = tone(hertz, rate)
     found = yin(gain * frame, rate, 60, 600)
-    assert 12 * abs(np.log2(found[0] / hertz)) < 0.1 and found == pytest.approx(yin(frame, rate, 60, 600), rel=1e-6)
+    assert 12 * abs(np.log2(found[0] / hertz)) < 0.1 and found == pytest.approx(
+        yin(frame, rate, 60, 600), rel=1e-6
+    )
 
 
 def test_differences_are_those_of_the_paper_where_nothing_is_heard_behind_a_frame() -> None:
     frame = np.concatenate([np.random.default_rng(1).standard_normal(300), np.zeros(100)])
-    apart = np.array([((frame[: 400 - k] - frame[k:]) ** 2).sum() + (frame[400 - k :] ** 2).sum() for k in range(1, 101)])
+    apart = np.array(
+        [((frame[: 400 - k] - frame[k:]) ** 2).sum() + (frame[400 - k :] ** 2).sum() for k in range(1, 101)]
+    )
     # The samples that are shifted out of the frame are compared with nothing.
     assert np.allclose(differences(frame[None], 100)[0], apart / (np.cumsum(apart) / np.arange(1, 101)))
 
@@ -112,12 +121,18 @@ def test_silence_and_a_steady_level_have_no_period_and_give_the_highest_pitch() 
 
 def test_frames_do_not_mind_each_other() -> None:
     frames = np.concatenate([tones()[:5], np.zeros((1, 512)), glides()[:5]])
-    assert np.allclose(yin(frames, 8000, 60, 600), [yin(f[None], 8000, 60, 600)[0] for f in frames], rtol=1e-12)
+    assert np.allclose(
+        yin(frames, 8000, 60, 600), [yin(f[None], 8000, 60, 600)[0] for f in frames], rtol=1e-12
+    )
     assert yin(frames[:0], 8000, 60, 600).shape == (0,)
 
 
-@pytest.mark.parametrize(("size", "rate", "lowest", "highest"), [(512, 1000, 60, 600), (10, 8000, 60, 600), (512, 8000, 200, 200)])
-def test_pitches_that_frames_cannot_tell_are_refused(size: int, rate: float, lowest: float, highest: float) -> None:
+@pytest.mark.parametrize(
+    ("size", "rate", "lowest", "highest"), [(512, 1000, 60, 600), (10, 8000, 60, 600), (512, 8000, 200, 200)]
+)
+def test_pitches_that_frames_cannot_tell_are_refused(
+    size: int, rate: float, lowest: float, highest: float
+) -> None:
     with pytest.raises(ValueError, match="tell no pitch"):
         yin(np.zeros((3, size)), rate, lowest, highest)
 
@@ -125,11 +140,17 @@ def test_pitches_that_frames_cannot_tell_are_refused(size: int, rate: float, low
 @pytest.mark.parametrize("rate", [11025, 16000, 44100, 48000])
 def test_the_size_of_blocks_does_not_matter(monkeypatch: pytest.MonkeyPatch, rate: int) -> None:
     turn = np.random.default_rng(2)
-    hertz = 140 * 2 ** np.interp(np.arange(4 * rate), np.linspace(0, 4 * rate, 40), turn.uniform(-0.5, 0.5, 40))
-    sound = sum(np.sin(2 * np.pi * k * np.cumsum(hertz) / rate) / k for k in range(1, 7)) * 0.2 + 1e-3 * turn.standard_normal(4 * rate)
+    hertz = 140 * 2 ** np.interp(
+        np.arange(4 * rate), np.linspace(0, 4 * rate, 40), turn.uniform(-0.5, 0.5, 40)
+    )
+    sound = sum(
+        np.sin(2 * np.pi * k * np.cumsum(hertz) / rate) / k for k in range(1, 7)
+    ) * 0.2 + 1e-3 * turn.standard_normal(4 * rate)
     whole = pitch(np.asarray(sound), rate).hertz
     for block in (7, 100):
         monkeypatch.setattr(pitch_module, "_BLOCK", block)
         pieces = pitch(np.asarray(sound), rate).hertz
-        assert np.array_equal(np.isnan(whole), np.isnan(pieces)) and np.nanmax(np.abs(whole / pieces - 1)) < 1e-6
+        assert (
+            np.array_equal(np.isnan(whole), np.isnan(pieces)) and np.nanmax(np.abs(whole / pieces - 1)) < 1e-6
+        )
     assert np.isnan(whole).mean() < 0.1

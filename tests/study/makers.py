@@ -16,7 +16,16 @@ LAYER = "arms"
 
 def small() -> Project:
     """Two stances of the arms; gestures, a fidget, a transition each way: 8 states, 31 connections."""
-    names = ("sides_idle", "hips_idle", "sides_wave", "sides_shrug", "sides_scratch", "hips_point", "sides_to_hips", "hips_to_sides")
+    names = (
+        "sides_idle",
+        "hips_idle",
+        "sides_wave",
+        "sides_shrug",
+        "sides_scratch",
+        "hips_point",
+        "sides_to_hips",
+        "hips_to_sides",
+    )
     project = edits.add_clips(Project("small"), [(f"clips/{n}.glb", 0, "", clip(n, 61)) for n in names])
     ids = {e.name: e.id for e in project.clips.values()}
     for stance in ("sides", "hips"):
@@ -33,11 +42,14 @@ def row(who: str, condition: str, task: str, seconds: float, index: int, **more:
     """A task that was done, without operators; more: fields of the run, `score` and `sitting`."""
     score, sitting = more.pop("score", None), more.pop("sitting", 1)
     spent = dict.fromkeys(SPENT, seconds / len(SPENT))
-    run = TaskRun(who, condition, task, index, seconds, seconds, Counter(), 0.0, 0, 0, 0, {}, spent, True, None)
+    run = TaskRun(
+        who, condition, task, index, seconds, seconds, Counter(), 0.0, 0, 0, 0, {}, spent, True, None
+    )
     return Row(replace(run, **more), sitting, 8, 0.0, score)
 
 
-# Four people, two tasks: who began with what, then seconds of `a` with the meta-graph and by hand, and of `b`.
+# Four people, two tasks: who began with what, then seconds of `a` with the meta-graph and by hand, and of
+# `b`.
 BY_HAND = {
     "P1": ("meta", (100.0, 200.0), (200.0, 400.0)), "P2": ("manual", (100.0, 200.0), (100.0, 800.0)),
     "P3": ("meta", (50.0, 200.0), (200.0, 800.0)), "P4": ("manual", (100.0, 800.0), (100.0, 800.0)),
@@ -55,4 +67,6 @@ def four() -> Data:
                 row(who, condition, task, took[column], 2 * sitting + n, sitting=sitting + 1)
                 for n, (task, took) in enumerate((("a", a), ("b", b)))
             ]
-    return Data("Four people", ("meta", "manual"), {"a": "Task A", "b": "Task B"}, tuple(BY_HAND), tuple(rows))
+    return Data(
+        "Four people", ("meta", "manual"), {"a": "Task A", "b": "Task B"}, tuple(BY_HAND), tuple(rows)
+    )

@@ -1,7 +1,9 @@
-"""Goes through a sitting without a window, as fast as it can, again and again: what is killed to see whether anything is lost.
+"""Goes through a sitting without a window, as fast as it can, again and again: what is killed to see whether
+anything is lost.
 
-`python scripted.py STUDY PARTICIPANT`. Reads from standard input how many bytes of log to live for, and milliseconds on top: a child is
-made that works on the sitting and is killed then, and "killed" is printed; "ended" when the sitting was over before.
+`python scripted.py STUDY PARTICIPANT`. Reads from standard input how many bytes of log to live for, and
+milliseconds on top: a child is made that works on the sitting and is killed then, and "killed" is printed;
+"ended" when the sitting was over before.
 """
 
 from __future__ import annotations
@@ -38,7 +40,10 @@ def go_through(study_path: Path, participant: str) -> None:
         project = reopen(sitting.file)[0].project
         journal = Journal(journal_path(sitting.file), sitting.file)
         while len(project.graphs["arms"].stances) < EDITS:
-            before, project = project, edits.add_stance(project, "arms", f"stance {len(project.graphs['arms'].stances)}")
+            before, project = (
+                project,
+                edits.add_stance(project, "arms", f"stance {len(project.graphs['arms'].stances)}"),
+            )
             journal.edit(before, project)
             sitting.writer.add("edit", what="stance", words="New stance", clips=[])
             time.sleep(0.001)  # on a fast machine, too, there are moments to be killed at

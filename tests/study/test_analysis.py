@@ -26,7 +26,8 @@ DOCS = Path(__file__).resolve().parents[2] / "docs" / "study-report.md"
 NOBODY = Data("Empty", ("meta", "manual"), {"a": "A"}, ("P1",))
 
 
-# --- edge cases ------------------------------------------------------------------------------------------------------
+# --- edge cases
+# --------------------------------------------------------------------------------------------------
 
 
 def test_nobody_has_begun() -> None:
@@ -43,9 +44,15 @@ def test_one_condition_cannot_be_compared() -> None:
 
 
 def test_one_person_has_a_ratio_without_an_interval() -> None:
-    found = analyse(replace(NOBODY, rows=(row("P1", "meta", "a", 10.0, 0), row("P1", "manual", "a", 79.0, 1))))
+    found = analyse(
+        replace(NOBODY, rows=(row("P1", "meta", "a", 10.0, 0), row("P1", "manual", "a", 79.0, 1)))
+    )
     assert found.time is not None
-    assert (found.time.ratio.value, found.time.ratio.low, found.time.test.p) == (pytest.approx(7.9), None, None)
+    assert (found.time.ratio.value, found.time.ratio.low, found.time.test.p) == (
+        pytest.approx(7.9),
+        None,
+        None,
+    )
     assert found.time.cautions == ("One person's ratio has no interval: it says nothing about other people.",)
     assert "no interval, 1 person" in page(found)
 
@@ -63,15 +70,25 @@ def test_a_study_may_say_how_long_operators_take_its_people(tmp_path: Path) -> N
 
 
 def test_what_was_not_finished_or_took_no_time_is_left_out() -> None:
-    rows = (row("P1", "meta", "a", 10.0, 0), row("P1", "manual", "a", 79.0, 1, finished=False), row("P1", "manual", "a", 0.0, 2))
+    rows = (
+        row("P1", "meta", "a", 10.0, 0),
+        row("P1", "manual", "a", 79.0, 1, finished=False),
+        row("P1", "manual", "a", 0.0, 2),
+    )
     assert analyse(replace(NOBODY, rows=rows)).time is None
 
 
 def test_what_the_time_limit_ended_counts_and_is_told() -> None:
-    rows = [row("P1", "meta", "a", 10.0, 0), row("P1", "manual", "a", 60.0, 1, finished=False, timed_out=True)]
+    rows = [
+        row("P1", "meta", "a", 10.0, 0),
+        row("P1", "manual", "a", 60.0, 1, finished=False, timed_out=True),
+    ]
     found = compare(rows)
     assert found is not None and found.ratio.value == pytest.approx(6.0)
-    assert "1 of 2 tasks were ended by the time limit: their true times are longer than those used here." in found.cautions
+    assert (
+        "1 of 2 tasks were ended by the time limit: their true times are longer than those used here."
+        in found.cautions
+    )
 
 
 def test_people_who_did_only_one_are_left_out_and_told() -> None:
@@ -81,7 +98,10 @@ def test_people_who_did_only_one_are_left_out_and_told() -> None:
 
 
 def test_people_who_did_one_each_are_compared_as_groups() -> None:
-    rows = [row(f"P{n}", c, "a", s, 0) for n, (c, s) in enumerate([("meta", 10.0), ("meta", 20.0), ("manual", 80.0), ("manual", 160.0)])]
+    rows = [
+        row(f"P{n}", c, "a", s, 0)
+        for n, (c, s) in enumerate([("meta", 10.0), ("meta", 20.0), ("manual", 80.0), ("manual", 160.0)])
+    ]
     found = compare(rows)
     assert found is not None and not found.paired
     # 2 doublings of spread apart by 3: error sqrt(0.5 / 2 + 0.5 / 2), 2 degrees of freedom.
@@ -89,40 +109,58 @@ def test_people_who_did_one_each_are_compared_as_groups() -> None:
     assert (found.ratio.value, found.ratio.low) == (pytest.approx(8.0), pytest.approx(2 ** (3 - half)))
     assert "The interval of the ratio includes 1" in found.cautions[-1]
     alone = compare(rows[1:3])
-    assert alone is not None and alone.cautions == ("A group of one has no interval: this says nothing about other people.",)
+    assert alone is not None and alone.cautions == (
+        "A group of one has no interval: this says nothing about other people.",
+    )
 
 
 def test_other_tasks_in_each_condition_are_compared_by_clips() -> None:
-    rows = [replace(row("P1", "meta", "a", 80.0, 0), clips=8), replace(row("P1", "manual", "b", 640.0, 1), clips=16)]
+    rows = [
+        replace(row("P1", "meta", "a", 80.0, 0), clips=8),
+        replace(row("P1", "manual", "b", 640.0, 1), clips=16),
+    ]
     found = compare(rows)
     assert found is not None and found.unit == "clip"
     assert found.ratio.value == pytest.approx(4.0)
 
 
-# --- by hand ---------------------------------------------------------------------------------------------------------
+# --- by hand
+# --------------------------------------------------------------------------------------------------
 
 
 def test_the_example_of_the_documentation_by_hand() -> None:
     found = analyse(four()).time
     assert found is not None
-    # Each person's ratio over both tasks is 2, 4, 4, 8: 1, 2, 2, 3 doublings, mean 2, deviation sqrt(2/3), error sqrt(1/6).
+    # Each person's ratio over both tasks is 2, 4, 4, 8: 1, 2, 2, 3 doublings, mean 2, deviation sqrt(2/3),
+    # error sqrt(1/6).
     assert [p.ratio for p in found.people] == [pytest.approx(r) for r in (2, 4, 4, 8)]
     half = 3.182446305283708 * sqrt(1 / 6)
-    assert (found.ratio.value, found.ratio.low, found.ratio.high) == tuple(pytest.approx(2**x, rel=1e-12) for x in (2, 2 - half, 2 + half))
+    assert (found.ratio.value, found.ratio.low, found.ratio.high) == tuple(
+        pytest.approx(2**x, rel=1e-12) for x in (2, 2 - half, 2 + half)
+    )
     assert found.means["meta"].value == pytest.approx(100 * 2 ** (1 / 8))
     assert found.means["manual"].value == pytest.approx(400 * 2 ** (1 / 8))
-    # t = 2 / sqrt(1/6); of 3 degrees of freedom its chance is 1 - 2/pi (angle + sin cos), of the angle whose tangent is t / sqrt(3).
+    # t = 2 / sqrt(1/6); of 3 degrees of freedom its chance is 1 - 2/pi (angle + sin cos), of the angle whose
+    # tangent is t / sqrt(3).
     angle = atan(2 * sqrt(2))
     assert found.test.statistic == pytest.approx(2 * sqrt(6), rel=1e-12)
     assert found.test.p == pytest.approx(1 - 2 / pi * (angle + 2 * sqrt(2) / 9), rel=1e-10)
-    assert found.ranked is not None and (found.ranked.statistic, found.ranked.p) == (10, pytest.approx(2 / 16))
+    assert found.ranked is not None and (found.ranked.statistic, found.ranked.p) == (
+        10,
+        pytest.approx(2 / 16),
+    )
     assert found.biserial == 1.0
-    assert found.effect is not None and found.effect.value == pytest.approx(sqrt(pi), rel=1e-12), "sqrt(6) times gamma(3/2) / sqrt(3/2)"
+    assert found.effect is not None and found.effect.value == pytest.approx(sqrt(pi), rel=1e-12), (
+        "sqrt(6) times gamma(3/2) / sqrt(3/2)"
+    )
     # Those who began with the meta-graph: 1 and 2 doublings; by hand: 2 and 3.
     assert found.order is not None
     assert found.order.second.value == pytest.approx(2**-0.5)
     assert found.order.second.low == pytest.approx(2 ** (-0.5 - 4.302652729911275 * sqrt(0.5) / 2), rel=1e-9)
-    assert (found.order.adjusted.value, found.order.carried.value) == (pytest.approx(4.0), pytest.approx(2**0.25))
+    assert (found.order.adjusted.value, found.order.carried.value) == (
+        pytest.approx(4.0),
+        pytest.approx(2**0.25),
+    )
 
 
 def test_the_documentation_tells_the_same_figures() -> None:
@@ -137,13 +175,20 @@ def test_tests_of_several_tasks_are_corrected() -> None:
     alone = {task: test.p or 1 for task, (_, test, _) in found.by_task.items()}
     assert alone["b"] < alone["a"]
     corrected = {task: p for task, (_, _, p) in found.by_task.items()}
-    assert corrected == {"b": pytest.approx(2 * alone["b"]), "a": pytest.approx(max(2 * alone["b"], alone["a"]))}
+    assert corrected == {
+        "b": pytest.approx(2 * alone["b"]),
+        "a": pytest.approx(max(2 * alone["b"], alone["a"])),
+    }
 
 
 def test_mistakes_and_ratings_are_means_of_people() -> None:
     good, bad = Score(right=10), Score(right=6, missing=4)
     rows = [replace(r, score=good if r.run.condition == "meta" else bad) for r in four().rows]
-    ratings = tuple(Rating(f"P{n}", "SUS", c, v) for n, v in enumerate((50.0, 60.0, 70.0), 1) for c, v in (("meta", v + 10), ("manual", v)))
+    ratings = tuple(
+        Rating(f"P{n}", "SUS", c, v)
+        for n, v in enumerate((50.0, 60.0, 70.0), 1)
+        for c, v in (("meta", v + 10), ("manual", v))
+    )
     found = analyse(replace(four(), rows=tuple(rows), ratings=ratings))
     recall = next(m for m in found.mistakes if m.name.startswith("recall"))
     assert (recall.means["meta"].value, recall.means["manual"].value) == (100.0, 60.0)
@@ -151,8 +196,12 @@ def test_mistakes_and_ratings_are_means_of_people() -> None:
     assert (sus.means["meta"].value, sus.difference.value if sus.difference else None) == (70.0, -10.0)
     assert [name for name, _, _ in found.together] == ["time", "F1 of connections, %", "SUS"]
     lucky = [replace(r, score=Score(right=10, missing=int(r.run.participant == "P1"))) for r in four().rows]
-    bounded = next(m for m in analyse(replace(four(), rows=tuple(lucky))).mistakes if m.name.startswith("recall")).means["meta"]
-    assert bounded.high == 100.0 and bounded.low is not None and bounded.low < bounded.value < 100.0, "no share is above all"
+    bounded = next(
+        m for m in analyse(replace(four(), rows=tuple(lucky))).mistakes if m.name.startswith("recall")
+    ).means["meta"]
+    assert bounded.high == 100.0 and bounded.low is not None and bounded.low < bounded.value < 100.0, (
+        "no share is above all"
+    )
     assert not any(m.name == "visible jumps" for m in found.mistakes), "they were not judged"
 
 
@@ -169,7 +218,8 @@ def test_the_published_example_has_no_interval() -> None:
     assert "says nothing about other people" in told(found) and "24.87" in told(found)
 
 
-# --- through files ---------------------------------------------------------------------------------------------------
+# --- through files
+# --------------------------------------------------------------------------------------------------
 
 
 @pytest.fixture(scope="module")
@@ -216,13 +266,23 @@ def test_whatever_is_missing_or_odd_is_told_and_the_rest_is_used(study: Path) ->
     found = collect(study)
     told_ = "\n".join(found.missing)
     for words in (
-        "P01: has not begun.", "P02: the last line of the log was not written whole", "P02: has not come to the end.",
+        "P01: has not begun.",
+        "P02: the last line of the log was not written whole",
+        "P02: has not come to the end.",
         "was not finished; its time is left out.",
-        "P03, small (meta): its project was changed after the sitting.", "P03, large (manual): its project cannot be used",
+        "P03, small (meta): its project was changed after the sitting.",
+        "P03, large (manual): its project cannot be used",
         "stranger: a folder of data, but nobody of that name takes part",
-    ):  # fmt: skip
+    ):
         assert words in told_, words
-    assert next(r for r in found.rows if (r.run.participant, r.run.task, r.run.condition) == ("P03", "large", "manual")).score is None
+    assert (
+        next(
+            r
+            for r in found.rows
+            if (r.run.participant, r.run.task, r.run.condition) == ("P03", "large", "manual")
+        ).score
+        is None
+    )
     assert analyse(found).time is not None
     for words in found.missing:
         assert words.replace("'", "&#x27;") in page(analyse(found))

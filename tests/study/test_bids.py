@@ -38,10 +38,19 @@ def rows(path: Path) -> list[dict[str, str]]:
 
 def test_files_are_named_as_bids_names_them(out: Path) -> None:
     names = {p.relative_to(out).as_posix() for p in out.rglob("*") if p.is_file()}
-    assert {"dataset_description.json", "README", "participants.tsv", "participants.json", "derivatives/clips.csv"} <= names
+    assert {
+        "dataset_description.json",
+        "README",
+        "participants.tsv",
+        "participants.json",
+        "derivatives/clips.csv",
+    } <= names
     events = [n for n in names if n.startswith("sub-")]
     assert len(events) == 2 * 2 * 2 * 2
-    assert all(re.fullmatch(r"(sub-P0\d)/beh/\1_task-(small|large)_acq-(meta|manual)_events\.(tsv|json)", n) for n in events)
+    assert all(
+        re.fullmatch(r"(sub-P0\d)/beh/\1_task-(small|large)_acq-(meta|manual)_events\.(tsv|json)", n)
+        for n in events
+    )
     assert json.loads((out / "dataset_description.json").read_text())["BIDSVersion"] == "1.9.0"
     assert "simulated" in (out / "README").read_text()
 
@@ -60,7 +69,9 @@ def test_onsets_ascend_and_operators_add_up(study: Study, out: Path) -> None:
         found = rows(out / f"sub-P01/beh/sub-P01_task-{run.task}_acq-{run.condition}_events.tsv")
         onsets = [float(r["onset"]) for r in found]
         assert onsets == sorted(onsets) and onsets[0] >= 0
-        assert max(o + float(r["duration"]) for o, r in zip(onsets, found, strict=True)) == pytest.approx(run.seconds, abs=0.01)
+        assert max(o + float(r["duration"]) for o, r in zip(onsets, found, strict=True)) == pytest.approx(
+            run.seconds, abs=0.01
+        )
         assert sum(int(r["keys"]) for r in found if r["keys"] != "n/a") == run.operators["K"]
 
 
@@ -76,7 +87,9 @@ def test_time_goes_on_over_a_restart(study: Study, tmp_path: Path) -> None:
     again = read_study(tmp_path / "study")
     write_bids(again, analyse(collect(again.folder, jumps=False)), tmp_path / "out")
     path = next((tmp_path / "out" / "sub-P01" / "beh").glob("*_events.tsv"))
-    assert all(float(a["onset"]) <= float(b["onset"]) for a, b in zip(rows(path), rows(path)[1:], strict=False))
+    assert all(
+        float(a["onset"]) <= float(b["onset"]) for a, b in zip(rows(path), rows(path)[1:], strict=False)
+    )
 
 
 def test_people_who_have_not_begun_are_left_out(study: Study, tmp_path: Path) -> None:

@@ -1,4 +1,6 @@
-"""Logs lose nothing that was written, say what is wrong with them, and add up to the times that were spent."""
+"""Logs lose nothing that was written, say what is wrong with them, and add up to the times that were
+spent.
+"""
 
 from __future__ import annotations
 
@@ -149,7 +151,11 @@ def test_lines_that_are_damaged_are_told_and_the_others_kept(story):
     log = read(story.path)
     assert [e["n"] for e in log.events] == [0, 1, 3, 5]
     assert [p.split(":")[0] for p in log.problems] == ["line 3", "line 5", "line 6"]
-    assert "no JSON" in log.problems[0] and "event 4 is missing" in log.problems[1] and "there twice" in log.problems[2]
+    assert (
+        "no JSON" in log.problems[0]
+        and "event 4 is missing" in log.problems[1]
+        and "there twice" in log.problems[2]
+    )
 
 
 def test_a_number_is_not_used_again_when_the_last_line_cannot_be_read(story):
@@ -190,8 +196,22 @@ def test_whatever_is_in_the_file_is_read_without_an_error(tmp_path_factory, cont
         st.fixed_dictionaries(
             {"type": st.sampled_from(TYPES), "mono": st.floats(-1e6, 1e6), "run": st.sampled_from("ab")},
             optional={
-                k: st.one_of(st.none(), st.text(max_size=3), st.integers(), st.lists(st.integers(), max_size=2))
-                for k in ("name", "state", "index", "K", "drag_s", "clips", "what", "condition", "path", "value", "item")
+                k: st.one_of(
+                    st.none(), st.text(max_size=3), st.integers(), st.lists(st.integers(), max_size=2)
+                )
+                for k in (
+                    "name",
+                    "state",
+                    "index",
+                    "K",
+                    "drag_s",
+                    "clips",
+                    "what",
+                    "condition",
+                    "path",
+                    "value",
+                    "item",
+                )
             },
         ),
         max_size=12,
@@ -310,8 +330,18 @@ def test_a_task_that_was_broken_off_is_not_finished_nor_is_one_that_ran_out_of_t
     story(0, "phase", state="begin", **TASK | {"condition": "manual", "index": 5})
     story(2, "edit", what="link", clips=["nod"])
     first, second = story.log().tasks()
-    assert (first.finished, first.timed_out, first.artefact, first.digest) == (False, True, "4-ten-meta.metagraph.yaml", "abc")
-    assert (second.finished, second.timed_out, second.condition, second.seconds) == (False, False, "manual", 2)
+    assert (first.finished, first.timed_out, first.artefact, first.digest) == (
+        False,
+        True,
+        "4-ten-meta.metagraph.yaml",
+        "abc",
+    )
+    assert (second.finished, second.timed_out, second.condition, second.seconds) == (
+        False,
+        False,
+        "manual",
+        2,
+    )
 
 
 def test_the_last_answer_to_an_item_counts(story):
@@ -322,4 +352,7 @@ def test_the_last_answer_to_an_item_counts(story):
     story(1, "answer", questionnaire="sus", item="sus1", value=5)
     story(0, "phase", state="end", **about)
     found = story.log().answers()
-    assert [(a.item, a.value, a.condition, a.index) for a in found] == [("sus1", 5, "meta", 7), ("sus2", 1, "meta", 7)]
+    assert [(a.item, a.value, a.condition, a.index) for a in found] == [
+        ("sus1", 5, "meta", 7),
+        ("sus2", 1, "meta", 7),
+    ]

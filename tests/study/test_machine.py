@@ -26,7 +26,13 @@ def test_a_meta_graph_is_expanded_and_known_by_its_clips() -> None:
     found = normal(small())[LAYER]
     assert len(found.states) == 8 and len(found.connections) == size(small()).connections == 28
     wave = found.states["sides_wave.glb"]
-    assert (wave.kind, found.stances[wave.stance or ""], wave.start, wave.end, wave.loop) == ("gesture", "sides", 0.0, 2.0, False)
+    assert (wave.kind, found.stances[wave.stance or ""], wave.start, wave.end, wave.loop) == (
+        "gesture",
+        "sides",
+        0.0,
+        2.0,
+        False,
+    )
     assert ("sides_wave.glb", "sides_idle.glb") in found.connections
     assert ("sides_wave.glb", "hips_idle.glb") not in found.connections
     assert found.connections["sides_idle.glb", "sides_wave.glb"].leave is None
@@ -55,8 +61,12 @@ def test_a_link_from_any_state_stands_for_one_from_every_other() -> None:
     own = [*project.manual[LAYER].links][1]
     project = manual_edits.update_links(project, [own], blend=0.7)
     found = normal(project)[LAYER]
-    assert found.connections.keys() == {("idle.glb", "wave.glb"), ("nod.glb", "wave.glb")}, "a loop follows itself anyway"
-    assert found.connections["idle.glb", "wave.glb"].blend == 0.7, "a link of its own comes before one from any state"
+    assert found.connections.keys() == {("idle.glb", "wave.glb"), ("nod.glb", "wave.glb")}, (
+        "a loop follows itself anyway"
+    )
+    assert found.connections["idle.glb", "wave.glb"].blend == 0.7, (
+        "a link of its own comes before one from any state"
+    )
     assert found.connections["nod.glb", "wave.glb"].leave is None, "a request is answered at once"
 
 
@@ -72,7 +82,12 @@ def test_what_ends_with_its_blend_is_left_at_its_end() -> None:
 
 
 def test_uses_takes_and_files_that_are_called_alike_are_told_apart() -> None:
-    some = [("a/x.glb", 0, "", clip("x")), ("b/x.glb", 0, "", clip("y")), ("b/x.glb", 1, "", clip("z")), ("b/w.glb", 0, "", clip("w"))]
+    some = [
+        ("a/x.glb", 0, "", clip("x")),
+        ("b/x.glb", 0, "", clip("y")),
+        ("b/x.glb", 1, "", clip("z")),
+        ("b/w.glb", 0, "", clip("w")),
+    ]
     project = edits.add_clips(Project(), some)
     assert [*clip_names(project).values()] == ["a/x.glb", "b/x.glb", "b/x.glb:1", "w.glb"]
     project = edits.add_stance(project, LAYER, "rest", [next(iter(project.clips))])
@@ -95,4 +110,6 @@ def test_every_project_has_a_normal_form_as_large_as_its_machine(project: Projec
     assert sum(len(m.states) for m in found.values()) == size(project).states
     assert sum(len(m.connections) for m in found.values()) == size(project).connections
     by_hand = normal(drawn(project), manual=True)
-    assert {x: m.connections.keys() for x, m in by_hand.items()} == {x: m.connections.keys() for x, m in found.items()}
+    assert {x: m.connections.keys() for x, m in by_hand.items()} == {
+        x: m.connections.keys() for x, m in found.items()
+    }

@@ -54,7 +54,10 @@ def test_four_participants_see_every_order_of_two_conditions_and_two_tasks() -> 
 def test_orders_are_the_same_for_ever() -> None:
     assert shuffled("abcdef", 0) == list("dcbafe")
     assert shuffled("abcdef", 1) == list("cfeabd")
-    assert latin(["meta", "manual"], ["a", "b", "c"], 5, 11) == (("meta", ("b", "a", "c")), ("manual", ("b", "c", "a")))
+    assert latin(["meta", "manual"], ["a", "b", "c"], 5, 11) == (
+        ("meta", ("b", "a", "c")),
+        ("manual", ("b", "c", "a")),
+    )
 
 
 def test_a_seed_moves_all_but_loses_none() -> None:

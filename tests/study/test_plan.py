@@ -35,7 +35,13 @@ def test_the_least_a_study_says_is_enough() -> None:
     plan = from_text(SMALL)
     assert plan.ids == ("P01", "P02")
     assert plan.task("ten").name == "ten" and plan.task("ten").minutes is None
-    assert (plan.order, plan.when, plan.tolerance, plan.allow, plan.questions()) == ("latin", "after_condition", 0.1, (), ())
+    assert (plan.order, plan.when, plan.tolerance, plan.allow, plan.questions()) == (
+        "latin",
+        "after_condition",
+        0.1,
+        (),
+        (),
+    )
 
 
 def test_pseudonyms_can_be_given_and_many_participants_are_numbered_alike_wide() -> None:
@@ -68,13 +74,33 @@ def test_a_study_in_a_folder_is_found(tiny: Path) -> None:
         ("clips: clips", "clips: clips, minutes: 0", "(tasks[0].minutes)"),
         ("clips: clips", "clips: ''", "there are no clips"),
         ("tasks:", "training: [{condition: x, clips: y}]\ntasks:", "line 5 (training"),
-        ("[meta, manual]", "[meta]\ntraining: [{condition: manual, clips: y}]", "'manual' is not among the conditions"),
-        ("tasks:", "questionnaires: [susi]\ntasks:", "there is no questionnaire 'susi' built in; there are sus, tlx, tlx_weighted"),
+        (
+            "[meta, manual]",
+            "[meta]\ntraining: [{condition: manual, clips: y}]",
+            "'manual' is not among the conditions",
+        ),
+        (
+            "tasks:",
+            "questionnaires: [susi]\ntasks:",
+            "there is no questionnaire 'susi' built in; there are sus, tlx, tlx_weighted",
+        ),
         ("tasks:", "questionnaires: [sus, sus]\ntasks:", "one is there twice"),
-        ("tasks:", "questionnaires: [{id: sus, items: [{id: a, text: b, words: true}]}]\ntasks:", "'sus' is built in"),
+        (
+            "tasks:",
+            "questionnaires: [{id: sus, items: [{id: a, text: b, words: true}]}]\ntasks:",
+            "'sus' is built in",
+        ),
         ("tasks:", "questionnaires: [{id: q, items: [{id: a, text: b}]}]\ntasks:", "one of scale, choices"),
-        ("tasks:", "questionnaires: [{id: q, items: [{id: a, text: b, scale: {from: 3, to: 1}}]}]\ntasks:", "goes up"),
-        ("tasks:", "questionnaires: [{id: q, items: [{id: a, text: b, choices: [x]}]}]\ntasks:", "two choices"),
+        (
+            "tasks:",
+            "questionnaires: [{id: q, items: [{id: a, text: b, scale: {from: 3, to: 1}}]}]\ntasks:",
+            "goes up",
+        ),
+        (
+            "tasks:",
+            "questionnaires: [{id: q, items: [{id: a, text: b, choices: [x]}]}]\ntasks:",
+            "two choices",
+        ),
         ("tasks:", "order: {given: {P01: [meta]}}\ntasks:", "'P02' is given no order"),
         ("tasks:", "order: {given: {P01: [meta], P02: [meta/six]}}\ntasks:", "'meta/six' is neither"),
         ("tasks:", "order: {given: {P01: [meta], P02: [meta, meta]}}\ntasks:", "once"),
@@ -103,7 +129,20 @@ def test_a_study_that_is_not_there_or_no_text_is_told(tmp_path: Path) -> None:
         lambda x: (
             st.lists(x, max_size=3)
             | st.dictionaries(
-                st.sampled_from(("study", "title", "participants", "conditions", "tasks", "id", "clips", "order", "given", "items")),
+                st.sampled_from(
+                    (
+                        "study",
+                        "title",
+                        "participants",
+                        "conditions",
+                        "tasks",
+                        "id",
+                        "clips",
+                        "order",
+                        "given",
+                        "items",
+                    )
+                ),
                 x,
                 max_size=6,
             )
@@ -120,9 +159,15 @@ def test_whatever_yaml_says_is_a_plan_or_a_file_error(data: object) -> None:
 def test_orders_are_latin_fixed_or_given() -> None:
     two = SMALL + "- {id: twenty, clips: clips}\n"
     assert {from_text(two).blocks(p)[0][0] for p in ("P01", "P02")} == {"meta", "manual"}
-    assert from_text(two + "order: fixed").blocks("P02") == (("meta", ("ten", "twenty")), ("manual", ("ten", "twenty")))
+    assert from_text(two + "order: fixed").blocks("P02") == (
+        ("meta", ("ten", "twenty")),
+        ("manual", ("ten", "twenty")),
+    )
     given = from_text(
-        two + "order: {given: {P01: [manual, meta], P02: [meta/twenty, meta/ten, manual/ten, meta/ten]}}".replace(", meta/ten]", "]")
+        two
+        + "order: {given: {P01: [manual, meta], P02: [meta/twenty, meta/ten, manual/ten, meta/ten]}}".replace(
+            ", meta/ten]", "]"
+        )
     )
     assert given.blocks("P01") == (("manual", ("ten", "twenty")), ("meta", ("ten", "twenty")))
     assert given.blocks("P02") == (("meta", ("twenty", "ten")), ("manual", ("ten",)))

@@ -4,7 +4,16 @@ from __future__ import annotations
 
 import pytest
 
-from metagraph.study.questions import SUS, TLX, TLX_PAIRS, TLX_SCALES, TLX_WEIGHTED, sus_score, tlx_raw, tlx_weighted
+from metagraph.study.questions import (
+    SUS,
+    TLX,
+    TLX_PAIRS,
+    TLX_SCALES,
+    TLX_WEIGHTED,
+    sus_score,
+    tlx_raw,
+    tlx_weighted,
+)
 
 
 def sus(*values: int) -> dict[str, int]:

@@ -23,12 +23,23 @@ from tests.study.makers import four
 
 @pytest.fixture(scope="module")
 def results(tmp_path_factory: pytest.TempPathFactory) -> Results:
-    return analyse(collect(write_study(tmp_path_factory.mktemp("made") / "study", Truth(participants=6)).folder))
+    return analyse(
+        collect(write_study(tmp_path_factory.mktemp("made") / "study", Truth(participants=6)).folder)
+    )
 
 
 def test_the_page_is_whole_and_needs_nothing_beside_it(results: Results) -> None:
     text = page(results)
-    for title in ("Time", "Order", "Practice", "Where the time went", "Mistakes", "Ratings", "The tests together", "How it was reckoned"):
+    for title in (
+        "Time",
+        "Order",
+        "Practice",
+        "Where the time went",
+        "Mistakes",
+        "Ratings",
+        "The tests together",
+        "How it was reckoned",
+    ):
         assert f">{title}</h" in text, title
     assert "simulated" in text and "Nothing is missing." in text
     assert not re.search(r"https?://(?!www\.w3\.org)", text) and "<script" not in text and "<img" not in text
@@ -73,13 +84,22 @@ def test_tables_have_a_row_for_each(results: Results) -> None:
     assert len(found["questionnaires.csv"]) == 6 * 2 * (10 + 6) + 6 * 2 * 2
     task = found["tasks.csv"][0]
     assert float(task["seconds"]) == pytest.approx(
-        sum(float(task[f"{s}_seconds"]) for s in ("dragging", "timing", "looking", "undoing", "other")), abs=1e-4
+        sum(float(task[f"{s}_seconds"]) for s in ("dragging", "timing", "looking", "undoing", "other")),
+        abs=1e-4,
     )
     assert found["participants.csv"][0]["ratio"] != "n/a"
 
 
 def test_cells_say_what_is_not_known() -> None:
-    assert [cell(v) for v in (None, True, 2.5, 3.0, 0.1234567, "x", 7)] == ["n/a", "yes", "2.5", "3", "0.123457", "x", "7"]
+    assert [cell(v) for v in (None, True, 2.5, 3.0, 0.1234567, "x", 7)] == [
+        "n/a",
+        "yes",
+        "2.5",
+        "3",
+        "0.123457",
+        "x",
+        "7",
+    ]
 
 
 def test_the_first_sentence_is_the_finding(results: Results) -> None:
@@ -89,7 +109,12 @@ def test_the_first_sentence_is_the_finding(results: Results) -> None:
 
 
 def test_chances_are_written_as_journals_do() -> None:
-    assert [chance(p) for p in (None, 0.0004, 0.0125, 1.0)] == ["no p", "p &lt; 0.001", "p = 0.013", "p = 1.000"]
+    assert [chance(p) for p in (None, 0.0004, 0.0125, 1.0)] == [
+        "no p",
+        "p &lt; 0.001",
+        "p = 0.013",
+        "p = 1.000",
+    ]
 
 
 def test_times_are_written_as_people_read_them() -> None:

@@ -35,7 +35,9 @@ def words(found: Score) -> list[str]:
 def linked(project: Project, source: str, target: str) -> str:
     machine = project.manual[LAYER]
     names = {i: s.name for i, s in machine.states.items()}
-    return next(x.id for x in machine.links.values() if (names[x.source], names[x.target]) == (source, target))
+    return next(
+        x.id for x in machine.links.values() if (names[x.source], names[x.target]) == (source, target)
+    )
 
 
 def test_nothing_beside_nothing_is_neither_right_nor_wrong() -> None:
@@ -62,7 +64,9 @@ def test_the_same_is_right_in_both_conditions() -> None:
         found = scored(project)
         assert (found.precision, found.recall, found.f1) == (1.0, 1.0, 1.0)
         assert (found.placed, found.states, words(found)) == (8, 8, [])
-        assert found.essential == found.essential_right == 12, "six actions, each entered from rest and left to it"
+        assert found.essential == found.essential_right == 12, (
+            "six actions, each entered from rest and left to it"
+        )
 
 
 def test_names_of_stances_and_the_order_of_placing_do_not_matter() -> None:
@@ -88,17 +92,26 @@ def test_a_link_to_the_wrong_state_is_missing_extra_and_wrong() -> None:
     machine = project.manual[LAYER]
     ident = linked(project, "sides_wave", "sides_idle")
     hips = next(i for i, s in machine.states.items() if s.name == "hips_idle")
-    found = scored(project.with_manual(replace(machine, links={**machine.links, ident: replace(machine.links[ident], target=hips)})))
+    found = scored(
+        project.with_manual(
+            replace(machine, links={**machine.links, ident: replace(machine.links[ident], target=hips)})
+        )
+    )
     assert (found.missing, found.extra, found.wrong) == (1, 1, 1)
     assert "sides_wave.glb should not lead to hips_idle.glb." in words(found)
-    assert words(found)[0] == "sides_wave.glb is a transition rather than a gesture.", "it is now on its way to the other stance"
+    assert words(found)[0] == "sides_wave.glb is a transition rather than a gesture.", (
+        "it is now on its way to the other stance"
+    )
 
 
 def test_a_clip_on_the_wrong_stance_is_named_with_both() -> None:
     project = small()
-    found = scored(edits.move_actions(project, [action(project, "sides_wave")], "gesture", stance(project, "hips")))
+    found = scored(
+        edits.move_actions(project, [action(project, "sides_wave")], "gesture", stance(project, "hips"))
+    )
     assert words(found)[0] == "sides_wave.glb is of hips rather than of sides."
-    # To and from its stance's loop, two more actions and its transitions in and out: 4 + 4 are lost, 3 + 3 too many.
+    # To and from its stance's loop, two more actions and its transitions in and out: 4 + 4 are lost, 3 + 3
+    # too many.
     assert (found.count("stance"), found.missing, found.extra) == (1, 8, 6)
     assert found.placed == 7
 
@@ -106,7 +119,13 @@ def test_a_clip_on_the_wrong_stance_is_named_with_both() -> None:
 def test_a_transition_to_the_wrong_stance_is_named_with_its_ends() -> None:
     project = small()
     found = scored(
-        edits.move_actions(project, [action(project, "sides_to_hips")], "transition", stance(project, "hips"), stance(project, "sides"))
+        edits.move_actions(
+            project,
+            [action(project, "sides_to_hips")],
+            "transition",
+            stance(project, "hips"),
+            stance(project, "sides"),
+        )
     )
     assert words(found)[0] == "sides_to_hips.glb is of hips to sides rather than of sides to hips."
 
@@ -135,7 +154,9 @@ def test_a_wrong_kind_layer_and_limb_are_named() -> None:
 
 def test_a_requested_link_makes_a_gesture_of_a_fidget() -> None:
     project = drawn(small())
-    fidgets = [x.id for x in project.manual[LAYER].links.values() if project.state(x.target).name == "sides_scratch"]
+    fidgets = [
+        x.id for x in project.manual[LAYER].links.values() if project.state(x.target).name == "sides_scratch"
+    ]
     found = scored(manual_edits.update_links(project, fidgets, condition={"when": "request"}))
     assert words(found) == ["sides_scratch.glb is a gesture rather than a fidget."]
 
@@ -143,7 +164,9 @@ def test_a_requested_link_makes_a_gesture_of_a_fidget() -> None:
 def test_times_count_beyond_the_tolerance_only() -> None:
     project = small()
     wave = action(project, "sides_wave")
-    near = edits.update_actions(project, [wave], timing={"start": 0.1, "end": 1.9, "blend_in": 0.3, "blend_out": 0.15})
+    near = edits.update_actions(
+        project, [wave], timing={"start": 0.1, "end": 1.9, "blend_in": 0.3, "blend_out": 0.15}
+    )
     assert words(scored(near)) == []
     assert len(words(scored(near, tolerance=0.05))) == 5, "start, end, when it may be left, and both blends"
     far = edits.update_actions(project, [wave], timing={"start": 0.5, "earliest_exit": 1.0, "blend_out": 0.5})
@@ -167,7 +190,9 @@ def test_several_uses_of_one_clip_are_matched_by_what_they_are() -> None:
     twice = edits.place(project, [clip], LAYER, "gesture", stance(project, "hips"))
     other = edits.remove_actions(twice, [action(twice, "sides_wave")])
     first = next(a.id for a in other.actions() if a.clip == clip)
-    other = edits.place(other, [clip], LAYER, "gesture", stance(project, "sides"))  # now that on the hips came first
+    other = edits.place(
+        other, [clip], LAYER, "gesture", stance(project, "sides")
+    )  # now that on the hips came first
     assert next(a.id for a in other.actions() if a.clip == clip) == first
     assert equivalent(normal(other), normal(twice))
     assert words(scored(twice))[0] == "sides_wave.glb#2 is placed on arms, where it is not wanted."
@@ -178,18 +203,28 @@ def test_many_uses_of_one_clip_are_matched_one_by_one() -> None:
     project = small()
     clip = next(i for i, e in project.clips.items() if e.name == "sides_wave")
     many = edits.place(project, [clip] * 9, LAYER, "fidget", stance(project, "hips"))
-    assert aligned(normal(many)[LAYER], normal(many)[LAYER]).states.keys() == normal(many)[LAYER].states.keys()
+    assert (
+        aligned(normal(many)[LAYER], normal(many)[LAYER]).states.keys() == normal(many)[LAYER].states.keys()
+    )
     assert equivalent(normal(many), normal(many))
 
 
 def test_long_lists_are_cut() -> None:
     project = drawn(small())
     wave = next(s.id for s in project.manual[LAYER].states.values() if s.name == "sides_idle")
-    found = scored(manual_edits.remove(project, links=[x.id for x in project.manual[LAYER].links.values() if x.source == wave]))
+    found = scored(
+        manual_edits.remove(
+            project, links=[x.id for x in project.manual[LAYER].links.values() if x.source == wave]
+        )
+    )
     assert [m.words for m in found.mistakes if m.what == "missing"] == [
-        "sides_idle.glb does not lead to sides_scratch.glb, sides_shrug.glb, sides_to_hips.glb and sides_wave.glb."
+        "sides_idle.glb does not lead to sides_scratch.glb, sides_shrug.glb, sides_to_hips.glb and "
+        "sides_wave.glb."
     ]
-    assert "hips_to_sides.glb does not lead to sides_idle.glb, sides_scratch.glb, sides_shrug.glb and 2 more." in words(scored(Project()))
+    assert (
+        "hips_to_sides.glb does not lead to sides_idle.glb, sides_scratch.glb, sides_shrug.glb and 2 more."
+        in words(scored(Project()))
+    )
 
 
 def test_shares_by_hand() -> None:

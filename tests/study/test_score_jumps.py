@@ -51,7 +51,11 @@ def test_a_good_machine_does_not_jump_in_either_condition() -> None:
 def test_a_clip_on_the_wrong_stance_jumps_to_and_from_what_it_does_not_fit() -> None:
     project = sample()
     graph = project.graphs["arms"]
-    gesture = next(a for a in graph.actions.values() if a.kind == "gesture" and graph.stances[a.stance].name == "arms crossed")
+    gesture = next(
+        a
+        for a in graph.actions.values()
+        if a.kind == "gesture" and graph.stances[a.stance].name == "arms crossed"
+    )
     hips = next(s.id for s in graph.stances.values() if s.name == "on hips")
     found = judged(edits.move_actions(project, [gesture.id], "gesture", hips))
     assert found.jumps is not None and found.jumps > 2
@@ -65,7 +69,9 @@ def test_a_link_by_hand_between_stances_jumps_unless_it_is_blended_for_long() ->
     project = drawn(sample())
     machine = project.manual["arms"]
     loops = {s.name: s.id for s in machine.states.values() if s.loop}
-    crossed, sides = (next(i for name, i in loops.items() if name.startswith(n)) for n in ("arms crossed", "hands at sides"))
+    crossed, sides = (
+        next(i for name, i in loops.items() if name.startswith(n)) for n in ("arms crossed", "hands at sides")
+    )
     project = manual_edits.add_link(project, "arms", crossed, sides)
     ident = [*project.manual["arms"].links][-1]
     assert judged(manual_edits.update_links(project, [ident], blend=0.1)).jumps == 1
@@ -79,7 +85,9 @@ def test_what_can_be_left_at_any_time_is_judged_at_no_moment_in_particular() -> 
     rest = next(x for x in machine.links.values() if x.source == gesture.id and machine.states[x.target].loop)
     links = {
         **machine.links,
-        rest.id: replace(rest, exit_time=None, blend=0.0, condition=replace(rest.condition, when="request", trigger="x")),
+        rest.id: replace(
+            rest, exit_time=None, blend=0.0, condition=replace(rest.condition, when="request", trigger="x")
+        ),
     }
     assert judged(project.with_manual(replace(machine, links=links))).jumps == 1
 
@@ -87,7 +95,11 @@ def test_what_can_be_left_at_any_time_is_judged_at_no_moment_in_particular() -> 
 def test_a_mask_leaves_out_what_is_not_moved() -> None:
     project = sample()
     graph = project.graphs["arms"]
-    gesture = next(a for a in graph.actions.values() if a.kind == "gesture" and graph.stances[a.stance].name == "arms crossed")
+    gesture = next(
+        a
+        for a in graph.actions.values()
+        if a.kind == "gesture" and graph.stances[a.stance].name == "arms crossed"
+    )
     hips = next(s.id for s in graph.stances.values() if s.name == "on hips")
     moved = edits.move_actions(project, [gesture.id], "gesture", hips)
     still = edits.update_actions(moved, [gesture.id], joints=(project.skeleton.names[0],))

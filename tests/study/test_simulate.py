@@ -28,7 +28,15 @@ STUDIES = 1000
 
 @pytest.mark.parametrize(
     ("field", "value"),
-    [("ratio", 0.0), ("order", -1.0), ("seconds", float("nan")), ("pace", -0.1), ("participants", 0), ("learning", 9.0), ("seed", -1)],
+    [
+        ("ratio", 0.0),
+        ("order", -1.0),
+        ("seconds", float("nan")),
+        ("pace", -0.1),
+        ("participants", 0),
+        ("learning", 9.0),
+        ("seed", -1),
+    ],
 )
 def test_what_cannot_be_is_refused(field: str, value: float) -> None:
     with pytest.raises(ValueError, match=field):
@@ -52,7 +60,9 @@ def test_without_any_chance_the_truth_comes_out_exactly() -> None:
 
 
 def test_intervals_include_the_truth_as_often_as_they_promise() -> None:
-    """1,000 studies of 12 people: of ratio, order and practice 93.5 to 96.5 % of the intervals hold what was put in."""
+    """1,000 studies of 12 people: of ratio, order and practice 93.5 to 96.5 % of the intervals hold what was
+    put in.
+    """
     held: Counter[str] = Counter()
     for seed in range(STUDIES):
         plain = Truth(participants=12, seed=seed, order=1.0)
@@ -68,12 +78,18 @@ def test_intervals_include_the_truth_as_often_as_they_promise() -> None:
         held["second"] += ordered.order.second.holds(truth.order)
         held["carried"] += ordered.order.carried.holds(1.0)
         held["slope"] += curve.slope.holds(truth.learning)
-        held["effect"] += found.effect is not None and found.effect.holds(log(plain.ratio) / spread_of_logs(plain))
-    assert {name: count / STUDIES for name, count in held.items() if not 0.935 <= count / STUDIES <= 0.965} == {}
+        held["effect"] += found.effect is not None and found.effect.holds(
+            log(plain.ratio) / spread_of_logs(plain)
+        )
+    assert {
+        name: count / STUDIES for name, count in held.items() if not 0.935 <= count / STUDIES <= 0.965
+    } == {}
 
 
 def spread_of_logs(truth: Truth) -> float:
-    """The standard deviation of people's log ratios: their own, and what chance leaves of each task's sum of clips (by many draws)."""
+    """The standard deviation of people's log ratios: their own, and what chance leaves of each task's sum of
+    clips (by many draws).
+    """
     if "spread" not in _SPREAD:
         many = compare(numbers(replace(truth, participants=1000, seed=10**6), TWO).rows)
         assert many is not None
@@ -84,7 +100,8 @@ def spread_of_logs(truth: Truth) -> float:
 _SPREAD: dict[str, float] = {}
 
 
-# --- slips -----------------------------------------------------------------------------------------------------------
+# --- slips
+# --------------------------------------------------------------------------------------------------
 
 
 def test_no_slips_change_nothing_and_nothing_to_slip_on_does_no_harm() -> None:
@@ -100,7 +117,8 @@ def test_what_is_drawn_by_hand_has_a_link_for_every_connection() -> None:
     assert not [*drawn(small()).actions()]
 
 
-# --- through files ---------------------------------------------------------------------------------------------------
+# --- through files
+# --------------------------------------------------------------------------------------------------
 
 
 @pytest.fixture(scope="module")
@@ -137,14 +155,22 @@ def test_the_logs_say_what_was_drawn(folder: Path) -> None:
             assert run.seconds == pytest.approx(sum(work.seconds.values()), abs=1e-3)
             assert run.per_clip == pytest.approx(work.seconds, abs=1e-3)
         for condition, score in person.sus.items():
-            answers = {a.item: a.value for a in log_.answers() if a.questionnaire == "sus" and a.condition == condition}
+            answers = {
+                a.item: a.value
+                for a in log_.answers()
+                if a.questionnaire == "sus" and a.condition == condition
+            }
             assert sus_score(answers) == score
 
 
 def test_the_report_recovers_what_was_put_in(results: Results) -> None:
     truth, time = Truth(), results.time
     assert time is not None and time.order is not None
-    assert time.ratio.holds(truth.ratio) and time.order.adjusted.holds(truth.ratio) and time.order.second.holds(truth.order)
+    assert (
+        time.ratio.holds(truth.ratio)
+        and time.order.adjusted.holds(truth.ratio)
+        and time.order.second.holds(truth.order)
+    )
     assert all(curve.slope.holds(truth.learning) for curve in results.curves.values())
     sus = next(m for m in results.ratings if m.name == "SUS")
     assert sus.difference is not None and -34 < sus.difference.value < -18, truth.sus

@@ -30,10 +30,18 @@ def names(study, participant: str) -> list[str]:
 
 def test_a_participant_goes_from_consent_to_thanks(tiny):
     study = read_study(tiny)
-    one, other = (("meta", "manual") if study.plan.blocks("P01")[0][0] == "meta" else ("manual", "meta")), names(study, "P01")
+    one, other = (
+        (("meta", "manual") if study.plan.blocks("P01")[0][0] == "meta" else ("manual", "meta")),
+        names(study, "P01"),
+    )
     expected = ["consent"]
     for condition in one:
-        expected += [f"instructions {condition}", f"training {condition}", f"instructions {condition} nods", f"task {condition} nods"]
+        expected += [
+            f"instructions {condition}",
+            f"training {condition}",
+            f"instructions {condition} nods",
+            f"task {condition} nods",
+        ]
         expected += [f"questionnaire {condition}"] + (["break"] if condition == one[0] else [])
     assert other == [*expected, "questionnaire", "end"]
     assert [p.index for p in phases(study, "P01")] == list(range(len(other)))
@@ -41,15 +49,21 @@ def test_a_participant_goes_from_consent_to_thanks(tiny):
 
 
 def test_questionnaires_come_when_they_are_about(tiny):
-    text = tiny.read_text().replace("[sus,", "[{id: each, when: after_task, items: [{id: a, text: b, words: true}]}, sus,")
+    text = tiny.read_text().replace(
+        "[sus,", "[{id: each, when: after_task, items: [{id: a, text: b, words: true}]}, sus,"
+    )
     tiny.write_text(text)
-    found = [(p.condition, p.task, p.questionnaire.id) for p in phases(read_study(tiny), "P01") if p.questionnaire]
+    found = [
+        (p.condition, p.task, p.questionnaire.id) for p in phases(read_study(tiny), "P01") if p.questionnaire
+    ]
     assert [f[2] for f in found] == ["each", "sus", "each", "sus", "more"]
     assert found[0][1] == "nods" and found[1][1] is None and found[4][:2] == (None, None)
 
 
 def test_a_condition_that_is_come_back_to_is_trained_and_asked_about_once(tiny):
-    more = "order: {given: {P01: [meta/nods, manual/nods, meta/six], P02: [meta], P03: [meta], P04: [meta]}}\n"
+    more = (
+        "order: {given: {P01: [meta/nods, manual/nods, meta/six], P02: [meta], P03: [meta], P04: [meta]}}\n"
+    )
     task = "- {id: six, clips: [x.glb]}\n"
     tiny.write_text(tiny.read_text().replace("breaks: 1\n", task + more))
     found = names(read_study(tiny), "P01")
@@ -156,7 +170,9 @@ def test_the_log_of_another_course_is_refused(tiny):
     through(sitting, 3)
     sitting.close()
     tiny.write_text(tiny.read_text().replace("consent: You take part of your own free will.\n", ""))
-    with pytest.raises(SittingError, match=r"event 1 \(consent begin\) does not fit the study: was the study file changed"):
+    with pytest.raises(
+        SittingError, match=r"event 1 \(consent begin\) does not fit the study: was the study file changed"
+    ):
         Sitting(read_study(tiny), "P01")
     tiny.write_text(tiny.read_text().replace("A tiny study", "Another title") + "consent: Other words.\n")
     Sitting(read_study(tiny), "P01").close()  # words may be corrected
@@ -208,7 +224,9 @@ def test_killed_at_100_moments_nothing_is_lost_and_nothing_is_there_twice(tiny):
     study = read_study(tiny)
     draw = random.Random(20260301)
     kills, seen = 0, set()
-    ahead = Counter()  # edits that a kill came between, and the log does not have: in each phase that was begun
+    ahead = (
+        Counter()
+    )  # edits that a kill came between, and the log does not have: in each phase that was begun
     for participant in study.plan.ids:
         words = [sys.executable, Path(__file__).with_name("scripted.py"), tiny, participant]
         with started(*words, stdin=subprocess.PIPE, stdout=subprocess.PIPE) as process:

@@ -1,4 +1,6 @@
-"""Statistics by hand, against values that SciPy, pingouin and statsmodels gave, and against SciPy itself where it is installed."""
+"""Statistics by hand, against values that SciPy, pingouin and statsmodels gave, and against SciPy itself
+where it is installed.
+"""
 
 from __future__ import annotations
 
@@ -13,11 +15,42 @@ from hypothesis import strategies as st
 from metagraph.study import stats as s
 from metagraph.study.stats_t import incomplete_beta, t_cdf, t_noncentral, t_quantile, t_two_sided
 
-# Reference values: SciPy 1.17.1, statsmodels 0.15.0 (power, Holm, least squares), pingouin 0.7.0 (rank biserial).
+# Reference values: SciPy 1.17.1, statsmodels 0.15.0 (power, Holm, least squares), pingouin 0.7.0 (rank
+# biserial).
 A = [412.0, 388.5, 951.25, 604.0, 277.75, 720.5, 333.0, 515.5]
 B = [51.5, 60.25, 98.0, 88.5, 45.0, 71.75, 66.0, 52.25]
-G = [101, 141, 137, 85, 91, 84, 117, 98, 122, 45, 147, 97, 120, 96, 89, 114, 125, 94, 95, 121, 74, 55, 112, 80, 42,
-     76, 86, 64, 55, 101]  # fmt: skip
+G = [
+    101,
+    141,
+    137,
+    85,
+    91,
+    84,
+    117,
+    98,
+    122,
+    45,
+    147,
+    97,
+    120,
+    96,
+    89,
+    114,
+    125,
+    94,
+    95,
+    121,
+    74,
+    55,
+    112,
+    80,
+    42,
+    76,
+    86,
+    64,
+    55,
+    101,
+]
 H = [120, 144, 132, 97, 108, 85, 131, 120, 125, 39, 158, 107, 142, 83, 85, 107, 105, 102, 109, 116, 101, 73,
      127, 92, 62, 62, 101, 79, 34, 112]  # fmt: skip
 CLOSE = 1e-9
@@ -32,7 +65,8 @@ def triple(found: s.Estimate | None) -> tuple[float | None, float | None, float 
     return found.value, found.low, found.high
 
 
-# --- edge cases ------------------------------------------------------------------------------------------------------
+# --- edge cases
+# --------------------------------------------------------------------------------------------------
 
 
 def test_nobody_has_no_mean() -> None:
@@ -79,11 +113,13 @@ def test_a_group_of_one_has_no_interval() -> None:
     assert (triple(found), test.p) == ((-1.5, None, None), None)
 
 
-# --- by hand ---------------------------------------------------------------------------------------------------------
+# --- by hand
+# --------------------------------------------------------------------------------------------------
 
 
 def test_a_ratio_by_hand() -> None:
-    # Ratios 2, 4, 4, 8: 1, 2, 2, 3 doublings, mean 2, deviation sqrt(2/3), error sqrt(1/6); t of 3 degrees of freedom 3.182446.
+    # Ratios 2, 4, 4, 8: 1, 2, 2, 3 doublings, mean 2, deviation sqrt(2/3), error sqrt(1/6); t of 3 degrees of
+    # freedom 3.182446.
     found = s.ratio([2.0, 8.0, 4.0, 16.0], [1.0, 2.0, 1.0, 2.0])
     half = 3.182446305283708 * sqrt(1 / 6)
     assert triple(found) == (close(4.0), close(2 ** (2 - half)), close(2 ** (2 + half)))
@@ -109,7 +145,13 @@ def test_pairs_alike_are_ranked_and_then_left_out() -> None:
 
 
 def test_holm_by_hand() -> None:
-    assert s.holm([0.01, None, 0.04, 0.03, 0.005]) == [close(0.03), None, close(0.06), close(0.06), close(0.02)]
+    assert s.holm([0.01, None, 0.04, 0.03, 0.005]) == [
+        close(0.03),
+        None,
+        close(0.06),
+        close(0.06),
+        close(0.02),
+    ]
     assert s.holm([]) == []
     assert s.holm([0.9, 0.8]) == [1.0, 1.0]
 
@@ -124,18 +166,25 @@ def test_the_practice_of_a_perfect_learner_is_found() -> None:
 
 
 def test_order_is_told_from_the_condition() -> None:
-    # The manual way takes 8 times as long, a second sitting half as long as a first, and those who began by hand are 3 times as slow.
+    # The manual way takes 8 times as long, a second sitting half as long as a first, and those who began by
+    # hand are 3 times as slow.
     began_above = [(8.0 * 3 * k, 0.5 * 3 * k) for k in (1.0, 1.1)]
     began_below = [(4.0 * k, 1.0 * k) for k in (1.0, 1.1)]
     found = s.order_effects(began_above, began_below)
     assert found is not None
-    assert (found.adjusted.value, found.second.value, found.carried.value) == (close(8.0), close(0.5), close(3.0))
+    assert (found.adjusted.value, found.second.value, found.carried.value) == (
+        close(8.0),
+        close(0.5),
+        close(3.0),
+    )
     assert found.first.value == close(24.0), "of other people each, so their pace is in it"
     assert s.order_effects(began_above, began_below[:1]) is None
 
 
 def test_words_say_when_people_are_too_few() -> None:
-    assert s.cautions(s.ratio([8.0], [1.0]), None) == ["One person's ratio has no interval: it says nothing about other people."]
+    assert s.cautions(s.ratio([8.0], [1.0]), None) == [
+        "One person's ratio has no interval: it says nothing about other people."
+    ]
     few = s.cautions(s.ratio([8.0, 9.0, 7.0], [1.0, 1.0, 1.0]), 5.0)
     assert len(few) == 1 and "With 3 pairs the signed-rank test cannot reach p = 0.05" in few[0]
     vague = s.cautions(s.Estimate(1.2, 0.9, 1.6, 12), 0.5)
@@ -147,7 +196,8 @@ def test_words_say_when_people_are_too_few() -> None:
     assert s.cautions(s.Estimate(2.0, 1.5, 2.5, 12), 3.0) == []
 
 
-# --- against others --------------------------------------------------------------------------------------------------
+# --- against others
+# --------------------------------------------------------------------------------------------------
 
 
 def test_students_t_as_published() -> None:
@@ -166,10 +216,23 @@ def test_students_t_as_published() -> None:
 
 
 def test_means_ratios_and_their_test_as_scipy_has_them() -> None:
-    assert triple(s.geometric_mean(A)) == (close(486.90877390478903), close(344.93662161640077), close(687.315116018961))
-    assert triple(s.ratio(A, B)) == (close(7.548711296279018), close(6.096019907816753), close(9.347581388555296))
+    assert triple(s.geometric_mean(A)) == (
+        close(486.90877390478903),
+        close(344.93662161640077),
+        close(687.315116018961),
+    )
+    assert triple(s.ratio(A, B)) == (
+        close(7.548711296279018),
+        close(6.096019907816753),
+        close(9.347581388555296),
+    )
     found = s.paired_t(s.logs(A), s.logs(B))
-    assert (found.statistic, found.p, found.df, found.n) == (close(22.36258727621612), close(9.043502318730145e-08), 7, 8)
+    assert (found.statistic, found.p, found.df, found.n) == (
+        close(22.36258727621612),
+        close(9.043502318730145e-08),
+        7,
+        8,
+    )
     assert found.p == pytest.approx(9.043502318730145e-08, rel=1e-9)
 
 
@@ -184,7 +247,10 @@ def test_signed_ranks_as_scipy_and_pingouin_have_them() -> None:
     e, f = [1.2, 3.4, 2.2, 5.9, 4.1, 7.7], [1.0, 3.9, 1.1, 4.2, 4.4, 5.0]
     assert s.wilcoxon(e, f).p == close(0.3125)
     assert s.rank_biserial(e, f) == pytest.approx(0.52381, abs=1e-5)
-    tied = [12.0, 15.0, 11.0, 14.5, 13.0, 17.0, 10.0, 12.5, 15.5], [11.0, 15.0, 12.5, 12.0, 13.0, 14.0, 9.5, 13.0, 12.0]
+    tied = (
+        [12.0, 15.0, 11.0, 14.5, 13.0, 17.0, 10.0, 12.5, 15.5],
+        [11.0, 15.0, 12.5, 12.0, 13.0, 14.0, 9.5, 13.0, 12.0],
+    )
     assert s.wilcoxon(*tied).p == close(0.203125)  # every permutation, by Pratt's ranks
     many = s.wilcoxon(G, H)
     assert many.statistic == close(114.5)
@@ -195,9 +261,12 @@ def test_sizes_of_effects_and_studies_as_scipy_and_statsmodels_have_them() -> No
     found = s.effect_size(s.logs(A), s.logs(B))
     assert triple(found) == (close(7.022459538745655), close(3.816024964508703), close(12.01014228550578))
     for n, effect, wanted in (
-        (5, 0.8, 0.2809920635173735), (12, 0.5, 0.3528241493273385), (34, 0.5, 0.8077775012792737), (2, 3.0, 0.26077071422910936),
+        (5, 0.8, 0.2809920635173735),
+        (12, 0.5, 0.3528241493273385),
+        (34, 0.5, 0.8077775012792737),
+        (2, 3.0, 0.26077071422910936),
         (100, 0.2, 0.508264806621038),
-    ):  # fmt: skip
+    ):
         assert s.power(n, effect) == close(wanted)
     assert [s.people_needed(e) for e in (0.5, 0.8, 0.2, -2.0)] == [34, 15, 199, 5]
     assert s.people_needed(0.0) is None
@@ -207,7 +276,11 @@ def test_sizes_of_effects_and_studies_as_scipy_and_statsmodels_have_them() -> No
 def test_practice_as_least_squares_have_it() -> None:
     found = s.power_law([92.0, 71.5, 66.0, 50.25, 55.0, 43.5, 40.0, 44.25])
     assert found is not None
-    assert triple(found[0]) == (close(-0.394297905169391), close(-0.50026785862046), close(-0.2883279517183221))
+    assert triple(found[0]) == (
+        close(-0.394297905169391),
+        close(-0.50026785862046),
+        close(-0.2883279517183221),
+    )
     assert found[1] == close(exp(4.542294121789409))
 
 
@@ -215,17 +288,22 @@ def test_it_agrees_with_scipy() -> None:
     theirs = pytest.importorskip("scipy.stats", reason="SciPy is not installed")
     rng = np.random.default_rng(2)
     for df in (1.0, 2.5, 9.0, 60.0, 1000.0):
-        assert [t_quantile(q, df) for q in (0.51, 0.9, 0.9999)] == pytest.approx(theirs.t.ppf([0.51, 0.9, 0.9999], df), rel=1e-9)
+        assert [t_quantile(q, df) for q in (0.51, 0.9, 0.9999)] == pytest.approx(
+            theirs.t.ppf([0.51, 0.9, 0.9999], df), rel=1e-9
+        )
         for shift in (0.0, 1.5, 8.0):
             assert [t_noncentral(t, df, shift) for t in (-2.0, 0.0, 3.0, 11.0)] == pytest.approx(
                 theirs.nct.cdf([-2.0, 0.0, 3.0, 11.0], df, shift), abs=1e-9
             )
     for n in (5, 12, 25):
         x, y = rng.lognormal(3, 1, n), rng.lognormal(3.3, 1, n)
-        assert s.wilcoxon(x.tolist(), y.tolist()).p == pytest.approx(theirs.wilcoxon(x, y, method="exact").pvalue, abs=1e-12)
+        assert s.wilcoxon(x.tolist(), y.tolist()).p == pytest.approx(
+            theirs.wilcoxon(x, y, method="exact").pvalue, abs=1e-12
+        )
 
 
-# --- always ----------------------------------------------------------------------------------------------------------
+# --- always
+# --------------------------------------------------------------------------------------------------
 
 
 @given(st.floats(0.3, 300), st.floats(0.3, 300), st.floats(0, 1))
@@ -243,15 +321,25 @@ def test_the_exact_signed_rank_test_counts_every_outcome(pairs: list[tuple[int, 
     a, b = [float(x) for x, _ in pairs], [float(y) for _, y in pairs]
     ranks, signs = s.signed_ranks(a, b)
     observed = ranks[signs > 0].sum()
-    sums = [sum(r for r, up in zip(ranks, ups, strict=True) if up) for ups in product((0, 1), repeat=len(ranks))]
-    below, above = (sum(1 for x in sums if (x <= observed if low else x >= observed)) / len(sums) for low in (True, False))
+    sums = [
+        sum(r for r, up in zip(ranks, ups, strict=True) if up) for ups in product((0, 1), repeat=len(ranks))
+    ]
+    below, above = (
+        sum(1 for x in sums if (x <= observed if low else x >= observed)) / len(sums) for low in (True, False)
+    )
     assert s.wilcoxon(a, b).p == pytest.approx(min(1.0, 2 * min(below, above)))
 
 
 @given(st.lists(st.tuples(st.floats(1, 1e4), st.floats(1, 1e4)), min_size=2, max_size=12), st.floats(0.1, 10))
-def test_units_of_time_do_not_matter_and_the_other_way_round_is_the_inverse(pairs: list[tuple[float, float]], unit: float) -> None:
+def test_units_of_time_do_not_matter_and_the_other_way_round_is_the_inverse(
+    pairs: list[tuple[float, float]], unit: float
+) -> None:
     a, b = [x for x, _ in pairs], [y for _, y in pairs]
-    found, scaled, turned = s.ratio(a, b), s.ratio([unit * x for x in a], [unit * y for y in b]), s.ratio(b, a)
+    found, scaled, turned = (
+        s.ratio(a, b),
+        s.ratio([unit * x for x in a], [unit * y for y in b]),
+        s.ratio(b, a),
+    )
     assert found.low is not None and turned.high is not None and scaled.low is not None
     assert scaled.value == pytest.approx(found.value) and scaled.low == pytest.approx(found.low)
     assert log(turned.high) == pytest.approx(-log(found.low), abs=1e-9)

@@ -1,4 +1,6 @@
-"""What is labelled teaches: words and motion vote, confidence is how often such guesses were right, few examples stay unsure."""
+"""What is labelled teaches: words and motion vote, confidence is how often such guesses were right, few
+examples stay unsure.
+"""
 
 from __future__ import annotations
 
@@ -19,7 +21,9 @@ def labelled(words: str, kind: str, *measures: float) -> Example:
 
 
 def of_words(count: int = 6) -> list[Example]:
-    return [labelled(f"shrug {n}", "gesture") for n in range(count)] + [labelled(f"idle {n}", "stance") for n in range(count)]
+    return [labelled(f"shrug {n}", "gesture") for n in range(count)] + [
+        labelled(f"idle {n}", "stance") for n in range(count)
+    ]
 
 
 def test_nothing_is_said_of_nothing_or_of_too_few() -> None:
@@ -50,7 +54,10 @@ def test_a_motion_unlike_all_that_is_labelled_is_not_judged_by_it() -> None:
 
 def test_labels_that_nothing_tells_are_not_believed() -> None:
     chance = np.random.default_rng(2)
-    noise = [labelled(f"clip {n}", str(chance.choice(["gesture", "fidget"])), *chance.normal(0, 1, 4)) for n in range(60)]
+    noise = [
+        labelled(f"clip {n}", str(chance.choice(["gesture", "fidget"])), *chance.normal(0, 1, 4))
+        for n in range(60)
+    ]
     found = Alike(noise).guess(("clip", "7"), chance.normal(0, 1, 4))["kind"]
     assert found.confidence < 0.8
 
@@ -63,7 +70,11 @@ def test_measures_of_another_length_are_passed_over() -> None:
 def test_one_more_correction_changes_the_guess() -> None:
     before = Alike([*of_words(), labelled("wobble 1", "gesture")])
     after = Alike([*before.examples, *(labelled(f"wobble {n}", "fidget") for n in range(2, 5))])
-    assert after.guess(("wobble", "9"), NONE)["kind"].value == "fidget" != before.guess(("wobble", "9"), NONE)["kind"].value
+    assert (
+        after.guess(("wobble", "9"), NONE)["kind"].value
+        == "fidget"
+        != before.guess(("wobble", "9"), NONE)["kind"].value
+    )
 
 
 examples_ = st.lists(

@@ -39,14 +39,19 @@ def test_by_hand() -> None:
 
 
 def test_firm_ones_that_disagree_are_a_conflict() -> None:
-    found = combine([says("transition", 0.9, "name says 'ToCrossed'"), says("gesture", 0.85, "ends where it begins")], 4)
+    found = combine(
+        [says("transition", 0.9, "name says 'ToCrossed'"), says("gesture", 0.85, "ends where it begins")], 4
+    )
     assert found is not None and found.conflict == "name says 'ToCrossed', but ends where it begins"
     assert found.belief.confidence < 0.75
     meek = combine([says("transition", 0.9), says("gesture", 0.4)], 4)
     assert meek is not None and not meek.conflict
 
 
-@given(st.lists(st.builds(says, st.sampled_from("abcd"), st.floats(0, 1)), min_size=1, max_size=5), st.integers(1, 6))
+@given(
+    st.lists(st.builds(says, st.sampled_from("abcd"), st.floats(0, 1)), min_size=1, max_size=5),
+    st.integers(1, 6),
+)
 def test_any_votes_give_one_of_their_values_and_never_certainty(votes: list[Belief[str]], count: int) -> None:
     found = combine(votes, count)
     assert found is not None

@@ -35,7 +35,12 @@ from tests.suggest.test_traits import chain, moved
 
 def slide(speed: float, frames: int = 30, second: float = 0.0, name: str = "slide") -> Clip:
     """Two joints; the second goes straight on, `speed` metres a second from `second`."""
-    skeleton = Skeleton(("Root", "Tip"), np.array([-1, 0]), np.tile([0, 0, 0, 1.0], (2, 1)), np.array([[0, 1.0, 0], [0, 0.5, 0]]))
+    skeleton = Skeleton(
+        ("Root", "Tip"),
+        np.array([-1, 0]),
+        np.tile([0, 0, 0, 1.0], (2, 1)),
+        np.array([[0, 1.0, 0], [0, 0.5, 0]]),
+    )
     places = np.zeros((frames, 2, 3))
     places[:, 0, 1] = 1
     places[:, 1] = [0, 0.5, 0]
@@ -71,7 +76,12 @@ def test_a_cost_by_hand() -> None:
     stats = statistics([slide(0.3, 60)], "body", {})
     assert stats.threshold == pytest.approx(0.02, rel=1e-3)
     # Beside a stance 0.1 m above, at rest: 0.1 m and w_v * 0.3 m/s.
-    cost = costs(replace(stats, velocity=0.5), slide(0.3, 2), stance_frames(stats, [(slide(0.0, 1, 0.1), 0.0, 0.0)], {}), {})
+    cost = costs(
+        replace(stats, velocity=0.5),
+        slide(0.3, 2),
+        stance_frames(stats, [(slide(0.0, 1, 0.1), 0.0, 0.0)], {}),
+        {},
+    )
     assert cost[0] * stats.threshold == pytest.approx(0.1 + 0.5 * 0.3, rel=1e-4)
 
 
@@ -90,7 +100,9 @@ def test_the_threshold_grows_with_how_much_moves(factor: float) -> None:
 
 def test_fingers_and_faces_do_not_count() -> None:
     names = ("Hips", "Spine", "Head", "Jaw", "LeftUpperArm", "LeftLowerArm", "LeftHand", "LeftIndex1")
-    skeleton = Skeleton(names, np.array([-1, 0, 1, 2, 1, 4, 5, 6]), np.tile([0, 0, 0, 1.0], (8, 1)), np.full((8, 3), 0.1))
+    skeleton = Skeleton(
+        names, np.array([-1, 0, 1, 2, 1, 4, 5, 6]), np.tile([0, 0, 0, 1.0], (8, 1)), np.full((8, 3), 0.1)
+    )
     still = np.tile([0, 0, 0, 1.0], (40, 8, 1))
     fingers = still.copy()
     angle = np.sin(np.arange(40))
@@ -114,7 +126,11 @@ def test_another_skeleton_or_no_frames_cannot_be_entered(toy: Any) -> None:
     cost = costs(stats, odd, stance_frames(stats, [(clip, 0.0, 1.0)]))
     assert np.isinf(cost).all()
     found = times(stats, clip, np.full(len(costs(stats, clip, stance_frames(stats, []))), np.inf))
-    assert not found.good and 0 <= found.start <= found.end <= clip.duration and np.isfinite([found.blend_in, found.blend_out]).all()
+    assert (
+        not found.good
+        and 0 <= found.start <= found.end <= clip.duration
+        and np.isfinite([found.blend_in, found.blend_out]).all()
+    )
 
 
 def test_where_a_clip_fits_by_hand() -> None:
@@ -196,7 +212,11 @@ def test_a_matrix_takes_other_stances_and_clips_and_can_be_cancelled(sample: Pro
     stance, loops = next(iter(loops_of(sample, "head").items()))
     m = matrix(sample, "head", {"mine": loops, "none": []}, clips=["no such clip", *list(sample.clips)[:3]])
     assert m.stances == ("mine", "none") and m.enter_cost.shape == (4, 2)
-    assert np.isinf(m.enter_cost[:, 1]).all() and np.isinf(m.enter_cost[0]).all() and np.isfinite(m.enter_cost[1:, 0]).all()
+    assert (
+        np.isinf(m.enter_cost[:, 1]).all()
+        and np.isinf(m.enter_cost[0]).all()
+        and np.isfinite(m.enter_cost[1:, 0]).all()
+    )
     assert np.isinf(matrix(sample, "head", cancelled=lambda: True).enter_cost).all()
     assert stance in sample.graphs["head"].stances
 

@@ -39,7 +39,8 @@ def test_a_fit_by_hand() -> None:
     found = fit([1.0, 2.0, 3.0], 0, 4)
     assert found.gamma == pytest.approx(0.0, abs=1e-12)
     assert found.delta == pytest.approx(1 / (np.log(3) * np.sqrt(2 / 3)))
-    # u = 1/4, 3/4 and 9/10: z = -1.0986, 1.0986, 2.1972: mean 0.7324, deviation 1.3698 (of all, not of a sample).
+    # u = 1/4, 3/4 and 9/10: z = -1.0986, 1.0986, 2.1972: mean 0.7324, deviation 1.3698 (of all, not of a
+    # sample).
     found = fit([0.25, 0.75, 0.9], 0, 1)
     assert (found.gamma, found.delta) == (pytest.approx(-0.53452, abs=1e-4), pytest.approx(0.72987, abs=1e-4))
 
@@ -77,7 +78,12 @@ def test_it_agrees_with_scipy() -> None:
     johnsonsb = pytest.importorskip("scipy.stats", reason="SciPy is not installed").johnsonsb
     x = np.linspace(0.01, 0.99, 25)
     assert np.allclose(JohnsonSB(0.7, 1.4, 0, 1).cdf(x), johnsonsb.cdf(x, 0.7, 1.4), atol=1e-12)
-    assert JohnsonSB(0.7, 1.4, 2, 5).quantile(0.95) == pytest.approx(float(johnsonsb.ppf(0.95, 0.7, 1.4, 2, 3)))
+    assert JohnsonSB(0.7, 1.4, 2, 5).quantile(0.95) == pytest.approx(
+        float(johnsonsb.ppf(0.95, 0.7, 1.4, 2, 3))
+    )
     values = johnsonsb.rvs(0.7, 1.4, size=500, random_state=1)
     a, b, _, _ = johnsonsb.fit(values, floc=0, fscale=1)
-    assert (fit(values, 0, 1).gamma, fit(values, 0, 1).delta) == (pytest.approx(a, rel=0.02), pytest.approx(b, rel=0.02))
+    assert (fit(values, 0, 1).gamma, fit(values, 0, 1).delta) == (
+        pytest.approx(a, rel=0.02),
+        pytest.approx(b, rel=0.02),
+    )

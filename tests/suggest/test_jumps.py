@@ -58,10 +58,14 @@ def test_no_proposed_timing_jumps(sample: Project, layer: Any) -> None:
     assert jumps(edits.update_each(sample, changes), measured) == []
 
 
-def test_an_action_cut_short_jumps_at_its_end_and_is_mended_where_it_would_not(toy: Any, wide: Project) -> None:
+def test_an_action_cut_short_jumps_at_its_end_and_is_mended_where_it_would_not(
+    toy: Any, wide: Project
+) -> None:
     project = cut(toy, wide, "wide", end=1.5, blend_out=0.05)
     (jump,) = found(project)
-    assert (jump.edge, jump.at) == ("ends", 1.5) and jump.cost > 1 and project.stance(jump.stance).name == "rest"  # type: ignore[union-attr]
+    assert (
+        (jump.edge, jump.at) == ("ends", 1.5) and jump.cost > 1 and project.stance(jump.stance).name == "rest"
+    )  # type: ignore[union-attr]
     assert jump.better is not None and 1.5 < jump.better <= 2.4 and jump.change == {"end": jump.better}
     assert found(edits.update_actions(project, [jump.action], timing=jump.change)) == []
 
@@ -78,7 +82,11 @@ def test_an_early_exit_behind_the_new_end_goes(toy: Any) -> None:
     project = edits.place(project, [toy.id(project, "away")], "arms", "gesture", toy.id(project, "rest"))
     project = cut(toy, project, "away", stroke=0.1, earliest_exit=2.0, blend_out=0.1)
     (jump,) = found(project)
-    assert jump.better is not None and jump.better < 2.0 and jump.change == {"end": jump.better, "earliest_exit": None}
+    assert (
+        jump.better is not None
+        and jump.better < 2.0
+        and jump.change == {"end": jump.better, "earliest_exit": None}
+    )
 
 
 def test_a_longer_blend_hides_what_no_moment_mends(toy: Any) -> None:
@@ -112,7 +120,11 @@ def test_an_open_loop_is_mended_by_blending_its_seam(toy: Any) -> None:
     project = cut(toy, project, "open", blend_in=0.0)
     (jump,) = [j for j in found(project) if j.edge == "loops"]
     assert set(jump.change) == {"blend_in"}
-    assert not [j for j in found(edits.update_actions(project, [jump.action], timing=jump.change)) if j.edge == "loops"]
+    assert not [
+        j
+        for j in found(edits.update_actions(project, [jump.action], timing=jump.change))
+        if j.edge == "loops"
+    ]
 
 
 def test_what_an_action_does_not_move_does_not_count(toy: Any, wide: Project) -> None:
@@ -132,7 +144,9 @@ def test_only_what_changed_is_measured_again(toy: Any) -> None:
     loop = Measured(cut(toy, project, "up loop", end=1.0), "arms", first)
     assert loop.stats is first.stats and not loop.same_as(first)
     up = toy.id(project, "up")
-    assert {s for s in loop.frames if loop.frames[s] is not first.frames[s]} == {up} and not [k for k in loop._costs if k[1] == up]
+    assert {s for s in loop.frames if loop.frames[s] is not first.frames[s]} == {up} and not [
+        k for k in loop._costs if k[1] == up
+    ]
     fewer = Measured(edits.remove_actions(project, [toy.id(project, "rest long")]), "arms", first)
     assert fewer.stats is not first.stats and not fewer._costs
 
@@ -144,7 +158,11 @@ def test_curves_of_a_loop_are_its_seam_and_of_a_missing_file_nothing(toy: Any, w
     measured = Measured(project, "arms")
     loop = project.action(next(a.id for a in project.actions() if a.name == "rest loop"))
     seen = curves(project, measured, loop)
-    assert seen is not None and len(seen.times) == len(seen.leave) and seen.leave[0] == pytest.approx(0, abs=1e-6)
+    assert (
+        seen is not None
+        and len(seen.times) == len(seen.leave)
+        and seen.leave[0] == pytest.approx(0, abs=1e-6)
+    )
     wave = project.action(toy.id(project, "wide"))
     seen = curves(project, measured, wave)
     assert seen is not None and seen.leave.max() > 1 > seen.leave[-1] and np.isfinite(seen.enter).all()
@@ -154,7 +172,9 @@ def test_curves_of_a_loop_are_its_seam_and_of_a_missing_file_nothing(toy: Any, w
 
 def test_a_blend_takes_off_what_the_player_blends() -> None:
     assert c.shown(2.0, 0.0) == 2.0 and c.shown(2.0, 0.05) == 2.0
-    assert c.shown(2.0, 0.2) == pytest.approx(1.0) and np.allclose(c.shown(np.array([1.0, 3.0]), 0.1), [1.0, 3.0])
+    assert c.shown(2.0, 0.2) == pytest.approx(1.0) and np.allclose(
+        c.shown(np.array([1.0, 3.0]), 0.1), [1.0, 3.0]
+    )
 
 
 def test_a_moment_far_away_is_not_proposed_where_a_longer_blend_would_do(toy: Any) -> None:

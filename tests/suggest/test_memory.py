@@ -37,7 +37,9 @@ def test_a_label_that_there_is_not_is_refused() -> None:
 
 
 def test_what_is_written_is_read_again() -> None:
-    kept = Memory().corrected("idle_arms_wobble", "tags", ["happy", "new"], NAMES).with_project("a", [example()])
+    kept = (
+        Memory().corrected("idle_arms_wobble", "tags", ["happy", "new"], NAMES).with_project("a", [example()])
+    )
     again = Memory.from_json(json.loads(json.dumps(kept.to_json())))
     assert again.patterns == kept.patterns
     (one,) = again.others("b")
@@ -46,7 +48,12 @@ def test_what_is_written_is_read_again() -> None:
 
 
 def test_a_project_is_no_example_to_itself_and_is_replaced_not_added_to() -> None:
-    kept = Memory().with_project("a", [example(), example()]).with_project("b", [example("nod")]).with_project("a", [example("bow")])
+    kept = (
+        Memory()
+        .with_project("a", [example(), example()])
+        .with_project("b", [example("nod")])
+        .with_project("a", [example("bow")])
+    )
     assert [e.words for e in kept.others("a")] == [("nod",)]
     assert [e.words for e in kept.others("b")] == [("bow",)]
     assert kept.with_project("a", []).others("b") == []

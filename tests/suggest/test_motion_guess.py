@@ -1,4 +1,6 @@
-"""Clips that are told from their motion by a rule of their own: walks, short loops, clips of the face, clips that end nowhere."""
+"""Clips that are told from their motion by a rule of their own: walks, short loops, clips of the face, clips
+that end nowhere.
+"""
 
 from __future__ import annotations
 
@@ -22,12 +24,16 @@ from metagraph.suggest.traits import traits_known, traits_of
 RATE = 30.0
 
 
-def turned(skeleton: Skeleton, turns: dict[str, tuple[tuple[float, float, float], Any]], name: str = "x") -> Clip:
+def turned(
+    skeleton: Skeleton, turns: dict[str, tuple[tuple[float, float, float], Any]], name: str = "x"
+) -> Clip:
     """A clip whose joints turn about axes by angles `[F]`, radians."""
     frames = len(next(iter(turns.values()))[1])
     rotations = np.tile(skeleton.rest_rotations, (frames, 1, 1))
     for joint, (axis, angles) in turns.items():
-        rotations[:, skeleton.index(joint)] = rotation.from_axis_angle(np.array(axis), np.asarray(angles, float))
+        rotations[:, skeleton.index(joint)] = rotation.from_axis_angle(
+            np.array(axis), np.asarray(angles, float)
+        )
     return Clip(name, skeleton, RATE, rotations, np.tile(skeleton.rest_translations[:1], (frames, 1, 1)))
 
 
@@ -42,21 +48,35 @@ def test_a_cycle_of_steps_is_a_stance_of_the_body(toy: Any) -> None:
     t = traits_of([steps])["x"]
     assert t.stride > 0.05 and walks(t)
     g = guess(t, {})
-    assert (g.kind.value, g.layer.value, g.loop.value) == ("stance", "body", True) and "feet pass each other" in g.kind.reason
+    assert (g.kind.value, g.layer.value, g.loop.value) == (
+        "stance",
+        "body",
+        True,
+    ) and "feet pass each other" in g.kind.reason
 
 
 def test_a_step_and_a_kick_are_no_walk(toy: Any) -> None:
     once = 0.6 * np.sin(np.pi * np.linspace(0, 1, 31)) ** 2
     assert not walks(traits_of([turned(toy.skeleton, {"LeftUpperLeg": ((1, 0, 0), once)})])["x"])
     half = 0.6 * np.linspace(0, 1, 31)
-    assert not walks(traits_of([turned(toy.skeleton, {"LeftUpperLeg": ((1, 0, 0), half), "RightUpperLeg": ((1, 0, 0), -half)})])["x"])
+    assert not walks(
+        traits_of(
+            [turned(toy.skeleton, {"LeftUpperLeg": ((1, 0, 0), half), "RightUpperLeg": ((1, 0, 0), -half)})]
+        )["x"]
+    )
 
 
 def test_a_short_loop_that_flows_rests_and_one_that_stops_at_its_ends_does_not(toy: Any) -> None:
-    small = {"LeftUpperArm": ((0, 0, 1), 0.012 * cycle(1.1)), "RightUpperArm": ((0, 0, 1), -0.012 * cycle(1.1))}
+    small = {
+        "LeftUpperArm": ((0, 0, 1), 0.012 * cycle(1.1)),
+        "RightUpperArm": ((0, 0, 1), -0.012 * cycle(1.1)),
+    }
     assert guess(traits_of([turned(toy.skeleton, small)])["x"], {}).kind.value == "stance"
     wide = 0.8 * np.sin(np.pi * np.linspace(0, 1, 34)) ** 2
-    assert guess(traits_of([turned(toy.skeleton, {"LeftUpperArm": ((0, 0, 1), wide)})])["x"], {}).kind.value != "stance"
+    assert (
+        guess(traits_of([turned(toy.skeleton, {"LeftUpperArm": ((0, 0, 1), wide)})])["x"], {}).kind.value
+        != "stance"
+    )
 
 
 def faced(skeleton: Skeleton) -> Skeleton:
@@ -81,9 +101,15 @@ def test_a_clip_of_the_face_is_of_the_head_and_masked_to_what_moves(toy: Any) ->
     project = edits.add_clips(Project(), [("talk.glb", 0, "", talk), ("wave.glb", 0, "", wave)])
     found = propose(project, sources=("motion",))
     masks = {project.clips[c].name: p.details["mask"] for c, p in found.proposals.items()}
-    assert masks["talk"].value == ("Jaw",) and "only 1 joint of the face moves" in masks["talk"].reason and masks["wave"].value == ()
+    assert (
+        masks["talk"].value == ("Jaw",)
+        and "only 1 joint of the face moves" in masks["talk"].reason
+        and masks["wave"].value == ()
+    )
     taken = accept(project, found)
-    assert [a.joints for a in taken.project.actions() if project.clips[a.clip].name == "talk" and not a.timing.end][:1] == [("Jaw",)]
+    assert [
+        a.joints for a in taken.project.actions() if project.clips[a.clip].name == "talk" and not a.timing.end
+    ][:1] == [("Jaw",)]
 
 
 def test_what_moves_nothing_is_of_no_layer_that_is_known(toy: Any) -> None:
@@ -93,14 +119,20 @@ def test_what_moves_nothing_is_of_no_layer_that_is_known(toy: Any) -> None:
 
 
 @pytest.mark.parametrize("degrees", [8.0, 15.0])
-def test_a_gesture_that_ends_a_little_elsewhere_but_in_no_stance_is_no_transition(sample: Project, degrees: float) -> None:
-    action = next(a for a in sample.actions() if a.kind == "gesture" and a.layer == "arms" and "wave" in a.name)
+def test_a_gesture_that_ends_a_little_elsewhere_but_in_no_stance_is_no_transition(
+    sample: Project, degrees: float
+) -> None:
+    action = next(
+        a for a in sample.actions() if a.kind == "gesture" and a.layer == "arms" and "wave" in a.name
+    )
     clip = sample.clips[action.clip].motion
     assert clip is not None
     rotations = clip.rotations.astype(float).copy()
     arm = anatomy.roles(sample)["left_upper_arm"]
     ramp = np.radians(degrees) * np.linspace(0, 1, clip.frames)
-    rotations[:, arm] = rotation.multiply(rotations[:, arm], rotation.from_axis_angle(np.array([1.0, 0, 0]), ramp))
+    rotations[:, arm] = rotation.multiply(
+        rotations[:, arm], rotation.from_axis_angle(np.array([1.0, 0, 0]), ramp)
+    )
     cut = Clip(clip.name, clip.skeleton, clip.fps, rotations, clip.translations, clip.translated)
     g = guess(traits_of([cut])[cut.name], known(sample, traits_of(sample)))
     assert g.kind.value == "gesture" and g.end_stance is None
@@ -115,7 +147,11 @@ def test_the_layer_that_others_know_is_where_it_is_looked_for(sample: Project) -
 
 
 def test_what_was_looked_at_before_is_known_at_once(sample: Project) -> None:
-    fresh = {i: replace(c, motion=c.motion.trimmed(0, c.motion.frames)) for i, c in sample.clips.items() if c.motion is not None}
+    fresh = {
+        i: replace(c, motion=c.motion.trimmed(0, c.motion.frames))
+        for i, c in sample.clips.items()
+        if c.motion is not None
+    }
     assert traits_known(replace(sample, clips=fresh)) == {}
     traits_of(sample)
     assert set(traits_known(sample)) == set(sample.clips)

@@ -35,7 +35,11 @@ def truth(practice: Project) -> dict[str, tuple[Action, Project]]:
 
 def right(found: Proposals, truth: dict[str, tuple[Action, Project]], field: str) -> float:
     """Return the share of clips whose kind or layer was found."""
-    hits = [getattr(found.proposals[i], field).value == getattr(action, field) for i, (action, _) in truth.items() if i in found.proposals]
+    hits = [
+        getattr(found.proposals[i], field).value == getattr(action, field)
+        for i, (action, _) in truth.items()
+        if i in found.proposals
+    ]
     return sum(hits) / len(truth)
 
 
@@ -114,13 +118,17 @@ def test_only_what_is_sure_enough_is_taken_over_and_the_rest_says_why(practice: 
 
 
 def test_clips_of_which_nothing_is_known_are_left_not_raised() -> None:
-    project = edits.add_clips(Project(), [(f"{n}.glb", 0, "", still_clip(f"{n}", frames)) for n, frames in enumerate((1, 2, 31))])
+    project = edits.add_clips(
+        Project(), [(f"{n}.glb", 0, "", still_clip(f"{n}", frames)) for n, frames in enumerate((1, 2, 31))]
+    )
     found = propose(project)
     taken = accept(project, found)
     assert set(taken.placed) | set(taken.left) == set(found.proposals) <= set(project.clips)
 
 
-def test_a_gesture_without_a_loop_in_its_stance_is_placed_and_the_stance_held_in_a_still_moment(practice: Project, truth: Any) -> None:
+def test_a_gesture_without_a_loop_in_its_stance_is_placed_and_the_stance_held_in_a_still_moment(
+    practice: Project, truth: Any
+) -> None:
     gestures = [i for i, (a, _) in truth.items() if a.kind == "gesture" and a.layer == "arms"][:6]
     found = propose(practice, gestures, sources=("name",))
     taken = accept(practice, found)
@@ -128,11 +136,17 @@ def test_a_gesture_without_a_loop_in_its_stance_is_placed_and_the_stance_held_in
     assert [p for p in check(taken.project) if p.severity == "error"] == []
     for stance, rest in taken.held.items():
         (loop,) = taken.project.graphs["arms"].of(stance, "stance")
-        assert loop.clip == rest.clip and loop.timing.loop and (loop.timing.start, loop.timing.end) == (rest.start, rest.end)
+        assert (
+            loop.clip == rest.clip
+            and loop.timing.loop
+            and (loop.timing.start, loop.timing.end) == (rest.start, rest.end)
+        )
         assert rest.reason.startswith("no clip rests there; '") and "is still for its first" in rest.reason
 
 
-def test_a_clip_that_only_lends_a_stance_a_moment_still_waits_to_be_placed(practice: Project, truth: Any) -> None:
+def test_a_clip_that_only_lends_a_stance_a_moment_still_waits_to_be_placed(
+    practice: Project, truth: Any
+) -> None:
     gestures = [i for i, (a, _) in truth.items() if a.kind == "gesture" and a.layer == "arms"][:6]
     taken = accept(practice, propose(practice, gestures, sources=("name",)))
     lending = {rest.clip for rest in taken.held.values()}
@@ -191,13 +205,19 @@ def test_every_part_of_a_proposal_has_a_confidence_and_a_reason(practice: Projec
 
 def test_numbered_variants_share_the_weight_of_one(practice: Project, truth: Any) -> None:
     found = propose(practice)
-    mine = [p for p in found.proposals.values() if practice.clips[p.clip].name.startswith("head_straight__nod_single")]
+    mine = [
+        p
+        for p in found.proposals.values()
+        if practice.clips[p.clip].name.startswith("head_straight__nod_single")
+    ]
     assert len(mine) > 1 and all(p.details["likelihood"].value == round(1 / len(mine), 3) for p in mine)
     assert "share the weight of one" in mine[0].details["likelihood"].reason
     taken = accept(practice, found, clips=[p.clip for p in found.proposals.values()])
     (action,) = (a for a in taken.project.actions() if a.clip == mine[0].clip)
     assert action.likelihood == mine[0].details["likelihood"].value
-    assert sum(a.likelihood for a in taken.project.actions() if a.clip in {p.clip for p in mine}) == pytest.approx(1, abs=0.01)
+    assert sum(
+        a.likelihood for a in taken.project.actions() if a.clip in {p.clip for p in mine}
+    ) == pytest.approx(1, abs=0.01)
     later = propose(edits.remove_actions(taken.project, [action.id]))
     assert later.proposals[action.clip].details["likelihood"].value == action.likelihood
 
@@ -206,7 +226,11 @@ def test_a_clip_that_nothing_says_the_stance_of_goes_where_most_are(practice: Pr
     found = propose(practice, ["c1"], sources=("name",))
     clips = {**practice.clips, "c1": replace(practice.clips["c1"], name="waving")}
     lost = propose(replace(practice, clips=clips), ["c1"], sources=("name",)).proposals["c1"]
-    assert lost.stance is not None and lost.stance.confidence == 0.3 and "nothing says a stance" in lost.stance.reason
+    assert (
+        lost.stance is not None
+        and lost.stance.confidence == 0.3
+        and "nothing says a stance" in lost.stance.reason
+    )
     assert found.proposals["c1"].stance.confidence > 0.5  # type: ignore[union-attr]
 
 
@@ -218,6 +242,8 @@ def test_walks_are_stances_of_their_own() -> None:
     found = propose(project)
     by_name = {project.clips[p.clip].name: p for p in found.proposals.values()}
     walks = [by_name[f"Walking_{x}"] for x in "ABC"]
-    assert {(p.kind.value, p.layer.value, found.places[p.stance.value].name) for p in walks if p.stance} == {("stance", "body", "walking")}
+    assert {(p.kind.value, p.layer.value, found.places[p.stance.value].name) for p in walks if p.stance} == {
+        ("stance", "body", "walking")
+    }
     assert all("goes on walking" in p.kind.reason for p in walks)
     assert by_name["Interact"].kind.value == "gesture"

@@ -40,7 +40,9 @@ def test_nothing_to_review_has_no_order() -> None:
     assert review.order() == [] and review.take(Project(), ["gone"]).placed == ()
 
 
-def test_stances_come_first_the_most_used_before_the_others_then_the_least_certain(practice: Project, found: Proposals) -> None:
+def test_stances_come_first_the_most_used_before_the_others_then_the_least_certain(
+    practice: Project, found: Proposals
+) -> None:
     order = [found.proposals[c] for c in Review(found).order()]
     kinds = [p.kind.value == "stance" for p in order]
     assert kinds == sorted(kinds, reverse=True)
@@ -69,12 +71,16 @@ def test_a_transition_ends_nowhere_until_that_is_said(practice: Project, found: 
     assert wave in review.take(practice, [wave]).placed
 
 
-def test_a_stance_nobody_spoke_of_is_made_when_a_resting_clip_is_placed_in_it(practice: Project, found: Proposals) -> None:
+def test_a_stance_nobody_spoke_of_is_made_when_a_resting_clip_is_placed_in_it(
+    practice: Project, found: Proposals
+) -> None:
     rest = clip(practice, "on_hips__stance")
     review = Review(found).tell(rest, "stance", "akimbo")
     assert ("akimbo", "akimbo") in review.choices(rest, "stance")
     taken = review.take(practice, [rest])
-    assert taken.placed == (rest,) and [s.name for s in taken.project.graphs["arms"].stances.values()] == ["akimbo"]
+    assert taken.placed == (rest,) and [s.name for s in taken.project.graphs["arms"].stances.values()] == [
+        "akimbo"
+    ]
 
 
 def test_another_layer_has_other_stances(practice: Project, found: Proposals) -> None:
@@ -110,7 +116,9 @@ def test_stances_made_meanwhile_are_the_projects(practice: Project, found: Propo
     assert [s.name for s in again.project.graphs["arms"].stances.values()] == ["arms crossed"]
 
 
-def test_ids_that_come_again_after_undo_are_not_taken_for_what_they_were(practice: Project, found: Proposals) -> None:
+def test_ids_that_come_again_after_undo_are_not_taken_for_what_they_were(
+    practice: Project, found: Proposals
+) -> None:
     arms, body = clip(practice, "arms_crossed__stance"), clip(practice, "body_weight_both__stance")
     review = Review(found)
     review = review.settled(review.take(practice, [arms]).project).settled(practice)
@@ -136,7 +144,9 @@ def test_what_was_said_outlives_proposals_made_anew(practice: Project, found: Pr
     assert set(anew.found.proposals) == set(found.proposals)  # the others are as they were
 
 
-def test_a_placed_clip_is_placed_anew_and_nothing_is_lost_when_it_cannot_be(practice: Project, found: Proposals) -> None:
+def test_a_placed_clip_is_placed_anew_and_nothing_is_lost_when_it_cannot_be(
+    practice: Project, found: Proposals
+) -> None:
     wave = clip(practice, "hands_at_sides__point_you_rt_01")
     review = Review(found)
     project = review.take(practice, [wave]).project

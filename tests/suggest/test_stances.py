@@ -60,7 +60,9 @@ def test_a_single_frame_is_a_pose_to_stand_in(toy: Any) -> None:
 
 
 def test_a_short_clip_in_which_nothing_moves_founds_no_stance(toy: Any) -> None:
-    still = Clip("smile", toy.skeleton, 30, np.tile(toy.skeleton.rest_rotations, (5, 1, 1)), np.zeros((5, 1, 3)))
+    still = Clip(
+        "smile", toy.skeleton, 30, np.tile(toy.skeleton.rest_rotations, (5, 1, 1)), np.zeros((5, 1, 3))
+    )
     t = of(still)
     assert guess(t, {}).kind.confidence < 0.6 and guess(t, {}).layer.confidence < 0.4
     assert all(not shapes for shapes in discovered({"smile": t}).values())
@@ -79,7 +81,9 @@ def test_a_mirrored_clip_takes_the_other_arm(side: str, seconds: float) -> None:
     clip = one_armed(Toy(), side, seconds)
     one, other = guess(of(clip), {}), guess(of(mirrored(clip)), {})
     assert {one.limb.value, other.limb.value} == {"left", "right"}
-    assert one.kind.value == other.kind.value and one.kind.confidence == pytest.approx(other.kind.confidence, abs=0.02)
+    assert one.kind.value == other.kind.value and one.kind.confidence == pytest.approx(
+        other.kind.confidence, abs=0.02
+    )
 
 
 @given(st.floats(0.05, 50), st.floats(-0.5, 1.2))
@@ -88,7 +92,11 @@ def test_size_does_not_change_a_guess(factor: float, end: float) -> None:
 
     clip = Toy().clip("x", 1.0, 0.0, end)
     one, big = guess(of(clip), {}), guess(of(scaled(clip, factor)), {})
-    assert (one.kind.value, one.layer.value, one.limb.value) == (big.kind.value, big.layer.value, big.limb.value)
+    assert (one.kind.value, one.layer.value, one.limb.value) == (
+        big.kind.value,
+        big.layer.value,
+        big.limb.value,
+    )
     assert one.kind.confidence == pytest.approx(big.kind.confidence, abs=0.01)
 
 
@@ -113,7 +121,9 @@ def test_the_toys_stances_are_known_by_their_loops(toy: Any) -> None:
     assert nearest(stances["arms"], shape.names, shape.poses[0])[0][1].name == "up"
 
 
-def test_a_stance_without_a_loop_is_known_by_where_transitions_end(sample: Project, found: dict[str, Traits]) -> None:
+def test_a_stance_without_a_loop_is_known_by_where_transitions_end(
+    sample: Project, found: dict[str, Traits]
+) -> None:
     graph = sample.graphs["arms"]
     stance = next(iter(graph.stances))
     loops = {a.id: None for a in graph.of(stance, "stance")}
@@ -145,13 +155,17 @@ def test_the_samples_stances_are_discovered(sample: Project, found: dict[str, Tr
 def test_the_order_of_clips_does_not_matter(found: dict[str, Traits]) -> None:
     turned = dict(reversed(found.items()))
     for layer in LAYERS:
-        assert [(s.clip, s.members) for s in discover(turned, layer)] == [(s.clip, s.members) for s in discover(found, layer)]
+        assert [(s.clip, s.members) for s in discover(turned, layer)] == [
+            (s.clip, s.members) for s in discover(found, layer)
+        ]
 
 
 def test_outliers_are_no_stances(sample: Project, found: dict[str, Traits], toy: Any) -> None:
     stray = of(toy.clip("stray", 1.0, 2.5, 1.1))
     for layer in LAYERS:
-        assert [s.clip for s in discover({**found, "stray": stray}, layer)] == [s.clip for s in discover(found, layer)]
+        assert [s.clip for s in discover({**found, "stray": stray}, layer)] == [
+            s.clip for s in discover(found, layer)
+        ]
 
 
 def test_stances_are_discovered_without_loops(sample: Project, found: dict[str, Traits]) -> None:
@@ -162,21 +176,32 @@ def test_stances_are_discovered_without_loops(sample: Project, found: dict[str, 
 
 def test_a_thousand_poses_are_thinned_out(found: dict[str, Traits]) -> None:
     many = {f"{clip} {n}": t for n in range(5) for clip, t in found.items()}
-    assert [len(s.members) for s in discover(many, "body")] == [5 * len(s.members) for s in discover(found, "body")]
+    assert [len(s.members) for s in discover(many, "body")] == [
+        5 * len(s.members) for s in discover(found, "body")
+    ]
 
 
 @pytest.mark.parametrize("source", ["known", "discovered", "none"])
-def test_the_samples_labels_are_guessed_from_motion_alone(sample: Project, found: dict[str, Traits], source: str) -> None:
-    stances = known(sample, found) if source == "known" else discovered(found) if source == "discovered" else {}
+def test_the_samples_labels_are_guessed_from_motion_alone(
+    sample: Project, found: dict[str, Traits], source: str
+) -> None:
+    stances = (
+        known(sample, found) if source == "known" else discovered(found) if source == "discovered" else {}
+    )
     good: Counter[str] = Counter()
     count: Counter[str] = Counter()
     for action in sample.actions():
         g = guess(found[action.clip], stances)
         sane(g)
-        loops = {ident: {a.clip for a in sample.graphs[action.layer].of(ident, "stance")} for ident in sample.graphs[action.layer].stances}
+        loops = {
+            ident: {a.clip for a in sample.graphs[action.layer].of(ident, "stance")}
+            for ident in sample.graphs[action.layer].stances
+        }
 
         def meant(shape: Shape, loops: dict[str, set[str]] = loops) -> str | None:
-            return shape.id or next((ident for ident, clips in loops.items() if clips & set(shape.members)), None)
+            return shape.id or next(
+                (ident for ident, clips in loops.items() if clips & set(shape.members)), None
+            )
 
         tests = {"kind": g.kind.value == action.kind, "layer": g.layer.value == action.layer}
         if action.layer == "arms" and action.kind in ("gesture", "fidget"):
@@ -196,7 +221,11 @@ def test_the_samples_labels_are_guessed_from_motion_alone(sample: Project, found
 def test_reasons_hold_numbers(sample: Project, found: dict[str, Traits]) -> None:
     action = next(a for a in sample.actions() if a.kind == "transition" and a.layer == "arms")
     g = guess(found[action.clip], known(sample, found))
-    assert g.end_stance is not None and g.end_stance.reason.startswith("ends ") and "cm from" in g.end_stance.reason
+    assert (
+        g.end_stance is not None
+        and g.end_stance.reason.startswith("ends ")
+        and "cm from" in g.end_stance.reason
+    )
     assert "next nearest" in g.end_stance.reason
 
 
@@ -212,4 +241,7 @@ def test_the_stroke_is_on_the_way_out(sample: Project, found: dict[str, Traits])
 def test_a_character_without_a_head_or_arms_moves_its_body() -> None:
     skeleton: Skeleton = chain(6)
     turn = np.tile([0, 0, 0, 1.0], (30, 6, 1))
-    assert layer_of(of(Clip("x", skeleton, 30, turn, np.random.default_rng(0).normal(size=(30, 1, 3))))).value == "body"
+    assert (
+        layer_of(of(Clip("x", skeleton, 30, turn, np.random.default_rng(0).normal(size=(30, 1, 3))))).value
+        == "body"
+    )

@@ -1,4 +1,6 @@
-"""What is measured on a clip: on odd skeletons, single frames, mirrored, scaled, reversed and slowed clips."""
+"""What is measured on a clip: on odd skeletons, single frames, mirrored, scaled, reversed and slowed
+clips.
+"""
 
 from __future__ import annotations
 
@@ -34,11 +36,20 @@ def mirrored(clip: Clip) -> Clip:
     swap = {n: n.replace("Left", "#").replace("Right", "Left").replace("#", "Right") for n in names}
     order = [clip.skeleton.index(swap[n]) for n in names]
     rotations = clip.rotations[:, order] * np.array([1, -1, -1, 1])
-    return Clip(clip.name, clip.skeleton, clip.fps, rotations, clip.translations * np.array([-1, 1, 1]), clip.translated)
+    return Clip(
+        clip.name,
+        clip.skeleton,
+        clip.fps,
+        rotations,
+        clip.translations * np.array([-1, 1, 1]),
+        clip.translated,
+    )
 
 
 def backwards(clip: Clip) -> Clip:
-    return Clip(clip.name, clip.skeleton, clip.fps, clip.rotations[::-1], clip.translations[::-1], clip.translated)
+    return Clip(
+        clip.name, clip.skeleton, clip.fps, clip.rotations[::-1], clip.translations[::-1], clip.translated
+    )
 
 
 def moved(clip: Clip, angle: float, way: tuple[float, float, float]) -> Clip:
@@ -54,8 +65,12 @@ def one_armed(toy: Any, side: str = "Left", seconds: float = 1.5, fps: float = 3
     frames = round(seconds * fps) + 1
     angle = np.sin(np.pi * np.linspace(0, 1, frames)) ** 2
     rotations = np.tile(toy.skeleton.rest_rotations, (frames, 1, 1))
-    rotations[:, toy.skeleton.index(f"{side}UpperArm")] = rotation.from_axis_angle(np.array([0, 0, 1.0 if side == "Left" else -1.0]), angle)
-    return Clip(side, toy.skeleton, fps, rotations, np.tile(toy.skeleton.rest_translations[:1], (frames, 1, 1)))
+    rotations[:, toy.skeleton.index(f"{side}UpperArm")] = rotation.from_axis_angle(
+        np.array([0, 0, 1.0 if side == "Left" else -1.0]), angle
+    )
+    return Clip(
+        side, toy.skeleton, fps, rotations, np.tile(toy.skeleton.rest_translations[:1], (frames, 1, 1))
+    )
 
 
 def of(clip: Clip) -> Traits:
@@ -65,7 +80,18 @@ def of(clip: Clip) -> Traits:
 def numbers(t: Traits) -> list[float]:
     out = [*t.energy.values(), t.travel, t.symmetry, t.mirrored, t.out, t.near, t.touch, t.duration]
     for x in t.layers.values():
-        out += [x.loop_error, x.steady, x.extent, x.extent_at, x.energy, x.peak, x.peak_at, x.stroke_at, x.rest, x.bouts]
+        out += [
+            x.loop_error,
+            x.steady,
+            x.extent,
+            x.extent_at,
+            x.energy,
+            x.peak,
+            x.peak_at,
+            x.stroke_at,
+            x.rest,
+            x.bouts,
+        ]
         for pose in (x.first, x.last, x.typical, x.farthest, x.low, x.high):
             out += pose.ravel().tolist()
     return out
@@ -73,7 +99,10 @@ def numbers(t: Traits) -> list[float]:
 
 def chain(count: int, names: str = "joint") -> Skeleton:
     return Skeleton(
-        tuple(f"{names}{i}" for i in range(count)), np.arange(-1, count - 1), np.tile([0, 0, 0, 1.0], (count, 1)), np.full((count, 3), 0.1)
+        tuple(f"{names}{i}" for i in range(count)),
+        np.arange(-1, count - 1),
+        np.tile([0, 0, 0, 1.0], (count, 1)),
+        np.full((count, 3), 0.1),
     )
 
 
@@ -89,7 +118,19 @@ def test_a_skeleton_that_is_no_figure_has_traits_of_the_body_alone(count: int, f
 
 
 def test_a_quadruped_has_traits() -> None:
-    names = ("Hips", "Spine", "Neck", "Head", "FrontLeg_L", "FrontPaw_L", "FrontLeg_R", "FrontPaw_R", "HindLeg_L", "HindFoot_L", "Tail")
+    names = (
+        "Hips",
+        "Spine",
+        "Neck",
+        "Head",
+        "FrontLeg_L",
+        "FrontPaw_L",
+        "FrontLeg_R",
+        "FrontPaw_R",
+        "HindLeg_L",
+        "HindFoot_L",
+        "Tail",
+    )
     parents = np.array([-1, 0, 1, 2, 1, 4, 1, 6, 0, 8, 0])
     offsets = np.random.default_rng(2).normal(0, 0.3, (len(names), 3))
     skeleton = Skeleton(names, parents, np.tile([0, 0, 0, 1.0], (len(names), 1)), offsets)
@@ -100,7 +141,9 @@ def test_a_quadruped_has_traits() -> None:
 def test_roles_that_are_missing_leave_their_layer_empty(toy: Any) -> None:
     clip = toy.clip("x")
     roles = find_roles(toy.skeleton)
-    armless = traits(toy.skeleton, {r: j for r, j in roles.items() if "arm" not in r and "hand" not in r}, clip)
+    armless = traits(
+        toy.skeleton, {r: j for r, j in roles.items() if "arm" not in r and "hand" not in r}, clip
+    )
     assert armless.layers["arms"].names == () and armless.symmetry == 0
     assert armless.layers["head"].names
     none = traits(toy.skeleton, {}, clip)
@@ -197,9 +240,13 @@ def test_fingers_that_move_are_told_from_a_hand_that_moves(toy: Any) -> None:
         parents.append(names.index(parent))
         names.append(name)
         offsets.append(offset)
-    skeleton = Skeleton(tuple(names), np.array(parents), np.tile([0, 0, 0, 1.0], (len(names), 1)), np.array(offsets))
+    skeleton = Skeleton(
+        tuple(names), np.array(parents), np.tile([0, 0, 0, 1.0], (len(names), 1)), np.array(offsets)
+    )
     rotations = np.tile(skeleton.rest_rotations, (60, 1, 1))
-    rotations[:, names.index("LeftIndex1")] = rotation.from_axis_angle(np.array([0, 0, 1.0]), 0.5 * np.sin(np.linspace(0, 12, 60)))
+    rotations[:, names.index("LeftIndex1")] = rotation.from_axis_angle(
+        np.array([0, 0, 1.0]), 0.5 * np.sin(np.linspace(0, 12, 60))
+    )
     found = of(Clip("x", skeleton, 30, rotations, np.tile(skeleton.rest_translations[:1], (60, 1, 1))))
     assert found.energy["fingers"] > 0.01 and found.energy["left_arm"] == pytest.approx(0, abs=1e-6)
     assert found.symmetry == pytest.approx(1)

@@ -20,14 +20,21 @@ from metagraph.suggest.words import NameGuess, Patterns, PatternsError, forget, 
 
 ROOT = Path(__file__).resolve().parents[2]
 SEATED = [
-    "IdleSeatedBack01", "IdleSeatedBack01_Shrug01", "IdleSeatedBack01_KneeBounce01", "IdleSeatedBack01_PointLf02", "IdleSeatedForward01",
-    "IdleSeatedBack01_ToIdleSeatedForward01", "IdleSeatedForward01_ToIdleSeatedBack01",
-]  # fmt: skip
+    "IdleSeatedBack01",
+    "IdleSeatedBack01_Shrug01",
+    "IdleSeatedBack01_KneeBounce01",
+    "IdleSeatedBack01_PointLf02",
+    "IdleSeatedForward01",
+    "IdleSeatedBack01_ToIdleSeatedForward01",
+    "IdleSeatedForward01_ToIdleSeatedBack01",
+]
 
 
 @pytest.fixture(scope="module")
 def bench() -> ModuleType:
-    spec = importlib.util.spec_from_file_location("bench_names", ROOT / "tests" / "benchmarks" / "bench_names.py")
+    spec = importlib.util.spec_from_file_location(
+        "bench_names", ROOT / "tests" / "benchmarks" / "bench_names.py"
+    )
     assert spec is not None and spec.loader is not None
     module = importlib.util.module_from_spec(spec)
     sys.modules["bench_names"] = module
@@ -45,7 +52,8 @@ def kinds(names: list[str], patterns: Patterns | None = None) -> dict[str, str |
     return {n: g.kind.value if g.kind else None for n, g in read_names(names, patterns).items()}
 
 
-# --- edges -----------------------------------------------------------------------------------------------------------
+# --- edges
+# --------------------------------------------------------------------------------------------------
 
 
 def test_no_names_give_nothing() -> None:
@@ -53,7 +61,21 @@ def test_no_names_give_nothing() -> None:
 
 
 @pytest.mark.parametrize(
-    "name", ["", "   ", "___", "|", "...", "Armature|mixamo.com|Layer0", "mixamo.com", "Armature|", "Scene", "xqz", "ÄÖß", "動作"]
+    "name",
+    [
+        "",
+        "   ",
+        "___",
+        "|",
+        "...",
+        "Armature|mixamo.com|Layer0",
+        "mixamo.com",
+        "Armature|",
+        "Scene",
+        "xqz",
+        "ÄÖß",
+        "動作",
+    ],
 )
 def test_a_name_that_says_nothing_gives_no_guess(name: str) -> None:
     assert read_names([name])[name] == NameGuess()
@@ -74,7 +96,13 @@ def test_a_very_long_name_is_read() -> None:
 
 
 def test_letters_beyond_ascii_do_not_hide_the_words() -> None:
-    assert told(["Мария_Shrug_Lf_01"]) == {"kind": "gesture", "layer": "arms", "limb": "left", "tags": ("unsure",), "number": 1}
+    assert told(["Мария_Shrug_Lf_01"]) == {
+        "kind": "gesture",
+        "layer": "arms",
+        "limb": "left",
+        "tags": ("unsure",),
+        "number": 1,
+    }
 
 
 def test_equal_names_are_read_once() -> None:
@@ -94,25 +122,47 @@ def test_left_and_right_together_are_both_hands_with_doubt() -> None:
     assert limb is not None and limb.value == "both" and limb.confidence <= 0.5
 
 
-@pytest.mark.parametrize("name", ["Walking_A", "Running_Strafe_Left", "Death_A_Pose", "T-Pose", "walk", "BindPose"])
+@pytest.mark.parametrize(
+    "name", ["Walking_A", "Running_Strafe_Left", "Death_A_Pose", "T-Pose", "walk", "BindPose"]
+)
 def test_what_is_no_conversation_gets_no_kind(name: str) -> None:
     assert read_names([name])[name].kind is None
 
 
-# --- what names say --------------------------------------------------------------------------------------------------
+# --- what names say
+# --------------------------------------------------------------------------------------------------
 
 
 def test_a_shared_beginning_that_is_a_clip_is_a_stance() -> None:
-    assert kinds(SEATED) == dict(zip(SEATED, ["stance", "gesture", "fidget", "gesture", "stance", "transition", "transition"], strict=True))
+    assert kinds(SEATED) == dict(
+        zip(
+            SEATED,
+            ["stance", "gesture", "fidget", "gesture", "stance", "transition", "transition"],
+            strict=True,
+        )
+    )
     assert told(SEATED, "IdleSeatedBack01_Shrug01") == {
-        "kind": "gesture", "stance": "idle seated back", "layer": "arms", "limb": "both", "tags": ("unsure",), "number": 1,
-    }  # fmt: skip
+        "kind": "gesture",
+        "stance": "idle seated back",
+        "layer": "arms",
+        "limb": "both",
+        "tags": ("unsure",),
+        "number": 1,
+    }
     passing = told(SEATED, "IdleSeatedBack01_ToIdleSeatedForward01")
     assert (passing["stance"], passing["end_stance"]) == ("idle seated back", "idle seated forward")
 
 
 @pytest.mark.parametrize(
-    "name", ["idle_to_crossed", "IdleToCrossed", "Idle2Crossed", "Idle_ToCrossed", "idle__to__crossed", "from_idle_to_crossed"]
+    "name",
+    [
+        "idle_to_crossed",
+        "IdleToCrossed",
+        "Idle2Crossed",
+        "Idle_ToCrossed",
+        "idle__to__crossed",
+        "from_idle_to_crossed",
+    ],
 )
 def test_every_way_to_write_a_transition(name: str) -> None:
     said = told(["Idle", "crossed_idle", "crossed_nod", name], name)
@@ -125,7 +175,13 @@ def test_a_transition_between_stances_without_clips_of_their_own() -> None:
 
 
 def test_to_inside_a_stance_or_a_gesture_is_no_transition() -> None:
-    names = ["hand_to_chin__stance", "hand_to_chin__nod_01", "hand_to_chin__to__on_hips", "point_to_you_01", "on_hips__stance"]
+    names = [
+        "hand_to_chin__stance",
+        "hand_to_chin__nod_01",
+        "hand_to_chin__to__on_hips",
+        "point_to_you_01",
+        "on_hips__stance",
+    ]
     assert list(kinds(names).values()) == ["stance", "gesture", "transition", "gesture", "stance"]
     assert told(names, "hand_to_chin__to__on_hips")["stance"] == "hand to chin"
 
@@ -140,13 +196,18 @@ def test_sitting_down_and_standing_up_go_between_the_stances_there_are() -> None
 def test_entering_and_leaving_a_stance() -> None:
     names = ["Idle", "crouch_idle", "crouch_in", "crouch_out"]
     assert told(names, "crouch_in")["end_stance"] == "crouch"
-    assert (told(names, "crouch_out")["stance"], told(names, "crouch_out")["end_stance"]) == ("crouch", "idle")
+    assert (told(names, "crouch_out")["stance"], told(names, "crouch_out")["end_stance"]) == (
+        "crouch",
+        "idle",
+    )
 
 
 def test_stances_that_differ_by_number_only_stay_apart() -> None:
     names = ["Idle01", "Idle02", "Idle01_Shrug01", "Idle02_Shrug01"]
     assert [told(names, n)["stance"] for n in names] == ["idle 1", "idle 2", "idle 1", "idle 2"]
-    assert told(["Idle01", "Idle02", "Idle03"])["stance"] == "idle"  # variants of one, with nothing of their own
+    assert (
+        told(["Idle01", "Idle02", "Idle03"])["stance"] == "idle"
+    )  # variants of one, with nothing of their own
 
 
 def test_one_stance_spelled_in_several_ways_is_one() -> None:
@@ -190,7 +251,12 @@ def test_loops_are_stances_and_looping_gestures_are_gestures() -> None:
 
 
 def test_a_side_in_a_stance_is_no_limb() -> None:
-    names = ["body_weight_left__stance", "body_weight_left__sway_01", "body_weight_left__to__weight_right", "body_weight_right__stance"]
+    names = [
+        "body_weight_left__stance",
+        "body_weight_left__sway_01",
+        "body_weight_left__to__weight_right",
+        "body_weight_right__stance",
+    ]
     assert not any("limb" in told(names, n) for n in names)
     assert told(names, names[2])["end_stance"] == "weight right"
 
@@ -206,10 +272,13 @@ def test_reasons_quote_the_words() -> None:
     assert guess.kind is not None and guess.kind.reason == "name says 'ToIdleSeatedForward'"
     assert guess.stance is not None and guess.stance.reason == 'name comes from "idle seated back"'
     spelled = read_names(["Seated Idle", "Sitting Clap"])["Sitting Clap"].stance
-    assert spelled is not None and spelled.value == "seated" and spelled.reason == "name begins with 'Sitting'"
+    assert (
+        spelled is not None and spelled.value == "seated" and spelled.reason == "name begins with 'Sitting'"
+    )
 
 
-# --- accuracy --------------------------------------------------------------------------------------------------------
+# --- accuracy
+# --------------------------------------------------------------------------------------------------
 
 FLOORS: dict[str, dict[str, float]] = {
     "sample_clips": {"kind": 0.98, "stance": 0.98, "end_stance": 1.0, "layer": 0.98, "limb": 0.93},
@@ -221,7 +290,11 @@ FLOORS: dict[str, dict[str, float]] = {
     "robot-names": {"kind": 0.87, "stance": 1.0, "layer": 0.6},  # no word was ever added for it
     "bandai-namco-1": {"kind": 1.0, "layer": 0.98},
     "sumerian-hosts": {"kind": 0.85, "stance": 0.85, "layer": 0.93},  # "in" and "one" say nothing
-    "robot-expressive": {"kind": 0.71, "stance": 0.71, "layer": 1.0},  # "Sitting" sits down, "Standing" stands up
+    "robot-expressive": {
+        "kind": 0.71,
+        "stance": 0.71,
+        "layer": 1.0,
+    },  # "Sitting" sits down, "Standing" stands up
 }
 
 
@@ -258,7 +331,8 @@ def test_a_thousand_names_are_quick(bench: ModuleType) -> None:
     assert min(times) < 0.3
 
 
-# --- properties ------------------------------------------------------------------------------------------------------
+# --- properties
+# --------------------------------------------------------------------------------------------------
 
 PIECES = [
     "Idle",
@@ -292,7 +366,9 @@ def test_any_names_are_read_with_values_that_are_allowed(names: list[str]) -> No
     for guess in read_names(names).values():
         for field in fields(guess):
             belief = getattr(guess, field.name)
-            assert belief is None or (0 < belief.confidence <= 1 and belief.reason and belief.value not in ("", ()))
+            assert belief is None or (
+                0 < belief.confidence <= 1 and belief.reason and belief.value not in ("", ())
+            )
         assert guess.kind is None or guess.kind.value in KINDS
         assert guess.layer is None or guess.layer.value in LAYERS
         assert guess.limb is None or guess.limb.value in LIMBS
@@ -313,7 +389,8 @@ def test_a_common_beginning_changes_nothing(bench: ModuleType, name: str, prefix
     assert [renamed[prefix + n] for n in names] == [plain[n] for n in names]
 
 
-# --- patterns and learning -------------------------------------------------------------------------------------------
+# --- patterns and learning
+# -------------------------------------------------------------------------------------------
 
 
 def test_patterns_are_changed_and_changed_back() -> None:
@@ -329,7 +406,10 @@ def test_patterns_are_changed_and_changed_back() -> None:
 
 def test_words_of_other_languages_can_be_taught() -> None:
     german = (
-        Patterns().with_pattern("joins", "nach", "to").with_pattern("limbs", "links", "left").with_pattern("kinds", "winken", "gesture")
+        Patterns()
+        .with_pattern("joins", "nach", "to")
+        .with_pattern("limbs", "links", "left")
+        .with_pattern("kinds", "winken", "gesture")
     )
     assert told(["crossed_nach_idle", "crossed_idle", "idle"], patterns=german)["end_stance"] == "idle"
     assert told(["winken_links"], patterns=german) == {"kind": "gesture", "limb": "left", "layer": "arms"}
@@ -383,9 +463,13 @@ def test_one_correction_changes_its_words_and_nothing_else(bench: ModuleType) ->
     for name in changed:
         guess = after[name]
         assert (
-            guess.kind is not None and guess.kind.value == "gesture" and guess.kind.reason == "'tap_fingers' was corrected to gesture once"
+            guess.kind is not None
+            and guess.kind.value == "gesture"
+            and guess.kind.reason == "'tap_fingers' was corrected to gesture once"
         )
-        assert all(getattr(guess, f.name) == getattr(before[name], f.name) for f in fields(guess) if f.name != "kind")
+        assert all(
+            getattr(guess, f.name) == getattr(before[name], f.name) for f in fields(guess) if f.name != "kind"
+        )
     assert read_names(names, forget(patterns)) == before
     assert read_names(names, forget(patterns, "kind")) == before
     assert read_names(names, forget(patterns, "limb")) == after
@@ -421,7 +505,9 @@ def test_a_stance_renamed_once_is_renamed_everywhere() -> None:
 
 @settings(max_examples=100, deadline=None)
 @given(NAMES, st.sampled_from(["kind", "layer", "limb"]), st.data())
-def test_a_corrected_name_is_read_as_corrected_or_teaches_nothing(name: str, field: str, data: st.DataObject) -> None:
+def test_a_corrected_name_is_read_as_corrected_or_teaches_nothing(
+    name: str, field: str, data: st.DataObject
+) -> None:
     value = data.draw(st.sampled_from({"kind": KINDS, "layer": LAYERS, "limb": LIMBS}[field]))
     patterns = learn(Patterns(), name, field, value)
     assert Patterns.from_json(patterns.to_json()) == patterns

@@ -26,13 +26,17 @@ def speech(seconds: float, seed: int) -> list[Segment]:
         a, b = round(at * FPS) / FPS, round((at + length) * FPS) / FPS
         if b > seconds - 0.3:
             return out
-        peak = round((a + float(chance.uniform(0.3, 0.7)) * (b - a)) * FPS) / FPS if kind == "clause" else None
+        peak = (
+            round((a + float(chance.uniform(0.3, 0.7)) * (b - a)) * FPS) / FPS if kind == "clause" else None
+        )
         out.append(Segment(kind, a, b, peak))  # type: ignore[arg-type]
         at = b + float(chance.uniform(0.25, 1.1))
 
 
 def talking(name: str, segments: list[Segment], seconds: float, seed: int = 1, fps: float = FPS) -> Clip:
-    """A take in which the right arm is fastest at the stress of each clause, and answers and hesitations go with a nod."""
+    """A take in which the right arm is fastest at the stress of each clause, and answers and hesitations go
+    with a nod.
+    """
     base = read_clips(CLIPS / "hands_at_sides__stance.glb")[0]
     chance = np.random.default_rng(seed)
     t = np.arange(round(seconds * fps)) / fps
@@ -51,4 +55,11 @@ def talking(name: str, segments: list[Segment], seconds: float, seed: int = 1, f
     for joint, bend in ((roles["right_upper_arm"], arm), (roles["head"], head)):
         turn = np.stack([np.sin(bend / 2), np.zeros(len(t)), np.zeros(len(t)), np.cos(bend / 2)], axis=-1)
         rotations[:, joint] = rotation.multiply(rotations[:, joint], turn)
-    return Clip(name, base.skeleton, fps, rotations.astype(np.float32), np.repeat(base.translations[:1], len(t), 0), base.translated)
+    return Clip(
+        name,
+        base.skeleton,
+        fps,
+        rotations.astype(np.float32),
+        np.repeat(base.translations[:1], len(t), 0),
+        base.translated,
+    )

@@ -1,4 +1,6 @@
-"""A path becomes a clip: unbroken stretches are the take itself, transitions are smooth, and the character walks on from where it is."""
+"""A path becomes a clip: unbroken stretches are the take itself, transitions are smooth, and the character
+walks on from where it is.
+"""
 
 from __future__ import annotations
 
@@ -22,7 +24,12 @@ CLIPS = FilePath(__file__).resolve().parents[2] / "sample_clips" / "clips"
 
 @pytest.fixture(scope="module")
 def takes() -> list[Clip]:
-    names = ("hands_at_sides__stance", "hands_at_sides__point_you_rt_01", "hands_at_sides__shrug_bt_01", "hands_at_sides__open_palms_bt_01")
+    names = (
+        "hands_at_sides__stance",
+        "hands_at_sides__point_you_rt_01",
+        "hands_at_sides__shrug_bt_01",
+        "hands_at_sides__open_palms_bt_01",
+    )
     return [read_clips(CLIPS / f"{name}.glb")[0] for name in names]
 
 
@@ -71,7 +78,9 @@ def test_the_root_goes_on_from_where_it_is(takes: list[Clip]) -> None:
     rig = rig_of(out, None)
     facing, at = stands(rig, out.poses())
     steps = np.linalg.norm(np.diff(at[:, rig.root][:, [0, 2]], axis=0), axis=-1)
-    assert np.delete(steps, 59) == pytest.approx(np.full(118, 1 / 30), rel=0.02)  # a transition to a take's first frame stands still
+    assert np.delete(steps, 59) == pytest.approx(
+        np.full(118, 1 / 30), rel=0.02
+    )  # a transition to a take's first frame stands still
     turned = np.unwrap(np.arctan2(facing[:, 0], facing[:, 1]))
     assert turned[-1] == pytest.approx(2 * np.pi / 2 * 59 / 60, rel=0.02)
 
@@ -81,7 +90,9 @@ def test_transitions_are_smooth_and_stretches_between_them_untouched(takes: list
     a, b = int(states.starts[1]), int(states.starts[2])
     way = plain([*range(a, a + 20), *range(b + 25, b + 50)])
     hard, soft = (assemble(states, takes, way, blend=n) for n in (0, BLEND))
-    turns = [np.degrees(rotation.angle_between(c.rotations[1:], c.rotations[:-1])).max(-1) for c in (hard, soft)]
+    turns = [
+        np.degrees(rotation.angle_between(c.rotations[1:], c.rotations[:-1])).max(-1) for c in (hard, soft)
+    ]
     assert turns[1].max() < 0.45 * turns[0][19]
     same = np.degrees(rotation.angle_between(hard.rotations, soft.rotations)).max(-1)
     assert same[: 20 - BLEND].max() < 0.1 and same[20 + BLEND :].max() < 0.1 and same[20] > 1
@@ -104,8 +115,12 @@ def test_what_a_search_found_plays(takes: list[Clip]) -> None:
     )
     out = assemble(states, takes, path)
     assert out.duration == pytest.approx(299 / 30)
-    fastest = max(np.degrees(rotation.angle_between(c.rotations[1:], c.rotations[:-1])).max() * c.fps for c in takes)
-    assert np.degrees(rotation.angle_between(out.rotations[1:], out.rotations[:-1])).max() * 30 < 1.2 * fastest
+    fastest = max(
+        np.degrees(rotation.angle_between(c.rotations[1:], c.rotations[:-1])).max() * c.fps for c in takes
+    )
+    assert (
+        np.degrees(rotation.angle_between(out.rotations[1:], out.rotations[:-1])).max() * 30 < 1.2 * fastest
+    )
 
 
 def test_other_takes_are_refused(takes: list[Clip]) -> None:
@@ -117,7 +132,9 @@ def test_other_takes_are_refused(takes: list[Clip]) -> None:
 def test_takes_of_other_skeletons_or_of_one_frame_are_refused(takes: list[Clip], toy: object) -> None:
     with pytest.raises(SynthesisError, match="there is none"):
         states_of([])
-    one = Clip("one", takes[0].skeleton, 30.0, takes[0].rotations[:1], takes[0].translations[:1], takes[0].translated)
+    one = Clip(
+        "one", takes[0].skeleton, 30.0, takes[0].rotations[:1], takes[0].translations[:1], takes[0].translated
+    )
     with pytest.raises(SynthesisError, match="only one frame"):
         states_of([one])
     assert len(states_of([one, takes[0]])) == len(states_of([takes[0]]))

@@ -1,4 +1,6 @@
-"""Graphs made block by block: whoever makes the blocks, and however often it was ended on the way, edges are the same."""
+"""Graphs made block by block: whoever makes the blocks, and however often it was ended on the way, edges are
+the same.
+"""
 
 from __future__ import annotations
 
@@ -24,11 +26,18 @@ LIMIT = Threshold(3, 0.95, np.zeros(0), None, 0.6, 0.6)
 def made(frames: int = 6000, joints: int = 4, seed: int = 1) -> States:
     chance = np.random.default_rng(seed)
     t = np.arange(frames)[:, None, None] / 30
-    places = sum(chance.normal(0, 0.2, (1, joints, 3)) * np.sin(t * w + chance.uniform(0, 6, (1, joints, 3))) for w in (0.7, 1.9, 3.1))
+    places = sum(
+        chance.normal(0, 0.2, (1, joints, 3)) * np.sin(t * w + chance.uniform(0, 6, (1, joints, 3)))
+        for w in (0.7, 1.9, 3.1)
+    )
     places = np.asarray(places, np.float32)
     starts = np.linspace(0, frames, 4).astype(int)
-    velocities = np.concatenate([np.gradient(places[a:b], 1 / 30, axis=0) for a, b in itertools.pairwise(starts)])
-    return with_velocity(States(places, velocities.astype(np.float32), np.ones(joints, np.float32), starts, 0.0), 1 / 30)
+    velocities = np.concatenate(
+        [np.gradient(places[a:b], 1 / 30, axis=0) for a, b in itertools.pairwise(starts)]
+    )
+    return with_velocity(
+        States(places, velocities.astype(np.float32), np.ones(joints, np.float32), starts, 0.0), 1 / 30
+    )
 
 
 def same(one: MotionGraph, other: MotionGraph) -> None:
@@ -48,12 +57,24 @@ def test_a_build_that_is_ended_takes_up_where_it_was(tmp_path: Path, monkeypatch
     seen: list[int] = []
     with pytest.raises(SynthesisError, match="cancelled"):
         build(
-            states, LIMIT, keys, most=60, folder=tmp_path, progress=lambda n, _: seen.append(n), cancelled=lambda: len(seen) >= 3, threads=1
-        )  # fmt: skip
+            states,
+            LIMIT,
+            keys,
+            most=60,
+            folder=tmp_path,
+            progress=lambda n, _: seen.append(n),
+            cancelled=lambda: len(seen) >= 3,
+            threads=1,
+        )
     kept = files(tmp_path)
     assert 3 <= len(kept) < len(keys) // 128
     told: list[tuple[int, int]] = []
-    same(build(states, LIMIT, keys, most=60, folder=tmp_path, progress=lambda n, total: told.append((n, total))), whole)
+    same(
+        build(
+            states, LIMIT, keys, most=60, folder=tmp_path, progress=lambda n, total: told.append((n, total))
+        ),
+        whole,
+    )
     assert told[0][0] >= 3 * 128 and told[-1] == (len(keys), len(keys))
     after = files(tmp_path)
     assert all(after[name] == at for name, at in kept.items()), "what was there is not made again"
@@ -64,10 +85,20 @@ def test_a_build_that_is_ended_takes_up_where_it_was(tmp_path: Path, monkeypatch
 def _slowly(folder: Path) -> None:
     blocks.BLOCK = 128
     states = made()
-    build(states, LIMIT, key_states(states), most=60, folder=folder, threads=1, progress=lambda n, total: time.sleep(0.2))
+    build(
+        states,
+        LIMIT,
+        key_states(states),
+        most=60,
+        folder=folder,
+        threads=1,
+        progress=lambda n, total: time.sleep(0.2),
+    )
 
 
-def test_a_process_that_is_killed_leaves_whole_blocks(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_a_process_that_is_killed_leaves_whole_blocks(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
     child = multiprocessing.get_context("spawn").Process(target=_slowly, args=(tmp_path,))
     child.start()
     assert child.pid is not None
@@ -144,7 +175,17 @@ def test_a_cluster_makes_the_same_edges(tmp_path: Path) -> None:
         ) as cluster,
         distributed.Client(cluster) as client,
     ):
-        same(build(states, LIMIT, keys, most=40, cluster=client, progress=lambda n, total: told.append((n, total))), whole)
+        same(
+            build(
+                states,
+                LIMIT,
+                keys,
+                most=40,
+                cluster=client,
+                progress=lambda n, total: told.append((n, total)),
+            ),
+            whole,
+        )
         assert told[-1] == (len(keys), len(keys))
         same(build(states, LIMIT, keys, most=40, cluster=client, folder=tmp_path / "kept"), whole)
         with pytest.raises(SynthesisError, match="cancelled"):

@@ -1,4 +1,6 @@
-"""How often people move when something is said: thresholds as the equations say, and planted couplings found again."""
+"""How often people move when something is said: thresholds as the equations say, and planted couplings found
+again.
+"""
 
 from __future__ import annotations
 
@@ -25,7 +27,13 @@ def base() -> Clip:
     return read_clips(CLIPS / "hands_at_sides__stance.glb")[0]
 
 
-def moving(base: Clip, seconds: float, arms: list[tuple[float, float]], nods: list[tuple[float, float]] = (), arm: str = "right") -> Clip:  # type: ignore[assignment]
+def moving(
+    base: Clip,
+    seconds: float,
+    arms: list[tuple[float, float]],
+    nods: list[tuple[float, float]] = (),
+    arm: str = "right",
+) -> Clip:  # type: ignore[assignment]
     """Somebody who stands still but for swings of an arm and nods, from when to when."""
     frames = round(seconds * FPS)
     t = np.arange(frames) / FPS
@@ -38,7 +46,14 @@ def moving(base: Clip, seconds: float, arms: list[tuple[float, float]], nods: li
             bend[inside] += angle * np.sin(np.pi * (t[inside] - a) / (b - a)) ** 2
         turn = np.stack([np.sin(bend / 2), np.zeros(frames), np.zeros(frames), np.cos(bend / 2)], axis=-1)
         rotations[:, joint] = rotation.multiply(rotations[:, joint], turn)
-    return Clip("take", base.skeleton, FPS, rotations.astype(np.float32), np.repeat(base.translations[:1], frames, 0), base.translated)
+    return Clip(
+        "take",
+        base.skeleton,
+        FPS,
+        rotations.astype(np.float32),
+        np.repeat(base.translations[:1], frames, 0),
+        base.translated,
+    )
 
 
 def test_what_is_active_lies_a_tenth_above_the_least() -> None:
@@ -57,8 +72,10 @@ def test_a_movement_is_from_the_first_to_the_last_frame_over_the_windows_thresho
 def test_windows_are_twice_as_long_and_trimmed_at_neighbours() -> None:
     segments = [Segment("clause", 1.0, 2.0), Segment("clause", 2.4, 3.4), Segment("clause", 8.0, 9.0)]
     assert windows(segments, 9.2) == [
-        (pytest.approx(0.5), pytest.approx(2.2)), (pytest.approx(2.2), pytest.approx(3.9)), (pytest.approx(7.5), pytest.approx(9.2)),
-    ]  # fmt: skip
+        (pytest.approx(0.5), pytest.approx(2.2)),
+        (pytest.approx(2.2), pytest.approx(3.9)),
+        (pytest.approx(7.5), pytest.approx(9.2)),
+    ]
 
 
 @given(st.lists(st.tuples(st.floats(0, 50), st.floats(0.05, 5)), max_size=12))
@@ -78,7 +95,14 @@ def test_a_turn_of_the_whole_body_moves_no_hand_and_no_head(base: Clip) -> None:
     turn = np.stack([np.zeros(frames), np.sin(angle / 2), np.zeros(frames), np.cos(angle / 2)], axis=-1)
     rotations[:, 0] = rotation.multiply(turn, rotations[:, 0])
     found = speeds(
-        Clip("turn", base.skeleton, FPS, rotations.astype(np.float32), np.repeat(base.translations[:1], frames, 0), base.translated)
+        Clip(
+            "turn",
+            base.skeleton,
+            FPS,
+            rotations.astype(np.float32),
+            np.repeat(base.translations[:1], frames, 0),
+            base.translated,
+        )
     )
     assert set(found) == {"left_hand", "right_hand", "head"}
     assert all(v.max() < 0.01 for v in found.values())
@@ -101,7 +125,9 @@ def test_a_planted_coupling_is_found_and_chance_is_not(base: Clip) -> None:
         [(r.start, r.end + 0.3) for r, w in zip(responses, nodded, strict=True) if w],
     )  # fmt: skip
     rows = {r.hypothesis: r for r in table([take], [[*clauses, *responses]], chances=40)}
-    right, left, nod = (rows[n] for n in ("clause with the right hand", "clause with the left hand", "response with a nod"))
+    right, left, nod = (
+        rows[n] for n in ("clause with the right hand", "clause with the left hand", "response with a nod")
+    )
     assert (right.matched, right.total) == (with_hand.sum(), len(starts)) and left.matched == 0
     assert rows["clause with either hand"].matched == right.matched
     assert (nod.matched, nod.total) == (nodded.sum(), len(responses))

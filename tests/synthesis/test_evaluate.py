@@ -1,4 +1,6 @@
-"""Leave-one-out: windows of held-out speech against the graph of the other takes, with and without each constraint."""
+"""Leave-one-out: windows of held-out speech against the graph of the other takes, with and without each
+constraint.
+"""
 
 from __future__ import annotations
 
@@ -25,7 +27,14 @@ def takes() -> Takes:
 
 
 def first(clip: Clip, frames: int) -> Clip:
-    return Clip(clip.name, clip.skeleton, clip.fps, clip.rotations[:frames], clip.translations[:frames], clip.translated)
+    return Clip(
+        clip.name,
+        clip.skeleton,
+        clip.fps,
+        clip.rotations[:frames],
+        clip.translations[:frames],
+        clip.translated,
+    )
 
 
 def test_windows_are_every_fourteen_seconds_and_whole() -> None:
@@ -49,7 +58,9 @@ def test_speech_is_cut_in_the_windows_own_time() -> None:
 def test_there_is_a_setting_without_each_constraint_without_peaks_and_with_other_tolerances() -> None:
     assert SETTINGS[0].use == SOUNDS and SETTINGS[0].peaks
     assert {s.name: set(SOUNDS) - set(s.use) for s in SETTINGS[1:5]} == {f"without {k}": {k} for k in SOUNDS}
-    assert [s.name for s in SETTINGS if not s.peaks] == ["without peaks"] and len({s.tolerance for s in SETTINGS}) == 3
+    assert [s.name for s in SETTINGS if not s.peaks] == ["without peaks"] and len(
+        {s.tolerance for s in SETTINGS}
+    ) == 3
     assert len({s.name for s in SETTINGS}) == len(SETTINGS)
 
 
@@ -70,9 +81,19 @@ def test_each_take_is_held_out_and_both_searches_find_its_speech_in_the_others(t
 def test_rows_are_told_as_a_table_and_cases_as_csv(takes: Takes) -> None:
     found = evaluate(*takes, settings=SOME, searches=("greedy",))
     lines = list(csv.DictReader(io.StringIO(csv_of(found.cases))))
-    assert len(lines) == 6 and lines[0]["take"] == "take 0" and lines[0]["found"] == "1" and float(lines[0]["length"]) == 15
+    assert (
+        len(lines) == 6
+        and lines[0]["take"] == "take 0"
+        and lines[0]["found"] == "1"
+        and float(lines[0]["length"]) == 15
+    )
     text = table_of(found)
-    assert "3 graphs, each without one take" in text and "all constraints" in text and "3/3" in text and "ms" in text
+    assert (
+        "3 graphs, each without one take" in text
+        and "all constraints" in text
+        and "3/3" in text
+        and "ms" in text
+    )
 
 
 def test_speech_that_no_other_take_has_is_not_found_and_says_where(takes: Takes) -> None:
@@ -89,7 +110,13 @@ def test_speech_that_no_other_take_has_is_not_found_and_says_where(takes: Takes)
 
 def test_it_can_be_cancelled_and_keeps_what_there_is(takes: Takes) -> None:
     seen: list[int] = []
-    found = evaluate(*takes, settings=SOME, searches=("greedy",), progress=lambda n, _: seen.append(n), cancelled=lambda: len(seen) >= 3)
+    found = evaluate(
+        *takes,
+        settings=SOME,
+        searches=("greedy",),
+        progress=lambda n, _: seen.append(n),
+        cancelled=lambda: len(seen) >= 3,
+    )
     assert not found.whole and len(found.cases) == 3
     assert "cancelled" in table_of(found)
     none = evaluate(*takes, cancelled=lambda: True)
@@ -136,4 +163,6 @@ def test_the_states_of_all_but_one_are_those_of_the_others(takes: Takes) -> None
     every, rest = states_of(takes[0]), states_of([takes[0][0], takes[0][2]])
     mine = without(every, 1)
     assert np.array_equal(mine.places, rest.places) and np.array_equal(mine.velocities, rest.velocities)
-    assert mine.starts.tolist() == rest.starts.tolist() and mine.velocity == pytest.approx(with_velocity(rest, None).velocity)
+    assert mine.starts.tolist() == rest.starts.tolist() and mine.velocity == pytest.approx(
+        with_velocity(rest, None).velocity
+    )

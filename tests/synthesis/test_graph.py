@@ -1,4 +1,6 @@
-"""The motion graph: costs as the equations say, the same edges as counting them one by one, and nobody gets stuck."""
+"""The motion graph: costs as the equations say, the same edges as counting them one by one, and nobody gets
+stuck.
+"""
 
 from __future__ import annotations
 
@@ -11,27 +13,43 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from metagraph.synthesis.graph import MotionGraph, Threshold, build, threshold
-from metagraph.synthesis.states import States, SynthesisError, costs_apart, key_states, pairs_apart, with_velocity
+from metagraph.synthesis.states import (
+    States,
+    SynthesisError,
+    costs_apart,
+    key_states,
+    pairs_apart,
+    with_velocity,
+)
 
 
-def made(frames: int = 240, joints: int = 5, takes: int = 3, seed: int = 1, velocity: float | None = None) -> States:
+def made(
+    frames: int = 240, joints: int = 5, takes: int = 3, seed: int = 1, velocity: float | None = None
+) -> States:
     """Smooth motion that comes back to where it was."""
     chance = np.random.default_rng(seed)
     t = np.arange(frames)[:, None, None] / 30
-    places = sum(chance.normal(0, 0.2, (1, joints, 3)) * np.sin(t * w + chance.uniform(0, 6, (1, joints, 3))) for w in (0.7, 1.9, 3.1))
+    places = sum(
+        chance.normal(0, 0.2, (1, joints, 3)) * np.sin(t * w + chance.uniform(0, 6, (1, joints, 3)))
+        for w in (0.7, 1.9, 3.1)
+    )
     places = np.asarray(places, np.float32)
     starts = np.linspace(0, frames, takes + 1).astype(int)
     velocities = np.concatenate([np.gradient(places[a:b], 1 / 30, axis=0) for a, b in pairwise(starts)])
-    return with_velocity(States(places, velocities.astype(np.float32), np.ones(joints, np.float32), starts, 0.0), velocity)
+    return with_velocity(
+        States(places, velocities.astype(np.float32), np.ones(joints, np.float32), starts, 0.0), velocity
+    )
 
 
 def cost(states: States, i: int, j: int) -> float:
     """Equations 3 and 4, word by word."""
     p = sum(
-        states.weights[b] * np.linalg.norm(states.places[i, b].astype(float) - states.places[j - 1, b]) for b in range(len(states.weights))
+        states.weights[b] * np.linalg.norm(states.places[i, b].astype(float) - states.places[j - 1, b])
+        for b in range(len(states.weights))
     )
     v = sum(
-        states.weights[b] * np.linalg.norm(states.velocities[i, b].astype(float) - states.velocities[j - 1, b])
+        states.weights[b]
+        * np.linalg.norm(states.velocities[i, b].astype(float) - states.velocities[j - 1, b])
         for b in range(len(states.weights))
     )
     return float(p + states.velocity * v)
@@ -51,7 +69,9 @@ def test_a_cost_is_the_sum_of_distances_of_places_and_velocities() -> None:
     velocities = np.array([[[0, 0, 0]], [[0, 0, 1]], [[0, 0, 3]], [[0, 0, 0]]], np.float32)
     states = States(places, velocities, np.array([2.0], np.float32), np.array([0, 4]), 0.5)
     # c_(i, i+2) sets frame i beside frame i + 1.
-    assert costs_apart(states, 2) == pytest.approx([2 * 5 + 0.5 * 2 * 1, 2 * 12 + 0.5 * 2 * 2, 2 * 13 + 0.5 * 2 * 3])
+    assert costs_apart(states, 2) == pytest.approx(
+        [2 * 5 + 0.5 * 2 * 1, 2 * 12 + 0.5 * 2 * 2, 2 * 13 + 0.5 * 2 * 3]
+    )
     # c_(i, i+1) is nothing.
     assert costs_apart(states, 1) == pytest.approx([0, 0, 0, 0])
 
@@ -63,7 +83,9 @@ def test_pairs_stay_within_their_take() -> None:
 
 @given(st.integers(1, 5), st.integers(20, 60), st.integers(1, 9), st.floats(0.05, 1.5), st.integers(0, 99))
 @settings(max_examples=25, deadline=None)
-def test_the_edges_are_those_that_counting_one_by_one_finds(takes: int, frames: int, joints: int, limit: float, seed: int) -> None:
+def test_the_edges_are_those_that_counting_one_by_one_finds(
+    takes: int, frames: int, joints: int, limit: float, seed: int
+) -> None:
     states = made(max(frames, 3 * takes), joints, takes, seed)
     keys = key_states(states, 0.4)
     graph = build(states, of_limit(limit), keys, connected=False)
@@ -83,9 +105,13 @@ def test_the_edges_are_those_that_counting_one_by_one_finds(takes: int, frames: 
 def test_joints_without_weight_do_not_count() -> None:
     states = made(120, 6)
     light = replace(states, weights=np.array([1, 1, 1, 0, 0, 0], np.float32))
-    few = replace(states, places=states.places[:, :3], velocities=states.velocities[:, :3], weights=states.weights[:3])
+    few = replace(
+        states, places=states.places[:, :3], velocities=states.velocities[:, :3], weights=states.weights[:3]
+    )
     keys = key_states(states)
-    assert edges(build(light, of_limit(0.4), keys, connected=False)) == edges(build(few, of_limit(0.4), keys, connected=False))
+    assert edges(build(light, of_limit(0.4), keys, connected=False)) == edges(
+        build(few, of_limit(0.4), keys, connected=False)
+    )
 
 
 def test_the_threshold_is_the_level_of_what_the_takes_show() -> None:
@@ -93,17 +119,31 @@ def test_the_threshold_is_the_level_of_what_the_takes_show() -> None:
     found = threshold(states)
     assert len(found.costs) == 3000 - 2 * 2
     assert found.limit == pytest.approx(found.observed, rel=0.25)
-    assert [threshold(states, k).limit for k in (2, 3, 4)] == sorted(threshold(states, k).limit for k in (2, 3, 4))
+    assert [threshold(states, k).limit for k in (2, 3, 4)] == sorted(
+        threshold(states, k).limit for k in (2, 3, 4)
+    )
 
 
 def test_takes_that_do_not_move_have_no_distribution() -> None:
-    still = States(np.zeros((20, 2, 3), np.float32), np.zeros((20, 2, 3), np.float32), np.ones(2, np.float32), np.array([0, 20]), 1.0)
+    still = States(
+        np.zeros((20, 2, 3), np.float32),
+        np.zeros((20, 2, 3), np.float32),
+        np.ones(2, np.float32),
+        np.array([0, 20]),
+        1.0,
+    )
     found = threshold(still)
     assert found.distribution is None and found.limit == 0
 
 
 def test_takes_too_short_to_tell_a_jump_are_refused() -> None:
-    short = States(np.zeros((4, 1, 3), np.float32), np.zeros((4, 1, 3), np.float32), np.ones(1, np.float32), np.array([0, 2, 4]), 1.0)
+    short = States(
+        np.zeros((4, 1, 3), np.float32),
+        np.zeros((4, 1, 3), np.float32),
+        np.ones(1, np.float32),
+        np.array([0, 2, 4]),
+        1.0,
+    )
     with pytest.raises(SynthesisError, match="longer takes"):
         threshold(short)
 
@@ -121,7 +161,9 @@ def test_key_states_are_closer_where_more_moves_and_about_as_many_as_wanted() ->
 def reaches(graph: MotionGraph, start: int) -> set[int]:
     last, seen, queue = graph.states.last, {start}, [start]
     for state in queue:
-        after = graph.targets[graph.starts[state] : graph.starts[state + 1]].tolist() + ([] if last[state] else [state + 1])
+        after = graph.targets[graph.starts[state] : graph.starts[state + 1]].tolist() + (
+            [] if last[state] else [state + 1]
+        )
         queue += [t for t in after if t not in seen]
         seen.update(after)
     return seen
@@ -129,7 +171,9 @@ def reaches(graph: MotionGraph, start: int) -> set[int]:
 
 @given(st.integers(0, 200), st.floats(0.1, 0.9))
 @settings(max_examples=20, deadline=None)
-def test_what_is_kept_is_the_largest_set_in_which_every_state_reaches_every_other(seed: int, limit: float) -> None:
+def test_what_is_kept_is_the_largest_set_in_which_every_state_reaches_every_other(
+    seed: int, limit: float
+) -> None:
     states = made(60, 3, 3, seed)
     keys = key_states(states, 0.5)
     whole = build(states, of_limit(limit), keys, connected=False)
@@ -175,6 +219,8 @@ def test_components_are_those_an_independent_library_finds() -> None:
     sources = np.repeat(np.arange(900), np.diff(whole.starts))
     follows = np.flatnonzero(~states.last)
     rows, columns = np.concatenate([sources, follows]), np.concatenate([whole.targets, follows + 1])
-    _, labels = connected_components(csr_matrix((np.ones(len(rows)), (rows, columns)), shape=(900, 900)), True, "strong")
+    _, labels = connected_components(
+        csr_matrix((np.ones(len(rows)), (rows, columns)), shape=(900, 900)), True, "strong"
+    )
     largest = np.bincount(labels).argmax()
     assert (build(states, of_limit(0.5), keys).kept == (labels == largest)).all()

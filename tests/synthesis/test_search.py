@@ -1,4 +1,6 @@
-"""Paths that go with speech: the exact search finds the cheapest of all, whenever there is one; the greedy never finds a cheaper."""
+"""Paths that go with speech: the exact search finds the cheapest of all, whenever there is one; the greedy
+never finds a cheaper.
+"""
 
 from __future__ import annotations
 
@@ -20,7 +22,11 @@ IDLE, CLAUSE, RESPONSE = (1 << SOUNDS.index(k) for k in ("idle", "clause", "resp
 
 def graph_of(frames: int, takes: list[int], links: dict[tuple[int, int], float]) -> MotionGraph:
     states = States(
-        np.zeros((frames, 1, 3), np.float32), np.zeros((frames, 1, 3), np.float32), np.ones(1, np.float32), np.array(takes), 1.0
+        np.zeros((frames, 1, 3), np.float32),
+        np.zeros((frames, 1, 3), np.float32),
+        np.ones(1, np.float32),
+        np.array(takes),
+        1.0,
     )
     sources = sorted(links)
     starts = np.concatenate([[0], np.cumsum(np.bincount([s for s, _ in sources], minlength=frames))])
@@ -75,15 +81,22 @@ def check(graph: MotionGraph, sound: Heard, want: Wanted, path: Path) -> None:
 def test_the_best_path_is_the_cheapest_of_all_and_is_found_whenever_there_is_one(data: st.DataObject) -> None:
     frames = data.draw(st.integers(4, 14))
     split = data.draw(st.integers(1, frames - 1))
-    pairs = st.tuples(st.integers(0, frames - 1), st.integers(0, frames - 1)).filter(lambda e: e[1] != e[0] + 1)
+    pairs = st.tuples(st.integers(0, frames - 1), st.integers(0, frames - 1)).filter(
+        lambda e: e[1] != e[0] + 1
+    )
     links = data.draw(st.dictionaries(pairs, st.floats(0.125, 2, width=32), max_size=20))
     graph = graph_of(frames, [0, split, frames], links)
     sound = Heard(
-        np.array(data.draw(st.lists(st.sampled_from([IDLE, CLAUSE, RESPONSE]), min_size=frames, max_size=frames)), np.uint8),
+        np.array(
+            data.draw(st.lists(st.sampled_from([IDLE, CLAUSE, RESPONSE]), min_size=frames, max_size=frames)),
+            np.uint8,
+        ),
         np.array(data.draw(st.lists(st.booleans(), min_size=frames, max_size=frames))),
     )
     length = data.draw(st.integers(1, 10))
-    allowed = data.draw(st.lists(st.sampled_from([IDLE, IDLE | CLAUSE, CLAUSE, ALL]), min_size=length, max_size=length))
+    allowed = data.draw(
+        st.lists(st.sampled_from([IDLE, IDLE | CLAUSE, CLAUSE, ALL]), min_size=length, max_size=length)
+    )
     window = np.full(length, -1, np.int32)
     if data.draw(st.booleans()):
         a = data.draw(st.integers(0, length - 1))
@@ -126,7 +139,9 @@ def test_a_kind_that_is_left_out_lets_anything_go() -> None:
 def test_what_was_heard_is_told_take_by_take() -> None:
     states = graph_of(60, [0, 30, 60], {}).states
     sound = heard(states, [[Segment("clause", 0.2, 0.5, 0.3)], [Segment("response", 0.9, 5.0)]])
-    assert np.flatnonzero(sound.kinds == CLAUSE).tolist() == list(range(6, 15)) and np.flatnonzero(sound.peaks).tolist() == [9]
+    assert np.flatnonzero(sound.kinds == CLAUSE).tolist() == list(range(6, 15)) and np.flatnonzero(
+        sound.peaks
+    ).tolist() == [9]
     assert np.flatnonzero(sound.kinds == RESPONSE).tolist() == list(range(57, 60))
     assert changes(states, [[Segment("clause", 0.2, 0.5, 0.3)], []]) == [6, 9, 15]
     with pytest.raises(SynthesisError, match="2 takes have states, but 1"):

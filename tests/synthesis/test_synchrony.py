@@ -49,7 +49,9 @@ def test_strokes_fall_on_the_stresses_of_new_speech_and_not_on_those_of_shuffled
             new = cut(speech(30, seed), 0, SECONDS)
             at = strokes(assemble(states, takes, search(graph, sound, wanted(new, SECONDS))))
             with_speech.append(met(at, stresses(new)))
-            turned = [[(p + s) % SECONDS for p in stresses(new)] for s in chance.uniform(1.5, SECONDS - 1.5, 40)]
+            turned = [
+                [(p + s) % SECONDS for p in stresses(new)] for s in chance.uniform(1.5, SECONDS - 1.5, 40)
+            ]
             shuffled.append(float(np.mean([met(at, t) for t in turned])))
         # Measured: all of them with either search; 18 % when the same speech is turned round.
         assert np.mean(with_speech) > 0.9, (np.mean(with_speech), np.mean(shuffled))

@@ -34,13 +34,21 @@ def contribute(shell: Shell) -> Contribution:
         session.transport.seek(session.transport.seconds + frames * FRAME)
 
     def play_alone() -> None:
-        clip = session.selection.clips[0] if session.selection.clips else next((a.clip for a in session.selection.selected_actions()), None)
+        clip = (
+            session.selection.clips[0]
+            if session.selection.clips
+            else next((a.clip for a in session.selection.selected_actions()), None)
+        )
         if clip is not None:
             session.transport.show_clip(clip)
 
     def play_in_context() -> None:
         ident = (
-            session.selection.actions[0] if session.selection.actions else session.selection.clips[0] if session.selection.clips else None
+            session.selection.actions[0]
+            if session.selection.actions
+            else session.selection.clips[0]
+            if session.selection.clips
+            else None
         )
         if ident is not None:
             session.show_context(ident)
@@ -51,37 +59,142 @@ def contribute(shell: Shell) -> Contribution:
     return Contribution(
         panels=(Panel("character", "Character", "right", make, late=False),),
         commands=(
-            Command("character", "&File", "character", "Choose &character…", lambda: choose_character(shell), tip="The GLB that is drawn"),
-            Command("no_character", "&File", "character", "Draw a stick figure",
-                    lambda: document.edit("Draw a stick figure", lambda p: edits.set_character(p, None)),
-                    enabled=lambda: document.project.character is not None),
-            Command("play", play, "transport", "Play or &pause", lambda: session.transport.set_playing(not session.transport.playing), ("Space",), study=True),
-            Command("to_start", play, "transport", "Back to the &start", lambda: session.transport.seek(0.0), ("Home",), study=True),
+            Command(
+                "character",
+                "&File",
+                "character",
+                "Choose &character…",
+                lambda: choose_character(shell),
+                tip="The GLB that is drawn",
+            ),
+            Command(
+                "no_character",
+                "&File",
+                "character",
+                "Draw a stick figure",
+                lambda: document.edit("Draw a stick figure", lambda p: edits.set_character(p, None)),
+                enabled=lambda: document.project.character is not None,
+            ),
+            Command(
+                "play",
+                play,
+                "transport",
+                "Play or &pause",
+                lambda: session.transport.set_playing(not session.transport.playing),
+                ("Space",),
+                study=True,
+            ),
+            Command(
+                "to_start",
+                play,
+                "transport",
+                "Back to the &start",
+                lambda: session.transport.seek(0.0),
+                ("Home",),
+                study=True,
+            ),
             Command("back", play, "transport", "A frame back", lambda: step(-1), (",",), study=True),
             Command("forward", play, "transport", "A frame forward", lambda: step(1), (".",), study=True),
-            Command("mute", play, "live", "&Mute", lambda: sound.set_muted(not sound.muted), ("Ctrl+M",), checked=lambda: sound.muted,
-                    study=True),
-            Command("loop", play, "live", "&Loop", lambda: preview().toggle_loop(), ("L",), checked=lambda: session.transport.loop, study=True),
-            Command("show_plan", play, "show", "The whole &performance", session.transport.show_plan, ("Escape",),
-                    checked=lambda: session.transport.show == "plan", study=True),
-            Command("alone", play, "show", "The clip &alone", play_alone, ("Ctrl+Return",), enabled=some, study=True),
-            Command("in_context", play, "show", "In &context", play_in_context, ("Shift+Return",), enabled=some, study=True),
-            Command("frame", view, "character", "&Frame the character", lambda: preview().frame_all(), ("F",), study=True),
-            Command("face", view, "character", "Close-up of the &face", lambda: preview().frame_face(), ("Shift+F",), study=True),
-            Command("bones", view, "character", "Show the &skeleton", lambda: preview().toggle_bones(), ("B",),
-                    checked=lambda: preview().bones, study=True),
-            Command("big", view, "character", "Only the &character", lambda: shell.services[Places].only("character"), ("F11",),
-                    study=True),
+            Command(
+                "mute",
+                play,
+                "live",
+                "&Mute",
+                lambda: sound.set_muted(not sound.muted),
+                ("Ctrl+M",),
+                checked=lambda: sound.muted,
+                study=True,
+            ),
+            Command(
+                "loop",
+                play,
+                "live",
+                "&Loop",
+                lambda: preview().toggle_loop(),
+                ("L",),
+                checked=lambda: session.transport.loop,
+                study=True,
+            ),
+            Command(
+                "show_plan",
+                play,
+                "show",
+                "The whole &performance",
+                session.transport.show_plan,
+                ("Escape",),
+                checked=lambda: session.transport.show == "plan",
+                study=True,
+            ),
+            Command(
+                "alone",
+                play,
+                "show",
+                "The clip &alone",
+                play_alone,
+                ("Ctrl+Return",),
+                enabled=some,
+                study=True,
+            ),
+            Command(
+                "in_context",
+                play,
+                "show",
+                "In &context",
+                play_in_context,
+                ("Shift+Return",),
+                enabled=some,
+                study=True,
+            ),
+            Command(
+                "frame",
+                view,
+                "character",
+                "&Frame the character",
+                lambda: preview().frame_all(),
+                ("F",),
+                study=True,
+            ),
+            Command(
+                "face",
+                view,
+                "character",
+                "Close-up of the &face",
+                lambda: preview().frame_face(),
+                ("Shift+F",),
+                study=True,
+            ),
+            Command(
+                "bones",
+                view,
+                "character",
+                "Show the &skeleton",
+                lambda: preview().toggle_bones(),
+                ("B",),
+                checked=lambda: preview().bones,
+                study=True,
+            ),
+            Command(
+                "big",
+                view,
+                "character",
+                "Only the &character",
+                lambda: shell.services[Places].only("character"),
+                ("F11",),
+                study=True,
+            ),
         ),
         close=lambda: preview().stop(),
-    )  # fmt: skip
+    )
 
 
 def choose_character(shell: Shell) -> None:
     """Ask which file the character is drawn from; it is read on a thread."""
     document = shell.document
     name, _ = QFileDialog.getOpenFileName(
-        shell.widget, "Choose the character to draw", str(document.folder or Path.home()), "Characters (*.glb *.gltf *.vrm)"
+        shell.widget,
+        "Choose the character to draw",
+        str(document.folder or Path.home()),
+        "Characters (*.glb *.gltf *.vrm)",
     )
     if not name:
         return
@@ -97,4 +210,9 @@ def choose_character(shell: Shell) -> None:
         if document.folder == folder and document.project.character == left:
             document.edit("Choose character", lambda p: with_morphs(edits.set_character(p, path), morphs))  # type: ignore[arg-type]
 
-    shell.jobs.start(f"Reading {Path(name).name}", lambda _: morph_targets(name), done, lambda error: shell.tell(str(error)))
+    shell.jobs.start(
+        f"Reading {Path(name).name}",
+        lambda _: morph_targets(name),
+        done,
+        lambda error: shell.tell(str(error)),
+    )

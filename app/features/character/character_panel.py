@@ -30,7 +30,12 @@ class PreviewPanel(QWidget):
     """Shows what the performance plays at the playhead. Drives the playhead while playing."""
 
     def __init__(
-        self, session: Session, performance: Performance, playhead: Playhead, figures: Figures, parent: QWidget | None = None
+        self,
+        session: Session,
+        performance: Performance,
+        playhead: Playhead,
+        figures: Figures,
+        parent: QWidget | None = None,
     ) -> None:
         super().__init__(parent)
         self.session, self.performance, self.playhead, self.figures = session, performance, playhead, figures
@@ -92,7 +97,10 @@ class PreviewPanel(QWidget):
             return out
 
         self.start_button = button("Back to the start (Home)", lambda: self.session.transport.seek(0.0))
-        self.play_button = button("Play or pause (Space)", lambda: self.session.transport.set_playing(not self.session.transport.playing))
+        self.play_button = button(
+            "Play or pause (Space)",
+            lambda: self.session.transport.set_playing(not self.session.transport.playing),
+        )
         self.loop_button = button("Loop (L)", self._set_loop, checkable=True)
         self.loop_button.setChecked(self.session.transport.loop)
         self.speed_box = ComboBox(self, toolTip="Speed")
@@ -158,7 +166,9 @@ class PreviewPanel(QWidget):
         if actors and self._framed != framed and not self.view.moved_by_hand:
             self._framed = framed
             aside = ASIDE if shown.partner is not None else 0.0
-            self.view.camera = whole_figure(scene.bounds(), self.view.width() / max(1, self.view.height()), aside)
+            self.view.camera = whole_figure(
+                scene.bounds(), self.view.width() / max(1, self.view.height()), aside
+            )
         return scene
 
     def _marks(self) -> dict[int, tuple[float, float, float]]:
@@ -169,7 +179,11 @@ class PreviewPanel(QWidget):
             return {}
         moved = anatomy.mask(project, actions[0])
         color = theme(self.session.look.name).fill(actions[0].kind)
-        return {} if moved is None else {int(j): (color.redF(), color.greenF(), color.blueF()) for j in np.flatnonzero(moved)}
+        return (
+            {}
+            if moved is None
+            else {int(j): (color.redF(), color.greenF(), color.blueF()) for j in np.flatnonzero(moved)}
+        )
 
     def _tick(self) -> None:
         elapsed = self._clock.restart() / 1000
@@ -216,7 +230,9 @@ class PreviewPanel(QWidget):
         figure, rotations, positions = self._last
         stand = self.performance.shown.stand
         head, heading = figure.head(rotations, positions), stand.turn if stand is not None else 0.0
-        self.view.camera = close_up(head, figure.height, self.view.width() / max(1, self.view.height()), heading)
+        self.view.camera = close_up(
+            head, figure.height, self.view.width() / max(1, self.view.height()), heading
+        )
         self.view.moved_by_hand = True
         self.view.update()
 

@@ -21,8 +21,17 @@ def contribute(shell: Shell) -> Contribution:
 
     return Contribution(
         commands=(
-            Command("compatibility", "&View", "graph", "&Compatibility…", show, ("Ctrl+K",),
-                    tip="Which clip enters and leaves which stance without a jump", enabled=lambda: bool(shell.document.project.clips),
-                    when="meta", study="labels"),
+            Command(
+                "compatibility",
+                "&View",
+                "graph",
+                "&Compatibility…",
+                show,
+                ("Ctrl+K",),
+                tip="Which clip enters and leaves which stance without a jump",
+                enabled=lambda: bool(shell.document.project.clips),
+                when="meta",
+                study="labels",
+            ),
         ),
-    )  # fmt: skip
+    )

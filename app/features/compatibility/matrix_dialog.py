@@ -1,4 +1,6 @@
-"""Which clip can enter and leave which stance without a visible jump: clips against the stances of a layer, at a glance."""
+"""Which clip can enter and leave which stance without a visible jump: clips against the stances of a layer,
+at a glance.
+"""
 
 from __future__ import annotations
 
@@ -23,7 +25,18 @@ from PySide6.QtWidgets import (
     QWidget,
 )
 
-from app.features.compatibility.matrix_table import CLIP, FIRST, ROW, USES, Cell, Legend, Marks, MatrixModel, Rows, told
+from app.features.compatibility.matrix_table import (
+    CLIP,
+    FIRST,
+    ROW,
+    USES,
+    Cell,
+    Legend,
+    Marks,
+    MatrixModel,
+    Rows,
+    told,
+)
 from app.look.plural import many
 from app.look.theme import KIND_MARKS, KIND_TITLES, strengthen
 from app.project.document import Document
@@ -36,10 +49,17 @@ from metagraph.graph.model import KINDS, Action, Project
 
 
 class MatrixDialog(QDialog):
-    """Stays open beside the window; a click plays a clip in the context of a stance, a double click places it there."""
+    """Stays open beside the window; a click plays a clip in the context of a stance, a double click places it
+    there.
+    """
 
     def __init__(
-        self, document: Document, session: Session, compatibility: Compatibility, jobs: Jobs, parent: QWidget | None = None
+        self,
+        document: Document,
+        session: Session,
+        compatibility: Compatibility,
+        jobs: Jobs,
+        parent: QWidget | None = None,
     ) -> None:
         super().__init__(parent)
         self.document, self.session, self.compatibility, self.jobs = document, session, compatibility, jobs
@@ -52,7 +72,11 @@ class MatrixDialog(QDialog):
         self.search.setAccessibleName("Search clips")
         self.search.textChanged.connect(self._narrow)
         self.which = ComboBox(self)
-        for text, key in (("All clips", "all"), ("Placed on this layer", "placed"), ("Not placed on it", "free")):
+        for text, key in (
+            ("All clips", "all"),
+            ("Placed on this layer", "placed"),
+            ("Not placed on it", "free"),
+        ):
             self.which.addItem(text, key)
         self.which.activated.connect(self._narrow)
         self.model = MatrixModel(self)
@@ -144,7 +168,11 @@ class MatrixDialog(QDialog):
         stances = tuple(project.graphs[layer].stances)
         if matrix is None or matrix.layer != layer or matrix.stances != stances:
             self.model.show_rows(None)
-            waits = "Comparing clips with stances…" if stances and project.clips else "Make a stance first: drop a resting clip."
+            waits = (
+                "Comparing clips with stances…"
+                if stances and project.clips
+                else "Make a stance first: drop a resting clip."
+            )
             self.title.setText(f"{layer.capitalize()} layer")
             self.words.setText(waits)
             return
@@ -189,7 +217,11 @@ class MatrixDialog(QDialog):
         index = self.table.currentIndex()
         if not index.isValid():
             return None
-        return self.model.clip(index.row()), self.model.stance(index.column()), self.model.cell(index.row(), index.column())
+        return (
+            self.model.clip(index.row()),
+            self.model.stance(index.column()),
+            self.model.cell(index.row(), index.column()),
+        )
 
     def _show_current(self) -> None:
         found, project = self.current(), self.document.project
@@ -200,12 +232,19 @@ class MatrixDialog(QDialog):
         if self.model.rows is None:
             return
         if found is None or found[2] is None or stance is None or entry is None:
-            self.words.setText("Click a mark to see the clip go from that stance and back to it; double-click to place it there.")
+            self.words.setText(
+                "Click a mark to see the clip go from that stance and back to it; double-click to place it "
+                "there."
+            )
             return
         words = told(found[2], entry.name, stance.name)
         if self.kind.currentData() == "transition":
             end = project.stance(self._end(found[0], stance.id))
-            words += f"\nas a transition it would end in '{end.name}'" if end is not None else "\na transition needs a second stance"
+            words += (
+                f"\nas a transition it would end in '{end.name}'"
+                if end is not None
+                else "\na transition needs a second stance"
+            )
         self.words.setText(words)
 
     # --- acting
@@ -228,7 +267,9 @@ class MatrixDialog(QDialog):
             self.session.show_context(clip, tried=stance)
 
     def _end(self, clip: str, stance: str) -> str | None:
-        """Return the stance, other than where it starts, that a clip leaves to without a jump the latest, else with the least."""
+        """Return the stance, other than where it starts, that a clip leaves to without a jump the latest,
+        else with the least.
+        """
         rows = self.model.rows
         if rows is None or clip not in rows.matrix.clips:
             return None
@@ -260,7 +301,9 @@ class MatrixDialog(QDialog):
             after = edits.place(project, [clip], layer, kind, stance, end)
             action = _newest(project, after)
             seen = curves(after, measured, action) if measured is not None else None
-            return proposed_fields(action, seen.proposed, after.clips[clip].duration) if seen is not None else {}
+            return (
+                proposed_fields(action, seen.proposed, after.clips[clip].duration) if seen is not None else {}
+            )
 
         def done(timing: Mapping[str, Any]) -> None:
             def placed(p: Project) -> Project:

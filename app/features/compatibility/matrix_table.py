@@ -1,4 +1,6 @@
-"""The table of clips against stances: its cells, their marks and words; searched and sorted a thousand rows at once."""
+"""The table of clips against stances: its cells, their marks and words; searched and sorted a thousand rows
+at once.
+"""
 
 from __future__ import annotations
 
@@ -27,7 +29,9 @@ ROW = 26
 
 @dataclass(frozen=True)
 class Cell:
-    """A clip beside a stance: costs of what shows as a jump, and the best moments, seconds. here: kinds it is placed there as."""
+    """A clip beside a stance: costs of what shows as a jump, and the best moments, seconds. here: kinds it is
+    placed there as.
+    """
 
     enter: float
     leave: float
@@ -52,7 +56,11 @@ def words_of(cost: float, seconds: float, what: str) -> str:
 
 def told(cell: Cell, clip: str, stance: str) -> str:
     """Say a cell in two lines under its names."""
-    lines = [f"{clip}  ·  {stance}", words_of(cell.enter, cell.enter_at, "enters"), words_of(cell.leave, cell.leave_at, "leaves")]
+    lines = [
+        f"{clip}  ·  {stance}",
+        words_of(cell.enter, cell.enter_at, "enters"),
+        words_of(cell.leave, cell.leave_at, "leaves"),
+    ]
     if cell.here:
         lines.append(f"placed here as {' and '.join(cell.here)}")
     return "\n".join(lines)
@@ -60,7 +68,9 @@ def told(cell: Cell, clip: str, stance: str) -> str:
 
 @dataclass
 class Rows:
-    """What the table shows. kinds: (clip, stance) -> kinds placed there. place: row of a clip in the matrix."""
+    """What the table shows. kinds: (clip, stance) -> kinds placed there. place: row of a clip in the
+    matrix.
+    """
 
     project: Project
     matrix: Matrix
@@ -81,7 +91,8 @@ class Rows:
 
 
 class MatrixModel(QAbstractTableModel):
-    """Clips down, stances across; searched, narrowed to what is placed on the layer or is not, and sorted, here: a thousand rows at once.
+    """Clips down, stances across; searched, narrowed to what is placed on the layer or is not, and sorted,
+    here: a thousand rows at once.
 
     order: the places in the matrix of the rows that are shown.
     """
@@ -102,7 +113,9 @@ class MatrixModel(QAbstractTableModel):
         self.endResetModel()
 
     def narrow(self, text: str, which: str) -> None:
-        """Show only clips with all words of a text in their names. which: "all", "placed" on the layer, or "free"."""
+        """Show only clips with all words of a text in their names. which: "all", "placed" on the layer, or
+        "free".
+        """
         self.words, self.which = tuple(text.lower().split()), which
         self.show_rows(self.rows)
 
@@ -119,10 +132,17 @@ class MatrixModel(QAbstractTableModel):
         shown = [
             n
             for n, c in enumerate(m.clips)
-            if c in clips and (self.which == "all" or (c in uses) == (self.which == "placed")) and all(w in names[n] for w in self.words)
+            if c in clips
+            and (self.which == "all" or (c in uses) == (self.which == "placed"))
+            and all(w in names[n] for w in self.words)
         ]
         if FIRST <= self.by < FIRST + len(m.stances):
-            worst = [max(a, b) for a, b in zip(m.enter_cost[:, self.by - FIRST], m.leave_cost[:, self.by - FIRST], strict=True)]
+            worst = [
+                max(a, b)
+                for a, b in zip(
+                    m.enter_cost[:, self.by - FIRST], m.leave_cost[:, self.by - FIRST], strict=True
+                )
+            ]
             shown.sort(key=lambda n: (worst[n], names[n]), reverse=self.falling)
         elif self.by == CLIP:
             shown.sort(key=lambda n: names[n], reverse=self.falling)
@@ -156,7 +176,13 @@ class MatrixModel(QAbstractTableModel):
             return None
         m, c, row = self.rows.matrix, column - FIRST, self.order[row]
         here = self.rows.kinds.get((m.clips[row], m.stances[c]), ())
-        return Cell(float(m.enter_cost[row, c]), float(m.leave_cost[row, c]), float(m.enter_at[row, c]), float(m.leave_at[row, c]), here)
+        return Cell(
+            float(m.enter_cost[row, c]),
+            float(m.leave_cost[row, c]),
+            float(m.enter_at[row, c]),
+            float(m.leave_at[row, c]),
+            here,
+        )
 
     def data(self, index: Index, role: int = Qt.ItemDataRole.DisplayRole) -> Any:
         if self.rows is None or not index.isValid():
@@ -188,7 +214,9 @@ class MatrixModel(QAbstractTableModel):
         found = self.rows.project.stance(self.stance(column)) if self.rows is not None else None
         return found.name if found is not None else "?"
 
-    def headerData(self, section: int, orientation: Qt.Orientation, role: int = Qt.ItemDataRole.DisplayRole) -> Any:
+    def headerData(
+        self, section: int, orientation: Qt.Orientation, role: int = Qt.ItemDataRole.DisplayRole
+    ) -> Any:
         if orientation != Qt.Orientation.Horizontal:
             return None
         if role == Qt.ItemDataRole.DisplayRole:
@@ -263,7 +291,9 @@ class Marks(QStyledItemDelegate):
             x = rect.left() + 8
             for kind in value:
                 painter.setPen(t.kind(kind))
-                painter.drawText(QRectF(x, rect.top(), 18, rect.height()), Qt.AlignmentFlag.AlignVCenter, KIND_MARKS[kind])
+                painter.drawText(
+                    QRectF(x, rect.top(), 18, rect.height()), Qt.AlignmentFlag.AlignVCenter, KIND_MARKS[kind]
+                )
                 x += 17
         painter.restore()
 

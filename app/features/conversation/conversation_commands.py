@@ -1,4 +1,6 @@
-"""What the menus offer to do with the conversation on stage; dialogs are imported when they are first wanted."""
+"""What the menus offer to do with the conversation on stage; dialogs are imported when they are first
+wanted.
+"""
 
 from __future__ import annotations
 
@@ -14,11 +16,15 @@ from metagraph.errors import FileError
 from metagraph.graph import conversing
 from metagraph.graph.conversation import Conversation
 from metagraph.graph.edits import EditError
+from metagraph.graph.model import Project
 
 if TYPE_CHECKING:
     from app.shell.context import Shell
 
-FILTER = f"Sounds and transcripts ({' '.join(f'*{s} *{s.upper()}' for s in (*SOUNDS, *TRANSCRIPTS))} *.TextGrid);;All files (*)"
+FILTER = (
+    f"Sounds and transcripts ({' '.join(f'*{s} *{s.upper()}' for s in (*SOUNDS, *TRANSCRIPTS))} "
+    "*.TextGrid);;All files (*)"
+)
 ELAN, TEXTGRID = "ELAN annotation (*.eaf)", "Praat TextGrid (*.TextGrid)"
 
 
@@ -46,7 +52,14 @@ def converse(shell: Shell, paths: Sequence[Path] = ()) -> None:
         return
     from app.features.conversation.conversation_dialog import ImportDialog
 
-    dialog = ImportDialog(shell.document, shell.stage.session, shell.jobs, sounds[:2], transcripts or beside(sounds[:2]), shell.widget)
+    dialog = ImportDialog(
+        shell.document,
+        shell.stage.session,
+        shell.jobs,
+        sounds[:2],
+        transcripts or beside(sounds[:2]),
+        shell.widget,
+    )
     dialog.imported.connect(lambda: shell.show("conversation"))
     dialog.open()
 
@@ -56,7 +69,9 @@ def rename(shell: Shell) -> None:
     if found is not None:
         name, ok = QInputDialog.getText(shell.widget, "Rename conversation", "Name", text=found[1].name)
         if ok and name.strip():
-            _edit(shell, "Rename conversation", lambda p: conversing.change_conversation(p, found[0], name=name))
+            _edit(
+                shell, "Rename conversation", lambda p: conversing.change_conversation(p, found[0], name=name)
+            )
 
 
 def remove(shell: Shell) -> None:
@@ -78,7 +93,12 @@ def graph_again(shell: Shell) -> None:
     """Let the graph move both again."""
     found = on_stage(shell)
     if found is not None:
-        both = lambda p: conversing.change_side(conversing.change_side(p, found[0], 0, motion=None), found[0], 1, motion=None)  # noqa: E731
+
+        def both(project: Project) -> Project:
+            for side in (0, 1):
+                project = conversing.change_side(project, found[0], side, motion=None)
+            return project
+
         _edit(shell, "Move with the graph again", both)
 
 
@@ -104,7 +124,9 @@ def write_segments(shell: Shell) -> None:
     if found is None:
         return
     start = (shell.document.folder or Path.home()) / f"{found[1].name}.eaf"
-    name, kind = QFileDialog.getSaveFileName(shell.widget, "Export segments", str(start), f"{ELAN};;{TEXTGRID}")
+    name, kind = QFileDialog.getSaveFileName(
+        shell.widget, "Export segments", str(start), f"{ELAN};;{TEXTGRID}"
+    )
     if not name:
         return
     path = Path(name)

@@ -1,4 +1,6 @@
-"""A conversation from sound: what was found, who is who, what makes a response or a hesitation, and what comes of it."""
+"""A conversation from sound: what was found, who is who, what makes a response or a hesitation, and what
+comes of it.
+"""
 
 from __future__ import annotations
 
@@ -64,7 +66,8 @@ class Card(QFrame):
         self.name.setAccessibleName(f"Name of the {title.lower()}")
         self.sound, self.words, self.segments = QLabel(self), QLabel(self), QLabel(self)
         for row, (words, widget) in enumerate(
-            (("Name", self.name), ("Sound", self.sound), ("Words", self.words), ("Segments", self.segments)), 1
+            (("Name", self.name), ("Sound", self.sound), ("Words", self.words), ("Segments", self.segments)),
+            1,
         ):
             grid.addWidget(caption(words, self, True), row, 0)
             grid.addWidget(widget, row, 1)
@@ -81,16 +84,26 @@ class Card(QFrame):
         self.sound.setText(f"{sound}, channel {side.channel + 1}" if side.channel is not None else sound)
         self.words.setText(many(len(side.words), "word") if side.words else "none: told by its loudness")
         counts = {k: sum(s.kind == k for s in side.segments) for k in SPOKEN}
-        self.segments.setText("   ".join(f"{SOUND_MARKS[k]} {n:,} {PLURALS[k] if n != 1 else k}" for k, n in counts.items()))
+        self.segments.setText(
+            "   ".join(f"{SOUND_MARKS[k]} {n:,} {PLURALS[k] if n != 1 else k}" for k, n in counts.items())
+        )
 
 
 class ImportDialog(QDialog):
-    """imported: the id of the conversation that was added. It is read on a thread, anew whenever files or lists change."""
+    """imported: the id of the conversation that was added. It is read on a thread, anew whenever files or
+    lists change.
+    """
 
     imported = Signal(str)
 
     def __init__(
-        self, document: Document, session: Session, jobs: Jobs, sounds: Sequence[Path], transcripts: Sequence[Path], parent: QWidget
+        self,
+        document: Document,
+        session: Session,
+        jobs: Jobs,
+        sounds: Sequence[Path],
+        transcripts: Sequence[Path],
+        parent: QWidget,
     ) -> None:
         super().__init__(parent)
         self.document, self.session, self.jobs = document, session, jobs
@@ -125,7 +138,9 @@ class ImportDialog(QDialog):
         row = QHBoxLayout()
         row.setSpacing(10)
         self.cards = (Card("First speaker", self), Card("Second speaker", self))
-        self.swap = QToolButton(self, text="⇄", toolTip="Swap the two: who stands left, and is driven by this project's own graph")
+        self.swap = QToolButton(
+            self, text="⇄", toolTip="Swap the two: who stands left, and is driven by this project's own graph"
+        )
         self.swap.setAccessibleName("Swap the two")
         self.swap.clicked.connect(self.swap_sides)
         row.addWidget(self.cards[0], 1)
@@ -146,7 +161,9 @@ class ImportDialog(QDialog):
 
     def _restyle(self) -> None:
         t = theme(self.session.look.name)
-        self.setStyleSheet(f"QFrame#card {{ background: {t.card}; border: 1px solid {t.line}; border-radius: 8px; }}")
+        self.setStyleSheet(
+            f"QFrame#card {{ background: {t.card}; border: 1px solid {t.line}; border-radius: 8px; }}"
+        )
 
     def _found(self) -> QHBoxLayout:
         """The row of what was found, with what can be done about the words."""
@@ -155,11 +172,17 @@ class ImportDialog(QDialog):
         row.addWidget(caption("Found", self, True))
         self.files = QLabel(self, wordWrap=True)
         row.addWidget(self.files, 1)
-        self.add_words = QToolButton(self, text="Add words…", toolTip="A transcript: TextGrid, ELAN, WebVTT, SRT, JSON or CTM")
+        self.add_words = QToolButton(
+            self, text="Add words…", toolTip="A transcript: TextGrid, ELAN, WebVTT, SRT, JSON or CTM"
+        )
         self.add_words.clicked.connect(self.ask_words)
-        self.other_words = QToolButton(self, text="Swap words", toolTip="The words that were taken for the one's are the other's")
+        self.other_words = QToolButton(
+            self, text="Swap words", toolTip="The words that were taken for the one's are the other's"
+        )
         self.other_words.clicked.connect(self.swap_words)
-        self.no_words = QToolButton(self, text="Without words", toolTip="Read the sound alone: by loudness and pauses")
+        self.no_words = QToolButton(
+            self, text="Without words", toolTip="Read the sound alone: by loudness and pauses"
+        )
         self.no_words.clicked.connect(lambda: self.take_words(()))
         for button in (self.add_words, self.other_words, self.no_words):
             row.addWidget(button)
@@ -204,7 +227,12 @@ class ImportDialog(QDialog):
             from metagraph.formats.conversations import read_conversation
 
             return read_conversation(
-                sounds, transcripts, folder=folder, responses=responses, hesitations=hesitations, cancelled=lambda: job.cancelled
+                sounds,
+                transcripts,
+                folder=folder,
+                responses=responses,
+                hesitations=hesitations,
+                cancelled=lambda: job.cancelled,
             )
 
         self.job = self.jobs.start("Reading the conversation", work, self._came, self._failed)
@@ -256,7 +284,9 @@ class ImportDialog(QDialog):
         self._fit()
 
     def _fit(self) -> None:
-        """Grow as high as the notes need: a layout does not ask for what words need that are broken into lines."""
+        """Grow as high as the notes need: a layout does not ask for what words need that are broken into
+        lines.
+        """
         layout = self.layout()
         if layout is not None:
             layout.activate()
@@ -290,14 +320,21 @@ class ImportDialog(QDialog):
 
     def ask_words(self) -> None:
         ends = " ".join(f"*{s}" for s in (*TRANSCRIPTS, ".TextGrid"))
-        names, _ = QFileDialog.getOpenFileNames(self, "Words of the conversation", str(self.sounds[0].parent), f"Transcripts ({ends})")
+        names, _ = QFileDialog.getOpenFileNames(
+            self, "Words of the conversation", str(self.sounds[0].parent), f"Transcripts ({ends})"
+        )
         if names:
-            self.take_words([*self.transcripts, *(p for n in names if (p := Path(n)) not in self.transcripts)])
+            self.take_words(
+                [*self.transcripts, *(p for n in names if (p := Path(n)) not in self.transcripts)]
+            )
 
     def made(self) -> Conversation:
         """Return the conversation as it would be added."""
         assert self.read is not None
-        named = (msgspec.structs.replace(s, name=" ".join(c.name.text().split())) for s, c in zip(self.sides(), self.cards, strict=True))
+        named = (
+            msgspec.structs.replace(s, name=" ".join(c.name.text().split()))
+            for s, c in zip(self.sides(), self.cards, strict=True)
+        )
         name = " ".join(self.name.text().split()) or self.sounds[0].stem
         return msgspec.structs.replace(self.read.conversation, name=name, sides=tuple(named))
 

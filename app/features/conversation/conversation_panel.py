@@ -21,7 +21,8 @@ from app.widgets.sentence import Sentence
 from metagraph.graph.conversation import SPOKEN, side_name
 
 NONE = "None on stage"
-BRIEF = 1000  # pixels of the panel below which the legend leaves its words out: the sentence beside needs the room
+# pixels of the panel below which the legend leaves its words out: the sentence beside needs the room
+BRIEF = 1000
 PLURALS = {"clause": "clauses", "response": "responses", "hesitation": "hesitations"}
 
 
@@ -30,7 +31,9 @@ class ConversationPanel(QWidget):
 
     files_dropped = Signal(object)
 
-    def __init__(self, document: Document, session: Session, jobs: Jobs, parent: QWidget | None = None) -> None:
+    def __init__(
+        self, document: Document, session: Session, jobs: Jobs, parent: QWidget | None = None
+    ) -> None:
         super().__init__(parent)
         self.document, self.session = document, session
         self.sounds = Sounds(document, session, jobs, self)
@@ -58,7 +61,9 @@ class ConversationPanel(QWidget):
         self.stage = ComboBox(self, toolTip="Which conversation is on stage: it moves both characters")
         self.stage.setAccessibleName("Conversation on stage")
         self.stage.setMinimumWidth(150)
-        self.stage.activated.connect(lambda _: self.session.onstage.set_conversation(self.stage.currentData()))
+        self.stage.activated.connect(
+            lambda _: self.session.onstage.set_conversation(self.stage.currentData())
+        )
         row.addWidget(self.stage)
         self.more = QToolButton(self, text="…", toolTip="Rename, rates, word lists, export, remove")
         self.more.setAccessibleName("Conversations")
@@ -72,7 +77,11 @@ class ConversationPanel(QWidget):
         self.legend = QLabel(self, textFormat=Qt.TextFormat.RichText)
         self.legend.setToolTip("Clauses, responses and hesitations. Keys 1, 2 and 3 label the selected ones.")
         row.addWidget(self.legend)
-        self.add = QToolButton(self, text="From sound…", toolTip="Read a conversation from sound files, and their words if there are any")
+        self.add = QToolButton(
+            self,
+            text="From sound…",
+            toolTip="Read a conversation from sound files, and their words if there are any",
+        )
         row.addWidget(self.add)
         return row
 
@@ -85,7 +94,9 @@ class ConversationPanel(QWidget):
             self.stage.clear()
             for name, ident in wanted:
                 self.stage.addItem(name, ident)
-        self.stage.setCurrentIndex(next((n for n, (_, i) in enumerate(wanted) if i == self.session.onstage.conversation), 0))
+        self.stage.setCurrentIndex(
+            next((n for n, (_, i) in enumerate(wanted) if i == self.session.onstage.conversation), 0)
+        )
         self.stage.setEnabled(len(wanted) > 1)
         self._soon.start()
 
@@ -97,19 +108,25 @@ class ConversationPanel(QWidget):
             return
         counts = {kind: sum(s.kind == kind for side in of.sides for s in side.segments) for kind in SPOKEN}
         brief = self.width() < BRIEF
-        self.legend.setText(
-            "&nbsp;&nbsp; ".join(
-                f"<span style='background:{t.sounds[k]}; color:#17181b'>&nbsp;{SOUND_MARKS[k]}&nbsp;</span> "
-                f"<span style='color:{t.dim}'>{counts[k]:,}{'' if brief else ' ' + (PLURALS[k] if counts[k] != 1 else k)}</span>"
-                for k in SPOKEN
+        parts = []
+        for k in SPOKEN:
+            words = "" if brief else f" {PLURALS[k] if counts[k] != 1 else k}"
+            mark = (
+                f"<span style='background:{t.sounds[k]}; color:#17181b'>&nbsp;{SOUND_MARKS[k]}&nbsp;</span>"
             )
-        )
+            parts.append(f"{mark} <span style='color:{t.dim}'>{counts[k]:,}{words}</span>")
+        self.legend.setText("&nbsp;&nbsp; ".join(parts))
         if self.session.onstage.mode == "manual":
-            self.title.say("Now the machine you draw moves one character. Back in the meta-graph, both move with what is said.")
+            self.title.say(
+                "Now the machine you draw moves one character. Back in the meta-graph, both move with what "
+                "is said."
+            )
             return
         chosen, found = self.editing.chosen, self.editing.segment(self.editing.last)
         if len(chosen) == 1 and found is not None and self.editing.last is not None:
-            self.title.say(f"{side_name(of, self.editing.last[0])}: {segment_words(found)}".replace("\n", ", "), True)
+            self.title.say(
+                f"{side_name(of, self.editing.last[0])}: {segment_words(found)}".replace("\n", ", "), True
+            )
         elif chosen:
             self.title.say(f"{many(len(chosen), 'segment')} selected", True)
         else:

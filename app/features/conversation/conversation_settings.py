@@ -1,4 +1,6 @@
-"""Small dialogs about a conversation: how often each of the two moves with what is said, which words are what, whose sound is whose."""
+"""Small dialogs about a conversation: how often each of the two moves with what is said, which words are
+what, whose sound is whose.
+"""
 
 from __future__ import annotations
 
@@ -41,7 +43,9 @@ ACTORS = {"female": "the woman", "male": "the man"}
 
 def asked(words: str) -> tuple[str, ...]:
     """Return the words of a list that was typed: one a line, or parted by commas."""
-    return tuple(dict.fromkeys(x for part in words.replace(",", "\n").split("\n") if (x := " ".join(part.split()))))
+    return tuple(
+        dict.fromkeys(x for part in words.replace(",", "\n").split("\n") if (x := " ".join(part.split())))
+    )
 
 
 def caption(words: str, parent: QWidget, dim: bool = False) -> QLabel:
@@ -68,7 +72,9 @@ class WordLists(QWidget):
             row = QHBoxLayout()
             row.addWidget(caption(f"{SOUND_MARKS[kind]}  {title}", self), 1)
             reset = QToolButton(self, text="Usual", toolTip="The list as it comes with the program")
-            reset.clicked.connect(lambda _=False, n=column, words=usual: self.edits[n].setPlainText(", ".join(words)))
+            reset.clicked.connect(
+                lambda _=False, n=column, words=usual: self.edits[n].setPlainText(", ".join(words))
+            )
             row.addWidget(reset)
             edit = QPlainTextEdit(self)
             edit.setAccessibleName(title)
@@ -104,7 +110,9 @@ class SettingDialog(QDialog):
         self.said = QLabel(self, wordWrap=True)
         self.said.hide()
         layout.addWidget(self.said)
-        buttons = QDialogButtonBox(QDialogButtonBox.StandardButton.Cancel | QDialogButtonBox.StandardButton.Ok, self)
+        buttons = QDialogButtonBox(
+            QDialogButtonBox.StandardButton.Cancel | QDialogButtonBox.StandardButton.Ok, self
+        )
         self.go = buttons.button(QDialogButtonBox.StandardButton.Ok)
         strengthen(self.go)
         buttons.accepted.connect(self.accept)
@@ -135,7 +143,13 @@ class WordsDialog(SettingDialog):
 
     def build(self, layout: QVBoxLayout) -> None:
         self.resize(620, 380)
-        layout.addWidget(caption("Segments made of nothing but these words are labelled so; what you labelled yourself stays.", self, True))
+        layout.addWidget(
+            caption(
+                "Segments made of nothing but these words are labelled so; what you labelled yourself stays.",
+                self,
+                True,
+            )
+        )
         self.lists = WordLists(self)
         self.lists.show_lists(self.conversation.responses, self.conversation.hesitations)
         layout.addWidget(self.lists, 1)
@@ -152,7 +166,12 @@ class RatesDialog(SettingDialog):
 
     def build(self, layout: QVBoxLayout) -> None:
         layout.addWidget(
-            caption("How often each of the two moves with what is said. Beside: what actors did (Yang et al. 2020).", self, True)
+            caption(
+                "How often each of the two moves with what is said. Beside: what actors did (Yang et al. "
+                "2020).",
+                self,
+                True,
+            )
         )
         grid = QGridLayout()
         grid.setHorizontalSpacing(18)
@@ -173,13 +192,19 @@ class RatesDialog(SettingDialog):
                 self.fields[side][name] = field
                 grid.addWidget(field, row, 1 + side)
             for column, actor in enumerate(ACTORS):
-                grid.addWidget(caption(f"{100 * getattr(conversing.PAPER[actor], name):.0f} %", self, True), row, 3 + column)
+                grid.addWidget(
+                    caption(f"{100 * getattr(conversing.PAPER[actor], name):.0f} %", self, True),
+                    row,
+                    3 + column,
+                )
         for side in (0, 1):
             row_of = QHBoxLayout()
             row_of.setSpacing(2)
             for actor, words in ACTORS.items():
                 button = QToolButton(self, text=f"As {words}", toolTip=f"The rates of {words} in the paper")
-                button.clicked.connect(lambda _=False, side=side, rates=conversing.PAPER[actor]: self.take(side, rates))
+                button.clicked.connect(
+                    lambda _=False, side=side, rates=conversing.PAPER[actor]: self.take(side, rates)
+                )
                 row_of.addWidget(button)
             grid.addLayout(row_of, 4, 1 + side)
         layout.addLayout(grid)
@@ -214,20 +239,33 @@ class SidesDialog(SettingDialog):
         for side, of in enumerate(self.conversation.sides):
             top = 6 * side
             grid.addWidget(caption(("First speaker", "Second speaker")[side], self), top, 0, 1, 3)
-            name, sound, channel, mover = QLineEdit(of.name, self), QLineEdit(of.audio or "", self), ComboBox(self), QLineEdit(self)
+            name, sound, channel, mover = (
+                QLineEdit(of.name, self),
+                QLineEdit(of.audio or "", self),
+                ComboBox(self),
+                QLineEdit(self),
+            )
             mover.setText(of.project or "")
             mover.setToolTip("The project whose graph and character move this one")
             mover.setClearButtonEnabled(True)
             for row, (words, widget, empty) in enumerate(
-                (("Name", name, f"Speaker {side + 1}"), ("Sound", sound, "No sound"), ("Channel", channel, ""),
-                 ("Moved by", mover, "This project")), top + 1,
-            ):  # fmt: skip
+                (
+                    ("Name", name, f"Speaker {side + 1}"),
+                    ("Sound", sound, "No sound"),
+                    ("Channel", channel, ""),
+                    ("Moved by", mover, "This project"),
+                ),
+                top + 1,
+            ):
                 widget.setAccessibleName(f"{words} of the {('first', 'second')[side]} speaker")
                 grid.addWidget(QLabel(words, self), row, 0)
                 grid.addWidget(widget, row, 1)
                 if isinstance(widget, QLineEdit):
                     widget.setPlaceholderText(empty)
-            for row, tip, choose in ((top + 2, "Choose a sound file", self.choose), (top + 4, "Choose a project", self.choose_project)):
+            for row, tip, choose in (
+                (top + 2, "Choose a sound file", self.choose),
+                (top + 4, "Choose a project", self.choose_project),
+            ):
                 button = QToolButton(self, text="Choose…", toolTip=tip)
                 button.clicked.connect(lambda _=False, side=side, choose=choose: choose(side))
                 grid.addWidget(button, row, 2)
@@ -237,8 +275,12 @@ class SidesDialog(SettingDialog):
             self.channels.append(channel)
             self.movers.append(mover)
             self._show_channels(side, of.channel)
-            sound.editingFinished.connect(lambda side=side: self._show_channels(side, self.channels[side].currentData()))
-        self.distance = DoubleSpinBox(self, suffix=" m", decimals=2, singleStep=0.1, toolTip="How far apart the two stand")
+            sound.editingFinished.connect(
+                lambda side=side: self._show_channels(side, self.channels[side].currentData())
+            )
+        self.distance = DoubleSpinBox(
+            self, suffix=" m", decimals=2, singleStep=0.1, toolTip="How far apart the two stand"
+        )
         self.distance.setRange(0.2, 20)
         self.distance.setValue(self.conversation.distance)
         self.distance.lineEdit().setTextMargins(6, 0, 0, 0)
@@ -276,13 +318,18 @@ class SidesDialog(SettingDialog):
         return bool(name)
 
     def _mover(self, side: int) -> str | None:
-        """Return the path of the project that moves a side, None for the one at hand. Raises EditError where there is none."""
+        """Return the path of the project that moves a side, None for the one at hand. Raises EditError where
+        there is none.
+        """
         text = self.movers[side].text().strip()
         if not text or text == self.conversation.sides[side].project:
             return text or None
         whole = (self.document.folder or Path()) / text
         if not whole.is_file():
-            raise EditError(f"there is no project at {whole}: choose another, or clear the field to let this project move the speaker")
+            raise EditError(
+                f"there is no project at {whole}: choose another, or clear the field to let this project "
+                "move the speaker"
+            )
         own = self.document.path
         return None if own is not None and own.exists() and whole.samefile(own) else text
 
@@ -291,7 +338,13 @@ class SidesDialog(SettingDialog):
             sound = self.sounds[side].text().strip() or None
             channel = self.channels[side].currentData() if sound is not None else None
             project = conversing.change_side(
-                project, self.ident, side, name=self.names[side].text(), audio=sound, channel=channel, project=self._mover(side)
+                project,
+                self.ident,
+                side,
+                name=self.names[side].text(),
+                audio=sound,
+                channel=channel,
+                project=self._mover(side),
             )
         distance = round(self.distance.value(), 3)
         if distance == round(self.conversation.distance, 2):  # as it was, to what is shown of it

@@ -1,4 +1,6 @@
-"""What is done with the segments of the conversation on stage, each one undo step: by key, by menu, by mouse alike."""
+"""What is done with the segments of the conversation on stage, each one undo step: by key, by menu, by mouse
+alike.
+"""
 
 from __future__ import annotations
 
@@ -26,7 +28,9 @@ class Editing(QObject):
 
     changed = Signal()
 
-    def __init__(self, document: Document, session: Session, sounds: Sounds, parent: QObject | None = None) -> None:
+    def __init__(
+        self, document: Document, session: Session, sounds: Sounds, parent: QObject | None = None
+    ) -> None:
         super().__init__(parent)
         self.document, self.session, self.sounds = document, session, sounds
         self.chosen: frozenset[Place] = frozenset()
@@ -58,10 +62,14 @@ class Editing(QObject):
     def select_all(self) -> None:
         of = self.conversation
         if of is not None:
-            self.select({(side, n) for side in (0, 1) for n in range(len(of.sides[side].segments))}, self.last)
+            self.select(
+                {(side, n) for side in (0, 1) for n in range(len(of.sides[side].segments))}, self.last
+            )
 
     def step(self, by: int) -> bool:
-        """Select the segment before or after on the same side; the first from the playhead on where none is. False at the ends."""
+        """Select the segment before or after on the same side; the first from the playhead on where none is.
+        False at the ends.
+        """
         of = self.conversation
         if of is None:
             return False
@@ -80,7 +88,9 @@ class Editing(QObject):
         self._select_near(side, found.start if found is not None else self.session.transport.seconds)
 
     def _staged(self) -> None:
-        if self.session.onstage.conversation != self._ident:  # else it is the other of the two that the timeline shows
+        if (
+            self.session.onstage.conversation != self._ident
+        ):  # else it is the other of the two that the timeline shows
             self._ident = self.session.onstage.conversation
             self.select(())
 
@@ -94,7 +104,9 @@ class Editing(QObject):
         return True
 
     def _follow(self, before: Project, after: Project) -> None:
-        """Keep what is selected while it is there: by its place, or where there are more or fewer now by when it begins."""
+        """Keep what is selected while it is there: by its place, or where there are more or fewer now by when
+        it begins.
+        """
         ident = self.session.onstage.conversation or ""
         was, now = before.conversations.get(ident), after.conversations.get(ident)
         if was is now or not self.chosen:
@@ -111,7 +123,9 @@ class Editing(QObject):
     # --- edits
 
     def edit(self, text: str, function: Edit) -> bool:
-        """Change the project in one step; what cannot be done is told in the status bar. Return whether it was done."""
+        """Change the project in one step; what cannot be done is told in the status bar. Return whether it
+        was done.
+        """
         try:
             self.document.edit(text, function)
         except EditError as error:
@@ -126,7 +140,12 @@ class Editing(QObject):
 
     def relabel(self, kind: Sound) -> None:
         if self.chosen:
-            self.change(f"Label {many(len(self.chosen), 'segment')} as {kind}", conversing.relabel_segments, self.chosen, kind)
+            self.change(
+                f"Label {many(len(self.chosen), 'segment')} as {kind}",
+                conversing.relabel_segments,
+                self.chosen,
+                kind,
+            )
 
     def relabel_next(self) -> None:
         """Label the selected segment as what comes next: clause, response, hesitation."""
@@ -138,7 +157,9 @@ class Editing(QObject):
         if not self.chosen:
             return
         side, at = min(self.chosen)
-        if self.change(f"Remove {many(len(self.chosen), 'segment')}", conversing.remove_segments, self.chosen):
+        if self.change(
+            f"Remove {many(len(self.chosen), 'segment')}", conversing.remove_segments, self.chosen
+        ):
             of = self.conversation
             left = len(of.sides[side].segments) if of is not None else 0
             self.select({(side, min(at, left - 1))} if left else ())
@@ -148,7 +169,9 @@ class Editing(QObject):
         place = place or self.under(seconds)
         found = self.segment(place)
         if place is None or found is None:
-            self.document.failed.emit("No segment is here: put the playhead, or the pointer, where one is to be split.")
+            self.document.failed.emit(
+                "No segment is here: put the playhead, or the pointer, where one is to be split."
+            )
             return
         second = found.peak is None or found.peak < seconds
         peak = self.highest(place[0], *((seconds, found.end) if second else (found.start, seconds)))
@@ -160,7 +183,12 @@ class Editing(QObject):
         of = self.conversation
         if of is None:
             return None
-        found = [(side, n) for side in (0, 1) for n, s in enumerate(of.sides[side].segments) if s.start < seconds < s.end]
+        found = [
+            (side, n)
+            for side in (0, 1)
+            for n, s in enumerate(of.sides[side].segments)
+            if s.start < seconds < s.end
+        ]
         return next((p for p in found if p in self.chosen), found[0] if found else None)
 
     def merge(self) -> None:
@@ -181,7 +209,9 @@ class Editing(QObject):
             nonlocal made
             assert self.session.onstage.conversation is not None
             peak = self.highest(side, start, end)
-            project, made = conversing.add_segment(project, self.session.onstage.conversation, side, kind, start, end, peak)
+            project, made = conversing.add_segment(
+                project, self.session.onstage.conversation, side, kind, start, end, peak
+            )
             return project
 
         if self.conversation is not None and self.edit("Add segment", edit):
@@ -190,7 +220,10 @@ class Editing(QObject):
     def add_here(self) -> None:
         """Add a segment at the playhead, on the side of the selected one, as long as there is room."""
         self.add(
-            self.last[0] if self.last is not None else 0, "clause", self.session.transport.seconds, self.session.transport.seconds + NEW
+            self.last[0] if self.last is not None else 0,
+            "clause",
+            self.session.transport.seconds,
+            self.session.transport.seconds + NEW,
         )
 
     def nudge(self, by: float, what: str) -> None:
@@ -201,7 +234,9 @@ class Editing(QObject):
         if what == "body":
             self.change("Move segment", conversing.move_segment, *self.last, by)
         else:
-            self.change("Change segment", conversing.resize_segment, *self.last, **{what: getattr(found, what) + by})
+            self.change(
+                "Change segment", conversing.resize_segment, *self.last, **{what: getattr(found, what) + by}
+            )
 
     def stress(self, seconds: float) -> None:
         """Put the stress of the selected segment at a time; out of it, where the voice is highest in it."""
@@ -211,7 +246,9 @@ class Editing(QObject):
         inside = found.start <= seconds <= found.end
         peak = seconds if inside else self.highest(self.last[0], found.start, found.end)
         if peak is None:
-            self.document.failed.emit("No pitch was found in this segment: put the playhead in it, where the stress is.")
+            self.document.failed.emit(
+                "No pitch was found in this segment: put the playhead in it, where the stress is."
+            )
         else:
             self.change("Move stress", conversing.set_peak, *self.last, peak)
 

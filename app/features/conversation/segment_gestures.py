@@ -1,4 +1,6 @@
-"""Drags of the mouse on a conversation's lanes as objects, from press to release. Only `finish` changes the project, in one step."""
+"""Drags of the mouse on a conversation's lanes as objects, from press to release. Only `finish` changes the
+project, in one step.
+"""
 
 from __future__ import annotations
 
@@ -15,7 +17,9 @@ CATCH = 3.0  # pixels the mouse must move for a press to become a drag
 
 
 class SegmentDrag(PressDrag):
-    """What drags of segments share: what it would make is shown while it lasts, and made at its end. words: beside the pointer."""
+    """What drags of segments share: what it would make is shown while it lasts, and made at its end. words:
+    beside the pointer.
+    """
 
     text = ""
 
@@ -70,7 +74,9 @@ class EdgeDrag(SegmentDrag):
 
 
 class BodyDrag(SegmentDrag):
-    """Drags a segment in time; whichever of its ends is nearer to a word's catches it. Let go without moving it, it alone is selected."""
+    """Drags a segment in time; whichever of its ends is nearer to a word's catches it. Let go without moving
+    it, it alone is selected.
+    """
 
     text = "Move segment"
 
@@ -80,7 +86,11 @@ class BodyDrag(SegmentDrag):
         if segment is None or ident is None:
             return None
         by = (at.x() - self.origin.x()) / view.each
-        caught = [to - edge for edge in (segment.start, segment.end) if (to := self.snapped(edge + by, free)) != edge + by]
+        caught = [
+            to - edge
+            for edge in (segment.start, segment.end)
+            if (to := self.snapped(edge + by, free)) != edge + by
+        ]
         by = min(caught, key=lambda c: abs(c - by), default=by)
         self.words, self.seconds = f"{max(0.0, segment.start + by):.2f} s  ({by:+.2f})", segment.start + by
         return lambda p: conversing.move_segment(p, ident, hit.side, hit.at, by)
@@ -115,7 +125,9 @@ class NewDrag(SegmentDrag):
         start, end = (self.snapped(scale.seconds(x), free) for x in (self.origin.x(), at.x()))
         self.words, self.seconds = f"New: {abs(end - start):.2f} s", end
         self._span = start, end
-        if ident is None or not _can(view, lambda p: conversing.add_segment(p, ident, side, "clause", start, end)[0]):
+        if ident is None or not _can(
+            view, lambda p: conversing.add_segment(p, ident, side, "clause", start, end)[0]
+        ):
             return None
         return lambda p: conversing.add_segment(p, ident, side, "clause", start, end)[0]
 
@@ -140,7 +152,9 @@ class Scrub(PressDrag):
         self.update(at)
 
     def update(self, at: QPointF, free: bool = False) -> None:
-        self.view.session.transport.seek(self.view.scale().seconds(max(at.x(), self.view.scale().x(self.view.first))))
+        self.view.session.transport.seek(
+            self.view.scale().seconds(max(at.x(), self.view.scale().x(self.view.first)))
+        )
 
     def finish(self, at: QPointF) -> None:
         """The playhead is where it is."""

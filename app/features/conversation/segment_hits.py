@@ -1,4 +1,6 @@
-"""What is under the pointer on a conversation's lanes, and what a dragged time snaps to. Functions of values."""
+"""What is under the pointer on a conversation's lanes, and what a dragged time snaps to. Functions of
+values.
+"""
 
 from __future__ import annotations
 
@@ -16,7 +18,9 @@ from metagraph.graph.conversation import Conversation, Word
 
 Part = Literal["nothing", "title", "ruler", "wave", "start", "end", "body", "gap", "peak"]
 EDGE, DOT = 5.0, 7.0  # pixels either side of an edge, and round a dot, that take hold of it
-NARROW = 14.0  # pixels up to which a segment's edges are taken hold of from outside only, so that its body can be
+NARROW = (
+    14.0  # pixels up to which a segment's edges are taken hold of from outside only, so that its body can be
+)
 SNAP = 6.0  # pixels within which a dragged time is caught
 
 
@@ -51,7 +55,11 @@ def _peak(conversation: Conversation, side: int, scale: Scale, x: float) -> int 
     segments = conversation.sides[side].segments
     reach = DOT / scale.each
     near = visible(segments, scale.seconds(x) - reach, scale.seconds(x) + reach)
-    found = [(abs(scale.x(p) - x), n) for n in near if segments[n].kind == "clause" and (p := segments[n].peak) is not None]
+    found = [
+        (abs(scale.x(p) - x), n)
+        for n in near
+        if segments[n].kind == "clause" and (p := segments[n].peak) is not None
+    ]
     return min(found)[1] if found and min(found)[0] <= DOT else None
 
 
@@ -85,12 +93,18 @@ def pitch_maxima(times: Any, hertz: Any) -> Any:
         filled = np.where(np.isnan(hertz), -np.inf, hertz)
         padded = np.concatenate([[-np.inf], filled, [-np.inf]])
         rises = np.flatnonzero(padded[1:] != padded[:-1])  # where an even stretch of `padded` ends
-    tops = [(a, b) for a, b in zip(rises[:-1] + 1, rises[1:], strict=True) if padded[a] > padded[a - 1] and padded[b] > padded[b + 1]]
+    tops = [
+        (a, b)
+        for a, b in zip(rises[:-1] + 1, rises[1:], strict=True)
+        if padded[a] > padded[a - 1] and padded[b] > padded[b + 1]
+    ]
     return np.array([(times[a - 1] + times[b - 1]) / 2 for a, b in tops])
 
 
 def snapped(seconds: float, marks: Iterable[float], scale: Scale, on: bool = True) -> float:
-    """Return the nearest of some times if it is near on the screen, else the time itself. on: snapping is wanted."""
+    """Return the nearest of some times if it is near on the screen, else the time itself. on: snapping is
+    wanted.
+    """
     if on:
         near = min(marks, key=lambda m: abs(m - seconds), default=None)
         if near is not None and abs(near - seconds) * scale.each <= SNAP:

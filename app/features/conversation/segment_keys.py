@@ -19,8 +19,9 @@ Key, Modifier = Qt.Key, Qt.KeyboardModifier
 
 @dataclass(frozen=True)
 class Deed:
-    """run: what it does, at a time in seconds. needs: whether segments must be selected. line: the menu has a line above. hidden: a key
-    alone, not in the menu."""
+    """run: what it does, at a time in seconds. needs: whether segments must be selected. line: the menu has a
+    line above. hidden: a key alone, not in the menu.
+    """
 
     text: str
     keys: tuple[QKeyCombination, ...]
@@ -75,9 +76,25 @@ DEEDS: tuple[Deed, ...] = (
     Deed("Split here", (_combined(Key.Key_S),), lambda e, at: e.split(at), needs=False, line=True),
     Deed("Merge with the next", (_combined(Key.Key_M),), lambda e, _: e.merge()),
     Deed("Put the stress here", (_combined(Key.Key_P),), lambda e, at: e.stress(at)),
-    Deed("Remove", (_combined(Key.Key_Delete), _combined(Key.Key_Backspace)), lambda e, _: e.remove(), line=True),
-    Deed("Add a segment at the playhead", (_combined(Key.Key_Insert),), lambda e, _: e.add_here(), needs=False, line=True),
-    Deed("Select all segments", (_combined(Key.Key_A, Modifier.ControlModifier),), lambda e, _: e.select_all(), needs=False),
+    Deed(
+        "Remove",
+        (_combined(Key.Key_Delete), _combined(Key.Key_Backspace)),
+        lambda e, _: e.remove(),
+        line=True,
+    ),
+    Deed(
+        "Add a segment at the playhead",
+        (_combined(Key.Key_Insert),),
+        lambda e, _: e.add_here(),
+        needs=False,
+        line=True,
+    ),
+    Deed(
+        "Select all segments",
+        (_combined(Key.Key_A, Modifier.ControlModifier),),
+        lambda e, _: e.select_all(),
+        needs=False,
+    ),
     Deed("Next", (_combined(Key.Key_Right),), lambda e, _: e.step(1), needs=False, hidden=True),
     Deed("Previous", (_combined(Key.Key_Left),), lambda e, _: e.step(-1), needs=False, hidden=True),
     Deed("The first speaker", (_combined(Key.Key_Up),), lambda e, _: e.cross(0), needs=False, hidden=True),

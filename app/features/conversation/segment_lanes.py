@@ -1,4 +1,5 @@
-"""Where things stand on the lanes of a conversation: for each of the two a waveform with its pitch, the words, and the segments.
+"""Where things stand on the lanes of a conversation: for each of the two a waveform with its pitch, the
+words, and the segments.
 
 Functions of values. Seconds and pixels are the timeline's.
 """
@@ -46,7 +47,11 @@ def lanes(width: float, height: float) -> tuple[Lane, Lane]:
         top, wide = RULER + side * (each + GAP), max(1.0, width - LEFT)
         tall = each - WORDS - segments
         out.append(
-            Lane(QRectF(LEFT, top, wide, tall), QRectF(LEFT, top + tall, wide, WORDS), QRectF(LEFT, top + tall + WORDS, wide, segments - 2))
+            Lane(
+                QRectF(LEFT, top, wide, tall),
+                QRectF(LEFT, top + tall, wide, WORDS),
+                QRectF(LEFT, top + tall + WORDS, wide, segments - 2),
+            )
         )
     return out[0], out[1]
 
@@ -82,9 +87,15 @@ def segment_rect(segment: Segment, scale: Scale, lane: Lane) -> QRectF:
 
 def segment_words(segment: Segment) -> str:
     """Return a segment in words: what is said, what it is, from when to when, and its stress."""
-    what = {"clause": "Clause", "response": "Listener response", "hesitation": "Hesitation pause"}[segment.kind]
+    what = {"clause": "Clause", "response": "Listener response", "hesitation": "Hesitation pause"}[
+        segment.kind
+    ]
     lines = [f"“{segment.text}”"] if segment.text else []
     lines.append(f"{what}, {segment.start:.2f} to {segment.end:.2f} s")
     if segment.kind == "clause":
-        lines.append(f"Stress at {segment.peak:.2f} s" if segment.peak is not None else "No stress: drag in the waveform above to set it")
+        lines.append(
+            f"Stress at {segment.peak:.2f} s"
+            if segment.peak is not None
+            else "No stress: drag in the waveform above to set it"
+        )
     return "\n".join(lines)

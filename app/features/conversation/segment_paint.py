@@ -10,7 +10,15 @@ from PySide6.QtCore import QPointF, QRectF, Qt
 from PySide6.QtGui import QColor, QFont, QImage, QPainter, QPen
 
 from app.features.conversation.segment_hits import Hit
-from app.features.conversation.segment_lanes import AXIS, Lane, lanes, pitch_y, segment_rect, visible, words_in
+from app.features.conversation.segment_lanes import (
+    AXIS,
+    Lane,
+    lanes,
+    pitch_y,
+    segment_rect,
+    visible,
+    words_in,
+)
 from app.features.conversation.sound_reading import Heard
 from app.features.conversation.waveforms import Envelope, joined, painted
 from app.look.theme import SOUND_MARKS, Theme
@@ -29,8 +37,9 @@ SMALL = 11  # pixels of what stands beside
 
 @dataclass(frozen=True)
 class Scene:
-    """All that is painted. heard: the sound of each side. ratio: pixels of the screen to one of the window. chosen: (side, place) of the
-    selected segments. over: what the pointer is on."""
+    """All that is painted. heard: the sound of each side. ratio: pixels of the screen to one of the window.
+    chosen: (side, place) of the selected segments. over: what the pointer is on.
+    """
 
     conversation: Conversation
     heard: Sequence[Heard | None]
@@ -73,7 +82,9 @@ def _ruler(painter: QPainter, t: Theme, scene: Scene) -> None:
     n = int(scale.first // step)
     while (x := scale.x(n * step)) < scene.width:
         if x >= LEFT - 1:
-            painter.drawText(QRectF(x - 40, 0, 80, RULER), Qt.AlignmentFlag.AlignCenter, clock(round(n * step, 3)))
+            painter.drawText(
+                QRectF(x - 40, 0, 80, RULER), Qt.AlignmentFlag.AlignCenter, clock(round(n * step, 3))
+            )
         n += 1
 
 
@@ -91,7 +102,9 @@ def _titles(painter: QPainter, t: Theme, scene: Scene, side: int, lane: Lane) ->
         bold.setPixelSize(SMALL)
     painter.setFont(bold)
     painter.setPen(QColor(t.text if over or side == scene.side else t.dim))
-    painter.drawText(QRectF(12, lane.wave.top() + 2, LEFT - 14, 18), MIDDLE, elided(name, bold.toString(), LEFT - 16))
+    painter.drawText(
+        QRectF(12, lane.wave.top() + 2, LEFT - 14, 18), MIDDLE, elided(name, bold.toString(), LEFT - 16)
+    )
     painter.setFont(small)
     painter.setPen(QColor(t.dim))
     right = Qt.AlignmentFlag.AlignRight | MIDDLE
@@ -101,7 +114,9 @@ def _titles(painter: QPainter, t: Theme, scene: Scene, side: int, lane: Lane) ->
             painter.drawText(QRectF(12, y - 8, LEFT - 18, 16), right, f"{hertz:.0f} Hz")
     if lane.wave.height() > 34:
         painter.drawText(QRectF(12, lane.words.top(), LEFT - 14, lane.words.height()), MIDDLE, "Words")
-        painter.drawText(QRectF(12, lane.segments.top(), LEFT - 14, lane.segments.height()), MIDDLE, "Segments")
+        painter.drawText(
+            QRectF(12, lane.segments.top(), LEFT - 14, lane.segments.height()), MIDDLE, "Segments"
+        )
     painter.setFont(own)
 
 
@@ -126,12 +141,18 @@ def _wave(painter: QPainter, t: Theme, scene: Scene, side: int, lane: Lane) -> N
         color.setAlphaF(0.62)
         _curve(painter, heard.wave, scene, area, color, lambda v: middle - v * grow, 1.0)
     if heard is not None and heard.pitch is not None:
-        _curve(painter, heard.pitch, scene, area, QColor(t.text), lambda v: pitch_y(v, area) - area.top(), 1.7)
+        _curve(
+            painter, heard.pitch, scene, area, QColor(t.text), lambda v: pitch_y(v, area) - area.top(), 1.7
+        )
     _told(painter, t, heard, area)
 
 
-def _curve(painter: QPainter, of: Envelope, scene: Scene, area: QRectF, color: QColor, y: object, thick: float) -> None:
-    """Paint an envelope, pixel for pixel of the screen. y: from a value to pixels below the top of the area."""
+def _curve(
+    painter: QPainter, of: Envelope, scene: Scene, area: QRectF, color: QColor, y: object, thick: float
+) -> None:
+    """Paint an envelope, pixel for pixel of the screen. y: from a value to pixels below the top of the
+    area.
+    """
     ratio, wide = scene.ratio, int(area.width() * scene.ratio)
     low, high = of.columns(scene.scale.first, scene.scale.each * ratio, wide)
     there = high >= low
@@ -147,7 +168,11 @@ def _told(painter: QPainter, t: Theme, heard: Heard | None, area: QRectF) -> Non
     """Say why there is no sound, or how far it is."""
     inner = area.adjusted(14, 2, -14, -2)
     if heard is None or heard.missing:
-        words = heard.missing if heard is not None else "No sound is given for this side. Choose one in the menu “…” above."
+        words = (
+            heard.missing
+            if heard is not None
+            else "No sound is given for this side. Choose one in the menu “…” above."
+        )
         painter.setPen(QColor(t.warning))
         painter.drawText(inner, MIDDLE | Qt.TextFlag.TextWordWrap, f"⚠  {words}")
     elif heard.told:
@@ -172,7 +197,11 @@ def _words(painter: QPainter, t: Theme, scene: Scene, side: int, lane: Lane) -> 
     for n, word in enumerate(some):
         left = scale.x(word.start)
         until = scale.x(some[n + 1].start) if n + 1 < len(some) else left + 300.0
-        words = word.text if advance(word.text, key) <= until - left - 4 else elided(word.text, key, int(until - left - 4))
+        words = (
+            word.text
+            if advance(word.text, key) <= until - left - 4
+            else elided(word.text, key, int(until - left - 4))
+        )
         if len(words) > 3 or words == word.text:
             painter.drawText(QRectF(left + 1, lane.words.top(), 400, lane.words.height()), MIDDLE, words)
     painter.setFont(own)
@@ -192,7 +221,11 @@ def _segments(painter: QPainter, t: Theme, scene: Scene, side: int, lane: Lane) 
         wide += [n for n in seen if n not in few and (side, n) in scene.chosen][:MOST]
     for n in wide:
         segment = segments[n]
-        rect, fill, chosen = segment_rect(segment, scale, lane), QColor(t.sounds[segment.kind]), (side, n) in scene.chosen
+        rect, fill, chosen = (
+            segment_rect(segment, scale, lane),
+            QColor(t.sounds[segment.kind]),
+            (side, n) in scene.chosen,
+        )
         rect = rect.adjusted(0.5, 1, -0.5, -1)
         if scene.over.side == side and scene.over.at == n and scene.over.part in ("start", "end", "body"):
             fill = fill.lighter(112)
@@ -230,9 +263,17 @@ def _peaks(painter: QPainter, t: Theme, scene: Scene, side: int, lane: Lane) -> 
 
 
 def _strokes(
-    painter: QPainter, t: Theme, scene: Scene, segments: Sequence[Segment], area: QRectF, alphas: tuple[int, int], chosen: Collection[int]
+    painter: QPainter,
+    t: Theme,
+    scene: Scene,
+    segments: Sequence[Segment],
+    area: QRectF,
+    alphas: tuple[int, int],
+    chosen: Collection[int],
 ) -> None:
-    """Paint segments as plain strokes in one picture a pixel high, however many there are. alphas: 0..255, of a stroke, of a chosen one."""
+    """Paint segments as plain strokes in one picture a pixel high, however many there are. alphas: 0..255, of
+    a stroke, of a chosen one.
+    """
     seen = visible(segments, scene.scale.first, scene.scale.seconds(scene.width))
     if not seen:
         return
@@ -241,8 +282,12 @@ def _strokes(
     starts, ends = np.array([s.start for s in some]), np.array([s.end for s in some])
     kinds = list(t.sounds)
     ink = np.array([kinds.index(s.kind) + len(kinds) * (n in chosen) for n, s in enumerate(some, seen.start)])
-    inks = np.array([_premultiplied(QColor(color), alpha) for alpha in alphas for color in t.sounds.values()], np.uint8)
-    columns = scene.scale.first + (np.arange(wide) + 0.5) / (scene.scale.each * scene.ratio)  # seconds of their middles
+    inks = np.array(
+        [_premultiplied(QColor(color), alpha) for alpha in alphas for color in t.sounds.values()], np.uint8
+    )
+    columns = scene.scale.first + (np.arange(wide) + 0.5) / (
+        scene.scale.each * scene.ratio
+    )  # seconds of their middles
     at = np.clip(np.searchsorted(starts, columns, "right") - 1, 0, len(some) - 1)
     inside = (columns >= starts[at]) & (columns < ends[at])
     row = np.ascontiguousarray(np.where(inside[:, None], inks[ink[at]], 0).astype(np.uint8)[None])
@@ -277,7 +322,11 @@ def empty(painter: QPainter, t: Theme, area: QRectF, lines: Sequence[str]) -> No
         painter.setBrush(QColor(t.sounds[kind]))
         painter.drawRoundedRect(rect, 9, 9)
         painter.drawPolygon(
-            [QPointF(tail - 5, rect.bottom() - 2), QPointF(tail + out, rect.bottom() + 9), QPointF(tail + 5, rect.bottom() - 2)]
+            [
+                QPointF(tail - 5, rect.bottom() - 2),
+                QPointF(tail + out, rect.bottom() + 9),
+                QPointF(tail + 5, rect.bottom() - 2),
+            ]
         )
         painter.setPen(QPen(QColor(INK), 2, Qt.PenStyle.SolidLine, Qt.PenCapStyle.RoundCap))
         for n, tall in enumerate((4, 8, 5, 10, 6, 3) if side == 0 else (3, 6, 4, 3, 5, 2)):
@@ -285,5 +334,7 @@ def empty(painter: QPainter, t: Theme, area: QRectF, lines: Sequence[str]) -> No
             painter.drawLine(QPointF(x, rect.center().y() - tall), QPointF(x, rect.center().y() + tall))
     painter.setPen(QColor(t.text))
     for n, line in enumerate(lines):
-        painter.drawText(QRectF(area.left(), top + 62 + n * 20, area.width(), 20), Qt.AlignmentFlag.AlignCenter, line)
+        painter.drawText(
+            QRectF(area.left(), top + 62 + n * 20, area.width(), 20), Qt.AlignmentFlag.AlignCenter, line
+        )
         painter.setPen(QColor(t.dim))

@@ -40,18 +40,21 @@ from metagraph.graph.edits import EditError
 ZOOM, USUAL = 1.2, 100.0  # of a turn of the wheel; pixels a second to begin with: most words have room
 EMPTY = (
     "Drop the sound of a conversation here",
-    "one file with a channel for each of the two, or two files; with their words as TextGrid, ELAN, subtitles or JSON, if there are any.",
+    "one file with a channel for each of the two, or two files; with their words as TextGrid, ELAN, "
+    "subtitles or JSON, if there are any.",
     "What both say then stands here, in clauses, responses and hesitations, and moves two characters.",
 )
 UNCHOSEN = ("No conversation is on stage", "Choose one above, or drop the sound of another here.")
 TEXT = (
-    "Segments of a conversation. Left and Right choose one, Up and Down the speaker, 1 to 3 label it, S splits, M merges, Delete removes."
+    "Segments of a conversation. Left and Right choose one, Up and Down the speaker, 1 to 3 label it, S "
+    "splits, M merges, Delete removes."
 )
 
 
 class View(QWidget):
-    """A press on a segment selects it, a drag moves it, or its edge, or its stress; a drag in a gap makes one; elsewhere it moves the
-    playhead. The wheel zooms, with Shift, or the middle button, it moves along."""
+    """A press on a segment selects it, a drag moves it, or its edge, or its stress; a drag in a gap makes
+    one; elsewhere it moves the playhead. The wheel zooms, with Shift, or the middle button, it moves along.
+    """
 
     def __init__(self, editing: Editing, sounds: Sounds, parent: QWidget) -> None:
         super().__init__(parent)
@@ -127,7 +130,9 @@ class View(QWidget):
 
     def _staged(self) -> None:
         self._stop_dragging()
-        if self.session.onstage.conversation != self._ident:  # else it is the other of the two that the timeline shows
+        if (
+            self.session.onstage.conversation != self._ident
+        ):  # else it is the other of the two that the timeline shows
             self._ident = self.session.onstage.conversation
             self.first, self.each = 0.0, USUAL
         self.update()
@@ -170,7 +175,9 @@ class View(QWidget):
         painter.end()
 
     def _picture(self, of: Conversation) -> QPixmap:
-        """Return everything but the playhead, made anew only when something else than the playhead has changed."""
+        """Return everything but the playhead, made anew only when something else than the playhead has
+        changed.
+        """
         ratio, chosen, s = self.devicePixelRatioF(), self.editing.chosen, self.session
         heard = tuple(self.sounds.of(of, side) for side in (0, 1))
 
@@ -179,13 +186,25 @@ class View(QWidget):
             picture.setDevicePixelRatio(ratio)
             painter = QPainter(picture)
             painter.setFont(self.font())
-            scene = Scene(of, heard, self.scale(), self.width(), self.height(), ratio, chosen, self.over, s.onstage.side)
+            scene = Scene(
+                of, heard, self.scale(), self.width(), self.height(), ratio, chosen, self.over, s.onstage.side
+            )
             paint(painter, theme(s.look.name), scene)
             painter.end()
             self.painted += 1
             return picture
 
-        values = (self.scale(), self.size(), ratio, s.look.name, s.onstage.side, chosen, self.over, self._came, self.font().toString())
+        values = (
+            self.scale(),
+            self.size(),
+            ratio,
+            s.look.name,
+            s.onstage.side,
+            chosen,
+            self.over,
+            self._came,
+            self.font().toString(),
+        )
         return self._still.of(values, (of, *heard), make)
 
     # --- the mouse
@@ -308,7 +327,11 @@ class View(QWidget):
     def _seconds(self) -> float:
         """Return the time keys are about: under the pointer where that is on a segment, else the playhead."""
         hit = self._hit(self.pointer)
-        return self.scale().seconds(self.pointer.x()) if hit.at >= 0 and hit.part != "peak" else self.session.transport.seconds
+        return (
+            self.scale().seconds(self.pointer.x())
+            if hit.at >= 0 and hit.part != "peak"
+            else self.session.transport.seconds
+        )
 
     def keyPressEvent(self, event: QKeyEvent) -> None:
         deed, key = deed_of(event.key(), event.modifiers()), event.key()
@@ -321,7 +344,8 @@ class View(QWidget):
             deed.run(self.editing, self._seconds())
         elif key in (Qt.Key.Key_Plus, Qt.Key.Key_Equal, Qt.Key.Key_Minus):
             self.zoom(
-                1 / ZOOM if key == Qt.Key.Key_Minus else ZOOM, min(max(LEFT, self.scale().x(self.session.transport.seconds)), self.width())
+                1 / ZOOM if key == Qt.Key.Key_Minus else ZOOM,
+                min(max(LEFT, self.scale().x(self.session.transport.seconds)), self.width()),
             )
         elif key in (Qt.Key.Key_PageUp, Qt.Key.Key_PageDown):
             page = 0.8 * (self.width() - LEFT) / self.each
@@ -346,9 +370,15 @@ class View(QWidget):
         if isinstance(event, QHelpEvent):
             QToolTip.showText(event.globalPos(), self.tip(QPointF(event.pos())), self)
             return True
-        if isinstance(event, QKeyEvent) and event.type() == QKeyEvent.Type.ShortcutOverride and self.editing.conversation is not None:
+        if (
+            isinstance(event, QKeyEvent)
+            and event.type() == QKeyEvent.Type.ShortcutOverride
+            and self.editing.conversation is not None
+        ):
             deed = deed_of(event.key(), event.modifiers())
-            escapes = event.key() == Qt.Key.Key_Escape and (self.hand.gesture is not None or self.editing.chosen)
+            escapes = event.key() == Qt.Key.Key_Escape and (
+                self.hand.gesture is not None or self.editing.chosen
+            )
             if escapes or (deed is not None and (self.editing.chosen or not deed.needs)):
                 event.accept()  # here it is about segments, not about what is selected elsewhere
                 return True
@@ -364,13 +394,19 @@ class View(QWidget):
             return words + ("\nDrag it to another top of the pitch" if hit.part == "peak" else "")
         if hit.part == "wave":
             seconds = self.scale().seconds(at.x())
-            said = [w for w in words_in(of.sides[hit.side].words, seconds, seconds) if w.start <= seconds <= w.end]
+            said = [
+                w for w in words_in(of.sides[hit.side].words, seconds, seconds) if w.start <= seconds <= w.end
+            ]
             return f"{said[0].text}\n{said[0].start:.2f} to {said[0].end:.2f} s" if said else ""
         if hit.part == "title":
             side, whose = of.sides[hit.side], hit.side == self.session.onstage.side
             channel = f", channel {side.channel + 1}" if side.channel is not None else ""
             sound = [f"{side.audio}{channel}"] if side.audio else []
             mover = [f"Moved by {side.project}"] if side.project else []
-            shown = "Performance shows this one's plan" if whose else "Click to see this one's plan in Performance"
+            shown = (
+                "Performance shows this one's plan"
+                if whose
+                else "Click to see this one's plan in Performance"
+            )
             return "\n".join((side_name(of, hit.side), *sound, *mover, shown))
         return "Drag to make a segment" if hit.part == "gap" else ""

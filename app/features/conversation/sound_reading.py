@@ -1,4 +1,6 @@
-"""The sounds of the conversation on stage, read on a thread: waveform and pitch of each side, or why there are none."""
+"""The sounds of the conversation on stage, read on a thread: waveform and pitch of each side, or why there
+are none.
+"""
 
 from __future__ import annotations
 
@@ -29,8 +31,10 @@ Key = tuple[str, int | None]  # a sound's path, and the channel
 
 @dataclass
 class Heard:
-    """One side's sound, filled on the window's thread while another reads it. told: how far it is, in words; "" when all is there. missing: why there is none.
-    loudest: of its samples, 0..1. maxima: seconds at which the pitch is highest. length: seconds."""
+    """One side's sound, filled on the window's thread while another reads it. told: how far it is, in words;
+    "" when all is there. missing: why there is none. loudest: of its samples, 0..1. maxima: seconds at which
+    the pitch is highest. length: seconds.
+    """
 
     wave: Envelope | None = None
     pitch: Envelope | None = None
@@ -48,13 +52,17 @@ class Sounds(QObject):
     changed = Signal()
     _read = Signal(object)  # from the thread that reads: what to do here with what it has
 
-    def __init__(self, document: Document, session: Session, jobs: Jobs, parent: QObject | None = None) -> None:
+    def __init__(
+        self, document: Document, session: Session, jobs: Jobs, parent: QObject | None = None
+    ) -> None:
         super().__init__(parent)
         self.document, self.session, self.jobs = document, session, jobs
         self.heard: dict[Key, Heard] = {}
         self._job: Job | None = None
         self._read.connect(_do, Qt.ConnectionType.QueuedConnection)
-        document.changed.connect(lambda before, after: self._follow() if before.conversations is not after.conversations else None)
+        document.changed.connect(
+            lambda before, after: self._follow() if before.conversations is not after.conversations else None
+        )
         document.loaded.connect(self.forget)
         session.onstage.conversation_changed.connect(self._staged)
 
@@ -82,12 +90,18 @@ class Sounds(QObject):
 
     def _key(self, conversation: Conversation, side: int) -> Key | None:
         of = conversation.sides[side]
-        return None if of.audio is None else (os.path.normpath((self.document.folder or Path()) / of.audio), of.channel)
+        return (
+            None
+            if of.audio is None
+            else (os.path.normpath((self.document.folder or Path()) / of.audio), of.channel)
+        )
 
     def _follow(self) -> None:
         """Read what the conversation on stage needs and is not there yet; what others needed is forgotten."""
         on = self.document.project.conversations.get(self.session.onstage.conversation or "")
-        keys = dict.fromkeys(k for side in (0, 1) if on is not None and (k := self._key(on, side)) is not None)
+        keys = dict.fromkeys(
+            k for side in (0, 1) if on is not None and (k := self._key(on, side)) is not None
+        )
         if set(keys) == set(self.heard) and not self._left():
             return
         if self._job is not None:
@@ -105,13 +119,23 @@ class Sounds(QObject):
 
     def _came(self, *_: object) -> None:
         for heard in self.heard.values():
-            if heard.told and self._job is not None and self._job.cancelled and self._job not in self.jobs.running:
-                heard.told, heard.missing = "", "Reading was cancelled. Choose the conversation again to read its sound."
+            if (
+                heard.told
+                and self._job is not None
+                and self._job.cancelled
+                and self._job not in self.jobs.running
+            ):
+                heard.told, heard.missing = (
+                    "",
+                    "Reading was cancelled. Choose the conversation again to read its sound.",
+                )
         self.changed.emit()
 
 
 class _Work:
-    """Reads sounds: each file once, then what is seen of its channels, then their pitch, which takes longest."""
+    """Reads sounds: each file once, then what is seen of its channels, then their pitch, which takes
+    longest.
+    """
 
     def __init__(self, wanted: dict[Key, Heard], hand_over: Callable[[Callable[[], None]], None]) -> None:
         self.wanted, self.hand_over = wanted, hand_over

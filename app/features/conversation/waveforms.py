@@ -1,4 +1,6 @@
-"""Curves as they are seen: the least and the greatest of every column of pixels, found as fast for half an hour as for a second."""
+"""Curves as they are seen: the least and the greatest of every column of pixels, found as fast for half an
+hour as for a second.
+"""
 
 from __future__ import annotations
 
@@ -15,9 +17,11 @@ _FOUR, _LEVELS = 4, 7  # every level has a bin for so many of the one below
 
 
 class Envelope:
-    """Least and greatest values of a signal, in bins at ever coarser levels; filled from the front while it is being read.
+    """Least and greatest values of a signal, in bins at ever coarser levels; filled from the front while it
+    is being read.
 
-    rate: bins a second at the finest level. What is not filled, or not there (nan), is nothing: +inf is its least, -inf its greatest.
+    rate: bins a second at the finest level. What is not filled, or not there (nan), is nothing: +inf is its
+    least, -inf its greatest.
     """
 
     def __init__(self, seconds: float, rate: float = RATE) -> None:
@@ -33,7 +37,9 @@ class Envelope:
         self.put(first, *binned(values, each))
 
     def put(self, first: int, lows: Array, highs: Array) -> None:
-        """Fill bins from the `first` on with their least and greatest values `[N]`; quick, for the window's thread."""
+        """Fill bins from the `first` on with their least and greatest values `[N]`; quick, for the window's
+        thread.
+        """
         count = min(len(lows), len(self.lows[0]) - first)
         if count <= 0:
             return
@@ -46,7 +52,9 @@ class Envelope:
             self.highs[n][first:end] = self.highs[n - 1][below].reshape(-1, _FOUR).max(1)
 
     def columns(self, first: float, each: float, width: int) -> tuple[Array, Array]:
-        """Return the least and greatest `[width]` in columns of pixels. first: seconds at the left; each: pixels a second."""
+        """Return the least and greatest `[width]` in columns of pixels. first: seconds at the left; each:
+        pixels a second.
+        """
         wanted = self.rate / each  # bins a column
         if wanted < 1:
             return self._between(first, each, width)
@@ -64,7 +72,9 @@ class Envelope:
         return np.where(there, lows, np.inf), np.where(there, highs, -np.inf)
 
     def _between(self, first: float, each: float, width: int) -> tuple[Array, Array]:
-        """Return the same where a bin is wider than a column: straight lines from bin to bin, never over nothing."""
+        """Return the same where a bin is wider than a column: straight lines from bin to bin, never over
+        nothing.
+        """
         at = (first + np.arange(width + 1) / each) * self.rate - 0.5
         there = np.clip(np.floor(at).astype(int), 0, len(self.lows[0]) - 2)
         part = np.clip(at - there, 0, 1)
@@ -81,7 +91,9 @@ class Envelope:
 
 
 def binned(values: Array, each: float = 1.0) -> tuple[Array, Array]:
-    """Return the least and greatest `[B]` of bins of `each` values `[N]`; nan is nothing. For a thread: it takes what the values take."""
+    """Return the least and greatest `[B]` of bins of `each` values `[N]`; nan is nothing. For a thread: it
+    takes what the values take.
+    """
     values = np.asarray(values, np.float32)
     count = int(np.ceil(len(values) / each))
     if count <= 0:
@@ -92,7 +104,9 @@ def binned(values: Array, each: float = 1.0) -> tuple[Array, Array]:
 
 
 def joined(low: Array, high: Array, least: float) -> tuple[Array, Array]:
-    """Return columns `[W]` of y, downwards, made to touch the one before, where both are something, and at least so thick."""
+    """Return columns `[W]` of y, downwards, made to touch the one before, where both are something, and at
+    least so thick.
+    """
     there = high >= low
     with np.errstate(invalid="ignore"):
         before = np.roll(there, 1) & there
@@ -105,12 +119,19 @@ def joined(low: Array, high: Array, least: float) -> tuple[Array, Array]:
 
 
 def painted(low: Array, high: Array, height: int, color: QColor) -> QImage:
-    """Return a picture of columns from `low` to `high` `[W]`, pixels from the top; nothing where low is greater."""
+    """Return a picture of columns from `low` to `high` `[W]`, pixels from the top; nothing where low is
+    greater.
+    """
     rows = np.arange(height, dtype=np.float32)[:, None]
-    top, bottom = np.clip(low, -1, height + 1).astype(np.float32), np.clip(high, -1, height + 1).astype(np.float32)
+    top, bottom = (
+        np.clip(low, -1, height + 1).astype(np.float32),
+        np.clip(high, -1, height + 1).astype(np.float32),
+    )
     cover = np.clip(np.minimum(rows + 1, bottom) - np.maximum(rows, top), 0.0, 1.0) * color.alphaF()
     cover[:, ~(high >= low)] = 0
     blue_first = np.array([color.blue(), color.green(), color.red(), 255], np.float32)
     pixels = np.ascontiguousarray((cover[..., None] * blue_first + 0.5).astype(np.uint8))
-    image = QImage(pixels.data, pixels.shape[1], height, pixels.strides[0], QImage.Format.Format_ARGB32_Premultiplied)
+    image = QImage(
+        pixels.data, pixels.shape[1], height, pixels.strides[0], QImage.Format.Format_ARGB32_Premultiplied
+    )
     return image.copy()  # of its own, since the array goes

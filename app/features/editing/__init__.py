@@ -1,4 +1,6 @@
-"""Remove, rename, copy, paste, select all: each means what is selected, wherever that is; several actions are renamed at once."""
+"""Remove, rename, copy, paste, select all: each means what is selected, wherever that is; several actions are
+renamed at once.
+"""
 
 from __future__ import annotations
 
@@ -47,16 +49,69 @@ def contribute(shell: Shell) -> Contribution:
 
     return Contribution(
         commands=(
-            Command("delete", "&Edit", "selection", "&Remove", lambda: verbs.do("remove"), (Standard.Delete,),
-                    enabled=lambda: verbs.can("remove"), study=True),
-            Command("rename", "&Edit", "selection", "Re&name…", lambda: verbs.do("rename"), ("F2",), study=True, menus=("action",)),
-            Command("copy", "&Edit", "properties", "&Copy properties", do_copy, (Standard.Copy,), enabled=lambda: verbs.can("copy"),
-                    study=True, menus=("action",)),
-            Command("paste", "&Edit", "properties", "&Paste properties…", lambda: verbs.do("paste"), (Standard.Paste,),
-                    tip="Give the selected actions what another one has", enabled=lambda: verbs.can("paste"), study=True,
-                    menus=("action",)),
-            Command("replace_clip", "&Edit", "properties", "Replace c&lip…", replace, tip="Another clip, the same settings",
-                    enabled=lambda: bool(session.selection.actions), when="meta", study=True, menus=("action",)),
-            Command("select_all", "&Edit", "find", "Select &all", lambda: verbs.do("select_all"), (Standard.SelectAll,), study=True),
+            Command(
+                "delete",
+                "&Edit",
+                "selection",
+                "&Remove",
+                lambda: verbs.do("remove"),
+                (Standard.Delete,),
+                enabled=lambda: verbs.can("remove"),
+                study=True,
+            ),
+            Command(
+                "rename",
+                "&Edit",
+                "selection",
+                "Re&name…",
+                lambda: verbs.do("rename"),
+                ("F2",),
+                study=True,
+                menus=("action",),
+            ),
+            Command(
+                "copy",
+                "&Edit",
+                "properties",
+                "&Copy properties",
+                do_copy,
+                (Standard.Copy,),
+                enabled=lambda: verbs.can("copy"),
+                study=True,
+                menus=("action",),
+            ),
+            Command(
+                "paste",
+                "&Edit",
+                "properties",
+                "&Paste properties…",
+                lambda: verbs.do("paste"),
+                (Standard.Paste,),
+                tip="Give the selected actions what another one has",
+                enabled=lambda: verbs.can("paste"),
+                study=True,
+                menus=("action",),
+            ),
+            Command(
+                "replace_clip",
+                "&Edit",
+                "properties",
+                "Replace c&lip…",
+                replace,
+                tip="Another clip, the same settings",
+                enabled=lambda: bool(session.selection.actions),
+                when="meta",
+                study=True,
+                menus=("action",),
+            ),
+            Command(
+                "select_all",
+                "&Edit",
+                "find",
+                "Select &all",
+                lambda: verbs.do("select_all"),
+                (Standard.SelectAll,),
+                study=True,
+            ),
         ),
-    )  # fmt: skip
+    )

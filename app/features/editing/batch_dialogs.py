@@ -1,4 +1,6 @@
-"""Dialogs that edit many actions at once: names by pattern or replaced text, pasted properties, another clip."""
+"""Dialogs that edit many actions at once: names by pattern or replaced text, pasted properties, another
+clip.
+"""
 
 from __future__ import annotations
 
@@ -43,7 +45,9 @@ TITLES = {
 class BatchDialog(QDialog):
     """A dialog about some actions that ends in one edit. trouble: where it says what is wrong."""
 
-    def __init__(self, document: Document, actions: Sequence[str], title: str, verb: str, parent: QWidget | None = None) -> None:
+    def __init__(
+        self, document: Document, actions: Sequence[str], title: str, verb: str, parent: QWidget | None = None
+    ) -> None:
         super().__init__(parent)
         self.document, self.actions = document, tuple(actions)
         self.setAttribute(Qt.WidgetAttribute.WA_DeleteOnClose)
@@ -75,10 +79,16 @@ class RenameDialog(BatchDialog):
         self.tabs = QTabWidget(self)
         self.pattern = QLineEdit("{stance} {name}", self)
         self.pattern.setAccessibleName("Pattern")
-        words = QLabel(f"In braces: {', '.join(batch.FIELDS)}. {{n:02}} counts 01, 02, ...", self, wordWrap=True)
+        words = QLabel(
+            f"In braces: {', '.join(batch.FIELDS)}. {{n:02}} counts 01, 02, ...", self, wordWrap=True
+        )
         words.setProperty("dim", True)
         self._page("By pattern", ("Pattern", self.pattern), ("", words))
-        self.find, self.put, self.regex = QLineEdit(self), QLineEdit(self), QCheckBox("regular expression", self)
+        self.find, self.put, self.regex = (
+            QLineEdit(self),
+            QLineEdit(self),
+            QCheckBox("regular expression", self),
+        )
         self.find.setAccessibleName("Find")
         self.put.setAccessibleName("Replace with")
         self._page("Find and replace", ("Find", self.find), ("Replace with", self.put), ("", self.regex))
@@ -108,7 +118,9 @@ class RenameDialog(BatchDialog):
             if self.tabs.currentIndex() == 0:
                 self.names = batch.names_by_pattern(project, self.actions, self.pattern.text())
             elif self.find.text():
-                self.names = batch.names_replaced(project, self.actions, self.find.text(), self.put.text(), self.regex.isChecked())
+                self.names = batch.names_replaced(
+                    project, self.actions, self.find.text(), self.put.text(), self.regex.isChecked()
+                )
         except EditError as error:
             words = str(error)
         self.trouble.setText(words)
@@ -127,7 +139,9 @@ class RenameDialog(BatchDialog):
 class PasteDialog(BatchDialog):
     """Which properties of a copied action the selected ones get."""
 
-    def __init__(self, document: Document, source: str, actions: Sequence[str], parent: QWidget | None = None) -> None:
+    def __init__(
+        self, document: Document, source: str, actions: Sequence[str], parent: QWidget | None = None
+    ) -> None:
         super().__init__(document, [a for a in actions if a != source], "Paste properties", "Paste", parent)
         self.source = source
         copied = document.project.action(source)
@@ -172,7 +186,11 @@ class ReplaceDialog(BatchDialog):
             finder.setCompletionMode(QCompleter.CompletionMode.PopupCompletion)
         form = QFormLayout()
         form.addRow("Clip", self.clips)
-        words = QLabel("Timing, limb, tags and all else stay; times beyond the clip's end are cut to it.", self, wordWrap=True)
+        words = QLabel(
+            "Timing, limb, tags and all else stay; times beyond the clip's end are cut to it.",
+            self,
+            wordWrap=True,
+        )
         words.setProperty("dim", True)
         self.body.addLayout(form)
         self.body.addWidget(words)

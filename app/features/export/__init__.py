@@ -18,15 +18,26 @@ def contribute(shell: Shell) -> Contribution:
         ExportDialog(document, shell.jobs, shell.widget, session.onstage.mode == "manual").open()
 
     def something() -> bool:
-        return any(True for _ in document.project.actions()) or any(m.states for m in document.project.manual.values())
+        return any(True for _ in document.project.actions()) or any(
+            m.states for m in document.project.manual.values()
+        )
 
     return Contribution(
         commands=(
-            Command("export", "&File", "write", "&Export…", export, ("Ctrl+E",), icon="export", tip="JSON and GLB for engines",
-                    enabled=something),
+            Command(
+                "export",
+                "&File",
+                "write",
+                "&Export…",
+                export,
+                ("Ctrl+E",),
+                icon="export",
+                tip="JSON and GLB for engines",
+                enabled=something,
+            ),
         ),
         header=(HeaderItem("right", lambda parent: ExportButton(shell, parent)),),
-    )  # fmt: skip
+    )
 
 
 class ExportButton(QPushButton):

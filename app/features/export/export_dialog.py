@@ -1,4 +1,6 @@
-"""The export dialog: for which engine, where to, with what; what will be written and lost; progress, and the folder opened."""
+"""The export dialog: for which engine, where to, with what; what will be written and lost; progress, and the
+folder opened.
+"""
 
 from __future__ import annotations
 
@@ -75,11 +77,15 @@ def served(folder: str) -> str:
 class ExportDialog(QDialog):
     """manual: export what the manual state machines amount to, instead of the meta-graph."""
 
-    def __init__(self, document: Document, jobs: Jobs, parent: QWidget | None = None, manual: bool = False) -> None:
+    def __init__(
+        self, document: Document, jobs: Jobs, parent: QWidget | None = None, manual: bool = False
+    ) -> None:
         super().__init__(parent)
         self.document, self.jobs = document, jobs
         self.project, self.differences = exportable(document.project, manual)
-        self.setAttribute(Qt.WidgetAttribute.WA_DeleteOnClose)  # a running export goes on; the status bar shows it
+        self.setAttribute(
+            Qt.WidgetAttribute.WA_DeleteOnClose
+        )  # a running export goes on; the status bar shows it
         self.setWindowTitle("Export for engines")
         self.resize(860, 560)
         self.results: dict[str, Result] = {}  # of what was written, by target
@@ -181,12 +187,18 @@ class ExportDialog(QDialog):
             data: Any = json.loads(str(QSettings().value(self._key()) or "{}"))
             known = Choice(**data)
             folders = {str(k): str(v) for k, v in known.folders.items()}
-            return replace(known, folders=folders, target=known.target if known.target in registry.targets() else registry.DEFAULT)
+            return replace(
+                known,
+                folders=folders,
+                target=known.target if known.target in registry.targets() else registry.DEFAULT,
+            )
         except (ValueError, TypeError, AttributeError):
             return Choice()
 
     def _usual(self, target: str) -> str:
-        """Return the folder a target goes to unless another is chosen: one of its own, since exports share names of files."""
+        """Return the folder a target goes to unless another is chosen: one of its own, since exports share
+        names of files.
+        """
         folder = self.document.folder or Path.home()
         return str(folder / f"{self.document.project.name}-export" / target)
 
@@ -194,11 +206,20 @@ class ExportDialog(QDialog):
         self.chosen.folders[self.target.name] = folder
 
     def _select(self, name: str) -> None:
-        found = next(i for group in self._groups() for i in (group.child(n) for n in range(group.childCount())) if i.data(0, NAME) == name)
+        found = next(
+            i
+            for group in self._groups()
+            for i in (group.child(n) for n in range(group.childCount()))
+            if i.data(0, NAME) == name
+        )
         self.targets.setCurrentItem(found)
 
     def _groups(self) -> list[QTreeWidgetItem]:
-        return [item for n in range(self.targets.topLevelItemCount()) if (item := self.targets.topLevelItem(n)) is not None]
+        return [
+            item
+            for n in range(self.targets.topLevelItemCount())
+            if (item := self.targets.topLevelItem(n)) is not None
+        ]
 
     @property
     def target(self) -> Target:
@@ -214,15 +235,25 @@ class ExportDialog(QDialog):
         played = (target.name == registry.DEFAULT) or target.group == registry.target(registry.DEFAULT).group
         self.title.setText(target.title)
         joints = len(project.skeleton) if project.skeleton else 0
-        self.words.setText(f"Writes {target.files}. {whole.states} actions, {whole.clips} clips on {joints} joints.")
+        self.words.setText(
+            f"Writes {target.files}. {whole.states} actions, {whole.clips} clips on {joints} joints."
+        )
         for box in (self.expanded, self.vectors):
             box.setVisible(played)
         rows = [f"<li>{escape(words)}</li>" for words in registry.losses(project, target.name)]
         note = f"<p><b>Experimental</b>: {escape(target.untried)}.</p>" if target.untried else ""
         nothing = "<p>Nothing else is lost.</p>" if self.differences else "<p>Nothing is lost.</p>"
-        lost = f"<p><b>What it loses</b></p><ul style='margin-left:-20px'>{''.join(rows)}</ul>" if rows else nothing
+        lost = (
+            f"<p><b>What it loses</b></p><ul style='margin-left:-20px'>{''.join(rows)}</ul>"
+            if rows
+            else nothing
+        )
         told = "".join(f"<li>{escape(words)}</li>" for words in self.differences)
-        differs = f"<p><b>How it differs from what was drawn</b></p><ul style='margin-left:-20px'>{told}</ul>" if told else ""
+        differs = (
+            f"<p><b>How it differs from what was drawn</b></p><ul style='margin-left:-20px'>{told}</ul>"
+            if told
+            else ""
+        )
         self.losses.setText(note + differs + lost)
         self._show_result()
 
@@ -254,8 +285,13 @@ class ExportDialog(QDialog):
     def _export(self, overwrite: bool = False) -> None:
         project, folder, name = self.project, Path(self.folder.text()), self.target.name
         base = self.document.folder
-        expanded, vectors = self.expanded.isChecked(), self.vectors.isChecked() and not self.vectors.isHidden()
-        character = (base or Path()) / project.character if project.character and self.mesh.isChecked() else None
+        expanded, vectors = (
+            self.expanded.isChecked(),
+            self.vectors.isChecked() and not self.vectors.isHidden(),
+        )
+        character = (
+            (base or Path()) / project.character if project.character and self.mesh.isChecked() else None
+        )
         self.chosen = Choice(name, self.chosen.folders, self.mesh.isChecked(), expanded, vectors)
         QSettings().setValue(self._key(), json.dumps(asdict(self.chosen)))
         self.go.setEnabled(False)
@@ -300,11 +336,20 @@ class ExportDialog(QDialog):
 
     def _ask_overwrite(self, error: ForeignFilesError) -> None:
         """Ask before anything that is not of this export is overwritten."""
-        box = QMessageBox(QMessageBox.Icon.Question, "Overwrite?", f"{error.folder} already has files of another origin.", parent=self)
-        box.setInformativeText("Written over would be:\n" + "\n".join(error.files[:8]) + ("\n…" if len(error.files) > 8 else ""))
+        box = QMessageBox(
+            QMessageBox.Icon.Question,
+            "Overwrite?",
+            f"{error.folder} already has files of another origin.",
+            parent=self,
+        )
+        box.setInformativeText(
+            "Written over would be:\n" + "\n".join(error.files[:8]) + ("\n…" if len(error.files) > 8 else "")
+        )
         box.setAttribute(Qt.WidgetAttribute.WA_DeleteOnClose)
         overwrite = box.addButton("Overwrite", QMessageBox.ButtonRole.DestructiveRole)
         box.addButton("Choose another folder…", QMessageBox.ButtonRole.RejectRole)
-        box.buttonClicked.connect(lambda button: self._export(overwrite=True) if button is overwrite else self._browse())
+        box.buttonClicked.connect(
+            lambda button: self._export(overwrite=True) if button is overwrite else self._browse()
+        )
         self.trouble.setText(str(error))
         box.open()

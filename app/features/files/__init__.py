@@ -48,27 +48,83 @@ def contribute(shell: Shell) -> Contribution:
             Command("new", menu, "project", "&New project", files.new, (Standard.New,)),
             Command("open", menu, "project", "&Open…", files.ask_open, (Standard.Open,)),
             Command("recent", menu, "project", "Open &recent", fill=fill_recent),
-            Command("sample", menu, "project", "Open the &sample project", lambda: files.open(SAMPLE, template=True)),
-            Command("practice", menu, "project", "Open the &practice project", lambda: files.open(PRACTICE, template=True),
-                    tip="152 clips to label"),
+            Command(
+                "sample",
+                menu,
+                "project",
+                "Open the &sample project",
+                lambda: files.open(SAMPLE, template=True),
+            ),
+            Command(
+                "practice",
+                menu,
+                "project",
+                "Open the &practice project",
+                lambda: files.open(PRACTICE, template=True),
+                tip="152 clips to label",
+            ),
             Command("save", menu, "save", "&Save", files.save, (Standard.Save,)),
             Command("save_as", menu, "save", "Save &as…", files.save_as, (Standard.SaveAs,)),
-            Command("import", menu, "import", "&Import folder…", importing.ask_import_folder, ("Ctrl+I",), icon="folder"),
-            Command("import_files", menu, "import", "Import &files…", importing.ask_import_files, ("Ctrl+Shift+I",)),
-            Command("watch", menu, "import", "Follow changed &files", watch, checked=lambda: watcher.on,
-                    tip="Clips that are exported again are read again, in place"),
+            Command(
+                "import",
+                menu,
+                "import",
+                "&Import folder…",
+                importing.ask_import_folder,
+                ("Ctrl+I",),
+                icon="folder",
+            ),
+            Command(
+                "import_files",
+                menu,
+                "import",
+                "Import &files…",
+                importing.ask_import_files,
+                ("Ctrl+Shift+I",),
+            ),
+            Command(
+                "watch",
+                menu,
+                "import",
+                "Follow changed &files",
+                watch,
+                checked=lambda: watcher.on,
+                tip="Clips that are exported again are read again, in place",
+            ),
             Command("find_missing", menu, "import", "Find missing files…", importing.find_missing),
-            Command("undo", "&Edit", "history", lambda: f"&Undo {stack.undoText()}".strip(), shell.document.undo, (Standard.Undo,),
-                    tip="Undo", icon="undo", enabled=stack.canUndo, study=True),
-            Command("redo", "&Edit", "history", lambda: f"&Redo {stack.redoText()}".strip(), shell.document.redo,
-                    (Standard.Redo, "Ctrl+Y"), tip="Redo", icon="redo", enabled=stack.canRedo, study=True),
+            Command(
+                "undo",
+                "&Edit",
+                "history",
+                lambda: f"&Undo {stack.undoText()}".strip(),
+                shell.document.undo,
+                (Standard.Undo,),
+                tip="Undo",
+                icon="undo",
+                enabled=stack.canUndo,
+                study=True,
+            ),
+            Command(
+                "redo",
+                "&Edit",
+                "history",
+                lambda: f"&Redo {stack.redoText()}".strip(),
+                shell.document.redo,
+                (Standard.Redo, "Ctrl+Y"),
+                tip="Redo",
+                icon="redo",
+                enabled=stack.canRedo,
+                study=True,
+            ),
         ),
         header=(HeaderItem("left", "import"), HeaderItem("left", "undo"), HeaderItem("left", "redo")),
-    )  # fmt: skip
+    )
 
 
 def _report(shell: Shell, title: str, lines: Sequence[str]) -> None:
-    box = QMessageBox(QMessageBox.Icon.Information, "Metagraph", title, QMessageBox.StandardButton.Ok, shell.widget)
+    box = QMessageBox(
+        QMessageBox.Icon.Information, "Metagraph", title, QMessageBox.StandardButton.Ok, shell.widget
+    )
     more = f"\n… and {len(lines) - LINES} more" if len(lines) > LINES else ""
     box.setInformativeText("\n".join(lines[:LINES]) + more)
     if more:

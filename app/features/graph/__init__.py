@@ -19,7 +19,11 @@ LAYER_KEYS: dict[Layer, str] = {"body": "Alt+1", "arms": "Alt+2", "head": "Alt+3
 
 def contribute(shell: Shell) -> Contribution:
     session, document, stage = shell.stage.session, shell.document, shell.stage
-    importing, problems, verbs = shell.services[Importing], shell.services[ProblemWatch], shell.services[Verbs]
+    importing, problems, verbs = (
+        shell.services[Importing],
+        shell.services[ProblemWatch],
+        shell.services[Verbs],
+    )
     meta = lambda: session.onstage.mode == "meta"  # noqa: E731
 
     def make() -> Canvas:
@@ -40,9 +44,16 @@ def contribute(shell: Shell) -> Contribution:
             canvas().do(place, load)
 
     importing.imported.connect(imported)
-    verbs.offer("remove", lambda: meta() and bool(session.selection.actions), lambda: canvas().remove_selection())
+    verbs.offer(
+        "remove", lambda: meta() and bool(session.selection.actions), lambda: canvas().remove_selection()
+    )
     verbs.offer("rename", meta, lambda: canvas().rename_stance(), rank=9)
-    verbs.offer("select_all", meta, lambda: session.selection.select_actions(tuple(a.id for a in canvas().listed())), rank=9)
+    verbs.offer(
+        "select_all",
+        meta,
+        lambda: session.selection.select_actions(tuple(a.id for a in canvas().listed())),
+        rank=9,
+    )
     some = lambda: bool(session.selection.clips or session.selection.actions)  # noqa: E731
     stances = lambda: list(document.project.graphs[session.place.layer].stances.values())  # noqa: E731
 
@@ -56,21 +67,57 @@ def contribute(shell: Shell) -> Contribution:
 
     menu = "&Graph"
     labels = (
-        Command(f"label_{kind}", menu, "label", f"Label as &{number} {kind}", lambda k=kind: canvas().place_selection(k), (str(number),),
-                enabled=some, when="meta", study=True)
+        Command(
+            f"label_{kind}",
+            menu,
+            "label",
+            f"Label as &{number} {kind}",
+            lambda k=kind: canvas().place_selection(k),
+            (str(number),),
+            enabled=some,
+            when="meta",
+            study=True,
+        )
         for number, kind in enumerate(KINDS, 1)
-    )  # fmt: skip
+    )
     layers = (
-        Command(f"layer_{layer}", menu, "layers", f"{layer.capitalize()} layer", lambda x=layer: session.place.set_layer(x), (LAYER_KEYS[layer],),
-                checked=lambda x=layer: session.place.layer == x, study=True)
+        Command(
+            f"layer_{layer}",
+            menu,
+            "layers",
+            f"{layer.capitalize()} layer",
+            lambda x=layer: session.place.set_layer(x),
+            (LAYER_KEYS[layer],),
+            checked=lambda x=layer: session.place.layer == x,
+            study=True,
+        )
         for layer in LAYERS
-    )  # fmt: skip
+    )
     places = (
-        Command(f"stance_{n + 1}", menu, "stances", lambda n=n: name(n), lambda n=n: choose(n), (f"Ctrl+{n + 1}",),
-                enabled=lambda n=n: n < len(stances()), visible=lambda n=n: n < len(stances()), when="meta", study=True)
+        Command(
+            f"stance_{n + 1}",
+            menu,
+            "stances",
+            lambda n=n: name(n),
+            lambda n=n: choose(n),
+            (f"Ctrl+{n + 1}",),
+            enabled=lambda n=n: n < len(stances()),
+            visible=lambda n=n: n < len(stances()),
+            when="meta",
+            study=True,
+        )
         for n in range(9)
-    )  # fmt: skip
-    new = Command("new_stance", menu, "author", "&New stance…", lambda: canvas().new_stance(), ("Ctrl+Shift+N",), when="meta", study=True)
+    )
+    new = Command(
+        "new_stance",
+        menu,
+        "author",
+        "&New stance…",
+        lambda: canvas().new_stance(),
+        ("Ctrl+Shift+N",),
+        when="meta",
+        study=True,
+    )
     return Contribution(
         panels=(Panel("graph", "Graph", "centre", make, late=False, when="meta"),),
         commands=(new, *labels, *layers, *places),
@@ -90,18 +137,27 @@ class LayerTabs(QWidget):
         row.setContentsMargins(0, 0, 0, 0)
         row.setSpacing(2)
         for number, layer in enumerate(LAYERS):
-            button = QToolButton(self, text=layer.capitalize(), checkable=True, toolTip=f"The {layer} layer ({LAYER_KEYS[layer]})")
+            button = QToolButton(
+                self,
+                text=layer.capitalize(),
+                checkable=True,
+                toolTip=f"The {layer} layer ({LAYER_KEYS[layer]})",
+            )
             button.setMinimumWidth(72)
             button.clicked.connect(lambda _=False, x=layer: self.session.place.set_layer(x))
             self.buttons.addButton(button, number)
             row.addWidget(button)
         self.session.place.layer_changed.connect(self.refresh)
-        self.document.changed.connect(lambda before, after: self.refresh() if before.graphs is not after.graphs else None)
+        self.document.changed.connect(
+            lambda before, after: self.refresh() if before.graphs is not after.graphs else None
+        )
         self.refresh()
 
     def refresh(self) -> None:
         """Show the layer and the counts as they are now."""
         for number, layer in enumerate(LAYERS):
             count = len(self.document.project.graphs[layer].actions)
-            self.buttons.button(number).setText(f"{layer.capitalize()}  {count}" if count else layer.capitalize())
+            self.buttons.button(number).setText(
+                f"{layer.capitalize()}  {count}" if count else layer.capitalize()
+            )
         self.buttons.button(LAYERS.index(self.session.place.layer)).setChecked(True)

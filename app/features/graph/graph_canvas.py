@@ -1,4 +1,6 @@
-"""The canvas widget: turns events into hits, gestures and edits. Layout, painting and drops are pure and live beside it."""
+"""The canvas widget: turns events into hits, gestures and edits. Layout, painting and drops are pure and live
+beside it.
+"""
 
 from __future__ import annotations
 
@@ -47,16 +49,28 @@ SLOW = 0.015  # seconds of drawing for each of which a picture of it is left out
 
 
 class Canvas(QWidget):
-    """The meta-graph of the current layer. files_dropped: (paths, drop) to import and then place. refused: words for the status bar."""
+    """The meta-graph of the current layer. files_dropped: (paths, drop) to import and then place. refused:
+    words for the status bar.
+    """
 
     files_dropped = Signal(object, object)
     refused = Signal(str)
 
     def __init__(
-        self, document: Document, session: Session, performance: Performance, thumbnails: Thumbnails, parent: QWidget | None = None
+        self,
+        document: Document,
+        session: Session,
+        performance: Performance,
+        thumbnails: Thumbnails,
+        parent: QWidget | None = None,
     ):
         super().__init__(parent)
-        self.document, self.session, self.performance, self.thumbnails = document, session, performance, thumbnails
+        self.document, self.session, self.performance, self.thumbnails = (
+            document,
+            session,
+            performance,
+            thumbnails,
+        )
         self.hand = Hand()
         self.scroll: dict[Kind, int] = {}
         self.row_actions: list[QAction] = []  # the window's commands that go into an action's menu
@@ -95,9 +109,16 @@ class Canvas(QWidget):
         """Return the layout, made when first asked for after a change."""
         if self._layout is None:
             metrics = QFontMetricsF(self.font())
-            project, layer, stance = self.document.project, self.session.place.layer, self.session.place.stance()
+            project, layer, stance = (
+                self.document.project,
+                self.session.place.layer,
+                self.session.place.stance(),
+            )
             names = [s.name for s in project.graphs[layer].stances.values()]
-            widths = {text: metrics.horizontalAdvance(text) for text in (*names, "no fidgets", "no gestures", "no way out", "no loop")}
+            widths = {
+                text: metrics.horizontalAdvance(text)
+                for text in (*names, "no fidgets", "no gestures", "no way out", "no loop")
+            }
             self._layout = arrange(project, layer, stance, QSizeF(self.size()), self.scroll, widths)
         return self._layout
 
@@ -228,7 +249,10 @@ class Canvas(QWidget):
                 self.hand.take(HeadDrag(self, hit.ident), event.position())
         elif hit.area == "card" and hit.ident:
             self.session.selection.select_actions(
-                tuple(a.id for a in self.document.project.graphs[self.session.place.layer].of(hit.ident, "stance"))
+                tuple(
+                    a.id
+                    for a in self.document.project.graphs[self.session.place.layer].of(hit.ident, "stance")
+                )
             )
         else:
             self.session.selection.select_actions(())
@@ -236,7 +260,9 @@ class Canvas(QWidget):
     def _press_row(self, action: str, event: QMouseEvent) -> None:
         chosen = self.session.selection.actions
         if event.modifiers() & Qt.KeyboardModifier.ControlModifier:
-            self.session.selection.select_actions(tuple(i for i in chosen if i != action) if action in chosen else (*chosen, action))
+            self.session.selection.select_actions(
+                tuple(i for i in chosen if i != action) if action in chosen else (*chosen, action)
+            )
         elif event.modifiers() & Qt.KeyboardModifier.ShiftModifier and self.focus:
             ids = [a.id for a in self.listed()]
             if self.focus in ids and action in ids:
@@ -258,8 +284,15 @@ class Canvas(QWidget):
         gesture = self.hand.let_go(event.position())
         if gesture is not None:
             hit = self.layout_now().hit(event.position())
-            plain = not event.modifiers() & (Qt.KeyboardModifier.ControlModifier | Qt.KeyboardModifier.ShiftModifier)
-            if isinstance(gesture, RowDrag | HeadDrag) and not gesture.begun and plain and hit.ident == gesture.action:
+            plain = not event.modifiers() & (
+                Qt.KeyboardModifier.ControlModifier | Qt.KeyboardModifier.ShiftModifier
+            )
+            if (
+                isinstance(gesture, RowDrag | HeadDrag)
+                and not gesture.begun
+                and plain
+                and hit.ident == gesture.action
+            ):
                 self._hover_shown = False  # asked for: it goes on when the pointer leaves
                 self.session.selection.select_actions((gesture.action,))
                 self.session.show_context(gesture.action)
@@ -275,7 +308,11 @@ class Canvas(QWidget):
         self.hover = hit
         hand = hit.area in ("chip", "add", "other", "row", "bar", "card", "head")
         self.setCursor(
-            Qt.CursorShape.SizeHorCursor if hit.area == "bar" else Qt.CursorShape.PointingHandCursor if hand else Qt.CursorShape.ArrowCursor
+            Qt.CursorShape.SizeHorCursor
+            if hit.area == "bar"
+            else Qt.CursorShape.PointingHandCursor
+            if hand
+            else Qt.CursorShape.ArrowCursor
         )
         if hit.area in rows:
             self._hover_timer.start()
@@ -292,7 +329,9 @@ class Canvas(QWidget):
         if self._drop is not None:
             if self._drop_hit.area == "chip" and self._drop_hit.ident:
                 self.session.place.set_stance(self._drop_hit.ident)
-        elif self.hover.area in ("row", "head") and self.hover.ident and self.session.transport.show != "clip":
+        elif (
+            self.hover.area in ("row", "head") and self.hover.ident and self.session.transport.show != "clip"
+        ):
             self._hover_shown = self.session.transport.show == "plan" or self._hover_shown
             self.session.show_context(self.hover.ident)
 
@@ -310,7 +349,11 @@ class Canvas(QWidget):
         event.ignore()
 
     def event(self, event: QEvent) -> bool:
-        if event.type() == QEvent.Type.ShortcutOverride and self.hand.gesture is not None and event.key() == Qt.Key.Key_Escape:  # type: ignore[attr-defined]
+        if (
+            event.type() == QEvent.Type.ShortcutOverride
+            and self.hand.gesture is not None
+            and event.key() == Qt.Key.Key_Escape
+        ):  # type: ignore[attr-defined]
             event.accept()  # cancels the drag rather than what the preview shows
             return True
         if event.type() == QEvent.Type.ToolTip and isinstance(event, QHelpEvent):
@@ -327,7 +370,11 @@ class Canvas(QWidget):
             return f"{action.name}\nDrag the arrow onto another stance to end there"
         if action is not None:
             words = self.misfits.get(action.id)
-            return f"{action.name}\n{words}" if words else f"{action.name}\nClick plays it in context, drag moves it"
+            return (
+                f"{action.name}\n{words}"
+                if words
+                else f"{action.name}\nClick plays it in context, drag moves it"
+            )
         return {
             "chip": "Click to make this the current stance",
             "add": "New stance: drop a clip here, or click",
@@ -351,7 +398,9 @@ class Canvas(QWidget):
         self._drop = self._what(hit, load_of(event.mimeData()))
         if self._drop.possible:
             event.setDropAction(
-                Qt.DropAction.MoveAction if event.possibleActions() & Qt.DropAction.MoveAction else Qt.DropAction.CopyAction
+                Qt.DropAction.MoveAction
+                if event.possibleActions() & Qt.DropAction.MoveAction
+                else Qt.DropAction.CopyAction
             )
             event.accept()
         else:
@@ -359,7 +408,14 @@ class Canvas(QWidget):
         self.update()
 
     def _what(self, hit: Hit, load: Load) -> Drop:
-        return drop_at(self.document.project, self.session.place.layer, self.session.place.stance(), self.session.place.other(), hit, load)
+        return drop_at(
+            self.document.project,
+            self.session.place.layer,
+            self.session.place.stance(),
+            self.session.place.other(),
+            hit,
+            load,
+        )
 
     def dragLeaveEvent(self, event: QDragLeaveEvent) -> None:
         self._end_drag()
@@ -410,7 +466,13 @@ class Canvas(QWidget):
             return
         stance = self.session.place.stance()
         new = kind == "stance" and bool(load.clips)
-        hit = Hit("card", stance, "stance") if new else Hit("loop", stance, "stance") if kind == "stance" else Hit("node", None, kind)
+        hit = (
+            Hit("card", stance, "stance")
+            if new
+            else Hit("loop", stance, "stance")
+            if kind == "stance"
+            else Hit("node", None, kind)
+        )
         drop = self._what(hit, load)
         if drop.possible:
             self.do(drop, load)
@@ -434,13 +496,22 @@ class Canvas(QWidget):
         step = {Qt.Key.Key_Down: 1, Qt.Key.Key_Up: -1}.get(Qt.Key(key))
         if step is not None and ids:
             first = min(len(loops), len(ids) - 1)  # the loops are above the first row
-            place = ids.index(self.focus) + step if self.focus in ids else (first if step > 0 else len(ids) - 1)
-            self._focus_on(ids[min(len(ids) - 1, max(0, place))], bool(event.modifiers() & Qt.KeyboardModifier.ShiftModifier))
+            place = (
+                ids.index(self.focus) + step if self.focus in ids else (first if step > 0 else len(ids) - 1)
+            )
+            self._focus_on(
+                ids[min(len(ids) - 1, max(0, place))],
+                bool(event.modifiers() & Qt.KeyboardModifier.ShiftModifier),
+            )
         elif key in (Qt.Key.Key_Left, Qt.Key.Key_Right) and self.focus in ids:
             likelihood = next(a for a in listed if a.id == self.focus).likelihood
             value = round(min(3.0, max(0.1, likelihood + (0.1 if key == Qt.Key.Key_Right else -0.1))), 1)
             chosen = self.session.selection.actions or (self.focus,)
-            self.document.edit("Change likelihood", lambda p: edits.update_actions(p, chosen, likelihood=value), merge="likelihood keys")
+            self.document.edit(
+                "Change likelihood",
+                lambda p: edits.update_actions(p, chosen, likelihood=value),
+                merge="likelihood keys",
+            )
         elif key in (Qt.Key.Key_Return, Qt.Key.Key_Enter) and self.focus in ids:
             self.session.show_context(str(self.focus))
         elif key != Qt.Key.Key_Escape or not self.hand.drop("escape"):
@@ -479,7 +550,9 @@ class Canvas(QWidget):
                 ends = menu.addMenu("End in stance")
                 for stance in self.document.project.graphs[self.session.place.layer].stances.values():
                     if stance.id != self.session.place.stance():
-                        ends.addAction(stance.name, lambda s=stance.id: self.end_in(self.session.selection.actions, s))
+                        ends.addAction(
+                            stance.name, lambda s=stance.id: self.end_in(self.session.selection.actions, s)
+                        )
             menu.addAction("Show clip in the library", self._show_clip)
             menu.addSeparator()
             menu.addActions(self.row_actions)
@@ -488,10 +561,14 @@ class Canvas(QWidget):
         elif hit.area in ("chip", "card") and hit.ident:
             stance_id = hit.ident
             menu.addAction("Rename stance…\tF2", lambda: self.rename_stance(stance_id))
-            menu.addAction("Start here", lambda: self.document.edit("Start here", lambda p: edits.set_start(p, stance_id)))
+            menu.addAction(
+                "Start here",
+                lambda: self.document.edit("Start here", lambda p: edits.set_start(p, stance_id)),
+            )
             menu.addSeparator()
             menu.addAction(
-                "Remove stance and its actions", lambda: self.document.edit("Remove stance", lambda p: edits.remove_stance(p, stance_id))
+                "Remove stance and its actions",
+                lambda: self.document.edit("Remove stance", lambda p: edits.remove_stance(p, stance_id)),
             )
         else:
             menu.addAction("New stance…", self.new_stance)
@@ -528,7 +605,9 @@ class Canvas(QWidget):
         menu.exec(at)
 
     def new_stance(self) -> None:
-        name, accepted = QInputDialog.getText(self, "New stance", f"Name of the new {self.session.place.layer} stance:")
+        name, accepted = QInputDialog.getText(
+            self, "New stance", f"Name of the new {self.session.place.layer} stance:"
+        )
         if accepted and name.strip():
             layer = self.session.place.layer
             self.document.edit("New stance", lambda p: edits.add_stance(p, layer, name))
@@ -546,7 +625,10 @@ class Canvas(QWidget):
         """Take the selected actions out of the graph."""
         gone = self.session.selection.actions
         if gone:
-            self.document.edit(f"Remove {len(gone)} action{'s' if len(gone) > 1 else ''}", lambda p: edits.remove_actions(p, gone))
+            self.document.edit(
+                f"Remove {len(gone)} action{'s' if len(gone) > 1 else ''}",
+                lambda p: edits.remove_actions(p, gone),
+            )
 
 
 def sentence(project: Project) -> str:
@@ -556,5 +638,9 @@ def sentence(project: Project) -> str:
         return "Drop clips on the nodes; every connection between them is implied."
     layers = sum(1 for layer in LAYERS if project.graphs[layer].actions)
     over = f" over {layers} layers" if layers > 1 else ""
-    clips, states, links = many(whole.clips, "clip"), many(whole.states, "state"), many(whole.connections, "connection")
+    clips, states, links = (
+        many(whole.clips, "clip"),
+        many(whole.states, "state"),
+        many(whole.connections, "connection"),
+    )
     return f"You placed {clips}{over}. This is the machine you did not have to draw: {states}, {links}."

@@ -1,4 +1,6 @@
-"""What a drop on the canvas would do: said in words before it happens, done by the same value when it does."""
+"""What a drop on the canvas would do: said in words before it happens, done by the same value when it
+does.
+"""
 
 from __future__ import annotations
 
@@ -24,7 +26,9 @@ class Drop:
     end: str | None = None
 
 
-def drop_at(project: Project, layer: Layer, stance: str | None, other: str | None, hit: Hit, load: Load) -> Drop:
+def drop_at(
+    project: Project, layer: Layer, stance: str | None, other: str | None, hit: Hit, load: Load
+) -> Drop:
     """Return what dropping `load` on `hit` does; the current stance and the other stance say where."""
     if not load:
         return Drop(False, "only clips, folders of clips and actions can be dropped here")
@@ -39,7 +43,10 @@ def drop_at(project: Project, layer: Layer, stance: str | None, other: str | Non
         words = f"drop {what} as a new stance"
     elif hit.area in ("loop", "chip"):
         kind, target, end = "stance", hit.ident, None
-        words = f"drop {what} as {'another loop' if load.count == 1 else 'more loops'} of *{_name(project, hit.ident)}*"
+        words = (
+            f"drop {what} as {'another loop' if load.count == 1 else 'more loops'} of "
+            f"*{_name(project, hit.ident)}*"
+        )
     elif hit.area in ("node", "row", "bar", "other") and hit.kind is not None:
         kind, target, end = hit.kind, stance, other if hit.kind == "transition" else None
         noun = f"{kind}s" if load.count > 1 else f"a {kind}"

@@ -27,7 +27,9 @@ class LikelihoodDrag(PressDrag):
         if self.row is not None:
             value = likelihood_at(self.row, at.x())
             self.host.document.edit(
-                "Change likelihood", lambda p: edits.update_actions(p, self.actions, likelihood=value), merge="likelihood"
+                "Change likelihood",
+                lambda p: edits.update_actions(p, self.actions, likelihood=value),
+                merge="likelihood",
             )
 
     def finish(self, at: QPointF) -> None:
@@ -39,7 +41,9 @@ class LikelihoodDrag(PressDrag):
 
 
 class RowDrag(PressDrag):
-    """Drags actions onto another node or stance, as a real drag so that everything that takes drops can take them."""
+    """Drags actions onto another node or stance, as a real drag so that everything that takes drops can take
+    them.
+    """
 
     def __init__(self, host: GraphHost, action: str) -> None:
         super().__init__()

@@ -1,4 +1,6 @@
-"""Where everything on the canvas is: a pure function of the project and the size, and the hit test on its result."""
+"""Where everything on the canvas is: a pure function of the project and the size, and the hit test on its
+result.
+"""
 
 from __future__ import annotations
 
@@ -75,7 +77,9 @@ class Layout:
     stance: str | None
 
     def hit(self, at: QPointF, dragging: bool = False) -> Hit:
-        """Return what lies under a point; `dragging` splits the card into "a new stance" and "another loop"."""
+        """Return what lies under a point; `dragging` splits the card into "a new stance" and "another
+        loop".
+        """
         for chip in self.chips:
             if chip.rect.contains(at):
                 return Hit("add") if chip.stance is None else Hit("chip", chip.stance)
@@ -99,7 +103,9 @@ class Layout:
         return Hit("nothing")
 
     def row(self, action: str) -> Row | None:
-        return next((row for node in self.nodes.values() for row in node.rows if row.action.id == action), None)
+        return next(
+            (row for node in self.nodes.values() for row in node.rows if row.action.id == action), None
+        )
 
 
 def hole(project: Project, layer: Layer, stance: str) -> str:
@@ -124,7 +130,9 @@ def arrange(
     scroll: Mapping[Kind, int] | None = None,
     widths: Mapping[str, float] | None = None,
 ) -> Layout:
-    """Lay the canvas out. scroll: the first row shown in each node. widths: of texts, in pixels, for the chips."""
+    """Lay the canvas out. scroll: the first row shown in each node. widths: of texts, in pixels, for the
+    chips.
+    """
     scroll, widths = scroll or {}, widths or {}
     width, height = max(size.width(), 420.0), max(size.height(), 360.0)
     graph = project.graphs[layer]
@@ -152,20 +160,38 @@ def arrange(
     low_top = min(card.bottom() + max(3.0 * GRID, slack * 0.3), bottom - low_h - GRID)
 
     nodes: dict[Kind, Node] = {}
-    beside = max(low_top - 2 * GRID - top, 120.0) if wide > width - 2 * side - 6 * GRID else max(bottom - top - GRID, 120.0)
+    beside = (
+        max(low_top - 2 * GRID - top, 120.0)
+        if wide > width - 2 * side - 6 * GRID
+        else max(bottom - top - GRID, 120.0)
+    )
     for kind, left in (("gesture", 2.0 * GRID), ("fidget", width - side - 2.0 * GRID)):
         actions = graph.of(stance, kind) if stance else ()  # type: ignore[arg-type]
         wanted = HEADER + max(len(actions), 2) * ROW + PAD + (ROW if len(actions) else 0)
         h = min(wanted, beside)
         nodes[kind] = _node(kind, QRectF(left, top, side, h), actions, scroll.get(kind, 0), 1)  # type: ignore[index,arg-type]
     nodes["transition"] = _node(
-        "transition", QRectF((width - wide) / 2, low_top, wide, low_h), transitions, scroll.get("transition", 0), columns
+        "transition",
+        QRectF((width - wide) / 2, low_top, wide, low_h),
+        transitions,
+        scroll.get("transition", 0),
+        columns,
     )
     loops = QRectF(card.left(), card.top() + card.height() * 0.58, card.width(), card.height() * 0.42)
-    return Layout(QSizeF(width, height), tuple(chips), card, loops, nodes, QRectF(2 * GRID, bottom, width - 4 * GRID, FOOT), stance)
+    return Layout(
+        QSizeF(width, height),
+        tuple(chips),
+        card,
+        loops,
+        nodes,
+        QRectF(2 * GRID, bottom, width - 4 * GRID, FOOT),
+        stance,
+    )
 
 
-def _chips(project: Project, graph: MetaGraph, width: float, widths: Mapping[str, float], widest: float) -> list[Chip]:
+def _chips(
+    project: Project, graph: MetaGraph, width: float, widths: Mapping[str, float], widest: float
+) -> list[Chip]:
     """Return the stances as chips in lines, and the "+" after them."""
     chips: list[Chip] = []
     x, y = 2.0 * GRID, float(CHIP_TOP)
@@ -173,7 +199,9 @@ def _chips(project: Project, graph: MetaGraph, width: float, widths: Mapping[str
         count = sum(len(graph.of(ident, k)) for k in ("gesture", "fidget", "transition"))
         words = hole(project, graph.layer, ident) if widest == CHIP_MAX else ""
         text = (
-            widths.get(s.name, 7.2 * len(s.name)) + widths.get(str(count), 16.0) + (widths.get(words, 7 * len(words)) + 8 if words else 0)
+            widths.get(s.name, 7.2 * len(s.name))
+            + widths.get(str(count), 16.0)
+            + (widths.get(words, 7 * len(words)) + 8 if words else 0)
         )
         w = min(max(text + 80, CHIP_MIN), widest + (80 if words else 0))
         if x + w > width - 56 and x > 2 * GRID:
@@ -198,12 +226,18 @@ def _node(kind: Kind, rect: QRectF, actions: tuple[Action, ...], scroll: int, co
         bar = QRectF(area.right() - BAR - 6, area.center().y() - 1.5, BAR, 3)
         head = QRectF(area.left(), area.top(), ARROW, ROW) if kind == "transition" else QRectF()
         rows.append(Row(actions[place], area, bar, head))
-    other = QRectF(rect.right() - 168, rect.top() + 7, 160 - 34, HEADER - 14) if kind == "transition" else QRectF()
+    other = (
+        QRectF(rect.right() - 168, rect.top() + 7, 160 - 34, HEADER - 14)
+        if kind == "transition"
+        else QRectF()
+    )
     return Node(kind, rect, header, body, tuple(rows), len(actions), first, most, other)
 
 
 def likelihood_at(row: Row, x: float) -> float:
-    """Return the likelihood a bar shows at a place: 0.1 at its left, 1 in its middle, 3 at its right, in steps of 0.1."""
+    """Return the likelihood a bar shows at a place: 0.1 at its left, 1 in its middle, 3 at its right, in
+    steps of 0.1.
+    """
     part = min(1.0, max(0.0, (x - row.bar.left()) / row.bar.width()))
     value = 0.1 + part * 1.8 if part <= 0.5 else 1.0 + (part - 0.5) * 4.0
     return round(value, 1)

@@ -44,7 +44,9 @@ class Look:
 
 
 def paint(painter: QPainter, layout: Layout, look: Look, font: QFont, stale: QRegion | None = None) -> None:
-    """Draw a canvas. stale: the part that is to be drawn anew, None for all; while the stance moves that is little."""
+    """Draw a canvas. stale: the part that is to be drawn anew, None for all; while the stance moves that is
+    little.
+    """
 
     def wanted(rect: QRectF) -> bool:
         return stale is None or stale.intersects(rect.toAlignedRect().adjusted(-2, -2, 2, 2))
@@ -63,9 +65,15 @@ def paint(painter: QPainter, layout: Layout, look: Look, font: QFont, stale: QRe
             _node(painter, node, layout, look, font)
     painter.setFont(font)
     painter.setPen(QColor(look.theme.dim))
-    painter.drawText(layout.foot, Qt.AlignmentFlag.AlignVCenter | Qt.AlignmentFlag.AlignLeft | Qt.TextFlag.TextWordWrap, look.sentence)
+    painter.drawText(
+        layout.foot,
+        Qt.AlignmentFlag.AlignVCenter | Qt.AlignmentFlag.AlignLeft | Qt.TextFlag.TextWordWrap,
+        look.sentence,
+    )
     if look.arrow is not None:
-        draw_arrow(painter, *look.arrow, look.theme.kind("transition"), look.drop is not None and look.drop.possible)
+        draw_arrow(
+            painter, *look.arrow, look.theme.kind("transition"), look.drop is not None and look.drop.possible
+        )
 
 
 def _bold(font: QFont) -> QFont:
@@ -74,7 +82,14 @@ def _bold(font: QFont) -> QFont:
     return out
 
 
-def _box(painter: QPainter, rect: QRectF, fill: QColor, edge: QColor | None, width: float = 1.0, dashed: bool = False) -> None:
+def _box(
+    painter: QPainter,
+    rect: QRectF,
+    fill: QColor,
+    edge: QColor | None,
+    width: float = 1.0,
+    dashed: bool = False,
+) -> None:
     painter.setBrush(fill)
     if edge is None:
         painter.setPen(Qt.PenStyle.NoPen)
@@ -145,7 +160,9 @@ def _chip(painter: QPainter, chip: Chip, layout: Layout, look: Look, font: QFont
     picture = look.chip_pictures.get(chip.stance)
     if picture is not None:
         size = chip.rect.height() - 6
-        half = QRectF(picture.width() * 0.24, picture.height() * 0.03, picture.width() * 0.52, picture.height() * 0.52)
+        half = QRectF(
+            picture.width() * 0.24, picture.height() * 0.03, picture.width() * 0.52, picture.height() * 0.52
+        )
         painter.drawImage(QRectF(chip.rect.left() + 5, chip.rect.top() + 3, size, size), picture, half)
     else:
         painter.setPen(Qt.PenStyle.NoPen)
@@ -179,7 +196,14 @@ def _card(painter: QPainter, layout: Layout, look: Look, font: QFont) -> None:
     edge = t.fill("stance") if stance is not None or dragging else QColor(t.line)
     loops = look.project.graphs[stance.layer].of(stance.id, "stance") if stance is not None else ()
     chosen = any(loop.id in look.selected for loop in loops)
-    _box(painter, card, QColor(t.hover if chosen else t.card), edge, 2.0 if stance is not None else 1.2, dashed=stance is None)
+    _box(
+        painter,
+        card,
+        QColor(t.hover if chosen else t.card),
+        edge,
+        2.0 if stance is not None else 1.2,
+        dashed=stance is None,
+    )
     if stance is None:
         painter.setPen(QColor(t.dim))
         painter.setFont(font)
@@ -198,11 +222,17 @@ def _card(painter: QPainter, layout: Layout, look: Look, font: QFont) -> None:
         painter.setBrush(t.fill("stance"))
         painter.drawEllipse(QPointF(left + 4, head.center().y()), 4.5, 4.5)
         painter.setPen(QColor(t.text))
-        painter.drawText(QRectF(left + 16, head.top(), wide + 4, head.height()), Qt.AlignmentFlag.AlignVCenter, name)
-        area = QRectF(card.left() + 4, head.bottom() + 2, card.width() - 8, card.height() - 24 - head.height() - 14)
+        painter.drawText(
+            QRectF(left + 16, head.top(), wide + 4, head.height()), Qt.AlignmentFlag.AlignVCenter, name
+        )
+        area = QRectF(
+            card.left() + 4, head.bottom() + 2, card.width() - 8, card.height() - 24 - head.height() - 14
+        )
         if look.picture is not None:
             size = min(area.width(), area.height())
-            painter.drawImage(QRectF(area.center().x() - size / 2, area.center().y() - size / 2, size, size), look.picture)
+            painter.drawImage(
+                QRectF(area.center().x() - size / 2, area.center().y() - size / 2, size, size), look.picture
+            )
         start = look.project.graphs[stance.layer].start == stance.id
         words = f"{len(loops)} loop{'s' if len(loops) != 1 else ''}" if loops else "no loop yet"
         painter.setFont(font)
@@ -211,7 +241,11 @@ def _card(painter: QPainter, layout: Layout, look: Look, font: QFont) -> None:
         words += "  ·  starts here" if start and card.width() > 150 else ""
         painter.drawText(foot, Qt.AlignmentFlag.AlignCenter, _elided(font, words, foot.width()))
     if dragging and look.drop is not None and look.drop_hit.area in ("card", "loop"):
-        zone = layout.loops if look.drop_hit.area == "loop" else QRectF(card.topLeft(), QPointF(card.right(), layout.loops.top()))
+        zone = (
+            layout.loops
+            if look.drop_hit.area == "loop"
+            else QRectF(card.topLeft(), QPointF(card.right(), layout.loops.top()))
+        )
         if stance is None:
             zone = card
         _offer(painter, zone, look, "stance", font)
@@ -228,13 +262,19 @@ def _offer(painter: QPainter, rect: QRectF, look: Look, kind: Kind, font: QFont)
     painter.setPen(color)
     painter.setFont(font)
     painter.drawText(
-        rect.adjusted(14, 8, -14, -8), Qt.AlignmentFlag.AlignCenter | Qt.TextFlag.TextWordWrap, look.drop.words.replace("*", "")
+        rect.adjusted(14, 8, -14, -8),
+        Qt.AlignmentFlag.AlignCenter | Qt.TextFlag.TextWordWrap,
+        look.drop.words.replace("*", ""),
     )
 
 
 def _node(painter: QPainter, node: Node, layout: Layout, look: Look, font: QFont) -> None:
     t = look.theme
-    target = look.drop is not None and look.drop_hit.kind == node.kind and look.drop_hit.area not in ("card", "loop", "chip", "add")
+    target = (
+        look.drop is not None
+        and look.drop_hit.kind == node.kind
+        and look.drop_hit.area not in ("card", "loop", "chip", "add")
+    )
     edge = t.fill(node.kind) if target and look.drop is not None and look.drop.possible else QColor(t.line)
     _box(painter, node.rect, QColor(t.card), edge, 1.5 if target else 1.0)
     head = node.header.adjusted(2 * GRID, 0, -2 * GRID, 0)
@@ -243,7 +283,11 @@ def _node(painter: QPainter, node: Node, layout: Layout, look: Look, font: QFont
     painter.drawText(head, Qt.AlignmentFlag.AlignVCenter | Qt.AlignmentFlag.AlignLeft, KIND_MARKS[node.kind])
     painter.setFont(_bold(font))
     painter.setPen(QColor(t.text))
-    painter.drawText(head.adjusted(20, 0, 0, 0), Qt.AlignmentFlag.AlignVCenter | Qt.AlignmentFlag.AlignLeft, KIND_TITLES[node.kind])
+    painter.drawText(
+        head.adjusted(20, 0, 0, 0),
+        Qt.AlignmentFlag.AlignVCenter | Qt.AlignmentFlag.AlignLeft,
+        KIND_TITLES[node.kind],
+    )
     painter.setFont(font)
     painter.setPen(QColor(t.dim))
     painter.drawText(head, Qt.AlignmentFlag.AlignVCenter | Qt.AlignmentFlag.AlignRight, str(node.count))
@@ -266,7 +310,12 @@ def _node(painter: QPainter, node: Node, layout: Layout, look: Look, font: QFont
     if target:
         free = QRectF(node.rect.left() + 3, node.rect.bottom() - 60, node.rect.width() - 6, 56)
         if node.rect.height() < 130:
-            free = QRectF(node.rect.left() + 3, node.header.bottom() - 2, node.rect.width() - 6, node.rect.height() - node.header.height())
+            free = QRectF(
+                node.rect.left() + 3,
+                node.header.bottom() - 2,
+                node.rect.width() - 6,
+                node.rect.height() - node.header.height(),
+            )
         _offer(painter, free, look, node.kind, font)
 
 
@@ -279,15 +328,22 @@ def _other(painter: QPainter, node: Node, look: Look, font: QFont) -> None:
     painter.setFont(font)
     painter.setPen(QColor(t.text if found is not None else t.warning))
     text = f"to {found.name}" if found is not None else "needs another stance"
-    painter.drawText(rect.adjusted(8, 0, -18, 0), Qt.AlignmentFlag.AlignVCenter, _elided(font, text, rect.width() - 28))
+    painter.drawText(
+        rect.adjusted(8, 0, -18, 0), Qt.AlignmentFlag.AlignVCenter, _elided(font, text, rect.width() - 28)
+    )
     painter.setPen(QPen(QColor(t.dim), 1.4))
     c = QPointF(rect.right() - 12, rect.center().y())
     painter.drawPolyline([c + QPointF(-3.5, -2), c + QPointF(0, 2), c + QPointF(3.5, -2)])
 
 
-def _row(painter: QPainter, action: Action, rect: QRectF, bar: QRectF, kind: Kind, look: Look, font: QFont) -> None:
+def _row(
+    painter: QPainter, action: Action, rect: QRectF, bar: QRectF, kind: Kind, look: Look, font: QFont
+) -> None:
     t = look.theme
-    selected, hover = action.id in look.selected, look.hover.ident == action.id and look.hover.area in ("row", "bar", "head")
+    selected, hover = (
+        action.id in look.selected,
+        look.hover.ident == action.id and look.hover.area in ("row", "bar", "head"),
+    )
     if selected or hover:
         fill = QColor(t.hover)
         fill.setAlpha(255 if selected else 130)
@@ -302,7 +358,12 @@ def _row(painter: QPainter, action: Action, rect: QRectF, bar: QRectF, kind: Kin
     left = rect.left() + 8
     if kind == "transition":
         if hover and look.hover.area == "head":
-            _box(painter, QRectF(rect.left() + 3, rect.top() + 3, 22, rect.height() - 6), QColor(t.field), t.kind(kind))
+            _box(
+                painter,
+                QRectF(rect.left() + 3, rect.top() + 3, 22, rect.height() - 6),
+                QColor(t.field),
+                t.kind(kind),
+            )
         painter.setFont(font)
         painter.setPen(t.kind(kind))
         painter.drawText(QRectF(left, rect.top(), 18, rect.height()), Qt.AlignmentFlag.AlignVCenter, "→")
@@ -321,14 +382,24 @@ def _row(painter: QPainter, action: Action, rect: QRectF, bar: QRectF, kind: Kin
         room -= 18
     painter.setFont(font)
     painter.setPen(QColor(t.text))
-    painter.drawText(QRectF(left, rect.top(), room, rect.height()), Qt.AlignmentFlag.AlignVCenter, _elided(font, text, room))
+    painter.drawText(
+        QRectF(left, rect.top(), room, rect.height()),
+        Qt.AlignmentFlag.AlignVCenter,
+        _elided(font, text, room),
+    )
     painter.setPen(Qt.PenStyle.NoPen)
     painter.setBrush(QColor(t.line))
     painter.drawRoundedRect(bar, 1.5, 1.5)
     painter.setBrush(t.fill(kind))
-    painter.drawRoundedRect(QRectF(bar.left(), bar.top(), max(3.0, bar.width() * bar_part(action.likelihood)), bar.height()), 1.5, 1.5)
+    painter.drawRoundedRect(
+        QRectF(bar.left(), bar.top(), max(3.0, bar.width() * bar_part(action.likelihood)), bar.height()),
+        1.5,
+        1.5,
+    )
     if hover and look.hover.area == "bar":
-        painter.drawEllipse(QPointF(bar.left() + bar.width() * bar_part(action.likelihood), bar.center().y()), 4.5, 4.5)
+        painter.drawEllipse(
+            QPointF(bar.left() + bar.width() * bar_part(action.likelihood), bar.center().y()), 4.5, 4.5
+        )
 
 
 TIP = 9.0  # pixels of an arrow's head

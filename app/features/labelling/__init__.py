@@ -13,7 +13,9 @@ def contribute(shell: Shell) -> Contribution:
     def label() -> None:
         from app.features.labelling.review_dialog import ReviewDialog
 
-        ReviewDialog(document, session, shell.jobs, shell.stage.figures, shell.services[Learned], shell.widget).show()
+        ReviewDialog(
+            document, session, shell.jobs, shell.stage.figures, shell.services[Learned], shell.widget
+        ).show()
 
     def patterns() -> None:
         from app.features.labelling.patterns_dialog import PatternsDialog
@@ -22,9 +24,27 @@ def contribute(shell: Shell) -> Contribution:
 
     return Contribution(
         commands=(
-            Command("propose", "&Graph", "author", "&Label clips…", label, ("Ctrl+P",), tip="Propose what each clip is, by name and motion",
-                    enabled=lambda: any(clip not in document.project.uses for clip in document.project.clips), when="meta", study="labels"),
-            Command("patterns", "&Graph", "author", "Name &patterns…", patterns, tip="What words in clip names mean", when="meta",
-                    study="labels"),
+            Command(
+                "propose",
+                "&Graph",
+                "author",
+                "&Label clips…",
+                label,
+                ("Ctrl+P",),
+                tip="Propose what each clip is, by name and motion",
+                enabled=lambda: any(clip not in document.project.uses for clip in document.project.clips),
+                when="meta",
+                study="labels",
+            ),
+            Command(
+                "patterns",
+                "&Graph",
+                "author",
+                "Name &patterns…",
+                patterns,
+                tip="What words in clip names mean",
+                when="meta",
+                study="labels",
+            ),
         ),
-    )  # fmt: skip
+    )

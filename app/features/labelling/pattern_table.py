@@ -1,4 +1,6 @@
-"""The rows of the name patterns: what the user wrote, what was learned, what is built in; searched, sorted and edited in place."""
+"""The rows of the name patterns: what the user wrote, what was learned, what is built in; searched, sorted
+and edited in place.
+"""
 
 from __future__ import annotations
 
@@ -18,20 +20,42 @@ from metagraph.suggest.words_patterns import FIELDS, Patterns, PatternsError, fo
 Index = QModelIndex | QPersistentModelIndex
 COLUMNS = ("Words", "About", "Means", "From")
 ABOUT = {
-    "kinds": "kind", "layers": "layer", "limbs": "arm", "tags": "tags", "postures": "stance name", "joins": "transition", "junk": "no word",
-    "kind": "kind", "layer": "layer", "limb": "arm", "stance": "begins in", "end_stance": "ends in",
-}  # fmt: skip
+    "kinds": "kind",
+    "layers": "layer",
+    "limbs": "arm",
+    "tags": "tags",
+    "postures": "stance name",
+    "joins": "transition",
+    "junk": "no word",
+    "kind": "kind",
+    "layer": "layer",
+    "limb": "arm",
+    "stance": "begins in",
+    "end_stance": "ends in",
+}
 MEANINGS: dict[str, tuple[str, ...]] = {
-    "kinds": (*KINDS, "other"), "layers": LAYERS, "limbs": LIMBS, "tags": (), "postures": ("stance",), "joins": ("to", "from"),
-    "junk": ("junk",), "kind": KINDS, "layer": LAYERS, "limb": LIMBS, "stance": (), "end_stance": (),
-}  # fmt: skip
+    "kinds": (*KINDS, "other"),
+    "layers": LAYERS,
+    "limbs": LIMBS,
+    "tags": (),
+    "postures": ("stance",),
+    "joins": ("to", "from"),
+    "junk": ("junk",),
+    "kind": KINDS,
+    "layer": LAYERS,
+    "limb": LIMBS,
+    "stance": (),
+    "end_stance": (),
+}
 SHOWN = {"other": "none of the four", "junk": "nothing", None: "nothing any more"}
 NOBODY, MINE, LEARNED = "built in", "you", "corrections"
 
 
 @dataclass(frozen=True)
 class Row:
-    """field: as `Patterns.changes` or, of what was learned, `Patterns.learned` name it. meaning: None of a built-in one taken away."""
+    """field: as `Patterns.changes` or, of what was learned, `Patterns.learned` name it. meaning: None of a
+    built-in one taken away.
+    """
 
     source: str
     field: str
@@ -42,23 +66,41 @@ class Row:
     def texts(self) -> tuple[str, str, str, str]:
         """Return what the columns say."""
         times = "" if not self.count else ", once" if self.count == 1 else f", {self.count} times"
-        return self.phrase, ABOUT[self.field], SHOWN.get(self.meaning, self.meaning or ""), self.source + times
+        return (
+            self.phrase,
+            ABOUT[self.field],
+            SHOWN.get(self.meaning, self.meaning or ""),
+            self.source + times,
+        )
 
 
 def rows_of(patterns: Patterns) -> list[Row]:
     """Return all rows: own ones, learned ones, and what is built in and was not changed."""
-    out = [Row(MINE, name, phrase, meaning) for name, mine in patterns.changes.items() for phrase, meaning in mine.items()]
+    out = [
+        Row(MINE, name, phrase, meaning)
+        for name, mine in patterns.changes.items()
+        for phrase, meaning in mine.items()
+    ]
     for name, words in patterns.learned.items():
-        out += [Row(LEARNED, name, word, value, count) for word, counts in words.items() for value, count in counts.items()]
+        out += [
+            Row(LEARNED, name, word, value, count)
+            for word, counts in words.items()
+            for value, count in counts.items()
+        ]
     for field in FIELDS:
         changed = patterns.changes.get(field, {})
-        out += [Row(NOBODY, field, phrase, meaning) for phrase, meaning in DEFAULTS[field].items() if phrase not in changed]
+        out += [
+            Row(NOBODY, field, phrase, meaning)
+            for phrase, meaning in DEFAULTS[field].items()
+            if phrase not in changed
+        ]
     return out
 
 
 def without(patterns: Patterns, row: Row) -> Patterns:
-    """Return patterns without a row: an own one is forgotten, so that the built-in meaning holds again; a learned one too; a built-in one
-    is taken away, which is a change of the user's."""
+    """Return patterns without a row: an own one is forgotten, so that the built-in meaning holds again; a
+    learned one too; a built-in one is taken away, which is a change of the user's.
+    """
     if row.source == LEARNED:
         counts = {v: c for v, c in patterns.learned[row.field][row.phrase].items() if v != row.meaning}
         bare = forget(patterns, row.field, row.phrase)
@@ -82,9 +124,16 @@ def changed(patterns: Patterns, row: Row, phrase: str, meaning: str) -> Patterns
 
 
 class PatternTable(QAbstractTableModel):
-    """Rows of patterns. change: called with a pure function when a cell was edited; refused: with words when it cannot be."""
+    """Rows of patterns. change: called with a pure function when a cell was edited; refused: with words when
+    it cannot be.
+    """
 
-    def __init__(self, change: Callable[[Callable[[Patterns], Patterns]], None], refused: Callable[[str], None], parent: QWidget) -> None:
+    def __init__(
+        self,
+        change: Callable[[Callable[[Patterns], Patterns]], None],
+        refused: Callable[[str], None],
+        parent: QWidget,
+    ) -> None:
         super().__init__(parent)
         self.rows: list[Row] = []
         self.patterns = Patterns()
@@ -101,8 +150,14 @@ class PatternTable(QAbstractTableModel):
     def columnCount(self, parent: Index = QModelIndex()) -> int:  # noqa: B008
         return 0 if parent.isValid() else len(COLUMNS)
 
-    def headerData(self, section: int, orientation: Qt.Orientation, role: int = Qt.ItemDataRole.DisplayRole) -> Any:
-        return COLUMNS[section] if orientation == Qt.Orientation.Horizontal and role == Qt.ItemDataRole.DisplayRole else None
+    def headerData(
+        self, section: int, orientation: Qt.Orientation, role: int = Qt.ItemDataRole.DisplayRole
+    ) -> Any:
+        return (
+            COLUMNS[section]
+            if orientation == Qt.Orientation.Horizontal and role == Qt.ItemDataRole.DisplayRole
+            else None
+        )
 
     def data(self, index: Index, role: int = Qt.ItemDataRole.DisplayRole) -> Any:
         row = self.rows[index.row()]
@@ -125,7 +180,10 @@ class PatternTable(QAbstractTableModel):
         return super().flags(index) | (Qt.ItemFlag.ItemIsEditable if edits else Qt.ItemFlag.NoItemFlags)
 
     def setData(self, index: Index, value: Any, role: int = Qt.ItemDataRole.EditRole) -> bool:
-        row, text = self.rows[index.row()], " ".join(str(value).lower().split()) if index.column() == 0 else " ".join(str(value).split())
+        row, text = (
+            self.rows[index.row()],
+            " ".join(str(value).lower().split()) if index.column() == 0 else " ".join(str(value).split()),
+        )
         if not text or text == ((row.phrase, "", row.meaning)[index.column()]):
             return False
         phrase, meaning = (text, row.meaning or "") if index.column() == 0 else (row.phrase, text)

@@ -1,4 +1,6 @@
-"""Name patterns: what words in clips' names mean, as the user wrote and corrected it; tried out on a name, and shared as a file."""
+"""Name patterns: what words in clips' names mean, as the user wrote and corrected it; tried out on a name,
+and shared as a file.
+"""
 
 from __future__ import annotations
 
@@ -25,7 +27,17 @@ from PySide6.QtWidgets import (
     QWidget,
 )
 
-from app.features.labelling.pattern_table import ABOUT, MINE, NOBODY, Chosen, MeaningEditor, PatternTable, Row, fill_meanings, without
+from app.features.labelling.pattern_table import (
+    ABOUT,
+    MINE,
+    NOBODY,
+    Chosen,
+    MeaningEditor,
+    PatternTable,
+    Row,
+    fill_meanings,
+    without,
+)
 from app.look.theme import KIND_MARKS, theme
 from app.project.document import Document
 from app.project.learned import Learned
@@ -37,7 +49,14 @@ from metagraph.suggest.words import NameGuess, Patterns, PatternsError, merged, 
 from metagraph.suggest.words_patterns import FIELDS
 
 FILTER = "Name patterns (*.json);;All files (*)"
-PARTS = (("kind", "Kind"), ("layer", "Layer"), ("stance", "Stance"), ("end_stance", "Ends in"), ("limb", "Arm"), ("tags", "Tags"))
+PARTS = (
+    ("kind", "Kind"),
+    ("layer", "Layer"),
+    ("stance", "Stance"),
+    ("end_stance", "Ends in"),
+    ("limb", "Arm"),
+    ("tags", "Tags"),
+)
 
 
 class _Table(QTableView):
@@ -55,7 +74,9 @@ class _Table(QTableView):
 class PatternsDialog(QDialog):
     """Every change is kept at once, for all projects."""
 
-    def __init__(self, document: Document, session: Session, learned: Learned, parent: QWidget | None = None) -> None:
+    def __init__(
+        self, document: Document, session: Session, learned: Learned, parent: QWidget | None = None
+    ) -> None:
         super().__init__(parent)
         self.document, self.session, self.learned = document, session, learned
         self.setAttribute(Qt.WidgetAttribute.WA_DeleteOnClose)
@@ -63,7 +84,13 @@ class PatternsDialog(QDialog):
         self.resize(760, 720)
         layout = QVBoxLayout(self)
         layout.setSpacing(10)
-        layout.addWidget(QLabel("What words in clip names mean when labels are proposed. Kept for all your projects.", self, wordWrap=True))
+        layout.addWidget(
+            QLabel(
+                "What words in clip names mean when labels are proposed. Kept for all your projects.",
+                self,
+                wordWrap=True,
+            )
+        )
         layout.addLayout(self._trial())
         layout.addLayout(self._finder())
         layout.addWidget(self._table(), 1)
@@ -141,16 +168,22 @@ class PatternsDialog(QDialog):
             self.field.addItem(ABOUT[name], name)
         self.meaning = ComboBox(self)
         self.meaning.setAccessibleName("Meaning")
-        self.field.currentIndexChanged.connect(lambda _: fill_meanings(self.meaning, self.field.currentData()))
+        self.field.currentIndexChanged.connect(
+            lambda _: fill_meanings(self.meaning, self.field.currentData())
+        )
         fill_meanings(self.meaning, "kinds")
         self.add = QPushButton("Add", self)
         self.add.clicked.connect(self._add)
         self.phrase.returnPressed.connect(self._add)
         self.remove = QPushButton("Remove", self)
-        self.remove.setToolTip("Forget the selected patterns; of built-in ones, that they mean anything (Delete)")
+        self.remove.setToolTip(
+            "Forget the selected patterns; of built-in ones, that they mean anything (Delete)"
+        )
         self.remove.clicked.connect(self._remove)
         grid = QGridLayout()
-        for column, (widget, wide) in enumerate(((self.phrase, 3), (self.field, 1), (self.meaning, 2), (self.add, 0), (self.remove, 0))):
+        for column, (widget, wide) in enumerate(
+            ((self.phrase, 3), (self.field, 1), (self.meaning, 2), (self.add, 0), (self.remove, 0))
+        ):
             grid.addWidget(widget, 0, column)
             grid.setColumnStretch(column, wide)
         return grid
@@ -185,7 +218,11 @@ class PatternsDialog(QDialog):
         # What was learned is shown, and can be forgotten, while it is not used.
         self.model.fill(self.learned.every_pattern)
         self._look()
-        rows = [i for i, row in enumerate(self.model.rows) if (row.field, row.phrase) in {(r.field, r.phrase) for r in kept}]
+        rows = [
+            i
+            for i, row in enumerate(self.model.rows)
+            if (row.field, row.phrase) in {(r.field, r.phrase) for r in kept}
+        ]
         for i in rows[:1]:
             self.table.setCurrentIndex(self.chosen.mapFromSource(self.model.index(i, 0)))
         self._try()
@@ -216,9 +253,13 @@ class PatternsDialog(QDialog):
                 continue
             text = escape(", ".join(belief.value) if part == "tags" else str(belief.value))
             if part == "kind":
-                text = f"<span style='color:{look.kinds[belief.value]}'>{KIND_MARKS[belief.value]} {text}</span>"
+                text = (
+                    f"<span style='color:{look.kinds[belief.value]}'>{KIND_MARKS[belief.value]} {text}</span>"
+                )
             cells = (title, f"<b>{text}</b>", f"{belief.confidence:.0%}", escape(belief.reason))
-            rows.append("<tr>" + "".join(f"<td style='padding-right:14px'>{cell}</td>" for cell in cells) + "</tr>")
+            rows.append(
+                "<tr>" + "".join(f"<td style='padding-right:14px'>{cell}</td>" for cell in cells) + "</tr>"
+            )
         return f"<table>{''.join(rows)}</table>" if rows else "<i>This name says nothing.</i>"
 
     def _tell(self, words: str) -> None:
@@ -245,7 +286,14 @@ class PatternsDialog(QDialog):
         self.learned.edit(lambda p: p.with_pattern(field, phrase, " ".join(meaning.split())))
         self.phrase.clear()
         self.phrase.setFocus()
-        at = next((i for i, row in enumerate(self.model.rows) if (row.source, row.field, row.phrase) == (MINE, field, phrase)), None)
+        at = next(
+            (
+                i
+                for i, row in enumerate(self.model.rows)
+                if (row.source, row.field, row.phrase) == (MINE, field, phrase)
+            ),
+            None,
+        )
         if at is None:
             self._tell(f"'{phrase}' means that already, built in.")
             return
@@ -266,14 +314,23 @@ class PatternsDialog(QDialog):
 
         self.learned.edit(change)
         taken = [row for row in rows if row.source == NOBODY]
-        self._tell(f"'{taken[0].phrase}' means nothing any more. Remove it again to have it back." if len(taken) == 1 else "")
+        self._tell(
+            f"'{taken[0].phrase}' means nothing any more. Remove it again to have it back."
+            if len(taken) == 1
+            else ""
+        )
         if self.chosen.rowCount():
-            self.table.setCurrentIndex(self.chosen.index(min(place, self.chosen.rowCount() - 1), 0, QModelIndex()))
+            self.table.setCurrentIndex(
+                self.chosen.index(min(place, self.chosen.rowCount() - 1), 0, QModelIndex())
+            )
 
     def _forget(self) -> None:
         count, clips = sum(map(len, self.model.patterns.learned.values())), self.learned.clips
         known = f"{count} word{'s' if count != 1 else ''} learned from corrections"
-        words = f"{known} and {clips} labelled clip{'s' if clips != 1 else ''} of saved projects are forgotten. Patterns you wrote stay."
+        words = (
+            f"{known} and {clips} labelled clip{'s' if clips != 1 else ''} of saved projects are "
+            "forgotten. Patterns you wrote stay."
+        )
         buttons = QMessageBox.StandardButton
         box = QMessageBox(QMessageBox.Icon.Question, "Forget all learned?", words, buttons.Cancel, self)
         go = box.addButton("Forget", QMessageBox.ButtonRole.DestructiveRole)
@@ -285,7 +342,9 @@ class PatternsDialog(QDialog):
     # --- sharing
 
     def _import(self) -> None:
-        name, _ = QFileDialog.getOpenFileName(self, "Import name patterns", str(self.document.folder or Path.home()), FILTER)
+        name, _ = QFileDialog.getOpenFileName(
+            self, "Import name patterns", str(self.document.folder or Path.home()), FILTER
+        )
         if name:
             try:
                 theirs = read_patterns(Path(name))
@@ -295,7 +354,10 @@ class PatternsDialog(QDialog):
             self.learned.edit(lambda mine: merged(mine, theirs))
             own = sum(map(len, theirs.changes.values()))
             learned = sum(map(len, theirs.learned.values()))
-            self._tell(f"{own} pattern{'s' if own != 1 else ''} and {learned} learned were taken from {Path(name).name}.")
+            self._tell(
+                f"{own} pattern{'s' if own != 1 else ''} and {learned} learned were taken from "
+                f"{Path(name).name}."
+            )
 
     def _export(self) -> None:
         start = (self.document.folder or Path.home()) / "name-patterns.json"

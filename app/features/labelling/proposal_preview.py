@@ -11,8 +11,9 @@ from metagraph.suggest.review import Review
 
 @dataclass(frozen=True)
 class Span:
-    """Where in what plays the clip is: seconds. words: what its parts are called before, amid, after. kind: gives the colour. stroke:
-    seconds, None where there is none."""
+    """Where in what plays the clip is: seconds. words: what its parts are called before, amid, after. kind:
+    gives the colour. stroke: seconds, None where there is none.
+    """
 
     start: float
     end: float
@@ -22,15 +23,23 @@ class Span:
 
 
 def trial(project: Project, review: Review, clip: str) -> tuple[Shown, Span | None]:
-    """Return the clip as it would play if it were accepted: its stance, the clip, the stance it ends in; alone where it has no place."""
+    """Return the clip as it would play if it were accepted: its stance, the clip, the stance it ends in;
+    alone where it has no place.
+    """
     taken = review.take(project, [clip])
-    action = next(reversed(taken.project.uses.get(clip, ())), None)  # before it may stand one that only lends a stance a moment
+    action = next(
+        reversed(taken.project.uses.get(clip, ())), None
+    )  # before it may stand one that only lends a stance a moment
     if action is None or clip not in taken.placed:
         return alone(project, clip), None
     placed = taken.project
     stances = {layer: start for layer in LAYERS if (start := placed.graphs[layer].start) is not None}
     shown = in_context(placed, action.id, action.layer, stances)
-    names = {s: found.name for s in (action.stance, action.end_stance or action.stance) if (found := placed.stance(s)) is not None}
+    names = {
+        s: found.name
+        for s in (action.stance, action.end_stance or action.stance)
+        if (found := placed.stance(s)) is not None
+    }
     before, after = names.get(action.stance, ""), names.get(action.end_stance or action.stance, "")
     if action.kind == "stance":
         return shown, Span(0.0, shown.length, ("", action.name, ""), action.kind)

@@ -1,4 +1,5 @@
-"""Going through proposals on the character: one clip after another, out of its stance and back; Enter accepts, a key corrects.
+"""Going through proposals on the character: one clip after another, out of its stance and back; Enter
+accepts, a key corrects.
 
 The keyboard alone is enough; the mouse can do the same. Every clip is one undo step.
 """
@@ -41,7 +42,13 @@ from app.stage.session import Session
 from metagraph.suggest.proposal import Proposal
 from metagraph.suggest.review import DECIDING, Field, Review
 
-TITLES: dict[str, str] = {"kind": "Is a", "layer": "Layer", "stance": "Stance", "end_stance": "Ends in", "limb": "Arm"}
+TITLES: dict[str, str] = {
+    "kind": "Is a",
+    "layer": "Layer",
+    "stance": "Stance",
+    "end_stance": "Ends in",
+    "limb": "Arm",
+}
 FRAME = 1 / 30  # seconds a step goes
 LEAST = 2 / 30  # seconds a clip keeps at least
 
@@ -53,7 +60,13 @@ class ReviewDialog(QDialog):
     """current: the clip that is looked at. row: the field that keys correct."""
 
     def __init__(
-        self, document: Document, session: Session, jobs: Jobs, figures: Figures, learned: Learned, parent: QWidget | None = None
+        self,
+        document: Document,
+        session: Session,
+        jobs: Jobs,
+        figures: Figures,
+        learned: Learned,
+        parent: QWidget | None = None,
     ) -> None:
         super().__init__(parent)
         self.document, self.session, self.jobs = document, session, jobs
@@ -148,7 +161,11 @@ class ReviewDialog(QDialog):
         scroll.setHorizontalScrollBarPolicy(Qt.ScrollBarPolicy.ScrollBarAlwaysOff)
         scroll.setFocusPolicy(Qt.FocusPolicy.NoFocus)
         scroll.setWidget(inner)
-        self.back, self.shut, self.go = QPushButton("Undo", self), QPushButton("Close", self), QPushButton("Accept", self)
+        self.back, self.shut, self.go = (
+            QPushButton("Undo", self),
+            QPushButton("Close", self),
+            QPushButton("Accept", self),
+        )
         for button, run in ((self.back, self.undo), (self.shut, self.close), (self.go, self.accept_current)):
             button.setAutoDefault(False)
             button.setFocusPolicy(Qt.FocusPolicy.NoFocus)
@@ -219,7 +236,9 @@ class ReviewDialog(QDialog):
         values = [v for v, _ in self.review.choices(self.current, self.row)]
         if values:
             now = self.review.value(self.current, self.row)
-            self._choose(self.row, values[(values.index(now) + step) % len(values)] if now in values else values[0])
+            self._choose(
+                self.row, values[(values.index(now) + step) % len(values)] if now in values else values[0]
+            )
 
     def _move(self, step: int) -> None:
         names = [row.name for row in self.fields.rows]
@@ -235,7 +254,9 @@ class ReviewDialog(QDialog):
     def _tag(self) -> None:
         if self.current is None:
             return
-        tags = tuple(dict.fromkeys(t for word in self.tags.text().split(",") if (t := " ".join(word.split()))))
+        tags = tuple(
+            dict.fromkeys(t for word in self.tags.text().split(",") if (t := " ".join(word.split())))
+        )
         belief = self.review.found.proposals[self.current].tags
         if tags != (belief.value if belief is not None else ()):
             self._tell("tags", tags)
@@ -245,10 +266,15 @@ class ReviewDialog(QDialog):
         shown, span = self.stage.shown, self.stage.strip.span
         if self.current is None or shown is None:
             return
-        old, length = self.review.found.proposals[self.current].timing, self.document.project.clips[self.current].duration
+        old, length = (
+            self.review.found.proposals[self.current].timing,
+            self.document.project.clips[self.current].duration,
+        )
         start, end = float(old.get("start") or 0.0), float(old.get("end") or length)
         seen = self.stage.seconds if span is None else self.stage.seconds - span.start + start
-        seconds = min(max(0.0, seen), end - LEAST) if name == "start" else min(max(seen, start + LEAST), length)
+        seconds = (
+            min(max(0.0, seen), end - LEAST) if name == "start" else min(max(seen, start + LEAST), length)
+        )
         self._tell("timing", {name: round(seconds, 3)})
 
     def _new_stance(self) -> None:
@@ -256,7 +282,9 @@ class ReviewDialog(QDialog):
         if self.current is None:
             return
         ends = self.row == "end_stance"
-        words, ok = QInputDialog.getText(self, "New stance", "Name of the stance it ends in:" if ends else "Name of the stance:")
+        words, ok = QInputDialog.getText(
+            self, "New stance", "Name of the stance it ends in:" if ends else "Name of the stance:"
+        )
         if ok and words.strip():
             self._choose("end_stance" if ends else "stance", " ".join(words.split()))
 
@@ -275,7 +303,9 @@ class ReviewDialog(QDialog):
         if self.current is None:
             self.close()
         else:
-            self._place([self.current], f"Label {self.document.project.clips[self.current].name}", self.current)
+            self._place(
+                [self.current], f"Label {self.document.project.clips[self.current].name}", self.current
+            )
 
     def accept_sure(self) -> None:
         """Place all that wait, are as sure as wanted, and are not disputed, as one step."""
@@ -286,11 +316,15 @@ class ReviewDialog(QDialog):
         taken = self.work.place(clips, words, step)
         why = next(iter(taken.left.items()), None)
         if not taken.placed:
-            self.stage.tell(f"<b>Not placed:</b> {escape(why[1] if why is not None else 'it is no longer there')}.")
+            self.stage.tell(
+                f"<b>Not placed:</b> {escape(why[1] if why is not None else 'it is no longer there')}."
+            )
             return
         self.go_to(self.work.after(self.current))
         if why is not None:
-            self.queue.words.setText(f"{len(taken.placed)} placed; not {self.document.project.clips[why[0]].name}: {why[1]}.")
+            self.queue.words.setText(
+                f"{len(taken.placed)} placed; not {self.document.project.clips[why[0]].name}: {why[1]}."
+            )
 
     def undo(self) -> None:
         """Take the last step back, and look at that clip again."""
@@ -306,7 +340,9 @@ class ReviewDialog(QDialog):
 
     def _count(self) -> None:
         if self.work.looked:
-            self.queue.count(len(self.work.waiting()), len(self.work.sure_ones(self.queue.least)), self.work.pace)
+            self.queue.count(
+                len(self.work.waiting()), len(self.work.sure_ones(self.queue.least)), self.work.pace
+            )
         self.back.setEnabled(self.work.can_undo)
 
     def _show(self) -> None:
@@ -318,15 +354,23 @@ class ReviewDialog(QDialog):
             self.fields.show_rows((), "")
             self.timing.setText("")
             self.tags.setText("")
-            self.stage.tell("<b>Every clip is placed.</b>" if self.work.looked else "Looking at names and motion…")
+            self.stage.tell(
+                "<b>Every clip is placed.</b>" if self.work.looked else "Looking at names and motion…"
+            )
             return
         p = self.review.found.proposals[clip]
         rows = []
         for name in DECIDING:
             if choices := self.review.choices(clip, name):
                 belief = getattr(p, name)
-                sure, reason = (belief.confidence, belief.reason) if belief is not None else (0.0, "nothing says which")
-                rows.append(Row(name, TITLES[name], choices, self.review.value(clip, name), sure, reason, p.kind.value))
+                sure, reason = (
+                    (belief.confidence, belief.reason) if belief is not None else (0.0, "nothing says which")
+                )
+                rows.append(
+                    Row(
+                        name, TITLES[name], choices, self.review.value(clip, name), sure, reason, p.kind.value
+                    )
+                )
         if self.row not in {row.name for row in rows}:
             self.row = "kind"
         self.fields.show_rows(rows, self.row)
@@ -347,7 +391,11 @@ class ReviewDialog(QDialog):
         def work(_: object) -> _Tried:
             times = review.timed(project, clip) if clip in review.said else None
             ready = review.with_times(times) if times is not None else review
-            return (number, times, *trial(project, ready, clip)) if context else (number, times, alone(project, clip), None)
+            return (
+                (number, times, *trial(project, ready, clip))
+                if context
+                else (number, times, alone(project, clip), None)
+            )
 
         self.jobs.start("trial", work, self._tried, self._failed, quick=True)
 
@@ -366,18 +414,37 @@ class ReviewDialog(QDialog):
     def _key_table(self) -> dict[int, Callable[[], object]]:
         k, stage = Qt.Key, self.stage
         table: dict[int, Callable[[], object]] = {
-            k.Key_Return: self.accept_current, k.Key_Enter: self.accept_current, k.Key_Backspace: self.undo, k.Key_A: self.accept_sure,
-            k.Key_Up: lambda: self._move(-1), k.Key_Down: lambda: self._move(1), k.Key_Left: lambda: self._turn(-1),
-            k.Key_Right: lambda: self._turn(1), k.Key_Tab: self._later, k.Key_Backtab: self._earlier, k.Key_PageDown: self._later,
-            k.Key_PageUp: self._earlier, k.Key_Space: stage.toggle, k.Key_Home: stage.replay, k.Key_C: self._toggle_context,
-            k.Key_N: self._new_stance, k.Key_T: self._edit_tags, k.Key_BracketLeft: lambda: self._cut("start"),
-            k.Key_BracketRight: lambda: self._cut("end"), k.Key_Comma: lambda: stage.step(-FRAME), k.Key_Period: lambda: stage.step(FRAME),
-        }  # fmt: skip
+            k.Key_Return: self.accept_current,
+            k.Key_Enter: self.accept_current,
+            k.Key_Backspace: self.undo,
+            k.Key_A: self.accept_sure,
+            k.Key_Up: lambda: self._move(-1),
+            k.Key_Down: lambda: self._move(1),
+            k.Key_Left: lambda: self._turn(-1),
+            k.Key_Right: lambda: self._turn(1),
+            k.Key_Tab: self._later,
+            k.Key_Backtab: self._earlier,
+            k.Key_PageDown: self._later,
+            k.Key_PageUp: self._earlier,
+            k.Key_Space: stage.toggle,
+            k.Key_Home: stage.replay,
+            k.Key_C: self._toggle_context,
+            k.Key_N: self._new_stance,
+            k.Key_T: self._edit_tags,
+            k.Key_BracketLeft: lambda: self._cut("start"),
+            k.Key_BracketRight: lambda: self._cut("end"),
+            k.Key_Comma: lambda: stage.step(-FRAME),
+            k.Key_Period: lambda: stage.step(FRAME),
+        }
         return table | {k.Key_1 + n: lambda n=n: self._number(n) for n in range(9)}
 
     def event(self, event: QEvent) -> bool:
         # Tab would go from widget to widget.
-        if event.type() == QEvent.Type.KeyPress and isinstance(event, QKeyEvent) and event.key() in (Qt.Key.Key_Tab, Qt.Key.Key_Backtab):
+        if (
+            event.type() == QEvent.Type.KeyPress
+            and isinstance(event, QKeyEvent)
+            and event.key() in (Qt.Key.Key_Tab, Qt.Key.Key_Backtab)
+        ):
             self.keyPressEvent(event)
             return True
         return super().event(event)
@@ -394,7 +461,11 @@ class ReviewDialog(QDialog):
         return super().eventFilter(watched, event)
 
     def keyPressEvent(self, event: QKeyEvent) -> None:
-        control = Qt.KeyboardModifier.ControlModifier | Qt.KeyboardModifier.AltModifier | Qt.KeyboardModifier.MetaModifier
+        control = (
+            Qt.KeyboardModifier.ControlModifier
+            | Qt.KeyboardModifier.AltModifier
+            | Qt.KeyboardModifier.MetaModifier
+        )
         if event.matches(QKeySequence.StandardKey.Undo):
             self.undo()
         elif not event.modifiers() & control and (run := self._keys.get(event.key())) is not None:

@@ -1,4 +1,6 @@
-"""What a clip is taken for, field by field, with the values it may have as numbered chips: one key or one click corrects."""
+"""What a clip is taken for, field by field, with the values it may have as numbered chips: one key or one
+click corrects.
+"""
 
 from __future__ import annotations
 
@@ -13,13 +15,20 @@ from PySide6.QtWidgets import QSizePolicy, QWidget
 from app.look.theme import KIND_MARKS, Theme, theme
 from app.stage.session import Session
 
-TITLE, PAD, CHIP, GAP = 78, 12, 28, 6  # pixels: the title's column, the card's inside, a chip's height, between chips
+TITLE, PAD, CHIP, GAP = (
+    78,
+    12,
+    28,
+    6,
+)  # pixels: the title's column, the card's inside, a chip's height, between chips
 LINE = 17  # pixels a line of small text takes
 
 
 @dataclass(frozen=True)
 class Row:
-    """name: the field. choices: (value, words). value: the one that holds. sure: 0..1. reason: why, in words."""
+    """name: the field. choices: (value, words). value: the one that holds. sure: 0..1. reason: why, in
+    words.
+    """
 
     name: str
     title: str
@@ -58,7 +67,9 @@ class ReviewFields(QWidget):
 
     def show_rows(self, rows: Sequence[Row], current: str) -> None:
         self.rows, self.current = tuple(rows), current
-        self.setAccessibleDescription("; ".join(f"{r.title}: {self._words(r)}, {r.sure:.0%} sure" for r in rows))
+        self.setAccessibleDescription(
+            "; ".join(f"{r.title}: {self._words(r)}, {r.sure:.0%} sure" for r in rows)
+        )
         self._arrange()
         self.update()
 
@@ -94,7 +105,10 @@ class ReviewFields(QWidget):
             numbered = row.name == self.current
             for number, (_, words) in enumerate(row.choices):
                 mark = 18.0 if numbered and number < 9 else 0.0
-                width = min(metrics.horizontalAdvance(self._chip_words(row, number, words)) + 22 + mark, wide - TITLE - 2 * PAD)
+                width = min(
+                    metrics.horizontalAdvance(self._chip_words(row, number, words)) + 22 + mark,
+                    wide - TITLE - 2 * PAD,
+                )
                 if x + width > wide - PAD and x > PAD + TITLE:
                     x, top = float(PAD + TITLE), top + CHIP + GAP
                 placed.chips.append(QRectF(x, top, width, CHIP))
@@ -103,7 +117,12 @@ class ReviewFields(QWidget):
             lines = small.boundingRect(
                 QRectF(0, 0, wide - TITLE - 2 * PAD, 500), int(Qt.TextFlag.TextWordWrap), row.reason
             ).height() if row.reason else 0.0  # fmt: skip
-            placed.reason = QRectF(PAD + TITLE, below, wide - TITLE - 2 * PAD, min(max(LINE, lines), 3.2 * LINE) if row.reason else 0)
+            placed.reason = QRectF(
+                PAD + TITLE,
+                below,
+                wide - TITLE - 2 * PAD,
+                min(max(LINE, lines), 3.2 * LINE) if row.reason else 0,
+            )
             placed.card = QRectF(0, y, wide, placed.reason.bottom() + PAD - 2 - y)
             self._placed.append(placed)
             y = placed.card.bottom() + 4
@@ -138,7 +157,9 @@ class ReviewFields(QWidget):
             painter.drawRoundedRect(placed.card.adjusted(0.5, 0.5, -0.5, -0.5), 6, 6)
             painter.setPen(Qt.PenStyle.NoPen)
             painter.setBrush(QColor(look.text))
-            painter.drawRoundedRect(QRectF(0.5, placed.card.top() + 8, 3, placed.card.height() - 16), 1.5, 1.5)
+            painter.drawRoundedRect(
+                QRectF(0.5, placed.card.top() + 8, 3, placed.card.height() - 16), 1.5, 1.5
+            )
         painter.setFont(self.font())
         painter.setPen(QColor(look.text if here else look.dim))
         title = QRectF(PAD, placed.card.top() + PAD, TITLE - 8, CHIP)
@@ -149,12 +170,26 @@ class ReviewFields(QWidget):
         doubt = row.sure < 0.7
         painter.setPen(QColor(look.warning if doubt else look.dim))
         painter.drawText(
-            QRectF(PAD, placed.reason.top(), TITLE - 8, LINE), Qt.AlignmentFlag.AlignTop | Qt.AlignmentFlag.AlignLeft, f"{row.sure:.0%}"
+            QRectF(PAD, placed.reason.top(), TITLE - 8, LINE),
+            Qt.AlignmentFlag.AlignTop | Qt.AlignmentFlag.AlignLeft,
+            f"{row.sure:.0%}",
         )
         painter.setPen(QColor(look.dim))
-        painter.drawText(placed.reason, int(Qt.AlignmentFlag.AlignTop) | int(Qt.TextFlag.TextWordWrap), row.reason)
+        painter.drawText(
+            placed.reason, int(Qt.AlignmentFlag.AlignTop) | int(Qt.TextFlag.TextWordWrap), row.reason
+        )
 
-    def _chip(self, painter: QPainter, look: Theme, row: Row, box: QRectF, number: int, words: str, on: bool, here: bool) -> None:
+    def _chip(
+        self,
+        painter: QPainter,
+        look: Theme,
+        row: Row,
+        box: QRectF,
+        number: int,
+        words: str,
+        on: bool,
+        here: bool,
+    ) -> None:
         color = QColor(look.kinds.get(row.kind, look.text)) if on else QColor(look.line)
         ground = QColor(look.fills.get(row.kind, look.text)) if on else QColor(look.field)
         if on:
@@ -166,14 +201,20 @@ class ReviewFields(QWidget):
         if here and number < 9:
             painter.setFont(self._small())
             painter.setPen(QColor(look.dim))
-            painter.drawText(inner, Qt.AlignmentFlag.AlignVCenter | Qt.AlignmentFlag.AlignLeft, str(number + 1))
+            painter.drawText(
+                inner, Qt.AlignmentFlag.AlignVCenter | Qt.AlignmentFlag.AlignLeft, str(number + 1)
+            )
             inner = inner.adjusted(18, 0, 0, 0)
         font = QFont(self.font())
         font.setBold(on)
         painter.setFont(font)
         painter.setPen(QColor(look.text if on else look.dim))
-        shown = QFontMetricsF(font).elidedText(self._chip_words(row, number, words), Qt.TextElideMode.ElideRight, inner.width() + 6)
-        painter.drawText(inner.adjusted(0, 0, 8, 0), Qt.AlignmentFlag.AlignVCenter | Qt.AlignmentFlag.AlignLeft, shown)
+        shown = QFontMetricsF(font).elidedText(
+            self._chip_words(row, number, words), Qt.TextElideMode.ElideRight, inner.width() + 6
+        )
+        painter.drawText(
+            inner.adjusted(0, 0, 8, 0), Qt.AlignmentFlag.AlignVCenter | Qt.AlignmentFlag.AlignLeft, shown
+        )
 
     # --- the mouse
 

@@ -31,8 +31,9 @@ DOUBT = 0.7  # below it a clip is marked as worth a look
 
 
 class ReviewQueue(QWidget):
-    """clips: all of the review, in the order they are gone through. picked: a clip was clicked. sure_wanted: accept the sure ones.
-    limit_changed: how sure that is."""
+    """clips: all of the review, in the order they are gone through. picked: a clip was clicked. sure_wanted:
+    accept the sure ones. limit_changed: how sure that is.
+    """
 
     picked = Signal(str)
     sure_wanted = Signal()
@@ -56,7 +57,9 @@ class ReviewQueue(QWidget):
         header.setStretchLastSection(False)
         header.setSectionResizeMode(0, QHeaderView.ResizeMode.Stretch)
         header.setSectionResizeMode(1, QHeaderView.ResizeMode.ResizeToContents)
-        self.list.currentItemChanged.connect(lambda item, _: self.picked.emit(item.data(0, CLIP)) if item is not None else None)
+        self.list.currentItemChanged.connect(
+            lambda item, _: self.picked.emit(item.data(0, CLIP)) if item is not None else None
+        )
         self.sure = QPushButton("Accept the sure", self)
         self.sure.setAutoDefault(False)
         self.sure.setToolTip("Places all that are at least so sure, and about which nothing is disputed (A)")
@@ -71,7 +74,9 @@ class ReviewQueue(QWidget):
         self.limit.setToolTip("How sure a proposal must be to be accepted with the others")
         self.limit.valueChanged.connect(self.limit_changed)
         for widget in (self.list, self.sure):
-            widget.setFocusPolicy(Qt.FocusPolicy.NoFocus)  # keys are the review's, wherever the mouse has been
+            widget.setFocusPolicy(
+                Qt.FocusPolicy.NoFocus
+            )  # keys are the review's, wherever the mouse has been
         column = QVBoxLayout(self)
         column.setContentsMargins(12, 12, 4, 12)
         column.addWidget(self.bar)
@@ -121,7 +126,9 @@ class ReviewQueue(QWidget):
             item.setForeground(1, QColor(look.warning if odd else look.dim))
 
     def count(self, left: int, sure: int, pace: Pace) -> None:
-        """Show how far it is. left: clips that are not placed. sure: those of them that can be accepted at once."""
+        """Show how far it is. left: clips that are not placed. sure: those of them that can be accepted at
+        once.
+        """
         total = len(self.clips)
         self.bar.setMaximum(max(1, total))
         self.bar.setValue(total - left)

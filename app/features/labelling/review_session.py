@@ -1,4 +1,6 @@
-"""A review at work on a document: proposals made and made anew, corrections kept and learned from, clips placed and taken back."""
+"""A review at work on a document: proposals made and made anew, corrections kept and learned from, clips
+placed and taken back.
+"""
 
 from __future__ import annotations
 
@@ -17,14 +19,17 @@ REST = 400  # milliseconds of quiet after a correction before the rest is propos
 
 
 class Reviewing(QObject):
-    """clips: all of the review, in the order they are gone through. found: the first proposals are there. changed: proposals or what is
-    placed. failed: words."""
+    """clips: all of the review, in the order they are gone through. found: the first proposals are there.
+    changed: proposals or what is placed. failed: words.
+    """
 
     found = Signal()
     changed = Signal()
     failed = Signal(str)
 
-    def __init__(self, document: Document, jobs: Jobs, learned: Learned, parent: QObject | None = None) -> None:
+    def __init__(
+        self, document: Document, jobs: Jobs, learned: Learned, parent: QObject | None = None
+    ) -> None:
         super().__init__(parent)
         self.document, self.jobs, self.learned = document, jobs, learned
         self.review, self.pace = Review(Proposals({}, {})), Pace()
@@ -39,7 +44,9 @@ class Reviewing(QObject):
     def start(self) -> None:
         """Propose what the clips are that are not placed yet, on a thread."""
         project = self.document.project
-        self.jobs.start("Proposing labels", lambda job: self._proposals(project, None, job), self._first, self._failed)
+        self.jobs.start(
+            "Proposing labels", lambda job: self._proposals(project, None, job), self._first, self._failed
+        )
 
     def _first(self, found: Proposals) -> None:
         self.review = Review(found).settled(self.document.project)
@@ -59,7 +66,13 @@ class Reviewing(QObject):
         """Look again at what is left, with what was just learned."""
         project, waiting = self.document.project, self.waiting()
         if waiting:
-            self.jobs.start("labels anew", lambda job: self._proposals(project, waiting, job), self._again, self._failed, quick=True)
+            self.jobs.start(
+                "labels anew",
+                lambda job: self._proposals(project, waiting, job),
+                self._again,
+                self._failed,
+                quick=True,
+            )
 
     def _again(self, found: Proposals) -> None:
         self.review = self.review.anew(found).settled(self.document.project)
@@ -68,7 +81,9 @@ class Reviewing(QObject):
     # --- what is left
 
     def waiting(self) -> list[str]:
-        """Return the clips that are not placed yet, in order. One that only lends a stance a still moment is not."""
+        """Return the clips that are not placed yet, in order. One that only lends a stance a still moment is
+        not.
+        """
         there = set(waiting(self.document.project))
         return [c for c in self.clips if c in there]
 
@@ -105,7 +120,9 @@ class Reviewing(QObject):
         self.changed.emit()
 
     def place(self, clips: list[str], words: str, step: str | None) -> Taken:
-        """Place clips as proposed and corrected, as one undo step named so. step: the clip that was looked at, None for many at once."""
+        """Place clips as proposed and corrected, as one undo step named so. step: the clip that was looked
+        at, None for many at once.
+        """
         review, project = self.review, self.document.project
         taken = review.take(project, clips)
         if not taken.placed:
@@ -124,7 +141,12 @@ class Reviewing(QObject):
         """Remember what was corrected of clips that are now placed, and look at the rest anew."""
         entries = self.document.project.clips
         names = [entries[c].name for c in self.clips if c in entries]
-        told = [(c, name, value) for c in clips for name, value in self.review.said.get(c, {}).items() if name != "timing"]
+        told = [
+            (c, name, value)
+            for c in clips
+            for name, value in self.review.said.get(c, {}).items()
+            if name != "timing"
+        ]
         for clip, name, value in told:
             self.learned.correct(entries[clip].name, name, value, names)
         if told:

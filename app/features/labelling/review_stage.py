@@ -1,10 +1,21 @@
-"""The clip under review on the character, out of its stance and back, with what it is taken for written over it."""
+"""The clip under review on the character, out of its stance and back, with what it is taken for written over
+it.
+"""
 
 from __future__ import annotations
 
 import numpy as np
 from PySide6.QtCore import QElapsedTimer, QRectF, QSize, Qt, QTimer, Signal
-from PySide6.QtGui import QColor, QHideEvent, QMouseEvent, QPainter, QPaintEvent, QPen, QResizeEvent, QTextDocument
+from PySide6.QtGui import (
+    QColor,
+    QHideEvent,
+    QMouseEvent,
+    QPainter,
+    QPaintEvent,
+    QPen,
+    QResizeEvent,
+    QTextDocument,
+)
 from PySide6.QtWidgets import QLabel, QSizePolicy, QVBoxLayout, QWidget
 
 from app.features.labelling.proposal_preview import Span
@@ -51,21 +62,32 @@ class Strip(QWidget):
         if self.span is not None:
             ground = look.fill(self.span.kind)
             ground.setAlpha(80)
-            middle = QRectF(at(self.span.start), box.top(), at(self.span.end) - at(self.span.start), box.height())
+            middle = QRectF(
+                at(self.span.start), box.top(), at(self.span.end) - at(self.span.start), box.height()
+            )
             painter.setBrush(ground)
             painter.drawRoundedRect(middle, 4, 4)
             left, right = QRectF(box), QRectF(box)
             left.setRight(middle.left())
             right.setLeft(middle.right())
-            for part, words, color in zip((left, middle, right), self.span.words, (look.dim, look.text, look.dim), strict=True):
+            for part, words, color in zip(
+                (left, middle, right), self.span.words, (look.dim, look.text, look.dim), strict=True
+            ):
                 painter.setPen(QColor(color))
                 inner = part.adjusted(8, 0, -6, 0)
-                shown = painter.fontMetrics().elidedText(words, Qt.TextElideMode.ElideRight, max(0, round(inner.width())))
+                shown = painter.fontMetrics().elidedText(
+                    words, Qt.TextElideMode.ElideRight, max(0, round(inner.width()))
+                )
                 if inner.width() > 18:
                     painter.drawText(inner, Qt.AlignmentFlag.AlignVCenter | Qt.AlignmentFlag.AlignLeft, shown)
             if self.span.stroke is not None:
                 painter.setPen(QPen(QColor(look.text), 1, Qt.PenStyle.DotLine))
-                painter.drawLine(round(at(self.span.stroke)), round(box.top()), round(at(self.span.stroke)), round(box.bottom()))
+                painter.drawLine(
+                    round(at(self.span.stroke)),
+                    round(box.top()),
+                    round(at(self.span.stroke)),
+                    round(box.bottom()),
+                )
         painter.setPen(QPen(QColor(look.text), 2))
         x = at(self.seconds)
         painter.drawLine(round(x), 0, round(x), self.height())
@@ -116,7 +138,8 @@ class ReviewStage(QWidget):
         look = theme(self.session.look.name)
         ground = QColor(look.panel)
         self.words.setStyleSheet(
-            f"background: rgba({ground.red()}, {ground.green()}, {ground.blue()}, 215); border-radius: 6px; padding: 8px 12px;"
+            f"background: rgba({ground.red()}, {ground.green()}, {ground.blue()}, 215); border-radius: 6px; "
+            "padding: 8px 12px;"
         )
         self.view.theme = THEMES[look.name]
         self.view.update()
@@ -144,7 +167,9 @@ class ReviewStage(QWidget):
     # --- playing
 
     def play(self, shown: Shown | None, span: Span | None, keep: bool = False) -> None:
-        """Play something else, from its beginning, or where it is (keep) when the same was planned otherwise."""
+        """Play something else, from its beginning, or where it is (keep) when the same was planned
+        otherwise.
+        """
         self.shown = shown
         self.strip.span = span
         self.strip.length = shown.length if shown is not None else 1.0
@@ -196,7 +221,9 @@ class ReviewStage(QWidget):
     def _frame(self, figure: object, positions: np.ndarray) -> None:
         aspect = self.view.width() / max(1, self.view.height())
         low, high = figure.bounds(positions)  # type: ignore[attr-defined]
-        room = np.array([0.0, ABOVE * (high[1] - low[1]), 0.0])  # what is written over the picture hides no face
+        room = np.array(
+            [0.0, ABOVE * (high[1] - low[1]), 0.0]
+        )  # what is written over the picture hides no face
         self.view.camera = whole_figure((low, high + room), aspect)
 
     def _frame_again(self) -> None:

@@ -1,4 +1,6 @@
-"""What a review says, in words: the headline over the picture, the timing, the keys, and times a person can grasp."""
+"""What a review says, in words: the headline over the picture, the timing, the keys, and times a person can
+grasp.
+"""
 
 from __future__ import annotations
 
@@ -10,10 +12,20 @@ from metagraph.suggest.proposal import Proposal
 from metagraph.suggest.review import Review
 
 KEYS = (
-    ("Enter", "accept"), ("↑ ↓", "field"), ("← → 1–9", "change"), ("Tab", "next"), ("⇧Tab", "back"), ("Backspace", "undo"),
-    ("Space", "pause"), (", .", "frame"), ("[ ]", "start, end here"), ("C", "alone"), ("N", "new stance"), ("T", "tags"),
+    ("Enter", "accept"),
+    ("↑ ↓", "field"),
+    ("← → 1–9", "change"),
+    ("Tab", "next"),
+    ("⇧Tab", "back"),
+    ("Backspace", "undo"),
+    ("Space", "pause"),
+    (", .", "frame"),
+    ("[ ]", "start, end here"),
+    ("C", "alone"),
+    ("N", "new stance"),
+    ("T", "tags"),
     ("A", "accept the sure"),
-)  # fmt: skip
+)
 
 
 def legend(look: Theme) -> str:
@@ -35,7 +47,8 @@ def headline(review: Review, project: Project, clip: str, look: Theme) -> str:
     if p.end_stance is not None:
         where[-1] += f" ➜ {places[p.end_stance.value].name}"
     lines = [
-        f'<span style="font-size:17px; font-weight:600; color:{look.kinds[kind]}">{KIND_MARKS[kind]} {KIND_TITLES[kind]}</span>'
+        f'<span style="font-size:17px; font-weight:600; color:{look.kinds[kind]}">{KIND_MARKS[kind]} '
+        f"{KIND_TITLES[kind]}</span>"
         f'<span style="font-size:15px"> &nbsp;{escape("  ·  ".join(where))}</span>',
         f'<span style="color:{look.dim}">{escape(project.clips[clip].name)}</span>',
     ]
@@ -47,7 +60,9 @@ def headline(review: Review, project: Project, clip: str, look: Theme) -> str:
 def timing(p: Proposal, duration: float) -> str:
     """Return a proposal's times as rich text. duration: of the clip, in seconds."""
     t, end = p.timing, p.timing.get("end")
-    parts = [f"From {t.get('start') or 0.0:.2f} to {duration if end is None else end:.2f} s of {duration:.2f}"]
+    parts = [
+        f"From {t.get('start') or 0.0:.2f} to {duration if end is None else end:.2f} s of {duration:.2f}"
+    ]
     if t.get("blend_in") or t.get("blend_out"):
         parts.append(f"blends {t.get('blend_in') or 0.0:.2f} s in, {t.get('blend_out') or 0.0:.2f} s out")
     if t.get("earliest_exit") is not None:
@@ -59,11 +74,19 @@ def timing(p: Proposal, duration: float) -> str:
         words[0] += f": {p.timing_reason}"
     for name, belief in ((name, p.details.get(name)) for name in ("stroke", "mask", "likelihood")):
         if belief is not None and (name != "mask" or belief.value):
-            value = f"{belief.value:g}" if name == "likelihood" else f"{belief.value:.2f} s" if name == "stroke" else "some joints"
+            value = (
+                f"{belief.value:g}"
+                if name == "likelihood"
+                else f"{belief.value:.2f} s"
+                if name == "stroke"
+                else "some joints"
+            )
             words.append(f"{name.capitalize()} {value}: {belief.reason}")
     return "<br>".join(map(escape, words))
 
 
 def about(seconds: float) -> str:
     """Return a length of time in words a person can grasp."""
-    return f"about {round(seconds / 60)} min" if seconds >= 90 else f"about {max(5, round(seconds / 5) * 5)} s"
+    return (
+        f"about {round(seconds / 60)} min" if seconds >= 90 else f"about {max(5, round(seconds / 5) * 5)} s"
+    )

@@ -25,12 +25,35 @@ def contribute(shell: Shell) -> Contribution:
         panel: LibraryPanel = shell.panel("library")
         return panel
 
-    verbs.offer("remove", lambda: bool(session.selection.clips), lambda: library().remove(session.selection.clips), rank=6)
-    verbs.offer("rename", lambda: len(session.selection.clips) == 1, lambda: library().rename(session.selection.clips[0]), rank=0)
     verbs.offer(
-        "select_all", lambda: library().isAncestorOf(QApplication.focusWidget() or shell.widget), lambda: library().list.selectAll(), rank=0
+        "remove",
+        lambda: bool(session.selection.clips),
+        lambda: library().remove(session.selection.clips),
+        rank=6,
+    )
+    verbs.offer(
+        "rename",
+        lambda: len(session.selection.clips) == 1,
+        lambda: library().rename(session.selection.clips[0]),
+        rank=0,
+    )
+    verbs.offer(
+        "select_all",
+        lambda: library().isAncestorOf(QApplication.focusWidget() or shell.widget),
+        lambda: library().list.selectAll(),
+        rank=0,
     )
     return Contribution(
         panels=(Panel("library", "Clips", "left", make, late=False),),
-        commands=(Command("find", "&Edit", "find", "&Find clip", lambda: library().search.setFocus(), (Standard.Find,), study=True),),
+        commands=(
+            Command(
+                "find",
+                "&Edit",
+                "find",
+                "&Find clip",
+                lambda: library().search.setFocus(),
+                (Standard.Find,),
+                study=True,
+            ),
+        ),
     )

@@ -1,4 +1,6 @@
-"""The clip library: thumbnails, search, filters; clips are dragged from here, files and folders dropped onto it."""
+"""The clip library: thumbnails, search, filters; clips are dragged from here, files and folders dropped onto
+it.
+"""
 
 from __future__ import annotations
 
@@ -69,7 +71,9 @@ PICTURE = 108
 
 @dataclass(frozen=True)
 class Filter:
-    """What the library shows. labelled: None for both. kind, layer: None for any; they look at the actions that use a clip."""
+    """What the library shows. labelled: None for both. kind, layer: None for any; they look at the actions
+    that use a clip.
+    """
 
     text: str = ""
     labelled: bool | None = None
@@ -77,10 +81,14 @@ class Filter:
     kind: str | None = None
 
     def takes(self, project: Project, entry: ClipEntry) -> bool:
-        if self.labelled is not None and (entry.id in project.uses or entry.id in project.drawn) != self.labelled:
+        if (
+            self.labelled is not None
+            and (entry.id in project.uses or entry.id in project.drawn) != self.labelled
+        ):
             return False
         if (self.layer or self.kind) and not any(
-            (not self.layer or a.layer == self.layer) and (not self.kind or a.kind == self.kind) for a in project.uses.get(entry.id, ())
+            (not self.layer or a.layer == self.layer) and (not self.kind or a.kind == self.kind)
+            for a in project.uses.get(entry.id, ())
         ):
             return False
         name = f"{entry.name} {entry.path}".lower()
@@ -108,10 +116,18 @@ class ClipModel(QAbstractListModel):
         if role == ENTRY:
             return entry
         if role == Qt.ItemDataRole.ToolTipRole:
-            notes = "".join(f"\n{note}" for note in (entry.motion.notes if entry.motion is not None else ("The file is missing.",)))
+            notes = "".join(
+                f"\n{note}"
+                for note in (entry.motion.notes if entry.motion is not None else ("The file is missing.",))
+            )
             uses = ", ".join(f"{a.kind} ({a.layer})" for a in self.document.project.uses.get(entry.id, ()))
-            uses = uses or ("drawn as a state" if entry.id in self.document.project.drawn else "not placed yet")
-            return f"{entry.name}\n{entry.duration:.2f} s, {entry.frames} frames at {entry.fps:g} fps\n{entry.path}\n{uses}{notes}"
+            uses = uses or (
+                "drawn as a state" if entry.id in self.document.project.drawn else "not placed yet"
+            )
+            return (
+                f"{entry.name}\n{entry.duration:.2f} s, {entry.frames} frames at {entry.fps:g} "
+                f"fps\n{entry.path}\n{uses}{notes}"
+            )
         if role == Qt.ItemDataRole.AccessibleTextRole:
             return f"{entry.name}, {entry.duration:.1f} seconds"
         return None
@@ -179,7 +195,10 @@ class CardDelegate(QStyledItemDelegate):
         project = self.panel.document.project
         rect = option.rect.adjusted(4, 4, -4, -4)  # type: ignore[attr-defined]
         state = option.state  # type: ignore[attr-defined]
-        selected, hover = bool(state & QStyle.StateFlag.State_Selected), bool(state & QStyle.StateFlag.State_MouseOver)
+        selected, hover = (
+            bool(state & QStyle.StateFlag.State_Selected),
+            bool(state & QStyle.StateFlag.State_MouseOver),
+        )
         painter.save()
         painter.setRenderHint(QPainter.RenderHint.Antialiasing)
         painter.setRenderHint(QPainter.RenderHint.SmoothPixmapTransform)
@@ -200,7 +219,9 @@ class CardDelegate(QStyledItemDelegate):
             height = (rect.height() - 12) / len(marks)
             painter.setPen(Qt.PenStyle.NoPen)
             painter.setBrush(mark)
-            painter.drawRoundedRect(rect.left() + 3, round(rect.top() + 6 + place * height), 4, round(height - 1), 2, 2)
+            painter.drawRoundedRect(
+                rect.left() + 3, round(rect.top() + 6 + place * height), 4, round(height - 1), 2, 2
+            )
         font = QFont(option.font)  # type: ignore[attr-defined]
         font.setPixelSize(12)
         painter.setFont(font)
@@ -216,17 +237,23 @@ class CardDelegate(QStyledItemDelegate):
         for kind in reversed(kinds):
             painter.setPen(t.kind(kind))
             right -= 14
-            painter.drawText(QRect(right, line.top(), 14, line.height()), Qt.AlignmentFlag.AlignCenter, KIND_MARKS[kind])
+            painter.drawText(
+                QRect(right, line.top(), 14, line.height()), Qt.AlignmentFlag.AlignCenter, KIND_MARKS[kind]
+            )
         if project.base.clip == entry.id:
             painter.setPen(QColor(t.dim))
             painter.drawText(
-                line.adjusted(0, 0, right - line.right() - 2, 0), Qt.AlignmentFlag.AlignRight | Qt.AlignmentFlag.AlignVCenter, "base"
+                line.adjusted(0, 0, right - line.right() - 2, 0),
+                Qt.AlignmentFlag.AlignRight | Qt.AlignmentFlag.AlignVCenter,
+                "base",
             )
         painter.restore()
 
 
 def two_lines(name: str, metrics: QFontMetrics, width: int) -> tuple[str, ...]:
-    """Break a name over at most two lines, after a separator where there is one; names tell clips apart by their ends."""
+    """Break a name over at most two lines, after a separator where there is one; names tell clips apart by
+    their ends.
+    """
     if metrics.horizontalAdvance(name) <= width:
         return (name,)
     fits = max((n for n in range(1, len(name)) if metrics.horizontalAdvance(name[:n]) <= width), default=1)
@@ -241,7 +268,11 @@ class Search(QLineEdit):
     left = Signal()
 
     def __init__(self, parent: QWidget) -> None:
-        super().__init__(parent, clearButtonEnabled=True, toolTip="Words of a clip's name or path (Ctrl+F); Down goes to the clips")
+        super().__init__(
+            parent,
+            clearButtonEnabled=True,
+            toolTip="Words of a clip's name or path (Ctrl+F); Down goes to the clips",
+        )
         self.setAccessibleName("Search clips")
 
     def event(self, event: QEvent) -> bool:
@@ -277,7 +308,9 @@ class ClipList(QListView):
         self.setDragEnabled(True)
         self.setAcceptDrops(True)
         self.setDragDropMode(QAbstractItemView.DragDropMode.DragDrop)
-        self.viewport().setAcceptDrops(True)  # cards that stay in place turn it off, and with it files from outside
+        self.viewport().setAcceptDrops(
+            True
+        )  # cards that stay in place turn it off, and with it files from outside
         self.setMouseTracking(True)
         self.setVerticalScrollMode(QAbstractItemView.ScrollMode.ScrollPerPixel)
         self.setVerticalScrollBarPolicy(Qt.ScrollBarPolicy.ScrollBarAlwaysOn)
@@ -302,7 +335,11 @@ class ClipList(QListView):
     def mouseReleaseEvent(self, event: object) -> None:
         super().mouseReleaseEvent(event)  # type: ignore[arg-type]
         index = self.indexAt(event.position().toPoint())  # type: ignore[attr-defined]
-        if not index.isValid() or len(self.selectedIndexes()) != 1 or event.button() != Qt.MouseButton.LeftButton:  # type: ignore[attr-defined]
+        if (
+            not index.isValid()
+            or len(self.selectedIndexes()) != 1
+            or event.button() != Qt.MouseButton.LeftButton
+        ):  # type: ignore[attr-defined]
             return
         self.play(index.data(ENTRY).id)
 
@@ -352,7 +389,9 @@ class LibraryPanel(QWidget):
     import_wanted = Signal()
     files_dropped = Signal(object)
 
-    def __init__(self, document: Document, session: Session, thumbnails: Thumbnails, parent: QWidget | None = None) -> None:
+    def __init__(
+        self, document: Document, session: Session, thumbnails: Thumbnails, parent: QWidget | None = None
+    ) -> None:
         super().__init__(parent)
         self.document, self.session, self.thumbnails = document, session, thumbnails
         self.row_actions: list[QAction] = []  # the window's commands that go into a clip's menu
@@ -420,7 +459,9 @@ class LibraryPanel(QWidget):
         page = QWidget(self)
         box = QVBoxLayout(page)
         box.addStretch(2)
-        self.empty = QLabel("Drop a folder of clips here\n\nBVH, GLB, glTF, VRM animation\nand, with the extra, FBX", page)
+        self.empty = QLabel(
+            "Drop a folder of clips here\n\nBVH, GLB, glTF, VRM animation\nand, with the extra, FBX", page
+        )
         self.empty.setAlignment(Qt.AlignmentFlag.AlignCenter)
         self.empty.setProperty("dim", True)
         box.addWidget(self.empty)
@@ -470,14 +511,18 @@ class LibraryPanel(QWidget):
         total = len(project.clips)
         loose = sum(1 for c in project.clips if c not in project.uses and c not in project.drawn)
         self.chips["unlabelled"].setText(f"Unlabelled {loose}" if total else "Unlabelled")
-        self.search.setPlaceholderText(f"Search {total} clip{'s' if total != 1 else ''}" if total else "Search")
+        self.search.setPlaceholderText(
+            f"Search {total} clip{'s' if total != 1 else ''}" if total else "Search"
+        )
         nothing = not total
         hidden = bool(total) and self.proxy.rowCount() == 0
         self.empty_button.setVisible(nothing)
         if hidden:
             self.empty.setText("No clip matches.\nClear the search or the filters.")
         else:
-            self.empty.setText("Drop a folder of clips here\n\nBVH, GLB, glTF, VRM animation\nand, with the extra, FBX")
+            self.empty.setText(
+                "Drop a folder of clips here\n\nBVH, GLB, glTF, VRM animation\nand, with the extra, FBX"
+            )
         self.stack.setCurrentIndex(1 if nothing or hidden else 0)
 
     # --- selection
@@ -498,7 +543,9 @@ class LibraryPanel(QWidget):
         self._following = False
 
     def _show_selection(self) -> None:
-        """Follow the session: selected clips, or the clips of selected actions faintly by scrolling to the first."""
+        """Follow the session: selected clips, or the clips of selected actions faintly by scrolling to the
+        first.
+        """
         if self._following:
             return
         self._following = True
@@ -520,7 +567,11 @@ class LibraryPanel(QWidget):
         self._following = False
 
     def _follow(self, before: Project, after: Project) -> None:
-        if before.clips is not after.clips or before.graphs is not after.graphs or before.manual is not after.manual:
+        if (
+            before.clips is not after.clips
+            or before.graphs is not after.graphs
+            or before.manual is not after.manual
+        ):
             rule = self.proxy.filter
             if rule.labelled is not None or rule.layer or rule.kind:
                 self._following = True  # clips leaving the view are not deselected by hand
@@ -543,7 +594,10 @@ class LibraryPanel(QWidget):
         if self.session.transport.show == "clip" and self.session.transport.shown == entry.id:
             frame = round(self.session.transport.seconds * entry.fps)
             out.addAction(f"Use this frame ({frame}) as base pose", lambda: self.use_as_base(entry.id, frame))
-        out.addAction("Use the rest pose as base pose", lambda: self.document.edit("Set base pose", lambda p: edits.set_base(p, None)))
+        out.addAction(
+            "Use the rest pose as base pose",
+            lambda: self.document.edit("Set base pose", lambda p: edits.set_base(p, None)),
+        )
         out.addSeparator()
         out.addAction("Rename…\tF2", lambda: self.rename(entry.id))
         out.addActions(self.row_actions)
@@ -564,7 +618,10 @@ class LibraryPanel(QWidget):
     def remove(self, clips: Iterable[str]) -> None:
         gone = tuple(clips)
         if gone:
-            self.document.edit(f"Remove {len(gone)} clip{'s' if len(gone) > 1 else ''}", lambda p: edits.remove_clips(p, gone))
+            self.document.edit(
+                f"Remove {len(gone)} clip{'s' if len(gone) > 1 else ''}",
+                lambda p: edits.remove_clips(p, gone),
+            )
 
     def restyle(self) -> None:
         self.more.setIcon(icons.icon("more", theme(self.session.look.name).text))

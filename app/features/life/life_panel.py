@@ -1,4 +1,6 @@
-"""The life panel: how much the character breathes, looks about, blinks and speaks of itself; a slider and an off for each amount."""
+"""The life panel: how much the character breathes, looks about, blinks and speaks of itself; a slider and an
+off for each amount.
+"""
 
 from __future__ import annotations
 
@@ -45,7 +47,15 @@ class DialSlider(Slider):
 class Row:
     """One dial: a tick for on and off, its name, its slider, its number with the unit."""
 
-    def __init__(self, dial: Dial, grid: QGridLayout, row: int, parent: QWidget, set_value: Callable[[float, bool], None], default: float):
+    def __init__(
+        self,
+        dial: Dial,
+        grid: QGridLayout,
+        row: int,
+        parent: QWidget,
+        set_value: Callable[[float, bool], None],
+        default: float,
+    ):
         self.dial, self.default, self._set = dial, default, set_value
         self._before = default  # what it was before it was turned off
         self.tick = QCheckBox(dial.label, parent)
@@ -55,7 +65,9 @@ class Row:
         self.slider.setToolTip(f"{dial.tip}\nDouble-click puts it back to {default:g} {dial.unit}".rstrip())
         self.slider.setAccessibleName(dial.label)
         decimals = 0 if dial.step >= 1 else 1 if dial.step >= 0.1 else 3 if dial.step < 0.01 else 2
-        self.number = DoubleSpinBox(parent, minimum=dial.low, maximum=dial.high, singleStep=dial.step, decimals=decimals)
+        self.number = DoubleSpinBox(
+            parent, minimum=dial.low, maximum=dial.high, singleStep=dial.step, decimals=decimals
+        )
         self.number.setSuffix(f" {dial.unit}" if dial.unit else "")
         self.number.setAccessibleName(dial.label)
         self.number.setKeyboardTracking(False)
@@ -87,7 +99,14 @@ class Row:
 
     def _toggle(self, on: bool) -> None:
         if self.dial.off is not None:
-            self._set(self._before if on and self._before != self.dial.off else self.default if on else self.dial.off, True)
+            self._set(
+                self._before
+                if on and self._before != self.dial.off
+                else self.default
+                if on
+                else self.dial.off,
+                True,
+            )
 
     def put_back(self) -> None:
         self._set(self.default, True)
@@ -115,7 +134,10 @@ class LifePanel(QWidget):
         tabs.setSpacing(2)
         self.tabs = QButtonGroup(self)
         for n, (words, tip) in enumerate(
-            (("Always", "The amounts themselves"), *((MODE_WORDS[m], f"What {m} makes of them, as factors") for m in MODES))
+            (
+                ("Always", "The amounts themselves"),
+                *((MODE_WORDS[m], f"What {m} makes of them, as factors") for m in MODES),
+            )
         ):
             button = QToolButton(self, text=words, checkable=True, toolTip=tip)
             button.setChecked(n == 0)
@@ -208,7 +230,9 @@ class LifePanel(QWidget):
         if done:
             self.document.finish_merging()
 
-    def _change(self, text: str, merge: str | None = None, mode: Mode | None = None, **changes: float) -> None:
+    def _change(
+        self, text: str, merge: str | None = None, mode: Mode | None = None, **changes: float
+    ) -> None:
         try:
             life = with_life(self.document.project.life, mode, **changes)
         except ValueError as error:

@@ -17,7 +17,9 @@ def contribute(shell: Shell) -> Contribution:
     def make() -> QWidget:
         from app.features.lines.lines_panel import LinesPanel
 
-        panel = LinesPanel(shell.document, shell.stage.session, shell.stage.performance, shell.jobs, shell.widget)
+        panel = LinesPanel(
+            shell.document, shell.stage.session, shell.stage.performance, shell.jobs, shell.widget
+        )
         panel.told.connect(shell.tell)
         return panel
 

@@ -1,4 +1,6 @@
-"""Lines of dialogue from files: sounds, each with its text and phones where those lie beside it, and lists of lines."""
+"""Lines of dialogue from files: sounds, each with its text and phones where those lie beside it, and lists of
+lines.
+"""
 
 from __future__ import annotations
 
@@ -33,7 +35,9 @@ class Lines:
 
 
 def read_lines(paths: Iterable[Path], folder: Path | None) -> Lines:
-    """Read sound files and lists. folder: what paths in the lines are relative to, None for absolute ones. One bad file spoils no other."""
+    """Read sound files and lists. folder: what paths in the lines are relative to, None for absolute ones.
+    One bad file spoils no other.
+    """
     lines: dict[str, Line] = {}
     notes: list[str] = []
     for path in paths:
@@ -44,7 +48,11 @@ def read_lines(paths: Iterable[Path], folder: Path | None) -> Lines:
                 for ident, line in _listed(path, folder):
                     lines[free_name(ident, lines)] = line
             else:
-                raise FileError(path, "is no sound and no list of lines", remedy=f"Sounds are {', '.join(SOUNDS)}, lists are .csv or .tsv.")
+                raise FileError(
+                    path,
+                    "is no sound and no list of lines",
+                    remedy=f"Sounds are {', '.join(SOUNDS)}, lists are .csv or .tsv.",
+                )
         except FileError as error:
             notes.append(str(error))
     voices: dict[str, Any] = {}
@@ -78,7 +86,9 @@ def _text(path: Path) -> str:
     try:
         data = path.read_bytes()
     except OSError as error:
-        raise FileError(path, f"cannot be read ({error.strerror})", remedy="Check that it is there.") from None
+        raise FileError(
+            path, f"cannot be read ({error.strerror})", remedy="Check that it is there."
+        ) from None
     for encoding in ("utf-8-sig", "utf-16" if data[:2] in (b"\xff\xfe", b"\xfe\xff") else "utf-8", "latin-1"):
         try:
             return data.decode(encoding)
@@ -88,7 +98,9 @@ def _text(path: Path) -> str:
 
 
 def _listed(path: Path, folder: Path | None) -> list[tuple[str, Line]]:
-    """Return the lines of a list: id and text, and perhaps a sound file; apart by commas, semicolons or tabs. A head is passed over."""
+    """Return the lines of a list: id and text, and perhaps a sound file; apart by commas, semicolons or tabs.
+    A head is passed over.
+    """
     text = _text(path)
     first = text.split("\n", 1)[0]
     apart = "\t" if "\t" in first else ";" if first.count(";") > first.count(",") else ","
@@ -96,7 +108,11 @@ def _listed(path: Path, folder: Path | None) -> list[tuple[str, Line]]:
     try:
         rows = list(csv.reader(io.StringIO(text.replace("\0", "")), delimiter=apart))
     except csv.Error as error:
-        raise FileError(path, f"is no list of lines: {error}", remedy="Write one line a row: id, text, and perhaps a sound file.") from None
+        raise FileError(
+            path,
+            f"is no list of lines: {error}",
+            remedy="Write one line a row: id, text, and perhaps a sound file.",
+        ) from None
     if len(rows) > MOST:
         raise FileError(path, f"has {len(rows):,} rows", remedy=f"A list has {MOST:,} lines at most.")
     for n, row in enumerate(rows):
@@ -104,21 +120,35 @@ def _listed(path: Path, folder: Path | None) -> list[tuple[str, Line]]:
         if not any(cells) or (n == 0 and cells[0].lower() in ("id", "line", "number", "nr", "no")):
             continue
         if len(cells) < 2 or not cells[0]:
-            raise FileError(path, "has no id and text", f"row {n + 1}", "Write one line a row: id, text, and perhaps a sound file.")
+            raise FileError(
+                path,
+                "has no id and text",
+                f"row {n + 1}",
+                "Write one line a row: id, text, and perhaps a sound file.",
+            )
         audio = path.parent / cells[2] if len(cells) > 2 and cells[2] else None
         if audio is not None and not audio.is_file():
             raise FileError(
-                path, f"names a sound that is not there: {cells[2]}", f"row {n + 1}", "Put it beside the list, or correct its name."
+                path,
+                f"names a sound that is not there: {cells[2]}",
+                f"row {n + 1}",
+                "Put it beside the list, or correct its name.",
             )
-        out.append((cells[0][:200], Line(text=cells[1][:LONGEST], audio=_place(audio, folder) if audio else None)))
+        out.append(
+            (cells[0][:200], Line(text=cells[1][:LONGEST], audio=_place(audio, folder) if audio else None))
+        )
     return out
 
 
 def add_lines(project: Project, read: Lines) -> Project:
-    """Return the project with lines added; one of an id that is there already replaces it, but keeps its asks."""
+    """Return the project with lines added; one of an id that is there already replaces it, but keeps its
+    asks.
+    """
     for ident, line in read.lines.items():
         before = project.lines.get(ident)
         if before is not None and before.asks:
-            line = type(line)(**{f: getattr(line, f) for f in line.__struct_fields__ if f != "asks"}, asks=before.asks)
+            line = type(line)(
+                **{f: getattr(line, f) for f in line.__struct_fields__ if f != "asks"}, asks=before.asks
+            )
         project = staging.set_line(project, ident, line)
     return replace(project, voices={**project.voices, **read.voices})

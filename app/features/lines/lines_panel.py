@@ -37,7 +37,10 @@ from metagraph.playback.understand import spoken_seconds
 COLUMNS = ("Id", "Words", "Sound", "Length", "With it")
 ID, WORDS, SOUND, LENGTH, ASKS = range(5)
 WIDEST = 180  # pixels of the ids at most
-EMPTY = "Drop sound files here, or a list (CSV: id, text, sound).\nAn agent then says a line by its id, and the lips follow its sound."
+EMPTY = (
+    "Drop sound files here, or a list (CSV: id, text, sound).\nAn agent then says a line by its id, and "
+    "the lips follow its sound."
+)
 
 
 class Table(QTableWidget):
@@ -48,7 +51,11 @@ class Table(QTableWidget):
 
     def event(self, event: QEvent) -> bool:
         mine = (Qt.Key.Key_Delete, Qt.Key.Key_Return, Qt.Key.Key_Enter)
-        if event.type() == QEvent.Type.ShortcutOverride and isinstance(event, QKeyEvent) and event.key() in mine:
+        if (
+            event.type() == QEvent.Type.ShortcutOverride
+            and isinstance(event, QKeyEvent)
+            and event.key() in mine
+        ):
             event.accept()  # here they are about lines, not about what is selected elsewhere
             return True
         return super().event(event)
@@ -56,7 +63,10 @@ class Table(QTableWidget):
     def keyPressEvent(self, event: QKeyEvent) -> None:
         if event.key() == Qt.Key.Key_Delete:
             self.deleted.emit()
-        elif event.key() in (Qt.Key.Key_Return, Qt.Key.Key_Enter) and self.state() != QAbstractItemView.State.EditingState:
+        elif (
+            event.key() in (Qt.Key.Key_Return, Qt.Key.Key_Enter)
+            and self.state() != QAbstractItemView.State.EditingState
+        ):
             self.said.emit()
         else:
             super().keyPressEvent(event)
@@ -67,7 +77,14 @@ class LinesPanel(QWidget):
 
     told = Signal(str)
 
-    def __init__(self, document: Document, session: Session, performance: Performance, jobs: Jobs, parent: QWidget | None = None) -> None:
+    def __init__(
+        self,
+        document: Document,
+        session: Session,
+        performance: Performance,
+        jobs: Jobs,
+        parent: QWidget | None = None,
+    ) -> None:
         super().__init__(parent)
         self.document, self.session, self.performance, self.jobs = document, session, performance, jobs
         self._filling = False
@@ -101,7 +118,9 @@ class LinesPanel(QWidget):
         self.table.setHorizontalHeaderLabels(COLUMNS)
         self.table.verticalHeader().hide()
         self.table.setSelectionBehavior(QAbstractItemView.SelectionBehavior.SelectRows)
-        self.table.setEditTriggers(QAbstractItemView.EditTrigger.DoubleClicked | QAbstractItemView.EditTrigger.EditKeyPressed)
+        self.table.setEditTriggers(
+            QAbstractItemView.EditTrigger.DoubleClicked | QAbstractItemView.EditTrigger.EditKeyPressed
+        )
         self.table.setShowGrid(False)
         self.table.setAlternatingRowColors(True)
         header = self.table.horizontalHeader()
@@ -110,7 +129,9 @@ class LinesPanel(QWidget):
         header.setDefaultAlignment(Qt.AlignmentFlag.AlignLeft)
         self.table.setColumnWidth(SOUND, 190)
         self.table.itemChanged.connect(self._typed)
-        self.table.itemSelectionChanged.connect(lambda: self.say_button.setEnabled(bool(self.table.selectedItems())))
+        self.table.itemSelectionChanged.connect(
+            lambda: self.say_button.setEnabled(bool(self.table.selectedItems()))
+        )
         self.say_button.setEnabled(False)
         self.table.setAccessibleName("Lines")
         self.table.deleted.connect(self.remove)
@@ -151,7 +172,9 @@ class LinesPanel(QWidget):
         if current is not None:
             row = next((n for n, i in enumerate(project.lines) if i == current[0]), -1)
             if row >= 0:
-                self.table.selectionModel().setCurrentIndex(model.index(row, current[1]), QItemSelectionModel.SelectionFlag.NoUpdate)
+                self.table.selectionModel().setCurrentIndex(
+                    model.index(row, current[1]), QItemSelectionModel.SelectionFlag.NoUpdate
+                )
         for column in (ID, LENGTH, ASKS):
             self.table.resizeColumnToContents(column)
         if self.table.columnWidth(ID) > WIDEST:
@@ -162,7 +185,11 @@ class LinesPanel(QWidget):
         self.empty.setVisible(not project.lines)
         self.search.setVisible(bool(project.lines))
         silent = sum(1 for x in project.lines.values() if not x.audio)
-        self.words.setText(f"{many(len(project.lines), 'line')}{f', {silent} without sound' if silent else ''}" if project.lines else "")
+        self.words.setText(
+            f"{many(len(project.lines), 'line')}{f', {silent} without sound' if silent else ''}"
+            if project.lines
+            else ""
+        )
         self._search(self.search.text())
 
     def _row(self, n: int, ident: str, line: Line, look: Theme) -> None:
@@ -183,7 +210,9 @@ class LinesPanel(QWidget):
                 item.setFlags(item.flags() & ~Qt.ItemFlag.ItemIsEditable)
             if column == SOUND:
                 item.setForeground(QColor(look.warning if lost else look.dim))
-                item.setToolTip("The sound could not be read; the lips follow the letters" if lost else line.audio or "")
+                item.setToolTip(
+                    "The sound could not be read; the lips follow the letters" if lost else line.audio or ""
+                )
             elif column in (ID, WORDS):
                 item.setToolTip(text if len(text) > 24 else "")
 
@@ -216,7 +245,12 @@ class LinesPanel(QWidget):
             self._try("Rename line", lambda p: staging.rename_line(p, ident, text))
         else:
             line = self.document.project.lines[ident]
-            self._try("Change line", lambda p: staging.set_line(p, ident, msgspec.structs.replace(line, text=text.strip()[:20000])))
+            self._try(
+                "Change line",
+                lambda p: staging.set_line(
+                    p, ident, msgspec.structs.replace(line, text=text.strip()[:20000])
+                ),
+            )
 
     def remove(self) -> None:
         """Remove the selected lines; their sound files stay where they are."""
@@ -241,7 +275,9 @@ class LinesPanel(QWidget):
 
     def ask_files(self) -> None:
         names = " ".join(f"*{s}" for s in (*SOUNDS, *LISTS))
-        paths, _ = QFileDialog.getOpenFileNames(self, "Add lines", str(self.document.folder or Path.home()), f"Sounds and lists ({names})")
+        paths, _ = QFileDialog.getOpenFileNames(
+            self, "Add lines", str(self.document.folder or Path.home()), f"Sounds and lists ({names})"
+        )
         if paths:
             self.add_files([Path(p) for p in paths])
 
@@ -256,7 +292,12 @@ class LinesPanel(QWidget):
                 more = f" (and {len(read.notes) - 1} more)" if len(read.notes) > 1 else ""
                 self.told.emit(read.notes[0] + more)
 
-        self.jobs.start("Reading lines", lambda _: read_lines(paths, folder), done, lambda error: self.told.emit(str(error)))
+        self.jobs.start(
+            "Reading lines",
+            lambda _: read_lines(paths, folder),
+            done,
+            lambda error: self.told.emit(str(error)),
+        )
 
     def say(self) -> None:
         """Ask for the selected line at the playhead."""
@@ -284,5 +325,13 @@ class LinesPanel(QWidget):
 
 
 def _same(before: tuple[object, ...] | None, now: tuple[object, ...]) -> bool:
-    """Whether a row shows the same; a line and its voice by identity, since every edit makes new ones of what it changes."""
-    return before is not None and before[0] == now[0] and before[1] is now[1] and before[2] is now[2] and before[3] == now[3]
+    """Whether a row shows the same; a line and its voice by identity, since every edit makes new ones of what
+    it changes.
+    """
+    return (
+        before is not None
+        and before[0] == now[0]
+        and before[1] is now[1]
+        and before[2] is now[2]
+        and before[3] == now[3]
+    )

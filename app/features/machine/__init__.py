@@ -29,9 +29,19 @@ def contribute(shell: Shell) -> Contribution:
     return Contribution(
         panels=(Panel("machine", "Machine", "beside", make, when="meta"),),
         commands=(
-            Command("machine", "&View", "graph", "The &machine beside the graph", lambda: shell.show("machine", not wanted()), ("M",),
-                    tip="The state machine you did not have to draw", checked=wanted, when="meta", study=True),
+            Command(
+                "machine",
+                "&View",
+                "graph",
+                "The &machine beside the graph",
+                lambda: shell.show("machine", not wanted()),
+                ("M",),
+                tip="The state machine you did not have to draw",
+                checked=wanted,
+                when="meta",
+                study=True,
+            ),
         ),
         header=(HeaderItem("right", button),),
         late_imports=("app.features.machine.machine_panel",),
-    )  # fmt: skip
+    )

@@ -25,7 +25,11 @@ def places(graph: MetaGraph, area: QRectF) -> dict[str, QPointF]:
     wide, high = area.width() / 2 - 60, area.height() / 2 - 60
     for n, stance in enumerate(stances):
         turn = 2 * math.pi * n / max(1, len(stances)) - math.pi / 2
-        middle = centre if len(stances) == 1 else centre + QPointF(math.cos(turn) * wide * 0.66, math.sin(turn) * high * 0.66)
+        middle = (
+            centre
+            if len(stances) == 1
+            else centre + QPointF(math.cos(turn) * wide * 0.66, math.sin(turn) * high * 0.66)
+        )
         loops = graph.of(stance, "stance")
         for k, loop in enumerate(loops):
             out[loop.id] = middle + QPointF((k - (len(loops) - 1) / 2) * 14, 0)
@@ -117,7 +121,14 @@ class MachinePanel(QWidget):
             painter.drawEllipse(at, radius, radius)
             if action.kind == "stance":
                 stance = graph.stances.get(action.stance)
-                below = max((self._places[a.id].y() for a in graph.of(action.stance, "gesture") if a.id in self._places), default=at.y())
+                below = max(
+                    (
+                        self._places[a.id].y()
+                        for a in graph.of(action.stance, "gesture")
+                        if a.id in self._places
+                    ),
+                    default=at.y(),
+                )
                 box = QRectF(at.x() - 70, max(below, at.y() + 4) + 7, 140, 18)
                 painter.setPen(QColor(t.text))
                 painter.drawText(box, Qt.AlignmentFlag.AlignCenter, stance.name if stance else "")
@@ -138,11 +149,15 @@ class MachinePanel(QWidget):
         painter.setFont(font)
         painter.setPen(QColor(t.dim))
         painter.drawText(
-            QRectF(20, 44, 420, 20), Qt.AlignmentFlag.AlignVCenter, f"among {states} states, in the {self.session.place.layer} layer alone."
+            QRectF(20, 44, 420, 20),
+            Qt.AlignmentFlag.AlignVCenter,
+            f"among {states} states, in the {self.session.place.layer} layer alone.",
         )
         painter.drawText(QRectF(20, 64, 420, 20), Qt.AlignmentFlag.AlignVCenter, f"You placed {clips} clips.")
         if links > MOST:
-            painter.drawText(QRectF(20, 84, 420, 20), Qt.AlignmentFlag.AlignVCenter, f"The first {MOST:,} are drawn.")
+            painter.drawText(
+                QRectF(20, 84, 420, 20), Qt.AlignmentFlag.AlignVCenter, f"The first {MOST:,} are drawn."
+            )
 
     def _at(self, point: QPointF) -> Action | None:
         near = min(self._places.items(), key=lambda item: (item[1] - point).manhattanLength(), default=None)

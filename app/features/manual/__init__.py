@@ -1,4 +1,6 @@
-"""The state machine drawn by hand: an editor in the meta-graph's place, and an inspector in that of the properties."""
+"""The state machine drawn by hand: an editor in the meta-graph's place, and an inspector in that of the
+properties.
+"""
 
 from __future__ import annotations
 
@@ -19,7 +21,11 @@ if TYPE_CHECKING:
 
 def contribute(shell: Shell) -> Contribution:
     stage, document, session = shell.stage, shell.document, shell.stage.session
-    importing, problems, verbs = shell.services[Importing], shell.services[ProblemWatch], shell.services[Verbs]
+    importing, problems, verbs = (
+        shell.services[Importing],
+        shell.services[ProblemWatch],
+        shell.services[Verbs],
+    )
     here = lambda: session.onstage.mode == "manual"  # noqa: E731
 
     def make() -> ManualEditor:
@@ -63,7 +69,9 @@ def contribute(shell: Shell) -> Contribution:
         verbs.offer(verb, lambda: here() and applies(), do, rank=1)
 
     drawn = lambda: bool(session.selection.states or session.selection.links)  # noqa: E731
-    offer("remove", lambda: drawn() and not session.selection.clips)  # what is selected in the library is the library's to remove
+    offer(
+        "remove", lambda: drawn() and not session.selection.clips
+    )  # what is selected in the library is the library's to remove
     offer("copy", drawn)
     offer("paste")
     offer("select_all")
@@ -73,10 +81,24 @@ def contribute(shell: Shell) -> Contribution:
     return Contribution(
         panels=(
             Panel("manual", "Manual state machine", "centre", make, when="manual", instead_of="graph"),
-            Panel("inspector", "Properties", "right below", lambda: editor().inspector, when="manual", instead_of="properties"),
+            Panel(
+                "inspector",
+                "Properties",
+                "right below",
+                lambda: editor().inspector,
+                when="manual",
+                instead_of="properties",
+            ),
         ),
         commands=(
-            Command("manual", "&Graph", "author", "&Manual state machine", lambda: session.set_mode("meta" if here() else "manual"),
-                    checked=here, tip="Draw states and links one by one, as in the engines' editors"),
+            Command(
+                "manual",
+                "&Graph",
+                "author",
+                "&Manual state machine",
+                lambda: session.set_mode("meta" if here() else "manual"),
+                checked=here,
+                tip="Draw states and links one by one, as in the engines' editors",
+            ),
         ),
-    )  # fmt: skip
+    )

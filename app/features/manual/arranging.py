@@ -1,4 +1,6 @@
-"""Automatic layout: states in columns by how many links they are from the start, each beside what it is joined to."""
+"""Automatic layout: states in columns by how many links they are from the start, each beside what it is
+joined to.
+"""
 
 from __future__ import annotations
 
@@ -14,8 +16,8 @@ SWEEPS = 6
 def arranged(manual: Manual) -> Mapping[str, tuple[float, float]]:
     """Return where every node goes, ANY among them: x, y of its left upper corner.
 
-    A column that would grow tall is broken into several. Within columns nodes stand at the mean height of those they are joined to
-    (barycentres, swept back and forth), so that arrows cross less.
+    A column that would grow tall is broken into several. Within columns nodes stand at the mean height of
+    those they are joined to (barycentres, swept back and forth), so that arrows cross less.
     """
     columns = _columns(manual)
     joined: dict[str, list[str]] = {i: [] for i in manual.states}
@@ -53,7 +55,9 @@ def arranged(manual: Manual) -> Mapping[str, tuple[float, float]]:
 
 
 def _columns(manual: Manual) -> list[list[str]]:
-    """Return the states by their distance from the start; those that cannot be reached come after all others."""
+    """Return the states by their distance from the start; those that cannot be reached come after all
+    others.
+    """
     depth: dict[str, int] = {}
     if manual.start in manual.states:
         _walk(manual, manual.start or "", 0, depth)

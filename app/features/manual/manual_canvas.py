@@ -47,8 +47,8 @@ MAP = QSizeF(168, 104)  # of the map in the corner, pixels
 
 
 class ManualCanvas(QWidget):
-    """The machine of the current layer. files_dropped: (paths, place) to import and then place. refused: words for the status bar.
-    viewed: what is seen has changed.
+    """The machine of the current layer. files_dropped: (paths, place) to import and then place. refused:
+    words for the status bar. viewed: what is seen has changed.
     """
 
     files_dropped = Signal(object, object)
@@ -56,7 +56,12 @@ class ManualCanvas(QWidget):
     viewed = Signal()
 
     def __init__(
-        self, document: Document, session: Session, performance: Performance, thumbnails: Thumbnails, parent: QWidget | None = None
+        self,
+        document: Document,
+        session: Session,
+        performance: Performance,
+        thumbnails: Thumbnails,
+        parent: QWidget | None = None,
     ) -> None:
         super().__init__(parent)
         self.document, self.session, self.performance = document, session, performance
@@ -191,13 +196,29 @@ class ManualCanvas(QWidget):
         s = self.session
         pictures = self.pictures.of(scene, self.view, self.devicePixelRatioF())
         return painter.Look(
-            theme(s.look.name), self.document.project, scene, self.view, pictures, self.font(), s.selection.states, s.selection.links, self.troubles,
-        )  # fmt: skip
+            theme(s.look.name),
+            self.document.project,
+            scene,
+            self.view,
+            pictures,
+            self.font(),
+            s.selection.states,
+            s.selection.links,
+            self.troubles,
+        )
 
     def paintEvent(self, event: QPaintEvent) -> None:
         scene, rect = self.scene(), QRectF(self.rect())
         look = self._look(scene)
-        key = (scene, self.view, self.session.look.name, self.size(), frozenset(self._dragged), self._fast, self.pictures.count)
+        key = (
+            scene,
+            self.view,
+            self.session.look.name,
+            self.size(),
+            frozenset(self._dragged),
+            self._fast,
+            self.pictures.count,
+        )
         if self._still is None or self._still[0] != key:
             ratio = self.devicePixelRatioF()
             picture = QPixmap(self.size() * ratio)
@@ -212,17 +233,31 @@ class ManualCanvas(QWidget):
             scene = Scene(scene.manual, self._dragged)
             look = self._look(scene)
         marks = Marks(
-            self._dragged, self.hover, *self._link, self._band, self._turn, self.at, self.hand.gesture is not None, self._dropping, self._map(),
-        )  # fmt: skip
+            self._dragged,
+            self.hover,
+            *self._link,
+            self._band,
+            self._turn,
+            self.at,
+            self.hand.gesture is not None,
+            self._dropping,
+            self._map(),
+        )
         paint_over(p, look, marks, QRectF(self.rect()))
         p.end()
 
     def _map(self) -> QRectF:
-        return QRectF(self.width() - MAP.width() - 16, self.height() - MAP.height() - 16, MAP.width(), MAP.height())
+        return QRectF(
+            self.width() - MAP.width() - 16, self.height() - MAP.height() - 16, MAP.width(), MAP.height()
+        )
 
     def _follow_play(self) -> None:
         """Show which state plays and how far it is."""
-        now = plays(self.performance.shown, self.session.place.layer, self.session.transport.seconds) if self.isVisible() else ("", 0.0)
+        now = (
+            plays(self.performance.shown, self.session.place.layer, self.session.transport.seconds)
+            if self.isVisible()
+            else ("", 0.0)
+        )
         if now != self._turn:
             for ident in {now[0], self._turn[0]} & set(self.scene().nodes):
                 box = self.scene().nodes[ident]
@@ -255,7 +290,10 @@ class ManualCanvas(QWidget):
                 self.hand.drop("replaced")
             return
         self.hand.drop("replaced")
-        if button in (Qt.MouseButton.MiddleButton, Qt.MouseButton.RightButton) or keys & Qt.KeyboardModifier.AltModifier:
+        if (
+            button in (Qt.MouseButton.MiddleButton, Qt.MouseButton.RightButton)
+            or keys & Qt.KeyboardModifier.AltModifier
+        ):
             self.hand.take(Pan(self), at)
             return
         if button != Qt.MouseButton.LeftButton:
@@ -274,7 +312,10 @@ class ManualCanvas(QWidget):
                 s.selection.select_states((hit.ident,))
             self.hand.take(Move(self, hit.ident), at)
         elif hit.area == "link":
-            s.selection.select_states(s.selection.states if more else (), _toggled(s.selection.links, hit.ident) if more else (hit.ident,))
+            s.selection.select_states(
+                s.selection.states if more else (),
+                _toggled(s.selection.links, hit.ident) if more else (hit.ident,),
+            )
         else:
             kept = (s.selection.states, s.selection.links) if more else ((), ())
             if not more:
@@ -288,7 +329,9 @@ class ManualCanvas(QWidget):
         hit = self.scene().hit(self.view.back(self.at), self.view.scale)
         if hit.area == "edge" or hit != self.hover:
             self.hover = hit
-            shape = {"edge": Qt.CursorShape.CrossCursor, "link": Qt.CursorShape.PointingHandCursor}.get(hit.area)
+            shape = {"edge": Qt.CursorShape.CrossCursor, "link": Qt.CursorShape.PointingHandCursor}.get(
+                hit.area
+            )
             self.setCursor(shape) if shape is not None else self.unsetCursor()
             self.update()
 
@@ -302,7 +345,13 @@ class ManualCanvas(QWidget):
             self._menu(event.position())
         hit = self.scene().hit(self.view.back(event.position()), self.view.scale)
         plain = not event.modifiers() and event.button() == Qt.MouseButton.LeftButton
-        if plain and isinstance(gesture, Move) and not gesture.begun and hit.ident == gesture.node and hit.ident != ANY:
+        if (
+            plain
+            and isinstance(gesture, Move)
+            and not gesture.begun
+            and hit.ident == gesture.node
+            and hit.ident != ANY
+        ):
             self.session.selection.select_states((hit.ident,))
 
     def mouseDoubleClickEvent(self, event: QMouseEvent) -> None:
@@ -351,7 +400,9 @@ class ManualCanvas(QWidget):
         """Draw a link and select it."""
         layer, before = self.session.place.layer, set(self.scene().manual.links)
         if self.do("Draw link", lambda p: manual_edits.add_link(p, layer, source, target)):
-            self.session.selection.select_states((), tuple(i for i in self.scene().manual.links if i not in before))
+            self.session.selection.select_states(
+                (), tuple(i for i in self.scene().manual.links if i not in before)
+            )
 
     def place(self, clips: tuple[str, ...], at: QPointF) -> None:
         """Make states of clips, the first under a point of the widget, and select them."""
@@ -361,7 +412,9 @@ class ManualCanvas(QWidget):
         words = f"Place {len(clips)} clip{'s' if len(clips) != 1 else ''}"
         self._views.setdefault(layer, self.view)
         if self.do(words, lambda p: manual_edits.add_states(p, clips, layer, x, y)):
-            self.session.selection.select_states(tuple(i for i in self.scene().manual.states if i not in before))
+            self.session.selection.select_states(
+                tuple(i for i in self.scene().manual.states if i not in before)
+            )
             self.session.transport.show_plan()
 
     # --- drops
@@ -395,7 +448,11 @@ class ManualCanvas(QWidget):
     # --- keyboard and tips
 
     def event(self, event: QEvent) -> bool:
-        if event.type() == QEvent.Type.ShortcutOverride and isinstance(event, QKeyEvent) and commands.for_key(self, event) is not None:
+        if (
+            event.type() == QEvent.Type.ShortcutOverride
+            and isinstance(event, QKeyEvent)
+            and commands.for_key(self, event) is not None
+        ):
             event.accept()  # before the window's own shortcuts
             return True
         if event.type() == QEvent.Type.ToolTip and isinstance(event, QHelpEvent):

@@ -1,4 +1,6 @@
-"""What can be done in the editor: one list that makes the menus and the keys, and the words about what is under the mouse."""
+"""What can be done in the editor: one list that makes the menus and the keys, and the words about what is
+under the mouse.
+"""
 
 from __future__ import annotations
 
@@ -106,7 +108,10 @@ def nudge(canvas: ManualHost, x: float, y: float) -> None:
     layer, found = canvas.session.place.layer, canvas.scene().manual.states
     places = {i: (found[i].x + x, found[i].y + y) for i in canvas.session.selection.states if i in found}
     if places:
-        canvas.do("Move node" if len(places) == 1 else f"Move {len(places)} nodes", lambda p: manual_edits.move_nodes(p, layer, places))
+        canvas.do(
+            "Move node" if len(places) == 1 else f"Move {len(places)} nodes",
+            lambda p: manual_edits.move_nodes(p, layer, places),
+        )
 
 
 def can_paste(canvas: ManualHost) -> bool:
@@ -118,11 +123,16 @@ def for_key(canvas: ManualHost, event: QKeyEvent) -> Run | None:
     s = canvas.session
     if event.key() == Qt.Key.Key_Escape:
         return (lambda: canvas.hand.drop("escape")) if canvas.hand.gesture is not None else None
-    if event.key() == Qt.Key.Key_D and event.modifiers() == Qt.KeyboardModifier.ControlModifier:  # on X11 also a key to delete
+    if (
+        event.key() == Qt.Key.Key_D and event.modifiers() == Qt.KeyboardModifier.ControlModifier
+    ):  # on X11 also a key to delete
         return lambda: duplicate(canvas)
     for standard, run in (
-        (Standard.Delete, remove), (Standard.Copy, copy), (Standard.Paste, paste), (Standard.SelectAll, select_all),
-    ):  # fmt: skip
+        (Standard.Delete, remove),
+        (Standard.Copy, copy),
+        (Standard.Paste, paste),
+        (Standard.SelectAll, select_all),
+    ):
         if event.matches(standard):
             return lambda: run(canvas)
     plain = not event.modifiers() & ~Qt.KeyboardModifier.KeypadModifier
@@ -130,7 +140,12 @@ def for_key(canvas: ManualHost, event: QKeyEvent) -> Run | None:
         return canvas.fit
     if event.key() == Qt.Key.Key_Backspace and plain:
         return lambda: remove(canvas)
-    arrow = {Qt.Key.Key_Left: (-1, 0), Qt.Key.Key_Right: (1, 0), Qt.Key.Key_Up: (0, -1), Qt.Key.Key_Down: (0, 1)}
+    arrow = {
+        Qt.Key.Key_Left: (-1, 0),
+        Qt.Key.Key_Right: (1, 0),
+        Qt.Key.Key_Up: (0, -1),
+        Qt.Key.Key_Down: (0, 1),
+    }
     step = arrow.get(Qt.Key(event.key()))
     if step is not None and s.selection.states:
         far = 24 if event.modifiers() & Qt.KeyboardModifier.ShiftModifier else 8
@@ -139,7 +154,9 @@ def for_key(canvas: ManualHost, event: QKeyEvent) -> Run | None:
 
 
 def fill(out: QMenu, canvas: ManualHost, hit: Hit) -> None:
-    """Fill a menu with what can be done with what is under the mouse; it is selected, unless it is already."""
+    """Fill a menu with what can be done with what is under the mouse; it is selected, unless it is
+    already.
+    """
     s = canvas.session
 
     def add(text: str, run: Run, keys: str = "", enabled: bool = True) -> None:
@@ -154,7 +171,11 @@ def fill(out: QMenu, canvas: ManualHost, hit: Hit) -> None:
     if node:
         add("Draw link from here", lambda: canvas.begin_link(hit.ident))
     if node and hit.ident != ANY:
-        add("Start here", lambda: start_here(canvas, hit.ident), enabled=canvas.scene().manual.start != hit.ident)
+        add(
+            "Start here",
+            lambda: start_here(canvas, hit.ident),
+            enabled=canvas.scene().manual.start != hit.ident,
+        )
         add("Play alone", lambda: s.show_context(hit.ident))
         out.addSeparator()
         add("Copy", lambda: copy(canvas), "Ctrl+C")
@@ -200,6 +221,16 @@ def tip(canvas: ManualHost, hit: Hit) -> str:
         link = manual.links[hit.ident]
         source, target = manual.states.get(link.source), manual.states.get(link.target)
         names = f"{source.name if source else 'Any state'} → {target.name if target else '?'}"
-        when = "on request: " if link.condition.when == "request" else "when finished " if not words_of(link) else "at "
-        return "\n".join(x for x in (names, f"{when}{words_of(link)}".strip(), f"blends for {link.blend:g} s", trouble) if x)
+        when = (
+            "on request: "
+            if link.condition.when == "request"
+            else "when finished "
+            if not words_of(link)
+            else "at "
+        )
+        return "\n".join(
+            x
+            for x in (names, f"{when}{words_of(link)}".strip(), f"blends for {link.blend:g} s", trouble)
+            if x
+        )
     return ""

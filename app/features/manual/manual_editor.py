@@ -1,4 +1,6 @@
-"""The editor as it stands in the window's middle: the canvas, and above it what is fired, arranged and shown."""
+"""The editor as it stands in the window's middle: the canvas, and above it what is fired, arranged and
+shown.
+"""
 
 from __future__ import annotations
 
@@ -24,7 +26,9 @@ class ManualEditor(QWidget):
         self.words.setProperty("dim", True)
         self.trigger = Chooser(self, toolTip="A trigger that links of this layer wait for")
         self.trigger.setMinimumWidth(150)
-        self.fire = _button(self, "Fire", "Fire it now: the machine goes there over the shortest way of links")
+        self.fire = _button(
+            self, "Fire", "Fire it now: the machine goes there over the shortest way of links"
+        )
         self.fire.clicked.connect(self._fire)
         self.arrange = _button(self, "Arrange", "Put the nodes in columns, from the start on")
         self.arrange.clicked.connect(lambda: commands.arrange(canvas))
@@ -55,7 +59,9 @@ class ManualEditor(QWidget):
         """Show how large the layer's machine is, and its triggers."""
         manual = self.canvas.scene().manual
         zoom = f"{self.canvas.view.scale * 100:.0f} %"
-        self.words.setText(f"{many(len(manual.states), 'state')}, {many(len(manual.links), 'link')}    {zoom}")
+        self.words.setText(
+            f"{many(len(manual.states), 'state')}, {many(len(manual.links), 'link')}    {zoom}"
+        )
         chosen = self.trigger.currentData()
         first = chosen if chosen in manual.triggers else next(iter(manual.triggers), None)
         self.trigger.show_entries([(t, t) for t in manual.triggers], first, "no trigger yet")

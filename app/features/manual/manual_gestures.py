@@ -53,7 +53,10 @@ class Move(PressDrag):
     def _places(self, at: QPointF) -> dict[str, tuple[float, float]]:
         by = (at - self.origin) / self.host.view.scale
         first = self.host.scene().nodes[self.node].topLeft()
-        x, y = (round((first.x() + by.x()) / SNAP) * SNAP - first.x(), round((first.y() + by.y()) / SNAP) * SNAP - first.y())
+        x, y = (
+            round((first.x() + by.x()) / SNAP) * SNAP - first.x(),
+            round((first.y() + by.y()) / SNAP) * SNAP - first.y(),
+        )
         nodes = self.host.scene().nodes
         return {i: (nodes[i].left() + x, nodes[i].top() + y) for i in self.nodes if i in nodes}
 
@@ -86,7 +89,9 @@ class Band(PressDrag):
         self.host.show_band(band)
         states, links = self.host.scene().inside(band)
         both = (dict.fromkeys((*self.kept[0], *states)), dict.fromkeys((*self.kept[1], *links)))
-        self.host.session.selection.select_states(tuple(both[0]), tuple(both[1]) if not both[0] else self.kept[1])
+        self.host.session.selection.select_states(
+            tuple(both[0]), tuple(both[1]) if not both[0] else self.kept[1]
+        )
 
     def finish(self, at: QPointF) -> None:
         self.host.show_band(None)
@@ -97,7 +102,9 @@ class Band(PressDrag):
 
 
 class DrawLink(PressDrag):
-    """Draws a link from a node to where the mouse is let go. sticky: begun from a menu, it follows the mouse until it is pressed."""
+    """Draws a link from a node to where the mouse is let go. sticky: begun from a menu, it follows the mouse
+    until it is pressed.
+    """
 
     def __init__(self, host: ManualHost, source: str, sticky: bool = False) -> None:
         super().__init__()
@@ -112,7 +119,9 @@ class DrawLink(PressDrag):
         hit: Hit = self.host.scene().hit(self.host.view.back(at), self.host.view.scale)
         self.target, self.words = "", ""
         if hit.area in ("node", "edge"):
-            why = manual_edits.link_refusal(self.host.document.project, self.host.session.place.layer, self.source, hit.ident)
+            why = manual_edits.link_refusal(
+                self.host.document.project, self.host.session.place.layer, self.source, hit.ident
+            )
             self.target, self.words = (hit.ident, "") if why is None else ("", why)
         self.host.show_cursor(Qt.CursorShape.ForbiddenCursor if self.words else Qt.CursorShape.CrossCursor)
         self.host.show_link(self.source, at, self.target)
@@ -120,7 +129,9 @@ class DrawLink(PressDrag):
     def finish(self, at: QPointF) -> None:
         self.update(at)
         self.host.show_link("", at, "")
-        if not self.begun or (self.target == self.source and (at - self.origin).manhattanLength() < 24 and not self.sticky):
+        if not self.begun or (
+            self.target == self.source and (at - self.origin).manhattanLength() < 24 and not self.sticky
+        ):
             return
         if self.words:
             self.host.refuse(self.words)

@@ -15,7 +15,9 @@ from metagraph.graph.model import Project
 
 
 class ManualHost(Protocol):
-    """The canvas as its gestures and commands see it. at: where the mouse is, pixels. troubles: node or link -> what is wrong."""
+    """The canvas as its gestures and commands see it. at: where the mouse is, pixels. troubles: node or link
+    -> what is wrong.
+    """
 
     document: Document
     session: Session

@@ -1,4 +1,6 @@
-"""Properties in the editor: of states or links, one or many at once, or of the whole machine when nothing is selected."""
+"""Properties in the editor: of states or links, one or many at once, or of the whole machine when nothing is
+selected.
+"""
 
 from __future__ import annotations
 
@@ -51,7 +53,11 @@ class Inspector(QScrollArea):
             self.pages.addWidget(page)
         self.setWidget(self.pages)
         self.document.changed.connect(self._edited)
-        for signal in (self.session.selection.changed, self.session.place.layer_changed, self.session.look.changed):
+        for signal in (
+            self.session.selection.changed,
+            self.session.place.layer_changed,
+            self.session.look.changed,
+        ):
             signal.connect(self.show_selection)
         self.show_selection()
 
@@ -77,7 +83,9 @@ class Inspector(QScrollArea):
         box.addWidget(self.title)
         box.addWidget(self.words)
         self.start = Chooser(page, toolTip="The state this layer begins in")
-        self.start.activated.connect(lambda n: self._try("Start here", lambda p: manual_edits.set_start(p, self.start.itemData(n))))
+        self.start.activated.connect(
+            lambda n: self._try("Start here", lambda p: manual_edits.set_start(p, self.start.itemData(n)))
+        )
         form.addRow("Begins in", self.start)
         box.addLayout(form)
         self.triggers_title = QLabel("Triggers: click to fire one now", page)
@@ -101,7 +109,9 @@ class Inspector(QScrollArea):
         box.addLayout(form)
         self.loop = QCheckBox("plays over and over", page)
         self.loop.setToolTip("Otherwise it holds its last frame")
-        self.loop.clicked.connect(lambda: self._state("Change loop", loop=self.loop.checkState() != Qt.CheckState.Unchecked))
+        self.loop.clicked.connect(
+            lambda: self._state("Change loop", loop=self.loop.checkState() != Qt.CheckState.Unchecked)
+        )
         form.addRow("Loop", self.loop)
         self.first, self.last = Seconds(page, "Start in the clip"), Seconds(page, "End in the clip")
         self.first.valueChanged.connect(lambda v: self._trim("start", v))
@@ -148,7 +158,13 @@ class Inspector(QScrollArea):
         self.trigger = Field(page, "What is fired to take it", "Trigger")
         self.trigger.editingFinished.connect(self._retrigger)
         form.addRow("Trigger", self.trigger)
-        self.weight = Seconds(page, "Weight against the other links taken when the source has finished; 1 is usual", 1000, "", 0.1)
+        self.weight = Seconds(
+            page,
+            "Weight against the other links taken when the source has finished; 1 is usual",
+            1000,
+            "",
+            0.1,
+        )
         self.weight.valueChanged.connect(self._weigh)
         form.addRow("Weight", self.weight)
         self.leaves = QCheckBox("at", page)
@@ -164,7 +180,9 @@ class Inspector(QScrollArea):
         self.form = form
         self.fire = QPushButton("Fire", page, toolTip="Fire its trigger now")
         self.fire.clicked.connect(self._fire)
-        self.play = QPushButton("Play link", page, toolTip="Play its source's end, the blend, and its target's beginning")
+        self.play = QPushButton(
+            "Play link", page, toolTip="Play its source's end, the blend, and its target's beginning"
+        )
         self.play.clicked.connect(lambda: self.session.show_context(self.session.selection.links[0]))
         box.addWidget(_row(page, self.fire, self.play))
         self.copy = QPushButton("Copy settings", page)
@@ -210,8 +228,13 @@ class Inspector(QScrollArea):
     def _show_machine(self) -> None:
         manual = self.canvas.scene().manual
         self.title.setText(f"{self.session.place.layer.capitalize()} layer")
-        self.words.setText(f"{many(len(manual.states), 'state')}, {many(len(manual.links), 'link')}. Select one to change it.")
-        self.start.show_entries([(s.name, s.id) for s in manual.states.values()], manual.start, "no state yet")
+        self.words.setText(
+            f"{many(len(manual.states), 'state')}, {many(len(manual.links), 'link')}. Select one to change "
+            "it."
+        )
+        self.start.show_entries(
+            [(s.name, s.id) for s in manual.states.values()], manual.start, "no state yet"
+        )
         self.start.setEnabled(bool(manual.states))
         self.triggers_title.setVisible(bool(manual.triggers))
         if manual.triggers != self._shown_triggers:
@@ -229,8 +252,12 @@ class Inspector(QScrollArea):
         first = states[0]
         self.name.setEnabled(one)
         self.name.show_text(first.name if one else many(len(states), "state"), tuple(s.id for s in states))
-        clips = {project.clips[s.clip].name if s.clip in project.clips else "a clip that is gone" for s in states}
-        self.clip.setText(f"plays {next(iter(clips))}" if len(clips) == 1 else f"play {many(len(clips), 'clip')}")
+        clips = {
+            project.clips[s.clip].name if s.clip in project.clips else "a clip that is gone" for s in states
+        }
+        self.clip.setText(
+            f"plays {next(iter(clips))}" if len(clips) == 1 else f"play {many(len(clips), 'clip')}"
+        )
         loop = common([s.loop for s in states])
         self.loop.setTristate(loop is Mixed)
         self.loop.setCheckState(_check(loop))

@@ -21,7 +21,9 @@ class StateMask(MaskDialog):
         masked = set(first.joints) if first is not None else set()
         self.tree.blockSignals(True)
         for name, item in self.items.items():
-            item.setCheckState(0, Qt.CheckState.Checked if not masked or name in masked else Qt.CheckState.Unchecked)
+            item.setCheckState(
+                0, Qt.CheckState.Checked if not masked or name in masked else Qt.CheckState.Unchecked
+            )
         self.tree.blockSignals(False)
 
     def accept(self) -> None:

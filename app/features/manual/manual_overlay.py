@@ -19,10 +19,11 @@ EMPTY = "Drop clips here to make states. Drag from a state's border to draw a li
 
 @dataclass(frozen=True)
 class Marks:
-    """dragged: nodes that are, and where they stand now. source, end, target: of a link that is being drawn, no source for none.
+    """dragged: nodes that are, and where they stand now. source, end, target: of a link that is being drawn,
+    no source for none.
 
-    band: a rubber band. turn: the state that plays, and how far it is, 0..1. at: the mouse. busy: it drags something. dropping: words
-    about what is dragged in. map_place: where the map goes.
+    band: a rubber band. turn: the state that plays, and how far it is, 0..1. at: the mouse. busy: it drags
+    something. dropping: words about what is dragged in. map_place: where the map goes.
     """
 
     dragged: Mapping[str, tuple[float, float]]
@@ -45,7 +46,9 @@ def plays(shown: Shown, layer: Layer, seconds: float) -> tuple[str, float]:
     if turn is None:
         return "", 0.0
     start, end = shown.project.span(turn.action)
-    return turn.action.id, round((float(clip_seconds(shown.project, turn, seconds)) - start) / max(1e-6, end - start), 2)
+    return turn.action.id, round(
+        (float(clip_seconds(shown.project, turn, seconds)) - start) / max(1e-6, end - start), 2
+    )
 
 
 def paint_over(p: QPainter, look: painter.Look, marks: Marks, rect: QRectF) -> None:
@@ -84,8 +87,20 @@ def _nodes(p: QPainter, look: painter.Look, marks: Marks) -> None:
     over = {marks.hover.ident} if marks.hover.area in ("node", "edge") else set()
     for ident in dict.fromkeys((*marks.dragged, *look.states, *over, marks.source, marks.target)):
         if ident in look.scene.nodes:
-            painter.paint_node(p, look, ident, ident in look.states, ident in over, bool(marks.target) and ident == marks.target)
+            painter.paint_node(
+                p,
+                look,
+                ident,
+                ident in look.states,
+                ident in over,
+                bool(marks.target) and ident == marks.target,
+            )
     if marks.turn[0] in look.scene.nodes:
         painter.paint_playing(p, look, *marks.turn)
-    if marks.hover.area == "edge" and marks.hover.ident in look.scene.nodes and not marks.source and not marks.busy:
+    if (
+        marks.hover.area == "edge"
+        and marks.hover.ident in look.scene.nodes
+        and not marks.source
+        and not marks.busy
+    ):
         painter.paint_port(p, look, marks.hover.ident, marks.at)

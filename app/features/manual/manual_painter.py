@@ -1,4 +1,6 @@
-"""Paints a machine: the still part, which is kept as a picture, and what changes under the mouse on top of it."""
+"""Paints a machine: the still part, which is kept as a picture, and what changes under the mouse on top of
+it.
+"""
 
 from __future__ import annotations
 
@@ -24,7 +26,9 @@ LABELS = 40  # arrows, up to which each tells what it waits for
 
 @dataclass(frozen=True)
 class Look:
-    """What is painted. pictures: clip id -> its picture, as large as it is shown. troubles: state or link id -> words."""
+    """What is painted. pictures: clip id -> its picture, as large as it is shown. troubles: state or link id
+    -> words.
+    """
 
     theme: Theme
     project: Project
@@ -37,8 +41,12 @@ class Look:
     troubles: Mapping[str, str] = field(default_factory=dict)
 
 
-def paint_still(painter: QPainter, look: Look, rect: QRectF, without: Collection[str] = (), fast: bool = False) -> None:
-    """Paint ground, arrows and nodes as they are unselected. without: nodes left out, with their arrows. fast: lines without smoothing."""
+def paint_still(
+    painter: QPainter, look: Look, rect: QRectF, without: Collection[str] = (), fast: bool = False
+) -> None:
+    """Paint ground, arrows and nodes as they are unselected. without: nodes left out, with their arrows.
+    fast: lines without smoothing.
+    """
     painter.fillRect(rect, QColor(look.theme.ground))
     _grid(painter, look, rect)
     gone = frozenset(look.scene.touching(without)) if without else frozenset()
@@ -53,7 +61,12 @@ def paint_still(painter: QPainter, look: Look, rect: QRectF, without: Collection
 def mixed(a: str, b: str, part: float) -> QColor:
     """Return a colour on the way from one to another."""
     x, y = QColor(a), QColor(b)
-    return QColor(*(round(m + (n - m) * part) for m, n in ((x.red(), y.red()), (x.green(), y.green()), (x.blue(), y.blue()))))
+    return QColor(
+        *(
+            round(m + (n - m) * part)
+            for m, n in ((x.red(), y.red()), (x.green(), y.green()), (x.blue(), y.blue()))
+        )
+    )
 
 
 def _grid(painter: QPainter, look: Look, rect: QRectF) -> None:
@@ -65,8 +78,12 @@ def _grid(painter: QPainter, look: Look, rect: QRectF) -> None:
     painter.setPen(QPen(mixed(look.theme.ground, look.theme.line, 0.28), 0))
     painter.setRenderHint(QPainter.RenderHint.Antialiasing, False)
     origin = look.view.to(QPointF(0, 0))
-    lines = [QLineF(x, rect.top(), x, rect.bottom()) for x in np.arange(origin.x() % step, rect.width(), step)]
-    lines += [QLineF(rect.left(), y, rect.right(), y) for y in np.arange(origin.y() % step, rect.height(), step)]
+    lines = [
+        QLineF(x, rect.top(), x, rect.bottom()) for x in np.arange(origin.x() % step, rect.width(), step)
+    ]
+    lines += [
+        QLineF(rect.left(), y, rect.right(), y) for y in np.arange(origin.y() % step, rect.height(), step)
+    ]
     painter.drawLines(lines)
 
 
@@ -125,17 +142,31 @@ def _loop(painter: QPainter, view: View, circle: QRectF, color: QColor, width: f
     if view.scale >= HEADS:
         angle = -0.70
         tip = box.center() + QPointF(cos(angle), -sin(angle)) * (LOOP * view.scale)
-        _heads(painter, np.array([[tip.x() + 9, tip.y() - 14, tip.x(), tip.y()]]), color, 8 * min(1.0, view.scale))
+        _heads(
+            painter,
+            np.array([[tip.x() + 9, tip.y() - 14, tip.x(), tip.y()]]),
+            color,
+            8 * min(1.0, view.scale),
+        )
 
 
-def paint_link(painter: QPainter, look: Look, link: Link, color: QColor, width: float, told: bool = True) -> None:
+def paint_link(
+    painter: QPainter, look: Look, link: Link, color: QColor, width: float, told: bool = True
+) -> None:
     """Paint one arrow on top of all. told: with what it waits for."""
     painter.setRenderHint(QPainter.RenderHint.Antialiasing, True)
     if link.id in look.scene.loops:
         _loop(painter, look.view, look.scene.loops[link.id], color, width)
     elif link.id in look.scene.places:
         x1, y1, x2, y2 = look.scene.lines[look.scene.places[link.id]]
-        paint_arrow(painter, look.view.to(QPointF(x1, y1)), look.view.to(QPointF(x2, y2)), color, width, look.view.scale)
+        paint_arrow(
+            painter,
+            look.view.to(QPointF(x1, y1)),
+            look.view.to(QPointF(x2, y2)),
+            color,
+            width,
+            look.view.scale,
+        )
     if told and look.view.scale >= 0.35:
         _label(painter, look, link, color)
 
@@ -170,24 +201,37 @@ def _label(painter: QPainter, look: Look, link: Link, color: QColor | None = Non
     painter.setPen(QPen(color or QColor(look.theme.line), 1))
     painter.setBrush(QColor(look.theme.panel))
     painter.drawRoundedRect(box, 9, 9)
-    painter.setPen(QColor(look.theme.warning if trouble else look.theme.text if color is not None else look.theme.dim))
+    painter.setPen(
+        QColor(look.theme.warning if trouble else look.theme.text if color is not None else look.theme.dim)
+    )
     painter.drawText(box, Qt.AlignmentFlag.AlignCenter, text)
 
 
-# --- nodes -----------------------------------------------------------------------------------------------------------
+# --- nodes
+# --------------------------------------------------------------------------------------------------
 
 
 def paint_node(
-    painter: QPainter, look: Look, ident: str, selected: bool = False, hover: bool = False, target: bool = False, rough: bool = False
+    painter: QPainter,
+    look: Look,
+    ident: str,
+    selected: bool = False,
+    hover: bool = False,
+    target: bool = False,
+    rough: bool = False,
 ) -> None:
-    """Paint a node. target: a link would end here if it were let go now. rough: only its box, while all moves."""
+    """Paint a node. target: a link would end here if it were let go now. rough: only its box, while all
+    moves.
+    """
     t, view = look.theme, look.view
     box = look.scene.nodes[ident]
     rect = QRectF(view.to(box.topLeft()), view.to(box.bottomRight()))
     painter.setRenderHint(QPainter.RenderHint.Antialiasing, not rough)
     radius = 9 * view.scale if not rough else 0.0
     painter.setBrush(QColor(t.hover if hover or target else t.card))
-    border = QColor(t.kinds["stance"]) if target else QColor(t.text if selected else t.dim if hover else t.line)
+    border = (
+        QColor(t.kinds["stance"]) if target else QColor(t.text if selected else t.dim if hover else t.line)
+    )
     painter.setPen(QPen(border, 2.2 if selected or target else 1.2))
     if ident == ANY:
         painter.drawRoundedRect(rect, rect.height() / 2, rect.height() / 2)
@@ -228,7 +272,9 @@ def _start(painter: QPainter, look: Look, rect: QRectF) -> None:
     painter.setPen(Qt.PenStyle.NoPen)
     painter.setBrush(color)
     painter.drawEllipse(QPointF(rect.left() - size, y), size * 0.17, size * 0.17)
-    paint_arrow(painter, QPointF(rect.left() - size, y), QPointF(rect.left() - 1, y), color, 1.6, look.view.scale)
+    paint_arrow(
+        painter, QPointF(rect.left() - size, y), QPointF(rect.left() - 1, y), color, 1.6, look.view.scale
+    )
 
 
 def _whole(painter: QPainter, look: Look, state: State, rect: QRectF) -> None:
@@ -246,7 +292,10 @@ def _whole(painter: QPainter, look: Look, state: State, rect: QRectF) -> None:
         painter.restore()
     left = place.right() + 9 * scale
     room = rect.right() - left - (20 if state.id in look.troubles else 8) * scale
-    bold, plain = _font(look.font.toString(), 12 * scale, True), _font(look.font.toString(), 11 * scale, False)
+    bold, plain = (
+        _font(look.font.toString(), 12 * scale, True),
+        _font(look.font.toString(), 11 * scale, False),
+    )
     lines = name_lines(state.name, bold.toString(), int(room))
     step = 15 * scale
     y = rect.center().y() - (len(lines) + 1) * step / 2
@@ -264,14 +313,20 @@ def _whole(painter: QPainter, look: Look, state: State, rect: QRectF) -> None:
 
 @lru_cache(maxsize=8192)
 def name_lines(name: str, font: str, width: int) -> tuple[str, ...]:
-    """Return a name in the one or two lines it needs, broken where its words meet, and shortened where that is not enough."""
+    """Return a name in the one or two lines it needs, broken where its words meet, and shortened where that
+    is not enough.
+    """
     made = QFont()
     made.fromString(font)
     metrics = QFontMetricsF(made)
     if metrics.horizontalAdvance(name) <= width:
         return (name,)
-    places = [n + 1 for n, c in enumerate(name[:-1]) if c in "_ -." and name[n + 1] not in "_ -."] or [len(name) // 2]
-    best = min(places, key=lambda n: max(metrics.horizontalAdvance(name[:n]), metrics.horizontalAdvance(name[n:])))
+    places = [n + 1 for n, c in enumerate(name[:-1]) if c in "_ -." and name[n + 1] not in "_ -."] or [
+        len(name) // 2
+    ]
+    best = min(
+        places, key=lambda n: max(metrics.horizontalAdvance(name[:n]), metrics.horizontalAdvance(name[n:]))
+    )
     return _elided(name[:best].rstrip(), font, width), _elided(name[best:], font, width)
 
 
@@ -291,17 +346,25 @@ def facts(project: Project, state: State) -> str:
 
 
 def _small(painter: QPainter, look: Look, state: State, rect: QRectF) -> None:
-    """Write a name where there is no room for more: in two lines, or in one what it ends with, which tells it from its like."""
+    """Write a name where there is no room for more: in two lines, or in one what it ends with, which tells it
+    from its like.
+    """
     font = _font(look.font.toString(), 10.0, False)
     painter.setFont(font)
     painter.setPen(QColor(look.theme.text))
     key = font.toString()
     if rect.height() > 26:
         flags = Qt.AlignmentFlag.AlignCenter | Qt.TextFlag.TextWordWrap
-        painter.drawText(rect, int(flags), _elided(state.name.replace("_", " "), key, int(rect.width() * 1.7)))
+        painter.drawText(
+            rect, int(flags), _elided(state.name.replace("_", " "), key, int(rect.width() * 1.7))
+        )
     else:
         words = state.name.rsplit("__", 1)[-1].replace("_", " ")
-        painter.drawText(rect, Qt.AlignmentFlag.AlignCenter, _elided(words, key, int(rect.width()), Qt.TextElideMode.ElideRight))
+        painter.drawText(
+            rect,
+            Qt.AlignmentFlag.AlignCenter,
+            _elided(words, key, int(rect.width()), Qt.TextElideMode.ElideRight),
+        )
 
 
 def paint_playing(painter: QPainter, look: Look, ident: str, part: float) -> None:

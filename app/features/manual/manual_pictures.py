@@ -12,7 +12,9 @@ from app.stage.thumbnails import Thumbnails
 
 
 class Pictures:
-    """count: how many were forgotten or come so far, so that whoever keeps a painting knows when it is old."""
+    """count: how many were forgotten or come so far, so that whoever keeps a painting knows when it is
+    old.
+    """
 
     def __init__(self, thumbnails: Thumbnails, session: Session) -> None:
         self.thumbnails, self.session = thumbnails, session
@@ -25,7 +27,9 @@ class Pictures:
         self._kept = {key: p for key, p in self._kept.items() if clip and key[0] != clip}
 
     def of(self, scene: Scene, view: View, ratio: float) -> dict[str, QPixmap]:
-        """Return the pictures of the states in sight by clip; those not drawn yet are asked for and left out."""
+        """Return the pictures of the states in sight by clip; those not drawn yet are asked for and left
+        out.
+        """
         if view.scale < SMALL:
             return {}
         out: dict[str, QPixmap] = {}
@@ -41,7 +45,10 @@ class Pictures:
                 if picture is None:
                     continue
                 scaled = picture.scaled(
-                    pixels, pixels, Qt.AspectRatioMode.KeepAspectRatioByExpanding, Qt.TransformationMode.SmoothTransformation
+                    pixels,
+                    pixels,
+                    Qt.AspectRatioMode.KeepAspectRatioByExpanding,
+                    Qt.TransformationMode.SmoothTransformation,
                 )
                 found = self._kept[key] = QPixmap.fromImage(scaled)
                 if len(self._kept) > 2000:

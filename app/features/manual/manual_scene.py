@@ -1,4 +1,5 @@
-"""Where a machine's nodes and arrows are, in the editor's own units, and what is under a point: values, no widgets.
+"""Where a machine's nodes and arrows are, in the editor's own units, and what is under a point: values, no
+widgets.
 
 All arrows are worked out at once as arrays: a machine of 152 states may have thousands.
 """
@@ -60,12 +61,16 @@ def fitted(rect: QRectF, size: QSizeF, most: float = 1.0) -> View:
     """Return the view that shows all of `rect`, as large as it goes but `most`."""
     wide, high = rect.width() + 2 * MARGIN, rect.height() + 2 * MARGIN
     scale = min(most, max(0.08, min(size.width() / max(wide, 1), size.height() / max(high, 1))))
-    return View(scale, rect.center().x() - size.width() / scale / 2, rect.center().y() - size.height() / scale / 2)
+    return View(
+        scale, rect.center().x() - size.width() / scale / 2, rect.center().y() - size.height() / scale / 2
+    )
 
 
 @dataclass(frozen=True)
 class Hit:
-    """What is under a point. "edge" is a node's border, from which links are drawn. ident: a state's or link's id, or ANY."""
+    """What is under a point. "edge" is a node's border, from which links are drawn. ident: a state's or
+    link's id, or ANY.
+    """
 
     area: Literal["node", "edge", "link", "nothing"]
     ident: str = ""
@@ -105,7 +110,11 @@ class Scene:
     @cached_property
     def straight(self) -> tuple[Link, ...]:
         """Links between two nodes, in the order of `lines`."""
-        return tuple(x for x in self.manual.links.values() if x.source != x.target and x.source in self.nodes and x.target in self.nodes)
+        return tuple(
+            x
+            for x in self.manual.links.values()
+            if x.source != x.target and x.source in self.nodes and x.target in self.nodes
+        )
 
     @cached_property
     def places(self) -> Mapping[str, int]:
@@ -114,7 +123,9 @@ class Scene:
 
     @cached_property
     def lines(self) -> Array:
-        """Where each straight arrow begins and ends, `[L, 4]`: from border to border, those of the same two nodes side by side."""
+        """Where each straight arrow begins and ends, `[L, 4]`: from border to border, those of the same two
+        nodes side by side.
+        """
         return arrow_lines(self.nodes, self.straight)
 
     @cached_property
@@ -166,7 +177,9 @@ class Scene:
         return Hit("link", self.straight[nearest].id) if away[nearest] <= near else NOTHING
 
     def inside(self, band: QRectF) -> tuple[tuple[str, ...], tuple[str, ...]]:
-        """Return the states and links a rubber band takes: nodes it touches, or where there are none the arrows it holds."""
+        """Return the states and links a rubber band takes: nodes it touches, or where there are none the
+        arrows it holds.
+        """
         states = tuple(i for i, rect in self.nodes.items() if i != ANY and rect.intersects(band))
         if states or not len(self.lines):
             return states, ()
@@ -216,7 +229,9 @@ def arrow_lines(nodes: Mapping[str, QRectF], links: Iterable[Link]) -> Array:
 
 
 def _way_out(half: Array, offset: Array, unit: Array) -> Array:
-    """Return how far it is from inside a rectangle of half sizes `[L, 2]`, at an offset from its middle, to its border along `unit`."""
+    """Return how far it is from inside a rectangle of half sizes `[L, 2]`, at an offset from its middle, to
+    its border along `unit`.
+    """
     with np.errstate(divide="ignore", invalid="ignore"):
         ways = (np.sign(unit) * half - offset) / unit
     ways = np.where(np.abs(unit) < 1e-9, np.inf, ways)

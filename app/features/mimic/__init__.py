@@ -15,7 +15,15 @@ def contribute(shell: Shell) -> Contribution:
     can = lambda: shell.document.project.skeleton is not None and shell.stage.performance.live.stage is None  # noqa: E731
     return Contribution(
         commands=(
-            Command("mimic", "&Play", "live", "Mimic &keypoints…", mimic, tip="Let the character do as a person before a camera did",
-                    enabled=can, when="meta"),
+            Command(
+                "mimic",
+                "&Play",
+                "live",
+                "Mimic &keypoints…",
+                mimic,
+                tip="Let the character do as a person before a camera did",
+                enabled=can,
+                when="meta",
+            ),
         ),
-    )  # fmt: skip
+    )

@@ -1,4 +1,6 @@
-"""Mimicking a recording of keypoints: what was read, how it is to be mimicked, and the requests that become of it."""
+"""Mimicking a recording of keypoints: what was read, how it is to be mimicked, and the requests that become
+of it.
+"""
 
 from __future__ import annotations
 
@@ -40,7 +42,9 @@ _NUMBERED = re.compile(r"_\d+_keypoints\.json$", re.I)
 
 
 class MimicDialog(QDialog):
-    """How a recording is mimicked; `accept` makes requests of it, in the performance on stage or a new one."""
+    """How a recording is mimicked; `accept` makes requests of it, in the performance on stage or a new
+    one.
+    """
 
     def __init__(self, shell: Shell, keypoints: Keypoints, name: str) -> None:
         super().__init__(shell.widget)
@@ -58,11 +62,16 @@ class MimicDialog(QDialog):
         form = QFormLayout()
         layout.addLayout(form)
         self.mirror = self._box(
-            "As in a mirror", "The character moves its right where the person moves the left, as somebody face to face does", True
+            "As in a mirror",
+            "The character moves its right where the person moves the left, as somebody face to face does",
+            True,
         )
         form.addRow("Sides", self.mirror)
         row = QHBoxLayout()
-        self.layers = {layer: self._box(layer.capitalize(), f"The {layer} goes to the stances the person is in", True) for layer in LAYERS}
+        self.layers = {
+            layer: self._box(layer.capitalize(), f"The {layer} goes to the stances the person is in", True)
+            for layer in LAYERS
+        }
         project = shell.document.project
         for layer, box in self.layers.items():
             box.setEnabled(bool(project.graphs[layer].stances))
@@ -71,10 +80,16 @@ class MimicDialog(QDialog):
             row.addWidget(box)
         row.addStretch(1)
         form.addRow("Layers", row)
-        self.gaze = self._box("Look where the person looks", "The character looks where the person's head is turned", False)
+        self.gaze = self._box(
+            "Look where the person looks", "The character looks where the person's head is turned", False
+        )
         form.addRow("Gaze", self.gaze)
         kept = shell.stage.performance.requests.kept
-        into = f"What is seen is added to '{kept.name}'." if kept is not None else "What is seen becomes a new performance."
+        into = (
+            f"What is seen is added to '{kept.name}'."
+            if kept is not None
+            else "What is seen becomes a new performance."
+        )
         layout.addWidget(self._dim(f"{into} Gestures and fidgets go on as they do."))
         if keypoints.dims == 2:
             layout.addWidget(self._dim("Without depth, leaning towards the camera is not seen."))
@@ -142,7 +157,9 @@ def _taken(shell: Shell, found: Mimicry, stage: str | None) -> None:
         if stage is not None and stage in project.performances:
             there = {ask.id for ask in project.performances[stage].asks}
             asks = (*project.performances[stage].asks, *(ask for ask in timed.asks if ask.id not in there))
-            return staging.change_performance(project, stage, asks=asks, length=max(timed.length, project.performances[stage].length))
+            return staging.change_performance(
+                project, stage, asks=asks, length=max(timed.length, project.performances[stage].length)
+            )
         project, made = staging.add_performance(project, timed)
         return project
 
@@ -157,7 +174,10 @@ def _taken(shell: Shell, found: Mimicry, stage: str | None) -> None:
 
 def recording_of(file: Path) -> Path:
     """Return what to read for a file that was chosen: its folder where it is one of many frames."""
-    if _NUMBERED.search(file.name) and sum(1 for other in file.parent.iterdir() if _NUMBERED.search(other.name)) > 1:
+    if (
+        _NUMBERED.search(file.name)
+        and sum(1 for other in file.parent.iterdir() if _NUMBERED.search(other.name)) > 1
+    ):
         return file.parent
     return file
 

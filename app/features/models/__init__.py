@@ -37,9 +37,16 @@ def contribute(shell: Shell) -> Contribution:
     return Contribution(
         panels=(Panel("models", "Models", "bottom", make, scrolls=True, study=False),),
         commands=(
-            Command("annotate", "&File", "import", "Import &annotation…", annotate, tip="Learn from an ELAN file what follows what",
-                    when="meta"),
+            Command(
+                "annotate",
+                "&File",
+                "import",
+                "Import &annotation…",
+                annotate,
+                tip="Learn from an ELAN file what follows what",
+                when="meta",
+            ),
         ),
         drops=(FileDrop((ANNOTATIONS,), claim, take),),
         late_imports=("app.features.models.models_panel", "app.features.models.annotation_dialog"),
-    )  # fmt: skip
+    )

@@ -1,4 +1,6 @@
-"""Importing an annotation: what each tier stands for, what each label means, a look at what comes of it, and what to make of it."""
+"""Importing an annotation: what each tier stands for, what each label means, a look at what comes of it, and
+what to make of it.
+"""
 
 from __future__ import annotations
 
@@ -65,11 +67,29 @@ MEANING_TIPS = {
 
 def meaning_entries(meaning: str) -> list[tuple[str, object, str]]:
     """Return what a label can mean: words, meaning, tip; what it means now is among them."""
-    known = ["gesture", "gesture positive", "gesture negative", "fidget", "transition", "stance", *PHASES, IGNORE]
+    known = [
+        "gesture",
+        "gesture positive",
+        "gesture negative",
+        "fidget",
+        "transition",
+        "stance",
+        *PHASES,
+        IGNORE,
+    ]
     if meaning not in known:
         known.insert(3, meaning)
-    out: list[tuple[str, object, str]] = [(meaning_words(m), m, MEANING_TIPS.get(parted(m)[0], "")) for m in known]
-    out.insert(-1, ("With other tags…", OTHER, "A gesture with tags of your own; actions of the graph need the same tags"))
+    out: list[tuple[str, object, str]] = [
+        (meaning_words(m), m, MEANING_TIPS.get(parted(m)[0], "")) for m in known
+    ]
+    out.insert(
+        -1,
+        (
+            "With other tags…",
+            OTHER,
+            "A gesture with tags of your own; actions of the graph need the same tags",
+        ),
+    )
     return out
 
 
@@ -87,11 +107,15 @@ class AnnotateDialog(QDialog):
 
     imported = Signal(object, object)
 
-    def __init__(self, document: Document, session: Session, reading: Reading, name: str, parent: QWidget | None = None) -> None:
+    def __init__(
+        self, document: Document, session: Session, reading: Reading, name: str, parent: QWidget | None = None
+    ) -> None:
         super().__init__(parent)
         self.document, self.session, self.name, self.reading = document, session, name, reading
         annotation = reading.annotation
-        self.order = sorted(annotation.tiers, key=lambda t: reading.roles[t.name] == IGNORE)  # those that are read first
+        self.order = sorted(
+            annotation.tiers, key=lambda t: reading.roles[t.name] == IGNORE
+        )  # those that are read first
         self.setAttribute(Qt.WidgetAttribute.WA_DeleteOnClose)
         self.setWindowTitle("Import annotation")
         self.resize(1040, 780)
@@ -108,9 +132,16 @@ class AnnotateDialog(QDialog):
         people = sorted({t.whose for t in annotation.tiers if t.whose})
         read = sorted({t.whose for t in annotation.tiers if t.whose and self.reading.roles[t.name] != IGNORE})
         count = sum(len(t.intervals) for t in annotation.tiers)
-        facts = [clock(round(annotation.end, 1)), many(len(annotation.tiers), "tier"), many(count, "interval")]
+        facts = [
+            clock(round(annotation.end, 1)),
+            many(len(annotation.tiers), "tier"),
+            many(count, "interval"),
+        ]
         if len(people) > 1:
-            facts.append(f"{len(people)} people, {' and '.join(read) or 'none'} of them read: another's tiers can be chosen instead")
+            facts.append(
+                f"{len(people)} people, {' and '.join(read) or 'none'} of them read: another's tiers can be "
+                "chosen instead"
+            )
         title = QLabel(self.name, self)
         title.setProperty("title", True)
         layout.addWidget(title)
@@ -119,7 +150,14 @@ class AnnotateDialog(QDialog):
         layout.addWidget(self.facts)
         tables = QHBoxLayout()
         tables.setSpacing(18)
-        self.tiers = self._table(tables, "What the tiers stand for", ("Tier", "Intervals", "Read as"), 138, 5, lambda _: ROLE_ENTRIES)
+        self.tiers = self._table(
+            tables,
+            "What the tiers stand for",
+            ("Tier", "Intervals", "Read as"),
+            138,
+            5,
+            lambda _: ROLE_ENTRIES,
+        )
         self.labels = self._table(
             tables, "What the labels mean", ("Label", "Layer", "Times", "Means"), 188, 6,
             lambda row: meaning_entries(self.reading.labels[row].meaning),
@@ -155,7 +193,13 @@ class AnnotateDialog(QDialog):
         layout.addWidget(self.buttons)
 
     def _table(
-        self, row: QHBoxLayout, title: str, heads: tuple[str, ...], wide: int, stretch: int, entries: Callable[[int], Entries]
+        self,
+        row: QHBoxLayout,
+        title: str,
+        heads: tuple[str, ...],
+        wide: int,
+        stretch: int,
+        entries: Callable[[int], Entries],
     ) -> ChoiceTable:
         box = QVBoxLayout()
         box.setSpacing(4)
@@ -177,7 +221,14 @@ class AnnotateDialog(QDialog):
         for box in self.learn.values():
             box.toggled.connect(self._enable)
             row.addWidget(box)
-        self.smoothing = Seconds(self, "Added to every count, so that what was not seen can happen; 0 as in the paper", 10, "", 0.1, 1)
+        self.smoothing = Seconds(
+            self,
+            "Added to every count, so that what was not seen can happen; 0 as in the paper",
+            10,
+            "",
+            0.1,
+            1,
+        )
         self.smoothing.show_value(0.0)
         row.addSpacing(12)
         row.addWidget(QLabel("Smoothing", self))
@@ -186,9 +237,15 @@ class AnnotateDialog(QDialog):
         form.addRow("Learn a model of", row)
         row = QHBoxLayout()
         row.setSpacing(16)
-        self.as_shares = QRadioButton("shares of all gestures", self, toolTip="So many of the gestures are positive, whatever came before")
+        self.as_shares = QRadioButton(
+            "shares of all gestures",
+            self,
+            toolTip="So many of the gestures are positive, whatever came before",
+        )
         self.as_states = QRadioButton(
-            "states of their own", self, toolTip="What follows a positive gesture differs from what follows others"
+            "states of their own",
+            self,
+            toolTip="What follows a positive gesture differs from what follows others",
         )
         self.as_shares.setChecked(True)
         row.addWidget(self.as_shares)
@@ -197,7 +254,11 @@ class AnnotateDialog(QDialog):
         form.addRow("Positive and negative are", row)
         row = QHBoxLayout()
         row.setSpacing(10)
-        self.keep = QCheckBox("as a performance called", self, toolTip="Played as it was seen; another seed plays it with other actions")
+        self.keep = QCheckBox(
+            "as a performance called",
+            self,
+            toolTip="Played as it was seen; another seed plays it with other actions",
+        )
         self.keep.setChecked(True)
         self.keep.toggled.connect(self._enable)
         self.called = QLineEdit(Path(self.name).stem, self)
@@ -224,7 +285,12 @@ class AnnotateDialog(QDialog):
 
     def _show_labels(self) -> None:
         rows = [
-            Row((x.text or "(empty)", x.layer, f"{x.count:,}"), meaning_words(x.meaning), x.meaning == IGNORE, x.text)
+            Row(
+                (x.text or "(empty)", x.layer, f"{x.count:,}"),
+                meaning_words(x.meaning),
+                x.meaning == IGNORE,
+                x.text,
+            )
             for x in self.reading.labels[:MOST]
         ]
         self.labels.show_rows(rows, "Say what the tiers stand for, then their labels come here.")
@@ -266,8 +332,14 @@ class AnnotateDialog(QDialog):
 
     def _set_meaning(self, label: Label, meaning: str) -> None:
         if meaning == OTHER:
-            words, ok = QInputDialog.getText(self, "Tags", f"'{label.text}' is a gesture that is", text=" ".join(parted(label.meaning)[1]))
-            meaning = f"gesture {' '.join(words.replace(',', ' ').casefold().split())}".strip() if ok else label.meaning
+            words, ok = QInputDialog.getText(
+                self, "Tags", f"'{label.text}' is a gesture that is", text=" ".join(parted(label.meaning)[1])
+            )
+            meaning = (
+                f"gesture {' '.join(words.replace(',', ' ').casefold().split())}".strip()
+                if ok
+                else label.meaning
+            )
         self.reading = self.reading.with_meaning(label, meaning)
         self._changed()
 
@@ -276,7 +348,9 @@ class AnnotateDialog(QDialog):
         learned = [layer for layer, box in self.learn.items() if box.isChecked()]
         name = " ".join(self.called.text().split()) if self.keep.isChecked() else None
         tagged = self.as_states.isChecked() and self.as_states.isEnabled()
-        made = into(self.document.project, self.reading, learned, tagged, name, max(0.0, self.smoothing.value()))
+        made = into(
+            self.document.project, self.reading, learned, tagged, name, max(0.0, self.smoothing.value())
+        )
         self.document.edit("Import annotation", lambda _: made.project)
         keep("tiers", self.reading.roles)
         keep("labels", made.project.labels)
@@ -303,8 +377,12 @@ def keep(what: str, said: Mapping[str, str]) -> None:
     QSettings().setValue(f"annotation/{what}", json.dumps(dict(list(both.items())[-REMEMBERED:])))
 
 
-def open_annotation(shell: Shell, path: str | Path | None = None, done: Callable[[AnnotateDialog], object] | None = None) -> None:
-    """Ask for an annotation (or take `path`, "sample" for our own), read it on a thread and open the dialog."""
+def open_annotation(
+    shell: Shell, path: str | Path | None = None, done: Callable[[AnnotateDialog], object] | None = None
+) -> None:
+    """Ask for an annotation (or take `path`, "sample" for our own), read it on a thread and open the
+    dialog.
+    """
     if not path:
         start = str(shell.document.folder or Path.home())
         path, _ = QFileDialog.getOpenFileName(shell.widget, "Import annotation", start, FILTER)

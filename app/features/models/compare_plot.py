@@ -1,4 +1,6 @@
-"""What was seen beside what a model makes: how often each state comes, and how long it lasts. Outlined is seen, filled is made."""
+"""What was seen beside what a model makes: how often each state comes, and how long it lasts. Outlined is
+seen, filled is made.
+"""
 
 from __future__ import annotations
 
@@ -22,7 +24,11 @@ WIDTH = 0.34  # of a bar; two stand side by side
 def short(state: State, layer: str) -> str:
     """Return a state as it stands under a bar: "▲L", "◆LR", "▲+"."""
     limb, kind, tags = state
-    return KIND_MARKS[kind] + (SIDES[limb] if layer == "arms" else "") + {"": "", "positive": "+", "negative": "−"}.get(tags, " …")
+    return (
+        KIND_MARKS[kind]
+        + (SIDES[limb] if layer == "arms" else "")
+        + {"": "", "positive": "+", "negative": "−"}.get(tags, " …")
+    )
 
 
 def verdict(found: Comparison) -> str:
@@ -34,8 +40,14 @@ def verdict(found: Comparison) -> str:
     worst = int(np.argmax(np.abs(np.nan_to_num(apart, posinf=1e9, neginf=-1e9))))
     if abs(apart[worst]) <= SURE:
         return "Each comes as often as was seen, give or take what chance explains."
-    name, seen, made = state_words(found.observed.states[worst], layer), found.observed.shares()[worst], found.expected[worst]
-    return f"Not as seen: {name} came in {seen:.0%} of actions, the model makes {made:.0%}.".replace("%", " %")
+    name, seen, made = (
+        state_words(found.observed.states[worst], layer),
+        found.observed.shares()[worst],
+        found.expected[worst],
+    )
+    return f"Not as seen: {name} came in {seen:.0%} of actions, the model makes {made:.0%}.".replace(
+        "%", " %"
+    )
 
 
 class ComparePlot(QWidget):
@@ -96,7 +108,9 @@ class ComparePlot(QWidget):
             color = t.fill(state[1])
             self._bar(self.often, n - WIDTH / 2, 100 * seen[n], color, False)
             self._bar(self.often, n + WIDTH / 2, 100 * made[n], color, True)
-            whisker = pg.PlotDataItem([n + WIDTH / 2] * 2, [100 * max(0.0, made[n] - chance[n]), 100 * (made[n] + chance[n])])
+            whisker = pg.PlotDataItem(
+                [n + WIDTH / 2] * 2, [100 * max(0.0, made[n] - chance[n]), 100 * (made[n] + chance[n])]
+            )
             whisker.setPen(pg.mkPen(t.text, width=1.3))
             self.often.addItem(whisker)
             if found.observed is not None:

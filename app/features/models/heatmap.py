@@ -1,11 +1,23 @@
-"""A model's matrix as a heat map that is edited in place: rows are what is done now, columns what comes next."""
+"""A model's matrix as a heat map that is edited in place: rows are what is done now, columns what comes
+next.
+"""
 
 from __future__ import annotations
 
 from dataclasses import dataclass
 
 from PySide6.QtCore import QEvent, QPointF, QRectF, QSize, Qt, Signal
-from PySide6.QtGui import QColor, QContextMenuEvent, QFont, QFontMetricsF, QKeyEvent, QMouseEvent, QPainter, QPaintEvent, QPen
+from PySide6.QtGui import (
+    QColor,
+    QContextMenuEvent,
+    QFont,
+    QFontMetricsF,
+    QKeyEvent,
+    QMouseEvent,
+    QPainter,
+    QPaintEvent,
+    QPen,
+)
 from PySide6.QtWidgets import QLineEdit, QWidget
 
 from app.look.theme import KIND_MARKS, Theme, theme
@@ -38,7 +50,12 @@ class Grid:
         """Return (row, column) under a point; column -1 for a row's head, row -1 for a column's."""
         row = int((point.y() - HEAD) // self.high) if point.y() >= HEAD else -1
         column = int((point.x() - SIDE) // self.wide) if point.x() >= SIDE else -1
-        if row >= self.count or column >= self.count or (row < 0 and column < 0) or min(point.x(), point.y()) < 0:
+        if (
+            row >= self.count
+            or column >= self.count
+            or (row < 0 and column < 0)
+            or min(point.x(), point.y()) < 0
+        ):
             return None
         return row, column
 
@@ -51,16 +68,24 @@ def grid(count: int, width: float, height: float) -> Grid:
 
 
 def shade(color: QColor, ground: QColor, probability: float) -> QColor:
-    """Return the colour of a cell: from the ground to the kind's colour; differences between small numbers are seen, too."""
+    """Return the colour of a cell: from the ground to the kind's colour; differences between small numbers
+    are seen, too.
+    """
     part = 0.0 if probability <= 0 else 0.10 + 0.82 * min(1.0, probability) ** 0.75
     mix = [round(g + (c - g) * part) for c, g in zip(color.getRgb()[:3], ground.getRgb()[:3], strict=True)]
     return QColor(*mix)
 
 
 def ink(ground: QColor) -> QColor:
-    """Return dark or light, whichever reads better on a ground; on middling ones black or white, since no other gives 4.5:1."""
+    """Return dark or light, whichever reads better on a ground; on middling ones black or white, since no
+    other gives 4.5:1.
+    """
     soft = max(map(QColor, INKS), key=lambda c: contrast(c, ground))
-    return soft if contrast(soft, ground) >= 4.5 else max(QColor("#000000"), QColor("#ffffff"), key=lambda c: contrast(c, ground))
+    return (
+        soft
+        if contrast(soft, ground) >= 4.5
+        else max(QColor("#000000"), QColor("#ffffff"), key=lambda c: contrast(c, ground))
+    )
 
 
 def contrast(a: QColor, b: QColor) -> float:
@@ -104,8 +129,9 @@ def _a(state: State, layer: Layer) -> str:
 class HeatMap(QWidget):
     """Drag a number up or down, or type one; arrow keys go from cell to cell, + and - change by 1 %.
 
-    edited: (row, column, probability, whether it is still being dragged). cancelled: a drag was given up. pointed: the sentence of
-    the cell that is hovered over or current. menu: (row or -1, global position) was asked for.
+    edited: (row, column, probability, whether it is still being dragged). cancelled: a drag was given up.
+    pointed: the sentence of the cell that is hovered over or current. menu: (row or -1, global position) was
+    asked for.
     """
 
     edited = Signal(int, int, float, bool)
@@ -132,7 +158,9 @@ class HeatMap(QWidget):
         self.field.hide()
         self.field.installEventFilter(self)
 
-    def show_model(self, model: Markov, layer: Layer, look: str, closed: frozenset[int] = frozenset()) -> None:
+    def show_model(
+        self, model: Markov, layer: Layer, look: str, closed: frozenset[int] = frozenset()
+    ) -> None:
         """Show a model; closed: its states that the planner passes over."""
         same = self.model is not None and len(self.model.states) == len(model.states) and layer == self.layer
         self.model, self.layer, self.look, self.closed = model, layer, look, closed
@@ -172,8 +200,17 @@ class HeatMap(QWidget):
         widest = max(metrics.horizontalAdvance(self._row_words(s, cells.high)) for s in states) + _GAP
         margin = max(0.0, SIDE - 14 - widest)
         for n, state in enumerate(states):
-            self._row_head(painter, t, QRectF(margin, cells.cell(n, 0).top(), SIDE - 8 - margin, cells.high), state, n, lit[0] == n)
-            self._column_head(painter, t, QRectF(cells.cell(0, n).left(), 0, cells.wide, HEAD - 4), state, n, lit[1] == n)
+            self._row_head(
+                painter,
+                t,
+                QRectF(margin, cells.cell(n, 0).top(), SIDE - 8 - margin, cells.high),
+                state,
+                n,
+                lit[0] == n,
+            )
+            self._column_head(
+                painter, t, QRectF(cells.cell(0, n).left(), 0, cells.wide, HEAD - 4), state, n, lit[1] == n
+            )
         ground, number = QColor(t.field), QFont(painter.font())
         number.setPixelSize(13 if cells.high >= 22 else 12)
         painter.setFont(number)
@@ -198,18 +235,36 @@ class HeatMap(QWidget):
         painter.end()
 
     def _name(self, state: State) -> str:
-        """What tells a state from others of its kind: the limb, or the kind itself where there are no sides."""
+        """What tells a state from others of its kind: the limb, or the kind itself where there are no
+        sides.
+        """
         return state[0] if self.layer == "arms" else state[1]
 
     def _row_words(self, state: State, high: float) -> str:
         tags = state[2] if high >= _TWO_LINES else _SHORT.get(state[2], state[2])
-        return f"{self._name(state)} {tags}".strip() if high < _TWO_LINES else max(self._name(state), tags, key=len)
+        return (
+            f"{self._name(state)} {tags}".strip()
+            if high < _TWO_LINES
+            else max(self._name(state), tags, key=len)
+        )
 
     def _row_head(self, painter: QPainter, t: Theme, box: QRectF, state: State, n: int, lit: bool) -> None:
-        """Paint a state left of its row: its kind's mark in its colour, what tells it from others, tags below or behind it."""
+        """Paint a state left of its row: its kind's mark in its colour, what tells it from others, tags below
+        or behind it.
+        """
         two = bool(state[2]) and box.height() >= _TWO_LINES
-        line = QRectF(box.left(), box.top() + (3 if two else 0), box.width(), box.height() / 2 if two else box.height())
-        self._words(painter, t, line, state, n, lit, self._name(state) if two else self._row_words(state, box.height()))
+        line = QRectF(
+            box.left(), box.top() + (3 if two else 0), box.width(), box.height() / 2 if two else box.height()
+        )
+        self._words(
+            painter,
+            t,
+            line,
+            state,
+            n,
+            lit,
+            self._name(state) if two else self._row_words(state, box.height()),
+        )
         if two:
             below = QRectF(box.left() + _GAP, box.center().y() - 3, box.width() - _GAP, box.height() / 2)
             self._tags(painter, t, below, state[2], n, Qt.AlignmentFlag.AlignLeft)
@@ -217,16 +272,25 @@ class HeatMap(QWidget):
     def _column_head(self, painter: QPainter, t: Theme, box: QRectF, state: State, n: int, lit: bool) -> None:
         metrics, name = QFontMetricsF(self.font()), self._name(state)
         if metrics.horizontalAdvance(name) > box.width() - _GAP - 2:
-            name = SIDES.get(name) or metrics.elidedText(name, Qt.TextElideMode.ElideRight, box.width() - _GAP - 2)
+            name = SIDES.get(name) or metrics.elidedText(
+                name, Qt.TextElideMode.ElideRight, box.width() - _GAP - 2
+            )
         width = _GAP + metrics.horizontalAdvance(name)
         line = QRectF(box.center().x() - width / 2, box.bottom() - (34 if state[2] else 18), width + 4, 18)
         self._words(painter, t, line, state, n, lit, name)
         if state[2]:
             self._tags(
-                painter, t, QRectF(box.left() + 1, line.bottom() - 3, box.width() - 2, 18), state[2], n, Qt.AlignmentFlag.AlignHCenter
+                painter,
+                t,
+                QRectF(box.left() + 1, line.bottom() - 3, box.width() - 2, 18),
+                state[2],
+                n,
+                Qt.AlignmentFlag.AlignHCenter,
             )
 
-    def _words(self, painter: QPainter, t: Theme, line: QRectF, state: State, n: int, lit: bool, words: str) -> None:
+    def _words(
+        self, painter: QPainter, t: Theme, line: QRectF, state: State, n: int, lit: bool, words: str
+    ) -> None:
         painter.setOpacity(0.45 if n in self.closed else 1.0)
         painter.setFont(self.font())
         painter.setPen(t.kind(state[1]))
@@ -235,13 +299,17 @@ class HeatMap(QWidget):
         painter.drawText(line.adjusted(_GAP, 0, 0, 0), Qt.AlignmentFlag.AlignVCenter, words)
         painter.setOpacity(1.0)
 
-    def _tags(self, painter: QPainter, t: Theme, line: QRectF, tags: str, n: int, side: Qt.AlignmentFlag) -> None:
+    def _tags(
+        self, painter: QPainter, t: Theme, line: QRectF, tags: str, n: int, side: Qt.AlignmentFlag
+    ) -> None:
         small = QFont(self.font())
         small.setPixelSize(11)
         painter.setOpacity(0.45 if n in self.closed else 1.0)
         painter.setFont(small)
         painter.setPen(QColor(t.dim))
-        told = QFontMetricsF(small).elidedText(tags.replace(" ", ", "), Qt.TextElideMode.ElideRight, line.width())
+        told = QFontMetricsF(small).elidedText(
+            tags.replace(" ", ", "), Qt.TextElideMode.ElideRight, line.width()
+        )
         painter.drawText(line, side | Qt.AlignmentFlag.AlignVCenter, told)
         painter.setOpacity(1.0)
 
@@ -250,7 +318,12 @@ class HeatMap(QWidget):
     def mousePressEvent(self, event: QMouseEvent) -> None:
         found = self.grid().at(event.position())
         self.field.hide()
-        if self.model is None or event.button() != Qt.MouseButton.LeftButton or found is None or min(found) < 0:
+        if (
+            self.model is None
+            or event.button() != Qt.MouseButton.LeftButton
+            or found is None
+            or min(found) < 0
+        ):
             return
         self.current = found
         self._from, self._moved = (event.position().y(), self.model.matrix[found[0]][found[1]]), False
@@ -262,7 +335,11 @@ class HeatMap(QWidget):
             y, before = self._from
             if self._moved or abs(event.position().y() - y) >= 3:
                 self._moved = True
-                self.edited.emit(*self.current, round(min(1.0, max(0.0, before + (y - event.position().y()) / DRAG)), 3), True)
+                self.edited.emit(
+                    *self.current,
+                    round(min(1.0, max(0.0, before + (y - event.position().y()) / DRAG)), 3),
+                    True,
+                )
             return
         found = self.grid().at(event.position())
         if found != self.hovered:
@@ -291,7 +368,9 @@ class HeatMap(QWidget):
 
     def contextMenuEvent(self, event: QContextMenuEvent) -> None:
         if event.reason() == QContextMenuEvent.Reason.Keyboard:
-            self.menu.emit(self.current[0], self.mapToGlobal(self.grid().cell(*self.current).bottomLeft().toPoint()))
+            self.menu.emit(
+                self.current[0], self.mapToGlobal(self.grid().cell(*self.current).bottomLeft().toPoint())
+            )
             return
         found = self.grid().at(QPointF(event.pos()))
         row = -1 if found is None else found[0] if found[0] >= 0 else found[1]
@@ -303,7 +382,11 @@ class HeatMap(QWidget):
         # Digits, signs and Escape are the map's while it has the keyboard, not the window's shortcuts.
         if event.type() == QEvent.Type.ShortcutOverride and isinstance(event, QKeyEvent):
             dragging = event.key() == Qt.Key.Key_Escape and self._from is not None
-            if (event.text() and event.text() in "0123456789.,+-") or dragging or event.key() in (Qt.Key.Key_Return, Qt.Key.Key_Enter):
+            if (
+                (event.text() and event.text() in "0123456789.,+-")
+                or dragging
+                or event.key() in (Qt.Key.Key_Return, Qt.Key.Key_Enter)
+            ):
                 event.accept()
                 return True
         return super().event(event)
@@ -311,7 +394,12 @@ class HeatMap(QWidget):
     def keyPressEvent(self, event: QKeyEvent) -> None:
         if self.model is None:
             return
-        moves = {Qt.Key.Key_Left: (0, -1), Qt.Key.Key_Right: (0, 1), Qt.Key.Key_Up: (-1, 0), Qt.Key.Key_Down: (1, 0)}
+        moves = {
+            Qt.Key.Key_Left: (0, -1),
+            Qt.Key.Key_Right: (0, 1),
+            Qt.Key.Key_Up: (-1, 0),
+            Qt.Key.Key_Down: (1, 0),
+        }
         last, (row, column) = len(self.model.states) - 1, self.current
         if event.key() == Qt.Key.Key_Escape and self._from is not None:
             self._from, self._moved = None, False
@@ -323,7 +411,9 @@ class HeatMap(QWidget):
             self._tell()
         elif event.text() and event.text() in "+-":
             step = 0.01 if event.text() == "+" else -0.01
-            self.edited.emit(row, column, min(1.0, max(0.0, round(self.model.matrix[row][column] + step, 3))), False)
+            self.edited.emit(
+                row, column, min(1.0, max(0.0, round(self.model.matrix[row][column] + step, 3))), False
+            )
         elif event.key() in (Qt.Key.Key_Return, Qt.Key.Key_Enter):
             self._type("")
         elif event.text() and event.text() in "0123456789.,":
@@ -356,11 +446,18 @@ class HeatMap(QWidget):
 
     def eventFilter(self, watched: object, event: QEvent) -> bool:
         if watched is self.field:
-            if event.type() == QEvent.Type.ShortcutOverride and isinstance(event, QKeyEvent) and event.key() == Qt.Key.Key_Escape:
+            if (
+                event.type() == QEvent.Type.ShortcutOverride
+                and isinstance(event, QKeyEvent)
+                and event.key() == Qt.Key.Key_Escape
+            ):
                 event.accept()
                 return True
             if event.type() == QEvent.Type.KeyPress and isinstance(event, QKeyEvent):
-                if event.key() in (Qt.Key.Key_Return, Qt.Key.Key_Enter):  # which a line of text would let through to the map as well
+                if event.key() in (
+                    Qt.Key.Key_Return,
+                    Qt.Key.Key_Enter,
+                ):  # which a line of text would let through to the map as well
                     self._typed()
                     return True
                 if event.key() == Qt.Key.Key_Escape:
@@ -381,7 +478,9 @@ class HeatMap(QWidget):
     def _tell(self) -> None:
         if self.model is not None:
             at = self.hovered if self.hovered is not None and self._from is None else self.current
-            self.pointed.emit(sentence(self.model, self.layer, *at) if min(at) >= 0 else self._state_sentence(max(at)))
+            self.pointed.emit(
+                sentence(self.model, self.layer, *at) if min(at) >= 0 else self._state_sentence(max(at))
+            )
 
     def _state_sentence(self, n: int) -> str:
         assert self.model is not None

@@ -7,7 +7,15 @@ from dataclasses import dataclass
 
 from PySide6.QtCore import QEvent, QModelIndex, QPersistentModelIndex, QPointF, QRectF, QSize, Qt, Signal
 from PySide6.QtGui import QColor, QFontMetricsF, QKeyEvent, QMouseEvent, QPainter, QPen
-from PySide6.QtWidgets import QHeaderView, QMenu, QStyledItemDelegate, QStyleOptionViewItem, QTreeWidget, QTreeWidgetItem, QWidget
+from PySide6.QtWidgets import (
+    QHeaderView,
+    QMenu,
+    QStyledItemDelegate,
+    QStyleOptionViewItem,
+    QTreeWidget,
+    QTreeWidgetItem,
+    QWidget,
+)
 
 from app.look.theme import theme
 from app.stage.session import Session
@@ -19,7 +27,9 @@ Entries = Sequence[tuple[str, object, str]]  # words, value, tooltip
 
 @dataclass(frozen=True)
 class Row:
-    """cells: the texts of all but the last column. chosen: the words of the last. dim: of what does not count. tip: tells more."""
+    """cells: the texts of all but the last column. chosen: the words of the last. dim: of what does not
+    count. tip: tells more.
+    """
 
     cells: tuple[str, ...]
     chosen: str
@@ -34,7 +44,9 @@ class _Field(QStyledItemDelegate):
         super().__init__(table)
         self.table = table
 
-    def paint(self, painter: QPainter, option: QStyleOptionViewItem, index: QModelIndex | QPersistentModelIndex) -> None:
+    def paint(
+        self, painter: QPainter, option: QStyleOptionViewItem, index: QModelIndex | QPersistentModelIndex
+    ) -> None:
         t = theme(self.table.session.look.name)
         words = str(index.data(Qt.ItemDataRole.DisplayRole) or "")
         if not words:
@@ -66,7 +78,13 @@ class ChoiceTable(QTreeWidget):
     chosen = Signal(int, object)
 
     def __init__(
-        self, session: Session, title: str, heads: Sequence[str], wide: int, entries: Callable[[int], Entries], parent: QWidget
+        self,
+        session: Session,
+        title: str,
+        heads: Sequence[str],
+        wide: int,
+        entries: Callable[[int], Entries],
+        parent: QWidget,
     ) -> None:
         super().__init__(parent)
         self.session, self.entries = session, entries
@@ -86,11 +104,19 @@ class ChoiceTable(QTreeWidget):
             header.setSectionResizeMode(column, QHeaderView.ResizeMode.ResizeToContents)
         header.setSectionResizeMode(self.last, QHeaderView.ResizeMode.Fixed)
         header.resizeSection(self.last, wide)
-        self.headerItem().setTextAlignment(self.last - 1, Qt.AlignmentFlag.AlignRight | Qt.AlignmentFlag.AlignVCenter)
+        self.headerItem().setTextAlignment(
+            self.last - 1, Qt.AlignmentFlag.AlignRight | Qt.AlignmentFlag.AlignVCenter
+        )
 
     def show_rows(self, rows: Sequence[Row], otherwise: str = "") -> None:
-        """Show rows, or the words `otherwise` where there are none. The current row and the scroll stay where they are."""
-        t, place, scroll = theme(self.session.look.name), self.currentIndex().row(), self.verticalScrollBar().value()
+        """Show rows, or the words `otherwise` where there are none. The current row and the scroll stay where
+        they are.
+        """
+        t, place, scroll = (
+            theme(self.session.look.name),
+            self.currentIndex().row(),
+            self.verticalScrollBar().value(),
+        )
         self.rows = tuple(rows)
         self.clear()
         items = []
@@ -140,7 +166,9 @@ class ChoiceTable(QTreeWidget):
 
     def event(self, event: QEvent) -> bool:
         # In a dialog, Enter would press the default button.
-        opens = event.type() == QEvent.Type.KeyPress and isinstance(event, QKeyEvent) and event.key() in _OPENING
+        opens = (
+            event.type() == QEvent.Type.KeyPress and isinstance(event, QKeyEvent) and event.key() in _OPENING
+        )
         if opens and self.currentIndex().isValid():
             self.open_menu(self.currentIndex().row())
             return True

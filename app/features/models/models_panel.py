@@ -1,4 +1,6 @@
-"""The models panel: what follows what on a layer when nobody asks for anything, edited as a heat map; what it makes; how that compares."""
+"""The models panel: what follows what on a layer when nobody asks for anything, edited as a heat map; what it
+makes; how that compares.
+"""
 
 from __future__ import annotations
 
@@ -33,7 +35,15 @@ from app.widgets.form_fields import Chooser, Seconds
 from metagraph.graph import edits
 from metagraph.graph.model import LIMBS, Layer, Limb, Markov, Project
 from metagraph.playback.compare import Comparison, compare, generate
-from metagraph.playback.learn import Act, acts_of_asks, state_words, states_of, with_cell, with_state, without_state
+from metagraph.playback.learn import (
+    Act,
+    acts_of_asks,
+    state_words,
+    states_of,
+    with_cell,
+    with_state,
+    without_state,
+)
 from metagraph.playback.markov import model
 
 HOUR = 3600.0  # seconds the model makes to be compared
@@ -42,9 +52,12 @@ TALL = 430  # pixels the panel likes to have, its title included
 IMPORTED = "imported"  # what was read last, whether or not it was kept
 MERGE = "matrix"
 TEACH = (
-    "<b>Nobody has been watched yet:</b> this is the {origin}. Annotate a video in ELAN, with a tier for each arm, the head and the body "
-    "and labels such as <i>gesture, fidget, stance-transition, nodding</i>. <a href='learn'>Import the .eaf file</a> or drop it on the "
-    "window: what follows what is counted and becomes the model. <a href='sample'>Try the sample annotation.</a>"
+    "<b>Nobody has been watched yet:</b> this is the {origin}. Annotate a video in ELAN, with a tier for "
+    "each arm, the head and the body "
+    "and labels such as <i>gesture, fidget, stance-transition, nodding</i>. <a href='learn'>Import the .eaf "
+    "file</a> or drop it on the "
+    "window: what follows what is counted and becomes the model. <a href='sample'>Try the sample "
+    "annotation.</a>"
 )
 
 
@@ -53,11 +66,15 @@ class ModelsPanel(QWidget):
 
     learn_wanted = Signal(str)
 
-    def __init__(self, document: Document, session: Session, jobs: Jobs, parent: QWidget | None = None) -> None:
+    def __init__(
+        self, document: Document, session: Session, jobs: Jobs, parent: QWidget | None = None
+    ) -> None:
         super().__init__(parent)
         self.document, self.session, self.jobs = document, session, jobs
         self.imported: Mapping[Layer, Sequence[Act]] = {}
-        self.source: str | None = None  # what is compared with: a performance's id or IMPORTED, None for the latest there is
+        self.source: str | None = (
+            None  # what is compared with: a performance's id or IMPORTED, None for the latest there is
+        )
         self.seed = 1
         self._before: Markov | None = None  # the model before the drag that is going on
         self._stale, self._busy, self._again, self._grown = True, False, False, False
@@ -84,7 +101,9 @@ class ModelsPanel(QWidget):
         layout.addLayout(row, 1)
         bottom = QHBoxLayout()
         bottom.setSpacing(12)
-        self.again = QPushButton("Another sample", self, toolTip="Let chance draw other actions from the same model")
+        self.again = QPushButton(
+            "Another sample", self, toolTip="Let chance draw other actions from the same model"
+        )
         self.again.clicked.connect(self._another)
         self.strip = Strip(self.session, self, titles=False)
         self.strip.setFixedHeight(60)
@@ -103,7 +122,9 @@ class ModelsPanel(QWidget):
         top.addStretch(1)
         self.back = QPushButton("Back to default", self, toolTip="Forget this layer's model")
         self.back.clicked.connect(self._reset)
-        self.learn = QPushButton("Learn from annotation…", self, toolTip="Read an ELAN file (.eaf) and count what follows what")
+        self.learn = QPushButton(
+            "Learn from annotation…", self, toolTip="Read an ELAN file (.eaf) and count what follows what"
+        )
         self.learn.clicked.connect(lambda: self.learn_wanted.emit(""))
         top.addWidget(self.back)
         top.addWidget(self.learn)
@@ -142,7 +163,14 @@ class ModelsPanel(QWidget):
         fields.addWidget(self.gap)
         self.share_labels = []
         for tag in ("positive", "negative"):
-            field = Seconds(self, f"How many of the gestures are asked for as {tag}", most=100, suffix=" %", step=1, decimals=0)
+            field = Seconds(
+                self,
+                f"How many of the gestures are asked for as {tag}",
+                most=100,
+                suffix=" %",
+                step=1,
+                decimals=0,
+            )
             field.valueChanged.connect(lambda value, t=tag: self._set_share(t, value))
             self.shares[tag] = field
             label = QLabel(f"{tag.capitalize()}", self)
@@ -170,7 +198,9 @@ class ModelsPanel(QWidget):
         return QSize(1100, TALL)
 
     def paintEvent(self, event: QPaintEvent) -> None:
-        """Catch up once it is seen: the docks behind others are only moved out of sight, which tells nobody."""
+        """Catch up once it is seen: the docks behind others are only moved out of sight, which tells
+        nobody.
+        """
         super().paintEvent(event)
         if self._stale:
             QTimer.singleShot(0, self.refresh)
@@ -203,7 +233,11 @@ class ModelsPanel(QWidget):
         self.origin.setText(f"{'learned or edited' if own else default} · {many(len(shown.states), 'state')}")
         self.back.setEnabled(own)
         kinds = {kind for _, kind in project.graphs[layer].index}
-        closed = frozenset(n for n, (_, kind) in enumerate(shown.states) if kind not in kinds) if kinds else frozenset()
+        closed = (
+            frozenset(n for n, (_, kind) in enumerate(shown.states) if kind not in kinds)
+            if kinds
+            else frozenset()
+        )
         self.heat.show_model(shown, layer, self.session.look.name, closed)
         self.gap.show_value(shown.gap)
         for tag, field in self.shares.items():
@@ -260,7 +294,9 @@ class ModelsPanel(QWidget):
         shown, sources = self.model(), self._sources()
         key = self.chooser.currentData()
         acts = [sources[key][1]] if key in sources else None
-        self.jobs.start("compare", lambda _: compare(shown, acts, HOUR), self._compared, self._failed, quick=True)
+        self.jobs.start(
+            "compare", lambda _: compare(shown, acts, HOUR), self._compared, self._failed, quick=True
+        )
 
     def _compared(self, found: Comparison) -> None:
         self._busy = False
@@ -276,7 +312,11 @@ class ModelsPanel(QWidget):
     # --- following
 
     def _edited(self, before: Project, after: Project) -> None:
-        if before.markov is not after.markov or before.performances is not after.performances or before.graphs is not after.graphs:
+        if (
+            before.markov is not after.markov
+            or before.performances is not after.performances
+            or before.graphs is not after.graphs
+        ):
             self.refresh()
 
     def _loaded(self) -> None:
@@ -337,7 +377,9 @@ class ModelsPanel(QWidget):
         """Return the menu of a state: another one, or away with this one. row: -1 for none."""
         menu, shown, layer = QMenu(self), self.model(), self.session.place.layer
         there = set(states_of(shown))
-        tags = dict.fromkeys(("", *(tag for _, _, tag in there), *(("positive", "negative") if shown.tags else ())))
+        tags = dict.fromkeys(
+            ("", *(tag for _, _, tag in there), *(("positive", "negative") if shown.tags else ()))
+        )
         limbs: tuple[Limb, ...] = LIMBS if layer == "arms" else ("both",)
         add = menu.addMenu("Add a state")
         for limb in limbs:
@@ -346,11 +388,15 @@ class ModelsPanel(QWidget):
                     state = (limb, kind, tag)
                     if state not in there:
                         words = f"{KIND_MARKS[kind]} {state_words(state, layer)}"  # type: ignore[arg-type]
-                        add.addAction(words, lambda s=state: self._edit("Add a state", lambda m: with_state(m, s)))  # type: ignore[arg-type]
+                        add.addAction(
+                            words, lambda s=state: self._edit("Add a state", lambda m: with_state(m, s))
+                        )  # type: ignore[arg-type]
         add.setEnabled(not add.isEmpty())
         if 0 <= row < len(shown.states) and len(shown.states) > 1:
             words = state_words(states_of(shown)[row], layer)
-            menu.addAction(f"Remove {words}", lambda: self._edit("Remove a state", lambda m: without_state(m, row)))
+            menu.addAction(
+                f"Remove {words}", lambda: self._edit("Remove a state", lambda m: without_state(m, row))
+            )
         return menu
 
     def _menu(self, row: int, at: QPoint) -> None:

@@ -11,14 +11,23 @@ def contribute(shell: Shell) -> Contribution:
         from app.features.motion_graph.motion_graph_dialog import MotionGraphDialog
 
         widget = shell.widget
-        dialog = widget.findChild(MotionGraphDialog) or MotionGraphDialog(shell.document, shell.stage.session, shell.jobs, widget)
+        dialog = widget.findChild(MotionGraphDialog) or MotionGraphDialog(
+            shell.document, shell.stage.session, shell.jobs, widget
+        )
         dialog.show()
         dialog.raise_()
         dialog.activateWindow()
 
     return Contribution(
         commands=(
-            Command("motion_graph", "&Graph", "author", "Motion &graph of takes…", show,
-                    tip="New motion from takes, and clips cut from them", enabled=lambda: bool(shell.document.project.clips)),
+            Command(
+                "motion_graph",
+                "&Graph",
+                "author",
+                "Motion &graph of takes…",
+                show,
+                tip="New motion from takes, and clips cut from them",
+                enabled=lambda: bool(shell.document.project.clips),
+            ),
         ),
-    )  # fmt: skip
+    )

@@ -1,4 +1,6 @@
-"""How often people of the chosen takes moved when something was said, and letting a conversation's characters do as they did."""
+"""How often people of the chosen takes moved when something was said, and letting a conversation's characters
+do as they did.
+"""
 
 from __future__ import annotations
 
@@ -25,13 +27,22 @@ from metagraph.graph.conversation import Rates
 from metagraph.graph.conversing import set_rates
 
 HEADS = ("What goes together", "Matched", "Of", "Rate", "95 % interval", "By chance")
-FIELDS = {"clause with either hand": "clause", "response with a nod": "response", "partner's hesitation with a nod": "hesitation"}
+FIELDS = {
+    "clause with either hand": "clause",
+    "response with a nod": "response",
+    "partner's hesitation with a nod": "hesitation",
+}
 
 
 def rates_of(rows: Sequence[Any], before: Rates) -> dict[str, float]:
-    """Return what rows of `cooccurrence.table` say of a side's rates; what nothing was seen of stays as before."""
+    """Return what rows of `cooccurrence.table` say of a side's rates; what nothing was seen of stays as
+    before.
+    """
     found = {FIELDS[row.hypothesis]: row for row in rows if row.hypothesis in FIELDS}
-    return {name: round(found[name].rate, 4) if name in found and found[name].total else getattr(before, name) for name in FIELDS.values()}
+    return {
+        name: round(found[name].rate, 4) if name in found and found[name].total else getattr(before, name)
+        for name in FIELDS.values()
+    }
 
 
 class RatesDialog(QDialog):
@@ -47,7 +58,8 @@ class RatesDialog(QDialog):
         box.setContentsMargins(14, 12, 14, 12)
         box.setSpacing(8)
         words = QLabel(
-            "A segment is matched where a hand, or the head up and down, moves near it. By chance: the same speech laid elsewhere over the "
+            "A segment is matched where a hand, or the head up and down, moves near it. By chance: the same "
+            "speech laid elsewhere over the "
             "same motion; only a rate well above that says that they go together.",
             self,
             wordWrap=True,
@@ -68,9 +80,13 @@ class RatesDialog(QDialog):
         for n, row in enumerate(self.rows):
             seen = row.total > 0
             texts = (
-                row.hypothesis[:1].upper() + row.hypothesis[1:], f"{row.matched:,}", f"{row.total:,}", _share(row.rate) if seen else "–",
-                f"{_share(row.low)} – {_share(row.high)}" if seen else "–", _share(row.chance) if seen else "–",
-            )  # fmt: skip
+                row.hypothesis[:1].upper() + row.hypothesis[1:],
+                f"{row.matched:,}",
+                f"{row.total:,}",
+                _share(row.rate) if seen else "–",
+                f"{_share(row.low)} – {_share(row.high)}" if seen else "–",
+                _share(row.chance) if seen else "–",
+            )
             for column, text in enumerate(texts):
                 item = QTableWidgetItem(text)
                 if column:
@@ -103,7 +119,12 @@ class RatesDialog(QDialog):
 
         def edit(project: Any) -> Any:
             for side in sides:
-                project = set_rates(project, ident, side, **rates_of(self.rows, project.conversations[ident].sides[side].rates))
+                project = set_rates(
+                    project,
+                    ident,
+                    side,
+                    **rates_of(self.rows, project.conversations[ident].sides[side].rates),
+                )
             return project
 
         self.document.edit("Use observed rates", edit)

@@ -1,4 +1,6 @@
-"""What a jump costs: the histogram of costs between frames a few apart, the distribution fitted to it, and the threshold."""
+"""What a jump costs: the histogram of costs between frames a few apart, the distribution fitted to it, and
+the threshold.
+"""
 
 from __future__ import annotations
 
@@ -56,14 +58,20 @@ class CostPlot(QWidget):
         end = max(float(np.quantile(found.costs, BEYOND)), 1.15 * found.limit, 1.15 * found.observed, 1e-6)
         counts, edges = np.histogram(found.costs, BINS, (0.0, end))
         density = counts / max(1, len(found.costs)) / (edges[1] - edges[0])
-        bars = pg.PlotDataItem(edges, density, stepMode="center", fillLevel=0, brush=look.hover, pen=pg.mkPen(look.dim, width=1))
+        bars = pg.PlotDataItem(
+            edges, density, stepMode="center", fillLevel=0, brush=look.hover, pen=pg.mkPen(look.dim, width=1)
+        )
         self.plot.addItem(bars)
         if found.distribution is not None:
             x = np.linspace(0, end, 400)
             fitted = np.diff(found.distribution.cdf(x)) / np.diff(x)
-            self.plot.addItem(pg.PlotDataItem(x[:-1] + (x[1] - x[0]) / 2, fitted, pen=pg.mkPen(look.text, width=2)))
+            self.plot.addItem(
+                pg.PlotDataItem(x[:-1] + (x[1] - x[0]) / 2, fitted, pen=pg.mkPen(look.text, width=2))
+            )
         top = 1.08 * max(float(density.max()), 1e-9)
         for at, style in ((found.limit, Qt.PenStyle.SolidLine), (found.observed, Qt.PenStyle.DotLine)):
-            self.plot.addItem(pg.PlotDataItem([at, at], [0, top], pen=pg.mkPen(look.warning, width=2, style=style)))
+            self.plot.addItem(
+                pg.PlotDataItem([at, at], [0, top], pen=pg.mkPen(look.warning, width=2, style=style))
+            )
         self.plot.setXRange(0, end, padding=0)
         self.plot.setYRange(0, top, padding=0)

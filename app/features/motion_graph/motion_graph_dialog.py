@@ -1,4 +1,6 @@
-"""The motion graph's window: choose takes, see what counts as a jump, let new motion be found, cut long takes into clips."""
+"""The motion graph's window: choose takes, see what counts as a jump, let new motion be found, cut long takes
+into clips.
+"""
 
 from __future__ import annotations
 
@@ -21,7 +23,18 @@ from PySide6.QtWidgets import (
 from app.features.motion_graph.cooccurrence_rates import RatesDialog
 from app.features.motion_graph.cost_plot import CostPlot
 from app.features.motion_graph.search_options import Wishes
-from app.features.motion_graph.synthesis_jobs import FOLDER, LEAST, MOST, Found, Takes, pieces, save, synthesise, table, takes_of
+from app.features.motion_graph.synthesis_jobs import (
+    FOLDER,
+    LEAST,
+    MOST,
+    Found,
+    Takes,
+    pieces,
+    save,
+    synthesise,
+    table,
+    takes_of,
+)
 from app.features.motion_graph.takes_list import TakesList
 from app.look.plural import many
 from app.project.document import Document
@@ -40,7 +53,9 @@ WAIT = "Working… The first time after installing, the search is compiled for t
 class MotionGraphDialog(QDialog):
     """Stays open beside the window."""
 
-    def __init__(self, document: Document, session: Session, jobs: Jobs, parent: QWidget | None = None) -> None:
+    def __init__(
+        self, document: Document, session: Session, jobs: Jobs, parent: QWidget | None = None
+    ) -> None:
         super().__init__(parent)
         self.document, self.session, self.jobs = document, session, jobs
         self.setAttribute(Qt.WidgetAttribute.WA_DeleteOnClose)
@@ -91,7 +106,10 @@ class MotionGraphDialog(QDialog):
         self.right.addWidget(self._heading("What counts as a jump"))
         row = QHBoxLayout()
         self.k = SpinBox(self, minimum=2, maximum=10, value=3)
-        self.k.setToolTip("Costs are those of a frame and one so many frames later: the larger, the more transitions, and the rougher")
+        self.k.setToolTip(
+            "Costs are those of a frame and one so many frames later: the larger, the more transitions, and "
+            "the rougher"
+        )
         self.k.setAccessibleName("Frames apart")
         self.level = DoubleSpinBox(self, minimum=50, maximum=99.9, value=95, suffix=" %", decimals=1)
         self.level.setToolTip("Transitions may cost as much as so many of these costs")
@@ -111,7 +129,9 @@ class MotionGraphDialog(QDialog):
         self.right.addWidget(self.words)
         self.table = QTableWidget(len(KS), 5, self)
         self.table.setHorizontalHeaderLabels(["k", "Frames", "Transitions", "Frames kept", "Trans. kept"])
-        self.table.horizontalHeader().setDefaultAlignment(Qt.AlignmentFlag.AlignRight | Qt.AlignmentFlag.AlignVCenter)
+        self.table.horizontalHeader().setDefaultAlignment(
+            Qt.AlignmentFlag.AlignRight | Qt.AlignmentFlag.AlignVCenter
+        )
         self.table.setAccessibleName("Frames and transitions for each k")
         self.table.verticalHeader().hide()
         self.table.setShowGrid(False)
@@ -120,10 +140,14 @@ class MotionGraphDialog(QDialog):
         self.table.setEditTriggers(QTableWidget.EditTrigger.NoEditTriggers)
         self.table.horizontalHeader().setSectionResizeMode(QHeaderView.ResizeMode.Stretch)
         self.table.horizontalHeader().setHighlightSections(False)
-        self.table.setFixedHeight(self.table.horizontalHeader().sizeHint().height() + len(KS) * self.table.rowHeight(0) + 4)
+        self.table.setFixedHeight(
+            self.table.horizontalHeader().sizeHint().height() + len(KS) * self.table.rowHeight(0) + 4
+        )
         self.right.addWidget(self.table)
         self.count_button = QPushButton("Compare k = 2, 3, 4", self, autoDefault=False)
-        self.count_button.setToolTip("Kept is what leads on: the largest part in which every frame can be reached from every other")
+        self.count_button.setToolTip(
+            "Kept is what leads on: the largest part in which every frame can be reached from every other"
+        )
         self.count_button.clicked.connect(self.count)
         self.right.addWidget(self.count_button, 0, Qt.AlignmentFlag.AlignLeft)
         self._show_table({})
@@ -152,7 +176,11 @@ class MotionGraphDialog(QDialog):
         self.said.setText("")
 
     def _follow(self, before: Project, after: Project) -> None:
-        if before.clips is not after.clips or before.conversations is not after.conversations or before.skeleton is not after.skeleton:
+        if (
+            before.clips is not after.clips
+            or before.conversations is not after.conversations
+            or before.skeleton is not after.skeleton
+        ):
             self.picked.fill()
             self.wishes.fill()
 
@@ -165,7 +193,9 @@ class MotionGraphDialog(QDialog):
         if self._counted != (self.takes.clips, self.level.value()):
             self._show_table({})
         seconds = sum(clip.duration for clip in self.takes.clips)
-        self.picked.title.setText(f"Takes · {len(self.takes.ids)} chosen, {seconds / 60:.1f} min" if self.takes.ids else "Takes")
+        self.picked.title.setText(
+            f"Takes · {len(self.takes.ids)} chosen, {seconds / 60:.1f} min" if self.takes.ids else "Takes"
+        )
         self._soon.start()
 
     def _compare(self) -> None:
@@ -202,14 +232,23 @@ class MotionGraphDialog(QDialog):
         self.plot.show_threshold(limit)
         if limit is None:
             none = not self.picked.list.rowCount()
-            first = "There are no clips yet. Import long recordings:" if none else "Choose takes, long recordings:"
+            first = (
+                "There are no clips yet. Import long recordings:"
+                if none
+                else "Choose takes, long recordings:"
+            )
             self.words.setText(f"{first} of frames that are alike, transitions are made.")
             return
-        fitted = "A transition may cost" if limit.distribution is None else "Johnson's S_B, fitted: a transition may cost"
+        fitted = (
+            "A transition may cost"
+            if limit.distribution is None
+            else "Johnson's S_B, fitted: a transition may cost"
+        )
         off = abs(limit.limit - limit.observed) / max(limit.observed, 1e-9)
         beside = f" ({off:.0%} off)".replace("%", " %") if off > 0.05 else ""
         self.words.setText(
-            f"{fitted} {limit.limit:.3g} m, summed over joints. Dotted: the costs themselves say {limit.observed:.3g} m{beside}."
+            f"{fitted} {limit.limit:.3g} m, summed over joints. Dotted: the costs themselves say "
+            f"{limit.observed:.3g} m{beside}."
         )
 
     # --- jobs
@@ -267,7 +306,11 @@ class MotionGraphDialog(QDialog):
             self._failed(ValueError("choose takes first"))
             return
         self._counted = (takes.clips, self.level.value())
-        self._start("Motion graphs", lambda job: table(takes, KS, level, job.tell, lambda: job.cancelled), self._show_table)
+        self._start(
+            "Motion graphs",
+            lambda job: table(takes, KS, level, job.tell, lambda: job.cancelled),
+            self._show_table,
+        )
 
     def _show_table(self, rows: Any) -> None:
         for row, k in enumerate(KS):
@@ -284,7 +327,9 @@ class MotionGraphDialog(QDialog):
         """Count how often people moved when something was said, over the chosen takes that know it."""
         takes = self.takes
         if not takes.told:
-            self._failed(ValueError("choose takes and say beside each what was heard during it: a conversation's side"))
+            self._failed(
+                ValueError("choose takes and say beside each what was heard during it: a conversation's side")
+            )
             return
 
         def work(_: Job) -> Any:
@@ -311,7 +356,11 @@ class MotionGraphDialog(QDialog):
         if folder is None:
             return
         self._for = self.wishes.moves
-        states, name, taken = self.states[1], self.wishes.name(), {e.name for e in self.document.project.clips.values()}
+        states, name, taken = (
+            self.states[1],
+            self.wishes.name(),
+            {e.name for e in self.document.project.clips.values()},
+        )
 
         def work(job: Job) -> Any:
             from metagraph.synthesis.constraints import changes
@@ -333,11 +382,17 @@ class MotionGraphDialog(QDialog):
         assert isinstance(found, Found)
         self._keep(loaded, "Add new motion", self._for)
         self.graph = graph  # the takes are the same
-        deaf = "" if takes_told or not self.wishes.talks else " What was heard during the takes is not known, so speech did not guide it."
+        deaf = (
+            ""
+            if takes_told or not self.wishes.talks
+            else " What was heard during the takes is not known, so speech did not guide it."
+        )
         self.said.setText(found.words() + deaf)
 
     def _keep(self, loaded: Any, words: str, side: tuple[str, int] | None = None) -> None:
-        """Add kept clips to the library, choose them and play the first; or let it move a side of a conversation, and play that."""
+        """Add kept clips to the library, choose them and play the first; or let it move a side of a
+        conversation, and play that.
+        """
         paths = {path for path, *_ in loaded}
 
         def edit(project: Project) -> Project:
@@ -395,7 +450,13 @@ class MotionGraphDialog(QDialog):
 
     def _cut(self, loaded: Any) -> None:
         if not loaded:
-            self.said.setText("No still moments were found that these takes leave and come back to: raise k or the level, or cut by hand.")
+            self.said.setText(
+                "No still moments were found that these takes leave and come back to: raise k or the level, "
+                "or cut by hand."
+            )
             return
         self._keep(loaded, "Cut takes into clips")
-        self.said.setText(f"{many(len(loaded), 'clip')} in the library, not labelled yet: Graph > Label clips… proposes what each is.")
+        self.said.setText(
+            f"{many(len(loaded), 'clip')} in the library, not labelled yet: Graph > Label clips… proposes "
+            "what each is."
+        )

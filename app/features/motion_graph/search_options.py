@@ -1,9 +1,20 @@
-"""What new motion is asked for: for whose speech, how it is searched, and what of the speech constrains it."""
+"""What new motion is asked for: for whose speech, how it is searched, and what of the speech constrains
+it.
+"""
 
 from __future__ import annotations
 
 from PySide6.QtCore import Signal
-from PySide6.QtWidgets import QCheckBox, QDoubleSpinBox, QFrame, QHBoxLayout, QLabel, QPushButton, QVBoxLayout, QWidget
+from PySide6.QtWidgets import (
+    QCheckBox,
+    QDoubleSpinBox,
+    QFrame,
+    QHBoxLayout,
+    QLabel,
+    QPushButton,
+    QVBoxLayout,
+    QWidget,
+)
 
 from app.features.motion_graph.synthesis_jobs import Wish
 from app.features.motion_graph.takes_list import side_words
@@ -14,8 +25,11 @@ from metagraph.graph.conversation import SOUNDS, Sound, heard_by
 
 WINDOW = 15.0  # seconds, as in the paper's evaluation
 KINDS: tuple[tuple[Sound, str], ...] = (
-    ("clause", "Clauses"), ("response", "Responses"), ("hesitation", "Partner's hesitations"), ("idle", "Idle"),
-)  # fmt: skip
+    ("clause", "Clauses"),
+    ("response", "Responses"),
+    ("hesitation", "Partner's hesitations"),
+    ("idle", "Idle"),
+)
 
 
 class Wishes(QFrame):
@@ -43,14 +57,24 @@ class Wishes(QFrame):
         self.search.setAccessibleName("Search")
         self.search.addItem("the best there is", True)
         self.search.addItem("quick, by chance", False)
-        self.search.setItemData(0, "Dynamic programming over all frames: finds a motion whenever there is one, none costs less", 3)
-        self.search.setItemData(1, "Stochastic greedy search, as in the paper: other results with other seeds; may find nothing", 3)
+        self.search.setItemData(
+            0, "Dynamic programming over all frames: finds a motion whenever there is one, none costs less", 3
+        )
+        self.search.setItemData(
+            1,
+            "Stochastic greedy search, as in the paper: other results with other seeds; may find nothing",
+            3,
+        )
         self.search.activated.connect(self._limits)
         self.seed = DoubleSpinBox(self, minimum=1, maximum=9999, decimals=0, value=1)
         self.seed.setAccessibleName("Seed")
         for words, field in (
-            ("Goes with", self.speech), ("from", self.start), ("for", self.length), ("Search", self.search), ("seed", self.seed),
-        ):  # fmt: skip
+            ("Goes with", self.speech),
+            ("from", self.start),
+            ("for", self.length),
+            ("Search", self.search),
+            ("seed", self.seed),
+        ):
             row.addWidget(QLabel(words, self))
             row.addWidget(field)
             row.addSpacing(6)
@@ -65,13 +89,17 @@ class Wishes(QFrame):
         self.peaks = QCheckBox("Stresses", self, checked=True)
         self.peaks.setToolTip("A clause's stress lies where the stress lay that the motion was made with")
         row.addWidget(self.peaks)
-        self.tolerance = DoubleSpinBox(self, minimum=0.0, maximum=1.0, singleStep=0.05, decimals=2, value=0.1, suffix=" s")
+        self.tolerance = DoubleSpinBox(
+            self, minimum=0.0, maximum=1.0, singleStep=0.05, decimals=2, value=0.1, suffix=" s"
+        )
         self.tolerance.setAccessibleName("Tolerance")
         row.addSpacing(8)
         row.addWidget(QLabel("give or take", self))
         row.addWidget(self.tolerance)
         self.whole = QCheckBox("Move the speaker with it", self)
-        self.whole.setToolTip("Motion for the whole conversation, which then moves this speaker instead of the graph")
+        self.whole.setToolTip(
+            "Motion for the whole conversation, which then moves this speaker instead of the graph"
+        )
         self.whole.toggled.connect(self._limits)
         row.addSpacing(8)
         row.addWidget(self.whole)
@@ -136,7 +164,13 @@ class Wishes(QFrame):
 
             segments = tuple(cut(heard_by(talk, chosen[1]), start, seconds))
         return Wish(
-            seconds, segments, bool(self.search.currentData()), use, self.peaks.isChecked(), self.tolerance.value(), int(self.seed.value())
+            seconds,
+            segments,
+            bool(self.search.currentData()),
+            use,
+            self.peaks.isChecked(),
+            self.tolerance.value(),
+            int(self.seed.value()),
         )
 
     def name(self) -> str:

@@ -1,4 +1,5 @@
-"""What the motion graph's window works with: takes of a project with what was heard during them, new motion, clips kept as files.
+"""What the motion graph's window works with: takes of a project with what was heard during them, new motion,
+clips kept as files.
 
 Pure functions and values; whoever calls them does so on a job's thread.
 """
@@ -28,7 +29,9 @@ Loaded = tuple[str, int, str, Clip]  # what `add_clips` takes
 
 @dataclass(frozen=True, eq=False)
 class Takes:
-    """clips: those with motion, of one skeleton. ids: theirs. speech: what was heard during each, none where nobody knows."""
+    """clips: those with motion, of one skeleton. ids: theirs. speech: what was heard during each, none where
+    nobody knows.
+    """
 
     ids: tuple[str, ...]
     clips: tuple[Clip, ...]
@@ -45,14 +48,23 @@ class Takes:
 
 
 def usable(project: Project) -> list[str]:
-    """Return the clips that can be takes: with motion, of the project's skeleton, more than one frame; the longest first."""
-    fitting = [e for e in project.clips.values() if e.motion is not None and e.motion.skeleton == project.skeleton and e.frames > 1]
+    """Return the clips that can be takes: with motion, of the project's skeleton, more than one frame; the
+    longest first.
+    """
+    fitting = [
+        e
+        for e in project.clips.values()
+        if e.motion is not None and e.motion.skeleton == project.skeleton and e.frames > 1
+    ]
     return [e.id for e in sorted(fitting, key=lambda e: (-e.duration, e.name))]
 
 
 def speech_of(project: Project, clip: str) -> tuple[str, int] | None:
     """Return the conversation and side that were recorded along with a clip."""
-    return next(((i, n) for i, c in project.conversations.items() for n, s in enumerate(c.sides) if s.take == clip), None)
+    return next(
+        ((i, n) for i, c in project.conversations.items() for n, s in enumerate(c.sides) if s.take == clip),
+        None,
+    )
 
 
 def left_out(project: Project) -> str:
@@ -87,13 +99,17 @@ def takes_of(project: Project, ids: Collection[str]) -> Takes:
         recorded = speech_of(project, ident)
         heard = heard_by(project.conversations[recorded[0]], recorded[1]) if recorded is not None else ()
         speech.append(during(heard, project.clips[ident].duration))
-    return Takes(tuple(found), tuple(m for i in found if (m := project.clips[i].motion) is not None), tuple(speech))
+    return Takes(
+        tuple(found), tuple(m for i in found if (m := project.clips[i].motion) is not None), tuple(speech)
+    )
 
 
 @dataclass(frozen=True, slots=True)
 class Wish:
-    """What new motion is to go with. segments: what is heard. exact: the best path there is, else the paper's greedy search. use: the
-    kinds of segment that constrain; peaks: whether stresses have to be met; tolerance: seconds. seed: of the greedy search."""
+    """What new motion is to go with. segments: what is heard. exact: the best path there is, else the paper's
+    greedy search. use: the kinds of segment that constrain; peaks: whether stresses have to be met;
+    tolerance: seconds. seed: of the greedy search.
+    """
 
     seconds: float
     segments: tuple[Segment, ...] = ()
@@ -116,14 +132,21 @@ class Found:
     def words(self) -> str:
         rate = self.jumps / max(self.clip.duration, 1e-9)
         jumps = (
-            "no transition" if not self.jumps else f"{self.jumps} transitions, {rate:.2f} a second" if self.jumps > 1 else "1 transition"
+            "no transition"
+            if not self.jumps
+            else f"{self.jumps} transitions, {rate:.2f} a second"
+            if self.jumps > 1
+            else "1 transition"
         )
         return f"{self.clip.duration:.1f} s with {jumps}, cost {self.cost:.3g} m, found in {self.took:.2f} s."
 
 
-def synthesise(graph: Any, takes: Takes, wish: Wish, name: str, cancelled: Callable[[], bool] | None = None) -> Found:
-    """Return motion of the takes that goes with what is wished. Raises SynthesisError when there is none, saying what would help, or
-    when it was cancelled."""
+def synthesise(
+    graph: Any, takes: Takes, wish: Wish, name: str, cancelled: Callable[[], bool] | None = None
+) -> Found:
+    """Return motion of the takes that goes with what is wished. Raises SynthesisError when there is none,
+    saying what would help, or when it was cancelled.
+    """
     from metagraph.synthesis.assemble import assemble
     from metagraph.synthesis.constraints import heard, wanted
     from metagraph.synthesis.search import best, greedy
@@ -135,21 +158,32 @@ def synthesise(graph: Any, takes: Takes, wish: Wish, name: str, cancelled: Calla
     asked = wanted(wish.segments, wish.seconds, wish.tolerance, use, wish.peaks and takes.told)
     began = time.perf_counter()
     try:
-        path = best(graph, said, asked, cancelled) if wish.exact else greedy(graph, said, asked, seed=wish.seed, cancelled=cancelled)
+        path = (
+            best(graph, said, asked, cancelled)
+            if wish.exact
+            else greedy(graph, said, asked, seed=wish.seed, cancelled=cancelled)
+        )
     except SynthesisError as error:
         if (use and wish.segments) or (cancelled is not None and cancelled()):
             raise
         raise SynthesisError(
-            f"these takes cannot go on for {wish.seconds:g} s without a jump: choose more takes, raise k or the level, or ask for less"
+            f"these takes cannot go on for {wish.seconds:g} s without a jump: choose more takes, raise k or "
+            "the level, or ask for less"
         ) from error
     took = time.perf_counter() - began
     return Found(assemble(graph.states, takes.clips, path, name), path.cost, len(path.jumps), took)
 
 
 def table(
-    takes: Takes, ks: Sequence[int], level: float, progress: Callable[[int, int], None], cancelled: Callable[[], bool]
+    takes: Takes,
+    ks: Sequence[int],
+    level: float,
+    progress: Callable[[int, int], None],
+    cancelled: Callable[[], bool],
 ) -> Mapping[int, tuple[int, int, int, int]]:
-    """Return for each k: states, transitions, then both after the states were removed that lead nowhere (the paper's table 2)."""
+    """Return for each k: states, transitions, then both after the states were removed that lead nowhere (the
+    paper's table 2).
+    """
     from metagraph.synthesis.graph import build, threshold
     from metagraph.synthesis.states import key_states, states_of
 
@@ -178,7 +212,8 @@ def pieces(clip: Clip, spans: Sequence[tuple[float, float]]) -> list[Clip]:
 
 
 def save(clips: Sequence[Clip], folder: Path, inside: str, taken: Collection[str] = ()) -> list[Loaded]:
-    """Write each clip as a GLB of its own in a folder of the project's; return what `add_clips` takes. taken: names of clips there are.
+    """Write each clip as a GLB of its own in a folder of the project's; return what `add_clips` takes. taken:
+    names of clips there are.
 
     Raises FileError.
     """

@@ -65,7 +65,10 @@ class TakesList(QWidget):
         self.note.setProperty("dim", True)
         self.note.hide()
         self.cut_button = QPushButton("Cut selected takes into clips", self, autoDefault=False)
-        self.cut_button.setToolTip("At still moments in a pose it comes back to, so that no jump shows; the clips then wait to be labelled")
+        self.cut_button.setToolTip(
+            "At still moments in a pose it comes back to, so that no jump shows; the clips then wait to be "
+            "labelled"
+        )
         self.cut_button.clicked.connect(self.cut_wanted)
         box.addWidget(self.title)
         box.addWidget(self.list, 1)
@@ -94,7 +97,9 @@ class TakesList(QWidget):
             entry = project.clips[ident]
             item = QTableWidgetItem(entry.name)
             item.setData(Qt.ItemDataRole.UserRole, ident)
-            item.setFlags(Qt.ItemFlag.ItemIsEnabled | Qt.ItemFlag.ItemIsSelectable | Qt.ItemFlag.ItemIsUserCheckable)
+            item.setFlags(
+                Qt.ItemFlag.ItemIsEnabled | Qt.ItemFlag.ItemIsSelectable | Qt.ItemFlag.ItemIsUserCheckable
+            )
             item.setCheckState(Qt.CheckState.Checked if ident in chosen else Qt.CheckState.Unchecked)
             length = QTableWidgetItem(f"{entry.duration:.1f} s")
             length.setTextAlignment(Qt.AlignmentFlag.AlignRight | Qt.AlignmentFlag.AlignVCenter)
@@ -123,7 +128,11 @@ class TakesList(QWidget):
         clip = self.list.item(row, 0).data(Qt.ItemDataRole.UserRole)
         now = speech_of(project, clip)
         self.menu.clear()
-        sides = [((ident, n), side_words(talk, n)) for ident, talk in project.conversations.items() for n in range(2)]
+        sides = [
+            ((ident, n), side_words(talk, n))
+            for ident, talk in project.conversations.items()
+            for n in range(2)
+        ]
         for key, words in [(None, NONE), *sides]:
             action = self.menu.addAction(words, partial(self._tell_speech, clip, key))
             action.setCheckable(True)
@@ -144,7 +153,11 @@ class TakesList(QWidget):
     def chosen(self) -> list[str]:
         """Return the ids of the takes that are checked."""
         rows = (self.list.item(row, 0) for row in range(self.list.rowCount()))
-        return [i.data(Qt.ItemDataRole.UserRole) for i in rows if i is not None and i.checkState() == Qt.CheckState.Checked]
+        return [
+            i.data(Qt.ItemDataRole.UserRole)
+            for i in rows
+            if i is not None and i.checkState() == Qt.CheckState.Checked
+        ]
 
     def _checked(self, item: QTableWidgetItem) -> None:
         if item.column() == 0:

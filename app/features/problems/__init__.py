@@ -33,7 +33,9 @@ def contribute(shell: Shell) -> Contribution:
 
 
 class ProblemButton(QToolButton):
-    """Counts the problems, and shows them when it is pressed; hints are only counted when there is nothing worse."""
+    """Counts the problems, and shows them when it is pressed; hints are only counted when there is nothing
+    worse.
+    """
 
     def __init__(self, shell: Shell, watch: ProblemWatch, parent: QWidget) -> None:
         super().__init__(parent)
@@ -50,7 +52,11 @@ class ProblemButton(QToolButton):
         problems, look = self.watch.problems, theme(self.session.look.name)
         grave = [p for p in problems if p.severity != "hint"]
         hints = len(problems) - len(grave)
-        color = look.error if any(p.severity == "error" for p in grave) else look.warning if grave else look.dim
-        self.setText(many(len(grave), "problem") if grave else many(hints, "hint") if hints else "No problems")
+        color = (
+            look.error if any(p.severity == "error" for p in grave) else look.warning if grave else look.dim
+        )
+        self.setText(
+            many(len(grave), "problem") if grave else many(hints, "hint") if hints else "No problems"
+        )
         self.setIcon(icons.icon("warning", color))
         self.setStyleSheet(f"color: {color}")

@@ -1,10 +1,22 @@
-"""The problems panel: what is wrong, where, and what to do; a click goes there, and what can be mended is mended with a press."""
+"""The problems panel: what is wrong, where, and what to do; a click goes there, and what can be mended is
+mended with a press.
+"""
 
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 
-from PySide6.QtCore import QAbstractItemModel, QEvent, QModelIndex, QPersistentModelIndex, QPoint, QRect, QSize, Qt, Signal
+from PySide6.QtCore import (
+    QAbstractItemModel,
+    QEvent,
+    QModelIndex,
+    QPersistentModelIndex,
+    QPoint,
+    QRect,
+    QSize,
+    Qt,
+    Signal,
+)
 from PySide6.QtGui import QColor, QContextMenuEvent, QMouseEvent, QPainter, QPen
 from PySide6.QtWidgets import (
     QHBoxLayout,
@@ -51,7 +63,9 @@ class FixButtons(QStyledItemDelegate):
         found = super().sizeHint(option, index)
         return QSize(found.width() + 20, max(found.height(), 24))
 
-    def paint(self, painter: QPainter, option: QStyleOptionViewItem, index: QModelIndex | QPersistentModelIndex) -> None:
+    def paint(
+        self, painter: QPainter, option: QStyleOptionViewItem, index: QModelIndex | QPersistentModelIndex
+    ) -> None:
         words, look = str(index.data() or ""), theme(self.panel.session.look.name)
         if option.state & QStyle.StateFlag.State_Selected:  # type: ignore[attr-defined]
             painter.fillRect(option.rect, QColor(look.hover))  # type: ignore[attr-defined]
@@ -69,14 +83,22 @@ class FixButtons(QStyledItemDelegate):
         painter.restore()
 
     def editorEvent(
-        self, event: QEvent, model: QAbstractItemModel, option: QStyleOptionViewItem, index: QModelIndex | QPersistentModelIndex
+        self,
+        event: QEvent,
+        model: QAbstractItemModel,
+        option: QStyleOptionViewItem,
+        index: QModelIndex | QPersistentModelIndex,
     ) -> bool:
         words = str(index.data() or "")
         if words and isinstance(event, QMouseEvent) and event.button() == Qt.MouseButton.LeftButton:
             inside = self.place(option, words).contains(event.position().toPoint())
             if event.type() == QEvent.Type.MouseButtonPress:
                 self._down = QPersistentModelIndex(index) if inside else None
-            elif event.type() == QEvent.Type.MouseButtonRelease and inside and self._down == QPersistentModelIndex(index):
+            elif (
+                event.type() == QEvent.Type.MouseButtonRelease
+                and inside
+                and self._down == QPersistentModelIndex(index)
+            ):
                 self._down = None
                 self.panel.mend(self.panel.tree.itemFromIndex(index))  # type: ignore[arg-type]
                 return True
@@ -129,11 +151,19 @@ class ProblemsPanel(QWidget):
         self.stack.addWidget(some)
         session.look.changed.connect(lambda: self.show_problems(self.problems, self.fixes))
 
-    def show_problems(self, problems: Sequence[Problem], fixes: Mapping[Problem, Fix | None] | None = None) -> None:
+    def show_problems(
+        self, problems: Sequence[Problem], fixes: Mapping[Problem, Fix | None] | None = None
+    ) -> None:
         """Show problems. fixes: what mends some of them."""
         look = theme(self.session.look.name)
         fixes = fixes or {}
-        state = tuple(problems), tuple(fixes.items()), look.name, self.session.document.project.graphs, self.session.onstage.mode
+        state = (
+            tuple(problems),
+            tuple(fixes.items()),
+            look.name,
+            self.session.document.project.graphs,
+            self.session.onstage.mode,
+        )
         if state == self._shown:
             return
         self.problems, self.fixes, self._shown = tuple(problems), fixes, state
@@ -146,7 +176,9 @@ class ProblemsPanel(QWidget):
             inside = stance.name if stance else drawn.name if drawn else ""
             place = ", ".join(x for x in (problem.layer or "", inside) if x) or "project"
             fix = fixes.get(problem)
-            item = QTreeWidgetItem([problem.message, place, problem.remedy, fix.words if fix is not None else ""])
+            item = QTreeWidgetItem(
+                [problem.message, place, problem.remedy, fix.words if fix is not None else ""]
+            )
             item.setIcon(0, icons.icon("warning", colors[problem.severity]))
             item.setForeground(0, QColor(look.text if problem.severity != "hint" else look.dim))
             item.setToolTip(0, f"{problem.severity}: {problem.message}. {problem.remedy}")
@@ -156,7 +188,11 @@ class ProblemsPanel(QWidget):
             self.tree.addTopLevelItem(item)
         for column, width in enumerate((560, 170, 380)):
             self.tree.setColumnWidth(column, width)
-        each = "state can be reached and left" if self.session.onstage.mode == "manual" else "stance rests, leads somewhere and comes back"
+        each = (
+            "state can be reached and left"
+            if self.session.onstage.mode == "manual"
+            else "stance rests, leads somewhere and comes back"
+        )
         self.none.setText(f"No problems. Every {each}.")
         self.stack.setCurrentIndex(1 if self.problems else 0)
         count = len(self.fixable())
@@ -199,4 +235,6 @@ class ProblemsPanel(QWidget):
     def _go(self, item: QTreeWidgetItem, column: int = 0) -> None:
         problem = item.data(0, ROLE)
         if isinstance(problem, Problem) and column != FIX:
-            self.session.jump(problem.layer, problem.stance, problem.action or problem.state or problem.link, problem.clip)
+            self.session.jump(
+                problem.layer, problem.stance, problem.action or problem.state or problem.link, problem.clip
+            )

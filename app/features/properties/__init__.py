@@ -12,7 +12,11 @@ from app.stage.problem_watch import ProblemWatch
 
 
 def contribute(shell: Shell) -> Contribution:
-    session, compatibility, problems = shell.stage.session, shell.services[Compatibility], shell.services[ProblemWatch]
+    session, compatibility, problems = (
+        shell.stage.session,
+        shell.services[Compatibility],
+        shell.services[ProblemWatch],
+    )
 
     def make() -> QWidget:
         from app.features.properties.properties_panel import PropertiesPanel
@@ -29,13 +33,23 @@ def contribute(shell: Shell) -> Contribution:
         field.setFocus()
         field.selectAll()
 
-    shell.services[Verbs].offer("rename", lambda: session.onstage.mode == "meta" and len(session.selection.actions) == 1, rename)
+    shell.services[Verbs].offer(
+        "rename", lambda: session.onstage.mode == "meta" and len(session.selection.actions) == 1, rename
+    )
     return Contribution(
         panels=(Panel("properties", "Properties", "right below", make),),
         commands=(
-            Command("use_times", "&Graph", "author", "Use proposed &times", lambda: compatibility.use_proposed(session.selection.actions),
-                    tip="Begin and end where no jump shows", enabled=lambda: bool(session.selection.actions) and compatibility.judged is not None,
-                    when="meta", study="labels"),
+            Command(
+                "use_times",
+                "&Graph",
+                "author",
+                "Use proposed &times",
+                lambda: compatibility.use_proposed(session.selection.actions),
+                tip="Begin and end where no jump shows",
+                enabled=lambda: bool(session.selection.actions) and compatibility.judged is not None,
+                when="meta",
+                study="labels",
+            ),
         ),
         late_imports=("app.features.properties.properties_panel",),
-    )  # fmt: skip
+    )

@@ -1,4 +1,6 @@
-"""Beneath the timing: when a clip can be entered and left without a visible jump, and how far off it is elsewhere."""
+"""Beneath the timing: when a clip can be entered and left without a visible jump, and how far off it is
+elsewhere.
+"""
 
 from __future__ import annotations
 
@@ -22,7 +24,9 @@ BAR = 0.22  # height of the allowed spans
 
 
 class Seen:
-    """An action's curves as its blends are now. times, enter, leave `[F]`; pivot: the frame from which on leaving is shown."""
+    """An action's curves as its blends are now. times, enter, leave `[F]`; pivot: the frame from which on
+    leaving is shown.
+    """
 
     def __init__(self, action: Action, curves: Curves) -> None:
         from metagraph.suggest.compatibility import shown
@@ -52,7 +56,10 @@ class Seen:
     def spans(self) -> list[tuple[float, float]]:
         """Return where nothing shows, seconds; from the first such frame to the last."""
         good = self.curve() <= 1
-        good_in, good_out = good & (np.arange(len(good)) < self.pivot), good & (np.arange(len(good)) >= self.pivot)
+        good_in, good_out = (
+            good & (np.arange(len(good)) < self.pivot),
+            good & (np.arange(len(good)) >= self.pivot),
+        )
         out = []
         for some in (good_in, good_out):
             edges = np.flatnonzero(np.diff(np.concatenate(([0], some.astype(int), [0]))))
@@ -60,7 +67,9 @@ class Seen:
         return out
 
     def snaps(self, handle: str) -> list[float]:
-        """Return the moments a handle comes to rest at: the proposed one, and where nothing begins to show."""
+        """Return the moments a handle comes to rest at: the proposed one, and where nothing begins to
+        show.
+        """
         if handle == "start":
             if self.loops:
                 return []

@@ -36,7 +36,9 @@ from metagraph.graph.model import LIMBS, PARTS, REACH, Action, Project
 class PropertiesPanel(QScrollArea):
     """Every control writes through one edit; what is shown is read back from the project."""
 
-    def __init__(self, document: Document, session: Session, performance: Performance, parent: QWidget | None = None) -> None:
+    def __init__(
+        self, document: Document, session: Session, performance: Performance, parent: QWidget | None = None
+    ) -> None:
         super().__init__(parent)
         self.document, self.session, self.performance = document, session, performance
         self.misfits: dict[str, str] = {}
@@ -48,7 +50,12 @@ class PropertiesPanel(QScrollArea):
         self.pages.addWidget(self._clip_page())
         self.setWidget(self.pages)
         document.changed.connect(self._edited)
-        for signal in (session.selection.changed, session.place.layer_changed, session.look.changed, session.place.stance_changed):
+        for signal in (
+            session.selection.changed,
+            session.place.layer_changed,
+            session.look.changed,
+            session.place.stance_changed,
+        ):
             signal.connect(self.show_selection)
         self.show_selection()
 
@@ -127,7 +134,9 @@ class PropertiesPanel(QScrollArea):
         self.limb.idClicked.connect(lambda n: self._set("Change limb", limb=LIMBS[n]))
         form.addRow("Limb", row)
         self.limb_row = row
-        self.tags = Field(page, "Words apart by commas; requests can ask for them: positive, negative, ...", "Tags")
+        self.tags = Field(
+            page, "Words apart by commas; requests can ask for them: positive, negative, ...", "Tags"
+        )
         self.tags.editingFinished.connect(self._retag)
         form.addRow("Tags", self.tags)
         self.likelihood = Seconds(page, "Likelihood against the others of its node; 1 is usual", 100, "", 0.1)
@@ -156,13 +165,19 @@ class PropertiesPanel(QScrollArea):
         self.layer_title = QLabel(page)
         self.layer_title.setProperty("title", True)
         box.addWidget(self.layer_title)
-        words = QLabel("Select an action to see its timing. The layer moves these body parts, added to the base pose:", page, wordWrap=True)
+        words = QLabel(
+            "Select an action to see its timing. The layer moves these body parts, added to the base pose:",
+            page,
+            wordWrap=True,
+        )
         words.setProperty("dim", True)
         box.addWidget(words)
         form = self._form(box)
         self.weights: dict[str, Seconds] = {}
         for part in PARTS:
-            field = Seconds(page, f"Weight on the {part}: 0 not at all, 1 as in the clip, 2 twice as much", 2, "", 0.1)
+            field = Seconds(
+                page, f"Weight on the {part}: 0 not at all, 1 as in the clip, 2 twice as much", 2, "", 0.1
+            )
             field.valueChanged.connect(lambda v, p=part: self._weigh(p, v))
             self.weights[part] = field
             form.addRow(part.capitalize(), field)
@@ -170,10 +185,14 @@ class PropertiesPanel(QScrollArea):
         line.setStyleSheet("color: palette(mid)")
         box.addWidget(line)
         form = self._form(box)
-        self.gap = Seconds(page, "Mean seconds of rest between two actions when nobody asks for any", 60, " s", 0.2)
+        self.gap = Seconds(
+            page, "Mean seconds of rest between two actions when nobody asks for any", 60, " s", 0.2
+        )
         self.gap.valueChanged.connect(self._set_gap)
         form.addRow("Rest between", self.gap)
-        self.base = Chooser(page, toolTip="The pose all layers are added to; a neutral one, hands at the sides")
+        self.base = Chooser(
+            page, toolTip="The pose all layers are added to; a neutral one, hands at the sides"
+        )
         self.base.activated.connect(self._set_base)
         form.addRow("Base pose", self.base)
         self.base_frame = Seconds(page, "Frame of that clip", 1e6, "", 1, 0)
@@ -255,7 +274,9 @@ class PropertiesPanel(QScrollArea):
         self.leave.blockSignals(True)
         self.leave.setTristate(leaves is Mixed)
         state = Qt.CheckState
-        self.leave.setCheckState(state.PartiallyChecked if leaves is Mixed else state.Checked if leaves else state.Unchecked)
+        self.leave.setCheckState(
+            state.PartiallyChecked if leaves is Mixed else state.Checked if leaves else state.Unchecked
+        )
         self.leave.blockSignals(False)
         self.earliest.setEnabled(exits is not None)
         self.earliest.show_value(0.0 if exits is None else exits)
@@ -273,7 +294,9 @@ class PropertiesPanel(QScrollArea):
         self.variation.show_actions(project, actions)
         self._fill_stances(actions, kind)
         masks = common([a.joints for a in actions])
-        self.joints.setText(MIXED if masks is Mixed else f"{len(masks)} joints only" if masks else "all its layer reaches")
+        self.joints.setText(
+            MIXED if masks is Mixed else f"{len(masks)} joints only" if masks else "all its layer reaches"
+        )
         self.joints.setEnabled(project.skeleton is not None)
         self._show_trouble()
 
@@ -293,9 +316,14 @@ class PropertiesPanel(QScrollArea):
         project = self.document.project
         layer = common([a.layer for a in actions])
         stances = project.graphs[layer].stances.values() if layer is not Mixed else ()
-        for box, values in ((self.stance, [a.stance for a in actions]), (self.ends, [a.end_stance for a in actions])):
+        for box, values in (
+            (self.stance, [a.stance for a in actions]),
+            (self.ends, [a.end_stance for a in actions]),
+        ):
             shared = common(values)
-            box.show_entries([(s.name, s.id) for s in stances], shared, MIXED if shared is Mixed else "choose one")
+            box.show_entries(
+                [(s.name, s.id) for s in stances], shared, MIXED if shared is Mixed else "choose one"
+            )
             box.setEnabled(bool(stances))
         self.form.setRowVisible(self.ends, kind == "transition")
 
@@ -306,8 +334,13 @@ class PropertiesPanel(QScrollArea):
         if len(entries) == 1:
             e = entries[0]
             self.clip_title.setText(e.name)
-            notes = "".join(f"\n\n{note}" for note in (e.motion.notes if e.motion is not None else ("The file is missing.",)))
-            self.clip_words.setText(f"{e.duration:.2f} s, {e.frames} frames at {e.fps:g} fps\n{e.path}{notes}")
+            notes = "".join(
+                f"\n\n{note}"
+                for note in (e.motion.notes if e.motion is not None else ("The file is missing.",))
+            )
+            self.clip_words.setText(
+                f"{e.duration:.2f} s, {e.frames} frames at {e.fps:g} fps\n{e.path}{notes}"
+            )
         else:
             self.clip_title.setText(f"{len(entries)} clips")
             self.clip_words.setText(f"{total:.1f} s together")
@@ -316,9 +349,14 @@ class PropertiesPanel(QScrollArea):
             stance = project.stance(action.stance)
             color = t.kinds[action.kind]
             where = escape(f"{action.kind} of {stance.name if stance else '?'}, {action.layer}")
-            lines.append(f"<p style='margin:2px'><span style='color:{color}'>{KIND_MARKS[action.kind]}</span> "
-                         f"<a style='color:{t.text}' href='{action.id}'>{where}</a></p>")  # fmt: skip
-        keys = "<p>Drag onto a node, or press <b>1</b> stance, <b>2</b> gesture, <b>3</b> fidget, <b>4</b> transition.</p>"
+            lines.append(
+                f"<p style='margin:2px'><span style='color:{color}'>{KIND_MARKS[action.kind]}</span> "
+                f"<a style='color:{t.text}' href='{action.id}'>{where}</a></p>"
+            )
+        keys = (
+            "<p>Drag onto a node, or press <b>1</b> stance, <b>2</b> gesture, <b>3</b> fidget, <b>4</b> "
+            "transition.</p>"
+        )
         self.clip_uses.setText("".join(lines) + keys)
 
     def _show_layer(self) -> None:
@@ -367,7 +405,13 @@ class PropertiesPanel(QScrollArea):
             start, end = project.span(action)
             at = action.timing.earliest_exit
             exits[action.id] = {
-                "timing": {"earliest_exit": None if not on else round(start + 0.7 * (end - start), 3) if at is None else at}
+                "timing": {
+                    "earliest_exit": None
+                    if not on
+                    else round(start + 0.7 * (end - start), 3)
+                    if at is None
+                    else at
+                }
             }
         self._try("Change earliest exit", lambda p: edits.update_each(p, exits))
 
@@ -420,7 +464,10 @@ class PropertiesPanel(QScrollArea):
         if value <= 0:
             self.show_selection()
         else:
-            self._try("Change rest between actions", lambda p: edits.set_markov(p, replace(model(p, layer), gap=round(value, 2))))
+            self._try(
+                "Change rest between actions",
+                lambda p: edits.set_markov(p, replace(model(p, layer), gap=round(value, 2))),
+            )
 
     def _set_base(self, place: int) -> None:
         clip = self.base.itemData(place)

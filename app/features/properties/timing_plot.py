@@ -1,4 +1,6 @@
-"""Timing seen, not typed: the speed of the hands or head over the clip, with handles for start, end, blends and exit."""
+"""Timing seen, not typed: the speed of the hands or head over the clip, with handles for start, end, blends
+and exit.
+"""
 
 from __future__ import annotations
 
@@ -22,7 +24,14 @@ from metagraph.motion import features
 from metagraph.playback.phases import phases
 
 HANDLES = ("start", "end", "in", "out", "exit", "stroke", "ready", "hold", "relax")
-WORDS = {"start": "start", "end": "end", "in": "blend in", "out": "blend out", "exit": "earliest exit", "stroke": "stroke"}
+WORDS = {
+    "start": "start",
+    "end": "end",
+    "in": "blend in",
+    "out": "blend out",
+    "exit": "earliest exit",
+    "stroke": "stroke",
+}
 PHASES = ("ready", "hold", "relax")  # handles of a gesture's phases
 BANDS = ("prepare", "stroke", "hold", "retract")
 SNAP = 7  # pixels within which a handle comes to rest at a moment that does not jump
@@ -38,7 +47,9 @@ def speed_of(project: Project, action: Action) -> tuple[np.ndarray, str]:
     if action.layer == "arms":
         sides = ("left", "right") if action.limb == "both" else (action.limb,)
         joints = [roles[f"{s}_hand"] for s in sides if f"{s}_hand" in roles]
-        return features.speed(motion, joints, roles.get("upper_chest", roles.get("chest", roles.get("spine")))), "hand speed"
+        return features.speed(
+            motion, joints, roles.get("upper_chest", roles.get("chest", roles.get("spine")))
+        ), "hand speed"
     if action.layer == "head":
         joints = [roles["head"]] if "head" in roles else []
         # A turning head's joint stays in place: its eyes or what else hangs on it tell.
@@ -71,7 +82,9 @@ def _phases(project: Project, action: Action) -> dict[str, float | None]:
 
 
 def moved(project: Project, action: Action, handle: str, seconds: float) -> dict[str, Any]:
-    """Return the Timing fields that dragging a handle to `seconds` changes; a pure function of where it is dropped."""
+    """Return the Timing fields that dragging a handle to `seconds` changes; a pure function of where it is
+    dropped.
+    """
     entry = project.clips[action.clip]
     start, end = project.span(action)
     shortest = 1 / entry.fps
@@ -96,11 +109,20 @@ def moved(project: Project, action: Action, handle: str, seconds: float) -> dict
     return {"stroke": min(max(at, start), end)}
 
 
-FIELDS = {"start": "start", "end": "end", "blend_in": "in", "blend_out": "out", "earliest_exit": "exit", "stroke": "stroke"}
+FIELDS = {
+    "start": "start",
+    "end": "end",
+    "blend_in": "in",
+    "blend_out": "out",
+    "earliest_exit": "exit",
+    "stroke": "stroke",
+}
 
 
 def retimed(project: Project, actions: Iterable[str], name: str, value: float) -> Project:
-    """Return the project with a Timing field of actions set, each kept within its own clip as a dragged handle is."""
+    """Return the project with a Timing field of actions set, each kept within its own clip as a dragged
+    handle is.
+    """
     changes: dict[str, dict[str, Any]] = {}
     for ident in actions:
         action = project.action(ident)
@@ -127,7 +149,11 @@ def times_words(seen: Seen) -> str:
     """Say proposed times."""
     p = seen.proposed
     if seen.loops:
-        return f"All of it, its seam blended over {p.blend_in:.2f} s" if p.blend_in > 0 else "All of it, without a blend"
+        return (
+            f"All of it, its seam blended over {p.blend_in:.2f} s"
+            if p.blend_in > 0
+            else "All of it, without a blend"
+        )
     return f"{p.start:.2f} to {p.end:.2f} s, blended over {p.blend_in:.2f} and {p.blend_out:.2f} s"
 
 
@@ -191,7 +217,9 @@ class TimingPlot(QWidget):
     def set_compatibility(self, compatibility: Compatibility) -> None:
         """Show what it knows of the action's jumps."""
         self.compatibility = compatibility
-        compatibility.seen.connect(lambda ident: self._show_seen() if self.action is not None and ident == self.action.id else None)
+        compatibility.seen.connect(
+            lambda ident: self._show_seen() if self.action is not None and ident == self.action.id else None
+        )
         compatibility.changed.connect(self._show_seen)
         self._show_seen()
 
@@ -200,7 +228,11 @@ class TimingPlot(QWidget):
     def _show_seen(self) -> None:
         """Show where the action can begin and end without a jump, as far as that is known by now."""
         project, action, t = self.document.project, self.action, theme(self.session.look.name)
-        curves = self.compatibility.curves(action) if self.compatibility is not None and action is not None else None
+        curves = (
+            self.compatibility.curves(action)
+            if self.compatibility is not None and action is not None
+            else None
+        )
         if action is None or project.action(action.id) is None:
             return
         seen = Seen(action, curves) if curves is not None else None
@@ -244,7 +276,12 @@ class TimingPlot(QWidget):
         """Show an action's timing."""
         t = theme(self.session.look.name)
         project = self.document.project
-        fresh = self.action is None or self.action.id != action.id or self.action.clip != action.clip or self.action.limb != action.limb
+        fresh = (
+            self.action is None
+            or self.action.id != action.id
+            or self.action.clip != action.clip
+            or self.action.limb != action.limb
+        )
         self.action = action
         entry = project.clips.get(action.clip)
         if entry is None:
@@ -277,11 +314,17 @@ class TimingPlot(QWidget):
             line.setPen(pg.mkPen(t.text if strong else color, width=2 if strong else 1.4, style=style))
             line.setHoverPen(pg.mkPen(t.text, width=3))
             if name in PHASES:
-                own = {"ready": action.timing.ready, "hold": action.timing.stroke_end, "relax": action.timing.relax}[name]
+                own = {
+                    "ready": action.timing.ready,
+                    "hold": action.timing.stroke_end,
+                    "relax": action.timing.relax,
+                }[name]
                 line.setPen(pg.mkPen(t.dim if own is None else t.text, width=1.2, style=Qt.PenStyle.DotLine))
             else:
                 line.label.setColor(t.dim)
-                line.label.setPosition({"start": 0.78, "end": 0.78, "in": 0.62, "out": 0.62, "exit": 0.46, "stroke": 0.3}[name])
+                line.label.setPosition(
+                    {"start": 0.78, "end": 0.78, "in": 0.62, "out": 0.62, "exit": 0.46, "stroke": 0.3}[name]
+                )
         self._bands(t, at)
         fill = QColor(color)
         fill.setAlpha(46)
@@ -300,7 +343,9 @@ class TimingPlot(QWidget):
         edges = [at[x] for x in ("start", "ready", "hold", "relax", "end")]
         (low, high), (_, top) = self.plot.viewRange()
         for band, a, b in zip(self.bands, edges, edges[1:], strict=False):
-            wide = a is not None and b is not None and (b - a) * self.plot.width() / max(high - low, 1e-6) > 46
+            wide = (
+                a is not None and b is not None and (b - a) * self.plot.width() / max(high - low, 1e-6) > 46
+            )
             band.setVisible(whole and wide)
             if whole and wide and a is not None and b is not None:
                 band.setColor(t.dim)
@@ -321,7 +366,9 @@ class TimingPlot(QWidget):
         # The character follows the handle.
         self.session.transport.show_clip(self.action.clip)
         self.session.transport.set_playing(False)
-        self.session.transport.seek(min(max(0.0, seconds), self.document.project.clips[self.action.clip].duration))
+        self.session.transport.seek(
+            min(max(0.0, seconds), self.document.project.clips[self.action.clip].duration)
+        )
         self._moving = True
         self.changed.emit(fields)
 
@@ -352,7 +399,11 @@ class TimingPlot(QWidget):
         self.session.transport.seek(max(0.0, float(seconds)))
 
     def _playhead(self, seconds: float) -> None:
-        mine = self.action is not None and self.session.transport.show == "clip" and self.session.transport.shown == self.action.clip
+        mine = (
+            self.action is not None
+            and self.session.transport.show == "clip"
+            and self.session.transport.shown == self.action.clip
+        )
         self.playhead.setVisible(mine)
         if mine:
             self.playhead.setValue(seconds)

@@ -1,4 +1,6 @@
-"""Fields for how often things play: an action's cooldown and spacing, the phases of a gesture, and the planner's own numbers."""
+"""Fields for how often things play: an action's cooldown and spacing, the phases of a gesture, and the
+planner's own numbers.
+"""
 
 from __future__ import annotations
 
@@ -15,7 +17,11 @@ from metagraph.graph.model import Action, Project, Settings
 from metagraph.playback.phases import phases
 
 PHASE_FIELDS = ("ready", "stroke_end", "relax")
-PHASE_WORDS = {"ready": "The preparation ends", "stroke_end": "The hold begins", "relax": "The hold ends, the retraction begins"}
+PHASE_WORDS = {
+    "ready": "The preparation ends",
+    "stroke_end": "The hold begins",
+    "relax": "The hold ends, the retraction begins",
+}
 AS_THE_GRAPH = -1
 
 
@@ -31,13 +37,26 @@ class ActionRows(QWidget):
         self.ready, self.stroke_end, self.relax = (Seconds(parent, PHASE_WORDS[f]) for f in PHASE_FIELDS)
         self.found = QToolButton(parent, text="As found", toolTip="Take the phases from the motion again")
         self.found.setAccessibleName("Phases as found")
-        self.phase_rows = (self._row("Ready", self.ready, self.found), self._row("Hold", self.stroke_end, self.relax))
+        self.phase_rows = (
+            self._row("Ready", self.ready, self.found),
+            self._row("Hold", self.stroke_end, self.relax),
+        )
         for field, box in zip(PHASE_FIELDS, (self.ready, self.stroke_end, self.relax), strict=True):
-            box.valueChanged.connect(lambda v, f=field: v >= 0 and self.changed.emit("Change phases", {"timing": {f: round(v, 3)}}))
-        self.found.clicked.connect(lambda: self.changed.emit("Take phases as found", {"timing": dict.fromkeys(PHASE_FIELDS)}))
-        self.cooldown = Seconds(parent, "Seconds after it has ended in which it is not drawn again", 3600, " s", 0.5, 1)
-        self.cooldown.valueChanged.connect(lambda v: v >= 0 and self.changed.emit("Change cooldown", {"cooldown": round(v, 2)}))
-        self.spacing = SpinBox(parent, toolTip="How many others of its kind and stance play before it may be drawn again")
+            box.valueChanged.connect(
+                lambda v, f=field: v >= 0 and self.changed.emit("Change phases", {"timing": {f: round(v, 3)}})
+            )
+        self.found.clicked.connect(
+            lambda: self.changed.emit("Take phases as found", {"timing": dict.fromkeys(PHASE_FIELDS)})
+        )
+        self.cooldown = Seconds(
+            parent, "Seconds after it has ended in which it is not drawn again", 3600, " s", 0.5, 1
+        )
+        self.cooldown.valueChanged.connect(
+            lambda v: v >= 0 and self.changed.emit("Change cooldown", {"cooldown": round(v, 2)})
+        )
+        self.spacing = SpinBox(
+            parent, toolTip="How many others of its kind and stance play before it may be drawn again"
+        )
         self.spacing.setAccessibleName("Others between")
         self.spacing.setRange(-2, 31)
         self.spacing.setKeyboardTracking(False)
@@ -64,7 +83,9 @@ class ActionRows(QWidget):
             self.ready.show_value(common([p.ready for p in found]))
             self.stroke_end.show_value(common([p.stroke_end for p in found]))
             self.relax.show_value(common([p.relax for p in found]))
-            self.found.setEnabled(any(getattr(a.timing, f) is not None for a in actions for f in PHASE_FIELDS))
+            self.found.setEnabled(
+                any(getattr(a.timing, f) is not None for a in actions for f in PHASE_FIELDS)
+            )
         self.cooldown.show_value(common([a.cooldown for a in actions]))
         spacing = common([a.spacing for a in actions])
         self.spacing.blockSignals(True)
@@ -81,7 +102,9 @@ class ActionRows(QWidget):
 class PlannerRows(QWidget):
     """Rows of the planner's numbers, the same for every layer. edit: as `Document.edit` takes them."""
 
-    def __init__(self, form: QFormLayout, parent: QWidget, edit: Callable[[str, Callable[[Project], Project]], object]) -> None:
+    def __init__(
+        self, form: QFormLayout, parent: QWidget, edit: Callable[[str, Callable[[Project], Project]], object]
+    ) -> None:
         super().__init__(parent)
         self.hide()
         self._edit = edit
@@ -91,14 +114,30 @@ class PlannerRows(QWidget):
         form.addRow("Repetition", self.never_twice)
         self.fields: dict[str, Seconds] = {}
         for name, title, tip, most, suffix, step in (
-            ("alpha", "Avoid repeats", "How quickly what was used becomes unlikely; the paper has 4", 100, "", 0.5),
+            (
+                "alpha",
+                "Avoid repeats",
+                "How quickly what was used becomes unlikely; the paper has 4",
+                100,
+                "",
+                0.5,
+            ),
             ("memory", "Remembered for", "How long a use counts against an action; 0 for ever", 600, " s", 5),
             ("rest", "Least rest", "Seconds in the stance between two actions, at the least", 60, " s", 0.1),
             ("wait", "Waits at most", "How late something asked for may begin", 60, " s", 0.5),
-            ("lookahead", "Looks ahead", "What begins this soon is not changed any more while performing live", 10, " s", 0.05),
+            (
+                "lookahead",
+                "Looks ahead",
+                "What begins this soon is not changed any more while performing live",
+                10,
+                " s",
+                0.05,
+            ),
         ):
             field = Seconds(parent, tip, most, suffix, step)
-            field.valueChanged.connect(lambda v, n=name, t=title: v >= 0 and self._set(f"Change {t.lower()}", **{n: round(v, 3)}))
+            field.valueChanged.connect(
+                lambda v, n=name, t=title: v >= 0 and self._set(f"Change {t.lower()}", **{n: round(v, 3)})
+            )
             self.fields[name] = field
             form.addRow(title, field)
 

@@ -35,7 +35,9 @@ class RenderDialog(QDialog):
 
     written = Signal(str)
 
-    def __init__(self, performance: Performance, session: Session, jobs: Jobs, parent: QWidget | None = None) -> None:
+    def __init__(
+        self, performance: Performance, session: Session, jobs: Jobs, parent: QWidget | None = None
+    ) -> None:
         super().__init__(parent)
         self.performance, self.session, self.jobs = performance, session, jobs
         self.setAttribute(Qt.WidgetAttribute.WA_DeleteOnClose)  # what runs goes on; the status bar shows it
@@ -85,7 +87,9 @@ class RenderDialog(QDialog):
         self.buttons = QDialogButtonBox(QDialogButtonBox.StandardButton.Close, self)
         self.show_button = self.buttons.addButton("Open folder", QDialogButtonBox.ButtonRole.ActionRole)
         self.show_button.setEnabled(False)
-        self.show_button.clicked.connect(lambda: QDesktopServices.openUrl(QUrl.fromLocalFile(str(Path(self.file.text()).parent))))
+        self.show_button.clicked.connect(
+            lambda: QDesktopServices.openUrl(QUrl.fromLocalFile(str(Path(self.file.text()).parent)))
+        )
         self.go = self.buttons.addButton("Write", QDialogButtonBox.ButtonRole.AcceptRole)
         strengthen(self.go)
         self.buttons.accepted.connect(self._write)
@@ -109,16 +113,23 @@ class RenderDialog(QDialog):
 
     def _browse(self) -> None:
         suffix = self.kind.currentData()
-        name, _ = QFileDialog.getSaveFileName(self, "Write the performance", self.file.text(), f"{SUFFIXES[suffix]} (*{suffix})")
+        name, _ = QFileDialog.getSaveFileName(
+            self, "Write the performance", self.file.text(), f"{SUFFIXES[suffix]} (*{suffix})"
+        )
         if name:
             self.file.setText(str(Path(name).with_suffix(suffix)))
 
     def _write(self) -> None:
         document = self.performance.document
         wanted = Wanted(
-            Path(self.file.text()), self.session.onstage.performance, self.seconds.value(), self.size_box.currentData(), self.fps.currentData(),
-            self.session.look.name, self.performance.conversation,
-        )  # fmt: skip
+            Path(self.file.text()),
+            self.session.onstage.performance,
+            self.seconds.value(),
+            self.size_box.currentData(),
+            self.fps.currentData(),
+            self.session.look.name,
+            self.performance.conversation,
+        )
         QSettings().setValue("render/size", self.size_box.currentIndex())
         project, folder = document.project, document.folder or Path()
         self.go.setEnabled(False)

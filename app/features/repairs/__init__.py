@@ -12,27 +12,46 @@ from app.shell.notice import Notice
 
 
 def contribute(shell: Shell) -> Contribution:
-    document, session, importing, notice = shell.document, shell.stage.session, shell.services[Importing], shell.services[Notice]
+    document, session, importing, notice = (
+        shell.document,
+        shell.stage.session,
+        shell.services[Importing],
+        shell.services[Notice],
+    )
 
     def show(title: str = "", clips: Sequence[str] = (), lines: Sequence[str] = ()) -> None:
         """Show the repairs of the clips given, else of the selected ones, else of all."""
         from app.features.repairs.repairs_dialog import RepairsDialog
 
         chosen = (
-            clips or session.selection.clips or tuple(a.clip for a in session.selection.selected_actions()) or tuple(document.project.clips)
+            clips
+            or session.selection.clips
+            or tuple(a.clip for a in session.selection.selected_actions())
+            or tuple(document.project.clips)
         )
         words = title or f"Repairs of {clips_words(len(set(chosen)))}"
         RepairsDialog(document, shell.jobs, words, dict.fromkeys(chosen), lines, shell.widget).show()
 
     def noticed(title: str, clips: Sequence[str], lines: Sequence[str]) -> None:
-        notice.tell("Some clips were repaired: look…", "What reading them put right, and what to leave as it is in the files",
-                    lambda: show(title, clips, tuple(lines)))  # fmt: skip
+        notice.tell(
+            "Some clips were repaired: look…",
+            "What reading them put right, and what to leave as it is in the files",
+            lambda: show(title, clips, tuple(lines)),
+        )
 
     importing.repaired.connect(show)
     importing.noticed.connect(noticed)
     return Contribution(
         commands=(
-            Command("repairs", "&Edit", "properties", "Repa&irs…", show, tip="What reading the files put right, and what to leave as it is",
-                    enabled=lambda: bool(document.project.clips), menus=("clip",)),
+            Command(
+                "repairs",
+                "&Edit",
+                "properties",
+                "Repa&irs…",
+                show,
+                tip="What reading the files put right, and what to leave as it is",
+                enabled=lambda: bool(document.project.clips),
+                menus=("clip",),
+            ),
         ),
-    )  # fmt: skip
+    )

@@ -5,7 +5,16 @@ from __future__ import annotations
 from collections.abc import Iterable, Sequence
 
 from PySide6.QtCore import Qt
-from PySide6.QtWidgets import QDialog, QDialogButtonBox, QLabel, QPlainTextEdit, QTreeWidget, QTreeWidgetItem, QVBoxLayout, QWidget
+from PySide6.QtWidgets import (
+    QDialog,
+    QDialogButtonBox,
+    QLabel,
+    QPlainTextEdit,
+    QTreeWidget,
+    QTreeWidgetItem,
+    QVBoxLayout,
+    QWidget,
+)
 
 from app.look.theme import strengthen
 from app.project.document import Document
@@ -29,7 +38,13 @@ class RepairsDialog(QDialog):
     """title: what happened. clips: whose repairs are shown. lines: what else there is to read."""
 
     def __init__(
-        self, document: Document, jobs: Jobs, title: str, clips: Iterable[str], lines: Sequence[str] = (), parent: QWidget | None = None
+        self,
+        document: Document,
+        jobs: Jobs,
+        title: str,
+        clips: Iterable[str],
+        lines: Sequence[str] = (),
+        parent: QWidget | None = None,
     ) -> None:
         super().__init__(parent)
         self.document, self.jobs, self.clips = document, jobs, tuple(clips)
@@ -92,7 +107,11 @@ class RepairsDialog(QDialog):
         self.tree.blockSignals(False)
         self.tree.setVisible(bool(found))
         self.words.setText(
-            "Reading the files put this right. Untick what should be left as it is in the file; it can be ticked again at any time."
+            (
+                "Reading the files put this right. Untick what should be left as it is in the file; it can "
+                "be "
+                "ticked again at any time."
+            )
             if found
             else "Nothing had to be put right in these clips."
         )
@@ -131,7 +150,9 @@ class RepairsDialog(QDialog):
                 if result.count:
                     left = sum(not made for _, made in changes)
                     verb = "Leave out" if left == len(changes) else "Make" if not left else "Change"
-                    self.document.edit(f"{verb} {len(changes)} repair{'s' if len(changes) != 1 else ''}", result.into)
+                    self.document.edit(
+                        f"{verb} {len(changes)} repair{'s' if len(changes) != 1 else ''}", result.into
+                    )
             except EditError as error:
                 failures.append(str(error))
             self.found = []

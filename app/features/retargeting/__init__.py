@@ -17,7 +17,14 @@ def contribute(shell: Shell) -> Contribution:
     shell.services[Importing].retarget = retargeting.ask
     return Contribution(
         commands=(
-            Command("joint_maps", "&Graph", "skeleton", "&Joint maps…", lambda: retargeting.change_maps(session.selection.clips),
-                    tip="How clips of other skeletons were brought onto this one", enabled=lambda: bool(document.project.joint_maps)),
+            Command(
+                "joint_maps",
+                "&Graph",
+                "skeleton",
+                "&Joint maps…",
+                lambda: retargeting.change_maps(session.selection.clips),
+                tip="How clips of other skeletons were brought onto this one",
+                enabled=lambda: bool(document.project.joint_maps),
+            ),
         ),
-    )  # fmt: skip
+    )

@@ -1,4 +1,6 @@
-"""Clips of other skeletons after an import: asked about once a skeleton, then retargeted on a thread, one step to undo."""
+"""Clips of other skeletons after an import: asked about once a skeleton, then retargeted on a thread, one
+step to undo.
+"""
 
 from __future__ import annotations
 
@@ -37,13 +39,17 @@ class Retargeting(QObject):
         self._waiting.clear()  # they were of another project
 
     def ask(self, groups: Iterable[Strangers], then: Then) -> None:
-        """Ask about each group; `then` is called with what came of each, an empty import for those left out."""
+        """Ask about each group; `then` is called with what came of each, an empty import for those left
+        out.
+        """
         self._waiting += [(group, then) for group in groups]
         if not self._asking:
             self._next()
 
     def change_maps(self, clips: Iterable[str]) -> None:
-        """Let the joint maps be corrected by which clips of the project were retargeted, those of `clips` or all."""
+        """Let the joint maps be corrected by which clips of the project were retargeted, those of `clips` or
+        all.
+        """
         project, folder, chosen = self.document.project, self.document.folder, tuple(clips)
 
         def then(result: Imported) -> None:
@@ -57,7 +63,12 @@ class Retargeting(QObject):
             elif self.document.project is project:
                 self.ask(groups, then)
 
-        self.jobs.start("Reading retargeted clips", lambda _: strangers_of(project, folder, chosen), done, self.failed.emit)
+        self.jobs.start(
+            "Reading retargeted clips",
+            lambda _: strangers_of(project, folder, chosen),
+            done,
+            self.failed.emit,
+        )
 
     def _next(self) -> None:
         if not self._waiting:
@@ -86,7 +97,10 @@ class Retargeting(QObject):
             self.told.emit(f"The joint map is kept in this project only ({error}).")
 
         def done(result: Imported) -> None:
-            if self.document.path != source or self.document.project.skeleton is not bringing.project.skeleton:
+            if (
+                self.document.path != source
+                or self.document.project.skeleton is not bringing.project.skeleton
+            ):
                 result = replace(result, loaded=(), joint_maps={}, retargeted=0)
                 self.told.emit("The clips were not retargeted, since another project was opened.")
             self._end(lambda: then(result))

@@ -1,4 +1,6 @@
-"""Clips of another skeleton: which joint follows which, seen on both figures, corrected by hand, and retargeted or left out."""
+"""Clips of another skeleton: which joint follows which, seen on both figures, corrected by hand, and
+retargeted or left out.
+"""
 
 from __future__ import annotations
 
@@ -37,17 +39,26 @@ SHOWN = 150  # frames of a clip that are played
 
 
 class JointMapDialog(QDialog):
-    """map: the joint map as it is now; accepted when the clips are to be retargeted by it, rejected when they are left out."""
+    """map: the joint map as it is now; accepted when the clips are to be retargeted by it, rejected when they
+    are left out.
+    """
 
-    def __init__(self, strangers: Strangers, bringing: Bringing, jobs: Jobs, parent: QWidget | None = None) -> None:
+    def __init__(
+        self, strangers: Strangers, bringing: Bringing, jobs: Jobs, parent: QWidget | None = None
+    ) -> None:
         super().__init__(parent)
         assert bringing.project.skeleton is not None
         self.strangers, self.bringing, self.jobs = strangers, bringing, jobs
         self.source, self.target = strangers.skeleton, bringing.project.skeleton
         self.map: JointMap = strangers.joint_map
-        self._before: tuple[str, JointMap] = ("", self.map)  # the joint that was changed last, and the map before that
+        self._before: tuple[str, JointMap] = (
+            "",
+            self.map,
+        )  # the joint that was changed last, and the map before that
         self._asked = 0  # previews, so that a late one of an older map is not shown
-        self._roles = {self.target.names[j]: role for role, j in known_roles(self.target, bringing.roles).items()}
+        self._roles = {
+            self.target.names[j]: role for role, j in known_roles(self.target, bringing.roles).items()
+        }
         self.setAttribute(Qt.WidgetAttribute.WA_DeleteOnClose)
         self.setWindowTitle("Another skeleton")
         self.resize(1200, 720)
@@ -90,15 +101,25 @@ class JointMapDialog(QDialog):
         paths = list(dict.fromkeys(Path(path).name for path, *_ in self.strangers.clips))
         count = len(self.strangers.clips)
         files = ", ".join(paths[:2]) + (f" and {len(paths) - 2} more" if len(paths) > 2 else "")
-        self.headline.setText(f"{count} clips have another skeleton" if count > 1 else "A clip has another skeleton")
-        words = f"From {files}: {len(self.source)} joints, {self.source.height:.2f} m tall; {self.strangers.why}."
+        self.headline.setText(
+            f"{count} clips have another skeleton" if count > 1 else "A clip has another skeleton"
+        )
+        words = (
+            f"From {files}: {len(self.source)} joints, {self.source.height:.2f} m tall; {self.strangers.why}."
+        )
         if not self.strangers.why:  # they are in the project
-            words = f"From {files}: {len(self.source)} joints, {self.source.height:.2f} m tall. This is how they were brought over."
+            words = (
+                f"From {files}: {len(self.source)} joints, {self.source.height:.2f} m tall. This is how "
+                "they were brought over."
+            )
             self.headline.setText(f"{count} clips were retargeted" if count > 1 else "A clip was retargeted")
         elif self.strangers.remembered:
             words += " The joints are mapped as you did it before."
         else:
-            words += " The joints below were paired by what they do and by their names; look at those that are not sure."
+            words += (
+                " The joints below were paired by what they do and by their names; look at those that "
+                "are not sure."
+            )
         self.details.setText(words)
         self.go.setText(f"Retarget {count} clips" if count > 1 else "Retarget the clip")
         if not self.strangers.why:
@@ -190,7 +211,8 @@ class JointMapDialog(QDialog):
     def _choose(self, joint: str, number: int) -> None:
         """Let a joint of the character follow another, or none.
 
-        What one joint is given on the way there by keyboard is taken back, so that it takes nothing from the others.
+        What one joint is given on the way there by keyboard is taken back, so that it takes nothing from the
+        others.
         """
         if self._before[0] != joint:
             self._before = (joint, self.map)
@@ -217,7 +239,12 @@ class JointMapDialog(QDialog):
             item.setToolTip(4, item.text(4))
             unsure = pair is not None and pair.sure < 0.7
             for column in range(5):
-                item.setForeground(column, QColor(look.dim if pair is None else look.warning if unsure and column == 3 else look.text))
+                item.setForeground(
+                    column,
+                    QColor(
+                        look.dim if pair is None else look.warning if unsure and column == 3 else look.text
+                    ),
+                )
         missing = self.map.missing
         free = len(self.target) - len({p.target for p in self.map.pairs})
         words = f"{len(self.map.pairs)} of {len(self.source)} joints are mapped."
@@ -227,7 +254,8 @@ class JointMapDialog(QDialog):
             parts = [m.removeprefix("no ").removesuffix(" in both") for m in missing]
             more = f" and {len(parts) - 4} more" if len(parts) > 4 else ""
             words = (
-                f"Still missing: {', '.join(parts[:4])}{more}. Choose what moves them above. Where your own character's joints are not"
+                f"Still missing: {', '.join(parts[:4])}{more}. Choose what moves them above. Where your own "
+                "character's joints are not"
                 " known, say so under Graph, Skeleton first."
             )
         self.missing.setText(words)
@@ -243,7 +271,9 @@ class JointMapDialog(QDialog):
     def _mark(self, *_: object) -> None:
         item = self.tree.currentItem()
         pair = self.map.of(item.data(0, JOINT)) if item is not None else None
-        self.figures.mark(item.data(0, JOINT) if item is not None else "", pair.target if pair is not None else "")
+        self.figures.mark(
+            item.data(0, JOINT) if item is not None else "", pair.target if pair is not None else ""
+        )
 
     # --- the picture
 
@@ -267,4 +297,6 @@ class JointMapDialog(QDialog):
             if asked == self._asked:
                 self.trouble.setText(str(error))
 
-        self.jobs.start("Trying the joint map", lambda _: bringing.bring(clip, joint_map), done, failed, quick=True)
+        self.jobs.start(
+            "Trying the joint map", lambda _: bringing.bring(clip, joint_map), done, failed, quick=True
+        )

@@ -16,7 +16,9 @@ YAW = np.radians(28)  # seen a little from the side
 
 
 class StickFigures(QWidget):
-    """left: the clip as it is. right: what becomes of it, None while that is not known. marked: a joint of either, by name."""
+    """left: the clip as it is. right: what becomes of it, None while that is not known. marked: a joint of
+    either, by name.
+    """
 
     def __init__(self, parent: QWidget | None = None) -> None:
         super().__init__(parent)
@@ -51,13 +53,20 @@ class StickFigures(QWidget):
             box = QRectF(n * half, 0, half, self.height()).adjusted(14, 12, -14, -34)
             painter.setPen(self.palette().placeholderText().color())
             caption = QRectF(n * half, self.height() - 28, half, 24)
-            painter.drawText(caption, Qt.AlignmentFlag.AlignCenter | Qt.AlignmentFlag.AlignVCenter, self.words[n])
+            painter.drawText(
+                caption, Qt.AlignmentFlag.AlignCenter | Qt.AlignmentFlag.AlignVCenter, self.words[n]
+            )
             if n in self._seen:
                 self._figure(painter, box, self._seen[n], self.marked[n])
 
     def _scale(self, box: QRectF) -> float:
-        """Pixels per height of a figure: both are drawn equally tall, whatever their size and what they do."""
-        return min(min(box.width() / wide, box.height() / tall) for wide, tall in (seen.size for seen in self._seen.values()))
+        """Pixels per height of a figure: both are drawn equally tall, whatever their size and what they
+        do.
+        """
+        return min(
+            min(box.width() / wide, box.height() / tall)
+            for wide, tall in (seen.size for seen in self._seen.values())
+        )
 
     def _figure(self, painter: QPainter, box: QRectF, seen: _Seen, marked: str) -> None:
         clip, low = seen.clip, seen.low
@@ -65,7 +74,10 @@ class StickFigures(QWidget):
         now = seen.places[min(clip.frames - 1, int(seconds * clip.fps))]
         scale = self._scale(box) / seen.height
         middle = (low[0] + seen.high[0]) / 2
-        points = [QPointF(box.center().x() + scale * (x - middle), box.bottom() - scale * (y - low[1])) for x, y in now]
+        points = [
+            QPointF(box.center().x() + scale * (x - middle), box.bottom() - scale * (y - low[1]))
+            for x, y in now
+        ]
         text = self.palette().text().color()
         painter.setPen(QPen(QColor(self.palette().mid().color()), 1))
         painter.drawLine(QPointF(box.left(), box.bottom()), QPointF(box.right(), box.bottom()))
@@ -80,13 +92,17 @@ class StickFigures(QWidget):
 
 
 class _Seen:
-    """A clip as it is painted. places: joints across and up `[F, J, 2]`, metres, the figure kept over one spot. low, high: its corners."""
+    """A clip as it is painted. places: joints across and up `[F, J, 2]`, metres, the figure kept over one
+    spot. low, high: its corners.
+    """
 
     def __init__(self, clip: Clip) -> None:
         self.clip, skeleton = clip, clip.skeleton
         _, places = skeleton.globals(clip.poses())
         _, rest = skeleton.globals(skeleton.rest)
-        grounded = len(skeleton) > 1 and rest[0, 1] - rest[:, 1].min() < 0.05 * skeleton.height  # a root between the feet is no bone
+        grounded = (
+            len(skeleton) > 1 and rest[0, 1] - rest[:, 1].min() < 0.05 * skeleton.height
+        )  # a root between the feet is no bone
         self.bones = [
             (j, int(p))
             for j, p in enumerate(skeleton.parents)

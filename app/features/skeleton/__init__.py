@@ -14,7 +14,14 @@ def contribute(shell: Shell) -> Contribution:
 
     return Contribution(
         commands=(
-            Command("skeleton", "&Graph", "skeleton", "S&keleton…", show, tip="Roles and body parts of the joints",
-                    enabled=lambda: shell.document.project.skeleton is not None),
+            Command(
+                "skeleton",
+                "&Graph",
+                "skeleton",
+                "S&keleton…",
+                show,
+                tip="Roles and body parts of the joints",
+                enabled=lambda: shell.document.project.skeleton is not None,
+            ),
         ),
-    )  # fmt: skip
+    )

@@ -1,4 +1,6 @@
-"""The skeleton: which joint plays which role and belongs to which body part, and which joints an action moves."""
+"""The skeleton: which joint plays which role and belongs to which body part, and which joints an action
+moves.
+"""
 
 from __future__ import annotations
 
@@ -86,7 +88,9 @@ class SkeletonDialog(QDialog):
             font.setBold(name in project.parts or name in project.roles.values())
             self.items[name].setFont(0, font)
         missing = missing_roles(found)
-        words = f"{len(found)} roles were found from the names and the hierarchy. Corrections are shown in bold."
+        words = (
+            f"{len(found)} roles were found from the names and the hierarchy. Corrections are shown in bold."
+        )
         if missing:
             words += f" Not found: {', '.join(m.replace('_', ' ') for m in missing)}."
         self.words.setText(words)

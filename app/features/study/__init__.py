@@ -18,8 +18,17 @@ def contribute(shell: Shell) -> Contribution:
 
     return Contribution(
         commands=(
-            Command("study", "&Study", "", "&Run a study…", run, tip="Lead a participant through a timing study"),
-            Command("count_operators", "&Study", "", "&Count operators", counting.toggle, checked=lambda: counting.on,
-                    tip="Count keys, pointings, buttons and drags as they happen"),
+            Command(
+                "study", "&Study", "", "&Run a study…", run, tip="Lead a participant through a timing study"
+            ),
+            Command(
+                "count_operators",
+                "&Study",
+                "",
+                "&Count operators",
+                counting.toggle,
+                checked=lambda: counting.on,
+                tip="Count keys, pointings, buttons and drags as they happen",
+            ),
         ),
-    )  # fmt: skip
+    )

@@ -1,4 +1,6 @@
-"""Operators counted outside a study: to see what a way of working costs, and what an expert would take for it."""
+"""Operators counted outside a study: to see what a way of working costs, and what an expert would take for
+it.
+"""
 
 from __future__ import annotations
 
@@ -23,7 +25,8 @@ class Counting(QObject):
         super().__init__(shell.widget)
         self.label = QLabel(shell.widget)
         self.label.setToolTip(
-            "Keys, pointings, buttons pressed or released, drags, and hands changing over since this was turned on.\n"
+            "Keys, pointings, buttons pressed or released, drags, and hands changing over since this was "
+            "turned on.\n"
             "The seconds are what an expert would take who need not think (Card, Moran and Newell 1980)."
         )
         shell.widget.statusBar().addPermanentWidget(self.label)

@@ -1,7 +1,9 @@
-"""Counts the operators of the keystroke-level model as they happen. Which key it was and what was typed is never kept.
+"""Counts the operators of the keystroke-level model as they happen. Which key it was and what was typed is
+never kept.
 
-K a key pressed, B a mouse button pressed or released, P a movement of more than 8 px that ends in a press or in a rest of more than
-0.3 s, D a drag (its two B are counted as well), H a hand that goes from keyboard to mouse or back.
+K a key pressed, B a mouse button pressed or released, P a movement of more than 8 px that ends in a press or
+in a rest of more than 0.3 s, D a drag (its two B are counted as well), H a hand that goes from keyboard to
+mouse or back.
 """
 
 from __future__ import annotations
@@ -22,7 +24,9 @@ Point = tuple[float, float]
 
 @dataclass(frozen=True)
 class Counts:
-    """Operators since the last time they were asked for. drag_s: seconds of the drags; seconds: since the last time."""
+    """Operators since the last time they were asked for. drag_s: seconds of the drags; seconds: since the
+    last time.
+    """
 
     operators: Counter[str]
     drag_s: float
@@ -30,13 +34,17 @@ class Counts:
 
 
 class Operators:
-    """Told what the hands do, with times in seconds and points in pixels of the screen; the same event may be told again and again."""
+    """Told what the hands do, with times in seconds and points in pixels of the screen; the same event may be
+    told again and again.
+    """
 
     def __init__(self, now: float = 0.0) -> None:
         self._counts: Counter[str] = Counter()
         self._drag_s = 0.0
         self._since = now
-        self._keys: dict[int, tuple[int, bool]] = {}  # held down -> the event's own time, whether it was told as a press
+        self._keys: dict[
+            int, tuple[int, bool]
+        ] = {}  # held down -> the event's own time, whether it was told as a press
         self._buttons: set[int] = set()
         self._anchor: Point | None = None  # where the last pointing ended
         self._at: Point = (-1e9, -1e9)  # nowhere yet
@@ -47,8 +55,9 @@ class Operators:
         self._hand = ""
 
     def key(self, key: int, down: bool, stamp: int, asked: bool = False) -> bool:
-        """Tell of a key; return whether it was new. stamp: the event's own time. asked: it is only asked whether the key is a shortcut;
-        if it is none it is told as a press next."""
+        """Tell of a key; return whether it was new. stamp: the event's own time. asked: it is only asked
+        whether the key is a shortcut; if it is none it is told as a press next.
+        """
         if not down:
             self._keys.pop(key, None)
             return False
@@ -147,15 +156,22 @@ def _far(a: Point, b: Point) -> bool:
 
 _TYPE = QEvent.Type
 _KEYS = {_TYPE.KeyPress: True, _TYPE.ShortcutOverride: True, _TYPE.KeyRelease: False}
-_MOUSE = frozenset({_TYPE.MouseMove, _TYPE.MouseButtonPress, _TYPE.MouseButtonDblClick, _TYPE.MouseButtonRelease})
+_MOUSE = frozenset(
+    {_TYPE.MouseMove, _TYPE.MouseButtonPress, _TYPE.MouseButtonDblClick, _TYPE.MouseButtonRelease}
+)
 
 
 class Hands(QObject):
-    """Watches all events of the application. input: called with the time at each new one of a hand. dialog: called with a dialog
-    and whether it is shown."""
+    """Watches all events of the application. input: called with the time at each new one of a hand. dialog:
+    called with a dialog and whether it is shown.
+    """
 
     def __init__(
-        self, input: Callable[[float], None], dialog: Callable[[QDialog, bool], None], scrolled: Callable[[], None], parent: QObject
+        self,
+        input: Callable[[float], None],
+        dialog: Callable[[QDialog, bool], None],
+        scrolled: Callable[[], None],
+        parent: QObject,
     ) -> None:
         super().__init__(parent)
         self.operators = Operators(monotonic())

@@ -18,7 +18,9 @@ CLOSED = "Not during a study: everybody works on the same clips."
 
 
 class ReservedWindow:
-    """Reserves the window from `enter` to `leave`. bar: above the window's own. labels: proposals may be made."""
+    """Reserves the window from `enter` to `leave`. bar: above the window's own. labels: proposals may be
+    made.
+    """
 
     def __init__(self, shell: Shell, bar: QToolBar, labels: bool) -> None:
         self.shell, self.bar, self.labels = shell, bar, labels
@@ -63,7 +65,9 @@ class ReservedWindow:
         self.shell.actions.refresh()
 
     def allow_task(self) -> None:
-        """Offer what a task may be done with, the same in both conditions but for what only one of the editors has."""
+        """Offer what a task may be done with, the same in both conditions but for what only one of the
+        editors has.
+        """
         self.allow(lambda command: command.study is True or (command.study == "labels" and self.labels))
 
     def allow_page(self) -> None:
@@ -73,7 +77,13 @@ class ReservedWindow:
     def reach(self, on: bool) -> None:
         """Let what lies below a page be reached by the keyboard, or not; nothing lies above it."""
         widget, places = self.shell.widget, self.shell.services[Places]
-        below: tuple[QWidget, ...] = (widget.menuBar(), self.shell.services[Header], self.bar, places.centre, *places.docks.values())
+        below: tuple[QWidget, ...] = (
+            widget.menuBar(),
+            self.shell.services[Header],
+            self.bar,
+            places.centre,
+            *places.docks.values(),
+        )
         for part in below:
             part.setEnabled(on)
         if on:

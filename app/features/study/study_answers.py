@@ -1,4 +1,6 @@
-"""What questions are answered with: numbers on a scale, a mark on a line, choices, words. Nothing is chosen beforehand."""
+"""What questions are answered with: numbers on a scale, a mark on a line, choices, words. Nothing is chosen
+beforehand.
+"""
 
 from __future__ import annotations
 
@@ -24,7 +26,9 @@ _EDGE = 12  # pixels left and right of a line of marks
 
 
 class Mark(QWidget):
-    """A line with ticks on which a mark is put, by mouse or arrow keys; without one until then. Ends stand below."""
+    """A line with ticks on which a mark is put, by mouse or arrow keys; without one until then. Ends stand
+    below.
+    """
 
     changed = Signal(int)
 
@@ -63,8 +67,12 @@ class Mark(QWidget):
             self._put(event.position().x())
 
     def keyPressEvent(self, event: QKeyEvent) -> None:
-        steps = {Qt.Key.Key_Left: -1, Qt.Key.Key_Down: -1, Qt.Key.Key_Right: 1, Qt.Key.Key_Up: 1}.get(Qt.Key(event.key()))
-        ends = {Qt.Key.Key_Home: self.scale.lowest, Qt.Key.Key_End: self.scale.highest}.get(Qt.Key(event.key()))
+        steps = {Qt.Key.Key_Left: -1, Qt.Key.Key_Down: -1, Qt.Key.Key_Right: 1, Qt.Key.Key_Up: 1}.get(
+            Qt.Key(event.key())
+        )
+        ends = {Qt.Key.Key_Home: self.scale.lowest, Qt.Key.Key_End: self.scale.highest}.get(
+            Qt.Key(event.key())
+        )
         if ends is not None:
             self.set_value(ends)
         elif steps is None:
@@ -89,8 +97,17 @@ class Mark(QWidget):
             high = 8 if n in (0, len(points) - 1) or 2 * n == len(points) - 1 else 5
             painter.drawLine(QPointF(x, y - high), QPointF(x, y + high))
         half = self.width() // 2
-        painter.drawText(4, 34, half, 18, Qt.AlignmentFlag.AlignLeft | Qt.AlignmentFlag.AlignVCenter, self.scale.left)
-        painter.drawText(half - 4, 34, half, 18, Qt.AlignmentFlag.AlignRight | Qt.AlignmentFlag.AlignVCenter, self.scale.right)
+        painter.drawText(
+            4, 34, half, 18, Qt.AlignmentFlag.AlignLeft | Qt.AlignmentFlag.AlignVCenter, self.scale.left
+        )
+        painter.drawText(
+            half - 4,
+            34,
+            half,
+            18,
+            Qt.AlignmentFlag.AlignRight | Qt.AlignmentFlag.AlignVCenter,
+            self.scale.right,
+        )
         if self.value is not None:
             painter.setPen(Qt.PenStyle.NoPen)
             painter.setBrush(text)

@@ -1,9 +1,20 @@
-"""The bar above the work: what the task is, how much time is left, and the way to pause, to note something, to finish."""
+"""The bar above the work: what the task is, how much time is left, and the way to pause, to note something,
+to finish.
+"""
 
 from __future__ import annotations
 
 from PySide6.QtCore import Qt
-from PySide6.QtWidgets import QHBoxLayout, QLabel, QPushButton, QSizePolicy, QToolBar, QToolButton, QVBoxLayout, QWidget
+from PySide6.QtWidgets import (
+    QHBoxLayout,
+    QLabel,
+    QPushButton,
+    QSizePolicy,
+    QToolBar,
+    QToolButton,
+    QVBoxLayout,
+    QWidget,
+)
 
 from app.features.study.study_screen import clock, rich
 from app.look.theme import strengthen, theme

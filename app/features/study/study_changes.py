@@ -9,7 +9,17 @@ from typing import Any
 from metagraph.graph.manual import ANY
 from metagraph.graph.model import LAYERS, Project
 
-WHATS = ("place", "stance", "link", "timing", "delete", "rename", "arrange", "import", "settings")  # the first that fits is the edit's
+WHATS = (
+    "place",
+    "stance",
+    "link",
+    "timing",
+    "delete",
+    "rename",
+    "arrange",
+    "import",
+    "settings",
+)  # the first that fits is the edit's
 
 
 def described(before: Project, after: Project) -> dict[str, Any]:
@@ -40,7 +50,10 @@ def described(before: Project, after: Project) -> dict[str, Any]:
         whats.add("import")
     found = {**before.clips, **after.clips}
     names = [found[c].name for c in clips if c in found]
-    out: dict[str, Any] = {"what": next((w for w in WHATS if w in whats), "settings"), "clips": list(dict.fromkeys(names))}
+    out: dict[str, Any] = {
+        "what": next((w for w in WHATS if w in whats), "settings"),
+        "clips": list(dict.fromkeys(names)),
+    }
     if len(layers) == 1:
         out["layer"] = layers[0]
     return out

@@ -31,10 +31,14 @@ if TYPE_CHECKING:
     from app.shell.context import Shell
 
 
-def run_study(shell: Shell, path: Path | None = None, participant: str | None = None, experimenter: bool = False) -> None:
+def run_study(
+    shell: Shell, path: Path | None = None, participant: str | None = None, experimenter: bool = False
+) -> None:
     """Begin or resume a sitting in the window; what is not given is asked for."""
     if path is None:
-        name, _ = QFileDialog.getOpenFileName(shell.widget, "Run a study", str(Path.home()), "Studies (*.yaml *.yml)")
+        name, _ = QFileDialog.getOpenFileName(
+            shell.widget, "Run a study", str(Path.home()), "Studies (*.yaml *.yml)"
+        )
         if not name:
             return
         path = Path(name)

@@ -1,4 +1,6 @@
-"""Leads a participant through a sitting in the window: screens, work, time, and what the window offers meanwhile."""
+"""Leads a participant through a sitting in the window: screens, work, time, and what the window offers
+meanwhile.
+"""
 
 from __future__ import annotations
 
@@ -13,7 +15,15 @@ from app.features.study.operator_counting import OperatorCounting
 from app.features.study.reserved_window import ReservedWindow
 from app.features.study.study_bar import StudyBar
 from app.features.study.study_recorder import Recorder
-from app.features.study.study_screen import BreakPage, ConsentPage, Page, QuestionsPage, Screen, question_page, text_page
+from app.features.study.study_screen import (
+    BreakPage,
+    ConsentPage,
+    Page,
+    QuestionsPage,
+    Screen,
+    question_page,
+    text_page,
+)
 from app.project.files import Files
 from app.project.jobs import Job
 from metagraph import __version__
@@ -28,7 +38,9 @@ if TYPE_CHECKING:
 
 
 class Guide(QObject):
-    """over: the sitting has ended or was left; the window is as before. Raises FileError and SittingError when it cannot begin."""
+    """over: the sitting has ended or was left; the window is as before. Raises FileError and SittingError
+    when it cannot begin.
+    """
 
     over = Signal()
 
@@ -39,11 +51,18 @@ class Guide(QObject):
         try:
             folder.mkdir(parents=True, exist_ok=True)
         except OSError as error:
-            raise FileError(folder, f"cannot be made ({error.strerror or error})", "on beginning", "Check your rights there.") from None
+            raise FileError(
+                folder,
+                f"cannot be made ({error.strerror or error})",
+                "on beginning",
+                "Check your rights there.",
+            ) from None
         self._lock = QLockFile(str(folder / "sitting.lock"))
         self._lock.setStaleLockTime(0)
         if not self._lock.tryLock(0):
-            raise FileError(folder, "another window has this sitting open", participant, "Go on there, or close it.")
+            raise FileError(
+                folder, "another window has this sitting open", participant, "Go on there, or close it."
+            )
         try:
             self.sitting = Sitting(study, participant, machine(), __version__)
         except (FileError, ValueError):
@@ -93,7 +112,12 @@ class Guide(QObject):
         """Break the sitting off where it is; it goes on there next time."""
         phase = self.sitting.phase
         try:
-            if phase is not None and phase.works and self.sitting.now.begun and self.shell.document.path == self.sitting.file:
+            if (
+                phase is not None
+                and phase.works
+                and self.sitting.now.begun
+                and self.shell.document.path == self.sitting.file
+            ):
                 self.shell.document.finish_merging()
                 self.recorder.boundary()
                 self.shell.document.save()
@@ -107,7 +131,9 @@ class Guide(QObject):
         """Show where the sitting stands."""
         phase = self.sitting.phase
         if phase is None:
-            self._show(text_page("This sitting is over", "All of it was gone through before.", "Close", self._finish))
+            self._show(
+                text_page("This sitting is over", "All of it was gone through before.", "Close", self._finish)
+            )
         elif phase.works:
             self._load(phase)
         else:
@@ -121,11 +147,24 @@ class Guide(QObject):
         if phase.name == "break":
             return BreakPage(phase.minutes or 0, self.go_on)
         if phase.questionnaire is not None:
-            return QuestionsPage(phase.questionnaire, self._about(phase), self.sitting.now.answers, self.sitting.answer, self.go_on)
+            return QuestionsPage(
+                phase.questionnaire,
+                self._about(phase),
+                self.sitting.now.answers,
+                self.sitting.answer,
+                self.go_on,
+            )
         if phase.name == "end":
-            return text_page(phase.title, phase.text or "That was all. You have helped a great deal.", "Close", self.go_on)
+            return text_page(
+                phase.title, phase.text or "That was all. You have helped a great deal.", "Close", self.go_on
+            )
         limit = f"\n\nYou have {phase.minutes:g} minutes." if phase.minutes else ""
-        return text_page(phase.title, phase.text + (limit if phase.condition else ""), "Start" if phase.condition else "Go on", self.go_on)
+        return text_page(
+            phase.title,
+            phase.text + (limit if phase.condition else ""),
+            "Start" if phase.condition else "Go on",
+            self.go_on,
+        )
 
     def _about(self, phase: Phase) -> str:
         names = [self.study.plan.task(phase.task).name] if phase.task is not None else []
@@ -170,11 +209,22 @@ class Guide(QObject):
                 return reopen(path, job.tell)[0].project
             return write(make(study, phase.clips, name, reference), path)
 
-        self.shell.jobs.start("Loading the clips", work, lambda project: self._begin(phase, project), self._cannot)
+        self.shell.jobs.start(
+            "Loading the clips", work, lambda project: self._begin(phase, project), self._cannot
+        )
 
     def _cannot(self, error: Exception) -> None:
         self.recorder.tell("error", what="failed", words=str(error))
-        self._show(question_page("This cannot go on", str(error), "Try again", self.show, "Close the window", self.shell.widget.close))
+        self._show(
+            question_page(
+                "This cannot go on",
+                str(error),
+                "Try again",
+                self.show,
+                "Close the window",
+                self.shell.widget.close,
+            )
+        )
 
     def _begin(self, phase: Phase, project: Project) -> None:
         document = self.shell.document
@@ -190,7 +240,12 @@ class Guide(QObject):
         if again and self._resumed:
             self._resumed = False
             self.sitting.writer.add("pause", state="begin", why="resumed")
-            page = text_page("Welcome back", "Your work is as you left it. The clock goes on when you do.", "Go on", self.unpause)
+            page = text_page(
+                "Welcome back",
+                "Your work is as you left it. The clock goes on when you do.",
+                "Go on",
+                self.unpause,
+            )
             self._show(page)
             return
         self._resumed = False
@@ -239,8 +294,16 @@ class Guide(QObject):
 
     def ask_done(self) -> None:
         """Ask whether the task is done; the clock runs on meanwhile."""
-        self._show(question_page("Are you done?", "You cannot come back to it.", "Yes, done", lambda: self.finish_task("done"),
-                                 "No, go on", self._back_to_work))  # fmt: skip
+        self._show(
+            question_page(
+                "Are you done?",
+                "You cannot come back to it.",
+                "Yes, done",
+                lambda: self.finish_task("done"),
+                "No, go on",
+                self._back_to_work,
+            )
+        )
 
     def _back_to_work(self) -> None:
         self._elapsed = self.elapsed
@@ -256,8 +319,16 @@ class Guide(QObject):
             document.save()
             self.sitting.keep(why)
         except FileError as error:
-            self._show(question_page("This could not be saved", str(error), "Try again", lambda: self.finish_task(why), "Close the window",
-                                     self.shell.widget.close))  # fmt: skip
+            self._show(
+                question_page(
+                    "This could not be saved",
+                    str(error),
+                    "Try again",
+                    lambda: self.finish_task(why),
+                    "Close the window",
+                    self.shell.widget.close,
+                )
+            )
             return
         self.bar.hide()
         if why == "time":

@@ -1,4 +1,6 @@
-"""Writes down what is done in the window: edits, looks, dialogs, errors, and operators by their class alone."""
+"""Writes down what is done in the window: edits, looks, dialogs, errors, and operators by their class
+alone.
+"""
 
 from __future__ import annotations
 
@@ -47,14 +49,25 @@ class Recorder(QObject):
         self._second = QTimer(self, interval=1000)
         self._second.timeout.connect(self._tick)
         self._links = [
-            (d.loaded, self._loaded), (d.saved, self._saved), (d.failed, self._document_failed), (self._stack.indexChanged, self._moved),
-            (s.place.layer_changed, lambda: self._view("layer", layer=s.place.layer)), (s.place.stance_changed, lambda: self._view("stance")),
-            (s.selection.changed, lambda: self._view("select")), (s.look.changed, lambda: self._view("theme", theme=s.look.name)),
-            (s.onstage.mode_changed, self._other_editor), (s.transport.show_changed, lambda: self.tell("playback", what=s.transport.show)),
-            (s.transport.playing_changed, lambda: self.tell("playback", what="play" if s.transport.playing else "pause")), (s.transport.moved, self._seek),
-            (shell.stage.refused, self._refused), (shell.stage.scrolled, self._scrolled),
+            (d.loaded, self._loaded),
+            (d.saved, self._saved),
+            (d.failed, self._document_failed),
+            (self._stack.indexChanged, self._moved),
+            (s.place.layer_changed, lambda: self._view("layer", layer=s.place.layer)),
+            (s.place.stance_changed, lambda: self._view("stance")),
+            (s.selection.changed, lambda: self._view("select")),
+            (s.look.changed, lambda: self._view("theme", theme=s.look.name)),
+            (s.onstage.mode_changed, self._other_editor),
+            (s.transport.show_changed, lambda: self.tell("playback", what=s.transport.show)),
+            (
+                s.transport.playing_changed,
+                lambda: self.tell("playback", what="play" if s.transport.playing else "pause"),
+            ),
+            (s.transport.moved, self._seek),
+            (shell.stage.refused, self._refused),
+            (shell.stage.scrolled, self._scrolled),
             (shell.services[Importing].imported, self._imported),
-        ]  # fmt: skip
+        ]
         for signal, slot in self._links:
             signal.connect(slot)
         self.hands = Hands(self._input, self._dialog, self._scrolled, self)
@@ -201,13 +214,17 @@ class Recorder(QObject):
         self._warned = self._grave()
 
     def _grave(self) -> frozenset[str]:
-        return frozenset(p.message for p in self.shell.services[ProblemWatch].problems if p.severity != "hint")
+        return frozenset(
+            p.message for p in self.shell.services[ProblemWatch].problems if p.severity != "hint"
+        )
 
     def _tell_operators(self) -> None:
         found = self.hands.operators.take(monotonic())
         if not found.operators:
             return
-        fields: dict[str, Any] = {name: found.operators[name] for name in "KPBDH"} | {"seconds": round(found.seconds, 3)}
+        fields: dict[str, Any] = {name: found.operators[name] for name in "KPBDH"} | {
+            "seconds": round(found.seconds, 3)
+        }
         if found.drag_s:
             fields["drag_s"] = round(found.drag_s, 3)
         self._write("ops", fields)

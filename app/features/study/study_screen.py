@@ -1,4 +1,6 @@
-"""Full screens of a sitting, over everything else in the window: consent, instructions, breaks, questionnaires, pauses, thanks."""
+"""Full screens of a sitting, over everything else in the window: consent, instructions, breaks,
+questionnaires, pauses, thanks.
+"""
 
 from __future__ import annotations
 
@@ -6,7 +8,17 @@ from collections.abc import Callable
 
 from PySide6.QtCore import QEvent, QObject, Qt, QTimer
 from PySide6.QtGui import QFont, QTextBlockFormat, QTextCursor, QTextDocument
-from PySide6.QtWidgets import QApplication, QCheckBox, QFrame, QHBoxLayout, QLabel, QPushButton, QScrollArea, QVBoxLayout, QWidget
+from PySide6.QtWidgets import (
+    QApplication,
+    QCheckBox,
+    QFrame,
+    QHBoxLayout,
+    QLabel,
+    QPushButton,
+    QScrollArea,
+    QVBoxLayout,
+    QWidget,
+)
 
 from app.features.study.study_answers import Question
 from app.look.theme import strengthen, theme
@@ -114,11 +126,21 @@ class QuestionsPage(Page):
     """A questionnaire; what has to be answered and is not is shown when one would go on."""
 
     def __init__(
-        self, asked: Questionnaire, about: str, given: dict[str, object], answer: Callable[[str, object], None], done: Run
+        self,
+        asked: Questionnaire,
+        about: str,
+        given: dict[str, object],
+        answer: Callable[[str, object], None],
+        done: Run,
     ) -> None:
-        super().__init__(asked.title or "Some questions", "\n\n".join(filter(None, (f"**{about}**" if about else "", asked.instructions))))
+        super().__init__(
+            asked.title or "Some questions",
+            "\n\n".join(filter(None, (f"**{about}**" if about else "", asked.instructions))),
+        )
         self._answer, self._done = answer, done
-        self.questions = [Question(item, n, self, given.get(item.id)) for n, item in enumerate(asked.items, 1)]
+        self.questions = [
+            Question(item, n, self, given.get(item.id)) for n, item in enumerate(asked.items, 1)
+        ]
         for question in self.questions:
             question.answered.connect(answer)
             self.column.addWidget(question)
@@ -220,7 +242,9 @@ def rich(markdown: str, size: int) -> str:
     while block.isValid():
         cursor.setPosition(block.position())
         shape = block.blockFormat()
-        shape.setBottomMargin(size * 0.3 if block.textList() is not None and block.next().textList() is not None else size * 0.7)
+        shape.setBottomMargin(
+            size * 0.3 if block.textList() is not None and block.next().textList() is not None else size * 0.7
+        )
         shape.setLineHeight(125, QTextBlockFormat.LineHeightTypes.ProportionalHeight.value)
         cursor.setBlockFormat(shape)
         block = block.next()

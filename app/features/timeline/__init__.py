@@ -31,8 +31,18 @@ def contribute(shell: Shell) -> Contribution:
     return Contribution(
         panels=(Panel("timeline", "Performance", "bottom", make),),
         commands=(
-            Command("live", "&Play", "live", "Li&ve", toggle_live, ("Ctrl+L",), tip="Let programs on this machine drive the character",
-                    enabled=lambda: document.project.skeleton is not None, checked=lambda: performance.live.stage is not None, when="meta"),
+            Command(
+                "live",
+                "&Play",
+                "live",
+                "Li&ve",
+                toggle_live,
+                ("Ctrl+L",),
+                tip="Let programs on this machine drive the character",
+                enabled=lambda: document.project.skeleton is not None,
+                checked=lambda: performance.live.stage is not None,
+                when="meta",
+            ),
         ),
         late_imports=("app.features.timeline.timeline_panel",),
-    )  # fmt: skip
+    )

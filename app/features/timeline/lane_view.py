@@ -33,11 +33,15 @@ NUDGE, FAR = 0.1, 1.0  # seconds an arrow key moves what is selected, and with S
 CATCH = 3  # pixels the mouse must move for a press to become a drag
 ZOOM = 1.2
 COPIES = Qt.KeyboardModifier.ControlModifier | Qt.KeyboardModifier.AltModifier
-TEXT = "Requests, and what plays. Up and Down choose a request, Left and Right move it, Enter changes it, Insert asks for something."
+TEXT = (
+    "Requests, and what plays. Up and Down choose a request, Left and Right move it, Enter changes it, "
+    "Insert asks for something."
+)
 
 
 class Lanes(QWidget):
-    """A press on a request selects it and a drag moves it, a double click changes it or, in an empty place, asks for something.
+    """A press on a request selects it and a drag moves it, a double click changes it or, in an empty place,
+    asks for something.
 
     A press on a cue selects its action; anywhere else it moves the playhead. The wheel zooms.
     """
@@ -126,7 +130,9 @@ class Lanes(QWidget):
     _by_keys = False
 
     def _picture(self) -> QPixmap:
-        """Return everything but the playhead, made anew only when something else than the playhead has changed."""
+        """Return everything but the playhead, made anew only when something else than the playhead has
+        changed.
+        """
         s, p, ratio = self.session, self.performance, self.devicePixelRatioF()
         ends = p.shown.length if p.ends else None
         found = self.marks()
@@ -260,7 +266,8 @@ class Lanes(QWidget):
         menu.addAction("Change…\tReturn", lambda: self.edit(ident))
         menu.addAction("Copy\tCtrl+D", lambda: self.performance.requests.copy(chosen, FAR))
         menu.addAction(
-            "Take it back\tDel" if len(chosen) == 1 else "Take them back\tDel", lambda: self.performance.requests.withdraw(*chosen)
+            "Take it back\tDel" if len(chosen) == 1 else "Take them back\tDel",
+            lambda: self.performance.requests.withdraw(*chosen),
         )
         return menu
 
@@ -307,17 +314,23 @@ class Lanes(QWidget):
 
     def _nudge(self, key: Qt.Key, modifiers: Qt.KeyboardModifier) -> None:
         by = FAR if modifiers & Qt.KeyboardModifier.ShiftModifier else NUDGE
-        self.performance.requests.move(self.session.onstage.requests, by if key == Qt.Key.Key_Right else -by, merge="nudge")
+        self.performance.requests.move(
+            self.session.onstage.requests, by if key == Qt.Key.Key_Right else -by, merge="nudge"
+        )
 
     def _choose(self, step: int) -> None:
-        """Select the request before or after the selected one, in time; without one, the first from the playhead on."""
+        """Select the request before or after the selected one, in time; without one, the first from the
+        playhead on.
+        """
         order = sorted(self.marks(), key=lambda m: m.at)
         if not order:
             return
         chosen = self.session.onstage.requests
         place = next((n for n, m in enumerate(order) if chosen and m.ask.id == chosen[-1]), None)
         if place is None:
-            place = next((n for n, m in enumerate(order) if m.at >= self.session.transport.seconds), len(order) - 1)
+            place = next(
+                (n for n, m in enumerate(order) if m.at >= self.session.transport.seconds), len(order) - 1
+            )
         else:
             place = min(max(0, place + step), len(order) - 1)
         self.reveal(order[place].ask.id)
@@ -333,7 +346,9 @@ class Lanes(QWidget):
             return  # what is held is not edited by keys as well
         elif chosen and can and key in (Qt.Key.Key_Left, Qt.Key.Key_Right):
             self._nudge(Qt.Key(key), event.modifiers())
-        elif chosen and can and key == Qt.Key.Key_D and event.modifiers() & Qt.KeyboardModifier.ControlModifier:
+        elif (
+            chosen and can and key == Qt.Key.Key_D and event.modifiers() & Qt.KeyboardModifier.ControlModifier
+        ):
             self.performance.requests.copy(chosen, FAR)
         elif chosen and key in (Qt.Key.Key_Return, Qt.Key.Key_Enter):
             self.edit(chosen[0])
@@ -343,7 +358,8 @@ class Lanes(QWidget):
             self._ask_here()
         elif key in (Qt.Key.Key_Plus, Qt.Key.Key_Equal, Qt.Key.Key_Minus):
             self._zoom(
-                1 / ZOOM if key == Qt.Key.Key_Minus else ZOOM, min(max(LEFT, self.scale().x(self.session.transport.seconds)), self.width())
+                1 / ZOOM if key == Qt.Key.Key_Minus else ZOOM,
+                min(max(LEFT, self.scale().x(self.session.transport.seconds)), self.width()),
             )
         elif key in (Qt.Key.Key_PageUp, Qt.Key.Key_PageDown):
             page = 0.8 * (self.width() - LEFT) / self.each
@@ -376,4 +392,8 @@ class Lanes(QWidget):
             if cue.hold > 0:
                 words += f", held {cue.hold:.2f} s"
             return words + "\nClick selects it, double-click plays it in context"
-        return "Double-click to ask for something here" if lane_at(self.height(), at) and not QApplication.mouseButtons() else ""
+        return (
+            "Double-click to ask for something here"
+            if lane_at(self.height(), at) and not QApplication.mouseButtons()
+            else ""
+        )

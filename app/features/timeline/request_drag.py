@@ -21,8 +21,9 @@ class LanesHost(Protocol):
 
 
 class RequestDrag(PressDrag):
-    """idents: what is moved; ident: the one that is held. by: seconds. copy: copies of them go there. lone: let go without being moved,
-    the held one is selected no longer."""
+    """idents: what is moved; ident: the one that is held. by: seconds. copy: copies of them go there. lone:
+    let go without being moved, the held one is selected no longer.
+    """
 
     catch = 3.0
 
@@ -42,7 +43,12 @@ class RequestDrag(PressDrag):
         """Return by how much they can be moved: none to before the beginning."""
         performance = self.host.performance
         answers = performance.answers()
-        return max(by, -min((time_of(x, answers.get(x.id)) for x in performance.asks if x.id in self.idents), default=0.0))
+        return max(
+            by,
+            -min(
+                (time_of(x, answers.get(x.id)) for x in performance.asks if x.id in self.idents), default=0.0
+            ),
+        )
 
     def finish(self, at: QPointF) -> None:
         requests, onstage = self.host.performance.requests, self.host.session.onstage

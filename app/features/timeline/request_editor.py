@@ -28,11 +28,27 @@ from metagraph.graph.model import LAYERS, LIMBS, MODES, Project
 
 UNSET = "as it comes"
 LABELS = {
-    "at": "At", "stroke": "Stroke at", "duration": "Wanted for", "hold": "Hold", "priority": "Priority", "tags": "Tags", "limb": "Arm",
-    "prepare": "Prepare", "resume": "Go on after a cut", "action": "Action", "stance": "Stance", "to": "Look at", "amount": "How far",
-    "strict": "Without averting", "line": "Line", "text": "Words", "gestures": "With its gestures", "mode": "Mode",
-    "name": "Point", "stay": "Stay there",
-}  # fmt: skip
+    "at": "At",
+    "stroke": "Stroke at",
+    "duration": "Wanted for",
+    "hold": "Hold",
+    "priority": "Priority",
+    "tags": "Tags",
+    "limb": "Arm",
+    "prepare": "Prepare",
+    "resume": "Go on after a cut",
+    "action": "Action",
+    "stance": "Stance",
+    "to": "Look at",
+    "amount": "How far",
+    "strict": "Without averting",
+    "line": "Line",
+    "text": "Words",
+    "gestures": "With its gestures",
+    "mode": "Mode",
+    "name": "Point",
+    "stay": "Stay there",
+}
 TIPS = {
     "at": "Seconds of the performance; it may come later when something else plays",
     "stroke": "When its most telling moment should come, instead of when it begins",
@@ -55,7 +71,9 @@ class AskEditor(QDialog):
         self.setAttribute(Qt.WidgetAttribute.WA_DeleteOnClose)
         self.setMinimumWidth(340)
         ask = self._ask()
-        self.setWindowTitle(f"Request: {ask_words(ask, performance.document.project)}" if ask is not None else "Request")
+        self.setWindowTitle(
+            f"Request: {ask_words(ask, performance.document.project)}" if ask is not None else "Request"
+        )
         layout = QVBoxLayout(self)
         form = QFormLayout()
         layout.addLayout(form)
@@ -130,7 +148,11 @@ class AskEditor(QDialog):
             box.toggled.connect(lambda on: self._set(name, on))
             return box
         if name == "tags":
-            return self._text(", ".join(value), lambda text: tuple(dict.fromkeys(w.strip() for w in text.split(",") if w.strip())), name)
+            return self._text(
+                ", ".join(value),
+                lambda text: tuple(dict.fromkeys(w.strip() for w in text.split(",") if w.strip())),
+                name,
+            )
         if name == "text":
             return self._text(value, str.strip, name)
         return self._choice(name, value, project)
@@ -147,7 +169,9 @@ class AskEditor(QDialog):
 
     def _text(self, value: str, read: Callable[[str], Any], name: str) -> QLineEdit:
         edit = QLineEdit(value, self)
-        edit.editingFinished.connect(lambda: edit.isModified() and (edit.setModified(False), self._set(name, read(edit.text()))))
+        edit.editingFinished.connect(
+            lambda: edit.isModified() and (edit.setModified(False), self._set(name, read(edit.text())))
+        )
         return edit
 
     def _choice(self, name: str, value: Any, project: Project) -> QComboBox | None:
@@ -162,7 +186,12 @@ class AskEditor(QDialog):
             value = None if value is None else str(value)
         elif name == "stance":
             lane = lane_of(ask, project)
-            items = [(s.name, s.id) for layer in LAYERS if layer == lane for s in project.graphs[layer].stances.values()]
+            items = [
+                (s.name, s.id)
+                for layer in LAYERS
+                if layer == lane
+                for s in project.graphs[layer].stances.values()
+            ]
         elif name == "action":
             lane = lane_of(ask, project)
             items = [(x.name, x.id) for x in project.actions() if x.layer == lane and x.kind != "stance"]

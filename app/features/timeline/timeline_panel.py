@@ -1,4 +1,6 @@
-"""The performance panel: which performance is on stage and with what chance, and the lanes of what was asked and what plays."""
+"""The performance panel: which performance is on stage and with what chance, and the lanes of what was asked
+and what plays.
+"""
 
 from __future__ import annotations
 
@@ -36,7 +38,9 @@ IMPROVISED = "Improvised"
 class TimelinePanel(QWidget):
     """The lanes, with what can be asked for, the seed and the zoom above them."""
 
-    def __init__(self, document: Document, session: Session, performance: Performance, parent: QWidget | None = None) -> None:
+    def __init__(
+        self, document: Document, session: Session, performance: Performance, parent: QWidget | None = None
+    ) -> None:
         super().__init__(parent)
         self.document, self.session, self.performance = document, session, performance
         self.lanes = Lanes(session, performance, self)
@@ -46,7 +50,9 @@ class TimelinePanel(QWidget):
         row = QHBoxLayout()
         row.setContentsMargins(12, 0, 12, 2)
         row.setSpacing(8)
-        self.stage = ComboBox(self, toolTip="Which performance is on stage; improvised, the models fill the time on their own")
+        self.stage = ComboBox(
+            self, toolTip="Which performance is on stage; improvised, the models fill the time on their own"
+        )
         self.stage.setAccessibleName("Performance")
         self.stage.setMinimumWidth(150)
         self.stage.activated.connect(self._put_on)
@@ -68,7 +74,9 @@ class TimelinePanel(QWidget):
         self.now.clicked.connect(performance.live.follow)
         row.addWidget(self.now)
         self.live = QToolButton(self, text="Live", checkable=True)
-        self.live.setToolTip("Let programs on this machine drive the character, over WebSocket and OSC (Ctrl+L)")
+        self.live.setToolTip(
+            "Let programs on this machine drive the character, over WebSocket and OSC (Ctrl+L)"
+        )
         self.live.clicked.connect(self.toggle_live)
         row.addWidget(self.live)
         self.ask = QToolButton(self, text="Ask for…", toolTip="Ask the character for something now")
@@ -144,7 +152,9 @@ class TimelinePanel(QWidget):
         menu.addAction("Rename…", self.rename)
         menu.addAction("Duplicate", self.duplicate)
         menu.addAction("Length…", self.set_length)
-        fill = menu.addAction("The models fill the rest", lambda: self._change("Change who fills the rest", idle=not kept.idle))
+        fill = menu.addAction(
+            "The models fill the rest", lambda: self._change("Change who fills the rest", idle=not kept.idle)
+        )
         fill.setCheckable(True)
         fill.setChecked(kept.idle)
         own = menu.addAction("A seed of its own", self._own_seed)
@@ -182,14 +192,18 @@ class TimelinePanel(QWidget):
     def set_length(self) -> None:
         kept = self.performance.requests.kept
         if kept is not None:
-            seconds, ok = QInputDialog.getDouble(self, "Length of the performance", "Seconds", kept.length, 0.1, 36000, 1)
+            seconds, ok = QInputDialog.getDouble(
+                self, "Length of the performance", "Seconds", kept.length, 0.1, 36000, 1
+            )
             if ok:
                 self._change("Change length", length=round(seconds, 3))
 
     def _own_seed(self) -> None:
         kept = self.performance.requests.kept
         if kept is not None:
-            self._change("Change seed", seed=self.document.project.settings.seed if kept.seed is None else None)
+            self._change(
+                "Change seed", seed=self.document.project.settings.seed if kept.seed is None else None
+            )
 
     def remove(self) -> None:
         kept, ident = self.performance.requests.kept, self.session.onstage.performance
@@ -205,7 +219,9 @@ class TimelinePanel(QWidget):
         ident = self.session.onstage.performance
         if ident is not None:
             try:
-                self.document.edit(text, lambda p: staging.change_performance(p, ident, **changes), merge=text)
+                self.document.edit(
+                    text, lambda p: staging.change_performance(p, ident, **changes), merge=text
+                )
             except EditError as error:
                 self.document.failed.emit(str(error))
 
@@ -242,7 +258,9 @@ class TimelinePanel(QWidget):
         kept, talk = self.performance.requests.kept, self.performance.conversation
         if talk is not None:
             if seed != self.document.project.conversations[talk].seed:
-                self.document.edit("Change seed", lambda p: change_conversation(p, talk, seed=seed), merge="seed")
+                self.document.edit(
+                    "Change seed", lambda p: change_conversation(p, talk, seed=seed), merge="seed"
+                )
         elif kept is not None and kept.seed is not None:
             if seed != kept.seed:
                 self._change("Change seed", seed=seed)
@@ -251,7 +269,9 @@ class TimelinePanel(QWidget):
 
     def _show_seed(self) -> None:
         kept, talk = self.performance.requests.kept, self.performance.conversation
-        seed = kept.seed if kept is not None and kept.seed is not None else self.document.project.settings.seed
+        seed = (
+            kept.seed if kept is not None and kept.seed is not None else self.document.project.settings.seed
+        )
         if talk is not None:
             seed = self.document.project.conversations[talk].seed
         if self.seed.value() != seed:
@@ -277,11 +297,17 @@ class TimelinePanel(QWidget):
         chosen = self.session.onstage.requests if plan else ()
         marks = [m for m in self.lanes.marks() if m.ask.id in chosen] if chosen else []
         if len(marks) == 1:
-            self.title.say(f"{outcome(marks[0].ask, marks[0].answer)} Asked for: {wanted(marks[0])}.".strip(), True)
+            self.title.say(
+                f"{outcome(marks[0].ask, marks[0].answer)} Asked for: {wanted(marks[0])}.".strip(), True
+            )
             return
         if marks:
             unmet = sum(1 for m in marks if m.lost)
-            self.title.say(f"{many(len(marks), 'request')} selected" + (f", {unmet:,} of them could not be met" if unmet else ""), True)
+            self.title.say(
+                f"{many(len(marks), 'request')} selected"
+                + (f", {unmet:,} of them could not be met" if unmet else ""),
+                True,
+            )
         elif self.performance.live.stage is not None and plan:
             self.title.say(self.performance.live.stage.words())
         elif shown.clip is not None:
@@ -289,21 +315,37 @@ class TimelinePanel(QWidget):
         elif self.session.onstage.mode == "manual":
             count = sum(len(shown.plan.layers[layer].cues) for layer in LAYERS)
             lost_words = "".join(f" {r.message[:1].upper()}{r.message[1:]}." for r in shown.plan.reports[-1:])
-            words = f"{many(count, 'state')} in {shown.length:g} s." if count else "Nothing plays yet: drop clips and draw links."
-            self.title.say("Alone. Esc for the whole machine." if self.session.transport.show == "context" else words + lost_words)
+            words = (
+                f"{many(count, 'state')} in {shown.length:g} s."
+                if count
+                else "Nothing plays yet: drop clips and draw links."
+            )
+            self.title.say(
+                "Alone. Esc for the whole machine."
+                if self.session.transport.show == "context"
+                else words + lost_words
+            )
         elif shown.partner is not None and self.session.transport.show == "plan":
-            talk = self.performance.document.project.conversations.get(self.session.onstage.conversation or "")
+            talk = self.performance.document.project.conversations.get(
+                self.session.onstage.conversation or ""
+            )
             who = side_name(talk, shown.side) if talk is not None else "One of the two"
             gestures = sum(1 for cue in shown.plan.layers["arms"].cues if cue.action.kind == "gesture")
             nods = len(shown.plan.layers["head"].cues)
             if shown.motion is not None:
-                self.title.say(f"{who} moves with '{shown.project.clips[shown.motion].name}'; its graph would do this.")
+                self.title.say(
+                    f"{who} moves with '{shown.project.clips[shown.motion].name}'; its graph would do this."
+                )
                 return
-            self.title.say(f"{who} in conversation: {many(gestures, 'gesture')} of the hands, {many(nods, 'nod')}.")
+            self.title.say(
+                f"{who} in conversation: {many(gestures, 'gesture')} of the hands, {many(nods, 'nod')}."
+            )
         elif self.session.transport.show == "context":
             self.title.say("In context: stance, action, back to the stance. Esc for the performance.")
         else:
             count = sum(len(shown.plan.layers[layer].cues) for layer in LAYERS)
             words = f"{many(count, 'action')} in {shown.length:g} s"
             empty = "Nothing plays yet: drop a clip on a stance and some around it."
-            self.title.say((words if count else empty) + (f", {many(lost, 'request')} could not be met" if lost else ""))
+            self.title.say(
+                (words if count else empty) + (f", {many(lost, 'request')} could not be met" if lost else "")
+            )

@@ -16,7 +16,16 @@ def contribute(shell: Shell) -> Contribution:
 
     return Contribution(
         commands=(
-            Command("twins", "&Edit", "properties", "Make &mirrored twin", make, tip="The same to the other side, as new clips and actions",
-                    enabled=lambda: bool(session.selection.clips or session.selection.actions), when="meta", menus=("action", "clip")),
+            Command(
+                "twins",
+                "&Edit",
+                "properties",
+                "Make &mirrored twin",
+                make,
+                tip="The same to the other side, as new clips and actions",
+                enabled=lambda: bool(session.selection.clips or session.selection.actions),
+                when="meta",
+                menus=("action", "clip"),
+            ),
         ),
-    )  # fmt: skip
+    )

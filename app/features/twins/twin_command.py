@@ -1,4 +1,6 @@
-"""Left/right twins of what is selected: mirrored on a thread, written beside the project, added and placed in one step."""
+"""Left/right twins of what is selected: mirrored on a thread, written beside the project, added and placed in
+one step.
+"""
 
 from __future__ import annotations
 
@@ -53,16 +55,24 @@ def make_twins(shell: Shell) -> None:
         before = document.project
         try:
             count = sum(len(twin.actions) for twin, _ in made) or len(made)
-            document.edit(f"Make {count} mirrored twin{'s' if count != 1 else ''}", lambda p: with_twins(p, made))
+            document.edit(
+                f"Make {count} mirrored twin{'s' if count != 1 else ''}", lambda p: with_twins(p, made)
+            )
         except EditError as error:
             shell.tell(str(error))
             return
         after = document.project
         if actions:
-            session.selection.select_actions(tuple(a.id for a in after.actions() if before.action(a.id) is None))
+            session.selection.select_actions(
+                tuple(a.id for a in after.actions() if before.action(a.id) is None)
+            )
         else:
             session.selection.select_clips(tuple(c for c in after.clips if c not in before.clips))
-        words = f"{count} mirrored twin{'s' if count != 1 else ''}" if actions else f"{clips_words(count)} mirrored"
+        words = (
+            f"{count} mirrored twin{'s' if count != 1 else ''}"
+            if actions
+            else f"{clips_words(count)} mirrored"
+        )
         names = ", ".join(twin.name for twin, _ in made[:3]) + (" …" if len(made) > 3 else "")
         shell.tell(f"{words}: {names}. Written to {folder / FOLDER}.")
 
@@ -70,7 +80,9 @@ def make_twins(shell: Shell) -> None:
 
 
 def write_twin(twin: TwinClip, folder: Path) -> Loaded:
-    """Write a mirrored clip below the project's folder, under a name no other file has; return it as it is read back."""
+    """Write a mirrored clip below the project's folder, under a name no other file has; return it as it is
+    read back.
+    """
     place = folder / FOLDER
     place.mkdir(exist_ok=True)
     stem = re.sub(r'[<>:"/\\|?*\x00-\x1f]+', "_", twin.name).strip(" .")[:100] or "clip"
@@ -83,10 +95,14 @@ def write_twin(twin: TwinClip, folder: Path) -> Loaded:
 
 
 def with_twins(project: Project, made: list[tuple[TwinClip, Loaded]]) -> Project:
-    """Return the project with mirrored clips added and the twins of their actions placed. Raises EditError."""
+    """Return the project with mirrored clips added and the twins of their actions placed. Raises
+    EditError.
+    """
     project = add_clips(project, [loaded for _, loaded in made])
     idents = {(e.path, e.take): e.id for e in project.clips.values()}
     new = {idents[path, take] for _, (path, take, _, _) in made}
-    project = replace(project, clips={i: replace(e, as_is=REPAIRS) if i in new else e for i, e in project.clips.items()})
+    project = replace(
+        project, clips={i: replace(e, as_is=REPAIRS) if i in new else e for i, e in project.clips.items()}
+    )
     pairs = {action: idents[loaded[0], loaded[1]] for twin, loaded in made for action in twin.actions}
     return place_twins(project, pairs) if pairs else project

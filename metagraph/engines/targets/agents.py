@@ -1,4 +1,6 @@
-"""For agents of other systems: BML blocks, a gesture map for SmartBody, a gesture.json as Amazon's Sumerian Hosts read it."""
+"""For agents of other systems: BML blocks, a gesture map for SmartBody, a gesture.json as Amazon's Sumerian
+Hosts read it.
+"""
 
 from __future__ import annotations
 
@@ -40,9 +42,19 @@ def vocabulary(project: Project) -> dict[str, Any]:
         for action in graph.actions.values():
             if action.kind == "gesture" and action.stance in graph.stances:
                 of = gestures.setdefault(layer, {}).setdefault(graph.stances[action.stance].name, [])
-                of.append({"lexeme": list(action.tags) or [action.name], "name": action.name, "mode": f"{action.limb.upper()}_HAND"})
+                of.append(
+                    {
+                        "lexeme": list(action.tags) or [action.name],
+                        "name": action.name,
+                        "mode": f"{action.limb.upper()}_HAND",
+                    }
+                )
     postures = {layer: [s.name for s in project.graphs[layer].stances.values()] for layer in LAYERS}
-    return {"gestures": gestures, "postures": postures, "lines": {i: line.text for i, line in project.lines.items()}}
+    return {
+        "gestures": gestures,
+        "postures": postures,
+        "lines": {i: line.text for i, line in project.lines.items()},
+    }
 
 
 def write_blocks(order: Order) -> Made:
@@ -54,7 +66,11 @@ def write_blocks(order: Order) -> Made:
         files.append(path)
     words = order.folder / f"{order.stem}.vocabulary.json"
     write_atomically(words, json.dumps(vocabulary(order.project), indent=1, ensure_ascii=False).encode())
-    none = () if files else ("no performance is kept and no line has requests of its own: there is the vocabulary alone",)
+    none = (
+        ()
+        if files
+        else ("no performance is kept and no line has requests of its own: there is the vocabulary alone",)
+    )
     return Made((*files, words), none)
 
 
@@ -81,7 +97,9 @@ HANDS = {"left": "LEFT_HAND", "right": "RIGHT_HAND", "both": "BOTH_HANDS"}
 def gesture_map(name: str, built: tuple[Machine, ...]) -> str:
     """Return a Python script for SmartBody that maps lexeme, type, hand and posture to animations."""
     rows = [
-        '"""Gestures of ' + json.dumps(name) + ' for SmartBody: run it after the motions of this folder are loaded."""',
+        '"""Gestures of '
+        + json.dumps(name)
+        + ' for SmartBody: run it after the motions of this folder are loaded."""',
         "",
         f"gestures = scene.getGestureMapManager().createGestureMap({json.dumps(name)})",
     ]
@@ -98,7 +116,9 @@ def gesture_map(name: str, built: tuple[Machine, ...]) -> str:
 def _words(state: State) -> tuple[str, str]:
     """Return a gesture's lexeme and type: its tags, else its name."""
     tags = [re.sub(r"\W+", "_", tag).upper() for tag in state.action.tags]
-    return (tags[0] if tags else re.sub(r"\W+", "_", state.action.name).upper()), (tags[1] if len(tags) > 1 else "")
+    return (tags[0] if tags else re.sub(r"\W+", "_", state.action.name).upper()), (
+        tags[1] if len(tags) > 1 else ""
+    )
 
 
 def write_smartbody(order: Order) -> Made:
@@ -130,7 +150,9 @@ def gestures(project: Project, built: tuple[Machine, ...]) -> dict[str, Any]:
         for state in machine.states:
             if state.action.kind == "gesture":
                 found = phases(project, state.action)
-                hold, relax, end = (round((x - found.start) * FPS) for x in (found.stroke_end, found.relax, found.end))
+                hold, relax, end = (
+                    round((x - found.start) * FPS) for x in (found.stroke_end, found.relax, found.end)
+                )
                 out[state.name] = {
                     "queueOptions": [
                         {"name": "in", "from": 0, "to": hold, "loopCount": 1},
@@ -158,24 +180,43 @@ def _unsaid(project: Project) -> int:
 _ALONE = "written by its documentation; the system was not at hand to run it"
 TARGETS = (
     Target(
-        "bml", "BML blocks", "a block for each kept performance and each line, and the vocabulary they may use", write_blocks,
+        "bml",
+        "BML blocks",
+        "a block for each kept performance and each line, and the vocabulary they may use",
+        write_blocks,
         (
-            Loss("what was asked, not what is played: the planner that hears a block chooses actions of its own"),
+            Loss(
+                "what was asked, not what is played: the planner that hears a block chooses actions of its "
+                "own"
+            ),
             Loss("when an ask became known is not kept"),
             Loss("{n} asks that are blocks themselves are left out", _unsaid),
         ),
         group="Agents",
     ),
     Target(
-        "smartbody", "SmartBody gesture map", "a Python script that maps lexemes to animations, and a BVH for each", write_smartbody,
+        "smartbody",
+        "SmartBody gesture map",
+        "a Python script that maps lexemes to animations, and a BVH for each",
+        write_smartbody,
         (
-            *MACHINE, Loss("transitions and fidgets: SmartBody moves between postures by itself"),
+            *MACHINE,
+            Loss("transitions and fidgets: SmartBody moves between postures by itself"),
             Loss("a gesture has one lexeme and one type: its first two tags"),
         ),
-        _ALONE, "Agents",
+        _ALONE,
+        "Agents",
     ),
     Target(
-        "sumerian", "Sumerian Hosts (gesture.json)", "gesture.json with in, hold and out, and one GLB", write_sumerian,
-        (*MACHINE, Loss("stances, fidgets and transitions are in the GLB alone; gesture.json has no word for them")), _ALONE, "Agents",
+        "sumerian",
+        "Sumerian Hosts (gesture.json)",
+        "gesture.json with in, hold and out, and one GLB",
+        write_sumerian,
+        (
+            *MACHINE,
+            Loss("stances, fidgets and transitions are in the GLB alone; gesture.json has no word for them"),
+        ),
+        _ALONE,
+        "Agents",
     ),
-)  # fmt: skip
+)

@@ -1,23 +1,29 @@
-"""Godot without a plug-in: the root of an AnimationTree as a text resource, once for Godot 4 and once for Godot 3.
+"""Godot without a plug-in: the root of an AnimationTree as a text resource, once for Godot 4 and once for
+Godot 3.
 
-The root is a blend tree that adds the layers one after the other onto nothing, each through a filter of the joints it moves:
+The root is a blend tree that adds the layers one after the other onto nothing, each through a filter of the
+joints it moves:
 
-    base - add_body - add_arms - add_head - output          base: an empty blend space; Add2 needs something to add to
+    base - add_body - add_arms - add_head - output          base: an empty blend space; Add2 needs something
+    to add to
               |          |          |
-             body       arms       head                     a state machine each: `parameters/<layer>/playback`
+             body       arms       head                     a state machine each:
+             `parameters/<layer>/playback`
 
-`parameters/add_<layer>/add_amount` is 0 in a new AnimationTree and has to be set to 1; a resource cannot say so.
+`parameters/add_<layer>/add_amount` is 0 in a new AnimationTree and has to be set to 1; a resource cannot say
+so.
 
-Godot 4 takes every animation as its offset from the bones' rest, which here is the base pose, and multiplies the offsets in the
-tree's order: the composition of the contract. Godot 3 takes the mean of what it should add; there each joint is left to one layer.
+Godot 4 takes every animation as its offset from the bones' rest, which here is the base pose, and multiplies
+the offsets in the tree's order: the composition of the contract. Godot 3 takes the mean of what it should
+add; there each joint is left to one layer.
 
-Filters hold the paths of tracks as the importers name them, from the scene's root: `Skeleton3D:<joint>` in Godot 4,
-`Skeleton:<joint>` in Godot 3, whose older importers also spell `LeftHand` as `left_hand`; paths that are not there do no harm.
-A skeleton of several roots hangs below `Armature`.
+Filters hold the paths of tracks as the importers name them, from the scene's root: `Skeleton3D:<joint>` in
+Godot 4, `Skeleton:<joint>` in Godot 3, whose older importers also spell `LeftHand` as `left_hand`; paths that
+are not there do no harm. A skeleton of several roots hangs below `Armature`.
 
-`travel()` looks for a way by the states' places, with their distance to the goal as the only cost (priority 0 takes the way behind
-out of it). So the states of a stance and the transitions that lead to it stand together, and far from the next stance's: whatever
-leads straight to a stance is nearer to it than all else.
+`travel()` looks for a way by the states' places, with their distance to the goal as the only cost (priority 0
+takes the way behind out of it). So the states of a stance and the transitions that lead to it stand together,
+and far from the next stance's: whatever leads straight to a stance is nearer to it than all else.
 """
 
 from __future__ import annotations
@@ -40,7 +46,13 @@ from metagraph.graph.model import Layer, Part, Project
 Version = Literal[3, 4]
 Place = tuple[float, float]
 
-OWNER: Mapping[Part, Layer] = {"legs": "body", "spine": "body", "arms": "arms", "head": "head", "face": "head"}
+OWNER: Mapping[Part, Layer] = {
+    "legs": "body",
+    "spine": "body",
+    "arms": "arms",
+    "head": "head",
+    "face": "head",
+}
 AT_END, AUTO = 2, 2  # of Godot's enumerations of switch and advance modes
 CELL = (240, 60)  # pixels a state takes up in the editor
 
@@ -72,25 +84,36 @@ def tree(project: Project, built: tuple[Machine, ...], version: Version) -> str:
     """Return the AnimationTree's root as the text of a .tres file."""
     out = _Resources(version)
     filters = {m.layer: m.joints for m in built} if version == 4 else owned(project, built)
-    fields = [f"nodes/base/node = {out.add('AnimationNodeBlendSpace1D')}", "nodes/base/position = Vector2(0, 0)"]
+    fields = [
+        f"nodes/base/node = {out.add('AnimationNodeBlendSpace1D')}",
+        "nodes/base/position = Vector2(0, 0)",
+    ]
     wires: list[tuple[str, int, str]] = []
     before = "base"
     for column, machine in enumerate(built, 1):
         layer, adder = machine.layer, f"add_{machine.layer}"
-        paths = ", ".join(json.dumps(p, ensure_ascii=False) for j in filters[layer] for p in paths_of(project, j, version))
+        paths = ", ".join(
+            json.dumps(p, ensure_ascii=False) for j in filters[layer] for p in paths_of(project, j, version)
+        )
         add = out.add("AnimationNodeAdd2", "filter_enabled = true", f"filters = [{paths}]")
-        fields += [f"nodes/{layer}/node = {_machine(out, machine)}", f"nodes/{layer}/position = Vector2({column * 300 - 200}, 200)"]
+        fields += [
+            f"nodes/{layer}/node = {_machine(out, machine)}",
+            f"nodes/{layer}/position = Vector2({column * 300 - 200}, 200)",
+        ]
         fields += [f"nodes/{adder}/node = {add}", f"nodes/{adder}/position = Vector2({column * 300}, 0)"]
         wires += [(adder, 0, before), (adder, 1, layer)]
         before = adder
     fields.append(f"nodes/output/position = Vector2({len(built) * 300 + 300}, 0)")
-    fields.append("node_connections = " + json.dumps([end for wire in [("output", 0, before), *wires] for end in wire]))
+    fields.append(
+        "node_connections = " + json.dumps([end for wire in [("output", 0, before), *wires] for end in wire])
+    )
     return out.text("AnimationNodeBlendTree", *fields)
 
 
 def owned(project: Project, built: tuple[Machine, ...]) -> dict[Layer, tuple[str, ...]]:
-    """Return for each layer the joints it alone moves where layers cannot be added: the one its part belongs to, or else the first
-    that reaches it."""
+    """Return for each layer the joints it alone moves where layers cannot be added: the one its part belongs
+    to, or else the first that reaches it.
+    """
     assert project.skeleton is not None
     out: dict[Layer, list[str]] = {m.layer: [] for m in built}
     for joint, part in zip(project.skeleton.names, anatomy.parts(project), strict=True):
@@ -104,21 +127,28 @@ def paths_of(project: Project, joint: str, version: Version) -> tuple[str, ...]:
     """Return the paths that a joint's tracks may have in an imported scene."""
     assert project.skeleton is not None
     name = re.sub(r"[:/]", "_", joint)
-    node = ("Armature/" if sum(p < 0 for p in project.skeleton.parents) > 1 else "") + ("Skeleton3D" if version == 4 else "Skeleton")
+    node = ("Armature/" if sum(p < 0 for p in project.skeleton.parents) > 1 else "") + (
+        "Skeleton3D" if version == 4 else "Skeleton"
+    )
     names = (name,) if version == 4 else (name, old_name(joint))
     return tuple(f"{node}:{n}" for n in dict.fromkeys(names))
 
 
 def old_name(joint: str) -> str:
     """Return a joint's name as Godot 3 imports it unless told otherwise: LeftThumb1 -> left_thumb_1."""
-    word = r"(?<![A-Z0-9])(?=[A-Z])|(?<=[A-Z])(?=[A-Z][a-z]{2})|(?<![0-9])(?=[0-9])|(?<=[0-9])(?=[^0-9][a-z0-9])"
+    word = (
+        r"(?<![A-Z0-9])(?=[A-Z])|(?<=[A-Z])(?=[A-Z][a-z]{2})|(?<![0-9])(?=[0-9])|(?<=[0-9])(?=[^0-9][a-z0-9])"
+    )
     return re.sub(r"[^a-z0-9_ ]", "", re.sub(f"(?<=.)(?:{word})", "_", joint).lower())
 
 
 def _machine(out: _Resources, machine: Machine) -> str:
     fields: list[str] = []
     for state, (x, y) in _places(machine):
-        fields += [f"states/{state.name}/node = {_state(out, state)}", f"states/{state.name}/position = Vector2({x:.0f}, {y:.0f})"]
+        fields += [
+            f"states/{state.name}/node = {_state(out, state)}",
+            f"states/{state.name}/position = Vector2({x:.0f}, {y:.0f})",
+        ]
     triplets = [f'"{a.source.name}", "{a.target.name}", {_transition(out, a)}' for a in _ways(machine)]
     if out.version == 4:
         first = out.add("AnimationNodeStateMachineTransition", f"advance_mode = {AUTO}")
@@ -132,13 +162,22 @@ def _machine(out: _Resources, machine: Machine) -> str:
 def _state(out: _Resources, state: State) -> str:
     if out.version == 3:
         return out.add("AnimationNodeAnimation", f'animation = "{state.name}"')
-    own = (f"timeline_length = {state.seconds:.4f}", "stretch_time_scale = false", "start_offset = 0.0", "loop_mode = 1")
-    loop = ("use_custom_timeline = true", *own) if state.loop and state.seconds > 0 else ()  # from Godot 4.3 on; glTF has no loops
+    own = (
+        f"timeline_length = {state.seconds:.4f}",
+        "stretch_time_scale = false",
+        "start_offset = 0.0",
+        "loop_mode = 1",
+    )
+    loop = (
+        ("use_custom_timeline = true", *own) if state.loop and state.seconds > 0 else ()
+    )  # from Godot 4.3 on; glTF has no loops
     return out.add("AnimationNodeAnimation", f'animation = &"{state.name}"', *loop)
 
 
 def _ways(machine: Machine) -> Iterator[Arrow]:
-    """Yield an arrow for each pair of states, since Godot has but one: what it is asked by does not matter to `travel()`."""
+    """Yield an arrow for each pair of states, since Godot has but one: what it is asked by does not matter to
+    `travel()`.
+    """
     seen: set[tuple[str, str]] = set()
     for arrow in machine.arrows:
         if (pair := (arrow.source.name, arrow.target.name)) not in seen:
@@ -156,8 +195,10 @@ def _transition(out: _Resources, arrow: Arrow) -> str:
 
 
 def _places(machine: Machine) -> Iterator[tuple[State, Place]]:
-    """Yield the states with their places: a block for each stance, blocks further apart than any is wide and high. From the loop in its
-    corner outwards come the transitions in the order they were placed, since the nearest is taken, and then all else."""
+    """Yield the states with their places: a block for each stance, blocks further apart than any is wide and
+    high. From the loop in its corner outwards come the transitions in the order they were placed, since the
+    nearest is taken, and then all else.
+    """
     blocks: dict[str | None, list[State]] = {stance: [machine.rest(stance)] for stance in machine.stances}
     for state in sorted(machine.states, key=lambda s: s.action.kind != "transition"):
         if state is not machine.rest(str(ends_in(state.action))):
@@ -165,7 +206,10 @@ def _places(machine: Machine) -> Iterator[tuple[State, Place]]:
     largest = max(len(b) for b in blocks.values())
     columns = math.ceil(math.sqrt(largest / 3))
     rows = math.ceil(largest / columns)
-    cells = sorted(((x * CELL[0], y * CELL[1]) for y in range(rows) for x in range(columns)), key=lambda cell: math.hypot(*cell))
+    cells = sorted(
+        ((x * CELL[0], y * CELL[1]) for y in range(rows) for x in range(columns)),
+        key=lambda cell: math.hypot(*cell),
+    )
     size = columns * CELL[0], rows * CELL[1]
     step = size[0] + math.hypot(*size)
     for number, block in enumerate(blocks.values()):
@@ -206,7 +250,9 @@ def guide(stem: str, built: tuple[Machine, ...]) -> str:
         for state in machine.states:
             if state is not machine.rest(state.action.stance):
                 here, there = names[state.action.stance], names[str(ends_in(state.action))]
-                parts.append(f"| `{state.name}` | {state.seconds:.2f} | {here} | {there if there != here else ''} |\n")
+                parts.append(
+                    f"| `{state.name}` | {state.seconds:.2f} | {here} | {there if there != here else ''} |\n"
+                )
     return "".join(parts)
 
 
@@ -252,16 +298,26 @@ def _left_early(project: Project) -> int:
 
 
 LOSSES: tuple[Loss, ...] = (
-    Loss("Godot 4: layers are added to the skeleton's rest; retargeting on import changes it, and with it the poses"),
-    Loss("Godot 3: layers are not added: spine and legs are the body's alone, arms the arms', head and face the head's"),
+    Loss(
+        "Godot 4: layers are added to the skeleton's rest; retargeting on import changes it, and with it the "
+        "poses"
+    ),
+    Loss(
+        "Godot 3: layers are not added: spine and legs are the body's alone, arms the arms', head and face "
+        "the head's"
+    ),
     Loss("{n} actions that may be left early are left at their end", _left_early),
     Loss("what plays is not begun anew when it is asked for again"),
     Loss("where no transition joins two stances, the way between them need not be the planner's"),
 )
 TARGETS = (
     Target(
-        "godot-tree", "Godot AnimationTree (.tres)",
-        "an AnimationTree's root for Godot 4 and one for Godot 3, a guide to their states, and one GLB with an animation for each state",
-        write, (*MACHINE, WEIGHTS, CROSSFADE, *LOSSES), "the tree for Godot 4 was not run there; the one for Godot 3 was, in 3.2.3",
+        "godot-tree",
+        "Godot AnimationTree (.tres)",
+        "an AnimationTree's root for Godot 4 and one for Godot 3, a guide to their states, and one GLB with "
+        "an animation for each state",
+        write,
+        (*MACHINE, WEIGHTS, CROSSFADE, *LOSSES),
+        "the tree for Godot 4 was not run there; the one for Godot 3 was, in 3.2.3",
     ),
-)  # fmt: skip
+)

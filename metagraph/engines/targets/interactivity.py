@@ -1,7 +1,9 @@
-"""glTF with KHR_interactivity: a GLB that plays its stances of itself and its actions on custom events, without a line of code.
+"""glTF with KHR_interactivity: a GLB that plays its stances of itself and its actions on custom events,
+without a line of code.
 
-Each layer's animations move the joints no later layer claims. Events: `<layer>.action.<state>`; what is asked in another stance, or
-while an action plays, is passed over. The layer's variables are `<layer>_stance` (number) and `<layer>_busy`.
+Each layer's animations move the joints no later layer claims. Events: `<layer>.action.<state>`; what is asked
+in another stance, or while an action plays, is passed over. The layer's variables are `<layer>_stance`
+(number) and `<layer>_busy`.
 """
 
 from __future__ import annotations
@@ -19,12 +21,20 @@ from metagraph.graph import anatomy
 from metagraph.graph.expand import ends_in
 from metagraph.graph.model import Layer, Part, Project
 
-OWNERS: Mapping[Part, Layer] = {"legs": "body", "spine": "body", "arms": "arms", "head": "head", "face": "head"}
+OWNERS: Mapping[Part, Layer] = {
+    "legs": "body",
+    "spine": "body",
+    "arms": "arms",
+    "head": "head",
+    "face": "head",
+}
 TYPES = ("int", "float", "bool", "ref")
 
 
 def owned(project: Project, built: tuple[Machine, ...]) -> dict[Layer, list[int]]:
-    """Return the joints each layer moves alone; those of a layer that has no machine go to the body, or the first there is."""
+    """Return the joints each layer moves alone; those of a layer that has no machine go to the body, or the
+    first there is.
+    """
     there = [m.layer for m in built]
     out: dict[Layer, list[int]] = {layer: [] for layer in there}
     for joint, part in enumerate(anatomy.parts(project)):
@@ -70,14 +80,20 @@ class _Graph:
         return self.node("variable/set", {"variables": [variable]}, **{f"_{variable}": ("int", value)})
 
     def equals(self, variable: int, value: int) -> int:
-        return self.node("math/eq", None, a=self.node("variable/get", {"variable": [variable]}), b=("int", value))
+        return self.node(
+            "math/eq", None, a=self.node("variable/get", {"variable": [variable]}), b=("int", value)
+        )
 
     def start(self, state: State, endless: int) -> int:
         end = endless if state.loop else ("float", self.seconds[state.name])
         return self.node(
-            "animation/start", None, animation=("ref", f"/animations/{self.places[state.name]}"), startTime=("float", 0.0), endTime=end,
+            "animation/start",
+            None,
+            animation=("ref", f"/animations/{self.places[state.name]}"),
+            startTime=("float", 0.0),
+            endTime=end,
             speed=("float", 1.0),
-        )  # fmt: skip
+        )
 
     def stop(self, state: State) -> int:
         return self.node("animation/stop", None, animation=("ref", f"/animations/{self.places[state.name]}"))
@@ -100,7 +116,9 @@ def _value(value: Any) -> dict[str, Any]:
     return {"node": value, "socket": "value"}
 
 
-def behaviour(built: tuple[Machine, ...], places: Mapping[str, int], seconds: Mapping[str, float]) -> dict[str, Any]:
+def behaviour(
+    built: tuple[Machine, ...], places: Mapping[str, int], seconds: Mapping[str, float]
+) -> dict[str, Any]:
     """Return the KHR_interactivity object. places, seconds: of the animations, by state name."""
     graph = _Graph(places, seconds)
     endless = graph.node("math/Inf")
@@ -118,7 +136,9 @@ def behaviour(built: tuple[Machine, ...], places: Mapping[str, int], seconds: Ma
 
 
 def _action(graph: _Graph, machine: Machine, state: State, stance: int, busy: int, endless: int) -> None:
-    """Receive, if it is its stance and nothing plays: stop the loop, play, then the loop of the stance it ends in."""
+    """Receive, if it is its stance and nothing plays: stop the loop, play, then the loop of the stance it
+    ends in.
+    """
     here, there = state.action.stance, ends_in(state.action) or state.action.stance
     heard = graph.node("event/receive", {"event": [graph.event(f"{machine.layer}.action.{state.name}")]})
     fits = graph.node("flow/branch", None, condition=graph.equals(stance, machine.stances[here]))
@@ -153,7 +173,14 @@ def write(order: Order) -> Made:
     moved = {s.name: joints[m.layer] for m in built for s in m.states}
     chart = behaviour(built, {c.name: n for n, c in enumerate(clips)}, {c.name: c.duration for c in clips})
     order.tell(1, 2, "graph")
-    write_glb(glb, clips, body, stand=anatomy.base_pose(project), moved=moved, extensions={"KHR_interactivity": chart})
+    write_glb(
+        glb,
+        clips,
+        body,
+        stand=anatomy.base_pose(project),
+        moved=moved,
+        extensions={"KHR_interactivity": chart},
+    )
     events = order.folder / f"{order.stem}.events.json"
     names = [f"{m.layer}.action.{s.name}" for m in built for s in m.states if not s.loop]
     write_atomically(events, json.dumps(names, indent=1).encode())
@@ -163,7 +190,10 @@ def write(order: Order) -> Made:
 
 TARGETS = (
     Target(
-        "interactivity", "glTF + KHR_interactivity", "one GLB that plays by itself, and a list of the events it hears", write,
+        "interactivity",
+        "glTF + KHR_interactivity",
+        "one GLB that plays by itself, and a list of the events it hears",
+        write,
         (
             *MACHINE,
             Loss("layers do not add: body, arms and head each move their own joints alone"),
@@ -171,4 +201,4 @@ TARGETS = (
             Loss("a stance that needs several transitions is reached by asking for each of them in turn"),
         ),
     ),
-)  # fmt: skip
+)

@@ -36,14 +36,22 @@ def _weighted(project: Project) -> int:
 
 MACHINE: tuple[Loss, ...] = (
     Loss(
-        "no planner: nothing is drawn by tags, limb or likelihood, nothing is scheduled ahead, no stroke is timed; each action is asked for"
+        "no planner: nothing is drawn by tags, limb or likelihood, nothing is scheduled ahead, no stroke is "
+        "timed; each action is asked for"
     ),
     Loss("no statistics: nobody performs when nothing is asked"),
     Loss("no life layers: breathing, gaze, blinks and lips are not played"),
     Loss("holds play as they were made, and preparations are not skipped"),
     Loss("of the loops of {n} stances the first plays of itself, the others when asked for", _varied),
-    Loss("{n} transitions that are not the first between their stances play only when asked for by themselves", _ways),
-    Loss("{n} actions that move part of their layer hold the rest as their stance begins, instead of letting it play on", _masked),
+    Loss(
+        "{n} transitions that are not the first between their stances play only when asked for by themselves",
+        _ways,
+    ),
+    Loss(
+        "{n} actions that move part of their layer hold the rest as their stance begins, instead of letting "
+        "it play on",
+        _masked,
+    ),
     Loss("{n} loops that play with a seam jump where they repeat", _seams),
 )
 WEIGHTS = Loss("{n} weights of layers on body parts other than 0 and 1 count as 1", _weighted)

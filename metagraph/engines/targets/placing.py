@@ -1,7 +1,8 @@
 """Putting an export's files where they are wanted, whole, and over nothing that is not its own.
 
-An export is written beside the folder first. A record in the folder says which target, which project and which files stand there,
-with their digests, so that writing again knows its own files; what else stands in the way is foreign.
+An export is written beside the folder first. A record in the folder says which target, which project and
+which files stand there, with their digests, so that writing again knows its own files; what else stands in
+the way is foreign.
 """
 
 from __future__ import annotations
@@ -23,7 +24,9 @@ NAMED = 4  # foreign files that are named
 
 
 class Record(msgspec.Struct, frozen=True):
-    """What was written: for which target, of which project; its files by their paths in the folder, with their SHA-256."""
+    """What was written: for which target, of which project; its files by their paths in the folder, with
+    their SHA-256.
+    """
 
     target: str
     project: str
@@ -31,14 +34,17 @@ class Record(msgspec.Struct, frozen=True):
 
 
 class ForeignFilesError(ExportError):
-    """Files stand where the export would go that are of something else, or were changed since. files: their paths in the folder."""
+    """Files stand where the export would go that are of something else, or were changed since. files: their
+    paths in the folder.
+    """
 
     def __init__(self, folder: Path, files: tuple[str, ...], of: Record | None) -> None:
         self.folder, self.files = folder, files
         more = f" and {len(files) - NAMED} more" if len(files) > NAMED else ""
         whose = f"; the folder holds an export of '{of.project}' for '{of.target}'" if of is not None else ""
         super().__init__(
-            f"{folder} already has {', '.join(files[:NAMED])}{more}{whose}. Choose another folder, or say that they may be overwritten."
+            f"{folder} already has {', '.join(files[:NAMED])}{more}{whose}. Choose another folder, or say "
+            "that they may be overwritten."
         )
 
 
@@ -51,10 +57,14 @@ def read_record(folder: Path) -> Record | None:
 
 
 def foreign(folder: Path, wanted: Mapping[str, str], target: str, project: str) -> tuple[str, ...]:
-    """Return which files would be overwritten that are of something else, or were changed since they were written. wanted: the new
-    files by name, with their digests; one that stands there already, byte for byte, is in nobody's way."""
+    """Return which files would be overwritten that are of something else, or were changed since they were
+    written. wanted: the new files by name, with their digests; one that stands there already, byte for byte,
+    is in nobody's way.
+    """
     known = read_record(folder)
-    mine: Mapping[str, str] = known.files if known is not None and (known.target, known.project) == (target, project) else {}
+    mine: Mapping[str, str] = (
+        known.files if known is not None and (known.target, known.project) == (target, project) else {}
+    )
     out = []
     for name, digest in wanted.items():
         path = folder / name
@@ -63,10 +73,14 @@ def foreign(folder: Path, wanted: Mapping[str, str], target: str, project: str) 
     return tuple(out)
 
 
-def place(staged: Path, folder: Path, names: Iterable[str], target: str, project: str, overwrite: bool) -> None:
-    """Move files from where they were staged into a folder, and take away what an earlier export of the same left that this has not.
+def place(
+    staged: Path, folder: Path, names: Iterable[str], target: str, project: str, overwrite: bool
+) -> None:
+    """Move files from where they were staged into a folder, and take away what an earlier export of the same
+    left that this has not.
 
-    Raises ForeignFilesError, before anything is changed, unless they may be overwritten; FileError when a file cannot be written.
+    Raises ForeignFilesError, before anything is changed, unless they may be overwritten; FileError when a
+    file cannot be written.
     """
     before = read_record(folder)
     digests = {name: _digest(staged / name) for name in names}
@@ -86,12 +100,18 @@ def place(staged: Path, folder: Path, names: Iterable[str], target: str, project
     except OSError as error:
         where = Path(error.filename2 or error.filename or folder)
         remedy = "Close what has it open, or choose a folder you may write to, with space left."
-        raise FileError(where, f"cannot be written ({error.strerror or error})", "on exporting", remedy) from None
-    write_atomically(folder / RECORD, msgspec.json.format(msgspec.json.encode(Record(target, project, digests)), indent=1))
+        raise FileError(
+            where, f"cannot be written ({error.strerror or error})", "on exporting", remedy
+        ) from None
+    write_atomically(
+        folder / RECORD, msgspec.json.format(msgspec.json.encode(Record(target, project, digests)), indent=1)
+    )
 
 
 class Staging:
-    """A folder beside the export's own, so that moving out of it is one step a file; gone at the end. Raises FileError."""
+    """A folder beside the export's own, so that moving out of it is one step a file; gone at the end. Raises
+    FileError.
+    """
 
     def __init__(self, folder: Path) -> None:
         try:
@@ -99,7 +119,9 @@ class Staging:
             self.path = Path(tempfile.mkdtemp(prefix=".exporting-", dir=folder))
         except OSError as error:
             remedy = "Choose a folder you may write to."
-            raise FileError(folder, f"cannot be made ({error.strerror or error})", "on making the folder", remedy) from None
+            raise FileError(
+                folder, f"cannot be made ({error.strerror or error})", "on making the folder", remedy
+            ) from None
 
     def __enter__(self) -> Path:
         return self.path

@@ -1,7 +1,8 @@
 """PlayCanvas: an AnimStateGraph, loaded by the engine as it is. Animations are bound by the states' names.
 
-Parameters, for each layer: the integers `<layer>_stance` and `<layer>_action`, and the trigger `<layer>_play`, see
-`metagraph.engines.machine`. The body overwrites; arms and head add to the pose of the GLB's nodes, which is the base pose.
+Parameters, for each layer: the integers `<layer>_stance` and `<layer>_action`, and the trigger
+`<layer>_play`, see `metagraph.engines.machine`. The body overwrites; arms and head add to the pose of the
+GLB's nodes, which is the base pose.
 """
 
 from __future__ import annotations
@@ -23,7 +24,11 @@ def state_graph(project: Project, built: tuple[Machine, ...]) -> dict[str, Any]:
     """Return the AnimStateGraph."""
     parameters: dict[str, Any] = {}
     for machine in built:
-        for word, kind, value in (("stance", "INTEGER", 0), ("action", "INTEGER", 0), ("play", "TRIGGER", False)):
+        for word, kind, value in (
+            ("stance", "INTEGER", 0),
+            ("action", "INTEGER", 0),
+            ("play", "TRIGGER", False),
+        ):
             name = f"{machine.layer}_{word}"
             parameters[name] = {"name": name, "type": kind, "value": value}
     return {"layers": [_layer(project, machine) for machine in built], "parameters": parameters}
@@ -33,7 +38,9 @@ def _layer(project: Project, machine: Machine) -> dict[str, Any]:
     assert project.skeleton is not None
     states: list[dict[str, Any]] = [{"name": "START"}]
     states += [{"name": s.name, "speed": 1, "loop": s.loop} for s in machine.states]
-    transitions: list[dict[str, Any]] = [{"from": "START", "to": machine.start.name, "time": 0, "priority": 0}]
+    transitions: list[dict[str, Any]] = [
+        {"from": "START", "to": machine.start.name, "time": 0, "priority": 0}
+    ]
     for arrow in machine.arrows:
         transitions += _transitions(machine, arrow)
     return {
@@ -47,7 +54,9 @@ def _layer(project: Project, machine: Machine) -> dict[str, Any]:
 
 
 def _paths(project: Project, joint: str) -> Iterator[str]:
-    """Yield a joint's path from the root joint down, as PlayCanvas names entities, and the same from the scene, where there is a mesh."""
+    """Yield a joint's path from the root joint down, as PlayCanvas names entities, and the same from the
+    scene, where there is a mesh.
+    """
     skeleton = project.skeleton
     assert skeleton is not None
     place, names = skeleton.index(joint), [joint]
@@ -59,7 +68,11 @@ def _paths(project: Project, joint: str) -> Iterator[str]:
 
 def _transitions(machine: Machine, arrow: Arrow) -> Iterator[dict[str, Any]]:
     """Yield an arrow's transitions: one for each value, since all of a transition's conditions must hold."""
-    whole: dict[str, Any] = {"from": arrow.source.name, "to": arrow.target.name, "time": round(arrow.blend, 4)}
+    whole: dict[str, Any] = {
+        "from": arrow.source.name,
+        "to": arrow.target.name,
+        "time": round(arrow.blend, 4),
+    }
     if arrow.leave is not None and arrow.source.seconds > 0:
         whole["exitTime"] = round(min(0.999, arrow.leave / arrow.source.seconds), 4)
     layer = machine.layer
@@ -80,7 +93,9 @@ def write(order: Order) -> Made:
     order.tell(0, 2, "clips")
     write_machine_glb(order.project, built, glb, body)
     order.tell(1, 2, "graph")
-    write_atomically(graph, json.dumps(state_graph(order.project, built), indent=1, ensure_ascii=False).encode())
+    write_atomically(
+        graph, json.dumps(state_graph(order.project, built), indent=1, ensure_ascii=False).encode()
+    )
     numbers = order.folder / f"{order.stem}.numbers.json"
     write_atomically(numbers, json.dumps(guide(built), indent=1, ensure_ascii=False).encode())
     order.tell(2, 2, "done")
@@ -91,7 +106,9 @@ def guide(built: tuple[Machine, ...]) -> dict[str, Any]:
     """Return which number stands for which action and stance."""
     return {
         machine.layer: {
-            "stance": {machine.graph.stances[ident].name: number for ident, number in machine.stances.items()},
+            "stance": {
+                machine.graph.stances[ident].name: number for ident, number in machine.stances.items()
+            },
             "action": {state.name: state.number for state in machine.states},
         }
         for machine in built

@@ -16,7 +16,16 @@ from metagraph.graph.model import Project
 from metagraph.motion.character import Character
 
 # Modules of this package that have TARGETS, in the order they are offered.
-MODULES = ("runtimes", "web", "playcanvas", "godot_tree", "unity_controller", "interactivity", "statecharts", "agents")
+MODULES = (
+    "runtimes",
+    "web",
+    "playcanvas",
+    "godot_tree",
+    "unity_controller",
+    "interactivity",
+    "statecharts",
+    "agents",
+)
 DEFAULT = "metagraph"
 
 
@@ -25,7 +34,9 @@ def targets() -> Mapping[str, Target]:
     """Return all targets by name."""
     found: dict[str, Target] = {}
     for module in MODULES:
-        found |= {target.name: target for target in import_module(f"metagraph.engines.targets.{module}").TARGETS}
+        found |= {
+            target.name: target for target in import_module(f"metagraph.engines.targets.{module}").TARGETS
+        }
     return found
 
 
@@ -35,7 +46,10 @@ def target(name: str) -> Target:
     if name in known:
         return known[name]
     near = get_close_matches(name, known, 1)
-    raise ExportError(f"there is no target '{name}'; " + (f"did you mean '{near[0]}'?" if near else f"there are {', '.join(known)}"))
+    raise ExportError(
+        f"there is no target '{name}'; "
+        + (f"did you mean '{near[0]}'?" if near else f"there are {', '.join(known)}")
+    )
 
 
 def losses(project: Project, name: str) -> tuple[str, ...]:
@@ -55,18 +69,29 @@ def write(
 ) -> Report:
     """Write a project for a target into a folder, which is made.
 
-    character: the mesh or its file, None to leave it out. expanded: list the state machine in the JSON as well. base: the folder
-    the lines' sounds are relative to, None to leave them where they are. overwrite: also files that are not of an earlier export of
-    the same project for the same target. Raises ExportError while the project has errors, `ForeignFilesError`, an ExportError, where such files
-    stand in the way, FileError when a file cannot be written.
+    character: the mesh or its file, None to leave it out. expanded: list the state machine in the JSON as
+    well. base: the folder the lines' sounds are relative to, None to leave them where they are. overwrite:
+    also files that are not of an earlier export of the same project for the same target. Raises ExportError
+    while the project has errors, `ForeignFilesError`, an ExportError, where such files stand in the way,
+    FileError when a file cannot be written.
     """
     chosen = target(name)
     warnings = sound(project)
     place = Path(folder)
     with Staging(place) as staged:
-        order = Order(project, staged, stem_of(project), character, expanded, tell or (lambda done, total, words: None), base)
+        order = Order(
+            project,
+            staged,
+            stem_of(project),
+            character,
+            expanded,
+            tell or (lambda done, total, words: None),
+            base,
+        )
         made = chosen.write(order)
         names = tuple(path.relative_to(staged).as_posix() for path in made.files)
         move(staged, place, names, name, project.name, overwrite)
     clips = len(project.uses.keys() | {project.base.clip} - {None})
-    return Report(name, tuple(place / n for n in names), clips, losses(project, name), (*made.notes, *warnings))
+    return Report(
+        name, tuple(place / n for n in names), clips, losses(project, name), (*made.notes, *warnings)
+    )

@@ -53,19 +53,35 @@ def _with(runtime: str, under: str) -> Callable[[Order], Made]:
 
 TARGETS = (
     Target(
-        "metagraph", "Metagraph (JSON + GLB)", "one JSON, the graph, and one GLB, its clips", written, group="Played as the preview does",
-    ),
-    Target(
-        "javascript", "JavaScript, three.js", "JSON and GLB, and in metagraph/ the runtime: ES modules for browsers, Node and three.js",
-        _with("javascript", "metagraph"), (BML,), group="Played as the preview does",
-    ),
-    Target(
-        "godot", "Godot 4 add-on", "JSON and GLB, and in addons/metagraph/ the runtime in GDScript", _with("godot", "."), (BML,),
+        "metagraph",
+        "Metagraph (JSON + GLB)",
+        "one JSON, the graph, and one GLB, its clips",
+        written,
         group="Played as the preview does",
     ),
     Target(
-        "unity", "Unity package", "JSON and GLB, and in Metagraph/ the runtime in C#",
-        _with("unity", "Metagraph"), (BML,),
-        untried="compiled and checked outside Unity; not run in Unity", group="Played as the preview does",
+        "javascript",
+        "JavaScript, three.js",
+        "JSON and GLB, and in metagraph/ the runtime: ES modules for browsers, Node and three.js",
+        _with("javascript", "metagraph"),
+        (BML,),
+        group="Played as the preview does",
     ),
-)  # fmt: skip
+    Target(
+        "godot",
+        "Godot 4 add-on",
+        "JSON and GLB, and in addons/metagraph/ the runtime in GDScript",
+        _with("godot", "."),
+        (BML,),
+        group="Played as the preview does",
+    ),
+    Target(
+        "unity",
+        "Unity package",
+        "JSON and GLB, and in Metagraph/ the runtime in C#",
+        _with("unity", "Metagraph"),
+        (BML,),
+        untried="compiled and checked outside Unity; not run in Unity",
+        group="Played as the preview does",
+    ),
+)

@@ -1,7 +1,7 @@
 """State charts: XState's JSON and W3C SCXML. They decide; whoever runs them plays the animations they name.
 
-Each layer is a region. Events ask: `<layer>.action.<state>` for an action, `<layer>.stance.<stance>` for a stance. An action ends, and may
-be left, by the clock.
+Each layer is a region. Events ask: `<layer>.action.<state>` for an action, `<layer>.stance.<stance>` for a
+stance. An action ends, and may be left, by the clock.
 """
 
 from __future__ import annotations
@@ -18,7 +18,10 @@ from metagraph.engines.targets.meshes import mesh_of
 from metagraph.engines.targets.target import Loss, Made, Order, Target
 from metagraph.formats.atomic import write_atomically
 
-HOST = Loss("it decides only: who runs it plays each state's animation, blends for as long as the arrow says, and adds the layers")
+HOST = Loss(
+    "it decides only: who runs it plays each state's animation, blends for as long as the arrow says, and "
+    "adds the layers"
+)
 FORGETFUL = Loss("what is asked while an action plays that may not be left yet is not remembered")
 
 
@@ -53,11 +56,17 @@ def xstate(name: str, built: tuple[Machine, ...]) -> dict[str, Any]:
 
 
 def _play(arrow: Arrow) -> dict[str, Any]:
-    return {"type": "play", "params": {"animation": arrow.target.name, "blend": round(arrow.blend, 4), "loop": arrow.target.loop}}
+    return {
+        "type": "play",
+        "params": {"animation": arrow.target.name, "blend": round(arrow.blend, 4), "loop": arrow.target.loop},
+    }
 
 
 def _region(machine: Machine) -> dict[str, Any]:
-    return {"initial": machine.start.name, "states": {state.name: _node(machine, state) for state in machine.states}}
+    return {
+        "initial": machine.start.name,
+        "states": {state.name: _node(machine, state) for state in machine.states},
+    }
 
 
 def _node(machine: Machine, state: State) -> dict[str, Any]:
@@ -66,7 +75,10 @@ def _node(machine: Machine, state: State) -> dict[str, Any]:
     for arrow in machine.leaving[state.name]:
         for event in _events(machine, arrow):
             events.setdefault(event, {"target": f"#{arrow.target.name}", "actions": [_play(arrow)]})
-    node: dict[str, Any] = {"id": state.name, "meta": {"animation": state.name, "loop": state.loop, "kind": state.action.kind}}
+    node: dict[str, Any] = {
+        "id": state.name,
+        "meta": {"animation": state.name, "loop": state.loop, "kind": state.action.kind},
+    }
     if done is None:
         return {**node, "on": events}
     end = done.leave or 0.0
@@ -85,10 +97,14 @@ NAMESPACE, OURS = "http://www.w3.org/2005/07/scxml", "urn:metagraph:scxml"
 
 
 def scxml(name: str, built: tuple[Machine, ...]) -> bytes:
-    """Return the machine as SCXML 1.0 with the null data model; attributes of our own name animation, loop and blend."""
+    """Return the machine as SCXML 1.0 with the null data model; attributes of our own name animation, loop
+    and blend.
+    """
     Xml.register_namespace("", NAMESPACE)
     Xml.register_namespace("metagraph", OURS)
-    root = _tag(None, "scxml", version="1.0", name=re.sub(r"\W+", "_", name), datamodel="null", initial="layers")
+    root = _tag(
+        None, "scxml", version="1.0", name=re.sub(r"\W+", "_", name), datamodel="null", initial="layers"
+    )
     every = _tag(root, "parallel", id="layers")
     for machine in built:
         region = _tag(every, "state", id=machine.layer, initial=machine.start.name)
@@ -100,7 +116,9 @@ def scxml(name: str, built: tuple[Machine, ...]) -> bytes:
 
 
 def _tag(parent: Xml.Element | None, tag: str, **attributes: str) -> Xml.Element:
-    named = {(f"{{{OURS}}}{key[3:]}" if key.startswith("my_") else key): value for key, value in attributes.items()}
+    named = {
+        (f"{{{OURS}}}{key[3:]}" if key.startswith("my_") else key): value for key, value in attributes.items()
+    }
     if parent is None:
         return Xml.Element(f"{{{NAMESPACE}}}{tag}", named)
     return Xml.SubElement(parent, f"{{{NAMESPACE}}}{tag}", named)
@@ -120,7 +138,13 @@ def _state(region: Xml.Element, machine: Machine, state: State) -> None:
         _tag(waiting, "transition", event=f"{state.name}.leave", target=f"{state.name}.free")
     if done is not None:
         _timer(node, f"{state.name}.done", end)
-        _tag(node, "transition", event=f"{state.name}.done", target=done.target.name, my_blend=f"{done.blend:.4g}")
+        _tag(
+            node,
+            "transition",
+            event=f"{state.name}.done",
+            target=done.target.name,
+            my_blend=f"{done.blend:.4g}",
+        )
     if bound and leave >= end:
         return
     for arrow in machine.leaving[state.name]:
@@ -168,5 +192,11 @@ TARGETS = (
         write_xstate,
         (*MACHINE, HOST, FORGETFUL),
     ),
-    Target("scxml", "SCXML", "one W3C state chart, and one GLB with an animation for each state", write_scxml, (*MACHINE, HOST, FORGETFUL)),
+    Target(
+        "scxml",
+        "SCXML",
+        "one W3C state chart, and one GLB with an animation for each state",
+        write_scxml,
+        (*MACHINE, HOST, FORGETFUL),
+    ),
 )

@@ -14,8 +14,9 @@ Tell = Callable[[int, int, str], None]
 
 @dataclass(frozen=True)
 class Loss:
-    """Something of a performance that a format cannot say. words: for people; "{n}" stands for what `count` finds in a project, and the
-    loss is told only where that is not 0."""
+    """Something of a performance that a format cannot say. words: for people; "{n}" stands for what `count`
+    finds in a project, and the loss is told only where that is not 0.
+    """
 
     words: str
     count: Callable[[Project], int] | None = None
@@ -28,9 +29,10 @@ class Loss:
 
 @dataclass(frozen=True)
 class Order:
-    """What is to be written: a sound project into a folder that is there. stem: what its files are called. character: the mesh, or
-    None to leave it out. expanded: the state machine in the JSON, where there is one. base: the folder the project's own paths are
-    relative to."""
+    """What is to be written: a sound project into a folder that is there. stem: what its files are called.
+    character: the mesh, or None to leave it out. expanded: the state machine in the JSON, where there is one.
+    base: the folder the project's own paths are relative to.
+    """
 
     project: Project
     folder: Path
@@ -51,8 +53,9 @@ class Made:
 
 @dataclass(frozen=True)
 class Target:
-    """name: on the command line. title: in the window. files: what will be written, in words. write: does it. losses: what it
-    loses. untried: why it is experimental; empty where it was run."""
+    """name: on the command line. title: in the window. files: what will be written, in words. write: does it.
+    losses: what it loses. untried: why it is experimental; empty where it was run.
+    """
 
     name: str
     title: str

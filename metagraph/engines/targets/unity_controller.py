@@ -1,8 +1,9 @@
-"""Unity without a plug-in: an Animator Controller, an Avatar Mask for each layer, and the clips, as Unity's own text assets.
+"""Unity without a plug-in: an Animator Controller, an Avatar Mask for each layer, and the clips, as Unity's
+own text assets.
 
-Parameters, for each layer: the integers `<layer>_stance` and `<layer>_action`, and the trigger `<layer>_play`, see
-`metagraph.engines.machine`. At the bottom is a layer that holds the base pose; the body overwrites it, arms and head add to it what their
-clips differ from it.
+Parameters, for each layer: the integers `<layer>_stance` and `<layer>_action`, and the trigger
+`<layer>_play`, see `metagraph.engines.machine`. At the bottom is a layer that holds the base pose; the body
+overwrites it, arms and head add to it what their clips differ from it.
 """
 
 from __future__ import annotations
@@ -49,21 +50,44 @@ IF, EQUALS = 1, 6  # modes of conditions
 INTEGER, TRIGGER = 3, 9  # types of parameters
 Row = tuple[int, int, str, Mapping[str, Any]]
 
-MOMENT = Loss("what is asked for after the moment from which an action may be left waits until it has ended: an exit time is one moment")
+MOMENT = Loss(
+    "what is asked for after the moment from which an action may be left waits until it has ended: an exit "
+    "time is one moment"
+)
 UNTRIED = "written field by field as Unity writes its own files; there was no Unity to open it with"
 
 
-def controller(project: Project, name: str, built: tuple[Machine, ...], clips: Mapping[str, str], seconds: Mapping[str, float]) -> bytes:
-    """Return the AnimatorController. clips: state name -> what its clip's file is called, without ending. seconds: of each clip."""
+def controller(
+    project: Project,
+    name: str,
+    built: tuple[Machine, ...],
+    clips: Mapping[str, str],
+    seconds: Mapping[str, float],
+) -> bytes:
+    """Return the AnimatorController. clips: state name -> what its clip's file is called, without ending.
+    seconds: of each clip.
+    """
     parameters, layers = [], [_layer(BASE, NOTHING, False)]
     for machine in built:
         for word, kind in (("stance", INTEGER), ("action", INTEGER), ("play", TRIGGER)):
-            parameter: dict[str, Any] = {"m_Name": f"{machine.layer}_{word}", "m_Type": kind, "m_DefaultFloat": 0, "m_DefaultInt": 0}
-            parameters.append(parameter | {"m_DefaultBool": 0, "m_Controller": Inline(fileID=main_id(CONTROLLER))})
-        layers.append(_layer(machine.layer, to(MASK, project.name, f"{machine.layer}.mask"), machine.layer != "body"))
+            parameter: dict[str, Any] = {
+                "m_Name": f"{machine.layer}_{word}",
+                "m_Type": kind,
+                "m_DefaultFloat": 0,
+                "m_DefaultInt": 0,
+            }
+            parameters.append(
+                parameter | {"m_DefaultBool": 0, "m_Controller": Inline(fileID=main_id(CONTROLLER))}
+            )
+        layers.append(
+            _layer(machine.layer, to(MASK, project.name, f"{machine.layer}.mask"), machine.layer != "body")
+        )
     whole = fields(0, name, serializedVersion=5, m_AnimatorParameters=parameters, m_AnimatorLayers=layers)
     objects: list[Row] = [(CONTROLLER, main_id(CONTROLLER), "AnimatorController", whole)]
-    objects += [_machine(BASE, [(BASE, 0, 0)], BASE), _state(BASE, to(CLIP, project.name, f"{BASE}.anim"), [])]
+    objects += [
+        _machine(BASE, [(BASE, 0, 0)], BASE),
+        _state(BASE, to(CLIP, project.name, f"{BASE}.anim"), []),
+    ]
     for machine in built:
         objects.append(_machine(machine.layer, list(_places(machine)), machine.start.name))
         for state in machine.states:
@@ -74,9 +98,24 @@ def controller(project: Project, name: str, built: tuple[Machine, ...], clips: M
 
 
 def _layer(name: str, mask: Inline, adds: bool) -> dict[str, Any]:
-    out: dict[str, Any] = {"serializedVersion": 5, "m_Name": name, "m_StateMachine": Inline(fileID=local_id("layer", name)), "m_Mask": mask}
-    out |= {"m_Motions": [], "m_Behaviours": [], "m_BlendingMode": int(adds), "m_SyncedLayerIndex": -1, "m_DefaultWeight": 1}
-    return out | {"m_IKPass": 0, "m_SyncedLayerAffectsTiming": 0, "m_Controller": Inline(fileID=main_id(CONTROLLER))}
+    out: dict[str, Any] = {
+        "serializedVersion": 5,
+        "m_Name": name,
+        "m_StateMachine": Inline(fileID=local_id("layer", name)),
+        "m_Mask": mask,
+    }
+    out |= {
+        "m_Motions": [],
+        "m_Behaviours": [],
+        "m_BlendingMode": int(adds),
+        "m_SyncedLayerIndex": -1,
+        "m_DefaultWeight": 1,
+    }
+    return out | {
+        "m_IKPass": 0,
+        "m_SyncedLayerAffectsTiming": 0,
+        "m_Controller": Inline(fileID=main_id(CONTROLLER)),
+    }
 
 
 def _places(machine: Machine) -> Iterator[tuple[str, int, int]]:
@@ -91,21 +130,62 @@ def _places(machine: Machine) -> Iterator[tuple[str, int, int]]:
 
 def _machine(layer: str, places: list[tuple[str, int, int]], start: str) -> Row:
     children = [
-        {"serializedVersion": 1, "m_State": Inline(fileID=local_id(name)), "m_Position": _at(300 + 260 * column, 120 + 60 * row)}
+        {
+            "serializedVersion": 1,
+            "m_State": Inline(fileID=local_id(name)),
+            "m_Position": _at(300 + 260 * column, 120 + 60 * row),
+        }
         for name, column, row in places
     ]
-    own: dict[str, Any] = {"m_ChildStates": children, "m_ChildStateMachines": [], "m_AnyStateTransitions": [], "m_EntryTransitions": []}
-    own |= {"m_StateMachineTransitions": Inline(), "m_StateMachineBehaviours": [], "m_AnyStatePosition": _at(50, 20)}
-    own |= {"m_EntryPosition": _at(50, 120), "m_ExitPosition": _at(50, 220), "m_ParentStateMachinePosition": _at(50, 320)}
+    own: dict[str, Any] = {
+        "m_ChildStates": children,
+        "m_ChildStateMachines": [],
+        "m_AnyStateTransitions": [],
+        "m_EntryTransitions": [],
+    }
+    own |= {
+        "m_StateMachineTransitions": Inline(),
+        "m_StateMachineBehaviours": [],
+        "m_AnyStatePosition": _at(50, 20),
+    }
+    own |= {
+        "m_EntryPosition": _at(50, 120),
+        "m_ExitPosition": _at(50, 220),
+        "m_ParentStateMachinePosition": _at(50, 320),
+    }
     own |= {"m_DefaultState": Inline(fileID=local_id(start))}
     return STATES, local_id("layer", layer), "AnimatorStateMachine", fields(1, layer, 6, **own)
 
 
 def _state(name: str, motion: Inline, leaving: list[Row]) -> Row:
-    own: dict[str, Any] = {"m_Speed": 1, "m_CycleOffset": 0, "m_Transitions": [Inline(fileID=row[1]) for row in leaving]}
-    own |= {"m_StateMachineBehaviours": [], "m_Position": _at(50, 50), "m_IKOnFeet": 0, "m_WriteDefaultValues": 1, "m_Mirror": 0}
-    own |= dict.fromkeys(("m_SpeedParameterActive", "m_MirrorParameterActive", "m_CycleOffsetParameterActive", "m_TimeParameterActive"), 0)
-    own |= {"m_Motion": motion, "m_Tag": "", "m_SpeedParameter": "", "m_MirrorParameter": "", "m_CycleOffsetParameter": ""}
+    own: dict[str, Any] = {
+        "m_Speed": 1,
+        "m_CycleOffset": 0,
+        "m_Transitions": [Inline(fileID=row[1]) for row in leaving],
+    }
+    own |= {
+        "m_StateMachineBehaviours": [],
+        "m_Position": _at(50, 50),
+        "m_IKOnFeet": 0,
+        "m_WriteDefaultValues": 1,
+        "m_Mirror": 0,
+    }
+    own |= dict.fromkeys(
+        (
+            "m_SpeedParameterActive",
+            "m_MirrorParameterActive",
+            "m_CycleOffsetParameterActive",
+            "m_TimeParameterActive",
+        ),
+        0,
+    )
+    own |= {
+        "m_Motion": motion,
+        "m_Tag": "",
+        "m_SpeedParameter": "",
+        "m_MirrorParameter": "",
+        "m_CycleOffsetParameter": "",
+    }
     return STATE, local_id(name), "AnimatorState", fields(1, name, 6, **own, m_TimeParameter="")
 
 
@@ -114,11 +194,17 @@ def _at(x: int, y: int) -> Inline:
 
 
 def _transitions(machine: Machine, state: State, seconds: float) -> Iterator[Row]:
-    """Yield the transitions that leave a state, those that come first to be taken first: one for each value, since all of a
-    transition's conditions must hold."""
+    """Yield the transitions that leave a state, those that come first to be taken first: one for each value,
+    since all of a transition's conditions must hold.
+    """
     order = ("action", "stance", "done")
     # What ends while it is still blended in would miss its exit, and stay for ever.
-    shown = max((a.blend for arrows in machine.leaving.values() for a in arrows if a.target is state), default=0.0) + 0.05
+    shown = (
+        max(
+            (a.blend for arrows in machine.leaving.values() for a in arrows if a.target is state), default=0.0
+        )
+        + 0.05
+    )
     for arrow in sorted(machine.leaving[state.name], key=lambda a: order.index(a.on)):
         leave = arrow.leave or 0.0
         if arrow.on == "done":
@@ -140,23 +226,45 @@ def _transition(arrow: Arrow, value: str, conditions: list[dict[str, Any]], leav
         "m_DstStateMachine": NOTHING,
         "m_DstState": Inline(fileID=local_id(arrow.target.name)),
     }
-    own |= {"m_Solo": 0, "m_Mute": 0, "m_IsExit": 0, "serializedVersion": 3, "m_TransitionDuration": arrow.blend, "m_TransitionOffset": 0}
-    own |= {"m_ExitTime": leave, "m_HasExitTime": int(leave > 0), "m_HasFixedDuration": 1, "m_InterruptionSource": 0}
+    own |= {
+        "m_Solo": 0,
+        "m_Mute": 0,
+        "m_IsExit": 0,
+        "serializedVersion": 3,
+        "m_TransitionDuration": arrow.blend,
+        "m_TransitionOffset": 0,
+    }
+    own |= {
+        "m_ExitTime": leave,
+        "m_HasExitTime": int(leave > 0),
+        "m_HasFixedDuration": 1,
+        "m_InterruptionSource": 0,
+    }
     ident = local_id(arrow.source.name, arrow.target.name, arrow.on, value)
-    return TRANSITION, ident, "AnimatorStateTransition", fields(1, "", **own, m_OrderedInterruption=1, m_CanTransitionToSelf=1)
+    return (
+        TRANSITION,
+        ident,
+        "AnimatorStateTransition",
+        fields(1, "", **own, m_OrderedInterruption=1, m_CanTransitionToSelf=1),
+    )
 
 
 def mask(skeleton: Skeleton, machine: Machine) -> bytes:
     """Return a layer's AvatarMask: all joints, those of the layer with weight 1."""
     elements = [{"m_Path": "", "m_Weight": 1}]
-    elements += [{"m_Path": joint_path(skeleton, j), "m_Weight": int(name in machine.joints)} for j, name in enumerate(skeleton.names)]
+    elements += [
+        {"m_Path": joint_path(skeleton, j), "m_Weight": int(name in machine.joints)}
+        for j, name in enumerate(skeleton.names)
+    ]
     human = "01000000" * 13  # the body parts of humanoid rigs
     whole = fields(0, machine.layer, m_Mask=human, m_Elements=elements)
     return asset((MASK, main_id(MASK), "AvatarMask", whole))
 
 
 def write(order: Order) -> Made:
-    """Write controller, masks, clips and a guide, each with its `.meta`, and the mesh as a GLB, where there is one."""
+    """Write controller, masks, clips and a guide, each with its `.meta`, and the mesh as a GLB, where there
+    is one.
+    """
     from metagraph.formats.gltf_writer import write_glb
 
     project, built = order.project, machines(order.project)
@@ -166,7 +274,10 @@ def write(order: Order) -> Made:
     made: list[Path] = []
 
     def put(name: str, content: bytes, klass: int | None) -> None:
-        for path, data in ((order.folder / name, content), (order.folder / f"{name}.meta", meta(guid(project.name, name), klass))):
+        for path, data in (
+            (order.folder / name, content),
+            (order.folder / f"{name}.meta", meta(guid(project.name, name), klass)),
+        ):
             write_atomically(path, data)
             made.append(path)
 
@@ -178,7 +289,11 @@ def write(order: Order) -> Made:
     off = np.abs(base.translations - skeleton.rest_translations).max(1) > 1e-6
     shifted = {*np.flatnonzero(off).tolist()}.union(*(clip.translated for clip in clips.values()))
     still = Clip(BASE, skeleton, 30, np.stack([base.rotations] * 2), np.stack([base.translations[:1]] * 2))
-    put(f"{BASE}.anim", clip_asset(still, BASE, _moving(range(len(skeleton)), shifted), base, True, None), CLIP)
+    put(
+        f"{BASE}.anim",
+        clip_asset(still, BASE, _moving(range(len(skeleton)), shifted), base, True, None),
+        CLIP,
+    )
     reference = to(CLIP, project.name, f"{BASE}.anim")
     for machine in built:
         put(f"{machine.layer}.mask", mask(skeleton, machine), MASK)
@@ -241,11 +356,21 @@ reference pose (`{BASE}.anim`).
 
 def _table(machine: Machine) -> str:
     rows = [f"\n## {machine.layer}\n", f"| `{machine.layer}_stance` | stance |", "| --- | --- |"]
-    rows += [f"| {number} | {_cell(machine.graph.stances[ident].name)} |" for ident, number in machine.stances.items()]
-    rows += ["", f"| `{machine.layer}_action` | action | kind | in stance | state |", "| --- | --- | --- | --- | --- |"]
+    rows += [
+        f"| {number} | {_cell(machine.graph.stances[ident].name)} |"
+        for ident, number in machine.stances.items()
+    ]
+    rows += [
+        "",
+        f"| `{machine.layer}_action` | action | kind | in stance | state |",
+        "| --- | --- | --- | --- | --- |",
+    ]
     for state in machine.states:
         action, stance = state.action, machine.graph.stances[state.action.stance]
-        rows.append(f"| {state.number} | {_cell(action.name)} | {action.kind} | {_cell(stance.name)} | `{state.name}` |")
+        rows.append(
+            f"| {state.number} | {_cell(action.name)} | {action.kind} | {_cell(stance.name)} | "
+            f"`{state.name}` |"
+        )
     return "\n".join(rows) + "\n"
 
 
@@ -255,8 +380,12 @@ def _cell(words: str) -> str:
 
 TARGETS = (
     Target(
-        "unity-controller", "Unity Animator Controller",
-        "an Animator Controller with Avatar Masks and clips as Unity's own text assets, a guide to them, and the mesh as a GLB",
-        write, (*MACHINE, WEIGHTS, CROSSFADE, MOMENT), UNTRIED,
+        "unity-controller",
+        "Unity Animator Controller",
+        "an Animator Controller with Avatar Masks and clips as Unity's own text assets, a guide to them, and "
+        "the mesh as a GLB",
+        write,
+        (*MACHINE, WEIGHTS, CROSSFADE, MOMENT),
+        UNTRIED,
     ),
-)  # fmt: skip
+)

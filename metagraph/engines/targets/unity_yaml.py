@@ -1,7 +1,7 @@
 """Unity's text assets: its YAML, its ids and `.meta` files, and animation clips.
 
-Unity is left-handed. Its importers mirror the X axis of what is right-handed, so that is what is done to clips, too: positions become
-`(-x, y, z)`, rotations `(x, -y, -z, w)`.
+Unity is left-handed. Its importers mirror the X axis of what is right-handed, so that is what is done to
+clips, too: positions become `(-x, y, z)`, rotations `(x, -y, -z, w)`.
 """
 
 from __future__ import annotations
@@ -28,7 +28,10 @@ Array = NDArray[Any]
 
 # Unity's numbers for its classes. An asset's main object has the id `klass * 100000`.
 CLIP, CONTROLLER, MASK, TRANSITION, STATE, STATES = 74, 91, 319, 1101, 1102, 1107
-TURN, SHIFT = 4e-4, 2e-4  # how far thinned curves may be off: length of a quaternion's error (0.05 degrees), metres
+TURN, SHIFT = (
+    4e-4,
+    2e-4,
+)  # how far thinned curves may be off: length of a quaternion's error (0.05 degrees), metres
 
 
 class Inline(dict[str, Any]):
@@ -112,7 +115,9 @@ def _scalar(value: Any) -> str:
 
 @lru_cache(maxsize=4096)  # paths of joints come back in every clip
 def text(value: str) -> str:
-    """Return a text as YAML on one line: plain where it can be, even where it looks like a number, for Unity reads by type."""
+    """Return a text as YAML on one line: plain where it can be, even where it looks like a number, for Unity
+    reads by type.
+    """
     if re.fullmatch(r"\w*", value, re.ASCII):
         return value
     written = yaml.safe_dump(value, width=math.inf, default_style=None if value.isprintable() else '"')
@@ -143,9 +148,12 @@ class Moving:
     shifted: tuple[int, ...]
 
 
-def clip_asset(clip: Clip, name: str, moving: Moving, base: Pose, loop: bool, reference: Inline | None) -> bytes:
-    """Return an AnimationClip. base: where joints stand that the clip does not shift. reference: the clip of the pose that is
-    subtracted in an additive layer, None for other layers."""
+def clip_asset(
+    clip: Clip, name: str, moving: Moving, base: Pose, loop: bool, reference: Inline | None
+) -> bytes:
+    """Return an AnimationClip. base: where joints stand that the clip does not shift. reference: the clip of
+    the pose that is subtracted in an additive layer, None for other layers.
+    """
     skeleton, last = clip.skeleton, clip.frames - 1
     turns = rotation.continuous(clip.rotations[:, list(moving.joints)].astype(np.float64)) * [1, -1, -1, 1]
     curves: dict[int, list[str]] = {1: [], 2: []}  # 1: position, 2: rotation
@@ -163,9 +171,23 @@ def clip_asset(clip: Clip, name: str, moving: Moving, base: Pose, loop: bool, re
         for place, key in enumerate(keys):
             slope = (into[place] * clip.fps).tolist(), (away[place] * clip.fps).tolist()
             curves[kind].append(_key(key / clip.fps, values[key].tolist(), *slope))
-        curves[kind] += ["      m_PreInfinity: 2", "      m_PostInfinity: 2", "      m_RotationOrder: 4", f"    path: {text(path)}"]
+        curves[kind] += [
+            "      m_PreInfinity: 2",
+            "      m_PostInfinity: 2",
+            "      m_RotationOrder: 4",
+            f"    path: {text(path)}",
+        ]
         hashed = zlib.crc32(path.encode())
-        bound.append({"serializedVersion": 2, "path": hashed, "attribute": kind, "script": NOTHING, "typeID": 4, "customType": 0})
+        bound.append(
+            {
+                "serializedVersion": 2,
+                "path": hashed,
+                "attribute": kind,
+                "script": NOTHING,
+                "typeID": 4,
+                "customType": 0,
+            }
+        )
         bound[-1]["isPPtrCurve"] = 0
 
     for joint in moving.shifted:
@@ -177,25 +199,68 @@ def clip_asset(clip: Clip, name: str, moving: Moving, base: Pose, loop: bool, re
         add(2, joint, turns[:, place], TURN)
     zero = Inline(x=0, y=0, z=0)
     whole = fields(0, name, serializedVersion=6, m_Legacy=0, m_Compressed=0, m_UseHighQualityCurve=1)
-    whole |= {"m_RotationCurves": Written("\n".join(curves[2])), "m_CompressedRotationCurves": [], "m_EulerCurves": []}
-    whole |= {"m_PositionCurves": Written("\n".join(curves[1])), "m_ScaleCurves": [], "m_FloatCurves": [], "m_PPtrCurves": []}
+    whole |= {
+        "m_RotationCurves": Written("\n".join(curves[2])),
+        "m_CompressedRotationCurves": [],
+        "m_EulerCurves": [],
+    }
+    whole |= {
+        "m_PositionCurves": Written("\n".join(curves[1])),
+        "m_ScaleCurves": [],
+        "m_FloatCurves": [],
+        "m_PPtrCurves": [],
+    }
     whole |= {"m_SampleRate": clip.fps, "m_WrapMode": 0, "m_Bounds": {"m_Center": zero, "m_Extent": zero}}
     whole |= {"m_ClipBindingConstant": {"genericBindings": bound, "pptrCurveMapping": []}}
     whole |= {"m_AnimationClipSettings": _settings(clip.duration, loop, reference)}
-    whole |= {"m_EditorCurves": [], "m_EulerEditorCurves": [], "m_HasGenericRootTransform": 0, "m_HasMotionFloatCurves": 0}
+    whole |= {
+        "m_EditorCurves": [],
+        "m_EulerEditorCurves": [],
+        "m_HasGenericRootTransform": 0,
+        "m_HasMotionFloatCurves": 0,
+    }
     return asset((CLIP, main_id(CLIP), "AnimationClip", whole | {"m_Events": []}))
 
 
 def _settings(seconds: float, loop: bool, reference: Inline | None) -> dict[str, Any]:
-    out: dict[str, Any] = {"serializedVersion": 2, "m_AdditiveReferencePoseClip": reference or NOTHING, "m_AdditiveReferencePoseTime": 0}
-    out |= {"m_StartTime": 0, "m_StopTime": seconds, "m_OrientationOffsetY": 0, "m_Level": 0, "m_CycleOffset": 0}
-    out |= {"m_HasAdditiveReferencePose": int(reference is not None), "m_LoopTime": int(loop), "m_LoopBlend": 0}
-    out |= dict.fromkeys(("m_LoopBlendOrientation", "m_LoopBlendPositionY", "m_LoopBlendPositionXZ", "m_KeepOriginalOrientation"), 0)
-    return out | {"m_KeepOriginalPositionY": 1, "m_KeepOriginalPositionXZ": 0, "m_HeightFromFeet": 0, "m_Mirror": 0}
+    out: dict[str, Any] = {
+        "serializedVersion": 2,
+        "m_AdditiveReferencePoseClip": reference or NOTHING,
+        "m_AdditiveReferencePoseTime": 0,
+    }
+    out |= {
+        "m_StartTime": 0,
+        "m_StopTime": seconds,
+        "m_OrientationOffsetY": 0,
+        "m_Level": 0,
+        "m_CycleOffset": 0,
+    }
+    out |= {
+        "m_HasAdditiveReferencePose": int(reference is not None),
+        "m_LoopTime": int(loop),
+        "m_LoopBlend": 0,
+    }
+    out |= dict.fromkeys(
+        (
+            "m_LoopBlendOrientation",
+            "m_LoopBlendPositionY",
+            "m_LoopBlendPositionXZ",
+            "m_KeepOriginalOrientation",
+        ),
+        0,
+    )
+    return out | {
+        "m_KeepOriginalPositionY": 1,
+        "m_KeepOriginalPositionXZ": 0,
+        "m_HeightFromFeet": 0,
+        "m_Mirror": 0,
+    }
 
 
 def _key(time: float, value: list[float], into: list[float], away: list[float]) -> str:
-    """Return a key. Version 2 is that of Unity 5.5 to 2017, which newer ones read: half the size, for it has no tangents' weights."""
+    """Return a key. Version 2 is that of Unity 5.5 to 2017, which newer ones read: half the size, for it has
+    no tangents' weights.
+    """
     return (
         f"      - serializedVersion: 2\n        time: {number(time)}\n        value: {_vector(value, 6)}\n"
         f"        inSlope: {_vector(into, 4)}\n        outSlope: {_vector(away, 4)}\n        tangentMode: 0"
@@ -203,16 +268,22 @@ def _key(time: float, value: list[float], into: list[float], away: list[float]) 
 
 
 def _vector(values: Iterable[float], digits: int) -> str:
-    return "{" + ", ".join(f"{axis}: {number(v, digits)}" for axis, v in zip("xyzw", values, strict=False)) + "}"
+    return (
+        "{" + ", ".join(f"{axis}: {number(v, digits)}" for axis, v in zip("xyzw", values, strict=False)) + "}"
+    )
 
 
 def _keys(values: Array, slopes: Array, tolerance: float) -> list[int]:
-    """Return the frames of `values [F, n]` to keep, so that cubics through them with their `slopes` (a frame) are within the tolerance of
-    the straight lines between all frames; a stretch of one frame is a straight line. It starts with the ends and is split at the worst
-    frame; only the first is kept where all are the same."""
+    """Return the frames of `values [F, n]` to keep, so that cubics through them with their `slopes` (a frame)
+    are within the tolerance of the straight lines between all frames; a stretch of one frame is a straight
+    line. It starts with the ends and is split at the worst frame; only the first is kept where all are the
+    same.
+    """
     if np.linalg.norm(values - values[0], axis=1).max() <= tolerance:
         return [0]
-    halves = np.stack([values, np.concatenate([(values[1:] + values[:-1]) / 2, values[-1:]])], 1).reshape(-1, values.shape[1])
+    halves = np.stack([values, np.concatenate([(values[1:] + values[:-1]) / 2, values[-1:]])], 1).reshape(
+        -1, values.shape[1]
+    )
     corners = np.concatenate([values, slopes])
     kept, stretches = {0, len(values) - 1}, [(0, len(values) - 1)]
     while stretches:
@@ -232,9 +303,19 @@ def _keys(values: Array, slopes: Array, tolerance: float) -> list[int]:
 
 @lru_cache(maxsize=1024)
 def _cubic(frames: int) -> Array:
-    """Return the weights `[2 * frames - 1, 4]` of two values and two slopes at all half frames between them."""
+    """Return the weights `[2 * frames - 1, 4]` of two values and two slopes at all half frames between
+    them.
+    """
     u = np.linspace(0, 1, 2 * frames + 1)[1:-1]
-    return np.stack([2 * u**3 - 3 * u**2 + 1, 3 * u**2 - 2 * u**3, (u**3 - 2 * u**2 + u) * frames, (u**3 - u**2) * frames], 1)
+    return np.stack(
+        [
+            2 * u**3 - 3 * u**2 + 1,
+            3 * u**2 - 2 * u**3,
+            (u**3 - 2 * u**2 + u) * frames,
+            (u**3 - u**2) * frames,
+        ],
+        1,
+    )
 
 
 def _tangents(values: Array, slopes: Array, keys: list[int]) -> tuple[Array, Array]:

@@ -1,4 +1,6 @@
-"""The web player: a folder that any static server can serve, with the character, the runtime, three.js and a page."""
+"""The web player: a folder that any static server can serve, with the character, the runtime, three.js and a
+page.
+"""
 
 from __future__ import annotations
 
@@ -30,29 +32,47 @@ NEEDED = (
 def write(order: Order) -> Made:
     """Write export, page, player, runtime and, where it can be had, three.js."""
     made = written(order)
-    page = (RUNTIMES / "web" / "index.html").read_text(encoding="utf-8").replace("EXPORT.json", f"{order.stem}.json")
+    page = (
+        (RUNTIMES / "web" / "index.html")
+        .read_text(encoding="utf-8")
+        .replace("EXPORT.json", f"{order.stem}.json")
+    )
     files = [*copied(RUNTIMES / "web" / "player", order.folder / "player")]
-    files += copied(RUNTIMES / "javascript", order.folder / "metagraph", leave=("conformance.mjs", "conformance.d.mts"))
+    files += copied(
+        RUNTIMES / "javascript", order.folder / "metagraph", leave=("conformance.mjs", "conformance.d.mts")
+    )
     notes = list(made.notes)
     found = three_js(order.folder)
     if found is None:
         page = page.replace('"./three/', f'"{NET}')
-        notes.append("three.js is not at hand: the page loads it from the net. With npm installed, exporting again puts it beside the page")
+        notes.append(
+            "three.js is not at hand: the page loads it from the net. With npm installed, exporting again "
+            "puts it beside the page"
+        )
     else:
         for name in NEEDED:
             files.append(order.folder / "three" / name)
             write_atomically(files[-1], (found / name).read_bytes())
-    early = [f'<link rel="preload" href="{order.stem}.{kind}" as="fetch" crossorigin>' for kind in ("json", "glb")]
-    early += [f'<link rel="modulepreload" href="{path.relative_to(order.folder).as_posix()}">' for path in files if path.suffix == ".js"]
-    page = page.replace("<!-- fetch early -->", "\n    ".join(early))  # else each module waits for the one that names it
+    early = [
+        f'<link rel="preload" href="{order.stem}.{kind}" as="fetch" crossorigin>' for kind in ("json", "glb")
+    ]
+    early += [
+        f'<link rel="modulepreload" href="{path.relative_to(order.folder).as_posix()}">'
+        for path in files
+        if path.suffix == ".js"
+    ]
+    page = page.replace(
+        "<!-- fetch early -->", "\n    ".join(early)
+    )  # else each module waits for the one that names it
     index = order.folder / "index.html"
     write_atomically(index, page.encode())
     return Made((index, *made.files, *files), tuple(notes))
 
 
 def three_js(folder: Path) -> Path | None:
-    """Return a folder with three.js: of a package installed above the export's or the working folder, or kept from before, or fetched by
-    npm now; None where there is none."""
+    """Return a folder with three.js: of a package installed above the export's or the working folder, or kept
+    from before, or fetched by npm now; None where there is none.
+    """
     for place in (*_installed(folder), kept()):
         if all((place / name).is_file() for name in NEEDED):
             return place
@@ -99,7 +119,11 @@ def _fetched(place: Path) -> Path | None:
 
 TARGETS = (
     Target(
-        "web", "Web page", "a folder for any static server: page, player, runtime, three.js, JSON and GLB", write,
-        (BML, Loss("the picture: light and floor are the page's own, the motion is the same")), group="Played as the preview does",
+        "web",
+        "Web page",
+        "a folder for any static server: page, player, runtime, three.js, JSON and GLB",
+        write,
+        (BML, Loss("the picture: light and floor are the page's own, the motion is the same")),
+        group="Played as the preview does",
     ),
-)  # fmt: skip
+)

@@ -1,1 +1,3 @@
-"""What keeps a character alive: breathing, gaze, saccades, blinks, lids and lips, all added to what the layers play."""
+"""What keeps a character alive: breathing, gaze, saccades, blinks, lids and lips, all added to what the
+layers play.
+"""

@@ -18,8 +18,8 @@ from metagraph.motion.skeleton import Skeleton
 
 Array = NDArray[Any]
 
-# Degrees at the top of a breath, about the axis to the left (plus bends forwards): the chest rises and opens, neck and head
-# undo it, so that the face stays level. Collar bones lift about the axis ahead.
+# Degrees at the top of a breath, about the axis to the left (plus bends forwards): the chest rises and opens,
+# neck and head undo it, so that the face stays level. Collar bones lift about the axis ahead.
 BREATH = {"spine": -0.2, "chest": -0.9, "upper_chest": -0.7, "neck": 0.75, "head": 0.85}
 SHOULDERS = 1.3
 # Who takes how much of a turn of the head; what a skeleton lacks, the others take.
@@ -43,10 +43,12 @@ class Looker:
 
 @dataclass(frozen=True, slots=True)
 class EyeAt:
-    """An eye, or where one would be, in the head's own space: where it is, and its directions to the left, up and ahead.
+    """An eye, or where one would be, in the head's own space: where it is, and its directions to the left, up
+    and ahead.
 
-    joint: whether it is one. turn_left, turn_up: rotation vectors in the joint's own space that turn it a radian. down: what
-    the joint's own rotation says about how far down it looks already, radians: the product of the two, part by part.
+    joint: whether it is one. turn_left, turn_up: rotation vectors in the joint's own space that turn it a
+    radian. down: what the joint's own rotation says about how far down it looks already, radians: the product
+    of the two, part by part.
     """
 
     at: Vector
@@ -63,12 +65,13 @@ class EyeAt:
 class Body:
     """What lives in a body. Directions `left`, `up`, `ahead` are the character's; metres.
 
-    chain: the joints from the root to the head, or to the chest where there is none. breath: for each of them the axis it
-    turns about in its own space and by how many radians at the top of a breath. joints: all that life may turn: the chain, then
-    shoulders, eyes that are joints, the face's. read: whose rotations it must know: the chain, eyes that are joints, lids.
-    shoulders: their rotation vectors at the top of a breath.
-    lookers: empty where there is no head, from the root upwards. trunk: its place in the chain; trunk_ahead, head_ahead:
-    ahead in their own space. eyes: left, right. partner: where "user" is; eyes_at_rest: between the eyes in the base pose.
+    chain: the joints from the root to the head, or to the chest where there is none. breath: for each of them
+    the axis it turns about in its own space and by how many radians at the top of a breath. joints: all that
+    life may turn: the chain, then shoulders, eyes that are joints, the face's. read: whose rotations it must
+    know: the chain, eyes that are joints, lids. shoulders: their rotation vectors at the top of a breath.
+    lookers: empty where there is no head, from the root upwards. trunk: its place in the chain; trunk_ahead,
+    head_ahead: ahead in their own space. eyes: left, right. partner: where "user" is; eyes_at_rest: between
+    the eyes in the base pose.
     """
 
     left: Vector
@@ -91,14 +94,23 @@ class Body:
     @property
     def empty(self) -> bool:
         """Whether nothing of it can live."""
-        return not (self.lookers or len(self.shoulders) or any(angle for _, angle in self.breath) or not self.face.empty)
+        return not (
+            self.lookers
+            or len(self.shoulders)
+            or any(angle for _, angle in self.breath)
+            or not self.face.empty
+        )
 
 
-_known: OrderedDict[tuple[Any, ...], tuple[tuple[Any, ...], Body]] = OrderedDict()  # with what the ids in the key belong to
+_known: OrderedDict[tuple[Any, ...], tuple[tuple[Any, ...], Body]] = (
+    OrderedDict()
+)  # with what the ids in the key belong to
 
 
 def body_of(project: Project) -> Body:
-    """Return the body of a project with a skeleton; the same object as long as nothing it depends on changes."""
+    """Return the body of a project with a skeleton; the same object as long as nothing it depends on
+    changes.
+    """
     if isinstance(project.body, Body):
         return project.body
     base = project.base
@@ -135,26 +147,49 @@ def _find(project: Project) -> Body:
     for role, degrees in BREATH.items():
         if roles.get(role) in chain:
             breath[chain.index(roles[role])] = (_vector(local(roles[role], left)), float(np.radians(degrees)))
-    collars = [(roles[f"{s}_shoulder"], sign) for s, sign in zip(SIDES, (1, -1), strict=True) if f"{s}_shoulder" in roles]
+    collars = [
+        (roles[f"{s}_shoulder"], sign)
+        for s, sign in zip(SIDES, (1, -1), strict=True)
+        if f"{s}_shoulder" in roles
+    ]
     lifts = tuple(_vector(np.radians(SHOULDERS) * sign * local(j, ahead)) for j, sign in collars)
     found = {r: chain.index(roles[r]) for r in SHARES if roles.get(r) in chain} if head is not None else {}
     whole = sum(SHARES[r] for r in found)
     lookers = sorted((Looker(place, SHARES[r] / whole) for r, place in found.items()), key=lambda x: x.place)
-    trunk = next((roles[r] for r in ("upper_chest", "chest", "spine", "hips") if roles.get(r) in chain), chain[0])
+    trunk = next(
+        (roles[r] for r in ("upper_chest", "chest", "spine", "hips") if roles.get(r) in chain), chain[0]
+    )
     eyes = _eyes(skeleton, face, top, axes, local)
     middle = np.mean([eye.at for eye in eyes], axis=0) if head is not None else np.zeros(3)
     rest = at[top] + rotation.rotate(turned[top], middle)
     joints = [*chain, *(j for j, _ in collars), *(e.joint for e in face.eyes), *face.joints.tolist()]
     read = [*chain, *(e.joint for e in face.eyes), *(j for j in face.lid_joints.tolist() if j >= 0)]
     return Body(
-        _vector(left), _vector(up), _vector(ahead), np.array(chain), tuple(breath), np.array(joints), np.array(read), lifts, tuple(lookers),
-        chain.index(trunk), _vector(local(trunk, ahead)), _vector(local(top, ahead)), eyes,
-        _vector(rest + PARTNER_AWAY * ahead), _vector(rest), face,
-    )  # fmt: skip
+        _vector(left),
+        _vector(up),
+        _vector(ahead),
+        np.array(chain),
+        tuple(breath),
+        np.array(joints),
+        np.array(read),
+        lifts,
+        tuple(lookers),
+        chain.index(trunk),
+        _vector(local(trunk, ahead)),
+        _vector(local(top, ahead)),
+        eyes,
+        _vector(rest + PARTNER_AWAY * ahead),
+        _vector(rest),
+        face,
+    )
 
 
-def _eyes(skeleton: Skeleton, face: FaceRig, head: int, axes: Array, local: Callable[[int, Array], Array]) -> tuple[EyeAt, EyeAt]:
-    """Return both eyes; the rest pose tells where those look that are joints, since the head of the base pose may hang a little."""
+def _eyes(
+    skeleton: Skeleton, face: FaceRig, head: int, axes: Array, local: Callable[[int, Array], Array]
+) -> tuple[EyeAt, EyeAt]:
+    """Return both eyes; the rest pose tells where those look that are joints, since the head of the base pose
+    may hang a little.
+    """
     turned, at = skeleton.globals(skeleton.rest)
     back = rotation.conjugate(turned[head])
     spot = skeleton.height * (EYE_UP * axes[1] + EYE_AHEAD * axes[2])
@@ -166,11 +201,17 @@ def _eyes(skeleton: Skeleton, face: FaceRig, head: int, axes: Array, local: Call
             place = _vector(local(head, spot + sign * skeleton.height * EYE_SIDE * axes[0]))
             out.append(EyeAt(place, looks[0], looks[1], looks[2], False, (0.0,) * 3, (0.0,) * 3, (0.0,) * 4))
             continue
-        looks = [_vector(rotation.rotate(back, rotation.rotate(turned[eye.joint], axis))) for axis in eye.axes]
+        looks = [
+            _vector(rotation.rotate(back, rotation.rotate(turned[eye.joint], axis))) for axis in eye.axes
+        ]
         place = _vector(rotation.rotate(back, at[eye.joint] - at[head]))
-        # rest^-1 q is nearly 1 + half the turn: the vector part along the axis to the left, doubled, is how far down it looks.
+        # rest^-1 q is nearly 1 + half the turn: the vector part along the axis to the left, doubled, is how
+        # far down it looks.
         basis = rotation.multiply(rotation.conjugate(skeleton.rest_rotations[eye.joint]), np.eye(4))[:, :3]
         x, y, z, w = (2 * basis @ eye.axes[0]).tolist()
-        turn = (_vector(eye.axes[1]), _vector(-eye.axes[0]))  # to the left is about up, upwards about the right
+        turn = (
+            _vector(eye.axes[1]),
+            _vector(-eye.axes[0]),
+        )  # to the left is about up, upwards about the right
         out.append(EyeAt(place, looks[0], looks[1], looks[2], True, *turn, (x, y, z, w)))
     return out[0], out[1]

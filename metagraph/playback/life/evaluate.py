@@ -1,12 +1,15 @@
 """The life layers at a time: what they add to the pose the layers have composed.
 
-All is additive: a turn is multiplied on the right of a joint's composed rotation, a shift is added to its translation.
+All is additive: a turn is multiplied on the right of a joint's composed rotation, a shift is added to its
+translation.
 
     breath(t)   = depth e(min(x / 0.4, (1 - x) / 0.6)),  x: how far the breath has gone, e(x) = 3 x^2 - 2 x^3
     blink(t)    = e(min(x / close, (close + open - x) / open)),  x: seconds since the blink began
     gaze(t)     = moves from target to target, with aversions and saccades: `gaze`
-    head(a)     = share a |a| / (|a| + 15 degrees), and all beyond what the eyes do with ease, for a target at angle a: `solve`
-    eyes        = the turn that aims each eye at the target from where head and body have it, so they hold while the head nods
+    head(a)     = share a |a| / (|a| + 15 degrees), and all beyond what the eyes do with ease, for a target at
+    angle a: `solve`
+    eyes        = the turn that aims each eye at the target from where head and body have it, so they hold
+    while the head nods
     lid         = follow x pitch of the eye + blink x (1 - how far it is shut already)
     mouth       = sum over mouth shapes of weight x shape: `lips`
 """
@@ -37,10 +40,14 @@ Array = NDArray[Any]
 
 INHALE = 0.4  # of a breath
 MORPH_LOOK = np.radians(30.0)  # the turn of an eye that a morph target of a look stands for
-MORPH_FOLLOWS = UPPER_FOLLOWS / np.radians(UPPER_LID_SHUT)  # how far a morph target shuts for an eye that looks down a radian
+MORPH_FOLLOWS = UPPER_FOLLOWS / np.radians(
+    UPPER_LID_SHUT
+)  # how far a morph target shuts for an eye that looks down a radian
 MORPH_WIDE = 0.6  # of a target that opens wide, for a lid as far open as it would be shut
 
-_PRODUCT = np.array([[3, 2, 1, 0], [2, 3, 0, 1], [1, 0, 3, 2], [0, 1, 2, 3]])  # of quaternions, as a matrix of the left one
+_PRODUCT = np.array(
+    [[3, 2, 1, 0], [2, 3, 0, 1], [1, 0, 3, 2], [0, 1, 2, 3]]
+)  # of quaternions, as a matrix of the left one
 _SIGNS = np.array([[1.0, -1, 1, 1], [1, 1, -1, 1], [-1, 1, 1, 1], [-1, -1, -1, 1]])
 
 
@@ -65,10 +72,13 @@ def enliven(pose: Pose, project: Project, schedule: Schedule, track: Track, time
     return Pose(rotations, translations)
 
 
-def face_weights(project: Project, schedule: Schedule, track: Track, seconds: float, pose: Pose | None = None) -> dict[str, float]:
+def face_weights(
+    project: Project, schedule: Schedule, track: Track, seconds: float, pose: Pose | None = None
+) -> dict[str, float]:
     """Return the morph target weights of the life layers at one time, 0..1.
 
-    pose: the composed pose `[J]`, before `enliven`, so that eyes made of morph targets hold while the head moves; else the base pose.
+    pose: the composed pose `[J]`, before `enliven`, so that eyes made of morph targets hold while the head
+    moves; else the base pose.
     """
     if not project.life.on or project.skeleton is None:
         return {}
@@ -83,7 +93,9 @@ def face_weights(project: Project, schedule: Schedule, track: Track, seconds: fl
 
 @dataclass(frozen=True, slots=True)
 class _Look:
-    """A face at a time. blink: 0..1. shut: how far each of LIDS is. eyes: their turns to the left and up, radians."""
+    """A face at a time. blink: 0..1. shut: how far each of LIDS is. eyes: their turns to the left and up,
+    radians.
+    """
 
     blink: float
     shut: tuple[float, ...]
@@ -91,10 +103,13 @@ class _Look:
 
 
 class _Found:
-    """What the life layers make of poses `[N, J]` at times `[N]`: `chain [N, c, 4]` as breathing has it, `turns [N, M, 3]` of
-    the body's joints but the face's, `channels [N, C]` of the face and `faces`."""
+    """What the life layers make of poses `[N, J]` at times `[N]`: `chain [N, c, 4]` as breathing has it,
+    `turns [N, M, 3]` of the body's joints but the face's, `channels [N, C]` of the face and `faces`.
+    """
 
-    def __init__(self, body: Body, project: Project, schedule: Schedule, track: Track, times: Array, pose: Pose) -> None:
+    def __init__(
+        self, body: Body, project: Project, schedule: Schedule, track: Track, times: Array, pose: Pose
+    ) -> None:
         self.body, self.pose = body, pose
         life, rig = project.life, body.face
         calm = 1 - life.stillness
@@ -193,7 +208,12 @@ def _morphs(face: FaceRig, look: _Look, channels: Array) -> dict[str, float]:
     for n, side in enumerate(("left", "right")):
         values[f"blink_{side}"], values[f"wide_{side}"] = look.shut[n], -MORPH_WIDE * look.shut[n]
         left, up = (x / MORPH_LOOK for x in look.eyes[n])
-        values |= {f"look_left_{side}": left, f"look_right_{side}": -left, f"look_up_{side}": up, f"look_down_{side}": -up}
+        values |= {
+            f"look_left_{side}": left,
+            f"look_right_{side}": -left,
+            f"look_up_{side}": up,
+            f"look_down_{side}": -up,
+        }
     values |= dict(zip(MOUTH, channels[len(LIDS) + 1 :].tolist(), strict=True))
     out: dict[str, float] = {}
     for channel, targets in face.morphs.items():

@@ -1,13 +1,14 @@
 """Where the gaze goes at a time: eased moves from target to target, with aversions and saccades on top.
 
-The eyes jump (a saccade of A degrees takes 21 + 2.2 A milliseconds: Bahill, Clark and Stark 1975), the head follows a moment
-later and settles like a critically damped spring. What is looked at is the sum of all moves so far, each from the target before,
-so a target may change at any time, or every frame, and nothing jumps:
+The eyes jump (a saccade of A degrees takes 21 + 2.2 A milliseconds: Bahill, Clark and Stark 1975), the head
+follows a moment later and settles like a critically damped spring. What is looked at is the sum of all moves
+so far, each from the target before, so a target may change at any time, or every frame, and nothing jumps:
 
-    angle(t) = sum over targets i of angle_i (S_i(t) - S_{i+1}(t)),  S_i: how far the move to target i has come, 0..1
+    angle(t) = sum over targets i of angle_i (S_i(t) - S_{i+1}(t)),  S_i: how far the move to target i has
+    come, 0..1
 
-This and `solve` are plain arithmetic on numbers, one time after the other: for one pose that is several times faster than
-arrays of one, and any language can say the same.
+This and `solve` are plain arithmetic on numbers, one time after the other: for one pose that is several times
+faster than arrays of one, and any language can say the same.
 """
 
 from __future__ import annotations
@@ -28,7 +29,10 @@ from metagraph.playback.life.wanted import AHEAD, PARTNER, Target
 
 EYE_TIME, EYE_TIME_PER_DEGREE = 0.021, 0.0022  # seconds
 HEAD_LAG = 0.04  # seconds the head sets off after the eyes
-HEAD_TIME, HEAD_TIME_PER_DEGREE = 0.55, 0.006  # seconds until it has settled; at most 1.7, see `schedule.RECALL`
+HEAD_TIME, HEAD_TIME_PER_DEGREE = (
+    0.55,
+    0.006,
+)  # seconds until it has settled; at most 1.7, see `schedule.RECALL`
 ENDING = 0.12  # seconds in which a new look ends an aversion
 SPRING = 8.0  # how many of the spring's own times a move takes; then all but 0.3 % is done
 _SETTLED = 1 - (1 + SPRING) * exp(-SPRING)
@@ -40,7 +44,9 @@ def ease(x: float) -> float:
 
 
 def settle(x: float) -> float:
-    """A critically damped spring's way from 0 to 1, for x from 0 to 1: 1 - (1 + z) e^-z with z = 8 x, scaled to end at 1."""
+    """A critically damped spring's way from 0 to 1, for x from 0 to 1: 1 - (1 + z) e^-z with z = 8 x, scaled
+    to end at 1.
+    """
     if x <= 0:
         return 0.0
     return 1.0 if x >= 1 else (1 - (1 + SPRING * x) * exp(-SPRING * x)) / _SETTLED
@@ -71,8 +77,9 @@ class Aim:
 
 @dataclass(frozen=True, slots=True)
 class Moves:
-    """The gaze at a time. parts: targets with the eyes' and the head's share of each, together 1. eyes, head: what aversions and
-    saccades add, radians to the left and up."""
+    """The gaze at a time. parts: targets with the eyes' and the head's share of each, together 1. eyes, head:
+    what aversions and saccades add, radians to the left and up.
+    """
 
     parts: tuple[tuple[Aim, float, float], ...]
     eyes: tuple[float, float]
@@ -127,17 +134,23 @@ class Gaze:
         return Moves(tuple(parts), (eyes_x, eyes_y), (head_x, head_y))
 
     def _aim(self, place: int) -> Aim:
-        """Return a target as it is met; how long the move to it takes is told by how far it is from the one before."""
+        """Return a target as it is met; how long the move to it takes is told by how far it is from the one
+        before.
+        """
         target = self.targets[place]
         at, seen = self._seen(target)
         angle = _between(seen, self._seen(self.targets[place - 1])[1]) if place else 0.0
         start = target.start if place else -inf  # the first has always been looked at
         amount = 0.0 if seen is self.body.ahead else target.amount
-        found = self._aims[place] = Aim(start, at, amount, target.asked, target.strict, eye_time(angle), head_time(angle))
+        found = self._aims[place] = Aim(
+            start, at, amount, target.asked, target.strict, eye_time(angle), head_time(angle)
+        )
         return found
 
     def _seen(self, target: Target) -> tuple[tuple[float, ...], tuple[float, ...]]:
-        """Return where a target is, and its direction from where the eyes are at rest; ahead for what is nowhere."""
+        """Return where a target is, and its direction from where the eyes are at rest; ahead for what is
+        nowhere.
+        """
         named = self.points.get(target.to) if isinstance(target.to, str) else target.to
         if target.to == AHEAD or (named is None and target.to != PARTNER):
             return self.body.partner, self.body.ahead
@@ -164,7 +177,9 @@ def _between(a: tuple[float, ...], b: tuple[float, ...]) -> float:
     return degrees(acos(min(1.0, max(-1.0, cosine))))
 
 
-_known: OrderedDict[tuple[int, ...], tuple[tuple[Any, ...], Gaze]] = OrderedDict()  # with what the ids in the key belong to
+_known: OrderedDict[tuple[int, ...], tuple[tuple[Any, ...], Gaze]] = (
+    OrderedDict()
+)  # with what the ids in the key belong to
 
 
 def gaze_of(schedule: Schedule, life: Life, body: Body, points: Mapping[str, Point]) -> Gaze:

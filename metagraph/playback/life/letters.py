@@ -1,6 +1,7 @@
 """From letters to mouth shapes: what a mouth may do when neither sound nor phones of a line are there.
 
-English spelling is read by a few rules; other alphabets by their vowels, what is unknown by turns of open and shut.
+English spelling is read by a few rules; other alphabets by their vowels, what is unknown by turns of open and
+shut.
 """
 
 from __future__ import annotations
@@ -16,22 +17,91 @@ SHORTEST = 0.4  # seconds
 
 # Longest first. Values: shapes in turn.
 _SPELLINGS: dict[str, tuple[str, ...]] = {
-    "tion": ("CH", "nn"), "sch": ("CH",), "tch": ("CH",), "igh": ("aa", "I"), "eau": ("O",), "ough": ("O",),
-    "th": ("TH",), "sh": ("CH",), "ch": ("CH",), "ph": ("FF",), "ck": ("kk",), "ng": ("nn",), "qu": ("kk", "U"), "wh": ("U",),
-    "oo": ("U",), "ou": ("aa", "U"), "ow": ("O", "U"), "ee": ("I",), "ea": ("I",), "ai": ("E", "I"), "ay": ("E", "I"),
-    "oi": ("O", "I"), "oy": ("O", "I"), "au": ("O",), "aw": ("O",), "ie": ("I",), "ei": ("E", "I"), "ue": ("U",), "oa": ("O",),
-    "a": ("aa",), "e": ("E",), "i": ("I",), "o": ("O",), "u": ("U",), "y": ("I",), "ø": ("U",), "œ": ("U",), "æ": ("E",), "ı": ("I",),
-    "b": ("PP",), "p": ("PP",), "m": ("PP",), "f": ("FF",), "v": ("FF",), "d": ("DD",), "t": ("DD",), "l": ("nn",), "n": ("nn",),
-    "k": ("kk",), "g": ("kk",), "c": ("kk",), "q": ("kk",), "x": ("kk", "SS"), "h": ("kk",), "j": ("CH",), "s": ("SS",), "z": ("SS",),
-    "r": ("RR",), "w": ("U",), "ß": ("SS",), "ð": ("TH",), "þ": ("TH",), "ł": ("nn",), "đ": ("DD",),
-}  # fmt: skip
+    "tion": ("CH", "nn"),
+    "sch": ("CH",),
+    "tch": ("CH",),
+    "igh": ("aa", "I"),
+    "eau": ("O",),
+    "ough": ("O",),
+    "th": ("TH",),
+    "sh": ("CH",),
+    "ch": ("CH",),
+    "ph": ("FF",),
+    "ck": ("kk",),
+    "ng": ("nn",),
+    "qu": ("kk", "U"),
+    "wh": ("U",),
+    "oo": ("U",),
+    "ou": ("aa", "U"),
+    "ow": ("O", "U"),
+    "ee": ("I",),
+    "ea": ("I",),
+    "ai": ("E", "I"),
+    "ay": ("E", "I"),
+    "oi": ("O", "I"),
+    "oy": ("O", "I"),
+    "au": ("O",),
+    "aw": ("O",),
+    "ie": ("I",),
+    "ei": ("E", "I"),
+    "ue": ("U",),
+    "oa": ("O",),
+    "a": ("aa",),
+    "e": ("E",),
+    "i": ("I",),
+    "o": ("O",),
+    "u": ("U",),
+    "y": ("I",),
+    "ø": ("U",),
+    "œ": ("U",),
+    "æ": ("E",),
+    "ı": ("I",),
+    "b": ("PP",),
+    "p": ("PP",),
+    "m": ("PP",),
+    "f": ("FF",),
+    "v": ("FF",),
+    "d": ("DD",),
+    "t": ("DD",),
+    "l": ("nn",),
+    "n": ("nn",),
+    "k": ("kk",),
+    "g": ("kk",),
+    "c": ("kk",),
+    "q": ("kk",),
+    "x": ("kk", "SS"),
+    "h": ("kk",),
+    "j": ("CH",),
+    "s": ("SS",),
+    "z": ("SS",),
+    "r": ("RR",),
+    "w": ("U",),
+    "ß": ("SS",),
+    "ð": ("TH",),
+    "þ": ("TH",),
+    "ł": ("nn",),
+    "đ": ("DD",),
+}
 # Greek and Cyrillic letters that stand for the Latin ones.
 _ALIKE = dict(zip("αεηιουωβπμφδτλνκγχξσςζρθабвгдеёжзийклмнопрстуфхцчшщыэюяієї",
                   "aeeioyobpmfdtlnkghxsszrþabvgdeejzijklmnoprstufhccssieuaiei", strict=False))  # fmt: skip
 _ALIKE.update({"е": "e", "ж": "j", "ч": "j", "ш": "j", "щ": "j", "ц": "s", "х": "h", "θ": "þ"})
 VOWELS = frozenset(("aa", "E", "I", "O", "U"))
 _LENGTH = {"vowel": 1.25, "consonant": 0.8}  # of one character's time
-_STOPS = {",": 1.5, ";": 2.0, ":": 2.0, ".": 3.0, "!": 3.0, "?": 3.0, "…": 3.0, "-": 0.3, "–": 1.5, "—": 1.5, "(": 1.0, ")": 1.0}
+_STOPS = {
+    ",": 1.5,
+    ";": 2.0,
+    ":": 2.0,
+    ".": 3.0,
+    "!": 3.0,
+    "?": 3.0,
+    "…": 3.0,
+    "-": 0.3,
+    "–": 1.5,
+    "—": 1.5,
+    "(": 1.0,
+    ")": 1.0,
+}
 
 
 def shapes(word: str) -> list[str]:
@@ -46,8 +116,18 @@ def shapes(word: str) -> list[str]:
                 break
         else:
             size, found = 1, _unknown(letters[at], out)
-        final_e = letters[at] == "e" and size == 1 and at == len(letters) - 1 and len(out) > 1 and any(s in VOWELS for s in out)
-        if found and not final_e and not (at and letters[at] == letters[at - 1] and size == 1 and found[0] not in VOWELS):
+        final_e = (
+            letters[at] == "e"
+            and size == 1
+            and at == len(letters) - 1
+            and len(out) > 1
+            and any(s in VOWELS for s in out)
+        )
+        if (
+            found
+            and not final_e
+            and not (at and letters[at] == letters[at - 1] and size == 1 and found[0] not in VOWELS)
+        ):
             out += found
         at += size
     return out
@@ -62,7 +142,10 @@ def _unknown(letter: str, before: list[str]) -> tuple[str, ...]:
     if not letter.isalnum():
         return ()
     if letter.isdigit() or unicodedata.category(letter) == "Lo":  # a syllable each
-        return (("DD", "nn", "SS", "kk", "PP")[ord(letter) % 5], ("aa", "E", "I", "O", "U")[ord(letter) // 5 % 5])
+        return (
+            ("DD", "nn", "SS", "kk", "PP")[ord(letter) % 5],
+            ("aa", "E", "I", "O", "U")[ord(letter) // 5 % 5],
+        )
     return ("aa",) if before and before[-1] not in VOWELS else ("DD",)
 
 
@@ -88,10 +171,13 @@ def spelled(text: str, duration: float | None = None) -> tuple[list[Piece], list
     """
     stripped = text.strip()
     length = max(SHORTEST, len(stripped) / PACE) if duration is None else max(duration, 0.0)
-    plan: list[tuple[str | None, float, float]] = []  # shape or pause, characters' time, strength of a syllable
+    plan: list[
+        tuple[str | None, float, float]
+    ] = []  # shape or pause, characters' time, strength of a syllable
     for word, pause in _words(stripped):
         found = shapes(word)
-        # Content words are longer than the words between them; the first vowel bears the stress more often than not.
+        # Content words are longer than the words between them; the first vowel bears the stress more often
+        # than not.
         weight = min(1.0, 0.35 + 0.09 * len(word)) - 0.1 * (crc32(word.encode()) % 100) / 100
         first = True
         for n, mouth in enumerate(found):

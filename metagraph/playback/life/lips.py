@@ -20,7 +20,9 @@ _TAPS, _TAP_WEIGHTS = np.array([-1.0, 0.0, 1.0]), np.array([0.25, 0.5, 0.25])
 
 
 def mouth(track: Track, voices: Mapping[str, Voice], smoothing: float, times: Array) -> Array | None:
-    """Return how much of each shape but silence the mouth shows at `times [N]`: `[N, 14]`; None where nothing is said."""
+    """Return how much of each shape but silence the mouth shows at `times [N]`: `[N, 14]`; None where nothing
+    is said.
+    """
     if not track.speeches or not len(times):
         return None
     first = bisect_left(track.speeches, times.min() - CLOSING - smoothing, key=lambda s: s.end)
@@ -49,7 +51,9 @@ def _at(speech: Speech, voice: Voice, times: Array) -> Array:
     said = np.minimum(times, speech.end) - speech.start
     keys = voice.times
     low = np.minimum(np.maximum(keys.searchsorted(said, "right") - 1, 0), len(keys) - 2)
-    part = np.minimum(np.maximum((said - keys[low]) / np.maximum(keys[low + 1] - keys[low], 1e-9), 0.0), 1.0)[:, None]
+    part = np.minimum(np.maximum((said - keys[low]) / np.maximum(keys[low + 1] - keys[low], 1e-9), 0.0), 1.0)[
+        :, None
+    ]
     shown = voice.weights[low, 1:] * (1 - part) + voice.weights[low + 1, 1:] * part
     gone = np.minimum(np.maximum((times - speech.end) / CLOSING, 0.0), 1.0)
     kept = np.where(times < speech.start, 0.0, 1 - gone * gone * (3 - 2 * gone))

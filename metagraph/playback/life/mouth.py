@@ -1,8 +1,8 @@
 """The mouth over time: from pieces of speech, each with one mouth shape, to smooth weights of all shapes.
 
-Coarticulation after Cohen and Massaro (1993): every piece rules the mouth around its own time, begins before it is heard and
-lingers after it; what the mouth shows is the mean of all pieces weighted by how much each rules. Lips that must meet rule
-more than a tongue nobody sees.
+Coarticulation after Cohen and Massaro (1993): every piece rules the mouth around its own time, begins before
+it is heard and lingers after it; what the mouth shows is the mean of all pieces weighted by how much each
+rules. Lips that must meet rule more than a tongue nobody sees.
 """
 
 from __future__ import annotations
@@ -20,11 +20,25 @@ Array = NDArray[Any]
 
 PLACE = {name: i for i, name in enumerate(VISEMES)}
 
-# How much a shape rules its neighbours: closed lips and teeth on the lip must be seen, tongue and palate need not.
+# How much a shape rules its neighbours: closed lips and teeth on the lip must be seen, tongue and palate need
+# not.
 RULE = {
-    "sil": 0.8, "PP": 6.0, "FF": 4.0, "TH": 1.0, "DD": 0.7, "kk": 0.5, "CH": 1.6, "SS": 1.2, "nn": 0.7, "RR": 0.9,
-    "aa": 1.5, "E": 1.3, "I": 1.2, "O": 1.7, "U": 1.9,
-}  # fmt: skip
+    "sil": 0.8,
+    "PP": 6.0,
+    "FF": 4.0,
+    "TH": 1.0,
+    "DD": 0.7,
+    "kk": 0.5,
+    "CH": 1.6,
+    "SS": 1.2,
+    "nn": 0.7,
+    "RR": 0.9,
+    "aa": 1.5,
+    "E": 1.3,
+    "I": 1.2,
+    "O": 1.7,
+    "U": 1.9,
+}
 EARLY, LATE = 0.075, 0.065  # seconds over which a shape comes before its sound begins and goes after it ends
 STEP = 1 / 50  # seconds between the keys of a track
 _LEAST = 0.02  # how much rest rules everywhere

@@ -1,4 +1,6 @@
-"""One pose brought to life: how head, eyes and lids turn, in plain numbers. Rotations are quaternions xyzw, angles radians."""
+"""One pose brought to life: how head, eyes and lids turn, in plain numbers. Rotations are quaternions xyzw,
+angles radians.
+"""
 
 from __future__ import annotations
 
@@ -8,7 +10,8 @@ from math import atan2, copysign, cos, hypot, pi, radians, sin, sqrt, tanh
 from metagraph.playback.life.body import Body, Quaternion, Vector
 from metagraph.playback.life.gaze import Moves
 
-# The head's part of a turn: next to none of a small one (`SMALL`), then more; all that is beyond what eyes do with ease.
+# The head's part of a turn: next to none of a small one (`SMALL`), then more; all that is beyond what eyes do
+# with ease.
 SMALL = radians(15.0)
 TILT_SHARE = 0.8  # of up and down the head does less
 EYE_EASE = radians(20.0)
@@ -17,7 +20,10 @@ HEAD_SIDEWAYS, HEAD_UP, HEAD_DOWN = radians(65.0), radians(30.0), radians(35.0)
 # Eyes turn freely within 0.7 of these, and never beyond.
 EYE_SIDEWAYS, EYE_UP, EYE_DOWN = radians(32.0), radians(26.0), radians(30.0)
 FREE = 0.7
-LOOK_SIDEWAYS, LOOK_UPRIGHT = radians(110.0), radians(65.0)  # beyond these nobody looks, however much the target is behind
+LOOK_SIDEWAYS, LOOK_UPRIGHT = (
+    radians(110.0),
+    radians(65.0),
+)  # beyond these nobody looks, however much the target is behind
 NEAREST = 0.25  # metres; nearer things are looked at as if they were there
 WIDEST = -0.8  # how far lids open beyond rest, of their shutting turn
 
@@ -32,12 +38,19 @@ def breathe(body: Body, chain: list[Quaternion], full: float) -> None:
 
 
 def look(
-    body: Body, chain: Sequence[Quaternion], places: Sequence[Vector], gaze: Moves, amount: float, calm: float, share: float
+    body: Body,
+    chain: Sequence[Quaternion],
+    places: Sequence[Vector],
+    gaze: Moves,
+    amount: float,
+    calm: float,
+    share: float,
 ) -> tuple[list[Vector], list[tuple[float, float]]]:
-    """Return the turns of the body's lookers, rotation vectors in their own space, and of both eyes, radians to the left and up.
+    """Return the turns of the body's lookers, rotation vectors in their own space, and of both eyes, radians
+    to the left and up.
 
-    chain: the joints' composed rotations, in their parents' space, and places: their translations. amount: of all looking;
-    calm: of what nobody asked for. share: the head's of a turn.
+    chain: the joints' composed rotations, in their parents' space, and places: their translations. amount: of
+    all looking; calm: of what nobody asked for. share: the head's of a turn.
     """
     turned, at = globals_of(chain, places)
     head = turned[-1]
@@ -53,8 +66,16 @@ def look(
         sideways = _within(atan2(x, z), LOOK_SIDEWAYS)
         upwards = _within(atan2(y, level), LOOK_UPRIGHT)
         weight = aim.amount * amount * (1.0 if aim.asked else calm)
-        eyes_x, eyes_y, near = eyes_x + came * sideways, eyes_y + came * upwards, near + came / max(hypot(level, y), NEAREST)
-        head_x, head_y, whole = head_x + moved * weight * sideways, head_y + moved * weight * upwards, whole + came * weight
+        eyes_x, eyes_y, near = (
+            eyes_x + came * sideways,
+            eyes_y + came * upwards,
+            near + came / max(hypot(level, y), NEAREST),
+        )
+        head_x, head_y, whole = (
+            head_x + moved * weight * sideways,
+            head_y + moved * weight * upwards,
+            whole + came * weight,
+        )
     vector, size = _head(body, turned, head_x + gaze.head[0], head_y + gaze.head[1], whole, share)
     turns = [_scaled(rotate(_back(turned[j.place]), vector), j.share) for j in body.lookers]
     # Where that brings the eyes: every joint that turns carries what is above it along.
@@ -66,7 +87,8 @@ def look(
         arm = _minus(end, at[looker.place])
         moved_to = _plus(moved_to, rotate(_about(unit, size * so_far), arm))
     head = times(_about(unit, size), head)
-    # The point looked at, in the head's space; each eye turns to it the shortest way, so that it does not roll.
+    # The point looked at, in the head's space; each eye turns to it the shortest way, so that it does not
+    # roll.
     sideways, upwards = eyes_x + gaze.eyes[0], eyes_y + gaze.eyes[1]
     far = 1 / max(near, 1e-3)
     x, y, z = sin(sideways) * cos(upwards) * far, sin(upwards) * far, cos(sideways) * cos(upwards) * far
@@ -83,12 +105,17 @@ def look(
     return turns, out
 
 
-def _head(body: Body, turned: Sequence[Quaternion], left: float, up: float, amount: float, share: float) -> tuple[Vector, float]:
-    """Return the head's turn towards a target `left` and `up` of ahead: a rotation vector in the character's space, its size."""
+def _head(
+    body: Body, turned: Sequence[Quaternion], left: float, up: float, amount: float, share: float
+) -> tuple[Vector, float]:
+    """Return the head's turn towards a target `left` and `up` of ahead: a rotation vector in the character's
+    space, its size.
+    """
     beyond = min(1.0, 2 * share)
     x, y = head_part(left, share), TILT_SHARE * head_part(up, share)
     x, y = x + beyond * _excess(left - x, EYE_EASE), y + beyond * _excess(up - y, EYE_EASE)
-    # A character that has turned away as a whole turns its head back; one whose head alone or body alone has, means it.
+    # A character that has turned away as a whole turns its head back; one whose head alone or body alone has,
+    # means it.
     rests = []
     for place, ahead in ((body.trunk, body.trunk_ahead), (-1, body.head_ahead)):
         facing = rotate(turned[place], ahead)
@@ -121,7 +148,8 @@ def within_reach(left: float, up: float) -> tuple[float, float]:
 
 
 def lid(down: float, follow: float, already: float, blink: float) -> float:
-    """Return how far a lid is shut: 0 open as at rest, 1 shut. down: the eye's pitch. follow: of the lid, a radian of it.
+    """Return how far a lid is shut: 0 open as at rest, 1 shut. down: the eye's pitch. follow: of the lid, a
+    radian of it.
 
     already: how far a clip has shut it; a blink shuts what is left, so that lids meet and go no farther.
     """
@@ -135,7 +163,9 @@ def part_along(q: Sequence[float], row: Sequence[float]) -> float:
     return along if q[3] >= 0 else -along
 
 
-def globals_of(chain: Sequence[Quaternion], places: Sequence[Vector]) -> tuple[list[Quaternion], list[Vector]]:
+def globals_of(
+    chain: Sequence[Quaternion], places: Sequence[Vector]
+) -> tuple[list[Quaternion], list[Vector]]:
     """Return rotations and positions of a chain in the character's space, from those in the parents'."""
     turned, at = [chain[0]], [places[0]]
     for q, place in zip(chain[1:], places[1:], strict=True):

@@ -1,4 +1,6 @@
-"""What was asked for and lasts: where to look, what to say, which mode to be in, which stance to stay in. Values; times are seconds."""
+"""What was asked for and lasts: where to look, what to say, which mode to be in, which stance to stay in.
+Values; times are seconds.
+"""
 
 from __future__ import annotations
 
@@ -13,7 +15,9 @@ from metagraph.graph.words import Layer, Mode
 
 @dataclass(frozen=True, slots=True)
 class LookAt:
-    """Look at a point or a named point from `start` until `end`, or until the next look. strict: without averting."""
+    """Look at a point or a named point from `start` until `end`, or until the next look. strict: without
+    averting.
+    """
 
     id: str
     start: float
@@ -26,8 +30,9 @@ class LookAt:
 
 @dataclass(frozen=True, slots=True)
 class Speech:
-    """Something said. line: id of the project's line, None for `text` alone. priority: the higher interrupts the lower.
-    length: seconds it would have taken, where something cut it short."""
+    """Something said. line: id of the project's line, None for `text` alone. priority: the higher interrupts
+    the lower. length: seconds it would have taken, where something cut it short.
+    """
 
     id: str
     start: float
@@ -67,7 +72,9 @@ class BlinkAt:
 
 @dataclass(frozen=True, slots=True)
 class StayFrom:
-    """From `start` on the models change no stance of a layer (or, with `on` false, may again), until `end` or the next of these."""
+    """From `start` on the models change no stance of a layer (or, with `on` false, may again), until `end` or
+    the next of these.
+    """
 
     id: str
     start: float
@@ -100,7 +107,9 @@ class Track:
         return last is not None and last.on and seconds < last.end
 
     def without(self, idents: Collection[str], now: float = -inf) -> Track:
-        """Return the track without items of these ids that begin at `now` or later; what has begun ends now, if it can."""
+        """Return the track without items of these ids that begin at `now` or later; what has begun ends now,
+        if it can.
+        """
 
         def kept(item: Item) -> Item | None:
             if item.id not in idents:
@@ -116,12 +125,20 @@ class Track:
         return Track(*(tuple(k for i in of if (k := kept(i)) is not None) for of in self._kinds()))  # type: ignore[arg-type]
 
     def plus(self, items: Collection[Item]) -> Track:
-        """Return the track with more items; of speeches that overlap the later or more important cuts the other short."""
+        """Return the track with more items; of speeches that overlap the later or more important cuts the
+        other short.
+        """
         if not items:
             return self
         more = track_of(items)
-        looks, _, modes, places, blinks, stays = (_merged(old, new) for old, new in zip(self._kinds(), more._kinds(), strict=True))
-        speeches = self.speeches if not more.speeches else _apart(sorted((*self.speeches, *_speeches(items)), key=_order))
+        looks, _, modes, places, blinks, stays = (
+            _merged(old, new) for old, new in zip(self._kinds(), more._kinds(), strict=True)
+        )
+        speeches = (
+            self.speeches
+            if not more.speeches
+            else _apart(sorted((*self.speeches, *_speeches(items)), key=_order))
+        )
         return Track(looks, speeches, modes, places, blinks, stays)  # type: ignore[arg-type]
 
     def _kinds(self) -> tuple[tuple[Item, ...], ...]:
@@ -132,12 +149,20 @@ class Track:
         places = {p.name: p for p in self.places if p.start <= seconds}
         modes = [x for x in self.modes if x.start <= seconds][-1:]
         stays = {s.layer: s for s in self.stays if s.start <= seconds}
-        looks: list[LookAt] = []  # those that no later one has replaced; also what is over: it tells since when what shows has shown
+        looks: list[
+            LookAt
+            # those that no later one has replaced; also what is over: it tells since when what shows has
+            # shown
+        ] = []
         for look in self.looks:
             if look.start <= seconds:
                 looks = [*(x for x in looks if x.priority > look.priority), look]
         old = {id(x) for x in (*places.values(), *looks, *modes, *stays.values())}
-        return track_of(i for i in self.items if i.start > seconds or id(i) in old or (isinstance(i, Speech) and i.end > seconds))
+        return track_of(
+            i
+            for i in self.items
+            if i.start > seconds or id(i) in old or (isinstance(i, Speech) and i.end > seconds)
+        )
 
 
 def track_of(items: object) -> Track:
@@ -162,7 +187,9 @@ def _speeches(items: Iterable[Item]) -> Iterator[Speech]:
 
 
 def _merged(old: tuple[Item, ...], new: tuple[Item, ...]) -> tuple[Item, ...]:
-    """Put new items among those that are in order already; most are the latest, so that little is compared."""
+    """Put new items among those that are in order already; most are the latest, so that little is
+    compared.
+    """
     for item in new:
         place = bisect_right(old, _order(item), key=_order)
         old = (*old[:place], item, *old[place:])
@@ -173,11 +200,15 @@ def cut(speech: Speech, at: float) -> Speech:
     """Return the speech, ending no later than `at`; how long it would have been is remembered."""
     if speech.end <= at:
         return speech
-    return replace(speech, end=at, length=speech.end - speech.start if speech.length is None else speech.length)
+    return replace(
+        speech, end=at, length=speech.end - speech.start if speech.length is None else speech.length
+    )
 
 
 def _apart(speeches: list[Speech]) -> tuple[Speech, ...]:
-    """Return speeches without overlaps: one that is at least as important cuts the running one, a lesser one is not said."""
+    """Return speeches without overlaps: one that is at least as important cuts the running one, a lesser one
+    is not said.
+    """
     out: list[Speech] = []
     for speech in speeches:
         if out and out[-1].end > speech.start:

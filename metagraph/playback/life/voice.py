@@ -1,4 +1,6 @@
-"""What is known of a spoken line's sound: how long it is, where it is loudest, and which mouth shapes it goes through."""
+"""What is known of a spoken line's sound: how long it is, where it is loudest, and which mouth shapes it goes
+through.
+"""
 
 from __future__ import annotations
 
@@ -19,14 +21,17 @@ __all__ = ["VISEMES", "Voice", "silent", "voice_from_text", "voice_of"]
 
 Array = NDArray[Any]
 
-ACCENT = 2.0  # seconds round a stressed syllable without another: with it, speakers blink as often as people do
+ACCENT = (
+    2.0  # seconds round a stressed syllable without another: with it, speakers blink as often as people do
+)
 
 
 @dataclass(frozen=True, eq=False)
 class Voice:
-    """One line, analysed. duration: seconds. peaks: times of its loudness peaks, a syllable each `[P]`. times `[K]`, weights
-    `[K, 15]`: how much of each of `VISEMES` the mouth shows, 0..1, linear between the times. strengths: how loud the peaks
-    are `[P]`, 0..1; empty where that is not known."""
+    """One line, analysed. duration: seconds. peaks: times of its loudness peaks, a syllable each `[P]`. times
+    `[K]`, weights `[K, 15]`: how much of each of `VISEMES` the mouth shows, 0..1, linear between the times.
+    strengths: how loud the peaks are `[P]`, 0..1; empty where that is not known.
+    """
 
     duration: float
     peaks: Array
@@ -36,8 +41,9 @@ class Voice:
 
     @cached_property
     def accents(self) -> Array:
-        """Times of the stressed syllables `[A]`: the first peak, then the loudest ones that have no louder one within
-        `ACCENT` seconds. People blink and gesture on these, not on every syllable."""
+        """Times of the stressed syllables `[A]`: the first peak, then the loudest ones that have no louder
+        one within `ACCENT` seconds. People blink and gesture on these, not on every syllable.
+        """
         count = len(self.peaks)
         loud = self.strengths if len(self.strengths) == count else np.ones(count)
         taken: list[float] = []
@@ -65,11 +71,15 @@ def voice_from_text(text: str, duration: float | None = None) -> Voice:
 
 
 def voice_of(voices: Mapping[str, Voice], speech: Speech) -> Voice:
-    """Return the voice of something said: its line's as read from the sound, else one guessed from its text."""
+    """Return the voice of something said: its line's as read from the sound, else one guessed from its
+    text.
+    """
     known = voices.get(speech.line) if speech.line is not None else None
     if isinstance(known, Voice):
         return known
-    return voice_from_text(speech.text, max(0.0, speech.length if speech.length is not None else speech.end - speech.start))
+    return voice_from_text(
+        speech.text, max(0.0, speech.length if speech.length is not None else speech.end - speech.start)
+    )
 
 
 def heard(pieces: list[Piece], duration: float, peaks: Array, strengths: Array) -> Voice:

@@ -1,4 +1,6 @@
-"""What was asked of the life layers, as segments in time: which mode the character is in, and what it looks at."""
+"""What was asked of the life layers, as segments in time: which mode the character is in, and what it looks
+at.
+"""
 
 from __future__ import annotations
 
@@ -17,8 +19,9 @@ AHEAD = "ahead"  # nothing in particular: eyes and head as the layers have them
 
 @dataclass(frozen=True, slots=True)
 class Target:
-    """What is looked at from `start` on: a point, or a name whose place the project knows. since: when the look at it began; its
-    place may have changed meanwhile. asked: not of its own accord."""
+    """What is looked at from `start` on: a point, or a name whose place the project knows. since: when the
+    look at it began; its place may have changed meanwhile. asked: not of its own accord.
+    """
 
     start: float
     to: str | Point
@@ -29,7 +32,12 @@ class Target:
 
     def like(self, other: Target) -> bool:
         """Whether it is the same but for its times."""
-        return (self.to, self.amount, self.strict, self.asked) == (other.to, other.amount, other.strict, other.asked)
+        return (self.to, self.amount, self.strict, self.asked) == (
+            other.to,
+            other.amount,
+            other.strict,
+            other.asked,
+        )
 
 
 def mode_at(track: Track, seconds: float) -> Mode:
@@ -43,8 +51,15 @@ def mode_at(track: Track, seconds: float) -> Mode:
 
 
 def modes_between(track: Track, start: float, end: float) -> Iterator[tuple[float, int]]:
-    """Yield (start, place among MODES) of each mode from `start` to before `end`; the first begins at `start`."""
-    edges = {start, *(m.start for m in track.modes), *(s.start for s in track.speeches), *(s.end for s in track.speeches)}
+    """Yield (start, place among MODES) of each mode from `start` to before `end`; the first begins at
+    `start`.
+    """
+    edges = {
+        start,
+        *(m.start for m in track.modes),
+        *(s.start for s in track.speeches),
+        *(s.end for s in track.speeches),
+    }
     last = -1
     for edge in sorted(e for e in edges if start <= e < end):
         mode = MODES.index(mode_at(track, edge))
@@ -56,10 +71,13 @@ def modes_between(track: Track, start: float, end: float) -> Iterator[tuple[floa
 def targets_between(track: Track, start: float, end: float) -> Iterator[Target]:
     """Yield what is looked at from `start` to before `end`; the first begins at `start`.
 
-    The latest look holds until it ends or another of its importance or more begins; a lesser one waits beneath.
+    The latest look holds until it ends or another of its importance or more begins; a lesser one waits
+    beneath.
     """
     changes: list[tuple[float, int, Any]] = [(x.start, 1, x) for x in track.looks]
-    changes += [(x.end, 0, x) for x in track.looks] + [(p.start, 2, p) for p in track.places] + [(start, 3, None)]
+    changes += (
+        [(x.end, 0, x) for x in track.looks] + [(p.start, 2, p) for p in track.places] + [(start, 3, None)]
+    )
     looks: list[LookAt] = []  # the most important first; those beneath are older or lesser
     places: dict[str, Point] = {}
     last: Target | None = None

@@ -58,7 +58,9 @@ def test_models_are_learned_and_a_performance_kept(project: Path, capsys: pytest
     assert code == 0 and open_project(project).project.markov["head"].tags == ()
 
 
-def test_tiers_and_labels_are_said_otherwise_and_remembered(project: Path, capsys: pytest.CaptureFixture[str]) -> None:
+def test_tiers_and_labels_are_said_otherwise_and_remembered(
+    project: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
     tiers = ("--tier", "Right arm=ignore", "--tier", "Speech=body")
     labels = ("--label", "Gesture=fidget calm", "--label", "body: speaks=transition")
     code, data, _ = run(capsys, "annotate", project, EAF, *tiers, *labels, "--perform", "x")
@@ -70,21 +72,31 @@ def test_tiers_and_labels_are_said_otherwise_and_remembered(project: Path, capsy
 
 
 WRONG = {
-    "a tier that is not there": (("--tier", "Left arms=left arm"), "there is no 'Left arms' in the annotation; did you mean 'Left arm'?"),
+    "a tier that is not there": (
+        ("--tier", "Left arms=left arm"),
+        "there is no 'Left arms' in the annotation; did you mean 'Left arm'?",
+    ),
     "a role that is none": (("--tier", "Body=tail"), "a tier is read as one of left arm"),
     "no role": (("--tier", "Body"), "--tier is given as"),
     "a label that is not there": (("--label", "dance=gesture"), "--label: there is no 'dance'"),
     "a meaning that is none": (("--label", "fidget=dance"), "a label means gesture, fidget"),
     "negative smoothing": (("--smoothing", "-1"), "--smoothing is 0 or more"),
     "nothing to learn from": (
-        tuple(x for t in ("Left arm", "Right arm", "Head stance", "Head action", "Body") for x in ("--tier", f"{t}=ignore")) + ("--learn",),
+        tuple(
+            x
+            for t in ("Left arm", "Right arm", "Head stance", "Head action", "Body")
+            for x in ("--tier", f"{t}=ignore")
+        )
+        + ("--learn",),
         "nothing in it is read as an action; its tiers are 'Speech'",
     ),
-}  # fmt: skip
+}
 
 
 @pytest.mark.parametrize("case", WRONG)
-def test_what_is_wrong_is_told_and_nothing_saved(case: str, project: Path, capsys: pytest.CaptureFixture[str]) -> None:
+def test_what_is_wrong_is_told_and_nothing_saved(
+    case: str, project: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
     words, cause = WRONG[case]
     before = project.read_bytes()
     code, data, _ = run(capsys, "annotate", project, EAF, *words)
@@ -92,7 +104,9 @@ def test_what_is_wrong_is_told_and_nothing_saved(case: str, project: Path, capsy
     assert project.read_bytes() == before
 
 
-def test_files_that_are_no_annotations_are_told(project: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+def test_files_that_are_no_annotations_are_told(
+    project: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
     (tmp_path / "talk.eaf").write_text("HIERARCHY")
     code, data, _ = run(capsys, "annotate", project, tmp_path / "talk.eaf", "--learn")
     assert code == 1 and "talk.eaf, line 1, column 1: it is not well-formed XML" in data["error"]
@@ -103,7 +117,9 @@ def test_files_that_are_no_annotations_are_told(project: Path, tmp_path: Path, c
     assert "not allowed with" in capsys.readouterr().err
 
 
-def test_an_annotation_of_speech_alone_is_done_with_a_problem(project: Path, shared_data: Path, capsys: pytest.CaptureFixture[str]) -> None:
+def test_an_annotation_of_speech_alone_is_done_with_a_problem(
+    project: Path, shared_data: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
     code, data, _ = run(capsys, "annotate", project, shared_data / "elan" / "test.eaf")
     assert code == 3 and data["layers"] == {}
     code, data, _ = run(capsys, "annotate", project, shared_data / "elan" / "sample_3.0.eaf", "--learn")

@@ -27,7 +27,10 @@ def test_the_targets_are_listed(capsys):
 
 
 def test_a_target_is_written_and_its_losses_are_told(tmp_path, capsys):
-    assert main(["export", str(SAMPLE), "--target", "xstate", "--out", str(tmp_path), "--no-mesh", "--json"]) == 0
+    assert (
+        main(["export", str(SAMPLE), "--target", "xstate", "--out", str(tmp_path), "--no-mesh", "--json"])
+        == 0
+    )
     shown = capsys.readouterr()
     data = json.loads(shown.out)
     assert data["target"] == "xstate" and all(Path(path).is_file() for path in data["files"])
@@ -62,7 +65,18 @@ def test_watching_writes_again_after_each_saving_and_survives_a_broken_project(t
         (tmp_path / name).symlink_to(ROOT / "sample_clips" / name)
     text = SAMPLE.read_text()
     project.write_text(text)
-    command = [sys.executable, "-m", "app.cli", "export", str(project), "-t", "bml", "-o", str(tmp_path / "out"), "--watch"]
+    command = [
+        sys.executable,
+        "-m",
+        "app.cli",
+        "export",
+        str(project),
+        "-t",
+        "bml",
+        "-o",
+        str(tmp_path / "out"),
+        "--watch",
+    ]
     with started(*command, stdout=subprocess.DEVNULL, stderr=subprocess.PIPE) as running:
         written = tmp_path / "out" / "sample.vocabulary.json"
         until(written.exists, "the export")
@@ -81,7 +95,19 @@ def test_watching_writes_again_after_each_saving_and_survives_a_broken_project(t
 def test_the_web_page_is_served_until_it_is_stopped(tmp_path):
     import urllib.request
 
-    command = [sys.executable, "-m", "app.cli", "export", str(SAMPLE), "-t", "web", "-o", str(tmp_path / "page"), "--serve", "--no-mesh"]
+    command = [
+        sys.executable,
+        "-m",
+        "app.cli",
+        "export",
+        str(SAMPLE),
+        "-t",
+        "web",
+        "-o",
+        str(tmp_path / "page"),
+        "--serve",
+        "--no-mesh",
+    ]
     environ = {**os.environ, "PATH": "", "XDG_CACHE_HOME": str(tmp_path)}  # without npm nothing is fetched
     with started(*command, stdout=subprocess.DEVNULL, stderr=subprocess.PIPE, env=environ) as running:
         line = next(line for line in running.stderr if "the page is at" in line)
@@ -95,10 +121,18 @@ def test_the_web_page_is_served_until_it_is_stopped(tmp_path):
 
 @pytest.mark.skipif(os.name == "nt", reason="is stopped by a signal")
 @pytest.mark.parametrize(
-    ("how", "number"), [("watch", signal.SIGTERM), ("serve", signal.SIGTERM), ("live", signal.SIGTERM), ("watch", signal.SIGINT)]
+    ("how", "number"),
+    [
+        ("watch", signal.SIGTERM),
+        ("serve", signal.SIGTERM),
+        ("live", signal.SIGTERM),
+        ("watch", signal.SIGINT),
+    ],
 )
 def test_what_goes_on_is_stopped_where_interrupts_are_ignored(how, number, tmp_path):
-    """As a background job of a script is: Python installs no handler of its own there, and a wait would be for ever."""
+    """As a background job of a script is: Python installs no handler of its own there, and a wait would be
+    for ever.
+    """
     words = {
         "watch": ("export", SAMPLE, "-t", "bml", "-o", tmp_path / "out", "--watch", "--no-mesh"),
         "serve": ("export", SAMPLE, "-t", "web", "-o", tmp_path / "out", "--serve", "--no-mesh"),

@@ -24,7 +24,9 @@ def folder(tmp_path: Path) -> Path:
     place.mkdir()
     ours = ("hands_at_sides__", "on_hips__")
     for path in CLIPS.glob("*.glb"):
-        if path.name.startswith(ours) and not any(other in path.name for other in ("crossed", "chin", "clasped")):
+        if path.name.startswith(ours) and not any(
+            other in path.name for other in ("crossed", "chin", "clasped")
+        ):
             shutil.copy(path, place)
     return place
 
@@ -34,7 +36,11 @@ def test_a_folder_becomes_a_project_and_a_report(folder: Path, capsys: pytest.Ca
     assert main(["label", str(folder), "--json"]) == 0
     data = json.loads(capsys.readouterr().out)
     project = open_project(Path(data["project"])).project
-    assert data["labelled"] == len(project.clips) == len(list(folder.glob("*.glb"))) and not data["left"] and not data["errors"]
+    assert (
+        data["labelled"] == len(project.clips) == len(list(folder.glob("*.glb")))
+        and not data["left"]
+        and not data["errors"]
+    )
     assert {s.name for s in project.graphs["arms"].stances.values()} == {"hands at sides", "on hips"}
     assert not [p for p in check(project) if p.severity == "error"]
     page = Path(data["report"]).read_text()
@@ -43,9 +49,27 @@ def test_a_folder_becomes_a_project_and_a_report(folder: Path, capsys: pytest.Ca
     assert "name begins with" in page and "hands at sides" in page
 
 
-def test_what_is_not_sure_enough_is_left_with_its_reason(folder: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+def test_what_is_not_sure_enough_is_left_with_its_reason(
+    folder: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
     out = tmp_path / "sure.metagraph.yaml"
-    assert main(["label", str(folder), "-o", str(out), "--above", "0.9", "--from", "motion", "--no-pictures", "--json"]) == 3
+    assert (
+        main(
+            [
+                "label",
+                str(folder),
+                "-o",
+                str(out),
+                "--above",
+                "0.9",
+                "--from",
+                "motion",
+                "--no-pictures",
+                "--json",
+            ]
+        )
+        == 3
+    )
     shown = capsys.readouterr()
     data = json.loads(shown.out)
     assert data["left"] and 0 < data["labelled"] < len(list(folder.glob("*.glb")))
@@ -53,9 +77,24 @@ def test_what_is_not_sure_enough_is_left_with_its_reason(folder: Path, tmp_path:
     assert "<img" not in Path(data["report"]).read_text()
 
 
-def test_a_project_is_labelled_on_from_where_it_is(folder: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+def test_a_project_is_labelled_on_from_where_it_is(
+    folder: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
     out = tmp_path / "part.metagraph.yaml"
-    main(["label", str(folder), "-o", str(out), "--above", "0.9", "--from", "motion", "--no-pictures", "--json"])
+    main(
+        [
+            "label",
+            str(folder),
+            "-o",
+            str(out),
+            "--above",
+            "0.9",
+            "--from",
+            "motion",
+            "--no-pictures",
+            "--json",
+        ]
+    )
     first = json.loads(capsys.readouterr().out)["labelled"]
     main(["label", str(out), "--no-pictures", "--json"])
     second = json.loads(capsys.readouterr().out)
@@ -63,7 +102,9 @@ def test_a_project_is_labelled_on_from_where_it_is(folder: Path, tmp_path: Path,
 
 
 @pytest.mark.parametrize("given", ["nothing", "empty"])
-def test_a_folder_that_is_not_there_or_empty_is_told(tmp_path: Path, given: str, capsys: pytest.CaptureFixture[str]) -> None:
+def test_a_folder_that_is_not_there_or_empty_is_told(
+    tmp_path: Path, given: str, capsys: pytest.CaptureFixture[str]
+) -> None:
     (tmp_path / "empty").mkdir()
     assert main(["label", str(tmp_path / given)]) == 1
     assert "on labelling it" in (told := capsys.readouterr().err) or "on importing it" in told
@@ -97,7 +138,11 @@ def test_patterns_of_a_file_are_read_with_and_a_broken_one_is_told(
 
 
 def test_what_was_taught_is_used_only_when_asked_for(
-    folder: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str], qapp: object
+    folder: Path,
+    tmp_path: Path,
+    monkeypatch: pytest.MonkeyPatch,
+    capsys: pytest.CaptureFixture[str],
+    qapp: object,
 ) -> None:
     from app.project.learned import Learned
 
@@ -108,12 +153,21 @@ def test_what_was_taught_is_used_only_when_asked_for(
         assert {k for name, k in kinds(out).items() if "shrug" in name} == {kind}
 
 
-def test_a_stance_that_no_clip_rests_in_is_held_and_told(folder: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+def test_a_stance_that_no_clip_rests_in_is_held_and_told(
+    folder: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
     for path in folder.glob("on_hips__stance*"):
         path.unlink()
     out = tmp_path / "held.metagraph.yaml"
     main(["label", str(folder), "-o", str(out), "--no-pictures", "--json"])
     shown = capsys.readouterr()
-    assert "still for its" in json.loads(shown.out)["held"]["on hips"] and "held: on hips: no clip rests there" in shown.err
+    assert (
+        "still for its" in json.loads(shown.out)["held"]["on hips"]
+        and "held: on hips: no clip rests there" in shown.err
+    )
     page = out.with_name("held.labels.html").read_text()
-    assert "Stances that no clip rests in" in page and "likelihood 1 80%" in page and "timing, joints, likelihood" in page
+    assert (
+        "Stances that no clip rests in" in page
+        and "likelihood 1 80%" in page
+        and "timing, joints, likelihood" in page
+    )

@@ -34,21 +34,37 @@ def test_lines_in_are_answered_by_lines_out_until_the_end_of_input() -> None:
     done = subprocess.run(command(*FREE), input=asked, capture_output=True, text=True, cwd=ROOT, timeout=120)
     assert done.returncode == 0, done.stderr
     ready, nod, error, beat = lines(done.stdout)
-    assert ready["event"] == "ready" and ready["websocket"].startswith("ws://127.0.0.1:") and ready["osc"][0] == "127.0.0.1"
-    assert nod["id"] == "n" and nod["state"] in ("planned", "late") and "not JSON" in error["error"] and beat["at"] >= 2
+    assert (
+        ready["event"] == "ready"
+        and ready["websocket"].startswith("ws://127.0.0.1:")
+        and ready["osc"][0] == "127.0.0.1"
+    )
+    assert (
+        nod["id"] == "n"
+        and nod["state"] in ("planned", "late")
+        and "not JSON" in error["error"]
+        and beat["at"] >= 2
+    )
     assert done.stderr == ""
 
 
 def test_people_are_told_in_words_on_standard_error() -> None:
-    done = subprocess.run(command("--port", "0", "--no-osc"), input="", capture_output=True, text=True, cwd=ROOT, timeout=120)
+    done = subprocess.run(
+        command("--port", "0", "--no-osc"), input="", capture_output=True, text=True, cwd=ROOT, timeout=120
+    )
     assert done.returncode == 0 and done.stdout == ""
-    assert "JSON lines on standard input, WebSocket on ws://127.0.0.1:" in done.stderr and "OSC" not in done.stderr
+    assert (
+        "JSON lines on standard input, WebSocket on ws://127.0.0.1:" in done.stderr
+        and "OSC" not in done.stderr
+    )
 
 
 @pytest.mark.skipif(os.name == "nt", reason="Windows has no SIGTERM to catch")
 @pytest.mark.parametrize("number", [signal.SIGINT, signal.SIGTERM])
 def test_an_interrupt_ends_it_cleanly(number: signal.Signals) -> None:
-    with subprocess.Popen(command(*FREE, "--no-stdin"), stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True, cwd=ROOT) as process:
+    with subprocess.Popen(
+        command(*FREE, "--no-stdin"), stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True, cwd=ROOT
+    ) as process:
         assert process.stdout is not None and process.stderr is not None
         assert json.loads(process.stdout.readline())["event"] == "ready"
         process.send_signal(number)
@@ -56,13 +72,17 @@ def test_an_interrupt_ends_it_cleanly(number: signal.Signals) -> None:
         assert process.stdout.read() == "" and process.stderr.read() == ""
 
 
-def test_what_was_asked_can_be_kept_and_performed_again(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+def test_what_was_asked_can_be_kept_and_performed_again(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
     for name in ("sample.metagraph.yaml", "mannequin.glb"):
         shutil.copy(SAMPLE.with_name(name), tmp_path / name)
     shutil.copytree(SAMPLE.with_name("clips"), tmp_path / "clips")
     project = tmp_path / SAMPLE.name
     words = [sys.executable, "-m", "app.cli", "live", str(project), *FREE, "--keep", "talk"]
-    done = subprocess.run(words, input='{"do":"nod","id":"n","at":1}\n', capture_output=True, text=True, cwd=ROOT, timeout=120)
+    done = subprocess.run(
+        words, input='{"do":"nod","id":"n","at":1}\n', capture_output=True, text=True, cwd=ROOT, timeout=120
+    )
     assert done.returncode == 0 and "kept as 'talk'" in done.stderr
     kept = list(open_project(project).project.performances.values())[-1]
     assert kept.name == "talk" and [type(ask).__name__ for ask in kept.asks] == ["Nod"]
@@ -75,16 +95,24 @@ def test_what_was_asked_can_be_kept_and_performed_again(tmp_path: Path, capsys: 
 @pytest.mark.parametrize(
     ("words", "error"),
     [
-        (("--host", "0.0.0.0"), "a token is needed, so that not everyone there can move the character; choose one, for example --token "),
+        (
+            ("--host", "0.0.0.0"),
+            "a token is needed, so that not everyone there can move the character; choose one, for example "
+            "--token ",
+        ),
         (("--port", "70000"), "between 0 and 65535"),
     ],
 )
-def test_what_is_not_safe_is_refused_in_words(words: tuple[str, ...], error: str, capsys: pytest.CaptureFixture[str]) -> None:
+def test_what_is_not_safe_is_refused_in_words(
+    words: tuple[str, ...], error: str, capsys: pytest.CaptureFixture[str]
+) -> None:
     assert main(["live", str(SAMPLE), *words]) == 1
     assert error in capsys.readouterr().err
 
 
 def test_the_token_may_come_from_the_environment() -> None:
     environ = {**os.environ, "METAGRAPH_TOKEN": "secret"}
-    done = subprocess.run(command(*FREE), input="", capture_output=True, text=True, cwd=ROOT, timeout=120, env=environ)
+    done = subprocess.run(
+        command(*FREE), input="", capture_output=True, text=True, cwd=ROOT, timeout=120, env=environ
+    )
     assert lines(done.stdout)[0]["token"] is True

@@ -34,7 +34,9 @@ def run(capsys: pytest.CaptureFixture[str], *words: object) -> tuple[int, Any, s
     return code, json.loads(said.out), said.err
 
 
-def test_what_is_seen_is_listed_with_when_the_character_goes_there(project: Path, capsys: pytest.CaptureFixture[str]) -> None:
+def test_what_is_seen_is_listed_with_when_the_character_goes_there(
+    project: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
     code, data, _ = run(capsys, project, DEEP, "--no-mirror")
     assert code == 0 and data["frames"] == 200 and data["dimensions"] == 3 and data["mirrored"] is False
     rows = [(row["layer"], row["name"]) for row in data["seen"]]
@@ -46,7 +48,8 @@ def test_what_is_seen_is_listed_with_when_the_character_goes_there(project: Path
 
 def test_it_mirrors_unless_told_not_to(project: Path, capsys: pytest.CaptureFixture[str]) -> None:
     sides = [
-        [row["name"] for row in run(capsys, project, DEEP, *words)[1]["seen"] if row["layer"] == "body"] for words in ((), ("--no-mirror",))
+        [row["name"] for row in run(capsys, project, DEEP, *words)[1]["seen"] if row["layer"] == "body"]
+        for words in ((), ("--no-mirror",))
     ]
     swapped = [name.replace("left", "*").replace("right", "left").replace("*", "right") for name in sides[1]]
     assert sides[0] == swapped and "weight left" in sides[0]
@@ -64,15 +67,24 @@ def test_only_layers_that_are_wanted_mimic(project: Path, capsys: pytest.Capture
     assert {row["layer"] for row in data["seen"]} == {"arms"}
 
 
-def test_it_is_kept_as_a_performance_of_the_project(project: Path, capsys: pytest.CaptureFixture[str]) -> None:
+def test_it_is_kept_as_a_performance_of_the_project(
+    project: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
     code, data, _ = run(capsys, project, DEEP, "--keep", "as filmed", "--seed", "9")
     assert code == 0 and data["written"] == [str(project)]
     kept = next(p for p in open_project(project).project.performances.values() if p.name == "as filmed")
-    assert len(kept.asks) == len(data["seen"]) and kept.seed == 9 and kept.idle and kept.length == pytest.approx(21.9)
+    assert (
+        len(kept.asks) == len(data["seen"])
+        and kept.seed == 9
+        and kept.idle
+        and kept.length == pytest.approx(21.9)
+    )
     assert all(ask.at is not None and ask.told is not None for ask in kept.asks)
 
 
-def test_the_requests_are_written_as_a_performance(project: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+def test_the_requests_are_written_as_a_performance(
+    project: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
     import msgspec
 
     out = tmp_path / "out" / "asks.json"
@@ -104,19 +116,25 @@ def test_a_contact_sheet_is_drawn(project: Path, tmp_path: Path, capsys: pytest.
         (["--picture", "wide"], "a size is given as 960x540"),
     ],
 )
-def test_what_cannot_be_is_refused(project: Path, words: list[str], message: str, capsys: pytest.CaptureFixture[str]) -> None:
+def test_what_cannot_be_is_refused(
+    project: Path, words: list[str], message: str, capsys: pytest.CaptureFixture[str]
+) -> None:
     code, data, _ = run(capsys, project, DEEP, *words)
     assert code == 1 and message in data["error"]
 
 
-def test_a_file_that_holds_no_keypoints_says_so(project: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+def test_a_file_that_holds_no_keypoints_says_so(
+    project: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
     path = tmp_path / "none.json"
     path.write_text('{"cats": 2}')
     code, data, _ = run(capsys, project, path)
     assert code == 1 and "none.json, frame 0: it holds no keypoints; it has cats." in data["error"]
 
 
-def test_whoever_is_in_no_stance_is_told_of_by_the_exit_code(project: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+def test_whoever_is_in_no_stance_is_told_of_by_the_exit_code(
+    project: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
     path = tmp_path / "lying.json"
     lying = [[n * 20.0 + 1, 300.0, 0.9] for n in range(17)]
     path.write_text(json.dumps([{"keypoints": lying}] * 40))
@@ -124,7 +142,9 @@ def test_whoever_is_in_no_stance_is_told_of_by_the_exit_code(project: Path, tmp_
     assert code == 3 and data["seen"] == [] and "30 were taken" in err
 
 
-def test_nobody_is_recorded_in_a_project_without_clips(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+def test_nobody_is_recorded_in_a_project_without_clips(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
     path = tmp_path / "empty.metagraph.yaml"
     from metagraph.formats.store import save_project
     from metagraph.graph.model import Project

@@ -22,7 +22,9 @@ SECONDS = 18
 def folder(tmp_path_factory: pytest.TempPathFactory) -> Path:
     out = tmp_path_factory.mktemp("takes")
     (out / "takes").mkdir()
-    for n, (write, ending) in enumerate(((write_elan, ".eaf"), (write_textgrid, ".TextGrid"), (write_json, ".json"))):
+    for n, (write, ending) in enumerate(
+        ((write_elan, ".eaf"), (write_textgrid, ".TextGrid"), (write_json, ".json"))
+    ):
         said = speech(SECONDS, n)
         write_bvh(talking(f"take{n}", said, SECONDS, n), out / "takes" / f"take{n}.bvh")
         sides = [tuple(s for s in said if (s.kind == "hesitation") == partner) for partner in (False, True)]
@@ -44,28 +46,58 @@ def run(capsys: pytest.CaptureFixture[str], *arguments: str, code: int = 0) -> s
 def test_a_graph_is_built_and_told(folder: Path, capsys: pytest.CaptureFixture[str], tmp_path: Path) -> None:
     takes = str(folder / "takes")
     text = run(capsys, "build", takes)
-    assert "3 takes, 1,620 states" in text and "Johnson's S_B" in text and "observed" in text and "largest component" in text
-    data = json.loads(run(capsys, "build", takes, "--json", "--k", "4", "--most", "9", "--keep", str(tmp_path / "kept")))
-    assert data["k"] == 4 and 0 < data["kept"] <= data["states"] == 1620 and data["transitions"] <= 9 * data["keys"]
-    again = json.loads(run(capsys, "build", takes, "--json", "--k", "4", "--most", "9", "--keep", str(tmp_path / "kept")))
+    assert (
+        "3 takes, 1,620 states" in text
+        and "Johnson's S_B" in text
+        and "observed" in text
+        and "largest component" in text
+    )
+    data = json.loads(
+        run(capsys, "build", takes, "--json", "--k", "4", "--most", "9", "--keep", str(tmp_path / "kept"))
+    )
+    assert (
+        data["k"] == 4
+        and 0 < data["kept"] <= data["states"] == 1620
+        and data["transitions"] <= 9 * data["keys"]
+    )
+    again = json.loads(
+        run(capsys, "build", takes, "--json", "--k", "4", "--most", "9", "--keep", str(tmp_path / "kept"))
+    )
     assert {**again, "seconds": 0} == {**data, "seconds": 0} and len(list((tmp_path / "kept").iterdir())) == 1
 
 
 def test_the_papers_table_of_k_grows(folder: Path, capsys: pytest.CaptureFixture[str]) -> None:
     rows = json.loads(run(capsys, "table", str(folder / "takes"), "--json"))
     assert [r["k"] for r in rows] == [2, 3, 4]
-    assert rows[0]["edges"] < rows[1]["edges"] < rows[2]["edges"] and all(r["kept_edges"] <= r["edges"] for r in rows)
+    assert rows[0]["edges"] < rows[1]["edges"] < rows[2]["edges"] and all(
+        r["kept_edges"] <= r["edges"] for r in rows
+    )
     assert run(capsys, "table", str(folder / "takes")).count("\n") == 4
 
 
-def test_motion_is_made_for_a_takes_speech_and_for_new_speech(folder: Path, capsys: pytest.CaptureFixture[str], tmp_path: Path) -> None:
+def test_motion_is_made_for_a_takes_speech_and_for_new_speech(
+    folder: Path, capsys: pytest.CaptureFixture[str], tmp_path: Path
+) -> None:
     given = [str(folder / "takes"), *said(folder)]
     text = run(capsys, "synthesize", *given, "--take", "2", "-o", str(tmp_path / "out.bvh"))
     assert "15.0 s with" in text and "of 2 takes" in text
     assert read_clips(tmp_path / "out.bvh")[0].frames == 450
-    new = ["--new", str(folder / "take0.eaf"), "--start", "2", "-s", "5", "--search", "greedy", "--without", "hesitation"]
+    new = [
+        "--new",
+        str(folder / "take0.eaf"),
+        "--start",
+        "2",
+        "-s",
+        "5",
+        "--search",
+        "greedy",
+        "--without",
+        "hesitation",
+    ]
     data = json.loads(run(capsys, "synthesize", *given, *new, "-o", str(tmp_path / "out.glb"), "--json"))
-    assert data["frames"] == 150 and read_clips(tmp_path / "out.glb")[0].duration == pytest.approx(149 / 30, abs=1e-3)
+    assert data["frames"] == 150 and read_clips(tmp_path / "out.glb")[0].duration == pytest.approx(
+        149 / 30, abs=1e-3
+    )
 
 
 def test_held_out_speech_is_counted(folder: Path, capsys: pytest.CaptureFixture[str], tmp_path: Path) -> None:
@@ -101,49 +133,76 @@ def test_what_goes_with_what_is_counted(folder: Path, capsys: pytest.CaptureFixt
     by = {r["hypothesis"]: r for r in rows}
     assert by["clause with the right hand"]["rate"] > 0.9 > 0.1 > by["clause with the left hand"]["rate"]
     assert by["partner's hesitation with a nod"]["matched"] > 0, "what the other hesitates about is heard"
-    other = json.loads(run(capsys, "co-occurrence", str(folder / "takes"), *said(folder), "--json", "--side", "Ben"))
+    other = json.loads(
+        run(capsys, "co-occurrence", str(folder / "takes"), *said(folder), "--json", "--side", "Ben")
+    )
     assert all(r["total"] == 0 for r in other), "Ben says nothing but hesitates"
     assert "chance" in run(capsys, "co-occurrence", str(folder / "takes"), *said(folder))
 
 
-def test_files_that_do_not_go_together_are_told(folder: Path, capsys: pytest.CaptureFixture[str], tmp_path: Path) -> None:
+def test_files_that_do_not_go_together_are_told(
+    folder: Path, capsys: pytest.CaptureFixture[str], tmp_path: Path
+) -> None:
     takes, out = str(folder / "takes"), ["-o", str(tmp_path / "out.bvh")]
-    assert "no speech for take1, take2" in run(capsys, "evaluate", takes, "--speech", str(folder / "take0.eaf"), code=1)
+    assert "no speech for take1, take2" in run(
+        capsys, "evaluate", takes, "--speech", str(folder / "take0.eaf"), code=1
+    )
     two = [str(folder / "takes" / f"take{n}.bvh") for n in (0, 1)]
     assert "no take for take2.json" in run(capsys, "evaluate", *two, *said(folder), code=1)
-    assert "nobody is called 'Eve'" in run(capsys, "co-occurrence", takes, *said(folder), "--side", "Eve", code=1)
-    assert "there is no take '9'" in run(capsys, "synthesize", takes, *said(folder), "--take", "9", *out, code=1)
-    assert "not as '.fbx'" in run(capsys, "synthesize", takes, *said(folder), "--take", "1", "-o", "x.fbx", code=1)
+    assert "nobody is called 'Eve'" in run(
+        capsys, "co-occurrence", takes, *said(folder), "--side", "Eve", code=1
+    )
+    assert "there is no take '9'" in run(
+        capsys, "synthesize", takes, *said(folder), "--take", "9", *out, code=1
+    )
+    assert "not as '.fbx'" in run(
+        capsys, "synthesize", takes, *said(folder), "--take", "1", "-o", "x.fbx", code=1
+    )
     late = ["--take", "1", "--start", "99"]
-    assert "its speech lasts from 0 to" in run(capsys, "synthesize", takes, *said(folder), *late, *out, code=1)
+    assert "its speech lasts from 0 to" in run(
+        capsys, "synthesize", takes, *said(folder), *late, *out, code=1
+    )
     assert "no such file or folder" in run(capsys, "build", str(tmp_path / "gone"), code=1)
     (tmp_path / "empty").mkdir()
     assert "holds no clips" in run(capsys, "build", str(tmp_path / "empty"), code=1)
     words = tmp_path / "take0.json"
-    words.write_text('{"segments": [{"start": 0, "end": 1, "text": "hello", "words": [{"word": "hello", "start": 0, "end": 1}]}]}')
+    words.write_text(
+        '{"segments": [{"start": 0, "end": 1, "text": "hello", "words": [{"word": "hello", "start": 0, '
+        '"end": 1}]}]}'
+    )
     assert "holds no clauses" in run(capsys, "evaluate", two[0], "--speech", str(words), code=1)
     assert "--k is at least 2" in run(capsys, "build", takes, "--k", "1", code=1)
     assert "--level is a share" in run(capsys, "build", takes, "--level", "95", code=1)
 
 
-def test_takes_of_other_skeletons_and_of_one_frame_are_told(folder: Path, capsys: pytest.CaptureFixture[str], tmp_path: Path) -> None:
+def test_takes_of_other_skeletons_and_of_one_frame_are_told(
+    folder: Path, capsys: pytest.CaptureFixture[str], tmp_path: Path
+) -> None:
     text = (folder / "takes" / "take0.bvh").read_text()
     (tmp_path / "odd.bvh").write_text(text.replace("Hips", "Pelvis"))
-    assert "another skeleton" in run(capsys, "build", str(folder / "takes"), str(tmp_path / "odd.bvh"), code=1)
+    assert "another skeleton" in run(
+        capsys, "build", str(folder / "takes"), str(tmp_path / "odd.bvh"), code=1
+    )
     head, _, motion = text.partition("MOTION\n")
     lines = motion.splitlines()
     (tmp_path / "one.bvh").write_text(f"{head}MOTION\nFrames: 1\n{lines[1]}\n{lines[2]}\n")
     assert "only one frame" in run(capsys, "build", str(tmp_path / "one.bvh"), code=1)
 
 
-def test_takes_of_another_rate_are_resampled_and_it_says_so(folder: Path, capsys: pytest.CaptureFixture[str], tmp_path: Path) -> None:
+def test_takes_of_another_rate_are_resampled_and_it_says_so(
+    folder: Path, capsys: pytest.CaptureFixture[str], tmp_path: Path
+) -> None:
     write_bvh(talking("fast", speech(SECONDS, 5), SECONDS, 5, fps=60.0), tmp_path / "fast.bvh")
     assert main(["motion-graph", "build", str(folder / "takes"), str(tmp_path / "fast.bvh"), "--json"]) == 0
     told = capsys.readouterr()
-    assert "1 of 4 takes were brought to 30 frames a second" in told.err and json.loads(told.out)["states"] in (2160, 2161)
+    assert "1 of 4 takes were brought to 30 frames a second" in told.err and json.loads(told.out)[
+        "states"
+    ] in (2160, 2161)
 
 
-def test_a_graph_that_falls_apart_says_what_to_do(folder: Path, capsys: pytest.CaptureFixture[str], tmp_path: Path) -> None:
+def test_a_graph_that_falls_apart_says_what_to_do(
+    folder: Path, capsys: pytest.CaptureFixture[str], tmp_path: Path
+) -> None:
     lines = (folder / "takes" / "take0.bvh").read_text().split("MOTION\n")
     rows = lines[1].splitlines()
     moved = []
@@ -152,4 +211,6 @@ def test_a_graph_that_falls_apart_says_what_to_do(folder: Path, capsys: pytest.C
         numbers[6:9] = ["0", "0", f"{2 * n}"]
         moved.append(" ".join(numbers))
     (tmp_path / "bend.bvh").write_text(f"{lines[0]}MOTION\nFrames: 60\n{rows[1]}\n" + "\n".join(moved) + "\n")
-    assert "raise k or the level" in run(capsys, "build", str(tmp_path / "bend.bvh"), "--k", "2", "--level", "0.01", code=1)
+    assert "raise k or the level" in run(
+        capsys, "build", str(tmp_path / "bend.bvh"), "--k", "2", "--level", "0.01", code=1
+    )

@@ -1,4 +1,6 @@
-"""The command line: what an animator types, what a program reads, and what both get when something is wrong."""
+"""The command line: what an animator types, what a program reads, and what both get when something is
+wrong.
+"""
 
 from __future__ import annotations
 
@@ -26,9 +28,13 @@ SAMPLE = str(ROOT / "sample_clips" / f"sample{SUFFIX}")
 
 def run(*arguments: str | Path, **environ: str) -> subprocess.CompletedProcess[str]:
     """The command as a process of its own, without a screen."""
-    clean = {k: v for k, v in os.environ.items() if k not in ("DISPLAY", "WAYLAND_DISPLAY", "QT_QPA_PLATFORM")}
+    clean = {
+        k: v for k, v in os.environ.items() if k not in ("DISPLAY", "WAYLAND_DISPLAY", "QT_QPA_PLATFORM")
+    }
     words = [sys.executable, "-m", "app.cli", *map(str, arguments)]
-    return subprocess.run(words, cwd=ROOT, env={**clean, **environ}, capture_output=True, text=True, timeout=300)
+    return subprocess.run(
+        words, cwd=ROOT, env={**clean, **environ}, capture_output=True, text=True, timeout=300
+    )
 
 
 @pytest.fixture
@@ -87,7 +93,9 @@ def test_the_version_is_told(capsys: pytest.CaptureFixture[str]) -> None:
         (["--frobnicate"], "unrecognized arguments"),
     ],
 )
-def test_wrong_usage_is_exit_code_2_with_a_hint(arguments: list[str], words: str, capsys: pytest.CaptureFixture[str]) -> None:
+def test_wrong_usage_is_exit_code_2_with_a_hint(
+    arguments: list[str], words: str, capsys: pytest.CaptureFixture[str]
+) -> None:
     with pytest.raises(SystemExit) as caught:
         main(arguments)
     assert caught.value.code == 2
@@ -113,7 +121,9 @@ def test_wrong_usage_is_exit_code_2_with_a_hint(arguments: list[str], words: str
         (["export", SAMPLE, "-o", str(ROOT / "pyproject.toml")], "cannot be made"),
     ],
 )
-def test_an_error_is_exit_code_1_in_words_that_help(arguments: list[str], words: str, capsys: pytest.CaptureFixture[str]) -> None:
+def test_an_error_is_exit_code_1_in_words_that_help(
+    arguments: list[str], words: str, capsys: pytest.CaptureFixture[str]
+) -> None:
     assert main(arguments) == 1
     out, err = capsys.readouterr()
     assert out == ""
@@ -127,10 +137,15 @@ def test_an_error_is_json_for_programs(capsys: pytest.CaptureFixture[str]) -> No
     assert "cannot be read" in json.loads(capsys.readouterr().out)["error"]
 
 
-def test_a_folder_nobody_may_write_to_is_an_error_in_words(small: Path, capsys: pytest.CaptureFixture[str]) -> None:
+def test_a_folder_nobody_may_write_to_is_an_error_in_words(
+    small: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
     blocked = small.parent / "file"
     blocked.write_text("")
-    for arguments in (["export", str(small), "-o", str(blocked / "x")], ["render", str(small), "-o", str(blocked / "x" / "a.png")]):
+    for arguments in (
+        ["export", str(small), "-o", str(blocked / "x")],
+        ["render", str(small), "-o", str(blocked / "x" / "a.png")],
+    ):
         assert main(arguments) == 1
         assert "Traceback" not in capsys.readouterr().err
 
@@ -138,16 +153,24 @@ def test_a_folder_nobody_may_write_to_is_an_error_in_words(small: Path, capsys: 
 # --- import
 
 
-def test_import_makes_a_project_and_adds_to_it(clips: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+def test_import_makes_a_project_and_adds_to_it(
+    clips: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
     assert main(["import", str(tmp_path / "new"), str(clips / "idle.glb")]) == 0
     path = tmp_path / f"new{SUFFIX}"
     assert read_project(path).name == "new"
     assert main(["import", str(path), str(clips), "--json"]) == 0
     assert json.loads(capsys.readouterr().out.splitlines()[-1])["imported"] == 3
-    assert [e.path for e in read_project(path).clips.values()] == ["clips/idle.glb", "clips/nod.glb", "clips/wave.glb"]
+    assert [e.path for e in read_project(path).clips.values()] == [
+        "clips/idle.glb",
+        "clips/nod.glb",
+        "clips/wave.glb",
+    ]
 
 
-def test_import_with_a_bad_file_is_exit_code_3_and_the_rest_comes_in(clips: Path, capsys: pytest.CaptureFixture[str]) -> None:
+def test_import_with_a_bad_file_is_exit_code_3_and_the_rest_comes_in(
+    clips: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
     (clips / "bad.bvh").write_text("HIERARCHY\nnonsense")
     path = clips.parent / f"p{SUFFIX}"
     assert main(["import", str(path), str(clips)]) == 3
@@ -181,7 +204,9 @@ def test_import_of_nothing_good_makes_no_project(tmp_path: Path, capsys: pytest.
     assert not list(tmp_path.glob("*.yaml"))
 
 
-def test_import_into_a_broken_project_leaves_it_as_it_is(clips: Path, capsys: pytest.CaptureFixture[str]) -> None:
+def test_import_into_a_broken_project_leaves_it_as_it_is(
+    clips: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
     path = clips.parent / f"p{SUFFIX}"
     path.write_text("metagraph: 1\nclips: 7\n")
     assert main(["import", str(path), str(clips)]) == 1
@@ -219,7 +244,9 @@ def test_a_missing_clip_is_noted_and_checked(small: Path, capsys: pytest.Capture
     assert "the file of clip 'wave' is missing" in out
 
 
-def test_plan_lists_actions_in_time_and_the_seed_changes_them(small: Path, capsys: pytest.CaptureFixture[str]) -> None:
+def test_plan_lists_actions_in_time_and_the_seed_changes_them(
+    small: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
     assert main(["plan", SAMPLE, "-s", "30"]) == 0
     rows = [line.split() for line in capsys.readouterr().out.splitlines()]
     starts = [float(row[0]) for row in rows]
@@ -232,14 +259,18 @@ def test_plan_lists_actions_in_time_and_the_seed_changes_them(small: Path, capsy
     assert {"layer", "start", "end", "kind", "action", "name", "stance", "then"} == set(plans[0]["cues"][0])
 
 
-def test_plan_of_a_project_where_nothing_plays_says_why(clips: Path, capsys: pytest.CaptureFixture[str]) -> None:
+def test_plan_of_a_project_where_nothing_plays_says_why(
+    clips: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
     path = clips.parent / f"p{SUFFIX}"
     assert main(["import", str(path), str(clips)]) == 0
     assert main(["plan", str(path)]) == 0
     assert "Nothing plays" in capsys.readouterr().err
 
 
-def test_info_tells_of_a_clip_a_project_and_an_export(small: Path, capsys: pytest.CaptureFixture[str]) -> None:
+def test_info_tells_of_a_clip_a_project_and_an_export(
+    small: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
     assert main(["info", str(small.parent / "clips" / "wave.glb")]) == 0
     assert "1 clips on 4 joints" in capsys.readouterr().out
     assert main(["info", str(small.parent / "clips" / "wave.glb"), "--json"]) == 0
@@ -256,7 +287,9 @@ def test_info_tells_of_a_clip_a_project_and_an_export(small: Path, capsys: pytes
     assert told[0]["layers"]["arms"]["gesture"] == 2
 
 
-def test_export_of_a_project_with_errors_says_what_to_mend(small: Path, capsys: pytest.CaptureFixture[str]) -> None:
+def test_export_of_a_project_with_errors_says_what_to_mend(
+    small: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
     save_project(edits.update_actions(read_project(small), ["a6"], likelihood=0.0), small)
     assert main(["export", str(small), "-o", str(small.parent / "game")]) == 1
     assert "can never be chosen. Set it above 0." in capsys.readouterr().err
@@ -277,7 +310,12 @@ def test_a_whole_day_from_the_command_line_on_real_clips(shared_data: Path, tmp_
     save_project(project, path)
     assert run("check", path).returncode == 0
     plan = run("plan", path, "-s", "40", "--json")
-    assert {c["name"].split("_")[1] for c in json.loads(plan.stdout)["cues"]} <= {"bow", "bye", "guide", "respond"}
+    assert {c["name"].split("_")[1] for c in json.loads(plan.stdout)["cues"]} <= {
+        "bow",
+        "bye",
+        "guide",
+        "respond",
+    }
     exported = run("export", path, "-o", tmp_path / "game")
     assert exported.returncode == 0, exported.stderr
     json_path = Path(exported.stdout.splitlines()[0])
@@ -289,11 +327,44 @@ def test_a_whole_day_from_the_command_line_on_real_clips(shared_data: Path, tmp_
 def test_pictures_a_video_and_motion_are_rendered(small: Path, capsys: pytest.CaptureFixture[str]) -> None:
     for name, first in (("a.png", b"\x89PNG"), ("a.mp4", b""), ("a.glb", b"glTF"), ("a.bvh", b"HIERARCHY")):
         out = small.parent / "new" / name
-        assert main(["render", str(small), "-o", str(out), "-s", "0.4", "--size", "96x64", "--frames", "3", "--json"]) == 0
+        assert (
+            main(
+                [
+                    "render",
+                    str(small),
+                    "-o",
+                    str(out),
+                    "-s",
+                    "0.4",
+                    "--size",
+                    "96x64",
+                    "--frames",
+                    "3",
+                    "--json",
+                ]
+            )
+            == 0
+        )
         assert json.loads(capsys.readouterr().out) == {"written": str(out)}
         assert out.read_bytes().startswith(first)
         assert out.stat().st_size > 300
-    assert main(["render", str(small), "--clip", "wave", "-o", str(small.parent / "wave.png"), "--size", "96x64", "--frames", "2"]) == 0
+    assert (
+        main(
+            [
+                "render",
+                str(small),
+                "--clip",
+                "wave",
+                "-o",
+                str(small.parent / "wave.png"),
+                "--size",
+                "96x64",
+                "--frames",
+                "2",
+            ]
+        )
+        == 0
+    )
 
 
 @pytest.mark.gl
@@ -324,7 +395,11 @@ def test_errors_come_without_a_traceback(tmp_path: Path) -> None:
 @pytest.mark.skipif(os.name == "nt", reason="pipes break otherwise on Windows")
 def test_a_reader_that_has_read_enough_is_no_error() -> None:
     made = subprocess.run(
-        f"{sys.executable} -m app.cli plan {SAMPLE} -s 3000 | head -1", shell=True, cwd=ROOT, capture_output=True, text=True
+        f"{sys.executable} -m app.cli plan {SAMPLE} -s 3000 | head -1",
+        shell=True,
+        cwd=ROOT,
+        capture_output=True,
+        text=True,
     )
     assert made.stderr == ""
     assert len(made.stdout.splitlines()) == 1
@@ -341,7 +416,9 @@ def loaded(code: str) -> set[str]:
 
 
 @pytest.mark.parametrize(
-    "code", ["import app.cli.parser", f"from app.cli.parser import main; main(['plan', {SAMPLE!r}, '-s', '2'])"], ids=["start", "plan"]
+    "code",
+    ["import app.cli.parser", f"from app.cli.parser import main; main(['plan', {SAMPLE!r}, '-s', '2'])"],
+    ids=["start", "plan"],
 )
 def test_commands_without_a_window_import_neither_qt_nor_anything_heavy(code: str) -> None:
     assert not loaded(code) & {"PySide6", "moderngl", *HEAVY}

@@ -30,20 +30,36 @@ def run(capsys: pytest.CaptureFixture[str], *words: object) -> tuple[int, Any, s
 
 def test_counts_and_lengths_are_told(files: tuple[Path, Path], capsys: pytest.CaptureFixture[str]) -> None:
     code, data, error = run(capsys, files[0], "--words", files[1])
-    assert code == 0 and not error and data["name"] == "talk" and data["length"] == pytest.approx(30.3, abs=0.1)
+    assert (
+        code == 0 and not error and data["name"] == "talk" and data["length"] == pytest.approx(30.3, abs=0.1)
+    )
     first, second = data["sides"]
-    assert first["response"]["count"] == 2 and second["response"]["count"] == 4 and first["hesitation"]["count"] == 2
-    assert 3 < first["clause"]["words"] < 6 and first["clause"]["spread"] > 0 and first["words"] == len(talk.speak().words[0])
+    assert (
+        first["response"]["count"] == 2
+        and second["response"]["count"] == 4
+        and first["hesitation"]["count"] == 2
+    )
+    assert (
+        3 < first["clause"]["words"] < 6
+        and first["clause"]["spread"] > 0
+        and first["words"] == len(talk.speak().words[0])
+    )
 
 
 def test_in_words_it_says_the_same(files: tuple[Path, Path], capsys: pytest.CaptureFixture[str]) -> None:
     assert main(["speech", str(files[0])]) == 0
     said = capsys.readouterr()
-    assert "talk: 30.3 s" in said.out and "clauses" in said.out and "note: talk.wav, left channel: no words" in said.err
+    assert (
+        "talk: 30.3 s" in said.out
+        and "clauses" in said.out
+        and "note: talk.wav, left channel: no words" in said.err
+    )
 
 
 @pytest.mark.parametrize("suffix", [".eaf", ".TextGrid", ".json"])
-def test_it_writes_what_can_be_read_back(files: tuple[Path, Path], tmp_path: Path, capsys: pytest.CaptureFixture[str], suffix: str) -> None:
+def test_it_writes_what_can_be_read_back(
+    files: tuple[Path, Path], tmp_path: Path, capsys: pytest.CaptureFixture[str], suffix: str
+) -> None:
     out = tmp_path / f"out{suffix}"
     code, data, _ = run(capsys, files[0], "--words", files[1], "-o", out)
     assert code == 0 and data["written"] == str(out)
@@ -53,7 +69,9 @@ def test_it_writes_what_can_be_read_back(files: tuple[Path, Path], tmp_path: Pat
     ]
 
 
-def test_it_keeps_a_conversation_in_a_project(files: tuple[Path, Path], tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+def test_it_keeps_a_conversation_in_a_project(
+    files: tuple[Path, Path], tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
     project = tmp_path / "talk.metagraph.yaml"
     shutil.copy(SAMPLE / "sample.metagraph.yaml", project)
     for folder in ("clips", "lines"):
@@ -65,7 +83,9 @@ def test_it_keeps_a_conversation_in_a_project(files: tuple[Path, Path], tmp_path
     assert kept[data["kept"]].name == "Dogs" and kept[data["kept"]].sides[0].audio == "talk.wav"
 
 
-def test_bad_usage_says_what_is_right(files: tuple[Path, Path], tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+def test_bad_usage_says_what_is_right(
+    files: tuple[Path, Path], tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
     assert main(["speech", str(files[0]), "-o", str(tmp_path / "a.mp4")]) == 1
     assert ".eaf, .TextGrid, .json" in capsys.readouterr().err
     assert main(["speech", *[str(files[0])] * 3]) == 1

@@ -13,7 +13,12 @@ from app.cli.parser import main
 @pytest.fixture(scope="module")
 def folder(tmp_path_factory: pytest.TempPathFactory) -> Path:
     place = tmp_path_factory.mktemp("simulated") / "study"
-    assert main(["study", "simulate", str(place), "--participants", "4", "--seed", "3", "--ratio", "5", "--json"]) == 0
+    assert (
+        main(
+            ["study", "simulate", str(place), "--participants", "4", "--seed", "3", "--ratio", "5", "--json"]
+        )
+        == 0
+    )
     return place
 
 
@@ -34,7 +39,10 @@ def test_a_report_is_written_and_told(folder: Path, capsys: pytest.CaptureFixtur
     assert data["ratio"]["low"] < 5 < data["ratio"]["high"]
     assert (folder / "report" / "report.html").is_file() and len(data["written"]) == 6
     assert any("cannot reach p = 0.05" in words for words in data["cautions"])
-    assert main(["study", "report", str(folder / "study.yaml"), "--no-jumps", "--out", str(folder / "else")]) == 0
+    assert (
+        main(["study", "report", str(folder / "study.yaml"), "--no-jumps", "--out", str(folder / "else")])
+        == 0
+    )
     shown = capsys.readouterr()
     assert "times as long as with the meta-graph" in shown.out and (folder / "else" / "tasks.csv").is_file()
 
@@ -45,7 +53,9 @@ def test_data_are_exported(folder: Path, capsys: pytest.CaptureFixture[str]) -> 
     assert (folder / "bids" / "sub-P01" / "beh").is_dir()
 
 
-def test_nothing_to_compare_is_told_by_the_exit_code(folder: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+def test_nothing_to_compare_is_told_by_the_exit_code(
+    folder: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
     plan = (folder / "study.yaml").read_text()
     for name in ("clips", "small.metagraph.yaml", "large.metagraph.yaml"):
         (tmp_path / name).symlink_to(folder / name)
@@ -62,7 +72,9 @@ def test_the_published_example_is_recomputed(capsys: pytest.CaptureFixture[str])
     assert json.loads(capsys.readouterr().out)["ratio"] == pytest.approx(7.875)
 
 
-def test_errors_name_file_cause_and_remedy(folder: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+def test_errors_name_file_cause_and_remedy(
+    folder: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
     assert main(["study", "report", str(tmp_path)]) == 1
     assert "study.yaml, on opening it: cannot be read" in capsys.readouterr().err
     assert main(["study", "simulate", str(folder), "--json"]) == 1

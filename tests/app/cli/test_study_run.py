@@ -27,7 +27,8 @@ def test_a_study_without_faults_has_no_problems(capsys):
 
 
 @pytest.mark.parametrize(
-    ("words", "told"), [(["nowhere"], "cannot be read"), (["STUDY", "--participant", "P77"], "'P77' does not take part")]
+    ("words", "told"),
+    [(["nowhere"], "cannot be read"), (["STUDY", "--participant", "P77"], "'P77' does not take part")],
 )
 def test_what_cannot_be_run_is_told_before_a_window_opens(tiny, words, told, capsys):
     assert main(["study", "run", *(str(tiny) if w == "STUDY" else w for w in words)]) == 1

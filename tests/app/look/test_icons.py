@@ -16,7 +16,11 @@ def test_every_icon_draws_something_in_its_colour(qapp, name):
     inked = [p for p in pixels if p.alpha() > 100]
     assert len(inked) > len(pixels) / 80
     assert all(p.red() > 200 and p.green() < 40 for p in inked)
-    edge = [p for x in range(picture.width()) for p in (picture.pixelColor(x, 0), picture.pixelColor(x, picture.height() - 1))]
+    edge = [
+        p
+        for x in range(picture.width())
+        for p in (picture.pixelColor(x, 0), picture.pixelColor(x, picture.height() - 1))
+    ]
     assert all(p.alpha() == 0 for p in edge), "nothing is cut off"
 
 

@@ -43,7 +43,9 @@ def test_roles_and_meanings_can_be_said_otherwise_and_what_was_said_stays() -> N
     assert [a.kind for a in reading.observed["arms"]] == ["gesture", "gesture"]
     reading = reading.with_meaning(reading.labels[0], "fidget").with_role("B", "head action")
     assert [a.kind for a in reading.observed["arms"]] == ["fidget", "gesture"]
-    assert [a.kind for a in reading.observed["head"]] == ["gesture"], "what was said of the arms' label is not said of the head's"
+    assert [a.kind for a in reading.observed["head"]] == ["gesture"], (
+        "what was said of the arms' label is not said of the head's"
+    )
     assert list(reading.observed) == ["arms", "head"]
     assert list(reading.with_role("A", "ignore").observed) == ["head"]
 
@@ -54,7 +56,9 @@ def test_the_project_remembers_how_it_was_read_and_the_next_reading_begins_so() 
     reading = reading.with_meaning(reading.labels[0], "fidget")
     project = remember(Project(labels={"arms: old": "hold", "body: cup": "gesture"}), reading)
     assert project.tiers == {"LH": "left arm", "B": "body"}
-    assert project.labels == {"arms: old": "hold", "arms: cup": "fidget"}, "what is as it would be guessed is not written down"
+    assert project.labels == {"arms: old": "hold", "arms: cup": "fidget"}, (
+        "what is as it would be guessed is not written down"
+    )
     assert from_data(to_data(project)) == project
     again = begin(annotation, project.tiers, labels=(project.labels,))
     assert again.observed == reading.observed
@@ -91,20 +95,32 @@ def test_what_was_seen_is_kept_as_a_performance_of_its_own_name(conversation: An
     for layer, acts in reading.observed.items():
         back = acts_of_asks(layer, kept.asks)
         assert [(a.kind, a.limb, a.tags) for a in back] == [(a.kind, a.limb, a.tags) for a in acts]
-        assert all(abs(a.start - b.start) < 1e-3 and abs(a.end - b.end) < 2e-3 for a, b in zip(back, acts, strict=True))
+        assert all(
+            abs(a.start - b.start) < 1e-3 and abs(a.end - b.end) < 2e-3
+            for a, b in zip(back, acts, strict=True)
+        )
 
 
-def test_an_annotation_is_performed_as_it_was_seen_and_other_seeds_vary_the_actions(conversation: Annotation, sample: Project) -> None:
+def test_an_annotation_is_performed_as_it_was_seen_and_other_seeds_vary_the_actions(
+    conversation: Annotation, sample: Project
+) -> None:
     reading = begin(conversation)
     made = into(sample, reading, (), False, "talk")
     kept = made.project.performances[made.performance or ""]
-    plans = [perform(made.project, kept.asks, kept.length, seed, dict(kept.stances), kept.idle) for seed in (1, 2)]
+    plans = [
+        perform(made.project, kept.asks, kept.length, seed, dict(kept.stances), kept.idle) for seed in (1, 2)
+    ]
     for layer, acts in reading.observed.items():
         names = []
         for plan in plans:
             cues = plan.layers[layer].cues
-            assert 0.9 * len(acts) <= len(cues) <= len(acts) + 3, "nearly everything that was seen plays, and nothing else"
-            kinds = {(ask.split("+")[0]): a.kind for ask, a in zip((f"{layer}{n + 1}" for n in range(len(acts))), acts, strict=True)}
+            assert 0.9 * len(acts) <= len(cues) <= len(acts) + 3, (
+                "nearly everything that was seen plays, and nothing else"
+            )
+            kinds = {
+                (ask.split("+")[0]): a.kind
+                for ask, a in zip((f"{layer}{n + 1}" for n in range(len(acts))), acts, strict=True)
+            }
             assert all(cue.action.kind == kinds[cue.meta.split("+")[0].split("/")[0]] for cue in cues)
             names.append([cue.action.name for cue in cues])
         assert names[0] != names[1]
@@ -115,7 +131,9 @@ def test_an_annotation_is_performed_as_it_was_seen_and_other_seeds_vary_the_acti
 
 def test_a_change_of_one_arm_is_performed_by_any_transition(toy: Any) -> None:
     project = toy.project()
-    reading = begin(Annotation((Tier("LH", (Interval(0.5, 1.5, "stance-transition"), Interval(6, 7, "change"))),)))
+    reading = begin(
+        Annotation((Tier("LH", (Interval(0.5, 1.5, "stance-transition"), Interval(6, 7, "change"))),))
+    )
     made = into(project, reading, (), False, "shift")
     kept = made.project.performances[made.performance or ""]
     assert [ask.limb for ask in kept.asks] == ["left", "left"]  # type: ignore[union-attr]

@@ -113,7 +113,9 @@ def test_saving_elsewhere_names_the_project_and_makes_paths_relative(document, t
     absolute = [(tmp_path / "clips" / e.path).as_posix() for e in document.project.clips.values()]
     from dataclasses import replace
 
-    clips = {i: replace(e, path=p) for (i, e), p in zip(document.project.clips.items(), absolute, strict=True)}
+    clips = {
+        i: replace(e, path=p) for (i, e), p in zip(document.project.clips.items(), absolute, strict=True)
+    }
     document.load(replace(document.project, clips=clips), None)
     document.save(tmp_path / "shows" / "tuesday.metagraph.yaml")
     assert document.project.name == "tuesday"
@@ -129,7 +131,14 @@ def test_saving_elsewhere_names_the_project_and_makes_paths_relative(document, t
 
 @pytest.mark.parametrize(
     ("file", "name"),
-    [("a.metagraph.yaml", "a"), ("B.METAGRAPH.YAML", "B"), ("c.yaml", "c"), ("d.yml", "d"), ("e.f", "e.f"), (".yaml", ".yaml")],
+    [
+        ("a.metagraph.yaml", "a"),
+        ("B.METAGRAPH.YAML", "B"),
+        ("c.yaml", "c"),
+        ("d.yml", "d"),
+        ("e.f", "e.f"),
+        (".yaml", ".yaml"),
+    ],
 )
 def test_a_project_is_named_after_its_file(tmp_path, file, name):
     assert project_name(tmp_path / file) == name

@@ -30,7 +30,9 @@ class Answers:
 
     def __init__(self, monkeypatch):
         self.next, self.asked, self.warned = [], [], []
-        monkeypatch.setattr(QMessageBox, "question", lambda *a, **k: (self.asked.append(a[2]), self.next.pop(0))[1])
+        monkeypatch.setattr(
+            QMessageBox, "question", lambda *a, **k: (self.asked.append(a[2]), self.next.pop(0))[1]
+        )
         monkeypatch.setattr(QMessageBox, "warning", lambda *a, **k: self.warned.append(a[2]))
         self.patch = monkeypatch
 
@@ -239,7 +241,9 @@ def test_edits_since_the_last_save_are_offered(desk, person, saved, qtbot, answe
     assert desk.document.dirty is taken
     assert all(e.motion is not None for e in desk.document.project.clips.values())
     change_seed(desk, 5)
-    assert list(saved.parent.glob(".*.journal")) == [desk.document.journal_place], "a new journal takes the old one's place"
+    assert list(saved.parent.glob(".*.journal")) == [desk.document.journal_place], (
+        "a new journal takes the old one's place"
+    )
 
 
 @pytest.mark.parametrize("answer", [BUTTON.Yes, BUTTON.Discard])
@@ -397,7 +401,9 @@ def test_when_nothing_is_missing_nothing_is_asked(desk, saved):
 
 
 def test_not_finding_them_says_so(desk, person, saved, tmp_path, qtbot):
-    clips = {i: replace(e, motion=None, path="gone.bvh", digest="") for i, e in desk.document.project.clips.items()}
+    clips = {
+        i: replace(e, motion=None, path="gone.bvh", digest="") for i, e in desk.document.project.clips.items()
+    }
     desk.document.load(replace(desk.document.project, clips=clips), None)
     (tmp_path / "nothing").mkdir()
     person.folder(tmp_path / "nothing")

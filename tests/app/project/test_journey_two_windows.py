@@ -1,4 +1,6 @@
-"""Two real windows, each a process, on one project file: the second says who has it; a kill -9 loses nothing."""
+"""Two real windows, each a process, on one project file: the second says who has it; a kill -9 loses
+nothing.
+"""
 
 from __future__ import annotations
 
@@ -22,7 +24,8 @@ from metagraph.graph.model import Project
 
 ROOT = Path(__file__).resolve().parents[3]
 
-# A window that is told by lines what to do, and tells by lines what it shows; questions wait for their answer.
+# A window that is told by lines what to do, and tells by lines what it shows; questions wait for their
+# answer.
 WINDOW = """
 import sys, threading
 from pathlib import Path

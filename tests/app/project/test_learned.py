@@ -25,7 +25,12 @@ def taught(qapp: object) -> Learned:
 
 
 def test_nothing_is_known_at_first_and_no_file_is_made(taught: Learned, qapp: object) -> None:
-    assert taught.on and taught.patterns.learned == {} and taught.examples_for(Document()) == [] and taught.clips == 0
+    assert (
+        taught.on
+        and taught.patterns.learned == {}
+        and taught.examples_for(Document()) == []
+        and taught.clips == 0
+    )
     assert not (state_folder() / WORDS).exists()
 
 
@@ -62,7 +67,9 @@ def test_a_broken_file_is_set_aside_told_and_learning_goes_on(taught: Learned) -
     assert taught.examples_for(Document()) == [] and len(told) == 2
 
 
-def test_a_window_that_holds_the_file_for_long_is_told_of(taught: Learned, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_a_window_that_holds_the_file_for_long_is_told_of(
+    taught: Learned, monkeypatch: pytest.MonkeyPatch
+) -> None:
     monkeypatch.setattr(module, "LOCK_WAIT", 20)
     told: list[str] = []
     taught.failed.connect(told.append)
@@ -73,9 +80,14 @@ def test_a_window_that_holds_the_file_for_long_is_told_of(taught: Learned, monke
     assert "another window" in told[0] and taught.patterns.learned == {}
 
 
-def test_labelled_clips_of_a_saved_project_teach_the_others(taught: Learned, tmp_path: Path, qtbot: object) -> None:
+def test_labelled_clips_of_a_saved_project_teach_the_others(
+    taught: Learned, tmp_path: Path, qtbot: object
+) -> None:
     opened = open_project(ROOT / "sample_clips" / "sample.metagraph.yaml").project
-    project = replace(opened, clips={i: replace(c, path=str(ROOT / "sample_clips" / c.path)) for i, c in opened.clips.items()})
+    project = replace(
+        opened,
+        clips={i: replace(c, path=str(ROOT / "sample_clips" / c.path)) for i, c in opened.clips.items()},
+    )
     path = tmp_path / "first.metagraph.yaml"
     save_project(project, path, path)
     document, jobs = Document(), Jobs()
@@ -94,7 +106,9 @@ def test_labelled_clips_of_a_saved_project_teach_the_others(taught: Learned, tmp
 
 def test_at_closing_only_what_was_saved_and_not_yet_kept_is_kept(taught: Learned, tmp_path: Path) -> None:
     document = Document()
-    document.load(open_project(ROOT / "sample_clips" / "sample.metagraph.yaml").project, tmp_path / "a.metagraph.yaml")
+    document.load(
+        open_project(ROOT / "sample_clips" / "sample.metagraph.yaml").project, tmp_path / "a.metagraph.yaml"
+    )
     taught.keep(document)
     assert not (state_folder() / CLIPS).exists()
     stopped = Jobs()

@@ -155,7 +155,9 @@ def test_a_file_that_somebody_else_has_written_is_not_overwritten(saver, qtbot, 
     assert changed.theirs.settings.seed == 99
     assert on_disk(saver) == 99 and saver.document.dirty
     left = read_journal(saver.document.journal_place, path)
-    assert left.project.settings.seed == 7 and left.behind, "a crash now loses nothing, though the file is another one"
+    assert left.project.settings.seed == 7 and left.behind, (
+        "a crash now loses nothing, though the file is another one"
+    )
     saver.save(anyway=True)
     qtbot.waitUntil(lambda: not saver.document.dirty)
     assert on_disk(saver) == 7

@@ -1,4 +1,6 @@
-"""Two windows on one project: the second is told who has it, and whatever either does, neither's edits are lost."""
+"""Two windows on one project: the second is told who has it, and whatever either does, neither's edits are
+lost.
+"""
 
 from __future__ import annotations
 
@@ -25,12 +27,16 @@ BUTTON = QMessageBox.StandardButton
 
 
 class Answers:
-    """Stands in for the person: chooses buttons by their words, in the order given, and keeps what was asked."""
+    """Stands in for the person: chooses buttons by their words, in the order given, and keeps what was
+    asked.
+    """
 
     def __init__(self, monkeypatch):
         self.next, self.asked, self.warned, self.patch = [], [], [], monkeypatch
         monkeypatch.setattr(QMessageBox, "exec", lambda box: self._answer(box))
-        monkeypatch.setattr(QMessageBox, "question", lambda *a, **k: (self.asked.append(a[2]), self.next.pop(0))[1])
+        monkeypatch.setattr(
+            QMessageBox, "question", lambda *a, **k: (self.asked.append(a[2]), self.next.pop(0))[1]
+        )
         monkeypatch.setattr(QMessageBox, "warning", lambda *a, **k: self.warned.append(a[2]))
 
     def _answer(self, box):
@@ -250,7 +256,9 @@ def test_the_older_sitting_is_offered_when_the_newer_is_declined(windows, person
     assert [p.name for p in saved.parent.glob(".*.journal")] == [one.document.journal_place.name]
 
 
-def test_what_was_recovered_is_there_still_after_a_second_crash_without_an_edit(windows, person, saved, qtbot):
+def test_what_was_recovered_is_there_still_after_a_second_crash_without_an_edit(
+    windows, person, saved, qtbot
+):
     crashed(saved, 10, 3)
     person.next = [BUTTON.Yes]
     one = opened(qtbot, windows(), saved)
@@ -316,8 +324,13 @@ def rewrite(saved, value):
     save_project(edits.set_settings(read_project(saved), seed=value), saved)
 
 
-@pytest.mark.parametrize(("answer", "disk", "here"), [("Cancel", 99, 7), ("Save anyway", 7, 7), ("Reload", 99, 99), ("Save as…", 99, 7)])
-def test_saving_over_what_another_program_wrote_asks(windows, person, saved, qtbot, tmp_path, answer, disk, here):
+@pytest.mark.parametrize(
+    ("answer", "disk", "here"),
+    [("Cancel", 99, 7), ("Save anyway", 7, 7), ("Reload", 99, 99), ("Save as…", 99, 7)],
+)
+def test_saving_over_what_another_program_wrote_asks(
+    windows, person, saved, qtbot, tmp_path, answer, disk, here
+):
     one = opened(qtbot, windows(), saved)
     seed(one, 7)
     rewrite(saved, 99)
@@ -348,7 +361,10 @@ def test_the_differences_are_listed_side_by_side_before_choosing(windows, person
     person.next = ["Show differences", "Cancel"]
     one.save()
     qtbot.waitUntil(lambda: not person.next)
-    assert seen == [("Done on disk", ["Settings changed: seed 1 → 99"]), ("Done here", ["Settings changed: seed 1 → 7"])]
+    assert seen == [
+        ("Done on disk", ["Settings changed: seed 1 → 99"]),
+        ("Done here", ["Settings changed: seed 1 → 7"]),
+    ]
 
 
 @pytest.mark.parametrize("dirty", [False, True])

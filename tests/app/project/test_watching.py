@@ -1,4 +1,6 @@
-"""Clips exported again while the window is open are read in place: labels and timing stay, half-written files wait, one undo step."""
+"""Clips exported again while the window is open are read in place: labels and timing stay, half-written files
+wait, one undo step.
+"""
 
 from __future__ import annotations
 
@@ -29,7 +31,10 @@ def opened(drive, toy, tmp_path, monkeypatch):
     drive.document.edit("Stance", lambda p: edits.add_stance(p, "arms", "rest", [ids["rest"]]))
     stance = next(iter(drive.document.project.graphs["arms"].stances))
     drive.document.edit("Wave", lambda p: edits.place(p, [ids["wave"]], "arms", "gesture", stance))
-    drive.document.edit("Time", lambda p: edits.update_actions(p, [a.id for a in p.actions() if a.kind == "gesture"], tags=("kept",)))
+    drive.document.edit(
+        "Time",
+        lambda p: edits.update_actions(p, [a.id for a in p.actions() if a.kind == "gesture"], tags=("kept",)),
+    )
     drive.pause(400)
     drive.ids, drive.place, drive.toy = ids, tmp_path, toy
     return drive

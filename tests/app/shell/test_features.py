@@ -29,7 +29,9 @@ window.close()
 
 
 @pytest.mark.window
-@pytest.mark.parametrize(("feature", "gone"), [("manual", "manual"), ("problems", "problems"), ("conversation", "converse")])
+@pytest.mark.parametrize(
+    ("feature", "gone"), [("manual", "manual"), ("problems", "problems"), ("conversation", "converse")]
+)
 def test_a_feature_goes_by_deleting_its_folder_and_its_line(feature, gone, tmp_path):
     shutil.copytree(ROOT / "app", tmp_path / "app", ignore=shutil.ignore_patterns("__pycache__"))
     for package in ("metagraph", "preview"):
@@ -38,9 +40,20 @@ def test_a_feature_goes_by_deleting_its_folder_and_its_line(feature, gone, tmp_p
     table = tmp_path / "app" / "features" / "__init__.py"
     lines = table.read_text(encoding="utf-8").splitlines(keepends=True)
     table.write_text("".join(x for x in lines if x.strip() != f'"{feature}",'), encoding="utf-8")
-    environment = {**os.environ, "XDG_DATA_HOME": str(tmp_path), "XDG_CONFIG_HOME": str(tmp_path), "QT_QPA_PLATFORM": "offscreen"}
+    environment = {
+        **os.environ,
+        "XDG_DATA_HOME": str(tmp_path),
+        "XDG_CONFIG_HOME": str(tmp_path),
+        "QT_QPA_PLATFORM": "offscreen",
+    }
     done = subprocess.run(
-        [sys.executable, "-c", START], cwd=tmp_path, env=environment, capture_output=True, text=True, timeout=60, check=False
+        [sys.executable, "-c", START],
+        cwd=tmp_path,
+        env=environment,
+        capture_output=True,
+        text=True,
+        timeout=60,
+        check=False,
     )
     assert done.returncode == 0 and "Traceback" not in done.stderr, done.stderr
     there = done.stdout.split()

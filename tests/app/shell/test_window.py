@@ -27,7 +27,12 @@ from metagraph.formats.store import save_project
 from metagraph.graph import edits
 
 pytestmark = [pytest.mark.window, pytest.mark.gl]
-KEY, CTRL, ALT, SHIFT = Qt.Key, Qt.KeyboardModifier.ControlModifier, Qt.KeyboardModifier.AltModifier, Qt.KeyboardModifier.ShiftModifier
+KEY, CTRL, ALT, SHIFT = (
+    Qt.Key,
+    Qt.KeyboardModifier.ControlModifier,
+    Qt.KeyboardModifier.AltModifier,
+    Qt.KeyboardModifier.ShiftModifier,
+)
 
 
 @pytest.fixture
@@ -36,7 +41,13 @@ def folder(toy, tmp_path):
     place = tmp_path / "clips"
     place.mkdir()
     for n, name in enumerate(("idle", "up idle", "beat", "cough", "raise")):
-        clip = toy.clip(name, 0.8, 0.8 if n == 1 else 0.0, end=0.8 if n in (1, 4) else 0.0, swing=0.0 if n < 2 else 0.3 + n / 10)
+        clip = toy.clip(
+            name,
+            0.8,
+            0.8 if n == 1 else 0.0,
+            end=0.8 if n in (1, 4) else 0.0,
+            swing=0.0 if n < 2 else 0.3 + n / 10,
+        )
         write_bvh(clip, place / f"{name}.bvh")
     return place
 
@@ -78,7 +89,11 @@ def test_the_whole_job_by_keyboard_alone(drive, folder, tmp_path, monkeypatch):
     first = next(iter(drive.document.project.graphs["arms"].stances))
     assert drive.session.place.stance() == first
     drive.library.search.setText("")
-    for name, key, kind in (("beat", KEY.Key_2, "gesture"), ("cough", KEY.Key_3, "fidget"), ("raise", KEY.Key_4, "transition")):
+    for name, key, kind in (
+        ("beat", KEY.Key_2, "gesture"),
+        ("cough", KEY.Key_3, "fidget"),
+        ("raise", KEY.Key_4, "transition"),
+    ):
         row = next(r for r in range(5) if drive.library.proxy.index(r, 0).data() == name)
         listed.setFocus()
         while listed.currentIndex().row() != row:
@@ -86,10 +101,12 @@ def test_the_whole_job_by_keyboard_alone(drive, folder, tmp_path, monkeypatch):
         drive.key(key, widget=listed)
         drive.wait(lambda k=kind, n=name: drive.names(k) == [n])
 
-    # The canvas: arrows go through the nodes and change the likelihood, Enter plays in context, Esc comes back.
+    # The canvas: arrows go through the nodes and change the likelihood, Enter plays in context, Esc comes
+    # back.
     drive.canvas.setFocus()
     gesture, fidget, transition = (
-        next(a for a in drive.document.project.actions() if a.kind == k) for k in ("gesture", "fidget", "transition")
+        next(a for a in drive.document.project.actions() if a.kind == k)
+        for k in ("gesture", "fidget", "transition")
     )
     seen = []
     for _ in range(3):
@@ -98,7 +115,9 @@ def test_the_whole_job_by_keyboard_alone(drive, folder, tmp_path, monkeypatch):
     assert {*seen} >= {(fidget.id,), (transition.id,)}
     for _ in range(3):
         drive.key(KEY.Key_Up, widget=drive.canvas)
-    assert drive.session.selection.selected_actions()[0].kind == "stance", "above the rows are the stance's loops"
+    assert drive.session.selection.selected_actions()[0].kind == "stance", (
+        "above the rows are the stance's loops"
+    )
     drive.key(KEY.Key_Down, widget=drive.canvas)
     assert drive.session.selection.actions == (gesture.id,)
     steps = count(drive)
@@ -136,7 +155,9 @@ def test_the_whole_job_by_keyboard_alone(drive, folder, tmp_path, monkeypatch):
     drive.key(KEY.Key_Return, widget=field)
     assert drive.document.project.action(gesture.id).name == "small beat"
     drive.key(KEY.Key_Z, CTRL, widget=field)
-    assert drive.document.project.action(gesture.id).name == "beat", "what was taken over is undone by the window's undo"
+    assert drive.document.project.action(gesture.id).name == "beat", (
+        "what was taken over is undone by the window's undo"
+    )
 
     # Remove, undo, redo, and save.
     drive.canvas.setFocus()
@@ -232,8 +253,12 @@ def test_every_control_says_what_it_is(toys):
         select()
         assert drive.properties.pages.currentIndex() == page
         for widget in drive.window.findChildren(QAbstractButton):
-            if widget.isVisible() and not widget.objectName().startswith(("qt_", "ScrollLeft", "ScrollRight")):
-                assert widget.text() or widget.accessibleName(), f"a button without a name in {widget.parent()}: {widget.toolTip()}"
+            if widget.isVisible() and not widget.objectName().startswith(
+                ("qt_", "ScrollLeft", "ScrollRight")
+            ):
+                assert widget.text() or widget.accessibleName(), (
+                    f"a button without a name in {widget.parent()}: {widget.toolTip()}"
+                )
                 assert widget.toolTip() or widget.text(), widget
         for kind in (QLineEdit, QComboBox, QSpinBox, QSlider):
             for widget in drive.window.findChildren(kind):
@@ -247,7 +272,10 @@ def test_every_control_says_what_it_is(toys):
 
 
 def test_twenty_clips_are_dropped_at_once(drive, toy):
-    project = edits.add_clips(toy.project(), [(f"many {n:02}.glb", 0, "", toy.clip(f"many {n:02}", 0.5, swing=n / 40)) for n in range(20)])
+    project = edits.add_clips(
+        toy.project(),
+        [(f"many {n:02}.glb", 0, "", toy.clip(f"many {n:02}", 0.5, swing=n / 40)) for n in range(20)],
+    )
     drive.document.load(project, None)
     drive.files.opened.emit()
     drive.library.search.setText("many")
@@ -255,7 +283,9 @@ def test_twenty_clips_are_dropped_at_once(drive, toy):
     drive.key(KEY.Key_A, CTRL, widget=drive.library.list)
     drive.wait(lambda: len(drive.session.selection.clips) == 20)
     steps, fidgets = count(drive), len(drive.names("fidget"))
-    drive.drag(drive.card("many 00"), drive.node("fidget"), lambda: len(drive.names("fidget")) == fidgets + 20)
+    drive.drag(
+        drive.card("many 00"), drive.node("fidget"), lambda: len(drive.names("fidget")) == fidgets + 20
+    )
     assert count(drive) == steps + 1
     assert len(drive.session.selection.actions) == 20
     drive.key(KEY.Key_Z, CTRL)
@@ -271,7 +301,10 @@ def test_rows_are_dragged_to_another_node_and_to_another_stance(toys):
     assert set(drive.session.selection.actions) == {beat, cough}
     steps = count(drive)
     drive.drag(drive.row(beat), drive.chip(up), lambda: drive.action("rest cough").stance == up)
-    assert [(drive.document.project.action(i).stance, drive.document.project.action(i).kind) for i in (beat, cough)] == [(up, "fidget")] * 2
+    assert [
+        (drive.document.project.action(i).stance, drive.document.project.action(i).kind)
+        for i in (beat, cough)
+    ] == [(up, "fidget")] * 2
     assert count(drive) == steps + 1
     assert drive.session.place.stance() == up, "the window goes where they went"
 
@@ -317,7 +350,9 @@ def test_a_likelihood_bar_is_dragged_in_one_step_and_escape_takes_it_back(toys):
     pull(0.6, 0.8, 1.0)
     QTest.mouseRelease(canvas, Qt.MouseButton.LeftButton, pos=drive.bar(beat, 1.0)[1])
     assert drive.action("rest beat lf").likelihood == pytest.approx(3.0, abs=0.1)
-    assert drive.action("rest short").likelihood == drive.action("rest beat lf").likelihood, "what is selected goes along"
+    assert drive.action("rest short").likelihood == drive.action("rest beat lf").likelihood, (
+        "what is selected goes along"
+    )
     assert count(drive) == steps + 1
     drive.key(KEY.Key_Z, CTRL)
     assert drive.action("rest beat lf").likelihood == 1.0
@@ -333,7 +368,9 @@ def test_a_likelihood_bar_is_dragged_in_one_step_and_escape_takes_it_back(toys):
 def test_many_actions_are_edited_at_once_and_show_what_differs(toys):
     drive, p = toys, toys.properties
     beat, wave, short = drive.id("rest beat lf"), drive.id("rest wave rt"), drive.id("rest short")
-    drive.document.edit("Tag", lambda q: edits.update_actions(q, (beat,), tags=("positive",), timing={"earliest_exit": 0.4}))
+    drive.document.edit(
+        "Tag", lambda q: edits.update_actions(q, (beat,), tags=("positive",), timing={"earliest_exit": 0.4})
+    )
     drive.session.selection.select_actions((beat, wave))
     assert p.name.text() == "2 actions"
     assert p.name.isReadOnly()
@@ -413,16 +450,22 @@ def test_the_layer_page_sets_weights_rest_and_base_pose(toys):
 
 def test_problems_are_found_shown_and_jumped_to(toys):
     drive = toys
-    drive.document.edit("Break", lambda q: edits.update_actions(q, (drive.id("up point"),), timing={"start": 5.0, "end": 6.0}))
+    drive.document.edit(
+        "Break", lambda q: edits.update_actions(q, (drive.id("up point"),), timing={"start": 5.0, "end": 6.0})
+    )
     panel = drive.problems_panel
     drive.wait(lambda: any(q.action == drive.id("up point") for q in panel.problems))
     assert "No problems" not in drive.window.findChild(ProblemButton).text()
-    drive.click((drive.window.findChild(ProblemButton), drive.window.findChild(ProblemButton).rect().center()))
+    drive.click(
+        (drive.window.findChild(ProblemButton), drive.window.findChild(ProblemButton).rect().center())
+    )
     drive.wait(panel.tree.isVisible)
     row = next(n for n, q in enumerate(panel.problems) if q.action == drive.id("up point"))
     item = panel.tree.topLevelItem(row)
     panel.tree.scrollToItem(item)
-    QTest.mouseClick(panel.tree.viewport(), Qt.MouseButton.LeftButton, pos=panel.tree.visualItemRect(item).center())
+    QTest.mouseClick(
+        panel.tree.viewport(), Qt.MouseButton.LeftButton, pos=panel.tree.visualItemRect(item).center()
+    )
     assert drive.session.selection.actions == (drive.id("up point"),)
     assert drive.session.place.stance() == drive.id("up")
     assert drive.properties.trouble.text()
@@ -493,7 +536,9 @@ def test_menus_say_how_things_are(toys):
 
 def test_files_are_dropped_on_the_library_and_on_a_node(drive, folder, tmp_path):
     library = drive.library.list.viewport()
-    assert not drive.drop_files((drive.canvas, drive.node("gesture")[1]), folder / "beat.bvh"), "without a stance there is no gesture"
+    assert not drive.drop_files((drive.canvas, drive.node("gesture")[1]), folder / "beat.bvh"), (
+        "without a stance there is no gesture"
+    )
     assert drive.drop_files(drive.middle(), folder / "idle.bvh")
     drive.wait(lambda: drive.names("stance") == ["idle"])
     assert drive.drop_files(drive.node("gesture"), folder / "beat.bvh", folder / "cough.bvh")
@@ -593,7 +638,9 @@ def test_a_project_whose_character_is_missing_opens_as_a_stick_figure(drive, toy
     drive.importing.import_paths([str(folder)])
     drive.wait(lambda: len(drive.document.project.clips) == 5)
     clips = list(drive.document.project.clips)
-    project = edits.add_stance(edits.set_character(drive.document.project, "nobody.glb"), "arms", "idle", clips[:1])
+    project = edits.add_stance(
+        edits.set_character(drive.document.project, "nobody.glb"), "arms", "idle", clips[:1]
+    )
     path = tmp_path / "lost.metagraph.yaml"
     save_project(project, path)
     drive.document.load(type(project)(), None)
@@ -640,7 +687,10 @@ def test_requests_and_another_seed_change_the_performance(toys):
 def test_a_missing_clip_can_be_looked_at_without_harm(toys):
     drive = toys
     action = drive.action("rest beat lf")
-    clips = {**drive.document.project.clips, action.clip: replace(drive.document.project.clips[action.clip], motion=None)}
+    clips = {
+        **drive.document.project.clips,
+        action.clip: replace(drive.document.project.clips[action.clip], motion=None),
+    }
     drive.document.load(replace(drive.document.project, clips=clips), None)
     for show in (
         lambda: drive.session.transport.show_clip(action.clip),
@@ -656,7 +706,9 @@ def test_a_missing_clip_can_be_looked_at_without_harm(toys):
     drive.pause(60)
 
 
-@pytest.mark.parametrize("command", ["keys", "patterns", "skeleton", "compatibility", "render", "export", "repairs"])
+@pytest.mark.parametrize(
+    "command", ["keys", "patterns", "skeleton", "compatibility", "render", "export", "repairs"]
+)
 def test_a_dialog_opens_over_the_window_and_closes(toys, command):
     drive = toys
     before = set(drive.window.findChildren(QDialog))

@@ -37,7 +37,10 @@ def conversation(folder: Path) -> Conversation:
         Side(name="Ben", audio="talk.wav", channel=1, segments=tuple(sorted(ben, key=lambda s: s.start))),
     )
     every = tuple(
-        msgspec.structs.replace(s, rates=msgspec.structs.replace(s.rates, clause=1.0, response=1.0, hesitation=1.0)) for s in sides
+        msgspec.structs.replace(
+            s, rates=msgspec.structs.replace(s.rates, clause=1.0, response=1.0, hesitation=1.0)
+        )
+        for s in sides
     )
     return Conversation(name="Greeting", length=8.0, sides=every)
 
@@ -45,9 +48,13 @@ def conversation(folder: Path) -> Conversation:
 @pytest.fixture
 def talking(tmp_path: Path) -> Path:
     """A project file with a conversation of id v9000."""
-    whole = absolute(open_project(ROOT / "sample_clips" / "sample.metagraph.yaml").project, ROOT / "sample_clips")
+    whole = absolute(
+        open_project(ROOT / "sample_clips" / "sample.metagraph.yaml").project, ROOT / "sample_clips"
+    )
     path = tmp_path / "talk.metagraph.yaml"
-    save_project(replace(whole, conversations={"v9000": conversation(tmp_path)}, lines={}, performances={}), path)
+    save_project(
+        replace(whole, conversations={"v9000": conversation(tmp_path)}, lines={}, performances={}), path
+    )
     return path
 
 
@@ -117,11 +124,20 @@ def test_kept_as_performances_both_can_be_played_and_undone_at_once(staged):
     staged.performance.keep_conversation()
     kept = staged.document.project.performances
     assert [p.name for p in kept.values()] == ["Greeting: Ada", "Greeting: Ben"]
-    assert staged.session.onstage.conversation is None and staged.session.onstage.performance == next(iter(kept))
+    assert staged.session.onstage.conversation is None and staged.session.onstage.performance == next(
+        iter(kept)
+    )
     assert {line.channel for line in staged.document.project.lines.values()} == {0, 1}
-    staged.wait(lambda: staged.performance.shown.partner is None and bool(staged.performance.shown.plan.track.speeches))
+    staged.wait(
+        lambda: (
+            staged.performance.shown.partner is None and bool(staged.performance.shown.plan.track.speeches)
+        )
+    )
     staged.document.undo_stack.undo()
-    assert staged.document.project.performances == before.performances and staged.document.project.lines == before.lines
+    assert (
+        staged.document.project.performances == before.performances
+        and staged.document.project.lines == before.lines
+    )
 
 
 def test_a_side_moved_by_another_project_uses_that_ones_clips_and_one_that_cannot_be_read_is_told(talking):
@@ -130,10 +146,15 @@ def test_a_side_moved_by_another_project_uses_that_ones_clips_and_one_that_canno
     talk = project.conversations["v9000"]
     other = replace(project, conversations={}, settings=replace(project.settings, alpha=9.0))
     save_project(absolute(other, folder), folder / "other.metagraph.yaml")
-    for path, alpha, told in (("other.metagraph.yaml", 9.0, False), ("missing.metagraph.yaml", project.settings.alpha, True)):
+    for path, alpha, told in (
+        ("other.metagraph.yaml", 9.0, False),
+        ("missing.metagraph.yaml", project.settings.alpha, True),
+    ):
         sides = (talk.sides[0], msgspec.structs.replace(talk.sides[1], project=path))
         shown = ConversationPlans().show(
-            replace(project, conversations={"v9000": msgspec.structs.replace(talk, sides=sides)}), "v9000", folder
+            replace(project, conversations={"v9000": msgspec.structs.replace(talk, sides=sides)}),
+            "v9000",
+            folder,
         )
         assert shown.both[1].project.settings.alpha == alpha
         assert any("missing" in note for note in shown.notes) == told
@@ -149,8 +170,14 @@ def test_two_other_projects_are_each_read_once(talking, monkeypatch):
         save_project(absolute(replace(project, conversations={}), folder), folder / f"{name}.metagraph.yaml")
     whole = stage.open_whole
     monkeypatch.setattr(stage, "open_whole", lambda path: (read.append(path.name), whole(path))[1])
-    sides = tuple(msgspec.structs.replace(s, project=f"{n}.metagraph.yaml") for s, n in zip(talk.sides, ("one", "two"), strict=True))
-    both, own = ConversationPlans(), replace(project, conversations={"v9000": msgspec.structs.replace(talk, sides=sides)})
+    sides = tuple(
+        msgspec.structs.replace(s, project=f"{n}.metagraph.yaml")
+        for s, n in zip(talk.sides, ("one", "two"), strict=True)
+    )
+    both, own = (
+        ConversationPlans(),
+        replace(project, conversations={"v9000": msgspec.structs.replace(talk, sides=sides)}),
+    )
     for _ in range(3):
         both.show(own, "v9000", folder)
     assert read == ["one.metagraph.yaml", "two.metagraph.yaml"]
@@ -167,13 +194,18 @@ def test_a_side_can_move_with_a_clip_instead_of_its_graph_and_still_speaks_and_a
     def shown(motion: str | None):
         sides = (msgspec.structs.replace(talk.sides[0], motion=motion), talk.sides[1])
         return ConversationPlans().show(
-            replace(project, conversations={"v9000": msgspec.structs.replace(talk, sides=sides)}), "v9000", talking.parent
+            replace(project, conversations={"v9000": msgspec.structs.replace(talk, sides=sides)}),
+            "v9000",
+            talking.parent,
         )
 
     still, moved, lost = shown(None), shown(clip.id), shown("c0")
     arm = project.skeleton.index("RightUpperArm") if "RightUpperArm" in project.skeleton else 10
     times = np.linspace(0, clip.duration, 7)
-    assert np.abs(moved.pose(times).rotations[:, arm] - clip.motion.pose_at(times).rotations[:, arm]).max() < 1e-3
+    assert (
+        np.abs(moved.pose(times).rotations[:, arm] - clip.motion.pose_at(times).rotations[:, arm]).max()
+        < 1e-3
+    )
     assert np.array_equal(moved.pose(1.0).rotations, moved.pose(np.array([1.0])).rotations[0])
     assert moved.pose(100.0) is not None, "beyond its end it holds its last pose"
     assert moved.plan.track.speeches == still.plan.track.speeches != ()
@@ -183,7 +215,16 @@ def test_a_side_can_move_with_a_clip_instead_of_its_graph_and_still_speaks_and_a
 
 def test_it_is_written_from_the_command_line_as_a_video_with_sound_and_as_motion_for_each(talking, tmp_path):
     def run(*words: str) -> subprocess.CompletedProcess[str]:
-        whole = [sys.executable, "-m", "app.cli", "render", str(talking), "--conversation", "Greeting", *words]
+        whole = [
+            sys.executable,
+            "-m",
+            "app.cli",
+            "render",
+            str(talking),
+            "--conversation",
+            "Greeting",
+            *words,
+        ]
         return subprocess.run(whole, cwd=ROOT, capture_output=True, text=True, timeout=300)
 
     made = run("-o", str(tmp_path / "show.mp4"), "-s", "2.5", "--size", "160x90", "--fps", "10")

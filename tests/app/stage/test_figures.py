@@ -42,7 +42,9 @@ def test_a_skeleton_without_a_character_is_drawn_as_sticks_once_they_are_built(d
     assert len(told) == 1
 
 
-def test_the_projects_character_is_drawn_on_the_projects_skeleton_alone(document, figures, sample, toy, qtbot):
+def test_the_projects_character_is_drawn_on_the_projects_skeleton_alone(
+    document, figures, sample, toy, qtbot
+):
     document.load(replace(sample, character=str(MANNEQUIN)), None)
     qtbot.waitUntil(lambda: figures.figure(sample.skeleton) is not None)
     assert isinstance(figures.figure(sample.skeleton), SkinnedFigure)
@@ -57,7 +59,9 @@ def test_the_projects_character_is_drawn_on_the_projects_skeleton_alone(document
 
 
 @pytest.mark.parametrize("content", [None, b"", b"glTF\x02\x00\x00\x00"])
-def test_a_character_that_cannot_be_read_is_told_once_and_drawn_as_sticks(document, figures, toy, tmp_path, qtbot, content):
+def test_a_character_that_cannot_be_read_is_told_once_and_drawn_as_sticks(
+    document, figures, toy, tmp_path, qtbot, content
+):
     path = tmp_path / "broken.glb"
     if content is not None:
         path.write_bytes(content)
@@ -78,7 +82,10 @@ def test_thumbnails_are_drawn_elsewhere_and_a_loop_moves(document, figures, toy,
         loop = toy.id(document.project, "rest loop")
         clip = document.project.action(loop).clip
         assert thumbnails.picture(clip) is None
-        qtbot.waitUntil(lambda: thumbnails.picture(clip) is not None and thumbnails.picture(clip, bare=True) is not None, timeout=20000)
+        qtbot.waitUntil(
+            lambda: thumbnails.picture(clip) is not None and thumbnails.picture(clip, bare=True) is not None,
+            timeout=20000,
+        )
         card, bare = thumbnails.picture(clip), thumbnails.picture(clip, bare=True)
         assert card.pixelColor(1, 1).alpha() == 255
         assert bare.pixelColor(1, 1).alpha() == 0

@@ -12,7 +12,9 @@ def test_requests_are_counted_whether_they_are_taken_on_or_refused(qapp, toy):
     stage._clock.start()
     stage.tick()
     for n in range(30):
-        stage.session.receive(WINDOW, f'{{"do": "line", "id": "{n}", "line": "none"}}' if n % 2 else '{"do": "nothing known"}')
+        stage.session.receive(
+            WINDOW, f'{{"do": "line", "id": "{n}", "line": "none"}}' if n % 2 else '{"do": "nothing known"}'
+        )
     time.sleep(0.02)
     stage.tick()
     assert stage.session.answered == 30 and stage.tape.count == 0

@@ -47,9 +47,9 @@ def test_morphs_of_a_clip_and_of_a_plan_are_drawn(shared_data):
 
     project = edits.add_stance(project, "head", "face", [entry.id])
     loop = project.graphs["head"].of(next(iter(project.graphs["head"].stances)), "stance")[0]
-    assert morphs_at(make_plan(project, 5.0), project, frame / entry.fps - project.span(loop)[0]) == pytest.approx(
-        {name: min(1.0, max(0.0, value)) for name, value in wanted.items()}, abs=1e-3
-    )
+    assert morphs_at(
+        make_plan(project, 5.0), project, frame / entry.fps - project.span(loop)[0]
+    ) == pytest.approx({name: min(1.0, max(0.0, value)) for name, value in wanted.items()}, abs=1e-3)
     times = np.array([frame / entry.fps])
     seen = [(figure, alone(project, entry.id))]
     shown = next(iter(pictures(seen, times, (160, 160), "dark")))
@@ -58,7 +58,9 @@ def test_morphs_of_a_clip_and_of_a_plan_are_drawn(shared_data):
     assert (shown != still).any(), "the face differs from the one without morphs"
 
 
-def test_the_characters_own_morph_targets_are_known_when_it_is_opened(shared_data: Path, tmp_path: Path) -> None:
+def test_the_characters_own_morph_targets_are_known_when_it_is_opened(
+    shared_data: Path, tmp_path: Path
+) -> None:
     """A face is recognised from what the character has, not only from what clips move."""
     from app.project.opening import open_whole
     from metagraph.formats.gltf import morph_targets

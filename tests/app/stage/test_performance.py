@@ -69,7 +69,9 @@ def test_a_transition_ends_in_the_other_stance(toy, project):
 
 
 def test_a_stances_loop_plays_from_its_start_to_its_end(toy, project):
-    loop = next(a.id for a in project.actions() if a.kind == "stance" and a.layer == "arms" and a.name == "up loop")
+    loop = next(
+        a.id for a in project.actions() if a.kind == "stance" and a.layer == "arms" and a.name == "up loop"
+    )
     shown = in_context(project, loop, "arms", stances(project))
     assert shown.plan.layers["arms"].cues == ()
     assert shown.length == pytest.approx(2.0)
@@ -81,7 +83,9 @@ def test_a_clip_that_was_placed_is_shown_as_what_it_is(toy, project):
     shown = in_context(project, clip, "arms", stances(project))
     assert shown.plan.layers["arms"].cues[0].action.kind == "fidget"
     up_only = in_context(project, project.action(toy.id(project, "up yawn")).clip, "arms", stances(project))
-    assert up_only.plan.layers["arms"].cues[0].stance == toy.id(project, "up"), "where it is, when it is not on the current stance"
+    assert up_only.plan.layers["arms"].cues[0].stance == toy.id(project, "up"), (
+        "where it is, when it is not on the current stance"
+    )
 
 
 def test_a_clip_that_was_not_placed_is_tried_as_a_gesture(toy, project):
@@ -129,7 +133,9 @@ def stage(qapp, project):
 
 
 def planned(stage) -> bool:
-    return stage.shown.project is stage.document.project and any(stage.shown.plan.layers[x].cues for x in LAYERS)
+    return stage.shown.project is stage.document.project and any(
+        stage.shown.plan.layers[x].cues for x in LAYERS
+    )
 
 
 def test_the_plan_follows_edits_and_the_seed(stage, qtbot):
@@ -137,7 +143,9 @@ def test_the_plan_follows_edits_and_the_seed(stage, qtbot):
     before = stage.shown.plan
     stage.document.edit("Change seed", lambda p: edits.set_settings(p, seed=77))
     qtbot.waitUntil(lambda: planned(stage))
-    assert [c.action.id for c in stage.shown.plan.layers["arms"].cues] != [c.action.id for c in before.layers["arms"].cues]
+    assert [c.action.id for c in stage.shown.plan.layers["arms"].cues] != [
+        c.action.id for c in before.layers["arms"].cues
+    ]
     stage.document.undo()
     qtbot.waitUntil(lambda: planned(stage))
     assert stage.shown.plan.layers["arms"].cues == before.layers["arms"].cues
@@ -157,7 +165,9 @@ def test_a_request_appears_in_the_plan_and_can_be_withdrawn(stage, qtbot, toy):
 def test_asks_are_kept_with_the_project_and_undone_like_any_edit(stage, qtbot):
     stage.requests.ask(a.Gesture(at=3.0), "Ask for a gesture")
     project = stage.document.project
-    assert [p.name for p in project.performances.values()] == ["Performance"] and stage.requests.kept is not None
+    assert [p.name for p in project.performances.values()] == [
+        "Performance"
+    ] and stage.requests.kept is not None
     stage.requests.ask(a.Nod(at=4.0))
     assert len(stage.asks) == 2, "the second joins the first"
     first = stage.asks[0].id

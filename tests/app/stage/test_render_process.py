@@ -1,4 +1,6 @@
-"""A performance is written by a process of its own, told as it goes, and leaves nothing when it is cancelled."""
+"""A performance is written by a process of its own, told as it goes, and leaves nothing when it is
+cancelled.
+"""
 
 from __future__ import annotations
 
@@ -56,7 +58,12 @@ def test_a_place_that_cannot_be_written_is_said(qapp, talk, tmp_path):
     project, ident = talk
     (tmp_path / "file").write_text("in the way")
     with pytest.raises(RuntimeError, match="file"):
-        write(project, ROOT / "sample_clips", Wanted(tmp_path / "file" / "a.bvh", ident, 0.5), Job("x", lambda job: None))
+        write(
+            project,
+            ROOT / "sample_clips",
+            Wanted(tmp_path / "file" / "a.bvh", ident, 0.5),
+            Job("x", lambda job: None),
+        )
 
 
 def test_a_cancelled_job_leaves_nothing(qapp, talk, tmp_path):

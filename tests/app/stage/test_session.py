@@ -132,7 +132,11 @@ def test_jumping_to_an_action_goes_to_its_layer_and_stance(session, toy):
     point = toy.id(project, "up point")
     session.place.set_layer("head")
     session.jump(action=point)
-    assert (session.place.layer, session.place.stance(), session.selection.actions) == ("arms", toy.id(project, "up"), (point,))
+    assert (session.place.layer, session.place.stance(), session.selection.actions) == (
+        "arms",
+        toy.id(project, "up"),
+        (point,),
+    )
     session.jump(clip=next(iter(project.clips)))
     assert session.selection.actions == ()
 

@@ -63,7 +63,12 @@ def test_a_double_click_asks_for_something_there_and_a_drag_moves_it(stage):
     (ask,) = drive.performance.asks
     assert isinstance(ask, a.Go) and ask.at == pytest.approx(6.0, abs=0.1)
     assert drive.timeline.stage.currentText() == "Performance"
-    drive.wait(lambda: drive.performance.answers().get(ask.id) is not None and drive.performance.answers()[ask.id].state != "refused")
+    drive.wait(
+        lambda: (
+            drive.performance.answers().get(ask.id) is not None
+            and drive.performance.answers()[ask.id].state != "refused"
+        )
+    )
     up = drive.performance.document.project.stance(ask.stance).name
     assert up == "up"
     # A real drag in time: nothing changes before the button is let go, then it is one step.
@@ -147,7 +152,9 @@ def held(drive, ident: str, modifier=Qt.KeyboardModifier.NoModifier, seconds: fl
     to = QPoint(grip.x() + round(seconds * board(drive).each), grip.y())
     QTest.mousePress(board(drive), LEFT_BUTTON, modifier, grip)
     for point in ((grip + to) / 2, to):
-        move = QMouseEvent(QEvent.Type.MouseMove, point, board(drive).mapToGlobal(point), LEFT_BUTTON, LEFT_BUTTON, modifier)
+        move = QMouseEvent(
+            QEvent.Type.MouseMove, point, board(drive).mapToGlobal(point), LEFT_BUTTON, LEFT_BUTTON, modifier
+        )
         QApplication.sendEvent(board(drive), move)
     return to
 
@@ -169,7 +176,11 @@ def test_a_dragged_request_is_given_up_with_escape_and_copied_with_ctrl(stage):
     assert [round(m.at) for m in board(drive).marks()] == [2, 5]
     QTest.mouseRelease(board(drive), LEFT_BUTTON, ctrl, to)
     first, copy = drive.performance.asks
-    assert first == ask and copy.at == pytest.approx(5.0, abs=0.05) and drive.session.onstage.requests == (copy.id,)
+    assert (
+        first == ask
+        and copy.at == pytest.approx(5.0, abs=0.05)
+        and drive.session.onstage.requests == (copy.id,)
+    )
     assert drive.document.undo_stack.undoText() == "Copy request"
     drive.document.undo()
     assert drive.performance.asks == (ask,)
@@ -198,7 +209,12 @@ def test_all_of_it_works_from_the_keyboard(stage):
     key(Qt.Key.Key_Right, Qt.KeyboardModifier.ShiftModifier)
     assert [x.at for x in drive.performance.asks] == [4.0, 6.0]
     one, two = (x.id for x in drive.performance.asks)
-    for press, chosen in ((Qt.Key.Key_Up, one), (Qt.Key.Key_Up, one), (Qt.Key.Key_Down, two), (Qt.Key.Key_Down, two)):
+    for press, chosen in (
+        (Qt.Key.Key_Up, one),
+        (Qt.Key.Key_Up, one),
+        (Qt.Key.Key_Down, two),
+        (Qt.Key.Key_Down, two),
+    ):
         key(press)
         assert drive.session.onstage.requests == (chosen,)
     key(Qt.Key.Key_Escape)
@@ -296,7 +312,9 @@ with connect(sys.argv[1]) as line:
 
 
 def client(drive, *messages: dict) -> tuple[subprocess.Popen, threading.Thread, list[dict]]:
-    """Send messages from another process; its replies fill the list, read by a thread since the window must not wait."""
+    """Send messages from another process; its replies fill the list, read by a thread since the window must
+    not wait.
+    """
     address = drive.performance.live.stage.relay.ready.websocket
     words = [sys.executable, "-c", CLIENT, address, json.dumps(messages)]
     process = subprocess.Popen(words, stdin=subprocess.PIPE, stdout=subprocess.PIPE, text=True)
@@ -310,7 +328,11 @@ def client(drive, *messages: dict) -> tuple[subprocess.Popen, threading.Thread, 
 def live(stage):
     drive = stage
     drive.performance.live.begin(Options(port=0, osc=None))
-    drive.wait(lambda: drive.performance.live.stage is not None and drive.performance.live.stage.relay.ready is not None)
+    drive.wait(
+        lambda: (
+            drive.performance.live.stage is not None and drive.performance.live.stage.relay.ready is not None
+        )
+    )
     yield drive
     drive.performance.live.end()
 
@@ -333,7 +355,8 @@ def test_a_client_drives_a_gesture_that_is_seen_in_the_preview(live):
         cue = next(c for c in arms() if c.meta.endswith("/w"))
         arm = drive.document.project.skeleton.index("LeftUpperArm")
         turned = lambda: np.abs(drive.performance.pose().rotations[arm] - before.rotations[arm]).max()  # noqa: E731
-        # The arm is up in the picture. Between two looks more than half of it may pass, where the machine is busy.
+        # The arm is up in the picture. Between two looks more than half of it may pass, where the machine is
+        # busy.
         drive.wait(lambda: bool(cue.start < drive.session.transport.seconds < cue.end and turned() > 0.1))
         painted = drive.preview.frames
         drive.wait(lambda: drive.preview.frames > painted + 2)
@@ -377,7 +400,10 @@ def test_what_was_played_live_is_kept_and_plays_again_as_it_was(live):
     drive.pick(drive.timeline.more_menu, "Keep what was played live")
     assert drive.timeline.stage.currentText() == "Live session"
     drive.wait(
-        lambda: drive.performance.requests.kept is not None and drive.performance.shown.length == drive.performance.requests.kept.length
+        lambda: (
+            drive.performance.requests.kept is not None
+            and drive.performance.shown.length == drive.performance.requests.kept.length
+        )
     )
     again = drive.performance.shown.plan.layers["arms"].cues
     assert [c for c in again if c.start < now] == [c for c in played if c.start < now]

@@ -38,7 +38,9 @@ def drawn(pictures: Thumbnails, clip: str, side: int = 100) -> None:
 def test_the_pictures_that_were_not_seen_for_longest_go_and_are_drawn_again(pictures, monkeypatch):
     monkeypatch.setattr(module, "MOST", 3 * 40_000)
     asked = []
-    monkeypatch.setattr(pictures, "_order", lambda key, motion: (asked.append(key[0]), _number(pictures, key, motion)))
+    monkeypatch.setattr(
+        pictures, "_order", lambda key, motion: (asked.append(key[0]), _number(pictures, key, motion))
+    )
     clips = list(pictures.document.project.clips)[:4]
     for clip in clips[:3]:
         drawn(pictures, clip)

@@ -13,7 +13,11 @@ from app.widgets.act_strip import LEFT, Strip, clock, place
 from metagraph.playback.learn import Act
 
 ACTS = {
-    "arms": (Act(0, 2, "left", "gesture", ("positive",)), Act(1.5, 3, "right", "fidget"), Act(5, 8, "both", "transition")),
+    "arms": (
+        Act(0, 2, "left", "gesture", ("positive",)),
+        Act(1.5, 3, "right", "fidget"),
+        Act(5, 8, "both", "transition"),
+    ),
     "head": (Act(4, 5, "both", "gesture", ("negative",)),),
 }
 
@@ -29,7 +33,15 @@ def strip(qtbot):
 
 
 def test_seconds_are_told_as_clocks_do():
-    assert [clock(s) for s in (0, 0.5, 12, 60, 65, 3600, 3725)] == ["0 s", "0.5 s", "12 s", "1:00", "1:05", "1:00:00", "1:02:05"]
+    assert [clock(s) for s in (0, 0.5, 12, 60, 65, 3600, 3725)] == [
+        "0 s",
+        "0.5 s",
+        "12 s",
+        "1:00",
+        "1:05",
+        "1:00:00",
+        "1:02:05",
+    ]
 
 
 def test_only_arms_have_sides():
@@ -79,7 +91,13 @@ def test_dragging_moves_along_once_zoomed(strip, qtbot):
 
 
 @pytest.mark.parametrize(
-    "acts", [{}, {"arms": ()}, ACTS, {"body": tuple(Act(n / 50, n / 50 + 0.01, "both", "fidget") for n in range(3000))}]
+    "acts",
+    [
+        {},
+        {"arms": ()},
+        ACTS,
+        {"body": tuple(Act(n / 50, n / 50 + 0.01, "both", "fidget") for n in range(3000))},
+    ],
 )
 @pytest.mark.parametrize("size", [(20, 20), (900, 140)])
 def test_anything_is_drawn_at_any_size(strip, acts, size):

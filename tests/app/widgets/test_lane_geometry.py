@@ -1,4 +1,6 @@
-"""The timeline's geometry: seconds and pixels, lanes, the cue and the request under a point, and what is said about them."""
+"""The timeline's geometry: seconds and pixels, lanes, the cue and the request under a point, and what is said
+about them.
+"""
 
 from __future__ import annotations
 
@@ -11,7 +13,19 @@ from PySide6.QtCore import QPointF
 from PySide6.QtGui import QFont
 
 from app.stage.playback_source import Shown
-from app.widgets.lane_geometry import LEFT, RULER, Scale, advance, cue_at, lane_at, lanes, mark_at, marks, rows, told
+from app.widgets.lane_geometry import (
+    LEFT,
+    RULER,
+    Scale,
+    advance,
+    cue_at,
+    lane_at,
+    lanes,
+    mark_at,
+    marks,
+    rows,
+    told,
+)
 from app.widgets.request_menu import STAGE
 from metagraph.graph import asks as a
 from metagraph.graph.model import LAYERS
@@ -53,8 +67,18 @@ def test_the_cue_under_a_point_is_the_one_that_plays_then(toy):
         middle = QPointF(scale.x((cue.start + cue.end) / 2), lane.center().y())
         assert cue_at(shown, scale, height, middle) == ("arms", cue)
     cue = cues[0]
-    assert cue_at(shown, scale, height, QPointF(scale.x(cue.start + 0.1), rows(lanes(height)["body"])[1].center().y())) is None
-    assert cue_at(shown, scale, height, QPointF(LEFT - 5, lane.center().y())) is None, "the lane's name is no cue"
+    assert (
+        cue_at(
+            shown,
+            scale,
+            height,
+            QPointF(scale.x(cue.start + 0.1), rows(lanes(height)["body"])[1].center().y()),
+        )
+        is None
+    )
+    assert cue_at(shown, scale, height, QPointF(LEFT - 5, lane.center().y())) is None, (
+        "the lane's name is no cue"
+    )
     assert cue_at(shown, scale, height, QPointF(scale.x(cue.start + 0.1), 3)) is None
 
 
@@ -100,7 +124,9 @@ def test_requests_stand_in_their_lane_at_their_time(qapp, toy):
 
 
 def test_requests_close_together_stay_apart_and_the_one_under_the_mouse_is_found(qapp, toy):
-    found = shown_asks(toy.project(), *[a.Gesture(id=f"g{n}", at=2.0 + n, tags=("a very long tag",)) for n in range(4)])
+    found = shown_asks(
+        toy.project(), *[a.Gesture(id=f"g{n}", at=2.0 + n, tags=("a very long tag",)) for n in range(4)]
+    )
     for one, following in pairwise(found):
         assert one.rect.right() <= following.rect.left()
     for mark in found:
@@ -137,10 +163,15 @@ def test_what_does_not_play_says_why(qapp, toy):
     project = toy.project()
     lost = shown_asks(project, a.Gesture(id="g", at=2.0, tags=("nonsense",), priority=3))[0]
     assert lost.lost
-    assert lost.rect.width() >= advance(f"⚠ {lost.words}", QFont().toString()) + 10, "its sign and its words have room"
+    assert lost.rect.width() >= advance(f"⚠ {lost.words}", QFont().toString()) + 10, (
+        "its sign and its words have room"
+    )
     words = told(lost)
     assert "Does not play" in words and "nonsense" in words and "priority 3" in words
-    late = {m.ask.id: m for m in shown_asks(project, a.Play(id="a", action="rest long", at=1.0), a.Gesture(id="b", at=2.8))}["b"]
+    late = {
+        m.ask.id: m
+        for m in shown_asks(project, a.Play(id="a", action="rest long", at=1.0), a.Gesture(id="b", at=2.8))
+    }["b"]
     assert late.late == pytest.approx(0.6) and "from 3.40 to 4.30 s" in told(late)
     there = shown_asks(project, a.Go(id="s", stance="rest", at=1.0))[0]
     assert not there.lost and "already" in told(there)

@@ -18,7 +18,9 @@ APP = Path(__file__).resolve().parents[3] / "app"
 
 
 def scroll(widget: QWidget, notches: int) -> bool:
-    """Turn the wheel over a widget as the system does, a notch at a time; return whether the last was taken."""
+    """Turn the wheel over a widget as the system does, a notch at a time; return whether the last was
+    taken.
+    """
     at = QPointF(widget.rect().center())
     for _ in range(abs(notches)):
         event = QWheelEvent(

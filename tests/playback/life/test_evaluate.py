@@ -49,10 +49,15 @@ def layers(project: Project, times: Array, seed: int = 1) -> Pose:
 def resting(project: Project, count: int) -> Pose:
     assert project.skeleton is not None
     rest = project.skeleton.rest
-    return Pose(np.tile(rest.rotations, (count, 1, 1)).astype(np.float32), np.tile(rest.translations, (count, 1, 1)).astype(np.float32))
+    return Pose(
+        np.tile(rest.rotations, (count, 1, 1)).astype(np.float32),
+        np.tile(rest.translations, (count, 1, 1)).astype(np.float32),
+    )
 
 
-def alive(project: Project, life: Life, track: Track | None = None, times: Any = None, pose: Pose | None = None) -> tuple[Pose, Pose]:
+def alive(
+    project: Project, life: Life, track: Track | None = None, times: Any = None, pose: Pose | None = None
+) -> tuple[Pose, Pose]:
     """Composed poses and the same with life."""
     project, track = replace(project, life=life), track or Track()
     times = np.asarray(times if times is not None else np.arange(0, 20, 1 / 30), float)
@@ -109,15 +114,23 @@ def test_the_pose_that_came_in_is_not_changed(sample: Project) -> None:
     for array in (pose.rotations, pose.translations):
         array.setflags(write=False)
     after = enliven(pose, sample, drawn(sample, Track()), Track(), times)
-    assert np.array_equal(pose.rotations, copy.rotations) and after.rotations.dtype == pose.rotations.dtype == np.float32
+    assert (
+        np.array_equal(pose.rotations, copy.rotations)
+        and after.rotations.dtype == pose.rotations.dtype == np.float32
+    )
 
 
 # --- pure in time
 
-BUSY = track_of([
-    Speech("s", 1.0, 4.0, text=TEXT), LookAt("l", 5, 8, (1.0, 1.4, 0.8)), LookAt("m", 8, 9, (-1.0, 1.9, 0.8), strict=True),
-    BlinkAt("b", 2.22), ModeFrom("q", 10, "listening"),
-])  # fmt: skip
+BUSY = track_of(
+    [
+        Speech("s", 1.0, 4.0, text=TEXT),
+        LookAt("l", 5, 8, (1.0, 1.4, 0.8)),
+        LookAt("m", 8, 9, (-1.0, 1.9, 0.8), strict=True),
+        BlinkAt("b", 2.22),
+        ModeFrom("q", 10, "listening"),
+    ]
+)
 
 
 @pytest.mark.parametrize("track", [Track(), BUSY])
@@ -128,7 +141,9 @@ def test_any_times_in_any_order_give_the_same_bits(sample: Project, track: Track
     whole = enliven(pose, sample, found, track, times)
     order = np.random.default_rng(0).permutation(len(times))
     shuffled = enliven(pose[order], sample, found, track, times[order])
-    assert np.array_equal(shuffled.rotations, whole.rotations[order]) and np.array_equal(shuffled.translations, whole.translations[order])
+    assert np.array_equal(shuffled.rotations, whole.rotations[order]) and np.array_equal(
+        shuffled.translations, whole.translations[order]
+    )
     for n in order[:150]:
         one = enliven(pose[n : n + 1], sample, found, track, times[n : n + 1])
         assert np.array_equal(one.rotations[0], whole.rotations[n]), times[n]
@@ -145,7 +160,9 @@ def test_nothing_jumps(sample: Project, seed: int) -> None:
     rate = 240
     times = np.arange(0.5, 14, 1 / rate)
     before, after = alive(sample, Life(), BUSY, times, layers(sample, times, seed))
-    added = rotation.multiply(rotation.conjugate(before.rotations.astype(float)), after.rotations.astype(float))
+    added = rotation.multiply(
+        rotation.conjugate(before.rotations.astype(float)), after.rotations.astype(float)
+    )
     speed = np.degrees(rotation.angle_between(added[:-1], added[1:])).max(0) * rate
     assert sample.skeleton is not None
     limits = {"Eye": 700, "UpperLid": 1200, "LowerLid": 500, "Jaw": 120, "Head": 190, "Neck": 130}
@@ -159,7 +176,15 @@ def test_nothing_jumps(sample: Project, seed: int) -> None:
 
 def test_breathing_moves_spine_head_and_shoulders_and_nothing_else(sample: Project) -> None:
     before, after = alive(sample, alone(QUIET, breathing=1))
-    assert moved(sample, before, after) == {"Spine", "Chest", "UpperChest", "Neck", "Head", "LeftShoulder", "RightShoulder"}
+    assert moved(sample, before, after) == {
+        "Spine",
+        "Chest",
+        "UpperChest",
+        "Neck",
+        "Head",
+        "LeftShoulder",
+        "RightShoulder",
+    }
     assert np.array_equal(before.translations, after.translations)
 
 
@@ -167,10 +192,14 @@ def test_the_face_stays_level_while_the_chest_rises(sample: Project) -> None:
     _, after = alive(sample, alone(QUIET, breathing=1))
     assert sample.skeleton is not None
     turned, at = sample.skeleton.globals(after)
-    head = np.degrees(rotation.angle_between(turned[:, joint(sample, "Head")].astype(float), rotation.IDENTITY))
+    head = np.degrees(
+        rotation.angle_between(turned[:, joint(sample, "Head")].astype(float), rotation.IDENTITY)
+    )
     assert head.max() < 0.5
     lift = np.ptp(at[:, joint(sample, "LeftUpperArm"), 1]), np.ptp(at[:, joint(sample, "RightUpperArm"), 1])
-    assert lift[0] == pytest.approx(lift[1], rel=0.05) and 0.002 < lift[0] < 0.008, "slight, and the same on both sides"
+    assert lift[0] == pytest.approx(lift[1], rel=0.05) and 0.002 < lift[0] < 0.008, (
+        "slight, and the same on both sides"
+    )
     assert np.ptp(at[:, joint(sample, "LeftHand")], axis=0).max() < 0.02
 
 
@@ -178,8 +207,12 @@ def test_a_deeper_breath_moves_more(sample: Project) -> None:
     sizes = []
     for amount in (0.5, 1.0, 2.0):
         before, after = alive(sample, alone(QUIET, breathing=amount))
-        sizes.append(float(rotation.angle_between(before.rotations.astype(float), after.rotations.astype(float)).max()))
-    assert sizes[1] == pytest.approx(2 * sizes[0], rel=0.01) and sizes[2] == pytest.approx(4 * sizes[0], rel=0.01)
+        sizes.append(
+            float(rotation.angle_between(before.rotations.astype(float), after.rotations.astype(float)).max())
+        )
+    assert sizes[1] == pytest.approx(2 * sizes[0], rel=0.01) and sizes[2] == pytest.approx(
+        4 * sizes[0], rel=0.01
+    )
 
 
 # --- looking
@@ -197,14 +230,20 @@ def test_both_eyes_look_at_a_near_target_whatever_the_layers_play(sample: Projec
     assert error.max() < 15, "a head that a clip turns far away has eyes at their limit"
 
 
-@pytest.mark.parametrize("target", [(2.0, 1.6, 0.5), (-2.0, 1.2, 0.3), (0.3, 0.4, 0.8), (0.0, 2.6, 0.9), (0.4, 1.5, 0.5)])
-def test_far_targets_are_met_with_the_help_of_the_head(sample: Project, target: tuple[float, float, float]) -> None:
+@pytest.mark.parametrize(
+    "target", [(2.0, 1.6, 0.5), (-2.0, 1.2, 0.3), (0.3, 0.4, 0.8), (0.0, 2.6, 0.9), (0.4, 1.5, 0.5)]
+)
+def test_far_targets_are_met_with_the_help_of_the_head(
+    sample: Project, target: tuple[float, float, float]
+) -> None:
     track = track_of([LookAt("l", 0.0, 99, target, strict=True)])
     _, after = alive(sample, alone(QUIET, gaze=1), track, [20.0])
     assert gaze_error(sample, after, target).max() < (0.02 if target[2] == 0.5 and target[0] < 1 else 3), (
         "where the head has taken the eyes"
     )
-    eye = np.degrees(rotation.angle_between(after.rotations[0, joint(sample, "LeftEye")].astype(float), rotation.IDENTITY))
+    eye = np.degrees(
+        rotation.angle_between(after.rotations[0, joint(sample, "LeftEye")].astype(float), rotation.IDENTITY)
+    )
     assert eye < 32
 
 
@@ -227,9 +266,13 @@ def test_the_gaze_holds_while_the_head_nods_and_shakes(sample: Project) -> None:
         pose = clip.pose_at(times)
         before, after = alive(sample, life, track, times, pose)
         head = [joint(sample, "Head")]
-        swing = rotation.angle_between(before.rotations[:, head].astype(float), before.rotations[:1, head].astype(float)).max()
+        swing = rotation.angle_between(
+            before.rotations[:, head].astype(float), before.rotations[:1, head].astype(float)
+        ).max()
         assert np.degrees(swing) > 3 and gaze_error(sample, after, (0.0, 1.6, 1.2)).max() < 0.5
-        kept = rotation.angle_between(after.rotations[:, head].astype(float), before.rotations[:, head].astype(float))
+        kept = rotation.angle_between(
+            after.rotations[:, head].astype(float), before.rotations[:, head].astype(float)
+        )
         assert np.degrees(np.ptp(kept)) < 0.6, "the nod itself is left as it is"
 
 
@@ -259,7 +302,12 @@ def test_half_a_look_goes_half_the_way(sample: Project) -> None:
 
 
 def test_ahead_leaves_eyes_and_head_to_the_layers(sample: Project) -> None:
-    before, after = alive(sample, alone(QUIET, gaze=1), track_of([LookAt("l", 0.0, 99, "ahead", strict=True)]), np.linspace(3, 9, 30))
+    before, after = alive(
+        sample,
+        alone(QUIET, gaze=1),
+        track_of([LookAt("l", 0.0, 99, "ahead", strict=True)]),
+        np.linspace(3, 9, 30),
+    )
     assert moved(sample, before, after) == set()
 
 
@@ -269,7 +317,9 @@ def test_ahead_leaves_eyes_and_head_to_the_layers(sample: Project) -> None:
 def lids(project: Project, pose: Pose) -> Array:
     """Degrees that upper and lower lid of the left eye are turned about X, `[N, 2]`."""
     names = ("LeftUpperLid", "LeftLowerLid")
-    return np.degrees(np.stack([rotation.log(pose.rotations[:, joint(project, n)].astype(float))[:, 0] for n in names], 1))
+    return np.degrees(
+        np.stack([rotation.log(pose.rotations[:, joint(project, n)].astype(float))[:, 0] for n in names], 1)
+    )
 
 
 def test_a_blink_shuts_the_lids_in_70_and_opens_them_in_100_milliseconds(sample: Project) -> None:
@@ -283,7 +333,9 @@ def test_a_blink_shuts_the_lids_in_70_and_opens_them_in_100_milliseconds(sample:
 @pytest.mark.parametrize("squint", [-8.0, 12.0])
 def test_a_blink_shuts_lids_that_a_clip_has_moved_and_no_farther(sample: Project, squint: float) -> None:
     pose = resting(sample, 1)
-    pose.rotations[:, joint(sample, "LeftUpperLid")] = rotation.from_axis_angle([1.0, 0, 0], np.radians(squint))
+    pose.rotations[:, joint(sample, "LeftUpperLid")] = rotation.from_axis_angle(
+        [1.0, 0, 0], np.radians(squint)
+    )
     _, after = alive(sample, QUIET, track_of([BlinkAt("b", 3.0)]), [3.07], pose)
     assert lids(sample, after)[0, 0] == pytest.approx(40, abs=0.3)
 
@@ -294,7 +346,11 @@ def test_lids_go_with_the_eyes(sample: Project, target: tuple[float, float, floa
     _, after = alive(sample, life, track, [20.0])
     pitch = np.degrees(rotation.log(after.rotations[0, joint(sample, "LeftEye")].astype(float))[0])
     upper, lower = lids(sample, after)[0]
-    assert pitch * sign > 5 and upper == pytest.approx(0.6 * pitch, abs=0.05) and lower == pytest.approx(0.35 * pitch, abs=0.05)
+    assert (
+        pitch * sign > 5
+        and upper == pytest.approx(0.6 * pitch, abs=0.05)
+        and lower == pytest.approx(0.35 * pitch, abs=0.05)
+    )
     _, stiff = alive(sample, alone(life, lids=0), track, [20.0])
     assert lids(sample, stiff)[0] == pytest.approx([0, 0], abs=1e-4)
 
@@ -320,19 +376,31 @@ def test_lids_go_with_eyes_that_a_clip_moves(sample: Project) -> None:
 def test_only_the_jaw_of_the_mannequin_speaks(sample: Project) -> None:
     times = np.linspace(1, 4, 120)
     before, after = alive(sample, QUIET, track_of([Speech("s", 1, 4, text=TEXT)]), times)
-    assert moved(sample, before, after) == {"Jaw", "LeftUpperLid", "LeftLowerLid", "RightUpperLid", "RightLowerLid"} or moved(
-        sample, before, after
-    ) == {"Jaw"}
+    assert moved(sample, before, after) == {
+        "Jaw",
+        "LeftUpperLid",
+        "LeftLowerLid",
+        "RightUpperLid",
+        "RightLowerLid",
+    } or moved(sample, before, after) == {"Jaw"}
     angle = np.degrees(rotation.log(after.rotations[:, joint(sample, "Jaw")].astype(float))[:, 0])
-    assert angle.min() >= -1e-5 and 6 < angle.max() < 12 and angle.min() < 0.5, "opens for vowels, shuts for lips that meet"
+    assert angle.min() >= -1e-5 and 6 < angle.max() < 12 and angle.min() < 0.5, (
+        "opens for vowels, shuts for lips that meet"
+    )
 
 
 def test_lip_sync_can_be_turned_off_and_up(sample: Project) -> None:
     times = np.linspace(1, 4, 60)
     sizes = []
     for lips in (0.0, 1.0, 2.0):
-        _, after = alive(sample, alone(QUIET, lips=lips, accent_blinks=0), track_of([Speech("s", 1, 4, text=TEXT)]), times)
-        sizes.append(float(np.degrees(rotation.log(after.rotations[:, joint(sample, "Jaw")].astype(float))[:, 0]).max()))
+        _, after = alive(
+            sample, alone(QUIET, lips=lips, accent_blinks=0), track_of([Speech("s", 1, 4, text=TEXT)]), times
+        )
+        sizes.append(
+            float(
+                np.degrees(rotation.log(after.rotations[:, joint(sample, "Jaw")].astype(float))[:, 0]).max()
+            )
+        )
     assert sizes[0] == pytest.approx(0, abs=1e-6) and sizes[2] == pytest.approx(2 * sizes[1], rel=0.01)
 
 
@@ -365,7 +433,12 @@ def test_stillness_calms_what_moves(sample: Project) -> None:
 
 def skeletons() -> list[Skeleton]:
     one = Skeleton(("Root",), np.array([-1]), np.array([[0, 0, 0, 1.0]]), np.zeros((1, 3)))
-    line = Skeleton(("Hips", "Spine", "Chest"), np.array([-1, 0, 1]), np.tile([0, 0, 0, 1.0], (3, 1)), np.array([[0, 1.0, 0]] * 3))
+    line = Skeleton(
+        ("Hips", "Spine", "Chest"),
+        np.array([-1, 0, 1]),
+        np.tile([0, 0, 0, 1.0], (3, 1)),
+        np.array([[0, 1.0, 0]] * 3),
+    )
     return [one, line]
 
 
@@ -412,16 +485,26 @@ def brought_to_life(path: Path, upper: set[str]) -> None:
 @pytest.mark.parametrize("host", ["adult_female", "alien"])
 def test_real_hosts_shut_their_lids_as_their_own_blink_does(shared_data: Path, host: str) -> None:
     folder = shared_data / "sumerian-hosts" / "glTF" / "animations" / host
-    project = import_files(Project(), folder, [folder / f"{n}.glb" for n in ("stand_idle", "blink", "lipsync")]).into(Project())
+    project = import_files(
+        Project(), folder, [folder / f"{n}.glb" for n in ("stand_idle", "blink", "lipsync")]
+    ).into(Project())
     assert project.skeleton is not None
     blink = next(c for c in project.clips.values() if c.name == "blink_med").motion
     assert isinstance(blink, Clip)
     _, after = alive(project, QUIET, track_of([BlinkAt("b", 3.0)]), [3.07])
     upper = [int(find_face(project).lid_joints[n]) for n in (0, 1)]
-    theirs = rotation.angle_between(blink.rotations[:, upper].astype(float), blink.rotations[:1, upper].astype(float)).max(0)
-    frame = int(rotation.angle_between(blink.rotations[:, upper[0]].astype(float), blink.rotations[0, upper[0]].astype(float)).argmax())
+    theirs = rotation.angle_between(
+        blink.rotations[:, upper].astype(float), blink.rotations[:1, upper].astype(float)
+    ).max(0)
+    frame = int(
+        rotation.angle_between(
+            blink.rotations[:, upper[0]].astype(float), blink.rotations[0, upper[0]].astype(float)
+        ).argmax()
+    )
     rest = resting(project, 1)
-    ours = rotation.angle_between(after.rotations[0, upper].astype(float), rest.rotations[0, upper].astype(float))
+    ours = rotation.angle_between(
+        after.rotations[0, upper].astype(float), rest.rotations[0, upper].astype(float)
+    )
     assert np.degrees(np.abs(ours - theirs)).max() < 1
     shut = blink.poses()[frame].translations - blink.poses()[0].translations
     assert np.allclose((after.translations - rest.translations)[0, upper], shut[upper], atol=1e-3)
@@ -429,7 +512,9 @@ def test_real_hosts_shut_their_lids_as_their_own_blink_does(shared_data: Path, h
 
 def test_real_hosts_speak_with_lips(shared_data: Path) -> None:
     folder = shared_data / "sumerian-hosts" / "glTF" / "animations" / "adult_female"
-    project = import_files(Project(), folder, [folder / f"{n}.glb" for n in ("stand_idle", "blink", "lipsync")]).into(Project())
+    project = import_files(
+        Project(), folder, [folder / f"{n}.glb" for n in ("stand_idle", "blink", "lipsync")]
+    ).into(Project())
     before, after = alive(project, QUIET, track_of([Speech("s", 1, 4, text=TEXT)]), np.linspace(1, 4, 60))
     names = moved(project, before, after)
     assert {"char:def_c_upLip", "char:def_c_lowLip", "char:def_l_cornerLip", "char:def_c_jaw"} <= names
@@ -438,8 +523,19 @@ def test_real_hosts_speak_with_lips(shared_data: Path) -> None:
 
 # --- faces of morph targets
 
-ARKIT = ("eyeBlinkLeft", "eyeBlinkRight", "eyeWideLeft", "eyeLookUpLeft", "eyeLookDownLeft", "eyeLookInLeft", "eyeLookOutLeft", "jawOpen",
-         "mouthFunnel", "mouthPucker", "mouthPressLeft")  # fmt: skip
+ARKIT = (
+    "eyeBlinkLeft",
+    "eyeBlinkRight",
+    "eyeWideLeft",
+    "eyeLookUpLeft",
+    "eyeLookDownLeft",
+    "eyeLookInLeft",
+    "eyeLookOutLeft",
+    "jawOpen",
+    "mouthFunnel",
+    "mouthPucker",
+    "mouthPressLeft",
+)
 
 
 @pytest.fixture
@@ -447,7 +543,9 @@ def morphed(toy: Any) -> Project:
     return with_morphs(toy.project(), ARKIT)
 
 
-def weights(project: Project, life: Life, track: Track, at: float, pose: Pose | None = None) -> dict[str, float]:
+def weights(
+    project: Project, life: Life, track: Track, at: float, pose: Pose | None = None
+) -> dict[str, float]:
     project = replace(project, life=life)
     return face_weights(project, drawn(project, track), track, at, pose)
 
@@ -491,5 +589,7 @@ def test_a_morph_face_speaks_within_0_and_1(morphed: Project) -> None:
 
 
 def test_channels_are_in_the_order_that_arrays_have() -> None:
-    assert CHANNELS[:4] == LIDS and CHANNELS[4] == "blink" and CHANNELS[5] == "jaw_open" and len(CHANNELS) == 20
+    assert (
+        CHANNELS[:4] == LIDS and CHANNELS[4] == "blink" and CHANNELS[5] == "jaw_open" and len(CHANNELS) == 20
+    )
     assert msgspec.structs.fields(Life), "life is a struct"

@@ -27,7 +27,9 @@ def gaze(project: Project, track: Track, life: Life = CALM, end: float = 20.0, *
 
 def seen(moves: Moves, head: bool = False) -> np.ndarray[Any, Any]:
     """Where the gaze is, metres: the targets' mean."""
-    return np.sum([np.array(aim.at) * (turned if head else came) for aim, came, turned in moves.parts], axis=0)
+    return np.sum(
+        [np.array(aim.at) * (turned if head else came) for aim, came, turned in moves.parts], axis=0
+    )
 
 
 @pytest.mark.parametrize("curve", [ease, settle])
@@ -73,7 +75,9 @@ def test_the_partner_is_ahead_at_the_height_of_the_eyes(sample: Project) -> None
 
 
 @pytest.mark.parametrize(("to", "amount"), [("ahead", 0.0), ("nobody", 0.0), ("user", 1.0), ("door", 1.0)])
-def test_who_looks_ahead_or_at_what_is_nowhere_looks_at_nothing(sample: Project, to: str, amount: float) -> None:
+def test_who_looks_ahead_or_at_what_is_nowhere_looks_at_nothing(
+    sample: Project, to: str, amount: float
+) -> None:
     found = gaze(sample, track_of([LookAt("l", 1.0, 99, to)]), door=(2.0, 1.0, 1.0))
     assert found.at(5.0).parts[0][0].amount == amount
 
@@ -81,7 +85,9 @@ def test_who_looks_ahead_or_at_what_is_nowhere_looks_at_nothing(sample: Project,
 def test_a_named_place_is_where_the_project_says_until_somebody_moves_it(sample: Project) -> None:
     track = track_of([LookAt("l", 1.0, 99, "door"), PlaceFrom("p", 5.0, "door", (0.0, 1.0, 2.0))])
     found = gaze(sample, track, door=(2.0, 1.0, 1.0))
-    assert seen(found.at(4.9)) == pytest.approx([2.0, 1.0, 1.0]) and seen(found.at(9)) == pytest.approx([0.0, 1.0, 2.0])
+    assert seen(found.at(4.9)) == pytest.approx([2.0, 1.0, 1.0]) and seen(found.at(9)) == pytest.approx(
+        [0.0, 1.0, 2.0]
+    )
 
 
 # --- nothing jumps
@@ -142,9 +148,19 @@ def test_a_strict_look_does_not_avert_and_a_new_look_ends_an_aversion(sample: Pr
     start, end = float(plain.aversions.starts[2]), float(plain.aversions.values[2, 0])
     middle = 0.5 * (start + end)
     for strict in (True, False):
-        before = schedule(Life(saccades=0, aversion_rate=40, aversion_length=2), Track(), {}, 1, 60.0, Schedule(), 0.0)
+        before = schedule(
+            Life(saccades=0, aversion_rate=40, aversion_length=2), Track(), {}, 1, 60.0, Schedule(), 0.0
+        )
         life = Life(saccades=0, aversion_rate=40, aversion_length=2)
-        after = schedule(life, track_of([LookAt("l", middle, 99, (1.0, 1.5, 1.0), strict=strict)]), {}, 1, 60.0, before, middle)
+        after = schedule(
+            life,
+            track_of([LookAt("l", middle, 99, (1.0, 1.5, 1.0), strict=strict)]),
+            {},
+            1,
+            60.0,
+            before,
+            middle,
+        )
         assert float(after.aversions.starts[2]) == start, "it has begun"
         found = gaze_of(after, life, body_of(sample), {})
         assert np.hypot(*found.at(middle - 0.01).eyes) > 0.05
@@ -153,7 +169,9 @@ def test_a_strict_look_does_not_avert_and_a_new_look_ends_an_aversion(sample: Pr
 
 def test_an_aversion_within_a_strict_look_is_not_made(sample: Project) -> None:
     for strict, size in ((False, 14.0), (True, 0.0)):
-        drawn = Schedule(targets=(Target(0.0, "user", strict=strict),), aversions=lane(3).plus([5.0], [(7.0, 1.0, 0.0)]))
+        drawn = Schedule(
+            targets=(Target(0.0, "user", strict=strict),), aversions=lane(3).plus([5.0], [(7.0, 1.0, 0.0)])
+        )
         assert np.degrees(gaze_of(drawn, CALM, body_of(sample), {}).at(6.0).eyes[0]) == pytest.approx(size)
 
 

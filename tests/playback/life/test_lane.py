@@ -28,7 +28,9 @@ def test_until_keeps_what_begins_before(starts: list[float], at: float) -> None:
 
 
 @given(times, st.floats(-1, 101), st.integers(0, 3))
-def test_since_keeps_what_goes_on_what_comes_and_the_numbers(starts: list[float], at: float, before: int) -> None:
+def test_since_keeps_what_goes_on_what_comes_and_the_numbers(
+    starts: list[float], at: float, before: int
+) -> None:
     whole = filled(starts)
     kept = whole.since(at, before)
     assert kept.next == whole.next

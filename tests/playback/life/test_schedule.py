@@ -33,11 +33,15 @@ def trains(rate: float, seed: int = 0) -> dict[str, Voice]:
         length = rng.uniform(1.5, 8)
         peaks = np.cumsum(rng.uniform(0.6 / rate, 1.4 / rate, int(length * rate) + 1))
         peaks = peaks[peaks < length]
-        out[str(n)] = Voice(length, peaks, np.array([0, length]), np.zeros((2, 15)), rng.uniform(0.2, 1, len(peaks)))
+        out[str(n)] = Voice(
+            length, peaks, np.array([0, length]), np.zeros((2, 15)), rng.uniform(0.2, 1, len(peaks))
+        )
     return out
 
 
-def conversation(voices: dict[str, Voice], pauses: tuple[float, float] = (0.3, 1.2), end: float = HOUR) -> Track:
+def conversation(
+    voices: dict[str, Voice], pauses: tuple[float, float] = (0.3, 1.2), end: float = HOUR
+) -> Track:
     """Line after line, with pauses between."""
     rng = np.random.default_rng(1)
     names, at, out = list(voices), 0.5, []
@@ -72,8 +76,24 @@ def test_life_that_is_off_draws_nothing_and_comes_back() -> None:
     assert len(on.blinks) and on.targets
 
 
-@pytest.mark.parametrize("dial", [d for d in DIALS if d.name in ("breath_rate", "aversion_rate", "aversion_length", "aversion_angle",
-                                                                 "saccade_rate", "blinks", "stillness")], ids=lambda d: d.name)  # fmt: skip
+@pytest.mark.parametrize(
+    "dial",
+    [
+        d
+        for d in DIALS
+        if d.name
+        in (
+            "breath_rate",
+            "aversion_rate",
+            "aversion_length",
+            "aversion_angle",
+            "saccade_rate",
+            "blinks",
+            "stillness",
+        )
+    ],
+    ids=lambda d: d.name,
+)
 def test_every_rate_can_be_turned_off(dial: Any) -> None:
     silent = drawn(life=with_life(Life(), **{dial.name: dial.high if dial.name == "stillness" else dial.off}))
     gone = {
@@ -106,9 +126,14 @@ def same_until(a: Schedule, b: Schedule, seconds: float) -> None:
 TALK = [
     Speech("s", 4.0, 9.5, None, "Well, I think that we should go there tomorrow, if the weather is fine."),
     Speech("t", 12.0, 14.0, None, "What do you say?"),
-    ModeFrom("m", 15.0, "listening"), ModeFrom("n", 24.0, None), LookAt("l", 16.0, 20.0, (1.0, 1.5, 1.0), strict=True),
-    LookAt("k", 26.0, 29.0, "door"), BlinkAt("b", 21.3), BlinkAt("c", 30.0), PlaceFrom("p", 18.0, "user", (0.3, 1.5, 1.0)),
-]  # fmt: skip
+    ModeFrom("m", 15.0, "listening"),
+    ModeFrom("n", 24.0, None),
+    LookAt("l", 16.0, 20.0, (1.0, 1.5, 1.0), strict=True),
+    LookAt("k", 26.0, 29.0, "door"),
+    BlinkAt("b", 21.3),
+    BlinkAt("c", 30.0),
+    PlaceFrom("p", 18.0, "user", (0.3, 1.5, 1.0)),
+]
 
 
 @pytest.mark.parametrize("step", [0.016, 0.25, 3.7])
@@ -156,7 +181,9 @@ def test_turning_a_dial_changes_only_what_comes(now: float) -> None:
 def test_a_place_that_moves_changes_nothing_but_what_is_looked_at() -> None:
     track = track_of(TALK)
     before = drawn(track, 40.0)
-    after = schedule(Life(), track.plus([PlaceFrom("q", 10.0, "user", (1.0, 1.0, 1.0))]), {}, 1, 40.0, before, 10.0)
+    after = schedule(
+        Life(), track.plus([PlaceFrom("q", 10.0, "user", (1.0, 1.0, 1.0))]), {}, 1, 40.0, before, 10.0
+    )
     for name in LANES:
         assert getattr(after, name) is getattr(before, name) or getattr(after, name) == getattr(before, name)
     assert any(t.to == (1.0, 1.0, 1.0) for t in after.targets)
@@ -237,10 +264,13 @@ def test_who_speaks_blinks_26_times_a_minute(rate: float) -> None:
 @pytest.mark.parametrize("seed", range(3))
 def test_who_speaks_by_letters_blinks_26_times_a_minute(seed: int) -> None:
     lines = [
-        "Well, when I was a child, my grandmother used to tell me stories about the sea. She knew all the old songs.",
-        "Yes, of course! Come in, sit down, and have a cup of tea with us.", "That is a very good question.",
-        "The museum opens at nine in the morning and closes at half past five, except on Mondays, when it is closed all day.",
-    ]  # fmt: skip
+        "Well, when I was a child, my grandmother used to tell me stories about the sea. She knew all the "
+        "old songs.",
+        "Yes, of course! Come in, sit down, and have a cup of tea with us.",
+        "That is a very good question.",
+        "The museum opens at nine in the morning and closes at half past five, except on Mondays, when it is "
+        "closed all day.",
+    ]
     voices = {text: voice_from_text(text) for text in lines}
     found = schedule(Life(), conversation(voices), voices, seed, HOUR, Schedule(), 0.0)
     assert share(found.blinks, 0, HOUR) == pytest.approx(26, abs=3)
@@ -256,7 +286,9 @@ def test_the_first_syllable_of_a_speech_brings_a_blink_and_later_ones_only_a_sec
             continue
         first = speech.start + float(voices[speech.line or ""].peaks[0])
         before = blinks[blinks < first]
-        assert first in blinks or (len(before) and first - before[-1] < 0.3), "unless the lids are moving already"
+        assert first in blinks or (len(before) and first - before[-1] < 0.3), (
+            "unless the lids are moving already"
+        )
     stressed = np.flatnonzero(found.blinks.values[:, 0] == 1)
     firsts = {s.start + float(voices[s.line or ""].peaks[0]) for s in track.speeches}
     for n in stressed[1:]:
@@ -283,7 +315,9 @@ def test_rest_has_14_breaths_a_minute_each_a_little_different() -> None:
     found = drawn(end=HOUR)
     assert share(found.breaths, 0, HOUR) == pytest.approx(14, abs=0.5)
     assert np.ptp(found.breaths.values[:, 0]) > 0.5 and np.ptp(found.breaths.values[:, 1]) > 0.1
-    assert np.allclose(found.breaths.starts[1:], found.breaths.starts[:-1] + found.breaths.values[:-1, 0]), "one after the other"
+    assert np.allclose(found.breaths.starts[1:], found.breaths.starts[:-1] + found.breaths.values[:-1, 0]), (
+        "one after the other"
+    )
 
 
 def test_a_mode_can_hold_its_breath() -> None:
@@ -305,19 +339,29 @@ def away(found: Schedule, end: float = HOUR) -> tuple[float, float, float]:
     return share(found.aversions, 0, end), float(lengths.mean()), float(lengths.sum() / end)
 
 
-@pytest.mark.parametrize(("mode", "rate", "length"), [("talking", 15, 0.93), ("listening", 7.2, 0.43), ("idle", 13.2, 2.2)])
-def test_the_gaze_is_averted_as_often_and_as_long_as_documented(mode: Any, rate: float, length: float) -> None:
+@pytest.mark.parametrize(
+    ("mode", "rate", "length"), [("talking", 15, 0.93), ("listening", 7.2, 0.43), ("idle", 13.2, 2.2)]
+)
+def test_the_gaze_is_averted_as_often_and_as_long_as_documented(
+    mode: Any, rate: float, length: float
+) -> None:
     often, long, _ = away(drawn(track_of([ModeFrom("m", 0, mode)]), HOUR))
     assert often == pytest.approx(rate, rel=0.08) and long == pytest.approx(length, rel=0.08)
 
 
 def test_a_listener_looks_more_than_a_speaker_and_a_speaker_more_than_an_idler() -> None:
-    shares = [away(drawn(track_of([ModeFrom("m", 0, mode)]), HOUR))[2] for mode in ("listening", "talking", "idle")]
+    shares = [
+        away(drawn(track_of([ModeFrom("m", 0, mode)]), HOUR))[2] for mode in ("listening", "talking", "idle")
+    ]
     assert shares == sorted(shares) and shares[0] < 0.1 and 0.15 < shares[1] < 0.3 and 0.4 < shares[2] < 0.6
 
 
 def test_aversions_never_meet_and_never_begin_during_a_strict_look() -> None:
-    found = drawn(track_of([LookAt("l", 100, 300, "door", strict=True), LookAt("m", 400, 500, "door")]), 600, Life(aversion_rate=40))
+    found = drawn(
+        track_of([LookAt("l", 100, 300, "door", strict=True), LookAt("m", 400, 500, "door")]),
+        600,
+        Life(aversion_rate=40),
+    )
     assert (found.aversions.starts[1:] - found.aversions.values[:-1, 0] >= 0.5).all()
     inside = (found.aversions.starts > 100.7) & (found.aversions.starts < 300)
     assert not inside.any()
@@ -329,10 +373,20 @@ def test_saccades_are_small_and_as_frequent_as_documented_with_fixations_between
     assert share(found.saccades, 0, HOUR) == pytest.approx(60, rel=0.05)
     size = np.hypot(found.saccades.values[:, 0], found.saccades.values[:, 1])
     assert gaps(found.saccades).min() >= 0.2 and size.max() <= 4.0 and 0.5 < size.mean() < 1.5
-    assert found.saccades.values[:, 1].std() < found.saccades.values[:, 0].std(), "more sideways than up and down"
+    assert found.saccades.values[:, 1].std() < found.saccades.values[:, 0].std(), (
+        "more sideways than up and down"
+    )
 
 
-@given(st.builds(Manner, **{n: st.sampled_from([0.0, 0.5, 4.0]) for n in ("breath_rate", "aversion_rate", "saccade_rate", "blinks")}))
+@given(
+    st.builds(
+        Manner,
+        **{
+            n: st.sampled_from([0.0, 0.5, 4.0])
+            for n in ("breath_rate", "aversion_rate", "saccade_rate", "blinks")
+        },
+    )
+)
 def test_any_manner_is_survived(manner: Manner) -> None:
     life = Life(modes=dict.fromkeys(MODES, manner))
     found = drawn(track_of(TALK), 40.0, life)

@@ -75,8 +75,12 @@ def test_lids_follow_down_and_up() -> None:
 # --- the head
 
 
-def turned(project: Project, left: float, up: float, share: float = 0.6, trunk: float = 0.0, head: float = 0.0) -> tuple[float, float]:
-    """Degrees to the left and up that the head turns for a target so far to the left and up; trunk and head turned by clips."""
+def turned(
+    project: Project, left: float, up: float, share: float = 0.6, trunk: float = 0.0, head: float = 0.0
+) -> tuple[float, float]:
+    """Degrees to the left and up that the head turns for a target so far to the left and up; trunk and head
+    turned by clips.
+    """
     body = body_of(project)
     about = [tuple(rotation.from_axis_angle([0, 1.0, 0], radians(a)).tolist()) for a in (trunk, head)]
     chain = [(0.0, 0.0, 0.0, 1.0)] * len(body.chain)
@@ -94,9 +98,9 @@ def test_the_head_stays_for_what_is_ahead(toy: Any, sample: Project) -> None:
 def test_the_wider_the_turn_the_more_the_head_does(sample: Project) -> None:
     parts = [turned(sample, a, 0)[0] for a in (5, 10, 20, 40, 60, 80)]
     assert parts[0] < 1.0 and (np.diff(parts) > 0).all()
-    assert all(a - p <= degrees(solve.EYE_EASE) + 1 for a, p in zip((5, 10, 20, 40, 60, 80), parts, strict=True)), (
-        "the eyes can do the rest"
-    )
+    assert all(
+        a - p <= degrees(solve.EYE_EASE) + 1 for a, p in zip((5, 10, 20, 40, 60, 80), parts, strict=True)
+    ), "the eyes can do the rest"
 
 
 def test_a_head_without_a_share_leaves_all_to_the_eyes(sample: Project) -> None:
@@ -115,5 +119,9 @@ def test_a_head_that_a_clip_turned_away_is_left_alone(sample: Project) -> None:
 
 
 def test_a_character_that_has_turned_away_as_a_whole_turns_its_head_back(sample: Project) -> None:
-    assert turned(sample, 0, 0, trunk=75, head=80)[0] == pytest.approx(-(75 - degrees(solve.TURNED_AWAY)), abs=2)
-    assert turned(sample, 0, 0, trunk=-75, head=-80)[0] == pytest.approx(75 - degrees(solve.TURNED_AWAY), abs=2)
+    assert turned(sample, 0, 0, trunk=75, head=80)[0] == pytest.approx(
+        -(75 - degrees(solve.TURNED_AWAY)), abs=2
+    )
+    assert turned(sample, 0, 0, trunk=-75, head=-80)[0] == pytest.approx(
+        75 - degrees(solve.TURNED_AWAY), abs=2
+    )

@@ -61,7 +61,9 @@ def test_a_look_without_an_end_holds_until_the_next() -> None:
 
 
 def test_a_lesser_look_waits_beneath_and_the_look_it_waited_for_does_not_come_back() -> None:
-    track = track_of([LookAt("a", 1, 20, "a"), LookAt("b", 2, 6, "b", priority=3), LookAt("c", 3, 30, "c", priority=2)])
+    track = track_of(
+        [LookAt("a", 1, 20, "a"), LookAt("b", 2, 6, "b", priority=3), LookAt("c", 3, 30, "c", priority=2)]
+    )
     assert looks(track) == [(0.0, PARTNER), (1, "a"), (2, "b"), (6, "c"), (30, PARTNER)]
 
 
@@ -71,7 +73,9 @@ def test_a_look_beneath_that_is_over_by_then_is_never_seen() -> None:
 
 
 def test_the_gaze_follows_a_place_that_moves_without_beginning_anew() -> None:
-    track = track_of([LookAt("l", 1, 4, "ball"), *(PlaceFrom(f"p{n}", n, "ball", (n, 1.0, 1.0)) for n in range(6))])
+    track = track_of(
+        [LookAt("l", 1, 4, "ball"), *(PlaceFrom(f"p{n}", n, "ball", (n, 1.0, 1.0)) for n in range(6))]
+    )
     found = list(targets_between(track, 0, 100))
     assert [(t.start, t.to) for t in found] == [
         (0, PARTNER), (1, (1, 1.0, 1.0)), (2, (2, 1.0, 1.0)), (3, (3, 1.0, 1.0)), (4, PARTNER),
@@ -90,9 +94,20 @@ def test_a_look_of_no_length_is_none() -> None:
 
 items = st.one_of(
     st.builds(
-        LookAt, st.just("l"), st.integers(0, 20), st.integers(0, 25), st.sampled_from(["a", "b", PARTNER]), priority=st.integers(0, 2)
+        LookAt,
+        st.just("l"),
+        st.integers(0, 20),
+        st.integers(0, 25),
+        st.sampled_from(["a", "b", PARTNER]),
+        priority=st.integers(0, 2),
     ),
-    st.builds(PlaceFrom, st.just("p"), st.integers(0, 20), st.sampled_from(["a", PARTNER]), st.tuples(*[st.integers(0, 2)] * 3)),
+    st.builds(
+        PlaceFrom,
+        st.just("p"),
+        st.integers(0, 20),
+        st.sampled_from(["a", PARTNER]),
+        st.tuples(*[st.integers(0, 2)] * 3),
+    ),
 )
 
 

@@ -11,7 +11,19 @@ from PySide6.QtGui import QColor, QImage, QPainter
 from PySide6.QtTest import QTest
 
 from app.features.compatibility.matrix_dialog import MatrixDialog
-from app.features.compatibility.matrix_table import CELL, CLIP, FIRST, USES, Cell, MatrixModel, Rows, draw_half, grade, told, words_of
+from app.features.compatibility.matrix_table import (
+    CELL,
+    CLIP,
+    FIRST,
+    USES,
+    Cell,
+    MatrixModel,
+    Rows,
+    draw_half,
+    grade,
+    told,
+    words_of,
+)
 from app.look.theme import DARK, LIGHT
 from app.stage.compatibility_state import extended
 from metagraph.graph import edits
@@ -22,8 +34,14 @@ from metagraph.suggest.compatibility import Matrix
 def test_half_a_mark_says_how_far_off_it_is():
     assert [grade(c) for c in (0, 1, 1.01, 2.0, 2.01, 1e9, inf)] == [0, 0, 1, 1, 2, 2, 3]
     assert words_of(0.6, 1.24, "leaves") == "leaves at 1.24 s: 0.6 of what shows as a jump"
-    assert words_of(1.8, 0.0, "enters") == "enters at 0.00 s: 1.8 times what shows as a jump; a usual blend hides it"
-    assert "does not hide it" in words_of(4.0, 0.0, "enters") and words_of(inf, 0.0, "enters") == "enters: nothing to compare"
+    assert (
+        words_of(1.8, 0.0, "enters")
+        == "enters at 0.00 s: 1.8 times what shows as a jump; a usual blend hides it"
+    )
+    assert (
+        "does not hide it" in words_of(4.0, 0.0, "enters")
+        and words_of(inf, 0.0, "enters") == "enters: nothing to compare"
+    )
 
 
 def test_a_cell_is_told_with_what_it_is_placed_as():
@@ -44,7 +62,13 @@ def test_marks_tell_by_shape_not_by_colour_alone(look):
             painter.end()
             grey = image.convertToFormat(QImage.Format.Format_Grayscale8)
             ground = QColor(look.field).lightness()
-            seen.add(tuple(abs(QColor(grey.pixel(x, y)).lightness() - ground) > 40 for x in range(32) for y in range(32)))
+            seen.add(
+                tuple(
+                    abs(QColor(grey.pixel(x, y)).lightness() - ground) > 40
+                    for x in range(32)
+                    for y in range(32)
+                )
+            )
     assert len(seen) == 8
 
 
@@ -76,7 +100,11 @@ def test_rows_are_searched_narrowed_and_sorted_by_fit(toy, qtbot):
     proxy.narrow("", "placed")
     assert proxy.rowCount() == len(project.clips) - 1
     proxy.narrow("", "all")
-    far = next(c for c in range(FIRST, model.columnCount()) if model.headerData(c, Qt.Orientation.Horizontal) == "far")
+    far = next(
+        c
+        for c in range(FIRST, model.columnCount())
+        if model.headerData(c, Qt.Orientation.Horizontal) == "far"
+    )
     proxy.sort(far, Qt.SortOrder.AscendingOrder)
     cells = [proxy.index(r, far).data(CELL) for r in range(proxy.rowCount())]
     fits = [max(cell.enter, cell.leave) for cell in cells]
@@ -99,7 +127,9 @@ def test_only_new_clips_are_compared_again(toy, monkeypatch):
     first = extended(project, "arms", None)
     asked = []
     real = compatibility.matrix
-    monkeypatch.setattr(compatibility, "matrix", lambda *a, **k: (asked.append(list(k["clips"])), real(*a, **k))[1])
+    monkeypatch.setattr(
+        compatibility, "matrix", lambda *a, **k: (asked.append(list(k["clips"])), real(*a, **k))[1]
+    )
     more = edits.add_clips(project, [("free.glb", 0, "", toy.clip("free", 1.0, 1.4))])
     clip = {e.name: e.id for e in more.clips.values()}
     fewer = edits.remove_clips(more, [clip["rest long"]])
@@ -127,7 +157,11 @@ def opened(toys, toy):
 
 def spot(dialog, project, name, stance):
     model = dialog.model
-    column = next(c for c in range(FIRST, model.columnCount()) if model.headerData(c, Qt.Orientation.Horizontal) == stance)
+    column = next(
+        c
+        for c in range(FIRST, model.columnCount())
+        if model.headerData(c, Qt.Orientation.Horizontal) == stance
+    )
     index = model.index(toy_row(model, project, name), column)
     dialog.table.scrollTo(index)
     return dialog.table.viewport(), dialog.table.visualRect(index).center()
@@ -141,7 +175,11 @@ def test_a_click_plays_a_clip_in_the_context_of_that_stance(opened):
     clip = next(i for i, e in project.clips.items() if e.name == "free wave")
     widget, at = spot(dialog, project, "free wave", "up")
     QTest.mouseClick(widget, Qt.MouseButton.LeftButton, pos=at)
-    assert (drive.session.transport.show, drive.session.transport.shown, drive.session.place.stance()) == ("context", clip, drive.id("up"))
+    assert (drive.session.transport.show, drive.session.transport.shown, drive.session.place.stance()) == (
+        "context",
+        clip,
+        drive.id("up"),
+    )
     assert "free wave  ·  up" in dialog.words.text() and "enters at" in dialog.words.text()
     drive.wait(lambda: any(c.action.clip == clip for c in drive.performance.shown.plan.layers["arms"].cues))
     # A clip that is placed elsewhere is tried here as well; where it is placed, its action plays.
@@ -187,7 +225,11 @@ def test_another_layer_and_no_stance_say_so_and_searching_narrows(opened):
     assert dialog.model.rowCount() == 2
     dialog.search.clear()
     drive.session.place.set_layer("head")
-    assert dialog.model.rows is None and "Make a stance first" in dialog.words.text() and not dialog.go.isEnabled()
+    assert (
+        dialog.model.rows is None
+        and "Make a stance first" in dialog.words.text()
+        and not dialog.go.isEnabled()
+    )
     drive.session.place.set_layer("arms")
     drive.wait(lambda: dialog.model.rows is not None)
     assert dialog.model.index(0, USES).data(CELL) == ("stance",), "what is placed comes first"

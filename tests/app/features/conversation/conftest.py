@@ -61,7 +61,9 @@ def talk(drive: Any, tmp_path: Path) -> Talk:
             channel=side,
             words=tuple(Word(text=w, start=a, end=b) for w, a, b in spoken.words[side]),
             segments=tuple(
-                Segment(s.kind, s.start, s.end, sum(s.stress) / 2 if s.stress else None, s.text) for s in spoken.said if s.side == side
+                Segment(s.kind, s.start, s.end, sum(s.stress) / 2 if s.stress else None, s.text)
+                for s in spoken.said
+                if s.side == side
             ),
         )
         for side in (0, 1)

@@ -36,7 +36,10 @@ def test_the_chooser_follows_names_and_an_empty_panel_says_what_to_drop(talk: An
     assert talk.drive.session.onstage.conversation is None
     talk.drive.document.edit("Remove", lambda p: conversing.remove_conversation(p, ident))
     image = panel.view.grab().toImage()
-    colours = {image.pixelColor(x, image.height() // 2 - 45).name() for x in range(image.width() // 2 - 70, image.width() // 2 + 70)}
+    colours = {
+        image.pixelColor(x, image.height() // 2 - 45).name()
+        for x in range(image.width() // 2 - 70, image.width() // 2 + 70)
+    }
     assert len(colours) > 2, "a picture of two who talk"
 
 

@@ -1,4 +1,6 @@
-"""Who moves each of the two, how far apart they stand, and what cannot be, in the dialog of sounds and names."""
+"""Who moves each of the two, how far apart they stand, and what cannot be, in the dialog of sounds and
+names.
+"""
 
 from __future__ import annotations
 
@@ -25,7 +27,9 @@ def opened(talk: Any) -> SidesDialog:
     return next(d for d in talk.drive.window.findChildren(SidesDialog) if d.isVisible())
 
 
-def test_another_project_is_chosen_for_a_side_and_taken_away_again(talk: Any, tmp_path: Path, monkeypatch: Any) -> None:
+def test_another_project_is_chosen_for_a_side_and_taken_away_again(
+    talk: Any, tmp_path: Path, monkeypatch: Any
+) -> None:
     other = tmp_path / "other.metagraph.yaml"
     save_project(Project("other"), other)
     talk.drive.document.save(tmp_path / "this.metagraph.yaml")
@@ -35,7 +39,9 @@ def test_another_project_is_chosen_for_a_side_and_taken_away_again(talk: Any, tm
     monkeypatch.setattr(QFileDialog, "getOpenFileName", lambda *_, **__: (str(other), ""))
     choose = [b for b in dialog.findChildren(QToolButton) if b.toolTip() == "Choose a project"]
     QTest.mouseClick(choose[1], Qt.MouseButton.LeftButton)
-    assert dialog.movers[1].text() == "other.metagraph.yaml", "beside this project: moved together, it is still found"
+    assert dialog.movers[1].text() == "other.metagraph.yaml", (
+        "beside this project: moved together, it is still found"
+    )
     QTest.mouseClick(dialog.go, Qt.MouseButton.LeftButton)
     assert [s.project for s in talk.conversation.sides] == [None, "other.metagraph.yaml"]
     dialog = opened(talk)

@@ -31,7 +31,9 @@ def wait_read(drive: Any, dialog: ImportDialog) -> None:
     drive.wait(lambda: dialog.job is None and not dialog._soon.isActive(), 240)
 
 
-def test_two_who_talk_are_dropped_edited_saved_reopened_and_exported(drive: Any, tmp_path: Path, monkeypatch: Any) -> None:
+def test_two_who_talk_are_dropped_edited_saved_reopened_and_exported(
+    drive: Any, tmp_path: Path, monkeypatch: Any
+) -> None:
     audio, words = make_conversation(tmp_path)
     assert drive.drop_files((drive.window.statusBar(), QPoint(200, 8)), audio, words)
     dialog = dialog_of(drive)
@@ -67,7 +69,9 @@ def test_two_who_talk_are_dropped_edited_saved_reopened_and_exported(drive: Any,
     from app.features.conversation.segment_lanes import lanes
 
     def at(seconds: float) -> tuple[Any, QPoint]:
-        return view, QPoint(round(view.scale().x(seconds)), round(lanes(view.width(), view.height())[0].segments.center().y()))
+        return view, QPoint(
+            round(view.scale().x(seconds)), round(lanes(view.width(), view.height())[0].segments.center().y())
+        )
 
     first, second = imported.sides[0].segments[:2]
     drive.drag(at(first.end - 0.015), at(first.end - 0.25), lambda: now() != imported)
@@ -99,7 +103,9 @@ def test_two_who_talk_are_dropped_edited_saved_reopened_and_exported(drive: Any,
     assert session.onstage.conversation == ident
     sounds = drive.conversation.sounds
     drive.wait(lambda: bool(sounds.heard) and not any(h.told for h in sounds.heard.values()), 90)
-    assert not any(h.missing for h in sounds.heard.values()), "the sound is found from where the project is now"
+    assert not any(h.missing for h in sounds.heard.values()), (
+        "the sound is found from where the project is now"
+    )
 
     for name in ("duet.eaf", "duet.TextGrid"):
         target = tmp_path / name
@@ -138,7 +144,9 @@ def test_a_failed_read_says_why_and_keeps_the_dialog(drive: Any, tmp_path: Path)
 def test_many_notes_leave_the_names_as_high_as_they_are(drive: Any, tmp_path: Path) -> None:
     audio, _ = make_conversation(tmp_path)
     words = tmp_path / "over.srt"
-    words.write_text("1\n00:00:01,000 --> 00:00:05,000\nhello there you\n\n2\n00:00:03,000 --> 00:00:06,000\nand over it\n")
+    words.write_text(
+        "1\n00:00:01,000 --> 00:00:05,000\nhello there you\n\n2\n00:00:03,000 --> 00:00:06,000\nand over it\n"
+    )
     converse(drive.shell, (audio, words))
     dialog = dialog_of(drive)
     wait_read(drive, dialog)

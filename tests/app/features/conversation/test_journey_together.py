@@ -1,4 +1,6 @@
-"""Two who talk are dropped on the sample project, move both characters, are heard, and are written as a video."""
+"""Two who talk are dropped on the sample project, move both characters, are heard, and are written as a
+video.
+"""
 
 from __future__ import annotations
 
@@ -52,7 +54,9 @@ def test_dropped_seen_heard_and_written(drive: Any, tmp_path: Path) -> None:
 
     drive.actions["render"].trigger()
     writer = next(d for d in drive.window.findChildren(RenderDialog) if d.isVisible())
-    assert talk.name in writer.windowTitle() and writer.seconds.value() == pytest.approx(talk.length, abs=0.06)
+    assert talk.name in writer.windowTitle() and writer.seconds.value() == pytest.approx(
+        talk.length, abs=0.06
+    )
     out = tmp_path / "talk.mp4"
     writer.file.setText(str(out))
     writer.seconds.setValue(2.0)
@@ -66,5 +70,7 @@ def test_dropped_seen_heard_and_written(drive: Any, tmp_path: Path) -> None:
     with av.open(str(out)) as container:
         sound = np.concatenate([f.to_ndarray()[0] for f in container.decode(audio=0)])
     assert len(pictures) == 60 and np.abs(pictures[0].astype(int) - pictures[-1]).max() > 40, "somebody moves"
-    assert np.abs(sound[: 44100 // 2]).max() < 0.05 < np.abs(sound[44100:]).max(), "the first words begin after 0.6 s"
+    assert np.abs(sound[: 44100 // 2]).max() < 0.05 < np.abs(sound[44100:]).max(), (
+        "the first words begin after 0.6 s"
+    )
     writer.close()

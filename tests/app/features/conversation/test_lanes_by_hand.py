@@ -31,9 +31,15 @@ def press(talk: Any, key: Qt.Key, modifier: Qt.KeyboardModifier = Modifier.NoMod
 
 def test_an_edge_is_dragged_and_caught_by_a_word(talk: Any) -> None:
     first, before = talk.segments()[0], steps(talk)
-    edges = [e for e in word_edges(talk.conversation.sides[0].words, first.end) if first.start < e < first.end - 0.1]
+    edges = [
+        e
+        for e in word_edges(talk.conversation.sides[0].words, first.end)
+        if first.start < e < first.end - 0.1
+    ]
     to = max(edges)
-    talk.drive.drag(talk.at(first.end - 0.02), talk.at(to - 0.01), lambda: talk.segments()[0].end != first.end)
+    talk.drive.drag(
+        talk.at(first.end - 0.02), talk.at(to - 0.01), lambda: talk.segments()[0].end != first.end
+    )
     assert talk.segments()[0].end == pytest.approx(to, abs=0.002)
     assert steps(talk) == before + 1
     talk.drive.document.undo()
@@ -43,7 +49,11 @@ def test_an_edge_is_dragged_and_caught_by_a_word(talk: Any) -> None:
 def test_a_body_is_dragged_up_to_its_neighbour_and_takes_its_stress_along(talk: Any) -> None:
     before = talk.segments()[3]
     assert before.kind == "hesitation"
-    talk.drive.drag(talk.at((before.start + before.end) / 2), talk.at(before.end + 9), lambda: talk.segments()[3] != before)
+    talk.drive.drag(
+        talk.at((before.start + before.end) / 2),
+        talk.at(before.end + 9),
+        lambda: talk.segments()[3] != before,
+    )
     after = talk.segments()[3]
     assert after.end == talk.segments()[4].start
     assert after.end - after.start == pytest.approx(before.end - before.start)
@@ -56,7 +66,11 @@ def test_the_stress_is_dragged_to_a_top_of_the_pitch(talk: Any) -> None:
     heard = talk.drive.conversation.sounds.of(talk.conversation, 0)
     tops = [m for m in heard.maxima if first.start < m < first.end and abs(m - first.peak) > 0.15]
     top = float(tops[0])
-    talk.drive.drag(talk.at(first.peak, row="wave"), talk.at(top + 0.02, row="wave"), lambda: talk.segments()[0].peak != first.peak)
+    talk.drive.drag(
+        talk.at(first.peak, row="wave"),
+        talk.at(top + 0.02, row="wave"),
+        lambda: talk.segments()[0].peak != first.peak,
+    )
     near = min(heard.maxima, key=lambda m: abs(m - talk.segments()[0].peak))
     assert talk.segments()[0].peak == pytest.approx(near, abs=0.002)
     assert talk.drive.document.undo_stack.undoText() == "Move stress"
@@ -154,7 +168,10 @@ def test_what_cannot_be_done_is_told_and_leaves_no_step(talk: Any) -> None:
     press(talk, Key.Key_S)
     talk.editing.select({(0, len(talk.segments()) - 1)})
     press(talk, Key.Key_M)
-    assert [w.split(":")[0] for w in talk.drive.told] == ["No segment is here", "There is no segment after this one to merge it with."]
+    assert [w.split(":")[0] for w in talk.drive.told] == [
+        "No segment is here",
+        "There is no segment after this one to merge it with.",
+    ]
     assert steps(talk) == before
 
 
@@ -177,7 +194,11 @@ def test_waves_pitch_and_segments_are_painted_and_the_playhead_alone_paints_noth
     def colours(at: float, row: str) -> set[str]:
         _, point = talk.at(at, row=row)
         high = 30 if row == "wave" else 6
-        return {image.pixelColor(point.x() + dx, point.y() + dy).name() for dx in range(-3, 4) for dy in range(-high, high)}
+        return {
+            image.pixelColor(point.x() + dx, point.y() + dy).name()
+            for dx in range(-3, 4)
+            for dy in range(-high, high)
+        }
 
     loud = talk.segments()[0]
     silence = loud.start / 2
@@ -217,7 +238,9 @@ def near(a: str, b: str) -> bool:
 def test_a_missing_sound_is_told_in_its_lane_and_the_rest_works(talk: Any, tmp_path: Path) -> None:
     talk.read()
     ident = talk.drive.session.onstage.conversation
-    talk.drive.document.edit("Change", lambda p: conversing.change_side(p, ident, 1, audio=str(tmp_path / "gone.wav")))
+    talk.drive.document.edit(
+        "Change", lambda p: conversing.change_side(p, ident, 1, audio=str(tmp_path / "gone.wav"))
+    )
     talk.read()
     heard = talk.drive.conversation.sounds.of(talk.conversation, 1)
     assert "gone.wav" in heard.missing

@@ -21,7 +21,13 @@ TALK = Conversation(
     name="talk",
     length=20.0,
     sides=(
-        Side(segments=(Segment("clause", 1.0, 2.0, 1.5), Segment("clause", 2.0, 3.0), Segment("hesitation", 4.0, 4.05))),
+        Side(
+            segments=(
+                Segment("clause", 1.0, 2.0, 1.5),
+                Segment("clause", 2.0, 3.0),
+                Segment("hesitation", 4.0, 4.05),
+            )
+        ),
         Side(segments=(Segment("response", 1.0, 2.0, 1.2),)),
     ),
 )
@@ -83,7 +89,11 @@ def test_what_is_in_sight_is_what_a_look_at_all_finds(begin: float, length: floa
 
 
 def test_the_word_that_reaches_into_sight_is_there() -> None:
-    words = (Word(text="a", start=0.0, end=2.0), Word(text="b", start=2.0, end=3.0), Word(text="c", start=9.0, end=9.5))
+    words = (
+        Word(text="a", start=0.0, end=2.0),
+        Word(text="b", start=2.0, end=3.0),
+        Word(text="c", start=9.0, end=9.5),
+    )
     assert [w.text for w in words_in(words, 1.0, 2.5)] == ["a", "b"]
     assert words_in((), 0.0, 1.0) == ()
 

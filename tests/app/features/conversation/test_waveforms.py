@@ -1,4 +1,6 @@
-"""Envelopes: least and greatest of every column of pixels, right at every zoom, and never looking at more than there are pixels for."""
+"""Envelopes: least and greatest of every column of pixels, right at every zoom, and never looking at more
+than there are pixels for.
+"""
 
 from __future__ import annotations
 

@@ -1,4 +1,6 @@
-"""Many actions edited together through the real window: names, pasted properties, another clip; each one step to undo."""
+"""Many actions edited together through the real window: names, pasted properties, another clip; each one step
+to undo.
+"""
 
 from __future__ import annotations
 
@@ -99,4 +101,10 @@ def test_a_clip_is_replaced_and_settings_stay(toys):
 
 def test_the_menu_of_an_action_offers_them(toys):
     drive = toys
-    assert [a.objectName() for a in drive.canvas.row_actions] == ["rename", "copy", "paste", "replace_clip", "twins"]
+    assert [a.objectName() for a in drive.canvas.row_actions] == [
+        "rename",
+        "copy",
+        "paste",
+        "replace_clip",
+        "twins",
+    ]

@@ -1,4 +1,6 @@
-"""The export dialog through the real window: a target is chosen, its losses are read, it is written, and remembered for the project."""
+"""The export dialog through the real window: a target is chosen, its losses are read, it is written, and
+remembered for the project.
+"""
 
 from __future__ import annotations
 
@@ -94,7 +96,9 @@ def test_vectors_are_written_where_they_are_asked_for(toys, tmp_path):
     dialog.reject()
 
 
-@pytest.mark.parametrize("kept", ["nonsense", "[1]", '{"target": "no such", "folder": "/x"}', '{"colour": 1}'])
+@pytest.mark.parametrize(
+    "kept", ["nonsense", "[1]", '{"target": "no such", "folder": "/x"}', '{"colour": 1}']
+)
 def test_a_memory_that_cannot_be_read_is_as_none(toys, kept):
     from PySide6.QtCore import QSettings
 
@@ -120,7 +124,14 @@ def test_a_web_page_is_opened_in_the_browser_and_all_else_as_a_folder(toys, tmp_
         pick(drive, dialog, name)
         put(dialog, str(tmp_path / name))
         QTest.mouseClick(dialog.go, Qt.MouseButton.LeftButton)
-        drive.wait(lambda words=words: dialog.open_button.isEnabled() and dialog.open_button.text() == words and dialog.go.isEnabled(), 60)
+        drive.wait(
+            lambda words=words: (
+                dialog.open_button.isEnabled()
+                and dialog.open_button.text() == words
+                and dialog.go.isEnabled()
+            ),
+            60,
+        )
         QTest.mouseClick(dialog.open_button, Qt.MouseButton.LeftButton)
     page, folder = opened_urls
     with urllib.request.urlopen(page.toString(), timeout=10) as answer:
@@ -146,7 +157,9 @@ def test_each_target_has_a_folder_of_its_own_and_its_own_result(toys, tmp_path, 
     drive.wait(lambda: dialog.open_button.isEnabled(), 60)
     page = (tmp_path / "toy-export" / "web" / "index.html").read_bytes()
     pick(drive, dialog, "unity")
-    assert not dialog.open_button.isEnabled() and "Written" not in dialog.words.text(), "what was written is the page"
+    assert not dialog.open_button.isEnabled() and "Written" not in dialog.words.text(), (
+        "what was written is the page"
+    )
     QTest.mouseClick(dialog.go, Qt.MouseButton.LeftButton)
     drive.wait(lambda: dialog.open_button.isEnabled(), 60)
     pick(drive, dialog, "web")

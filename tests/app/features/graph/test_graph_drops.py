@@ -36,8 +36,22 @@ NODE = {kind: Hit("node", None, kind) for kind in ("gesture", "fidget", "transit
         (NODE["fidget"], 3, "drop 3 clips as fidgets of *rest*", "fidget", "rest", None),
         (at("row", "x", "gesture"), 2, "drop 2 clips as gestures of *rest*", "gesture", "rest", None),
         (at("bar", "x", "fidget"), 1, "drop this clip as a fidget of *rest*", "fidget", "rest", None),
-        (NODE["transition"], 1, "drop this clip as a transition from *rest* to *up*", "transition", "rest", "up"),
-        (at("other", None, "transition"), 2, "drop 2 clips as transitions from *rest* to *up*", "transition", "rest", "up"),
+        (
+            NODE["transition"],
+            1,
+            "drop this clip as a transition from *rest* to *up*",
+            "transition",
+            "rest",
+            "up",
+        ),
+        (
+            at("other", None, "transition"),
+            2,
+            "drop 2 clips as transitions from *rest* to *up*",
+            "transition",
+            "rest",
+            "up",
+        ),
     ],
 )
 def test_a_drop_of_clips_says_what_it_will_do_and_does_it(toy, project, hit, count, words, kind, stance, end):
@@ -59,7 +73,9 @@ def test_a_drop_of_clips_says_what_it_will_do_and_does_it(toy, project, hit, cou
 
 @pytest.mark.parametrize("area", ["nothing", "start"])
 def test_beside_the_nodes_nothing_can_be_dropped(toy, project, area):
-    drop = drop_at(project, "arms", toy.id(project, "rest"), None, Hit(area), Load(clips=tuple(project.clips)[:1]))
+    drop = drop_at(
+        project, "arms", toy.id(project, "rest"), None, Hit(area), Load(clips=tuple(project.clips)[:1])
+    )
     assert not drop.possible
     assert drop.words == "drop on one of the nodes"
 
@@ -92,8 +108,12 @@ def test_a_clip_of_another_skeleton_is_refused_by_name(toy, project):
     s = toy.skeleton
     other = Skeleton(("Root", *s.names[1:]), s.parents, s.rest_rotations, s.rest_translations)
     clip = toy.clip("alien")
-    mixed = edits.add_clips(project, [("alien.glb", 0, "", Clip("alien", other, clip.fps, clip.rotations, clip.translations))])
-    drop = drop_at(mixed, "arms", toy.id(mixed, "rest"), None, NODE["gesture"], Load(clips=(toy.id(mixed, "alien"),)))
+    mixed = edits.add_clips(
+        project, [("alien.glb", 0, "", Clip("alien", other, clip.fps, clip.rotations, clip.translations))]
+    )
+    drop = drop_at(
+        mixed, "arms", toy.id(mixed, "rest"), None, NODE["gesture"], Load(clips=(toy.id(mixed, "alien"),))
+    )
     assert not drop.possible
     assert "'alien' has another skeleton" in drop.words
 
@@ -126,25 +146,44 @@ def test_actions_dropped_on_a_chip_move_there_and_stay_what_they_are(toy, projec
     assert drop.possible
     assert drop.words == "move 2 actions to *up*"
     after = perform(project, "arms", drop, load)
-    assert [(after.action(i).kind, after.action(i).stance) for i in load.actions] == [("gesture", up), ("fidget", up)]
+    assert [(after.action(i).kind, after.action(i).stance) for i in load.actions] == [
+        ("gesture", up),
+        ("fidget", up),
+    ]
 
 
 def test_actions_dropped_where_they_are_say_so(toy, project):
     rest = toy.id(project, "rest")
-    drop = drop_at(project, "arms", rest, None, Hit("chip", rest), Load(actions=(toy.id(project, "rest cough"),)))
+    drop = drop_at(
+        project, "arms", rest, None, Hit("chip", rest), Load(actions=(toy.id(project, "rest cough"),))
+    )
     assert not drop.possible
     assert drop.words == "already in *rest*"
 
 
 def test_a_transition_cannot_move_to_where_it_ends(toy, project):
     up = toy.id(project, "up")
-    drop = drop_at(project, "arms", toy.id(project, "rest"), up, Hit("chip", up), Load(actions=(toy.id(project, "rest to up"),)))
+    drop = drop_at(
+        project,
+        "arms",
+        toy.id(project, "rest"),
+        up,
+        Hit("chip", up),
+        Load(actions=(toy.id(project, "rest to up"),)),
+    )
     assert not drop.possible
     assert "must end in another stance" in drop.words
 
 
 def test_an_action_makes_no_new_stance_but_its_clip_can(toy, project):
-    drop = drop_at(project, "arms", toy.id(project, "rest"), None, Hit("card"), Load(actions=(toy.id(project, "rest cough"),)))
+    drop = drop_at(
+        project,
+        "arms",
+        toy.id(project, "rest"),
+        None,
+        Hit("card"),
+        Load(actions=(toy.id(project, "rest cough"),)),
+    )
     assert not drop.possible
     assert "from the library" in drop.words
 
@@ -157,5 +196,15 @@ def test_what_is_dragged_survives_the_clipboards_bytes():
 
 def test_only_files_that_can_be_clips_and_folders_are_taken():
     data = QMimeData()
-    data.setUrls([QUrl(u) for u in ("file:///x/a.BVH", "file:///x/notes.txt", "file:///x/folder", "https://example.org/b.glb")])
+    data.setUrls(
+        [
+            QUrl(u)
+            for u in (
+                "file:///x/a.BVH",
+                "file:///x/notes.txt",
+                "file:///x/folder",
+                "https://example.org/b.glb",
+            )
+        ]
+    )
     assert load_of(data).files == ("/x/a.BVH", "/x/folder")

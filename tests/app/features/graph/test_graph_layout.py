@@ -13,7 +13,18 @@ from app.features.graph.graph_layout import arrange, bar_part, hole, likelihood_
 from metagraph.graph import edits
 from metagraph.graph.model import Project
 
-SIZES = [(1, 1), (460, 420), (640, 480), (700, 900), (960, 700), (1200, 500), (1920, 1080), (3840, 2160), (460, 2000), (4000, 420)]
+SIZES = [
+    (1, 1),
+    (460, 420),
+    (640, 480),
+    (700, 900),
+    (960, 700),
+    (1200, 500),
+    (1920, 1080),
+    (3840, 2160),
+    (460, 2000),
+    (4000, 420),
+]
 
 
 @pytest.fixture(scope="module")
@@ -63,7 +74,9 @@ def test_an_empty_project_has_a_card_three_nodes_and_a_plus():
     assert list(layout.nodes) == ["gesture", "fidget", "transition"]
     assert [chip.stance for chip in layout.chips] == [None]
     assert layout.hit(layout.card.center()).area == "card"
-    assert layout.hit(layout.card.center(), dragging=True).area == "card", "without a stance there is no loop to add"
+    assert layout.hit(layout.card.center(), dragging=True).area == "card", (
+        "without a stance there is no loop to add"
+    )
 
 
 @pytest.mark.parametrize("size", SIZES)
@@ -96,7 +109,11 @@ def test_what_is_drawn_is_what_is_hit(toy, size):
     for kind, node in layout.nodes.items():
         for row in node.rows:
             on_name, on_bar = QPointF(row.rect.left() + 34, row.rect.center().y()), row.bar.center()
-            assert (layout.hit(on_name).area, layout.hit(on_name).ident, layout.hit(on_name).kind) == ("row", row.action.id, kind)
+            assert (layout.hit(on_name).area, layout.hit(on_name).ident, layout.hit(on_name).kind) == (
+                "row",
+                row.action.id,
+                kind,
+            )
             assert (layout.hit(on_bar).area, layout.hit(on_bar).ident) == ("bar", row.action.id)
             assert layout.row(row.action.id) is row
         at = QPointF(node.header.left() + 20, node.header.center().y())
@@ -117,7 +134,10 @@ def test_every_row_can_be_scrolled_into_sight_and_no_further(crowded, toy):
     for kind, node in first.nodes.items():
         seen = set()
         for scroll in range(node.most + 1):
-            seen |= {row.action.id for row in arrange(crowded, "arms", stance, size, {kind: scroll}).nodes[kind].rows}
+            seen |= {
+                row.action.id
+                for row in arrange(crowded, "arms", stance, size, {kind: scroll}).nodes[kind].rows
+            }
         assert seen == {a.id for a in crowded.graphs["arms"].of(stance, kind)}
         far = arrange(crowded, "arms", stance, size, {kind: 10**6}).nodes[kind]
         assert far.scroll == far.most

@@ -28,9 +28,9 @@ def test_what_letting_go_does_is_said(toy):
     assert not repoint_at(project, [way], Hit("node", None, "gesture")).possible
     two = [way, toy.id(project, "far to up")]
     assert not repoint_at(project, two, Hit("chip", far)).possible, "one of them starts there"
-    assert repoint_at(project, [toy.id(project, "up to far"), toy.id(project, "up to rest")], Hit("chip", rest)).words.startswith(
-        "let go and 2 transitions end"
-    )
+    assert repoint_at(
+        project, [toy.id(project, "up to far"), toy.id(project, "up to rest")], Hit("chip", rest)
+    ).words.startswith("let go and 2 transitions end")
 
 
 def test_only_transitions_have_an_arrow_to_drag(toy):
@@ -57,7 +57,9 @@ def test_an_arrow_dragged_onto_a_stance_ends_there_in_one_step(toys):
     way, far = drive.id("rest to up"), drive.id("far")
     drive.pause(100)
     steps = drive.document.undo_stack.count()
-    drive.drag(head(drive, way), drive.chip(far), lambda: drive.document.project.action(way).end_stance == far)
+    drive.drag(
+        head(drive, way), drive.chip(far), lambda: drive.document.project.action(way).end_stance == far
+    )
     assert drive.document.undo_stack.count() == steps + 1
     assert drive.document.project.action(way).stance == drive.id("rest")
     assert drive.canvas._arrow is None and drive.canvas._drop is None
@@ -69,7 +71,14 @@ def test_an_arrow_dragged_onto_a_stance_ends_there_in_one_step(toys):
 @pytest.mark.gl
 def test_all_selected_transitions_follow_and_a_stance_that_cannot_be_the_end_is_refused(toys):
     drive = toys
-    project = edits.place(drive.document.project, [drive.action("up to far").clip], "arms", "transition", drive.id("up"), drive.id("far"))
+    project = edits.place(
+        drive.document.project,
+        [drive.action("up to far").clip],
+        "arms",
+        "transition",
+        drive.id("up"),
+        drive.id("far"),
+    )
     drive.document.load(project, None)
     drive.session.place.set_stance(drive.id("up"))
     ways = [a.id for a in project.graphs["arms"].of(drive.id("up"), "transition")]

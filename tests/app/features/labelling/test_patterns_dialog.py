@@ -1,4 +1,6 @@
-"""Name patterns in the window: found, tried out, added, changed, taken away, forgotten and shared, with the keyboard."""
+"""Name patterns in the window: found, tried out, added, changed, taken away, forgotten and shared, with the
+keyboard.
+"""
 
 from __future__ import annotations
 
@@ -31,22 +33,32 @@ def dialog(qapp: object, qtbot: object) -> PatternsDialog:
 
 
 def shown(dialog: PatternsDialog) -> list[tuple[str, ...]]:
-    return [tuple(dialog.chosen.index(i, c).data() for c in range(4)) for i in range(dialog.chosen.rowCount())]
+    return [
+        tuple(dialog.chosen.index(i, c).data() for c in range(4)) for i in range(dialog.chosen.rowCount())
+    ]
 
 
 def test_rows_are_own_ones_learned_ones_and_what_is_built_in_and_unchanged() -> None:
-    patterns = learn(Patterns().with_pattern("kinds", "nod", "fidget"), "idle_arms_wobble", "kind", "gesture", NAMES)
+    patterns = learn(
+        Patterns().with_pattern("kinds", "nod", "fidget"), "idle_arms_wobble", "kind", "gesture", NAMES
+    )
     rows = rows_of(patterns)
-    assert Row(MINE, "kinds", "nod", "fidget") in rows and Row(LEARNED, "kind", "wobble", "gesture", 1) in rows
+    assert (
+        Row(MINE, "kinds", "nod", "fidget") in rows and Row(LEARNED, "kind", "wobble", "gesture", 1) in rows
+    )
     assert not any(r.source == NOBODY and (r.field, r.phrase) == ("kinds", "nod") for r in rows)
 
 
 def test_removing_gives_back_forgets_or_takes_away() -> None:
-    patterns = learn(Patterns().with_pattern("kinds", "nod", "fidget"), "idle_arms_wobble", "kind", "gesture", NAMES)
+    patterns = learn(
+        Patterns().with_pattern("kinds", "nod", "fidget"), "idle_arms_wobble", "kind", "gesture", NAMES
+    )
     patterns = learn(patterns, "idle_arms_wobble", "kind", "fidget", NAMES)
     assert without(patterns, Row(MINE, "kinds", "nod", "fidget")).meanings["kinds"]["nod"] == "gesture"
     assert "wave" not in without(patterns, Row(NOBODY, "kinds", "wave", "gesture")).meanings["kinds"]
-    assert without(patterns, Row(LEARNED, "kind", "wobble", "fidget", 1)).learned == {"kind": {"wobble": {"gesture": 1}}}
+    assert without(patterns, Row(LEARNED, "kind", "wobble", "fidget", 1)).learned == {
+        "kind": {"wobble": {"gesture": 1}}
+    }
     assert changed(patterns, Row(LEARNED, "kind", "wobble", "fidget", 1), "wobble", "gesture").learned == {
         "kind": {"wobble": {"gesture": 2}}
     }
@@ -99,14 +111,19 @@ def test_a_built_in_word_that_is_taken_away_says_so_and_comes_back(dialog: Patte
     dialog.remove.click()
     dialog.search.clear()
     dialog.every.click()
-    assert shown(dialog) == [("wave", "kind", "nothing any more", "you")] and "nothing any more" in dialog.words.text()
+    assert (
+        shown(dialog) == [("wave", "kind", "nothing any more", "you")]
+        and "nothing any more" in dialog.words.text()
+    )
     dialog.table.selectRow(0)
     dialog.remove.click()
     assert shown(dialog) == [] and "wave" in dialog.learned.patterns.meanings["kinds"]
 
 
 @pytest.mark.window
-def test_no_words_or_a_broken_file_are_told_not_raised(dialog: PatternsDialog, monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
+def test_no_words_or_a_broken_file_are_told_not_raised(
+    dialog: PatternsDialog, monkeypatch: pytest.MonkeyPatch, tmp_path: Path
+) -> None:
     dialog.add.click()
     assert "no words" in dialog.words.text()
     broken = tmp_path / "theirs.json"
@@ -134,7 +151,10 @@ def test_patterns_are_shared_as_a_file_and_forgetting_leaves_own_ones(
     assert [row[0] for row in shown(dialog)] == ["bonk"] and not dialog.forget.isEnabled()
     monkeypatch.setattr(QFileDialog, "getOpenFileName", lambda *_: (str(tmp_path / "ours.json"), ""))
     dialog.take.click()
-    assert [row[0] for row in shown(dialog)] == ["bonk", "wobble"] and "1 pattern and 1 learned" in dialog.words.text()
+    assert [row[0] for row in shown(dialog)] == [
+        "bonk",
+        "wobble",
+    ] and "1 pattern and 1 learned" in dialog.words.text()
 
 
 @pytest.mark.window

@@ -1,4 +1,6 @@
-"""Going through proposals in the real window: a clip plays out of its stance and back, a key corrects, Enter accepts, all can be undone."""
+"""Going through proposals in the real window: a clip plays out of its stance and back, a key corrects, Enter
+accepts, all can be undone.
+"""
 
 from __future__ import annotations
 
@@ -25,7 +27,9 @@ def practice(drive):
     from app.project.files import PRACTICE
 
     drive.files.open(PRACTICE, template=True)
-    drive.wait(lambda: len(drive.document.project.clips) == 152 and drive.performance.skeleton() is not None, 60)
+    drive.wait(
+        lambda: len(drive.document.project.clips) == 152 and drive.performance.skeleton() is not None, 60
+    )
     return drive
 
 
@@ -40,9 +44,12 @@ def truth(practice):
     for clip, entry in practice.document.project.clips.items():
         action = by_path[Path(entry.path).name]
         out[clip] = {
-            "kind": action.kind, "layer": action.layer, "stance": sample.stance(action.stance).name,
-            "end_stance": sample.stance(action.end_stance).name if action.end_stance else None, "limb": action.limb,
-        }  # fmt: skip
+            "kind": action.kind,
+            "layer": action.layer,
+            "stance": sample.stance(action.stance).name,
+            "end_stance": sample.stance(action.end_stance).name if action.end_stance else None,
+            "limb": action.limb,
+        }
     return out
 
 
@@ -60,7 +67,9 @@ def begun(drive):
 def given_the_keyboard(drive, dialog) -> None:
     """What a window manager does when a window opens; without one a click does it."""
     corner = dialog.legend.mapToGlobal(QPoint(2, 2))
-    subprocess.run(["xdotool", "mousemove", str(corner.x()), str(corner.y()), "click", "1"], check=True, timeout=10)
+    subprocess.run(
+        ["xdotool", "mousemove", str(corner.x()), str(corner.y()), "click", "1"], check=True, timeout=10
+    )
     drive.wait(dialog.isActiveWindow)
 
 
@@ -82,7 +91,9 @@ def to_gesture(drive, dialog, name: str = "hands_at_sides__point_you_rt_01") -> 
 
 
 def test_the_practice_project_is_labelled_with_the_keyboard_alone(practice, truth, record_property):
-    """Stances and whatever is not sure are looked at one by one and corrected where they are wrong; the sure ones are accepted at once."""
+    """Stances and whatever is not sure are looked at one by one and corrected where they are wrong; the sure
+    ones are accepted at once.
+    """
     drive, hands = practice, Counter()
     drive.key(K.Key_P, Qt.KeyboardModifier.ControlModifier)
     hands.update(["M", "K", "K"])
@@ -132,8 +143,13 @@ def test_the_practice_project_is_labelled_with_the_keyboard_alone(practice, trut
     record_property("operators", dict(hands))
     record_property("seconds_a_clip", seconds / len(truth))
     every = predicted({"M": 152, "K": 152, "R": watched(project)})
-    print(f"\n{looked} looked at, {corrected} corrected; {dict(hands)}; predicted {seconds:.0f} s, {seconds / len(truth):.2f} s a clip;")
-    print(f"each of 152 watched whole and accepted by a key: {every:.0f} s, {every / len(truth):.2f} s a clip")
+    print(
+        f"\n{looked} looked at, {corrected} corrected; {dict(hands)}; predicted {seconds:.0f} s, "
+        f"{seconds / len(truth):.2f} s a clip;"
+    )
+    print(
+        f"each of 152 watched whole and accepted by a key: {every:.0f} s, {every / len(truth):.2f} s a clip"
+    )
     assert seconds < 600
 
 
@@ -141,7 +157,11 @@ def watched(project) -> float:
     """Seconds it takes to watch every action once, out of its stance and back."""
     from app.stage.playback_source import LEAD
 
-    return sum((e - s) + (0 if a.kind == "stance" else 2 * LEAD) for a in project.actions() for s, e in [project.span(a)])
+    return sum(
+        (e - s) + (0 if a.kind == "stance" else 2 * LEAD)
+        for a in project.actions()
+        for s, e in [project.span(a)]
+    )
 
 
 def test_the_least_certain_stand_first_after_the_stances(practice):
@@ -197,7 +217,11 @@ def test_every_step_is_taken_back_by_a_key_and_the_clip_is_looked_at_again(pract
     press(dialog, K.Key_Backspace)
     assert len(dialog.work.waiting()) == 151
     press(dialog, K.Key_Backspace)
-    assert dialog.current == first and second in dialog.work.waiting() and not list(drive.document.project.actions())
+    assert (
+        dialog.current == first
+        and second in dialog.work.waiting()
+        and not list(drive.document.project.actions())
+    )
     press(dialog, K.Key_Backspace)  # nothing is left to take back
     dialog.close()
 

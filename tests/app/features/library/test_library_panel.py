@@ -53,7 +53,16 @@ def metrics(qapp):
 
 
 @pytest.mark.parametrize(
-    "name", ["a", "idle", "arms_crossed__point_you_rt_01", "x" * 200, "one two three four five six", "_" * 60, "ä ö ü" * 9]
+    "name",
+    [
+        "a",
+        "idle",
+        "arms_crossed__point_you_rt_01",
+        "x" * 200,
+        "one two three four five six",
+        "_" * 60,
+        "ä ö ü" * 9,
+    ],
 )
 def test_a_name_fits_in_at_most_two_lines(metrics, name):
     for width in (40, 90, 108, 300):

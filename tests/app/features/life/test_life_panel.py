@@ -1,4 +1,6 @@
-"""The life panel: a slider, a number and an off for each dial; one undo step a drag; modes apart from the amounts."""
+"""The life panel: a slider, a number and an off for each dial; one undo step a drag; modes apart from the
+amounts.
+"""
 
 from __future__ import annotations
 
@@ -81,4 +83,6 @@ def test_a_mode_has_factors_of_its_own_and_goes_back_to_the_usual(panel):
     assert life(panel).modes["listening"].aversion_rate == 2.0
     assert life(panel).aversion_rate == Life().aversion_rate, "the amount itself stays"
     panel._usual("listening")
-    assert life(panel).modes == {} and rows["aversion_rate"].number.value() == pytest.approx(MANNERS["listening"].aversion_rate)
+    assert life(panel).modes == {} and rows["aversion_rate"].number.value() == pytest.approx(
+        MANNERS["listening"].aversion_rate
+    )

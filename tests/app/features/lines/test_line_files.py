@@ -1,4 +1,6 @@
-"""Lines from sound files and lists: each with what lies beside it, one bad file spoiling no other; and the panel that holds them."""
+"""Lines from sound files and lists: each with what lies beside it, one bad file spoiling no other; and the
+panel that holds them.
+"""
 
 from __future__ import annotations
 
@@ -33,7 +35,9 @@ def test_a_sound_becomes_a_line_with_the_text_beside_it(tmp_path):
 def test_one_bad_file_spoils_no_other_and_says_what_is_wrong(tmp_path):
     bad = tmp_path / "bad.wav"
     bad.write_bytes(b"no sound")
-    read = read_lines([bad, tmp_path / "gone.wav", tmp_path / "x.exe", sound(tmp_path / "fine.wav")], tmp_path)
+    read = read_lines(
+        [bad, tmp_path / "gone.wav", tmp_path / "x.exe", sound(tmp_path / "fine.wav")], tmp_path
+    )
     assert list(read.voices) == ["fine"]
     assert any("bad.wav" in n for n in read.notes) and any("x.exe" in n for n in read.notes)
 
@@ -58,7 +62,9 @@ def test_a_list_is_read_whatever_is_between_its_columns(tmp_path, text, ids):
         assert read.lines["280"].text in ("Yes, well", "Ja")
 
 
-@pytest.mark.parametrize(("text", "wrong"), [("279\n", "row 1"), ("a,b\n,c\n", "row 2"), ("1,a,gone.wav\n", "gone.wav")])
+@pytest.mark.parametrize(
+    ("text", "wrong"), [("279\n", "row 1"), ("a,b\n,c\n", "row 2"), ("1,a,gone.wav\n", "gone.wav")]
+)
 def test_a_list_that_is_none_says_where(tmp_path, text, wrong):
     path = tmp_path / "lines.csv"
     path.write_text(text)
@@ -89,7 +95,9 @@ def test_sounds_dropped_on_the_panel_can_be_edited_said_and_removed(drive, toy, 
     drive.show("lines")
     panel = drive.lines
     drive.wait(panel.empty.isVisible)
-    assert drive.drop_files((panel, panel.rect().center()), sound(tmp_path / "one.wav"), sound(tmp_path / "two.wav", 1.2))
+    assert drive.drop_files(
+        (panel, panel.rect().center()), sound(tmp_path / "one.wav"), sound(tmp_path / "two.wav", 1.2)
+    )
     drive.wait(lambda: panel.table.rowCount() == 2)
     assert [panel.table.item(n, 3).text() for n in range(2)] == ["0.6 s", "1.2 s"]
     assert drive.document.undo_stack.undoText() == "Add 2 lines"
@@ -167,7 +175,9 @@ def test_a_line_that_is_removed_while_it_is_asked_for_says_so_and_comes_back_wit
     drive.document.load(staging.set_line(toy.project(), "hi", a.Line(text="Hello there")), None)
     drive.performance.requests.ask(a.Say(line="hi", at=1.0))
     (ask,) = drive.performance.asks
-    drive.wait(lambda: ask.id in drive.performance.answers() and drive.performance.answers()[ask.id].at is not None)
+    drive.wait(
+        lambda: ask.id in drive.performance.answers() and drive.performance.answers()[ask.id].at is not None
+    )
     drive.document.edit("Remove line", lambda p: staging.set_line(p, "hi", None))
     drive.wait(lambda: drive.performance.answers()[ask.id].state == "refused")
     drive.session.onstage.select_requests((ask.id,))

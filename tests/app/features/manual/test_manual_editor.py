@@ -1,4 +1,6 @@
-"""A state machine drawn by hand in the real window: clips dropped, links dragged, timed, undone, copied, played, saved and exported."""
+"""A state machine drawn by hand in the real window: clips dropped, links dragged, timed, undone, copied,
+played, saved and exported.
+"""
 
 from __future__ import annotations
 
@@ -113,7 +115,9 @@ def test_the_editor_takes_the_meta_graphs_place_and_gives_it_back(hand: Hand) ->
     assert drive.actions["new_stance"].isEnabled()
 
 
-def test_clips_are_dropped_links_are_dragged_and_all_of_it_plays_is_undone_saved_and_exported(hand: Hand, tmp_path) -> None:
+def test_clips_are_dropped_links_are_dragged_and_all_of_it_plays_is_undone_saved_and_exported(
+    hand: Hand, tmp_path
+) -> None:
     drive = hand.drive
     drive.library.search.setText("rest")
     drive.pause(100)
@@ -129,13 +133,20 @@ def test_clips_are_dropped_links_are_dragged_and_all_of_it_plays_is_undone_saved
     # The idle loops; links there and back, the way there on request.
     drive.click(hand.middle("rest loop"))
     drive.wait(lambda: drive.session.selection.states == (hand.id("rest loop"),))
-    QTest.mouseClick(hand.inspector.loop, Qt.MouseButton.LeftButton, pos=QPoint(8, hand.inspector.loop.height() // 2))
+    QTest.mouseClick(
+        hand.inspector.loop, Qt.MouseButton.LeftButton, pos=QPoint(8, hand.inspector.loop.height() // 2)
+    )
     assert hand.state("rest loop").loop
     hand.link("rest loop", "rest wave rt")
     hand.link("rest wave rt", "rest loop")
     hand.link("rest loop", "rest long")
     hand.link(ANY, "rest short")
-    assert hand.pairs() == ["rest loop>rest wave rt", "rest wave rt>rest loop", "rest loop>rest long", f"{ANY}>rest short"]
+    assert hand.pairs() == [
+        "rest loop>rest wave rt",
+        "rest wave rt>rest loop",
+        "rest loop>rest long",
+        f"{ANY}>rest short",
+    ]
     first = next(iter(hand.machine.links))
     drive.session.selection.select_states((), (first,))
     hand.inspector.when.setCurrentIndex(1)
@@ -145,7 +156,9 @@ def test_clips_are_dropped_links_are_dragged_and_all_of_it_plays_is_undone_saved
     # An exit time, typed; one step back, and again.
     back = [*hand.machine.links][1]
     drive.session.selection.select_states((), (back,))
-    QTest.mouseClick(hand.inspector.leaves, Qt.MouseButton.LeftButton, pos=QPoint(8, hand.inspector.leaves.height() // 2))
+    QTest.mouseClick(
+        hand.inspector.leaves, Qt.MouseButton.LeftButton, pos=QPoint(8, hand.inspector.leaves.height() // 2)
+    )
     hand.inspector.exit.setFocus()
     hand.inspector.exit.selectAll()
     QTest.keyClicks(hand.inspector.exit, "0.8")
@@ -183,7 +196,9 @@ def test_clips_are_dropped_links_are_dragged_and_all_of_it_plays_is_undone_saved
     from app.features.export.export_dialog import ExportDialog
 
     drive.wait(lambda: not drive.jobs.running)
-    drive.document.edit("Link", lambda p: manual_edits.add_link(p, "arms", hand.id("rest long"), hand.id("rest loop")))
+    drive.document.edit(
+        "Link", lambda p: manual_edits.add_link(p, "arms", hand.id("rest long"), hand.id("rest loop"))
+    )
     drive.actions["export"].trigger()
     dialog = drive.window.findChild(ExportDialog)
     assert "differs from what was drawn" in dialog.losses.text()
@@ -195,12 +210,19 @@ def test_clips_are_dropped_links_are_dragged_and_all_of_it_plays_is_undone_saved
     written = next((tmp_path / "out").glob("*.json"))
     jsonschema.Draft202012Validator(json.loads(schema_text())).validate(json.loads(written.read_bytes()))
     kinds = {a.name: a.kind for a in read_export(written).actions()}
-    assert kinds == {"rest loop": "stance", "rest wave rt": "gesture", "rest long": "fidget", "rest short": "gesture"}
+    assert kinds == {
+        "rest loop": "stance",
+        "rest wave rt": "gesture",
+        "rest long": "fidget",
+        "rest short": "gesture",
+    }
 
 
 def test_nodes_are_moved_by_their_middle_in_one_step(drawn: Hand) -> None:
     before, undone = drawn.state("rest long"), drawn.drive.document.undo_stack.count()
-    drawn.drive.drag(drawn.middle("rest long"), drawn.at(700, 320), lambda: drawn.state("rest long") != before)
+    drawn.drive.drag(
+        drawn.middle("rest long"), drawn.at(700, 320), lambda: drawn.state("rest long") != before
+    )
     after = drawn.state("rest long")
     assert (after.x - before.x, after.y - before.y) != (0, 0)
     assert after.x % 8 == after.y % 8 == 0
@@ -329,7 +351,10 @@ def test_problems_are_marked_and_a_click_on_one_goes_to_its_state(drawn: Hand) -
                if "rest long" in drive.problems_panel.tree.topLevelItem(n).text(0))  # fmt: skip
     drive.problems_panel._go(drive.problems_panel.tree.topLevelItem(row))
     assert drive.session.selection.states == (ident,)
-    assert "cannot be reached" in drawn.inspector.state_trouble.text() or "cannot be left" in drawn.inspector.state_trouble.text()
+    assert (
+        "cannot be reached" in drawn.inspector.state_trouble.text()
+        or "cannot be left" in drawn.inspector.state_trouble.text()
+    )
 
 
 def test_each_layer_has_a_machine_of_its_own(drawn: Hand) -> None:
@@ -372,7 +397,9 @@ def test_trimming_stays_inside_the_clip(drawn: Hand) -> None:
     assert drawn.state("rest wave rt").start < drawn.state("rest wave rt").end == 0.9
 
 
-def test_a_project_that_was_only_drawn_opens_in_the_editor_and_a_meta_graph_without_it(drawn: Hand, tmp_path, toy) -> None:
+def test_a_project_that_was_only_drawn_opens_in_the_editor_and_a_meta_graph_without_it(
+    drawn: Hand, tmp_path, toy
+) -> None:
     drive = drawn.drive
     drive.document.edit("Clear", lambda p: edits.remove_actions(p, [a.id for a in p.actions()]))
     only = drive.document.project

@@ -113,7 +113,8 @@ def test_fitting_shows_all_and_never_enlarges() -> None:
     assert fitted(QRectF(0, 0, 10, 10), size).scale == 1.0
 
 
-# --- automatic layout ------------------------------------------------------------------------------------------------
+# --- automatic layout
+# --------------------------------------------------------------------------------------------------
 
 
 def overlaps(places: dict[str, tuple[float, float]]) -> int:
@@ -132,7 +133,11 @@ def test_states_stand_in_columns_from_the_start_on() -> None:
 
 def test_no_two_nodes_overlap_however_many_there_are() -> None:
     names = [f"n{i}" for i in range(152)]
-    links = [f"n0>{n}" for n in names[1:100]] + [f"{n}>n0" for n in names[1:100]] + ["n3>n120", "n140>n141", "n141>n140"]
+    links = (
+        [f"n0>{n}" for n in names[1:100]]
+        + [f"{n}>n0" for n in names[1:100]]
+        + ["n3>n120", "n140>n141", "n141>n140"]
+    )
     places = arranged(machine(dict.fromkeys(names, (0.0, 0.0)), *links))
     assert overlaps(dict(places)) == 0
     assert len(places) == 153
@@ -145,7 +150,10 @@ def test_arrows_cross_less_than_in_the_order_of_placing() -> None:
     links = ["s>a", "s>b", "s>c", "a>f", "b>e", "c>d"]
     places = arranged(machine(dict.fromkeys("sabcdef", (0.0, 0.0)), *links))
     order = {i: places[i][1] for i in "abcdef"}
-    assert [order["a"] < order["b"], order["b"] < order["c"]] == [order["f"] < order["e"], order["e"] < order["d"]]
+    assert [order["a"] < order["b"], order["b"] < order["c"]] == [
+        order["f"] < order["e"],
+        order["e"] < order["d"],
+    ]
 
 
 def test_what_cannot_be_reached_stands_after_all_else() -> None:

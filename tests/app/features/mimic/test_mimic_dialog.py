@@ -32,7 +32,13 @@ def test_one_frame_of_many_stands_for_its_folder(tmp_path: Path) -> None:
 @pytest.fixture
 def opened(drive: Any) -> Any:
     drive.files.open(SAMPLE, template=True)
-    drive.wait(lambda: len(drive.document.project.clips) == 152 and bool(drive.performance.shown.plan.layers["arms"].cues), 60)
+    drive.wait(
+        lambda: (
+            len(drive.document.project.clips) == 152
+            and bool(drive.performance.shown.plan.layers["arms"].cues)
+        ),
+        60,
+    )
     return drive
 
 
@@ -51,12 +57,18 @@ def told(drive: Any) -> str:
 
 @pytest.mark.window
 @pytest.mark.gl
-def test_a_recording_becomes_a_performance_that_plays_and_can_be_undone(opened: Any, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_a_recording_becomes_a_performance_that_plays_and_can_be_undone(
+    opened: Any, monkeypatch: pytest.MonkeyPatch
+) -> None:
     drive = opened
     before = dict(drive.document.project.performances)
     drive.session.onstage.set_performance(None)
     dialog = dialog_of(drive, monkeypatch, DEEP)
-    assert dialog.mirror.isChecked() and not dialog.gaze.isChecked() and all(box.isChecked() for box in dialog.layers.values())
+    assert (
+        dialog.mirror.isChecked()
+        and not dialog.gaze.isChecked()
+        and all(box.isChecked() for box in dialog.layers.values())
+    )
     dialog.mirror.setChecked(False)
     dialog.go.click()
     drive.wait(lambda: len(drive.document.project.performances) == len(before) + 1, 60)
@@ -75,7 +87,9 @@ def test_a_recording_becomes_a_performance_that_plays_and_can_be_undone(opened: 
 
 @pytest.mark.window
 @pytest.mark.gl
-def test_what_is_seen_is_added_to_the_performance_on_stage(opened: Any, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_what_is_seen_is_added_to_the_performance_on_stage(
+    opened: Any, monkeypatch: pytest.MonkeyPatch
+) -> None:
     drive = opened
     drive.performance.requests.ask(a.Nod(at=2.0))
     stage = drive.session.onstage.performance
@@ -95,7 +109,9 @@ def test_what_is_seen_is_added_to_the_performance_on_stage(opened: Any, monkeypa
 
 @pytest.mark.window
 @pytest.mark.gl
-def test_files_that_are_none_and_people_in_no_stance_are_told(opened: Any, monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
+def test_files_that_are_none_and_people_in_no_stance_are_told(
+    opened: Any, monkeypatch: pytest.MonkeyPatch, tmp_path: Path
+) -> None:
     drive, said = opened, []
     monkeypatch.setattr(QMessageBox, "warning", lambda *words: said.append(words[1:]))
     (tmp_path / "none.json").write_text("{}")

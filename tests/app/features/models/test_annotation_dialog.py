@@ -6,7 +6,15 @@ import pytest
 from PySide6.QtCore import QSettings, Qt
 from PySide6.QtWidgets import QInputDialog
 
-from app.features.models.annotation_dialog import REMEMBERED, SAMPLE, AnnotateDialog, keep, meaning_entries, meaning_words, recall
+from app.features.models.annotation_dialog import (
+    REMEMBERED,
+    SAMPLE,
+    AnnotateDialog,
+    keep,
+    meaning_entries,
+    meaning_words,
+    recall,
+)
 from app.project.annotation_reading import begin
 from app.project.document import Document
 from app.stage.session import Session
@@ -26,7 +34,12 @@ def document(monkeypatch, tmp_path):
 def open_dialog(document, qtbot):
     def inner(annotation: Annotation, name: str = "talk.eaf") -> AnnotateDialog:
         session = Session(document)
-        reading = begin(annotation, document.project.tiers, recall("tiers"), labels=(document.project.labels, recall("labels")))
+        reading = begin(
+            annotation,
+            document.project.tiers,
+            recall("tiers"),
+            labels=(document.project.labels, recall("labels")),
+        )
         dialog = AnnotateDialog(document, session, reading, name)
         dialog.setAttribute(Qt.WidgetAttribute.WA_DeleteOnClose, False)  # the test looks at it afterwards
         qtbot.addWidget(dialog)
@@ -92,7 +105,9 @@ def test_nothing_that_is_read_is_said_and_cannot_be_imported(open_dialog):
     assert dialog.labels.topLevelItem(0).text(0).startswith("Say what the tiers stand for")
     dialog.tiers.chosen.emit(0, "left arm")
     assert dialog.go.isEnabled(), "to be kept"
-    assert dialog.learn["arms"].text() == "Arms (1 action)" and not dialog.learn["arms"].isChecked(), "one is no model"
+    assert dialog.learn["arms"].text() == "Arms (1 action)" and not dialog.learn["arms"].isChecked(), (
+        "one is no model"
+    )
     dialog.keep.setChecked(False)
     assert not dialog.go.isEnabled() and not dialog.called.isEnabled()
     dialog.learn["arms"].setChecked(True)
@@ -115,7 +130,9 @@ def test_what_a_label_means_is_said_otherwise(open_dialog, monkeypatch):
     assert rows(dialog.labels)[0][-1] == "◆ fidget"
     assert {a.kind for a in dialog.strip.acts["arms"]} == {"fidget"}
     asked = []
-    monkeypatch.setattr(QInputDialog, "getText", lambda *a, **k: (asked.append(a[2]), (" Calm, slow ", True))[1])
+    monkeypatch.setattr(
+        QInputDialog, "getText", lambda *a, **k: (asked.append(a[2]), (" Calm, slow ", True))[1]
+    )
     dialog.labels.chosen.emit(0, "other")
     assert asked == ["'cup' is a gesture that is"]
     assert rows(dialog.labels)[0][-1] == "▲ gesture, calm, slow"
@@ -134,7 +151,9 @@ def test_corrections_are_remembered_by_the_project_and_for_the_next_one(open_dia
     assert document.project.labels == {"arms: cup": "fidget"} == recall("labels")
     document.undo()
     again = open_dialog(annotation)
-    assert rows(again.tiers) == [("LH", "2", "Left arm"), ("B", "1", "Body")], "though the project knows no more of it"
+    assert rows(again.tiers) == [("LH", "2", "Left arm"), ("B", "1", "Body")], (
+        "though the project knows no more of it"
+    )
     assert ("cup", "arms", "1", "◆ fidget") in rows(again.labels)
 
 
@@ -142,12 +161,16 @@ def test_memory_is_bounded_and_nonsense_in_it_is_forgotten():
     keep("tiers", {f"t{n}": "body" for n in range(REMEMBERED)})
     keep("tiers", {"new": "arms", "t3": "ignore"})
     found = recall("tiers")
-    assert len(found) == REMEMBERED and found["new"] == "arms" and found["t3"] == "ignore" and "t0" not in found
+    assert (
+        len(found) == REMEMBERED and found["new"] == "arms" and found["t3"] == "ignore" and "t0" not in found
+    )
     for nonsense in ("[1]", "{", "3", '{"a": 3}'):
         QSettings().setValue("annotation/tiers", nonsense)
         assert all(isinstance(v, str) for v in recall("tiers").values())
 
 
 def test_of_several_people_it_is_told_who_is_read(open_dialog):
-    dialog = open_dialog(Annotation((tier("LH", "beat", participant="A"), tier("LH 2", "beat", "beat", participant="B"))))
+    dialog = open_dialog(
+        Annotation((tier("LH", "beat", participant="A"), tier("LH 2", "beat", "beat", participant="B")))
+    )
     assert "2 people, B of them read" in dialog.facts.text()

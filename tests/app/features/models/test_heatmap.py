@@ -7,7 +7,19 @@ from PySide6.QtCore import QPoint, QPointF, Qt
 from PySide6.QtGui import QColor
 from PySide6.QtTest import QTest
 
-from app.features.models.heatmap import DRAG, HEAD, INKS, SIDE, HeatMap, contrast, grid, ink, percent, sentence, shade
+from app.features.models.heatmap import (
+    DRAG,
+    HEAD,
+    INKS,
+    SIDE,
+    HeatMap,
+    contrast,
+    grid,
+    ink,
+    percent,
+    sentence,
+    shade,
+)
 from app.look.theme import DARK, LIGHT
 from metagraph.graph.model import KINDS, Markov
 from metagraph.playback.learn import with_cell
@@ -28,16 +40,30 @@ def test_every_cell_is_found_where_it_is_drawn_and_heads_beside_them(count):
 
 
 def test_numbers_are_short_and_nothing_is_a_dot():
-    assert [percent(p) for p in (0, 0.001, 0.0049, 0.005, 0.126, 0.5, 0.999, 1)] == ["·", "<1", "<1", "0", "13", "50", "100", "100"]
+    assert [percent(p) for p in (0, 0.001, 0.0049, 0.005, 0.126, 0.5, 0.999, 1)] == [
+        "·",
+        "<1",
+        "<1",
+        "0",
+        "13",
+        "50",
+        "100",
+        "100",
+    ]
 
 
 def test_a_cell_is_said_in_a_sentence():
     assert sentence(ARMS, "arms", 0, 4) == "After a left gesture, a right fidget never follows."
     assert sentence(ARMS, "arms", 0, 3) == "After a left gesture, a right gesture follows in 12.5 % of cases."
     assert sentence(ARMS, "arms", 0, 0) == "After a left gesture, the same follows again in 25 % of cases."
-    assert sentence(ARMS, "arms", 8, 8) == "After a transition of both arms, the same follows again in 60 % of cases."
+    assert (
+        sentence(ARMS, "arms", 8, 8)
+        == "After a transition of both arms, the same follows again in 60 % of cases."
+    )
     assert sentence(ARMS, "arms", 5, 2) == "After a right transition, a left transition always follows."
-    tagged = Markov("head", (("both", "gesture"), ("both", "gesture")), ((0.5, 0.5), (1, 0)), tags=("", "positive"))
+    tagged = Markov(
+        "head", (("both", "gesture"), ("both", "gesture")), ((0.5, 0.5), (1, 0)), tags=("", "positive")
+    )
     assert sentence(tagged, "head", 0, 1) == "After a gesture, a positive gesture follows in 50 % of cases."
     assert sentence(tagged, "head", 1, 1) == "After a positive gesture, the same never follows again."
 
@@ -127,7 +153,9 @@ def test_arrows_go_from_cell_to_cell_and_signs_change_by_one_percent(heat, qtbot
     assert heat.current == (8, 8)
 
 
-@pytest.mark.parametrize(("typed", "p"), [("4", 0.04), ("37.5", 0.375), ("12,5", 0.125), ("100", 1.0), ("0", 0.0)])
+@pytest.mark.parametrize(
+    ("typed", "p"), [("4", 0.04), ("37.5", 0.375), ("12,5", 0.125), ("100", 1.0), ("0", 0.0)]
+)
 def test_a_number_is_typed_over(heat, qtbot, typed, p):
     qtbot.waitUntil(heat.hasFocus)
     QTest.keyClick(heat, typed[0])
@@ -177,5 +205,10 @@ def test_another_model_of_fewer_states_leaves_no_cell_outside_of_it(heat):
 @pytest.mark.parametrize("size", [(120, 60), (300, 200), (1400, 900)])
 def test_it_is_drawn_at_any_size_with_any_tags(heat, size, tags):
     heat.resize(*size)
-    heat.show_model(Markov("arms", ARMS.states, ARMS.matrix, tags=(tags,) * 9, lengths=((1, 0.5),) * 9), "arms", "light", frozenset({0, 8}))
+    heat.show_model(
+        Markov("arms", ARMS.states, ARMS.matrix, tags=(tags,) * 9, lengths=((1, 0.5),) * 9),
+        "arms",
+        "light",
+        frozenset({0, 8}),
+    )
     assert not heat.grab().isNull()

@@ -16,7 +16,9 @@ ENTRIES = [("Left arm", "left", "tells more"), ("Body", "body", ""), ("Ignore", 
 
 @pytest.fixture
 def table(qtbot):
-    widget = ChoiceTable(Session(Document()), "Tiers", ("Tier", "Times", "Read as"), 120, lambda row: ENTRIES, None)
+    widget = ChoiceTable(
+        Session(Document()), "Tiers", ("Tier", "Times", "Read as"), 120, lambda row: ENTRIES, None
+    )
     qtbot.addWidget(widget)
     widget.resize(420, 300)
     widget.show_rows([Row(("LH", "3"), "Left arm", tip="three"), Row(("words", "9"), "Ignore", dim=True)])
@@ -37,9 +39,15 @@ def popup(qtbot):
 
 
 def test_a_click_on_the_field_opens_the_menu_and_what_is_chosen_is_told(table, qtbot):
-    QTest.mouseClick(table.viewport(), Qt.MouseButton.LeftButton, Qt.KeyboardModifier.NoModifier, field(table, 1))
+    QTest.mouseClick(
+        table.viewport(), Qt.MouseButton.LeftButton, Qt.KeyboardModifier.NoModifier, field(table, 1)
+    )
     menu = popup(qtbot)
-    assert [(a.text(), a.isChecked()) for a in menu.actions()] == [("Left arm", False), ("Body", False), ("Ignore", True)]
+    assert [(a.text(), a.isChecked()) for a in menu.actions()] == [
+        ("Left arm", False),
+        ("Body", False),
+        ("Ignore", True),
+    ]
     assert menu.actions()[0].toolTip() == "tells more"
     menu.actions()[1].trigger()
     assert table.told == [(1, "body")]
@@ -47,7 +55,12 @@ def test_a_click_on_the_field_opens_the_menu_and_what_is_chosen_is_told(table, q
 
 
 def test_a_click_beside_the_field_opens_nothing(table, qtbot):
-    QTest.mouseClick(table.viewport(), Qt.MouseButton.LeftButton, Qt.KeyboardModifier.NoModifier, QPoint(30, field(table, 0).y()))
+    QTest.mouseClick(
+        table.viewport(),
+        Qt.MouseButton.LeftButton,
+        Qt.KeyboardModifier.NoModifier,
+        QPoint(30, field(table, 0).y()),
+    )
     qtbot.wait(30)
     assert QApplication.activePopupWidget() is None
 

@@ -1,4 +1,6 @@
-"""The models panel: the layer's model shown, edited as one step a drag, sampled, compared with what was seen."""
+"""The models panel: the layer's model shown, edited as one step a drag, sampled, compared with what was
+seen.
+"""
 
 from __future__ import annotations
 
@@ -120,7 +122,9 @@ def test_states_are_added_and_removed_from_the_menu(panel):
     assert [kind for _, kind in panel.heat.model.states] == ["gesture", "transition"]
     pick(panel.state_menu(-1), "Add a state", "◆ fidget")
     assert [kind for _, kind in panel.heat.model.states] == ["gesture", "fidget", "transition"]
-    assert not any(a.text() == "Add a state" and a.isEnabled() for a in panel.state_menu(0).actions()), "all are there"
+    assert not any(a.text() == "Add a state" and a.isEnabled() for a in panel.state_menu(0).actions()), (
+        "all are there"
+    )
     panel.session.place.set_layer("arms")
     pick(panel.state_menu(8), "Remove both transition")
     assert len(panel.heat.model.states) == 8
@@ -157,8 +161,15 @@ def test_what_was_learned_is_compared_with_what_was_seen(panel, reading, qtbot):
     assert panel.heat.model.tags == ("positive", "negative", "")
     assert panel.share_words.isVisible() and not panel.shares["positive"].isVisible()
     qtbot.waitUntil(lambda: panel.plot.found.model.layer == "head")
-    panel.document.edit("Never nod", lambda p: edits.set_markov(p, replace(p.markov["head"], matrix=((0.1, 0.1, 0.8),) * 3)))
-    qtbot.waitUntil(lambda: "Not as seen: gesture, positive came in 72 % of actions, the model makes 10 %." in panel.plot.words.text())
+    panel.document.edit(
+        "Never nod", lambda p: edits.set_markov(p, replace(p.markov["head"], matrix=((0.1, 0.1, 0.8),) * 3))
+    )
+    qtbot.waitUntil(
+        lambda: (
+            "Not as seen: gesture, positive came in 72 % of actions, the model makes 10 %."
+            in panel.plot.words.text()
+        )
+    )
 
 
 def test_what_was_read_but_not_kept_can_be_compared_with_until_another_project_comes(panel, reading, toy):
@@ -193,7 +204,12 @@ def test_both_themes_are_drawn(panel, qtbot):
 def test_states_are_told_apart_by_short_marks():
     marks = [short(state, "arms") for state in states_of(ARMS)]
     assert marks[:3] == ["▲L", "◆L", "➜L"] and len(set(marks)) == 9
-    assert [short(("both", "gesture", tags), "head") for tags in ("", "positive", "negative", "calm")] == ["▲", "▲+", "▲−", "▲ …"]
+    assert [short(("both", "gesture", tags), "head") for tags in ("", "positive", "negative", "calm")] == [
+        "▲",
+        "▲+",
+        "▲−",
+        "▲ …",
+    ]
 
 
 def test_figures_are_said_in_words(reading):

@@ -1,4 +1,6 @@
-"""The motion graph's window: takes are chosen, new motion is found and kept, long takes are cut, with real events."""
+"""The motion graph's window: takes are chosen, new motion is found and kept, long takes are cut, with real
+events.
+"""
 
 from __future__ import annotations
 
@@ -23,13 +25,19 @@ ROOT = Path(__file__).parents[4]
 
 @pytest.fixture
 def shown(drive, tmp_path):
-    """The dialog on a saved project of the sample's stances, with a conversation whose first side has a take."""
-    whole = absolute(open_project(ROOT / "sample_clips" / "sample.metagraph.yaml").project, ROOT / "sample_clips")
+    """The dialog on a saved project of the sample's stances, with a conversation whose first side has a
+    take.
+    """
+    whole = absolute(
+        open_project(ROOT / "sample_clips" / "sample.metagraph.yaml").project, ROOT / "sample_clips"
+    )
     some = {i: e for i, e in whole.clips.items() if "stance" in e.name or "arms_crossed__beat" in e.name}
     project = Project(name="some", clips=some, skeleton=whole.skeleton, next_id=whole.next_id)
     take = next(e.id for e in project.clips.values() if e.name == "hand_to_chin__stance")
     ada = Side(name="Ada", take=take, segments=(Segment("clause", 1.0, 2.0, 1.5),))
-    project = replace(project, conversations={"v9000": Conversation(name="talk", length=7.0, sides=(ada, Side(name="Ben")))})
+    project = replace(
+        project, conversations={"v9000": Conversation(name="talk", length=7.0, sides=(ada, Side(name="Ben")))}
+    )
     save_project(project, tmp_path / "copy.metagraph.yaml")
     drive.files.open(tmp_path / "copy.metagraph.yaml")
     drive.wait(lambda: drive.document.folder == tmp_path and drive.document.project.skeleton is not None)
@@ -54,7 +62,11 @@ def test_long_clips_are_chosen_and_what_was_heard_is_shown(shown):
     _, dialog = shown
     names = {dialog.document.project.clips[i].name for i in dialog.picked.chosen()}
     assert "hand_to_chin__stance" in names and not any("beat" in n for n in names)
-    row = next(r for r in range(dialog.picked.list.rowCount()) if dialog.picked.list.item(r, 0).text() == "hand_to_chin__stance")
+    row = next(
+        r
+        for r in range(dialog.picked.list.rowCount())
+        if dialog.picked.list.item(r, 0).text() == "hand_to_chin__stance"
+    )
     assert dialog.picked.list.item(row, 2).text().startswith("talk: Ada")
     assert "0." in dialog.words.text() and colours(dialog.plot) > 3
 
@@ -74,7 +86,11 @@ def test_a_take_that_is_unchecked_is_left_out(shown):
     drive, dialog = shown
     before = len(dialog.takes.ids)
     cell = dialog.picked.list.visualItemRect(dialog.picked.list.item(0, 0))
-    QTest.mouseClick(dialog.picked.list.viewport(), Qt.MouseButton.LeftButton, pos=QPoint(cell.left() + 14, cell.center().y()))
+    QTest.mouseClick(
+        dialog.picked.list.viewport(),
+        Qt.MouseButton.LeftButton,
+        pos=QPoint(cell.left() + 14, cell.center().y()),
+    )
     drive.wait(lambda: len(dialog.takes.ids) == before - 1)
 
 
@@ -119,7 +135,9 @@ def test_new_motion_can_move_the_speaker_of_a_conversation_until_the_graph_does_
     drive.wait(lambda: drive.performance.shown.motion == made.id, 60)
     assert made.name in drive.timeline.title.words
     drive.actions["graph_again"].trigger()
-    drive.wait(lambda: drive.performance.shown.partner is not None and drive.performance.shown.motion is None, 60)
+    drive.wait(
+        lambda: drive.performance.shown.partner is not None and drive.performance.shown.motion is None, 60
+    )
     drive.document.undo_stack.undo()
     drive.document.undo_stack.undo()
     assert made.id not in drive.document.project.clips
@@ -141,7 +159,9 @@ def test_what_cannot_be_had_is_said_with_a_remedy_and_nothing_is_added(shown):
     talk = project.conversations["v9000"]
     never = msgspec.structs.replace(talk.sides[1], segments=(Segment("response", 1.0, 6.0),))
     sides = (talk.sides[0], never)
-    drive.document.edit("test", lambda p: replace(p, conversations={"v9000": msgspec.structs.replace(talk, sides=sides)}))
+    drive.document.edit(
+        "test", lambda p: replace(p, conversations={"v9000": msgspec.structs.replace(talk, sides=sides)})
+    )
     dialog.wishes.speech.setCurrentIndex(2)
     dialog.wishes.length.setValue(6.0)
     drive.wait(lambda: dialog.limit is not None and not dialog._soon.isActive())
@@ -169,7 +189,11 @@ def test_movements_with_speech_are_counted_and_become_a_sides_rates(shown):
 
 def test_movements_cannot_be_counted_where_nobody_knows_what_was_heard(shown):
     _, dialog = shown
-    row = next(r for r in range(dialog.picked.list.rowCount()) if dialog.picked.list.item(r, 0).text() == "hand_to_chin__stance")
+    row = next(
+        r
+        for r in range(dialog.picked.list.rowCount())
+        if dialog.picked.list.item(r, 0).text() == "hand_to_chin__stance"
+    )
     dialog.picked.list.item(row, 0).setCheckState(Qt.CheckState.Unchecked)
     press(dialog.picked.rates_button)
     assert "what was heard during it" in dialog.said.text()
@@ -177,12 +201,22 @@ def test_movements_cannot_be_counted_where_nobody_knows_what_was_heard(shown):
 
 def test_who_was_heard_during_a_take_can_be_told_and_undone(shown):
     drive, dialog = shown
-    row = next(r for r in range(dialog.picked.list.rowCount()) if dialog.picked.list.item(r, 0).text() == "arms_crossed__stance")
+    row = next(
+        r
+        for r in range(dialog.picked.list.rowCount())
+        if dialog.picked.list.item(r, 0).text() == "arms_crossed__stance"
+    )
     table, menu = dialog.picked.list, dialog.picked.menu
     table.scrollToItem(table.item(row, 2))
-    QTest.mouseClick(table.viewport(), Qt.MouseButton.LeftButton, pos=table.visualItemRect(table.item(row, 2)).center())
+    QTest.mouseClick(
+        table.viewport(), Qt.MouseButton.LeftButton, pos=table.visualItemRect(table.item(row, 2)).center()
+    )
     drive.wait(menu.isVisible)
-    assert [a.text() for a in menu.actions()] == ["nothing known", "talk: Ada", "talk: Ben"] and menu.actions()[0].isChecked()
+    assert [a.text() for a in menu.actions()] == [
+        "nothing known",
+        "talk: Ada",
+        "talk: Ben",
+    ] and menu.actions()[0].isChecked()
     for key in (Qt.Key.Key_Up, Qt.Key.Key_Return):  # the last
         QTest.keyClick(menu, key)
     clip = dialog.picked.list.item(row, 0).data(Qt.ItemDataRole.UserRole)
@@ -241,7 +275,13 @@ def asked(drive, dialog) -> str:
     dialog.wishes.speech.setCurrentIndex(0)
     dialog.wishes.length.setValue(200)
     drive.pause(300)
-    drive.wait(lambda: not dialog._soon.isActive() and dialog.states is not None and dialog.states[0] == dialog.takes.clips)
+    drive.wait(
+        lambda: (
+            not dialog._soon.isActive()
+            and dialog.states is not None
+            and dialog.states[0] == dialog.takes.clips
+        )
+    )
     press(dialog.wishes.go)
     drive.wait(lambda: dialog._job is None and bool(dialog.said.text()), 120)
     return dialog.said.text()

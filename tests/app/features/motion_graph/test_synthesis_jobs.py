@@ -7,7 +7,18 @@ from pathlib import Path
 
 import pytest
 
-from app.features.motion_graph.synthesis_jobs import Wish, during, left_out, pieces, save, speech_of, synthesise, table, takes_of, usable
+from app.features.motion_graph.synthesis_jobs import (
+    Wish,
+    during,
+    left_out,
+    pieces,
+    save,
+    speech_of,
+    synthesise,
+    table,
+    takes_of,
+    usable,
+)
 from metagraph.formats.clips import read_clips
 from metagraph.graph.conversation import Conversation, Segment, Side
 from metagraph.graph.model import Project
@@ -20,9 +31,13 @@ def stances(project: Project) -> list[str]:
 
 
 def told(project: Project, clip: str) -> Project:
-    """The project with a conversation whose second side was recorded along with a clip; the partner hesitates."""
+    """The project with a conversation whose second side was recorded along with a clip; the partner
+    hesitates.
+    """
     ada = Side(name="Ada", segments=(Segment("hesitation", 3.0, 3.5),))
-    ben = Side(name="Ben", take=clip, segments=(Segment("clause", 1.0, 2.0, 1.5), Segment("hesitation", 5.0, 5.4)))
+    ben = Side(
+        name="Ben", take=clip, segments=(Segment("clause", 1.0, 2.0, 1.5), Segment("hesitation", 5.0, 5.4))
+    )
     return replace(project, conversations={"v1": Conversation(name="talk", length=6.0, sides=(ada, ben))})
 
 
@@ -35,7 +50,9 @@ def test_takes_are_clips_that_move_on_the_projects_skeleton_the_longest_first(sa
     assert usable(Project()) == []
 
 
-def test_a_take_knows_what_was_heard_during_it_the_partners_hesitations_and_not_its_own(sample: Project) -> None:
+def test_a_take_knows_what_was_heard_during_it_the_partners_hesitations_and_not_its_own(
+    sample: Project,
+) -> None:
     clip, other = stances(sample)[:2]
     project = told(sample, clip)
     takes = takes_of(project, [other, clip])
@@ -45,14 +62,20 @@ def test_a_take_knows_what_was_heard_during_it_the_partners_hesitations_and_not_
 
 
 def test_what_goes_on_after_a_takes_end_was_not_heard_during_it(sample: Project) -> None:
-    said = (Segment("clause", 1.0, 2.0, 1.5), Segment("clause", 3.0, 5.0, 4.5, "so on"), Segment("response", 6.0, 7.0))
+    said = (
+        Segment("clause", 1.0, 2.0, 1.5),
+        Segment("clause", 3.0, 5.0, 4.5, "so on"),
+        Segment("response", 6.0, 7.0),
+    )
     assert during(said, 10.0) == said
     assert during(said, 4.0) == (said[0], Segment("clause", 3.0, 4.0, None, "so on"))
     assert during(said, 3.0) == said[:1]
     clip = stances(sample)[0]
     end = sample.clips[clip].duration
     ben = Side(take=clip, segments=tuple(Segment("clause", n + 0.1, n + 0.9) for n in range(60)))
-    project = replace(sample, conversations={"v1": Conversation(name="long", length=60.0, sides=(Side(), ben))})
+    project = replace(
+        sample, conversations={"v1": Conversation(name="long", length=60.0, sides=(Side(), ben))}
+    )
     assert takes_of(project, [clip]).speech[0][-1].end <= end
 
 
@@ -63,11 +86,19 @@ def test_clips_that_cannot_be_takes_are_told_with_the_reason(sample: Project) ->
     still = replace(sample.clips[a], motion=sample.clips[a].motion.trimmed(0, 1), frames=1)
     lost = replace(sample.clips[b], motion=None)
     own = sample.clips[c].motion
-    longer = Skeleton(own.skeleton.names, own.skeleton.parents, own.skeleton.rest_rotations, 2 * own.skeleton.rest_translations)
+    longer = Skeleton(
+        own.skeleton.names,
+        own.skeleton.parents,
+        own.skeleton.rest_rotations,
+        2 * own.skeleton.rest_translations,
+    )
     odd = replace(sample.clips[c], motion=replace(own, skeleton=longer))
     project = replace(sample, clips={**sample.clips, a: still, b: lost, c: odd})
     assert left_out(sample) == ""
-    assert left_out(project) == "Left out: 1 clip of one frame, 1 clip of another skeleton, 1 clip whose file is missing."
+    assert (
+        left_out(project)
+        == "Left out: 1 clip of one frame, 1 clip of another skeleton, 1 clip whose file is missing."
+    )
     assert not {a, b, c} & set(usable(project))
 
 
@@ -80,7 +111,11 @@ def test_new_motion_goes_with_speech_where_the_takes_know_theirs(sample: Project
     states = states_of(takes.clips)
     graph = build(states, keys=key_states(states, changes=changes(states, takes.speech)))
     found = synthesise(graph, takes, Wish(2.0, (Segment("clause", 0.5, 1.5, 1.0),)), "new")
-    assert found.clip.duration == pytest.approx(2.0, abs=0.05) and found.clip.name == "new" and "cost" in found.words()
+    assert (
+        found.clip.duration == pytest.approx(2.0, abs=0.05)
+        and found.clip.name == "new"
+        and "cost" in found.words()
+    )
     with pytest.raises(SynthesisError, match="allow more tolerance"):
         synthesise(graph, takes, Wish(4.0, (Segment("response", 0.0, 4.0),), tolerance=0.0), "new")
 
@@ -97,14 +132,18 @@ def test_where_speech_does_not_constrain_nothing_is_said_of_it(
     takes = takes_of(sample, stances(sample)[:2])
     monkeypatch.setattr(searches, search, stuck)
     with pytest.raises(SynthesisError, match="cannot go on for 9 s without a jump: choose more takes"):
-        synthesise(build(states_of(takes.clips)), takes, Wish(9.0, (Segment("clause", 0.5, 1.5, 1.0),), exact), "new")
+        synthesise(
+            build(states_of(takes.clips)), takes, Wish(9.0, (Segment("clause", 0.5, 1.5, 1.0),), exact), "new"
+        )
 
 
 def test_speech_nobody_told_the_takes_about_constrains_nothing(sample: Project) -> None:
     takes = takes_of(sample, stances(sample))
     from metagraph.synthesis.states import states_of
 
-    found = synthesise(build(states_of(takes.clips)), takes, Wish(4.0, (Segment("response", 0.0, 4.0),)), "new")
+    found = synthesise(
+        build(states_of(takes.clips)), takes, Wish(4.0, (Segment("response", 0.0, 4.0),)), "new"
+    )
     assert found.clip.duration == pytest.approx(4.0, abs=0.05)
 
 
@@ -115,7 +154,9 @@ def test_the_table_counts_frames_and_transitions_before_and_after_for_each_k(sam
     assert all(after <= before for *_, before, after in [(r[0], r[2]) for r in rows.values()])
 
 
-def test_pieces_are_kept_as_files_that_read_back_under_names_that_are_free(sample: Project, tmp_path: Path) -> None:
+def test_pieces_are_kept_as_files_that_read_back_under_names_that_are_free(
+    sample: Project, tmp_path: Path
+) -> None:
     clip = sample.clips[stances(sample)[0]].motion
     assert clip is not None
     cut = pieces(clip, [(0.0, 1.0), (1.5, 3.0)])

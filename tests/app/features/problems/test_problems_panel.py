@@ -1,4 +1,6 @@
-"""The problems panel: what the statistics flag is told once, goes to its place, and is mended with a press."""
+"""The problems panel: what the statistics flag is told once, goes to its place, and is mended with a
+press.
+"""
 
 from __future__ import annotations
 
@@ -28,9 +30,13 @@ def test_an_empty_project_has_no_flags():
 def test_a_jump_is_told_in_words_with_what_mends_it(toy, wide):
     flags = {p: fix for p, fix in told(wide, judge(wide)).items() if p.severity == "warning"}
     ((problem, fix),) = flags.items()
-    assert problem.message.startswith("'wide' ends ") and problem.message.endswith(" times what shows as a jump from 'rest'")
+    assert problem.message.startswith("'wide' ends ") and problem.message.endswith(
+        " times what shows as a jump from 'rest'"
+    )
     assert problem.remedy.startswith("At ") and problem.remedy.endswith(" s it would not.")
-    assert fix is not None and fix.words.startswith("Use ") and fix.words.removeprefix("Use ") in problem.remedy
+    assert (
+        fix is not None and fix.words.startswith("Use ") and fix.words.removeprefix("Use ") in problem.remedy
+    )
     after = fix(wide)
     assert not [p for p in told(after, judge(after)) if p.severity == "warning"]
 
@@ -40,7 +46,11 @@ def test_statistics_never_make_an_error_and_too_few_clips_are_a_hint(toy, wide):
     few = edits.remove_actions(wide, [a.id for a in wide.actions()][4:])
     gesture = edits.place(few, [toy.id(few, "wide")], "arms", "gesture", toy.id(few, "rest"))
     (hint,) = told(edits.remove_actions(gesture, [a.id for a in few.actions()][1:]), judge(few))
-    assert (hint.severity, hint.code, hint.layer) == ("hint", "few-clips", "arms") and "cannot tell" in hint.message
+    assert (hint.severity, hint.code, hint.layer) == (
+        "hint",
+        "few-clips",
+        "arms",
+    ) and "cannot tell" in hint.message
 
 
 def test_the_sample_and_its_neighbours_have_no_false_alarms(sample):
@@ -55,7 +65,9 @@ def test_a_judgement_keeps_what_still_holds(toy, wide):
     assert {a.id for a in again.known["arms"]} == {a.id for a in after.graphs["arms"].actions.values()}
     gone = judge(edits.remove_actions(wide, [toy.id(wide, "wide")]), first)
     assert gone.measured["arms"] is not first.measured["arms"] and not gone.jumps
-    assert told(edits.remove_actions(wide, [toy.id(wide, "wide")]), first) == {}, "an action that went is not told of"
+    assert told(edits.remove_actions(wide, [toy.id(wide, "wide")]), first) == {}, (
+        "an action that went is not told of"
+    )
 
 
 def test_a_place_is_told_of_once_and_errors_come_first():
@@ -63,7 +75,12 @@ def test_a_place_is_told_of_once_and_errors_come_first():
         return Problem(severity, code, "", "", action=action)
 
     flag = at("warning", "jump-end")
-    rest = [at("warning", "far-end"), at("warning", "far-start"), at("warning", "far-end", "a2"), at("hint", "no-gestures", None)]
+    rest = [
+        at("warning", "far-end"),
+        at("warning", "far-start"),
+        at("warning", "far-end", "a2"),
+        at("hint", "no-gestures", None),
+    ]
     assert merged([*rest, at("error", "trim")], [flag]) == (at("error", "trim"), *rest[1:3], flag, rest[3])
 
 
@@ -81,7 +98,11 @@ def test_a_flag_marks_the_action_and_a_press_mends_it_in_one_step(toys, toy, wid
     drive.pause(200)
     panel = drive.problems_panel
     tree = panel.tree
-    item = next(tree.topLevelItem(n) for n in range(tree.topLevelItemCount()) if tree.topLevelItem(n).text(0).startswith("'wide' ends"))
+    item = next(
+        tree.topLevelItem(n)
+        for n in range(tree.topLevelItemCount())
+        if tree.topLevelItem(n).text(0).startswith("'wide' ends")
+    )
     assert item.text(FIX).startswith("Use ")
     tree.scrollToItem(item)
     # A press beside the button goes there and mends nothing.

@@ -1,4 +1,6 @@
-"""The strip under the timing plot: where an action begins and ends without a jump, what snaps there, what is proposed."""
+"""The strip under the timing plot: where an action begins and ends without a jump, what snaps there, what is
+proposed.
+"""
 
 from __future__ import annotations
 
@@ -56,13 +58,18 @@ def test_a_transition_is_beside_the_stance_it_leaves_and_then_the_one_it_enters(
     assert "enters from 'rest'" in words_at(wide, action, seen, 0.0)
     assert "leaves to 'up'" in words_at(wide, action, seen, 0.8)
     far, elsewhere = seen_of(toy, edits.set_ends(wide, [action.id], toy.id(wide, "far")), "rest to up")
-    assert "leaves to 'far'" in words_at(edits.set_ends(wide, [far.id], toy.id(wide, "far")), far, elsewhere, 0.8)
+    assert "leaves to 'far'" in words_at(
+        edits.set_ends(wide, [far.id], toy.id(wide, "far")), far, elsewhere, 0.8
+    )
 
 
 def test_words_name_cost_and_blend(toy, wide):
     action, seen = seen_of(toy, wide, "wide")
     words = words_at(wide, action, seen, 1.5)
-    assert words.startswith("At 1.50 s it leaves to 'rest': ") and "times what shows as a jump, blended over 0.05 s" in words
+    assert (
+        words.startswith("At 1.50 s it leaves to 'rest': ")
+        and "times what shows as a jump, blended over 0.05 s" in words
+    )
     assert " of what shows as a jump" in words_at(wide, action, seen, 2.4)
 
 
@@ -92,7 +99,12 @@ def timed(toys, toy, wide):
     drive = toys
     drive.document.load(wide, None)
     drive.files.opened.emit()
-    drive.wait(lambda: drive.compatibility.judged is not None and drive.compatibility.judged.measured["arms"].labelled > 5)
+    drive.wait(
+        lambda: (
+            drive.compatibility.judged is not None
+            and drive.compatibility.judged.measured["arms"].labelled > 5
+        )
+    )
     drive.session.jump(action=toy.id(wide, "wide"))
     drive.wait(lambda: drive.properties.plot.strip.seen is not None)
     drive.pause(150)
@@ -114,9 +126,15 @@ def test_a_dragged_end_comes_to_rest_where_it_does_not_jump_in_one_step(timed, t
     goal = min(timing.strip.seen.snaps("end"))
     pixel = box.viewPixelSize()[0]
     before = drive.document.undo_stack.count()
-    drive.drag(at(1.5), at(goal - 4 * pixel), lambda: (drive.document.project.action(ident).timing.end or 9) > goal - 2 * pixel)
+    drive.drag(
+        at(1.5),
+        at(goal - 4 * pixel),
+        lambda: (drive.document.project.action(ident).timing.end or 9) > goal - 2 * pixel,
+    )
     drive.pause(300)
-    assert drive.document.project.action(ident).timing.end == pytest.approx(goal, abs=0.002), "4 pixels beside, it rests on it"
+    assert drive.document.project.action(ident).timing.end == pytest.approx(goal, abs=0.002), (
+        "4 pixels beside, it rests on it"
+    )
     assert drive.document.undo_stack.count() == before + 1
     drive.wait(lambda: timing.verdict.text() == "Begins and ends without a jump")
 
@@ -129,7 +147,9 @@ def test_alt_leaves_the_marks_out(timed, monkeypatch):
     near = goal + 3 * plot.plot.plotItem.vb.viewPixelSize()[0]
     assert plot._snapped("end", near) == goal
     assert plot._snapped("end", 1.2) == 1.2
-    monkeypatch.setattr(QApplication, "keyboardModifiers", staticmethod(lambda: Qt.KeyboardModifier.AltModifier))
+    monkeypatch.setattr(
+        QApplication, "keyboardModifiers", staticmethod(lambda: Qt.KeyboardModifier.AltModifier)
+    )
     assert plot._snapped("end", near) == near
 
 
@@ -144,11 +164,17 @@ def test_proposed_times_are_taken_over_with_a_click_in_one_step(timed, toy, wide
     QTest.mouseClick(plot.use, Qt.MouseButton.LeftButton)
     drive.wait(lambda: drive.document.undo_stack.count() == 1)
     timing = drive.document.project.action(ident).timing
-    assert timing.start == pytest.approx(proposed.start, abs=1e-3) and timing.blend_out == pytest.approx(proposed.blend_out, abs=1e-3)
+    assert timing.start == pytest.approx(proposed.start, abs=1e-3) and timing.blend_out == pytest.approx(
+        proposed.blend_out, abs=1e-3
+    )
     drive.wait(lambda: plot.verdict.text() == "Begins and ends without a jump" and not plot.use.isEnabled())
     drive.document.undo()
     assert drive.document.project.action(ident).timing.end == 1.5
     # Many at once, from the menu.
     drive.session.selection.select_actions((ident, toy.id(wide, "rest wave rt")))
     drive.actions["use_times"].trigger()
-    drive.wait(lambda: drive.document.undo_stack.count() == 1 and drive.document.project.action(ident).timing.end != 1.5)
+    drive.wait(
+        lambda: (
+            drive.document.undo_stack.count() == 1 and drive.document.project.action(ident).timing.end != 1.5
+        )
+    )

@@ -17,7 +17,9 @@ from metagraph.graph import edits
 def project(toy):
     project = toy.project()
     return edits.update_actions(
-        project, [toy.id(project, "rest wave rt")], timing={"start": 0.2, "end": 1.0, "blend_in": 0.1, "blend_out": 0.2}
+        project,
+        [toy.id(project, "rest wave rt")],
+        timing={"start": 0.2, "end": 1.0, "blend_in": 0.1, "blend_out": 0.2},
     )
 
 
@@ -28,7 +30,14 @@ def wave(toy, project):
 
 def test_handles_stand_where_the_timing_says(project, wave):
     found = {name: at for name, at in times_of(project, wave).items() if name not in PHASES}
-    assert found == {"start": 0.2, "end": 1.0, "in": pytest.approx(0.3), "out": 0.8, "exit": None, "stroke": None}
+    assert found == {
+        "start": 0.2,
+        "end": 1.0,
+        "in": pytest.approx(0.3),
+        "out": 0.8,
+        "exit": None,
+        "stroke": None,
+    }
 
 
 def test_blends_longer_than_the_action_stand_at_its_ends(project, wave):
@@ -61,11 +70,18 @@ def test_a_handle_stays_in_its_clip_and_in_order(project, wave, handle, seconds,
 
 
 @settings(max_examples=150, deadline=None)
-@given(handle=st.sampled_from(HANDLES), seconds=st.floats(-1e6, 1e6), then=st.sampled_from(HANDLES), more=st.floats(-3, 3))
+@given(
+    handle=st.sampled_from(HANDLES),
+    seconds=st.floats(-1e6, 1e6),
+    then=st.sampled_from(HANDLES),
+    more=st.floats(-3, 3),
+)
 def test_whatever_is_dragged_wherever_the_action_stays_playable(toy, project, handle, seconds, then, more):
     ident = toy.id(project, "rest wave rt")
     for name, to in ((handle, seconds), (then, more)):
-        project = edits.update_actions(project, [ident], timing=moved(project, project.action(ident), name, to))
+        project = edits.update_actions(
+            project, [ident], timing=moved(project, project.action(ident), name, to)
+        )
     action = project.action(ident)
     start, end = project.span(action)
     assert 0 <= start < end <= project.clips[action.clip].duration

@@ -47,9 +47,15 @@ def dialog(drive, folder):
 
 def tick(dialog, group, row):
     """Click the box of a row."""
-    top = next(t for n in range(dialog.tree.topLevelItemCount()) if (t := dialog.tree.topLevelItem(n)).text(0).startswith(group))
+    top = next(
+        t
+        for n in range(dialog.tree.topLevelItemCount())
+        if (t := dialog.tree.topLevelItem(n)).text(0).startswith(group)
+    )
     rect = dialog.tree.visualItemRect(top.child(row))
-    QTest.mouseClick(dialog.tree.viewport(), Qt.MouseButton.LeftButton, pos=QPoint(rect.left() + 10, rect.center().y()))
+    QTest.mouseClick(
+        dialog.tree.viewport(), Qt.MouseButton.LeftButton, pos=QPoint(rect.left() + 10, rect.center().y())
+    )
 
 
 def apply(drive, dialog):
@@ -88,7 +94,9 @@ def test_a_skipped_pose_is_brought_in_and_skipped_again(drive, dialog):
 def test_a_click_on_a_group_is_a_click_on_all_of_it(drive, dialog):
     top = dialog.tree.topLevelItem(0)
     rect = dialog.tree.visualItemRect(top)
-    QTest.mouseClick(dialog.tree.viewport(), Qt.MouseButton.LeftButton, pos=QPoint(rect.left() + 10, rect.center().y()))
+    QTest.mouseClick(
+        dialog.tree.viewport(), Qt.MouseButton.LeftButton, pos=QPoint(rect.left() + 10, rect.center().y())
+    )
     assert dialog.go.text() == "Apply 2 changes"
     apply(drive, dialog)
     assert [e.as_is for e in drive.document.project.clips.values()] == [("bind_pose",), ("bind_pose",), ()]

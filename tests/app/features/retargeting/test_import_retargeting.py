@@ -1,4 +1,6 @@
-"""Clips of another skeleton through the real window: asked once, corrected by hand, retargeted, remembered; or left out."""
+"""Clips of another skeleton through the real window: asked once, corrected by hand, retargeted, remembered;
+or left out.
+"""
 
 from __future__ import annotations
 
@@ -153,14 +155,19 @@ def test_saved_and_opened_again_they_are_retargeted_and_followed_when_exported_a
     drive.files.open(folder / "p.metagraph.yaml")
     drive.wait(lambda: not drive.jobs.running)
     entry = list(drive.document.project.clips.values())[2]
-    assert entry.motion.skeleton == drive.document.project.skeleton and entry.motion.brought_from == entry.brought_from
+    assert (
+        entry.motion.skeleton == drive.document.project.skeleton
+        and entry.motion.brought_from == entry.brought_from
+    )
     drive.watcher._timer.setInterval(100)
     drive.pause(500)
     motion = next(iter(sample.clips.values())).motion
     write_glb(folder / "other0.glb", [motion.trimmed(0, 31).renamed("other0")])
     drive.wait(lambda: drive.document.project.clips[entry.id].frames == 31)
     fresh = drive.document.project.clips[entry.id]
-    assert fresh.brought_from == entry.brought_from and fresh.motion.skeleton == drive.document.project.skeleton
+    assert (
+        fresh.brought_from == entry.brought_from and fresh.motion.skeleton == drive.document.project.skeleton
+    )
 
 
 def test_a_map_is_corrected_later_and_its_clips_are_retargeted_again_in_one_step(own, folder):
@@ -182,7 +189,9 @@ def test_a_map_is_corrected_later_and_its_clips_are_retargeted_again_in_one_step
     press(dialog.go)
     drive.wait(lambda: drive.document.project is not before)
     after = drive.document.project
-    assert list(after.clips) == list(before.clips) and next(iter(after.joint_maps.values())).of("Neck") is None
+    assert (
+        list(after.clips) == list(before.clips) and next(iter(after.joint_maps.values())).of("Neck") is None
+    )
     assert all(after.clips[i].motion is not before.clips[i].motion for i in list(after.clips)[2:])
     drive.actions["undo"].trigger()
     assert drive.document.project is before
@@ -196,7 +205,9 @@ def test_marking_a_row_marks_both_figures(own, folder):
     dialog.tree.scrollToItem(item)
     drive.pause(30)
     rect = dialog.tree.visualItemRect(item)
-    QTest.mouseClick(dialog.tree.viewport(), Qt.MouseButton.LeftButton, pos=QPoint(rect.left() + 20, rect.center().y()))
+    QTest.mouseClick(
+        dialog.tree.viewport(), Qt.MouseButton.LeftButton, pos=QPoint(rect.left() + 20, rect.center().y())
+    )
     assert dialog.figures.marked == ("RightHand", "RightHand")
     press(dialog.leave)
 

@@ -11,7 +11,9 @@ from PySide6.QtTest import QTest
 
 
 def _tiny_text(folder: Path) -> str:
-    spec = importlib.util.spec_from_file_location("tiny_study", Path(__file__).resolve().parents[3] / "study" / "conftest.py")
+    spec = importlib.util.spec_from_file_location(
+        "tiny_study", Path(__file__).resolve().parents[3] / "study" / "conftest.py"
+    )
     module = importlib.util.module_from_spec(spec)
     spec.loader.exec_module(module)
     return module.tiny_text(folder)
@@ -23,7 +25,10 @@ def tiny(tmp_path: Path) -> Path:
     path = tmp_path / "study" / "study.yaml"
     path.parent.mkdir()
     text = _tiny_text(path.parent)
-    given = "order: {given: {P01: [meta, manual], P02: [manual, meta], P03: [meta, manual], P04: [manual, meta]}}\n"
+    given = (
+        "order: {given: {P01: [meta, manual], P02: [manual, meta], P03: [meta, manual], P04: [manual, "
+        "meta]}}\n"
+    )
     path.write_text(text + given, encoding="utf-8")
     return path
 
@@ -51,7 +56,10 @@ class Participant:
         """Press one of the page's buttons."""
         from PySide6.QtWidgets import QPushButton
 
-        QTest.mouseClick(next(b for b in self.page.findChildren(QPushButton) if b.text() == words), Qt.MouseButton.LeftButton)
+        QTest.mouseClick(
+            next(b for b in self.page.findChildren(QPushButton) if b.text() == words),
+            Qt.MouseButton.LeftButton,
+        )
 
     def finish(self) -> None:
         """Say that the task is done."""

@@ -1,4 +1,6 @@
-"""A participant's sitting in the real window: consent, practice, both conditions, questionnaires, the end; and after a break-off."""
+"""A participant's sitting in the real window: consent, practice, both conditions, questionnaires, the end;
+and after a break-off.
+"""
 
 from __future__ import annotations
 
@@ -70,13 +72,17 @@ def test_a_whole_sitting(drive, takes_part, tiny, tmp_path):
     d.pause(100)
     assert len(d.document.project.clips) == 3, "no other clips are brought in"
     d.session.place.set_layer("head")
-    d.drag(d.card("head_straight__stance"), d.middle(), lambda: d.names("stance") == ["head_straight__stance"])
+    d.drag(
+        d.card("head_straight__stance"), d.middle(), lambda: d.names("stance") == ["head_straight__stance"]
+    )
     d.drag(d.card("head_straight__nod_single_01"), d.node("gesture"), lambda: len(d.names("gesture")) == 1)
     d.show("machine")
     d.docks["properties"].setFloating(True)
     QTest.mouseClick(p.guide.bar.pause, LEFT)
     p.titled("Paused")
-    assert not d.docks["properties"].isFloating() and not d.library.search.isEnabled(), "nothing of the work is seen or reached"
+    assert not d.docks["properties"].isFloating() and not d.library.search.isEnabled(), (
+        "nothing of the work is seen or reached"
+    )
     p.go()
     p.working()
     QTest.mouseClick(p.guide.bar.note, LEFT)
@@ -133,9 +139,20 @@ def test_a_whole_sitting(drive, takes_part, tiny, tmp_path):
     # The log, event by event.
     log = read(tiny.parent / "data" / "P01" / "log.jsonl")
     assert log.complete and not log.problems and not log.torn
-    told = [" ".join(str(e[k]) for k in ("name", "condition", "task") if k in e) for e in log.events if e["type"] == "phase"]
+    told = [
+        " ".join(str(e[k]) for k in ("name", "condition", "task") if k in e)
+        for e in log.events
+        if e["type"] == "phase"
+    ]
     half = ["instructions {0}", "training {0}", "instructions {0} nods", "task {0} nods", "questionnaire {0}"]
-    course = ["consent", *(h.format("meta") for h in half), "break", *(h.format("manual") for h in half), "questionnaire", "end"]
+    course = [
+        "consent",
+        *(h.format("meta") for h in half),
+        "break",
+        *(h.format("manual") for h in half),
+        "questionnaire",
+        "end",
+    ]
     assert told == [x for name in course for x in (name, name)]
     meta, manual = log.tasks()
     assert (meta.condition, meta.finished, meta.timed_out, meta.undos) == ("meta", True, False, 1)
@@ -152,7 +169,8 @@ def test_a_whole_sitting(drive, takes_part, tiny, tmp_path):
     ]  # fmt: skip
     assert [(e["words"], e["by"]) for e in log.events if e["type"] == "note"] == [("a note", "participant")]
     scores = [
-        sus_score({a.item: a.value for a in log.answers() if a.questionnaire == "sus" and a.condition == c}) for c in ("meta", "manual")
+        sus_score({a.item: a.value for a in log.answers() if a.questionnaire == "sus" and a.condition == c})
+        for c in ("meta", "manual")
     ]
     assert scores == [75, 50]
     assert [a.value for a in log.answers() if a.questionnaire == "more"] == ["Nothing."]
@@ -234,7 +252,12 @@ def test_who_takes_part_is_chosen_from_a_list_that_tells_how_far_each_is(drive, 
     run_study(drive.shell, tiny)
     chooser = drive.window.findChild(Chooser)
     rows = [chooser.list.item(n).text() for n in range(chooser.list.count())]
-    assert rows == ["P01    not begun", "P02    goes on at: A tiny study", "P03    not begun", "P04    not begun"]
+    assert rows == [
+        "P01    not begun",
+        "P02    goes on at: A tiny study",
+        "P03    not begun",
+        "P04    not begun",
+    ]
     drive.pause(100)
     chooser.reject()
 
@@ -254,7 +277,9 @@ def test_proposals_are_offered_where_the_study_allows_them(drive):
     assert not offered(drive, "meta", False) & proposals
     assert offered(drive, "meta", True) - offered(drive, "meta", False) == proposals
     assert not offered(drive, "manual", True) & proposals
-    assert "undo" in offered(drive, "manual", False) and "label_gesture" not in offered(drive, "manual", False)
+    assert "undo" in offered(drive, "manual", False) and "label_gesture" not in offered(
+        drive, "manual", False
+    )
 
 
 def test_a_command_that_says_nothing_of_studies_is_not_offered_while_a_task_is_worked_on(drive):
@@ -262,8 +287,33 @@ def test_a_command_that_says_nothing_of_studies_is_not_offered_while_a_task_is_w
     meta = offered(drive, "meta", True)
     menus, groups = ("&Conversation", "&Study"), ("project", "save", "import", "write")
     materials = {c.id for c in drive.actions.commands if c.menu in menus or c.group in groups}
-    assert not meta & (materials | {"motion_graph", "twins", "repairs", "character", "live", "mimic", "skeleton", "joint_maps", "manual"})
-    assert meta >= {"undo", "redo", "delete", "rename", "label_stance", "new_stance", "play", "in_context", "machine", "theme", "quit"}
+    assert not meta & (
+        materials
+        | {
+            "motion_graph",
+            "twins",
+            "repairs",
+            "character",
+            "live",
+            "mimic",
+            "skeleton",
+            "joint_maps",
+            "manual",
+        }
+    )
+    assert meta >= {
+        "undo",
+        "redo",
+        "delete",
+        "rename",
+        "label_stance",
+        "new_stance",
+        "play",
+        "in_context",
+        "machine",
+        "theme",
+        "quit",
+    }
 
 
 KILLED = """
@@ -297,11 +347,18 @@ app.exec()
 
 
 def test_a_window_that_is_killed_loses_nothing(tiny, tmp_path, qapp):
-    env = {**os.environ, "XDG_DATA_HOME": str(tmp_path / "d"), "XDG_CONFIG_HOME": str(tmp_path / "c"), "PYTHONPATH": str(ROOT)}
+    env = {
+        **os.environ,
+        "XDG_DATA_HOME": str(tmp_path / "d"),
+        "XDG_CONFIG_HOME": str(tmp_path / "c"),
+        "PYTHONPATH": str(ROOT),
+    }
     log = tiny.parent / "data" / "P01" / "log.jsonl"
     made = 0
     for kill in (3, 11, 29):
-        process = subprocess.Popen([sys.executable, "-c", KILLED, str(tiny)], env=env, cwd=ROOT, stdout=subprocess.PIPE, text=True)
+        process = subprocess.Popen(
+            [sys.executable, "-c", KILLED, str(tiny)], env=env, cwd=ROOT, stdout=subprocess.PIPE, text=True
+        )
         try:
             for line in process.stdout:
                 made = int(line)

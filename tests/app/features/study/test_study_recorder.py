@@ -107,9 +107,13 @@ def test_edits_undos_and_redos_are_told_apart(recorded):
     d.document.edit("Another", lambda p: edits.add_stance(p, "head", "two"))
     told = [(e["type"], e["words"]) for e in d.log.of("edit", "undo", "redo")]
     assert told == [
-        ("edit", "New stance"), ("undo", "New stance"), ("redo", "New stance"), ("undo", "New stance"), ("edit", "Rename stance"),
+        ("edit", "New stance"),
+        ("undo", "New stance"),
+        ("redo", "New stance"),
+        ("undo", "New stance"),
+        ("edit", "Rename stance"),
         ("edit", "Another"),
-    ]  # fmt: skip
+    ]
     assert [e["what"] for e in d.log.of("edit")] == ["stance", "rename", "stance"]
 
 
@@ -119,7 +123,9 @@ def test_a_drag_of_a_time_is_one_edit_and_a_cancelled_one_none(recorded):
 
     def end(seconds: float, merge: str) -> None:
         timing = replace(action.timing, end=seconds)
-        d.document.edit("Change end", lambda p: edits.update_actions(p, [action.id], timing=timing), merge=merge)
+        d.document.edit(
+            "Change end", lambda p: edits.update_actions(p, [action.id], timing=timing), merge=merge
+        )
 
     for n in range(5):
         end(0.6 + n / 100, "drag")
@@ -154,7 +160,10 @@ def test_looks_playing_refusals_and_dialogs_are_told(recorded):
     assert looks[:3] == ["layer", "stance", "select"]
     plays = [e["what"] for e in d.log.of("playback")]
     assert plays[:3] == ["pause", "seek", "context"]
-    assert [(e["what"], e["words"]) for e in d.log.of("error")] == [("refused", "not there"), ("failed", "not at all")]
+    assert [(e["what"], e["words"]) for e in d.log.of("error")] == [
+        ("refused", "not there"),
+        ("failed", "not at all"),
+    ]
     assert [(e["name"], e["state"], e.get("result")) for e in d.log.of("dialog")] == [
         ("NoteDialog", "open", None),
         ("NoteDialog", "close", 0),
@@ -164,7 +173,10 @@ def test_looks_playing_refusals_and_dialogs_are_told(recorded):
 def test_a_problem_that_comes_up_is_told_once(recorded):
     d = recorded
     d.document.edit(
-        "Trim", lambda p: edits.update_actions(p, [d.id("rest wave rt")], timing=replace(d.action("rest wave rt").timing, end=0.0))
+        "Trim",
+        lambda p: edits.update_actions(
+            p, [d.id("rest wave rt")], timing=replace(d.action("rest wave rt").timing, end=0.0)
+        ),
     )
     d.wait(lambda: any(p.severity != "hint" for p in d.problems.problems))
     d.wait(lambda: bool(d.log.of("error")))
@@ -187,7 +199,9 @@ def test_a_log_that_cannot_be_written_is_told_once(recorded, monkeypatch):
     from metagraph.errors import FileError
 
     def full(kind: str, **fields: object) -> None:
-        raise FileError("log.jsonl", "cannot be written (No space left on device)", "on adding to it", "Make room.")
+        raise FileError(
+            "log.jsonl", "cannot be written (No space left on device)", "on adding to it", "Make room."
+        )
 
     told = []
     monkeypatch.setattr(recorded.log, "add", full)
@@ -210,7 +224,11 @@ def test_what_changed_names_its_kind_clips_and_layer(toy):
     assert described(project, first)["what"] == "place"
     one, other = list(first.manual["arms"].states)
     linked = manual_edits.add_link(first, "arms", one, other)
-    assert described(first, linked) == {"what": "link", "clips": ["rest loop", "rest wave rt"], "layer": "arms"}
+    assert described(first, linked) == {
+        "what": "link",
+        "clips": ["rest loop", "rest wave rt"],
+        "layer": "arms",
+    }
     assert described(linked, first)["what"] == "delete"
 
 

@@ -24,9 +24,13 @@ def saved(drive, toy, tmp_path):
     ids = {clip.name: clip.id for clip in drive.document.project.clips.values()}
     drive.document.edit("Stance", lambda p: edits.add_stance(p, "arms", "rest", [ids["rest"]]))
     stance = next(iter(drive.document.project.graphs["arms"].stances))
-    drive.document.edit("Place", lambda p: edits.place(p, [ids["wave rt"], ids["beat lf"]], "arms", "gesture", stance))
+    drive.document.edit(
+        "Place", lambda p: edits.place(p, [ids["wave rt"], ids["beat lf"]], "arms", "gesture", stance)
+    )
     drive.action = lambda name: next(a for a in drive.document.project.actions() if a.name == name)
-    drive.document.edit("Tag", lambda p: edits.update_actions(p, [drive.action("wave rt").id], tags=("right", "hello")))
+    drive.document.edit(
+        "Tag", lambda p: edits.update_actions(p, [drive.action("wave rt").id], tags=("right", "hello"))
+    )
     drive.document.save(tmp_path / "p.metagraph.yaml")
     drive.place = tmp_path
     return drive
@@ -110,8 +114,12 @@ def test_what_has_no_side_is_told_and_nothing_is_written(saved, toy):
     drive = saved
     ident = drive.action("rest").clip
     entry = drive.document.project.clips[ident]
-    still = replace(entry.motion, rotations=np.broadcast_to(toy.skeleton.rest_rotations, entry.motion.rotations.shape))
-    straight = replace(still, translations=np.broadcast_to(toy.skeleton.rest_translations[:1], still.translations.shape))
+    still = replace(
+        entry.motion, rotations=np.broadcast_to(toy.skeleton.rest_rotations, entry.motion.rotations.shape)
+    )
+    straight = replace(
+        still, translations=np.broadcast_to(toy.skeleton.rest_translations[:1], still.translations.shape)
+    )
     project = drive.document.project
     changed = replace(entry, motion=straight, digest="0" * 64)
     drive.document.edit("Still", lambda p: replace(project, clips={**project.clips, ident: changed}))
