@@ -144,7 +144,7 @@ def _write(
 
 def _rows(project: Project, found: Mimicry, made: Plan) -> list[dict[str, Any]]:
     """Return of each sighting what was seen and when, and from when to when the character goes there."""
-    from metagraph.playback.hear import answer
+    from metagraph.playback.extend_performance import answer
 
     rows = []
     for sight in found.sightings:

@@ -20,7 +20,7 @@ from metagraph.live.server import OSC_PORT, PORT, LiveError, Options
 from metagraph.live.session import LiveSession
 from metagraph.live.tape import Tape
 from metagraph.live.work import Out
-from metagraph.playback.hear import Answer, answers
+from metagraph.playback.extend_performance import Answer, answers
 
 TICK = 16  # milliseconds
 SHOWN = 300  # requests that are shown in the timeline, the latest

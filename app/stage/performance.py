@@ -20,7 +20,7 @@ from app.stage.session import Session
 from metagraph.graph.asks import AnyAsk
 from metagraph.graph.model import LAYERS, Project
 from metagraph.motion.skeleton import Pose, Skeleton
-from metagraph.playback.hear import Answer, answers
+from metagraph.playback.extend_performance import Answer, answers
 from metagraph.playback.manual import Fire
 from metagraph.playback.plan import Plan
 from metagraph.playback.planner import make_plan

@@ -17,7 +17,7 @@ from app.stage.playback_source import Shown
 from app.widgets.request_menu import STAGE, ask_words, kind_of, lane_of
 from metagraph.graph.asks import AnyAsk
 from metagraph.graph.model import LAYERS, Layer, Project
-from metagraph.playback.hear import Answer
+from metagraph.playback.extend_performance import Answer
 from metagraph.playback.plan import Cue
 
 LEFT, RULER, LANE = 84, 22, 104

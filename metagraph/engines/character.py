@@ -23,7 +23,7 @@ from metagraph.engines.reading import read_export
 from metagraph.graph import asks as a
 from metagraph.graph.model import LAYERS, Layer, Project
 from metagraph.motion.skeleton import Pose
-from metagraph.playback.hear import Answer, answer, answers
+from metagraph.playback.extend_performance import Answer, answer, answers
 from metagraph.playback.plan import Plan
 from metagraph.playback.player import morphs_at, pose_at
 from metagraph.playback.running_plan import CUT, RunningPlan

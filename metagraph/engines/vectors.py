@@ -26,7 +26,7 @@ from metagraph.graph.model import LAYERS, Project
 from metagraph.motion import rotation
 from metagraph.motion.skeleton import Pose
 from metagraph.playback.choice import key32
-from metagraph.playback.hear import hear, since
+from metagraph.playback.extend_performance import hear, since
 from metagraph.playback.life.lane import Lane
 from metagraph.playback.plan import LayerPlan, Plan
 from metagraph.playback.player import morphs_at, pose_at

@@ -1,4 +1,4 @@
-"""What a plan does about many asks at once: `metagraph.playback.hear.answer` for a whole tick, in one pass
+"""What a plan does about many asks at once: `metagraph.playback.extend_performance.answer` for a whole tick, in one pass
 over what is near.
 """
 

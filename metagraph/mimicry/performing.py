@@ -14,7 +14,7 @@ from metagraph.graph.asks import AnyAsk, Performance
 from metagraph.graph.model import LAYERS, Layer, Project
 from metagraph.mimicry.mimic import Mimic, Sighting
 from metagraph.mimicry.points import Keypoints
-from metagraph.playback.hear import hear
+from metagraph.playback.extend_performance import hear
 from metagraph.playback.plan import Plan
 
 AHEAD = 10.0  # seconds that are planned ahead while a recording is gone through

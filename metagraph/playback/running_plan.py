@@ -17,7 +17,7 @@ import numpy as np
 
 from metagraph.graph import asks as a
 from metagraph.graph.model import LAYERS, Layer, Project
-from metagraph.playback.hear import hear, owners, since
+from metagraph.playback.extend_performance import hear, owners, since
 from metagraph.playback.life.lane import Lane
 from metagraph.playback.life.track import Item, track_of
 from metagraph.playback.plan import Cue, LayerPlan, MetaAction, Plan, Report, Request, Rest

@@ -24,7 +24,7 @@ from metagraph.engines.reading import read_export
 from metagraph.errors import FileError
 from metagraph.graph.asks import Gesture
 from metagraph.graph.model import Project
-from metagraph.playback.hear import hear
+from metagraph.playback.extend_performance import hear
 from metagraph.playback.plan import Plan
 from metagraph.playback.player import pose_at
 

@@ -22,7 +22,7 @@ from metagraph.engines.reading import read_export
 from metagraph.graph.asks import ask_from
 from metagraph.graph.model import LAYERS
 from metagraph.motion import rotation
-from metagraph.playback.hear import hear, since
+from metagraph.playback.extend_performance import hear, since
 from metagraph.playback.life.voice import voice_from_text
 from metagraph.playback.plan import Plan
 from metagraph.playback.player import pose_at

@@ -20,7 +20,7 @@ from PIL import Image
 from metagraph.engines.reading import read_export
 from metagraph.engines.targets import registry, web
 from metagraph.graph.model import Project
-from metagraph.playback.hear import hear
+from metagraph.playback.extend_performance import hear
 from metagraph.playback.plan import Plan
 from metagraph.playback.player import pose_at
 

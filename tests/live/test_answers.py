@@ -11,7 +11,7 @@ from metagraph.graph import asks as a
 from metagraph.graph.model import Project
 from metagraph.live.answers import find, owner_of
 from metagraph.live.messages import Heard, read
-from metagraph.playback.hear import answer
+from metagraph.playback.extend_performance import answer
 from metagraph.playback.running_plan import perform
 from tests.live.traffic import valid
 

@@ -12,7 +12,7 @@ from metagraph.graph.model import LAYERS, Project
 from metagraph.graph.staging import add_performance
 from metagraph.mimicry.performing import goals, mimic_performance, placed
 from metagraph.mimicry.points import POINTS, Keypoints
-from metagraph.playback.hear import answer
+from metagraph.playback.extend_performance import answer
 from metagraph.playback.running_plan import perform
 from sample_clips.make.keypoints import SECONDS, View, played, seen, truth
 from tests.mimicry import people

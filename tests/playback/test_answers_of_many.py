@@ -7,7 +7,7 @@ from typing import Any
 
 from metagraph.graph import asks as a
 from metagraph.graph.model import Project
-from metagraph.playback.hear import answer, answers
+from metagraph.playback.extend_performance import answer, answers
 from metagraph.playback.running_plan import perform
 
 

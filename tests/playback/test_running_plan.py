@@ -10,7 +10,7 @@ from hypothesis import strategies as st
 
 from metagraph.graph import asks as a
 from metagraph.graph.model import LAYERS, Project
-from metagraph.playback.hear import answer, hear
+from metagraph.playback.extend_performance import answer, hear
 from metagraph.playback.plan import Plan
 from metagraph.playback.player import pose_at
 from metagraph.playback.running_plan import AHEAD, RunningPlan, perform

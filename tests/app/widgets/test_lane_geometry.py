@@ -29,7 +29,7 @@ from app.widgets.lane_geometry import (
 from app.widgets.request_menu import STAGE
 from metagraph.graph import asks as a
 from metagraph.graph.model import LAYERS
-from metagraph.playback.hear import answer
+from metagraph.playback.extend_performance import answer
 from metagraph.playback.planner import make_plan
 from metagraph.playback.running_plan import perform
 

@@ -13,7 +13,7 @@ from hypothesis import strategies as st
 
 from metagraph.graph import asks as a
 from metagraph.graph.model import LAYERS, Layer, Project
-from metagraph.playback.hear import answer, hear, since
+from metagraph.playback.extend_performance import answer, hear, since
 from metagraph.playback.plan import Cue, Plan
 from metagraph.playback.player import pose_at
 from metagraph.playback.running_plan import perform
