@@ -31,8 +31,8 @@ from metagraph.motion.clip import Clip
 from metagraph.motion.skeleton import Skeleton, unique_names
 from metagraph.playback import choice, markov
 from metagraph.playback.phases import LEAST_BLEND, phases
-from metagraph.playback.pick import HURRY, LOOP_FADE
 from metagraph.playback.planner import WINDOW
+from metagraph.playback.sampling import HURRY, LOOP_FADE
 
 
 class ExportError(ValueError):

@@ -9,9 +9,9 @@ from typing import Any, Literal
 from metagraph.graph.asks import AnyAsk
 from metagraph.graph.model import LAYERS, Layer, Project
 from metagraph.playback.life.track import StayFrom
-from metagraph.playback.pick import remember
 from metagraph.playback.plan import Cue, LayerPlan, Past, Plan, Report
 from metagraph.playback.planner import extend
+from metagraph.playback.sampling import remember
 from metagraph.playback.understand import understand
 
 State = Literal["planned", "late", "refused", "done"]

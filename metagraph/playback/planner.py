@@ -11,9 +11,9 @@ from collections.abc import Collection, Iterable, Mapping
 from metagraph.graph.model import LAYERS, Layer, MetaGraph, Project
 from metagraph.playback import markov
 from metagraph.playback.life.schedule import schedule
-from metagraph.playback.pick import FITS, Performer
 from metagraph.playback.plan import TEMPORAL, Cursor, LayerPlan, MetaAction, Plan, Report, Request
 from metagraph.playback.replan import delay, replan
+from metagraph.playback.sampling import FITS, Performer
 
 WINDOW = 1.0  # seconds a request may use when it does not say how long
 

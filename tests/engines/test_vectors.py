@@ -18,7 +18,7 @@ from metagraph.engines.export import export
 from metagraph.engines.reading import read_export
 from metagraph.errors import FileError
 from metagraph.graph.model import Project
-from metagraph.playback import choice, markov, pick, player, replan
+from metagraph.playback import choice, markov, player, replan, sampling
 from metagraph.playback.life import evaluate, gaze, solve
 from metagraph.playback.planner import make_plan
 from metagraph.playback.player import pose_at
@@ -107,15 +107,15 @@ def _broken_key32(seed: int, *words: str) -> int:
 MUTATIONS: dict[str, tuple[Any, str, Any]] = {
     "the blend curve": (player, "ease", lambda x: np.clip(x, 0.0, 1.0)),
     "the hash of draws": (choice, "key32", _broken_key32),
-    "the counter of uses": (pick.Performer, "_count", lambda self, ident, now: 0.0),
-    "never twice and spacing": (pick.Performer, "_spaced", lambda self, candidates: candidates),
+    "the counter of uses": (sampling.Performer, "_count", lambda self, ident, now: 0.0),
+    "never twice and spacing": (sampling.Performer, "_spaced", lambda self, candidates: candidates),
     "the loop's seam": (
         player,
         "loop_seconds",
         lambda p, a, t: (p.span(a)[0] + t * 0, p.span(a)[0] + t * 0, t * 0),
     ),
     "leading a clip in from its stance": (player, "_lead", lambda shown, stance, edge, weight: shown),
-    "the cooldown": (pick.Performer, "_cooled", lambda self, action, stance: float("-inf")),
+    "the cooldown": (sampling.Performer, "_cooled", lambda self, action, stance: float("-inf")),
     "the shortest chain": (pick, "chain", lambda graph, start, goal: None),
     "how late a request may start": (replan, "delay", lambda asked, free, settings: (list(asked), [])),
     "lengths of the models": (markov, "length", lambda chain, state, seed, key: 2.0),

@@ -13,7 +13,7 @@ import pytest
 
 from metagraph.graph.model import LAYERS, Layer, Project
 from metagraph.motion import rotation
-from metagraph.playback import pick
+from metagraph.playback import sampling
 from metagraph.playback.composer import rig
 from metagraph.playback.plan import Cue, Plan
 from metagraph.playback.planner import make_plan
@@ -34,7 +34,7 @@ class Performance:
 
 @pytest.fixture(scope="module")
 def performances(sample: Project) -> list[Performance]:
-    choose = pick.pick
+    choose = sampling.pick
     made = []
     for seed in SEEDS:
         draws: list[tuple[str, Mapping[str, float], str]] = []

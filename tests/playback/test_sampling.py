@@ -13,7 +13,7 @@ import pytest
 
 from metagraph.graph import edits
 from metagraph.graph.model import Project
-from metagraph.playback import pick as pick_module
+from metagraph.playback import sampling as pick_module
 from metagraph.playback.plan import LayerPlan, MetaAction, Plan, Request
 from metagraph.playback.planner import make_plan
 
