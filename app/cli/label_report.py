@@ -11,7 +11,7 @@ from io import BytesIO
 from typing import Any
 
 from metagraph.graph.model import LAYERS, Project
-from metagraph.suggest.belief import Belief
+from metagraph.suggest.estimate import Belief
 from metagraph.suggest.propose import Proposal, Proposals, Taken
 
 KIND_MARKS = {

@@ -18,7 +18,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from metagraph.suggest.belief import Belief
+from metagraph.suggest.estimate import Belief
 
 Array = NDArray[Any]
 

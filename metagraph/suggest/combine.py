@@ -15,7 +15,7 @@ from dataclasses import dataclass
 from math import exp, log
 from typing import Generic, TypeVar
 
-from metagraph.suggest.belief import Belief
+from metagraph.suggest.estimate import Belief
 
 T = TypeVar("T")
 

@@ -17,7 +17,7 @@ from metagraph.graph.model import LAYERS, Action, Project, Timing
 from metagraph.motion.clip import Clip
 from metagraph.playback.phases import phases
 from metagraph.suggest import compatibility
-from metagraph.suggest.belief import Belief
+from metagraph.suggest.estimate import Belief
 from metagraph.suggest.motion_guess import MotionGuess
 from metagraph.suggest.proposal import Place, Proposal, Rest, words_of
 from metagraph.suggest.traits import Traits

@@ -8,7 +8,7 @@ from collections.abc import Mapping
 from math import log
 
 from metagraph.graph.words import Layer
-from metagraph.suggest.belief import Belief
+from metagraph.suggest.estimate import Belief
 from metagraph.suggest.traits import Traits
 
 TYPICAL: Mapping[Layer, float] = {

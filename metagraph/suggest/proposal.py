@@ -9,7 +9,7 @@ from dataclasses import dataclass, field
 from typing import Any
 
 from metagraph.graph.model import Kind, Layer, Limb
-from metagraph.suggest.belief import Belief
+from metagraph.suggest.estimate import Belief
 from metagraph.suggest.stances import Shape
 from metagraph.suggest.words import Patterns
 from metagraph.suggest.words_tokens import take_apart

@@ -16,8 +16,8 @@ from metagraph.graph import edits
 from metagraph.graph.edits import EditError
 from metagraph.graph.model import KINDS, LAYERS, LIMBS, Layer, Project
 from metagraph.suggest.accept import Taken, accept
-from metagraph.suggest.belief import Belief
 from metagraph.suggest.details import timed
+from metagraph.suggest.estimate import Belief
 from metagraph.suggest.proposal import Place, Proposal, Proposals, plain
 from metagraph.suggest.propose import waiting
 

@@ -11,7 +11,7 @@ from functools import lru_cache
 from typing import Final, TypeVar, cast
 
 from metagraph.graph.words import Kind, Layer, Limb
-from metagraph.suggest.belief import Belief
+from metagraph.suggest.estimate import Belief
 from metagraph.suggest.words_defaults import Field
 from metagraph.suggest.words_patterns import Patterns, PatternsError, forget, merged, recalled, remembered
 from metagraph.suggest.words_stances import Found, Stances, Words, is_low, label

@@ -6,8 +6,8 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from metagraph.suggest.belief import Belief
 from metagraph.suggest.combine import LEAST, MOST, combine
+from metagraph.suggest.estimate import Belief
 
 
 def says(value: str, confidence: float, reason: str = "") -> Belief[str]:

@@ -9,7 +9,7 @@ import pytest
 from metagraph.formats.store import open_project
 from metagraph.graph import edits
 from metagraph.graph.model import Project
-from metagraph.suggest.belief import Belief
+from metagraph.suggest.estimate import Belief
 from metagraph.suggest.proposal import Place, Proposal, Proposals
 from metagraph.suggest.propose import propose
 from metagraph.suggest.review import PAUSE, SAID, USUAL, Pace, Review
