@@ -17,7 +17,6 @@ import numpy as np
 from metagraph.graph.model import KINDS, LAYERS, LIMBS, Action, Layer, Limb, Project
 from metagraph.suggest.accept import Taken, accept
 from metagraph.suggest.alike import Alike, Example
-from metagraph.suggest.combine import Agreed, combine
 from metagraph.suggest.details import masked, rest_of, stroked, timed, weighted
 from metagraph.suggest.estimate import Belief
 from metagraph.suggest.measures import walks
@@ -25,6 +24,7 @@ from metagraph.suggest.motion_guess import MotionGuess, guess
 from metagraph.suggest.proposal import Place, Proposal, Proposals, Rest, plain, words_of
 from metagraph.suggest.stances import Shape, discovered, known
 from metagraph.suggest.traits import Traits, traits_of
+from metagraph.suggest.vote_fusion import Agreed, combine
 from metagraph.suggest.words import NameGuess, Patterns, read_names
 
 __all__ = [

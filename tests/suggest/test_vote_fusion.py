@@ -6,8 +6,8 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from metagraph.suggest.combine import LEAST, MOST, combine
 from metagraph.suggest.estimate import Belief
+from metagraph.suggest.vote_fusion import LEAST, MOST, combine
 
 
 def says(value: str, confidence: float, reason: str = "") -> Belief[str]:
