@@ -23,7 +23,7 @@ from metagraph.synthesis.graph import MotionGraph
 from metagraph.synthesis.states import SynthesisError
 
 if TYPE_CHECKING:
-    from metagraph.synthesis.wander import Links, Speech
+    from metagraph.synthesis.greedy_search_kernels import Links, Speech
 
 Array = NDArray[Any]
 Cancelled = Callable[[], bool] | None
@@ -172,7 +172,7 @@ def _greedy(
     deepest: int,
     cancelled: Cancelled,
 ) -> Path:
-    from metagraph.synthesis.wander import segment
+    from metagraph.synthesis.greedy_search_kernels import segment
 
     frames, chance = len(wanted), np.random.default_rng(seed)
     fits = np.flatnonzero(_fits(graph, heard, wanted, 0))
@@ -262,7 +262,7 @@ _LINKS: WeakKeyDictionary[MotionGraph, Links] = WeakKeyDictionary()
 
 def _links(graph: MotionGraph) -> Links:
     """Return a graph's transitions, and the cheapest of each state; those are looked for once."""
-    from metagraph.synthesis.wander import Links, cheapest
+    from metagraph.synthesis.greedy_search_kernels import Links, cheapest
 
     found = _LINKS.get(graph)
     if found is None:
@@ -274,7 +274,7 @@ def _links(graph: MotionGraph) -> Links:
 
 
 def _speech(graph: MotionGraph, heard: Heard, wanted: Wanted) -> Speech:
-    from metagraph.synthesis.wander import Speech, next_of, until_of
+    from metagraph.synthesis.greedy_search_kernels import Speech, next_of, until_of
 
     new = np.ones(len(wanted), bool)
     new[1:] = (np.diff(wanted.allowed) != 0) | (np.diff(wanted.window) != 0)
