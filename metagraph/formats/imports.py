@@ -13,10 +13,10 @@ from metagraph.errors import FileError
 from metagraph.formats.clips import digest, find_clip_files, import_clips, read_clips
 from metagraph.formats.gltf import has_skinned_mesh, morph_targets
 from metagraph.formats.store import relative
-from metagraph.graph.bring import Bringing
 from metagraph.graph.edits import add_clips, set_character
 from metagraph.graph.face import with_morphs
 from metagraph.graph.model import Project
+from metagraph.graph.project_retargeting import Bringing
 from metagraph.motion.adopt import SkeletonMismatchError, adopt, difference
 from metagraph.motion.clip import Clip, ClipError
 from metagraph.motion.joint_map import JointMap, RetargetError, fingerprint

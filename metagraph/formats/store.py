@@ -23,9 +23,9 @@ from metagraph.formats.data import FORMAT, from_data, to_data
 from metagraph.formats.fields import Data, DataError
 from metagraph.formats.text import TextError, parse, to_text
 from metagraph.graph.asks import Line
-from metagraph.graph.bring import Bringing
 from metagraph.graph.conversation import Conversation, Side
 from metagraph.graph.model import ClipEntry, Project
+from metagraph.graph.project_retargeting import Bringing
 from metagraph.motion.adopt import SkeletonMismatchError, adopt
 from metagraph.motion.clip import Clip, ClipError
 from metagraph.motion.joint_map import RetargetError

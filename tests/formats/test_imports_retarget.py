@@ -17,9 +17,9 @@ from metagraph.formats.gltf import write_glb
 from metagraph.formats.imports import bring_over, import_files, strangers_of
 from metagraph.formats.journal import apply, changes
 from metagraph.formats.store import open_project, relocate, save_project
-from metagraph.graph.bring import Bringing
 from metagraph.graph.check import check
 from metagraph.graph.model import Project
+from metagraph.graph.project_retargeting import Bringing
 from metagraph.motion import rotation
 from metagraph.motion.clip import Clip
 from metagraph.motion.joint_map import JointMap, RetargetError, fingerprint, proposed

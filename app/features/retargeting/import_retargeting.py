@@ -16,7 +16,7 @@ from app.project.jobs import Job, Jobs
 from app.project.kept_maps import keep_map
 from metagraph.errors import FileError
 from metagraph.formats.imports import Imported, Strangers, bring_over, strangers_of
-from metagraph.graph.bring import Bringing
+from metagraph.graph.project_retargeting import Bringing
 from metagraph.motion.joint_map import JointMap
 
 Then = Callable[[Imported], None]

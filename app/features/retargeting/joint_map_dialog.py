@@ -28,7 +28,7 @@ from app.look.theme import DARK, LIGHT, strengthen
 from app.project.jobs import Jobs
 from app.widgets.quiet_fields import ComboBox
 from metagraph.formats.imports import Strangers
-from metagraph.graph.bring import Bringing
+from metagraph.graph.project_retargeting import Bringing
 from metagraph.motion.clip import Clip
 from metagraph.motion.joint_map import JointMap, known_roles
 
