@@ -17,8 +17,8 @@ from metagraph.formats.imports import Loaded
 from metagraph.formats.store import relative
 from metagraph.formats.takes import REPAIRS
 from metagraph.graph.edits import EditError, add_clips
+from metagraph.graph.mirroring import TwinClip, mirrored_clips, place_twins, twin_clips
 from metagraph.graph.model import Project
-from metagraph.graph.twins import TwinClip, mirrored_clips, place_twins, twin_clips
 from metagraph.motion.adopt import adopt
 
 if TYPE_CHECKING:
