@@ -131,7 +131,7 @@ def _greet(server: Server, ready: Ready, options: Options, as_json: bool) -> Non
 def _keep(session: LiveSession, options: Namespace) -> None:
     """Add the session to the project as it is saved now."""
     from metagraph.formats.store import open_project, save_project
-    from metagraph.graph.staging import add_performance
+    from metagraph.graph.performance_edits import add_performance
 
     project, ident = add_performance(open_project(options.project).project, session.performance(options.keep))
     save_project(project, options.project, options.project)

@@ -112,7 +112,7 @@ def _keep(options: Namespace, project: Project, kept: Performance) -> Path | Non
     if options.keep is None:
         return None
     from metagraph.formats.store import save_project
-    from metagraph.graph.staging import add_performance
+    from metagraph.graph.performance_edits import add_performance
 
     save_project(add_performance(project, kept)[0], options.project, options.project)
     return Path(options.project)

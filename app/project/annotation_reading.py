@@ -8,7 +8,7 @@ from collections.abc import Collection, Mapping
 from dataclasses import dataclass, field, replace
 from functools import cached_property
 
-from metagraph.graph import edits, staging
+from metagraph.graph import edits, performance_edits
 from metagraph.graph.model import LAYERS, Layer, Project
 from metagraph.playback.annotation import Annotation, Label, guess_roles, labels
 from metagraph.playback.learn import Act, learn, performance, sequences
@@ -83,7 +83,7 @@ def into(
             done.append(layer)
     kept = None
     if name is not None and any(reading.observed.values()):
-        project, kept = staging.add_performance(
+        project, kept = performance_edits.add_performance(
             project, performance(name, reading.observed, reading.annotation.end)
         )
     return Made(project, tuple(done), kept)

@@ -11,7 +11,7 @@ from typing import Any
 from app.project.opening import open_whole
 from app.stage.playback_source import Shown
 from metagraph.errors import FileError
-from metagraph.graph import staging
+from metagraph.graph import performance_edits
 from metagraph.graph.asks import Performance
 from metagraph.graph.conversation import Side
 from metagraph.graph.model import Project
@@ -117,12 +117,12 @@ def keep(project: Project, ident: str, shown: Shown) -> tuple[Project, tuple[str
         if side.project is not None:
             continue
         for line in {s.line for s in part.plan.track.speeches if s.line is not None} - set(project.lines):
-            project = staging.set_line(project, line, part.project.lines[line])
+            project = performance_edits.set_line(project, line, part.project.lines[line])
             project = replace(project, voices={**project.voices, line: part.project.voices[line]})
         name = f"{conversation.name}: {side.name}" if side.name else conversation.name
         made = Performance(
             name=name[:200], asks=part.asks, seed=conversation.seed, length=conversation.length, idle=False
         )
-        project, new = staging.add_performance(project, made)
+        project, new = performance_edits.add_performance(project, made)
         kept.append(new)
     return project, tuple(kept)

@@ -9,7 +9,7 @@ import msgspec
 from app.project.document import Document
 from app.stage.live_control import LiveControl
 from app.stage.session import Session
-from metagraph.graph import staging
+from metagraph.graph import performance_edits
 from metagraph.graph.asks import AnyAsk
 from metagraph.graph.asks import Performance as KeptPerformance
 from metagraph.graph.model import Project
@@ -56,8 +56,8 @@ class RequestEdits:
             nonlocal made
             if made is None or made not in project.performances:
                 kept = KeptPerformance(name="Performance", length=self._length())
-                project, made = staging.add_performance(project, kept)
-            return staging.add_ask(project, made, ask)
+                project, made = performance_edits.add_performance(project, kept)
+            return performance_edits.add_ask(project, made, ask)
 
         self.document.edit(text, edit)
         self.session.onstage.set_performance(made)
@@ -70,14 +70,16 @@ class RequestEdits:
         stage = self.session.onstage.performance
         if stage is not None:
             self.document.edit(
-                "Change request", lambda p: staging.change_ask(p, stage, ident, **changes), merge
+                "Change request", lambda p: performance_edits.change_ask(p, stage, ident, **changes), merge
             )
 
     def move(self, idents: tuple[str, ...], by: float, merge: str | None = None) -> None:
         """Move asks in time."""
         stage = self.session.onstage.performance
         if stage is not None:
-            self.document.edit("Move request", lambda p: staging.move_asks(p, stage, idents, by), merge)
+            self.document.edit(
+                "Move request", lambda p: performance_edits.move_asks(p, stage, idents, by), merge
+            )
 
     def copy(self, idents: tuple[str, ...], by: float) -> None:
         """Ask for the same once more, seconds later or earlier, and select the copies."""
@@ -88,10 +90,10 @@ class RequestEdits:
         copies = tuple(msgspec.structs.replace(x, id="", told=None) for x in kept.asks if x.id in idents)
 
         def edit(project: Project) -> Project:
-            project = staging.change_performance(
+            project = performance_edits.change_performance(
                 project, stage, asks=(*project.performances[stage].asks, *copies)
             )
-            return staging.move_asks(
+            return performance_edits.move_asks(
                 project, stage, {x.id for x in project.performances[stage].asks[number:]}, by
             )
 
@@ -102,4 +104,6 @@ class RequestEdits:
         """Take asks of the performance on stage back; all when none is named."""
         stage = self.session.onstage.performance
         if stage is not None:
-            self.document.edit("Withdraw request", lambda p: staging.remove_asks(p, stage, idents or None))
+            self.document.edit(
+                "Withdraw request", lambda p: performance_edits.remove_asks(p, stage, idents or None)
+            )

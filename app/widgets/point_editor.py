@@ -18,7 +18,7 @@ from PySide6.QtWidgets import (
 
 from app.project.document import Document
 from app.widgets.quiet_fields import DoubleSpinBox
-from metagraph.graph import staging
+from metagraph.graph import performance_edits
 
 AXES = (
     ("To its left", "Metres to the character's left; to its right below 0"),
@@ -76,6 +76,6 @@ class PointEditor(QDialog):
 
     def _put(self) -> None:
         name, point = self.name.text().strip(), tuple(round(box.value(), 3) for box in self.axes)
-        self.document.edit("Put a point", lambda p: staging.set_point(p, name, point))
+        self.document.edit("Put a point", lambda p: performance_edits.set_point(p, name, point))
         self.accept()
         self.then(name)

@@ -14,7 +14,7 @@ from metagraph.formats.conversations import read_conversation
 from metagraph.formats.imports import import_files
 from metagraph.formats.store import SUFFIX, save_project
 from metagraph.graph import asks as a
-from metagraph.graph import edits, staging
+from metagraph.graph import edits, performance_edits
 from metagraph.graph.conversation import Conversation
 from metagraph.graph.conversing import add_conversation
 from metagraph.graph.model import LAYERS, Kind, Layer, Limb, Project, Timing
@@ -85,7 +85,7 @@ def sample() -> Project:
         name: msgspec.structs.replace(line, asks=WITH_LINES.get(name, ()))
         for name, line in sample_lines().items()
     }
-    project = staging.add_performance(replace(project, lines=lines), GREETING)[0]
+    project = performance_edits.add_performance(replace(project, lines=lines), GREETING)[0]
     return add_conversation(project, conversation())[0]
 
 

@@ -9,7 +9,7 @@ import pytest
 
 from metagraph.graph import asks as a
 from metagraph.graph.model import LAYERS, Project
-from metagraph.graph.staging import add_performance
+from metagraph.graph.performance_edits import add_performance
 from metagraph.mimicry.performing import goals, mimic_performance, placed
 from metagraph.mimicry.points import POINTS, Keypoints
 from metagraph.playback.extend_performance import answer

@@ -25,7 +25,7 @@ from app.project.document import Document
 from app.stage.session import Session
 from app.widgets.quiet_fields import DoubleSpinBox, Slider
 from app.widgets.request_menu import MODE_WORDS
-from metagraph.graph import staging
+from metagraph.graph import performance_edits
 from metagraph.graph.edits import EditError
 from metagraph.graph.life import DIALS, MANNER_DIALS, MANNERS, Dial, Life, manner, with_life
 from metagraph.graph.model import MODES, Mode, Project
@@ -248,6 +248,6 @@ class LifePanel(QWidget):
     def _set(self, text: str, life: Life | None, merge: str | None, **changes: object) -> None:
         fields = {f: getattr(life, f) for f in life.__struct_fields__} if life is not None else changes
         try:
-            self.document.edit(text, lambda p: staging.set_life(p, **fields), merge)
+            self.document.edit(text, lambda p: performance_edits.set_life(p, **fields), merge)
         except EditError as error:
             self.document.failed.emit(str(error))

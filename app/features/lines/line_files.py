@@ -13,7 +13,7 @@ from typing import Any
 
 from metagraph.errors import FileError
 from metagraph.formats.store import relative
-from metagraph.graph import staging
+from metagraph.graph import performance_edits
 from metagraph.graph.asks import Line
 from metagraph.graph.edits import free_name
 from metagraph.graph.model import Project
@@ -150,5 +150,5 @@ def add_lines(project: Project, read: Lines) -> Project:
             line = type(line)(
                 **{f: getattr(line, f) for f in line.__struct_fields__ if f != "asks"}, asks=before.asks
             )
-        project = staging.set_line(project, ident, line)
+        project = performance_edits.set_line(project, ident, line)
     return replace(project, voices={**project.voices, **read.voices})

@@ -28,7 +28,7 @@ from app.project.document import Document
 from app.project.jobs import Jobs
 from app.stage.performance import Performance
 from app.stage.session import Session
-from metagraph.graph import staging
+from metagraph.graph import performance_edits
 from metagraph.graph.asks import Line, Say
 from metagraph.graph.edits import EditError
 from metagraph.graph.model import Project
@@ -242,12 +242,12 @@ class LinesPanel(QWidget):
         ident, text = str(item.data(Qt.ItemDataRole.UserRole)), item.text()
         self._rows.pop(item.row(), None)  # what was typed may be refused
         if item.column() == ID:
-            self._try("Rename line", lambda p: staging.rename_line(p, ident, text))
+            self._try("Rename line", lambda p: performance_edits.rename_line(p, ident, text))
         else:
             line = self.document.project.lines[ident]
             self._try(
                 "Change line",
-                lambda p: staging.set_line(
+                lambda p: performance_edits.set_line(
                     p, ident, msgspec.structs.replace(line, text=text.strip()[:20000])
                 ),
             )
@@ -258,7 +258,7 @@ class LinesPanel(QWidget):
 
         def edit(project: Project) -> Project:
             for ident in chosen:
-                project = staging.set_line(project, ident, None)
+                project = performance_edits.set_line(project, ident, None)
             return project
 
         if chosen:
@@ -269,7 +269,7 @@ class LinesPanel(QWidget):
         lines = self.document.project.lines
         self.search.clear()  # the new one must be seen
         number = next(n for n in range(1, len(lines) + 2) if str(n) not in lines)
-        self._try("Add line", lambda p: staging.set_line(p, str(number), Line(text="Hello")))
+        self._try("Add line", lambda p: performance_edits.set_line(p, str(number), Line(text="Hello")))
         self.table.setCurrentCell(len(lines), WORDS)
         self.table.editItem(self.table.item(len(lines), WORDS))
 

@@ -27,7 +27,7 @@ from app.look.plural import many
 from app.look.theme import strengthen
 from app.project.jobs import Job
 from metagraph.formats.keypoints import read_keypoints
-from metagraph.graph import staging
+from metagraph.graph import performance_edits
 from metagraph.graph.asks import Performance
 from metagraph.graph.model import LAYERS, Project
 from metagraph.mimicry.performing import REST, Mimicry, mimic_performance, placed
@@ -157,10 +157,10 @@ def _taken(shell: Shell, found: Mimicry, stage: str | None) -> None:
         if stage is not None and stage in project.performances:
             there = {ask.id for ask in project.performances[stage].asks}
             asks = (*project.performances[stage].asks, *(ask for ask in timed.asks if ask.id not in there))
-            return staging.change_performance(
+            return performance_edits.change_performance(
                 project, stage, asks=asks, length=max(timed.length, project.performances[stage].length)
             )
-        project, made = staging.add_performance(project, timed)
+        project, made = performance_edits.add_performance(project, timed)
         return project
 
     if not found.sightings:

@@ -25,7 +25,7 @@ from app.widgets.lane_geometry import outcome, wanted
 from app.widgets.quiet_fields import ComboBox, SpinBox
 from app.widgets.request_menu import ask_menu
 from app.widgets.sentence import Sentence
-from metagraph.graph import edits, staging
+from metagraph.graph import edits, performance_edits
 from metagraph.graph.asks import Performance as KeptPerformance
 from metagraph.graph.conversation import side_name
 from metagraph.graph.conversing import change_conversation
@@ -168,7 +168,7 @@ class TimelinePanel(QWidget):
 
         def edit(project: object) -> object:
             nonlocal made
-            project, made = staging.add_performance(project, performance)  # type: ignore[arg-type]
+            project, made = performance_edits.add_performance(project, performance)  # type: ignore[arg-type]
             return project
 
         self.document.edit(text, edit)  # type: ignore[arg-type]
@@ -213,14 +213,14 @@ class TimelinePanel(QWidget):
             question = f"Remove '{kept.name}' and its {many(len(kept.asks), 'request')}? It can be undone."
             if QMessageBox.question(self, "Remove performance", question) != QMessageBox.StandardButton.Yes:
                 return
-        self.document.edit("Remove performance", lambda p: staging.remove_performance(p, ident))
+        self.document.edit("Remove performance", lambda p: performance_edits.remove_performance(p, ident))
 
     def _change(self, text: str, **changes: object) -> None:
         ident = self.session.onstage.performance
         if ident is not None:
             try:
                 self.document.edit(
-                    text, lambda p: staging.change_performance(p, ident, **changes), merge=text
+                    text, lambda p: performance_edits.change_performance(p, ident, **changes), merge=text
                 )
             except EditError as error:
                 self.document.failed.emit(str(error))

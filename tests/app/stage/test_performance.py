@@ -14,7 +14,7 @@ from app.stage.playback_source import LEAD, alone, in_context
 from app.stage.playhead import Playhead
 from app.stage.session import Session
 from metagraph.graph import asks as a
-from metagraph.graph import edits, staging
+from metagraph.graph import edits, performance_edits
 from metagraph.graph.model import LAYERS, Project
 from metagraph.playback.player import pose_at
 
@@ -193,7 +193,9 @@ def test_a_kept_performance_has_its_own_length_and_seed(stage, qtbot):
     made = []
 
     def edit(project):
-        project, ident = staging.add_performance(project, a.Performance(name="talk", length=12.0, seed=99))
+        project, ident = performance_edits.add_performance(
+            project, a.Performance(name="talk", length=12.0, seed=99)
+        )
         made.append(ident)
         return project
 

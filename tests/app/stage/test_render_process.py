@@ -13,7 +13,7 @@ from app.stage.render_process import Wanted, write
 from metagraph.formats.bvh import read_bvh
 from metagraph.formats.store import open_project
 from metagraph.graph import asks as a
-from metagraph.graph import staging
+from metagraph.graph import performance_edits
 
 ROOT = Path(__file__).resolve().parents[3]
 
@@ -23,7 +23,7 @@ def talk():
     """The sample project with a performance of two seconds kept in it."""
     project = open_project(ROOT / "sample_clips" / "sample.metagraph.yaml").project
     kept = a.Performance(name="talk", length=2.0, asks=(a.Play(action="shrug_bt_01", at=0.2, priority=2),))
-    return staging.add_performance(project, kept)
+    return performance_edits.add_performance(project, kept)
 
 
 @pytest.mark.gl

@@ -8,7 +8,7 @@ import pytest
 from PySide6.QtCore import QPoint, Qt
 from PySide6.QtTest import QTest
 
-from metagraph.graph import conversing, staging
+from metagraph.graph import conversing, performance_edits
 from metagraph.graph.asks import Performance
 
 pytestmark = [pytest.mark.window, pytest.mark.gl]
@@ -17,7 +17,7 @@ pytestmark = [pytest.mark.window, pytest.mark.gl]
 def test_a_conversation_and_a_kept_performance_are_never_on_stage_together(talk: Any) -> None:
     drive, session = talk.drive, talk.drive.session
     ident = session.onstage.conversation
-    drive.document.edit("Keep", lambda p: staging.add_performance(p, Performance(name="One"))[0])
+    drive.document.edit("Keep", lambda p: performance_edits.add_performance(p, Performance(name="One"))[0])
     session.onstage.set_performance(next(iter(drive.document.project.performances)))
     assert session.onstage.conversation is None
     session.onstage.set_conversation(ident)

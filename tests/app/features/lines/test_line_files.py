@@ -142,11 +142,11 @@ def test_words_without_sound_are_a_line_too(drive, toy):
 
 
 def test_an_edit_of_one_line_among_many_writes_one_row_and_keeps_the_selection(drive, toy, monkeypatch):
-    from metagraph.graph import staging
+    from metagraph.graph import performance_edits
 
     def many(project: Project) -> Project:
         for n in range(40):
-            project = staging.set_line(project, f"l{n}", a.Line(text=f"line {n}"))
+            project = performance_edits.set_line(project, f"l{n}", a.Line(text=f"line {n}"))
         return project
 
     drive.document.load(toy.project(), None)
@@ -160,7 +160,7 @@ def test_an_edit_of_one_line_among_many_writes_one_row_and_keeps_the_selection(d
     written: list[int] = []
     row = panel._row
     monkeypatch.setattr(panel, "_row", lambda n, *more: (written.append(n), row(n, *more)))
-    drive.document.edit("Change line", lambda p: staging.set_line(p, "l5", a.Line(text="another")))
+    drive.document.edit("Change line", lambda p: performance_edits.set_line(p, "l5", a.Line(text="another")))
     assert written == [5] and panel.table.item(5, 1).text() == "another"
     assert len(panel.chosen()) == 40
     # What is added while a search hides everything is seen.
@@ -170,15 +170,15 @@ def test_an_edit_of_one_line_among_many_writes_one_row_and_keeps_the_selection(d
 
 
 def test_a_line_that_is_removed_while_it_is_asked_for_says_so_and_comes_back_with_undo(drive, toy):
-    from metagraph.graph import staging
+    from metagraph.graph import performance_edits
 
-    drive.document.load(staging.set_line(toy.project(), "hi", a.Line(text="Hello there")), None)
+    drive.document.load(performance_edits.set_line(toy.project(), "hi", a.Line(text="Hello there")), None)
     drive.performance.requests.ask(a.Say(line="hi", at=1.0))
     (ask,) = drive.performance.asks
     drive.wait(
         lambda: ask.id in drive.performance.answers() and drive.performance.answers()[ask.id].at is not None
     )
-    drive.document.edit("Remove line", lambda p: staging.set_line(p, "hi", None))
+    drive.document.edit("Remove line", lambda p: performance_edits.set_line(p, "hi", None))
     drive.wait(lambda: drive.performance.answers()[ask.id].state == "refused")
     drive.session.onstage.select_requests((ask.id,))
     assert "hi" in drive.timeline.title.words and "Does not play" in drive.timeline.title.words

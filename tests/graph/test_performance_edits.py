@@ -7,13 +7,13 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from metagraph.graph import asks as a
-from metagraph.graph import staging
+from metagraph.graph import performance_edits
 from metagraph.graph.edits import EditError
 from metagraph.graph.model import Project
 
 
 def staged(*asks: a.AnyAsk) -> tuple[Project, str]:
-    return staging.add_performance(Project(), a.Performance(name="talk", asks=asks))
+    return performance_edits.add_performance(Project(), a.Performance(name="talk", asks=asks))
 
 
 def test_asks_of_a_performance_get_ids_that_differ() -> None:
@@ -24,18 +24,18 @@ def test_asks_of_a_performance_get_ids_that_differ() -> None:
 
 def test_two_performances_of_one_name_are_told_apart() -> None:
     project, _ = staged()
-    project, other = staging.add_performance(project, a.Performance(name="talk"))
+    project, other = performance_edits.add_performance(project, a.Performance(name="talk"))
     assert project.performances[other].name == "talk 2"
     assert len(project.performances) == 2
 
 
 def test_an_ask_is_added_changed_and_taken_back() -> None:
     project, ident = staged()
-    project = staging.add_ask(project, ident, a.Gesture(at=2.0, tags=("beat",)))
-    project = staging.change_ask(project, ident, "r1", priority=3, at=2.5)
+    project = performance_edits.add_ask(project, ident, a.Gesture(at=2.0, tags=("beat",)))
+    project = performance_edits.change_ask(project, ident, "r1", priority=3, at=2.5)
     (ask,) = project.performances[ident].asks
     assert (ask.at, ask.priority, ask.tags) == (2.5, 3, ("beat",))
-    assert staging.remove_asks(project, ident, ["r1"]).performances[ident].asks == ()
+    assert performance_edits.remove_asks(project, ident, ["r1"]).performances[ident].asks == ()
 
 
 @pytest.mark.parametrize(
@@ -44,7 +44,7 @@ def test_an_ask_is_added_changed_and_taken_back() -> None:
 def test_what_an_ask_cannot_take_is_refused(changes: dict[str, object]) -> None:
     project, ident = staged(a.Gesture(id="x"))
     with pytest.raises(EditError):
-        staging.change_ask(project, ident, "x", **changes)
+        performance_edits.change_ask(project, ident, "x", **changes)
 
 
 @given(st.lists(st.floats(0, 100), min_size=1, max_size=5), st.floats(-200, 200))
@@ -53,7 +53,9 @@ def test_moving_asks_keeps_their_distance_and_stays_after_the_beginning(
 ) -> None:
     project, ident = staged(*[a.Nod(id=f"n{n}", at=t) for n, t in enumerate(times)])
     after = (
-        staging.move_asks(project, ident, [f"n{n}" for n in range(len(times))], by).performances[ident].asks
+        performance_edits.move_asks(project, ident, [f"n{n}" for n in range(len(times))], by)
+        .performances[ident]
+        .asks
     )
     gone = [x.at - t for x, t in zip(after, times, strict=True)]
     assert min(x.at for x in after) >= 0
@@ -64,53 +66,53 @@ def test_moving_asks_keeps_their_distance_and_stays_after_the_beginning(
 
 def test_an_ask_without_a_time_can_be_moved_and_one_with_a_stroke_moves_its_stroke() -> None:
     project, ident = staged(a.Nod(id="n"), a.Gesture(id="g", stroke=3.0))
-    after = staging.move_asks(project, ident, ["n", "g"], 1.5).performances[ident].asks
+    after = performance_edits.move_asks(project, ident, ["n", "g"], 1.5).performances[ident].asks
     assert (after[0].at, after[1].at, after[1].stroke) == (1.5, None, 4.5)
 
 
 def test_a_performance_is_renamed_and_removed_and_nothing_else_is() -> None:
     project, ident = staged()
     assert (
-        staging.change_performance(project, ident, name="  new   name ").performances[ident].name
+        performance_edits.change_performance(project, ident, name="  new   name ").performances[ident].name
         == "new name"
     )
-    assert staging.change_performance(project, ident, name="talk") is project
-    assert staging.remove_performance(project, ident).performances == {}
+    assert performance_edits.change_performance(project, ident, name="talk") is project
+    assert performance_edits.remove_performance(project, ident).performances == {}
     for wrong in ({"name": "  "}, {"length": 0.0}, {"length": float("nan")}, {"seed": -1}):
         with pytest.raises(EditError):
-            staging.change_performance(project, ident, **wrong)
+            performance_edits.change_performance(project, ident, **wrong)
     with pytest.raises(EditError):
-        staging.remove_performance(project, "p99")
+        performance_edits.remove_performance(project, "p99")
 
 
 def test_a_line_renamed_is_called_by_its_new_id() -> None:
     project, ident = staged(a.Say(line=279), a.Say(line="280"))
-    project = staging.set_line(
-        staging.set_line(project, "279", a.Line(text="Hello")), "280", a.Line(text="Bye")
+    project = performance_edits.set_line(
+        performance_edits.set_line(project, "279", a.Line(text="Hello")), "280", a.Line(text="Bye")
     )
-    after = staging.rename_line(project, "279", "greeting")
+    after = performance_edits.rename_line(project, "279", "greeting")
     assert list(after.lines) == ["greeting", "280"]
     assert [x.line for x in after.performances[ident].asks] == ["greeting", "280"]
     for taken in ("280", " "):
         with pytest.raises(EditError):
-            staging.rename_line(project, "279", taken)
+            performance_edits.rename_line(project, "279", taken)
 
 
 def test_another_sound_forgets_the_old_ones_voice() -> None:
     from dataclasses import replace
 
-    project = staging.set_line(Project(), "1", a.Line(audio="a.wav"))
+    project = performance_edits.set_line(Project(), "1", a.Line(audio="a.wav"))
     project = replace(project, voices={"1": object()})
-    assert staging.set_line(project, "1", a.Line(audio="a.wav", text="more")).voices
-    assert not staging.set_line(project, "1", a.Line(audio="b.wav")).voices
-    assert not staging.set_line(project, "1", None).lines
+    assert performance_edits.set_line(project, "1", a.Line(audio="a.wav", text="more")).voices
+    assert not performance_edits.set_line(project, "1", a.Line(audio="b.wav")).voices
+    assert not performance_edits.set_line(project, "1", None).lines
 
 
 def test_points_and_life_are_set_within_their_ranges() -> None:
-    project = staging.set_point(Project(), "anna", (1.0, 1.5, 2.0))
+    project = performance_edits.set_point(Project(), "anna", (1.0, 1.5, 2.0))
     assert project.points == {"anna": (1.0, 1.5, 2.0)}
-    assert staging.set_point(project, "anna", None).points == {}
-    assert staging.set_life(project, stillness=0.5).life.stillness == 0.5
+    assert performance_edits.set_point(project, "anna", None).points == {}
+    assert performance_edits.set_life(project, stillness=0.5).life.stillness == 0.5
     for wrong in ({"stillness": 2.0}, {"stillness": "very"}, {"nonsense": 1}):
         with pytest.raises(EditError):
-            staging.set_life(project, **wrong)
+            performance_edits.set_life(project, **wrong)
