@@ -112,7 +112,7 @@ def _row(n: int, side: Side) -> dict[str, Any]:
 def _keep(path: Path, read: Read) -> str:
     from app.cli.command_output import opened
     from metagraph.formats.store import save_project
-    from metagraph.graph.conversing import add_conversation
+    from metagraph.graph.conversation_edits import add_conversation
 
     project, ident = add_conversation(opened(path), read.conversation)
     save_project(project, path, path)

@@ -16,7 +16,7 @@ from metagraph.formats.store import SUFFIX, save_project
 from metagraph.graph import asks as a
 from metagraph.graph import edits, performance_edits
 from metagraph.graph.conversation import Conversation
-from metagraph.graph.conversing import add_conversation
+from metagraph.graph.conversation_edits import add_conversation
 from metagraph.graph.model import LAYERS, Kind, Layer, Limb, Project, Timing
 from sample_clips.make.babble import sample_lines
 from sample_clips.make.catalogue import BASE, Entry, catalogue

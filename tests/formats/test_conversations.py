@@ -17,7 +17,7 @@ from metagraph.errors import FileError
 from metagraph.formats.conversation_writers import write_elan, write_json, write_textgrid
 from metagraph.formats.conversations import Read, read_conversation
 from metagraph.graph.conversation import Segment, Side
-from metagraph.graph.conversing import add_conversation
+from metagraph.graph.conversation_edits import add_conversation
 from metagraph.graph.model import Project
 from tests.speech import talk
 

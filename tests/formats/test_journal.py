@@ -25,7 +25,7 @@ from metagraph.formats.journal import Journal, changes, journal_path
 from metagraph.formats.locking import new_owner
 from metagraph.formats.recovery import apply, left_journals, read_journal, recover
 from metagraph.formats.store import SUFFIX, content_digest, encoded, file_digest, save_project
-from metagraph.graph import conversing, edits
+from metagraph.graph import conversation_edits, edits
 from metagraph.graph.conversation import Conversation, Rates, Segment, Side, Word
 from metagraph.graph.model import Project
 from tests.processes import started
@@ -525,7 +525,7 @@ def talk(words: int, segments: int) -> Project:
     said = tuple(Word(text=f"wörd{n}", start=n / 3, end=n / 3 + 0.3) for n in range(words))
     clauses = tuple(Segment("clause", float(n), n + 0.9, n + 0.1 + 0.2, "a b c") for n in range(segments))
     sides = (Side(name="Ada", words=said, segments=clauses, rates=Rates(clause=0.5)), Side(words=said))
-    return conversing.add_conversation(
+    return conversation_edits.add_conversation(
         Project("talk"), Conversation(name="x", length=words / 3 + 1, sides=sides)
     )[0]
 
@@ -548,9 +548,9 @@ def test_edits_of_a_conversation_are_recovered_and_do_not_touch_its_words_again(
     states = [talk(300, 100)]
     (ident,) = states[0].conversations
     for at in (0, 5, 7):
-        states.append(conversing.move_segment(states[-1], ident, 0, at, 0.05))
+        states.append(conversation_edits.move_segment(states[-1], ident, 0, at, 0.05))
     states.append(
-        conversing.change_side(states[-1], ident, 1, name="Ben \udcff")
+        conversation_edits.change_side(states[-1], ident, 1, name="Ben \udcff")
     )  # what a name that is no text becomes
     journal = Journal(tmp_path / "journal", None)
     journal.begin(states[0])

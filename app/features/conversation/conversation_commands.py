@@ -13,7 +13,7 @@ from PySide6.QtWidgets import QFileDialog, QInputDialog
 from app.project.files import Files
 from app.project.speech_files import SOUNDS, TRANSCRIPTS, beside, kinds_of
 from metagraph.errors import FileError
-from metagraph.graph import conversing
+from metagraph.graph import conversation_edits
 from metagraph.graph.conversation import Conversation
 from metagraph.graph.edits import EditError
 from metagraph.graph.model import Project
@@ -70,14 +70,16 @@ def rename(shell: Shell) -> None:
         name, ok = QInputDialog.getText(shell.widget, "Rename conversation", "Name", text=found[1].name)
         if ok and name.strip():
             _edit(
-                shell, "Rename conversation", lambda p: conversing.change_conversation(p, found[0], name=name)
+                shell,
+                "Rename conversation",
+                lambda p: conversation_edits.change_conversation(p, found[0], name=name),
             )
 
 
 def remove(shell: Shell) -> None:
     found = on_stage(shell)
     if found is not None:
-        _edit(shell, "Remove conversation", lambda p: conversing.remove_conversation(p, found[0]))
+        _edit(shell, "Remove conversation", lambda p: conversation_edits.remove_conversation(p, found[0]))
         shell.tell(f"Removed '{found[1].name}'. Undo brings it back; its sound files stay where they are.")
 
 
@@ -96,7 +98,7 @@ def graph_again(shell: Shell) -> None:
 
         def both(project: Project) -> Project:
             for side in (0, 1):
-                project = conversing.change_side(project, found[0], side, motion=None)
+                project = conversation_edits.change_side(project, found[0], side, motion=None)
             return project
 
         _edit(shell, "Move with the graph again", both)

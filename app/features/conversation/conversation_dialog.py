@@ -37,7 +37,7 @@ from app.project.jobs import Job, Jobs
 from app.project.speech_files import TRANSCRIPTS, facts_of
 from app.stage.session import Session
 from app.widgets.act_strip import clock
-from metagraph.graph import conversing
+from metagraph.graph import conversation_edits
 from metagraph.graph.conversation import HESITATIONS, RESPONSES, SPOKEN, Conversation, Side
 from metagraph.graph.model import Project
 
@@ -346,7 +346,7 @@ class ImportDialog(QDialog):
 
         def edit(project: Project) -> Project:
             nonlocal ident
-            project, ident = conversing.add_conversation(project, conversation)
+            project, ident = conversation_edits.add_conversation(project, conversation)
             return project
 
         self.document.edit("Add conversation", edit)

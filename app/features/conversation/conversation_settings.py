@@ -28,7 +28,7 @@ from app.project.document import Document
 from app.project.speech_files import SOUNDS, channels_of
 from app.widgets.quiet_fields import ComboBox, DoubleSpinBox
 from metagraph.formats.store import SUFFIX, relative
-from metagraph.graph import conversing
+from metagraph.graph import conversation_edits
 from metagraph.graph.conversation import HESITATIONS, RESPONSES, Conversation, Rates, side_name
 from metagraph.graph.edits import EditError
 from metagraph.graph.model import Project
@@ -156,7 +156,7 @@ class WordsDialog(SettingDialog):
         self.lists.edits[0].setFocus()
 
     def change(self, project: Project) -> Project:
-        return conversing.set_word_lists(project, self.ident, *self.lists.lists())
+        return conversation_edits.set_word_lists(project, self.ident, *self.lists.lists())
 
 
 class RatesDialog(SettingDialog):
@@ -193,7 +193,7 @@ class RatesDialog(SettingDialog):
                 grid.addWidget(field, row, 1 + side)
             for column, actor in enumerate(ACTORS):
                 grid.addWidget(
-                    caption(f"{100 * getattr(conversing.PAPER[actor], name):.0f} %", self, True),
+                    caption(f"{100 * getattr(conversation_edits.PAPER[actor], name):.0f} %", self, True),
                     row,
                     3 + column,
                 )
@@ -203,7 +203,7 @@ class RatesDialog(SettingDialog):
             for actor, words in ACTORS.items():
                 button = QToolButton(self, text=f"As {words}", toolTip=f"The rates of {words} in the paper")
                 button.clicked.connect(
-                    lambda _=False, side=side, rates=conversing.PAPER[actor]: self.take(side, rates)
+                    lambda _=False, side=side, rates=conversation_edits.PAPER[actor]: self.take(side, rates)
                 )
                 row_of.addWidget(button)
             grid.addLayout(row_of, 4, 1 + side)
@@ -217,7 +217,7 @@ class RatesDialog(SettingDialog):
     def change(self, project: Project) -> Project:
         for side in (0, 1):
             values = {name: round(field.value() / 100, 4) for name, field in self.fields[side].items()}
-            project = conversing.set_rates(project, self.ident, side, **values)
+            project = conversation_edits.set_rates(project, self.ident, side, **values)
         return project
 
 
@@ -337,7 +337,7 @@ class SidesDialog(SettingDialog):
         for side in (0, 1):
             sound = self.sounds[side].text().strip() or None
             channel = self.channels[side].currentData() if sound is not None else None
-            project = conversing.change_side(
+            project = conversation_edits.change_side(
                 project,
                 self.ident,
                 side,
@@ -349,4 +349,4 @@ class SidesDialog(SettingDialog):
         distance = round(self.distance.value(), 3)
         if distance == round(self.conversation.distance, 2):  # as it was, to what is shown of it
             return project
-        return conversing.change_conversation(project, self.ident, distance=distance)
+        return conversation_edits.change_conversation(project, self.ident, distance=distance)

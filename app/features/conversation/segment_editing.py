@@ -14,7 +14,7 @@ from app.features.conversation.sound_reading import Heard, Sounds
 from app.look.plural import many
 from app.project.document import Document, Edit
 from app.stage.session import Session
-from metagraph.graph import conversing
+from metagraph.graph import conversation_edits
 from metagraph.graph.conversation import SPOKEN, Conversation, Segment, Sound
 from metagraph.graph.edits import EditError
 from metagraph.graph.model import Project
@@ -142,7 +142,7 @@ class Editing(QObject):
         if self.chosen:
             self.change(
                 f"Label {many(len(self.chosen), 'segment')} as {kind}",
-                conversing.relabel_segments,
+                conversation_edits.relabel_segments,
                 self.chosen,
                 kind,
             )
@@ -158,7 +158,7 @@ class Editing(QObject):
             return
         side, at = min(self.chosen)
         if self.change(
-            f"Remove {many(len(self.chosen), 'segment')}", conversing.remove_segments, self.chosen
+            f"Remove {many(len(self.chosen), 'segment')}", conversation_edits.remove_segments, self.chosen
         ):
             of = self.conversation
             left = len(of.sides[side].segments) if of is not None else 0
@@ -175,7 +175,7 @@ class Editing(QObject):
             return
         second = found.peak is None or found.peak < seconds
         peak = self.highest(place[0], *((seconds, found.end) if second else (found.start, seconds)))
-        if self.change("Split segment", conversing.split_segment, *place, seconds, peak):
+        if self.change("Split segment", conversation_edits.split_segment, *place, seconds, peak):
             self.select({place, (place[0], place[1] + 1)}, place)
 
     def under(self, seconds: float) -> Place | None:
@@ -198,7 +198,9 @@ class Editing(QObject):
         side = self.last[0]
         places = [at for s, at in self.chosen if s == side]
         first, last = min(places), max(places)
-        if self.change("Merge segments", conversing.merge_segments, side, first, max(last, first + 1)):
+        if self.change(
+            "Merge segments", conversation_edits.merge_segments, side, first, max(last, first + 1)
+        ):
             self.select({(side, first)})
 
     def add(self, side: int, kind: Sound, start: float, end: float) -> None:
@@ -209,7 +211,7 @@ class Editing(QObject):
             nonlocal made
             assert self.session.onstage.conversation is not None
             peak = self.highest(side, start, end)
-            project, made = conversing.add_segment(
+            project, made = conversation_edits.add_segment(
                 project, self.session.onstage.conversation, side, kind, start, end, peak
             )
             return project
@@ -232,10 +234,13 @@ class Editing(QObject):
         if found is None or self.last is None:
             return
         if what == "body":
-            self.change("Move segment", conversing.move_segment, *self.last, by)
+            self.change("Move segment", conversation_edits.move_segment, *self.last, by)
         else:
             self.change(
-                "Change segment", conversing.resize_segment, *self.last, **{what: getattr(found, what) + by}
+                "Change segment",
+                conversation_edits.resize_segment,
+                *self.last,
+                **{what: getattr(found, what) + by},
             )
 
     def stress(self, seconds: float) -> None:
@@ -250,7 +255,7 @@ class Editing(QObject):
                 "No pitch was found in this segment: put the playhead in it, where the stress is."
             )
         else:
-            self.change("Move stress", conversing.set_peak, *self.last, peak)
+            self.change("Move stress", conversation_edits.set_peak, *self.last, peak)
 
     def highest(self, side: int, start: float, end: float) -> float | None:
         """Return when in a stretch the voice is highest; None where none is heard."""

@@ -10,7 +10,7 @@ from app.features.conversation.segment_hits import Hit, snapped, word_edges
 from app.features.conversation.segment_host import SegmentHost
 from app.project.document import Edit
 from app.widgets.gesture import Gesture, PressDrag, Reason
-from metagraph.graph import conversing
+from metagraph.graph import conversation_edits
 from metagraph.graph.edits import EditError
 
 CATCH = 3.0  # pixels the mouse must move for a press to become a drag
@@ -70,7 +70,7 @@ class EdgeDrag(SegmentDrag):
         before = segment.start if hit.part == "start" else segment.end
         to = self.snapped(before + (at.x() - self.origin.x()) / view.each, free)
         self.words, self.seconds = f"{max(0.0, to):.2f} s  ({to - before:+.2f})", to
-        return lambda p: conversing.resize_segment(p, ident, hit.side, hit.at, **{hit.part: to})
+        return lambda p: conversation_edits.resize_segment(p, ident, hit.side, hit.at, **{hit.part: to})
 
 
 class BodyDrag(SegmentDrag):
@@ -93,7 +93,7 @@ class BodyDrag(SegmentDrag):
         ]
         by = min(caught, key=lambda c: abs(c - by), default=by)
         self.words, self.seconds = f"{max(0.0, segment.start + by):.2f} s  ({by:+.2f})", segment.start + by
-        return lambda p: conversing.move_segment(p, ident, hit.side, hit.at, by)
+        return lambda p: conversation_edits.move_segment(p, ident, hit.side, hit.at, by)
 
 
 class PeakDrag(SegmentDrag):
@@ -111,7 +111,7 @@ class PeakDrag(SegmentDrag):
         tops = [m for m in (heard.maxima if heard is not None else ()) if segment.start <= m <= segment.end]
         to = min(max(segment.start, snapped(to, tops, view.scale(), not free)), segment.end)
         self.words, self.seconds = f"Stress at {to:.2f} s", to
-        return lambda p: conversing.set_peak(p, ident, hit.side, hit.at, to)
+        return lambda p: conversation_edits.set_peak(p, ident, hit.side, hit.at, to)
 
 
 class NewDrag(SegmentDrag):
@@ -126,10 +126,10 @@ class NewDrag(SegmentDrag):
         self.words, self.seconds = f"New: {abs(end - start):.2f} s", end
         self._span = start, end
         if ident is None or not _can(
-            view, lambda p: conversing.add_segment(p, ident, side, "clause", start, end)[0]
+            view, lambda p: conversation_edits.add_segment(p, ident, side, "clause", start, end)[0]
         ):
             return None
-        return lambda p: conversing.add_segment(p, ident, side, "clause", start, end)[0]
+        return lambda p: conversation_edits.add_segment(p, ident, side, "clause", start, end)[0]
 
     def finish(self, at: QPointF) -> None:
         self.view.hold(None)

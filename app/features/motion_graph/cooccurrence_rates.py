@@ -24,7 +24,7 @@ from app.look.theme import strengthen
 from app.project.document import Document
 from app.widgets.quiet_fields import ComboBox
 from metagraph.graph.conversation import Rates
-from metagraph.graph.conversing import set_rates
+from metagraph.graph.conversation_edits import set_rates
 
 HEADS = ("What goes together", "Matched", "Of", "Rate", "95 % interval", "By chance")
 FIELDS = {

@@ -42,7 +42,7 @@ from app.project.jobs import Job, Jobs
 from app.stage.session import Session
 from app.widgets.quiet_fields import DoubleSpinBox, SpinBox
 from metagraph.graph import edits
-from metagraph.graph.conversing import change_side
+from metagraph.graph.conversation_edits import change_side
 from metagraph.graph.model import Project
 
 KS = (2, 3, 4)  # of the table

@@ -20,7 +20,7 @@ from PySide6.QtWidgets import (
 from app.features.motion_graph.synthesis_jobs import FOLDER, LONG, left_out, speech_of, usable
 from app.project.document import Document
 from metagraph.graph.conversation import Conversation
-from metagraph.graph.conversing import change_side
+from metagraph.graph.conversation_edits import change_side
 from metagraph.graph.model import Project
 
 NONE = "nothing known"

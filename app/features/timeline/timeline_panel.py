@@ -28,7 +28,7 @@ from app.widgets.sentence import Sentence
 from metagraph.graph import edits, performance_edits
 from metagraph.graph.asks import Performance as KeptPerformance
 from metagraph.graph.conversation import side_name
-from metagraph.graph.conversing import change_conversation
+from metagraph.graph.conversation_edits import change_conversation
 from metagraph.graph.edits import EditError
 from metagraph.graph.model import LAYERS
 

@@ -8,7 +8,7 @@ from typing import Any
 import pytest
 from PySide6.QtCore import QPoint
 
-from metagraph.graph import conversing
+from metagraph.graph import conversation_edits
 from metagraph.graph.conversation import Conversation, Segment, Side, Word
 from tests.speech.talk import make_conversation, speak
 
@@ -69,7 +69,7 @@ def talk(drive: Any, tmp_path: Path) -> Talk:
         for side in (0, 1)
     ]
     made = Conversation(name="talk", length=spoken.samples.shape[1] / spoken.rate, sides=tuple(sides))
-    drive.document.edit("Add conversation", lambda p: conversing.add_conversation(p, made)[0])
+    drive.document.edit("Add conversation", lambda p: conversation_edits.add_conversation(p, made)[0])
     drive.show("conversation")
     drive.session.onstage.set_conversation(next(iter(drive.document.project.conversations)))
     drive.session.transport.set_playing(False)

@@ -8,7 +8,7 @@ import pytest
 from PySide6.QtCore import QPoint, Qt
 from PySide6.QtTest import QTest
 
-from metagraph.graph import conversing, performance_edits
+from metagraph.graph import conversation_edits, performance_edits
 from metagraph.graph.asks import Performance
 
 pytestmark = [pytest.mark.window, pytest.mark.gl]
@@ -22,19 +22,21 @@ def test_a_conversation_and_a_kept_performance_are_never_on_stage_together(talk:
     assert session.onstage.conversation is None
     session.onstage.set_conversation(ident)
     assert session.onstage.performance is None
-    drive.document.edit("Remove", lambda p: conversing.remove_conversation(p, ident))
+    drive.document.edit("Remove", lambda p: conversation_edits.remove_conversation(p, ident))
     assert session.onstage.conversation is None
 
 
 def test_the_chooser_follows_names_and_an_empty_panel_says_what_to_drop(talk: Any) -> None:
     panel, ident = talk.drive.conversation, talk.drive.session.onstage.conversation
-    talk.drive.document.edit("Rename", lambda p: conversing.change_conversation(p, ident, name="Station"))
+    talk.drive.document.edit(
+        "Rename", lambda p: conversation_edits.change_conversation(p, ident, name="Station")
+    )
     assert panel.stage.currentText() == "Station"
     talk.drive.wait(lambda: "clause" in panel.legend.text())
     panel.stage.setCurrentIndex(0)
     panel.stage.activated.emit(0)
     assert talk.drive.session.onstage.conversation is None
-    talk.drive.document.edit("Remove", lambda p: conversing.remove_conversation(p, ident))
+    talk.drive.document.edit("Remove", lambda p: conversation_edits.remove_conversation(p, ident))
     image = panel.view.grab().toImage()
     colours = {
         image.pixelColor(x, image.height() // 2 - 45).name()
@@ -47,11 +49,11 @@ def test_selected_segments_stay_selected_while_they_are_there(talk: Any) -> None
     talk.editing.select({(0, 2)})
     ident = talk.drive.session.onstage.conversation
     begins = talk.segments()[2].start
-    talk.drive.document.edit("Merge", lambda p: conversing.merge_segments(p, ident, 0, 0, 1))
+    talk.drive.document.edit("Merge", lambda p: conversation_edits.merge_segments(p, ident, 0, 0, 1))
     assert [talk.editing.segment(p).start for p in talk.editing.chosen] == [begins]
     talk.drive.document.undo()
     assert [talk.editing.segment(p).start for p in talk.editing.chosen] == [begins]
-    talk.drive.document.edit("Remove", lambda p: conversing.remove_segments(p, ident, {(0, 2)}))
+    talk.drive.document.edit("Remove", lambda p: conversation_edits.remove_segments(p, ident, {(0, 2)}))
     assert not talk.editing.chosen
 
 

@@ -16,7 +16,7 @@ from app.features.conversation.conversation_commands import converse
 from app.features.conversation.conversation_dialog import ImportDialog
 from app.features.conversation.conversation_settings import SidesDialog
 from metagraph.formats.store import save_project
-from metagraph.graph import conversing
+from metagraph.graph import conversation_edits
 from metagraph.graph.model import Project
 
 pytestmark = [pytest.mark.window, pytest.mark.gl]
@@ -98,6 +98,8 @@ def test_how_far_apart_they_stand_is_set_with_all_the_rest_in_one_step(talk: Any
 
 def test_a_distance_that_is_finer_than_shown_is_kept(talk: Any) -> None:
     ident = talk.drive.session.onstage.conversation
-    talk.drive.document.edit("Stand", lambda p: conversing.change_conversation(p, ident, distance=1.2345))
+    talk.drive.document.edit(
+        "Stand", lambda p: conversation_edits.change_conversation(p, ident, distance=1.2345)
+    )
     QTest.mouseClick(opened(talk).go, Qt.MouseButton.LeftButton)
     assert talk.conversation.distance == 1.2345

@@ -13,7 +13,7 @@ from PySide6.QtTest import QTest
 
 from app.features.conversation.segment_hits import word_edges
 from app.look.theme import theme
-from metagraph.graph import conversing
+from metagraph.graph import conversation_edits
 from metagraph.graph.conversation import SPOKEN
 
 pytestmark = [pytest.mark.window, pytest.mark.gl]
@@ -82,7 +82,7 @@ def test_a_drag_in_a_gap_makes_a_segment_with_its_stress(talk: Any) -> None:
     talk.editing.select({(0, 1)})
     press(talk, Key.Key_Delete)
     assert len(talk.segments()) == count - 1
-    gap = conversing.gap_at(talk.conversation, 0, talk.segments()[0].end + 0.2)
+    gap = conversation_edits.gap_at(talk.conversation, 0, talk.segments()[0].end + 0.2)
     assert gap is not None
     start, end = gap[0] + 0.15, gap[1] - 0.15
     talk.drive.drag(talk.at(start), talk.at(end), lambda: len(talk.segments()) == count)
@@ -239,7 +239,7 @@ def test_a_missing_sound_is_told_in_its_lane_and_the_rest_works(talk: Any, tmp_p
     talk.read()
     ident = talk.drive.session.onstage.conversation
     talk.drive.document.edit(
-        "Change", lambda p: conversing.change_side(p, ident, 1, audio=str(tmp_path / "gone.wav"))
+        "Change", lambda p: conversation_edits.change_side(p, ident, 1, audio=str(tmp_path / "gone.wav"))
     )
     talk.read()
     heard = talk.drive.conversation.sounds.of(talk.conversation, 1)

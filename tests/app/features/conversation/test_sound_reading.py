@@ -13,7 +13,7 @@ from app.features.conversation.waveforms import Envelope
 from app.project.document import Document
 from app.project.jobs import Jobs
 from app.stage.session import Session
-from metagraph.graph import conversing
+from metagraph.graph import conversation_edits
 from metagraph.graph.conversation import Conversation, Side
 from metagraph.graph.model import Project
 
@@ -31,7 +31,7 @@ def sounds(qapp, tmp_path):
     made = Sounds(document, session, jobs)
     sides = tuple(Side(name=str(n), audio=str(tmp_path / "talk.wav"), channel=n) for n in (0, 1))
     talk = Conversation(name="talk", length=3.0, sides=sides)
-    project, ident = conversing.add_conversation(Project(), talk)
+    project, ident = conversation_edits.add_conversation(Project(), talk)
     document.load(project, None)
     made.ident, made.talk = ident, project.conversations[ident]
     yield made

@@ -9,7 +9,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from metagraph.graph import conversing as c
+from metagraph.graph import conversation_edits as c
 from metagraph.graph.conversation import SHORTEST, SPOKEN, Conversation, Segment, Side, Word
 from metagraph.graph.edits import EditError
 from metagraph.graph.model import Project
