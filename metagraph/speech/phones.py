@@ -10,7 +10,7 @@ import re
 import unicodedata
 from collections.abc import Iterable, Sequence
 
-from metagraph.playback.life.letters import shapes
+from metagraph.playback.life.graphemes import shapes
 from metagraph.playback.life.mouth import Piece
 from metagraph.speech.textgrid import Interval, TextGrid, Tier
 

@@ -433,7 +433,7 @@ out.append(character.pose().rotations.size())
 
 @needs_godot
 def test_letters_are_read_as_python_reads_them(game: Path) -> None:
-    from metagraph.playback.life.letters import spelled
+    from metagraph.playback.life.graphemes import spelled
     from metagraph.playback.life.voice import voice_from_text
 
     texts = [

@@ -13,7 +13,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from metagraph.graph.face_names import VISEMES
-from metagraph.playback.life.letters import spelled
+from metagraph.playback.life.graphemes import spelled
 from metagraph.playback.life.mouth import Piece, mouth_track
 from metagraph.playback.life.track import Speech
 

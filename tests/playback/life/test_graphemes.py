@@ -9,7 +9,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from metagraph.graph.face_names import VISEMES
-from metagraph.playback.life.letters import PACE, SHORTEST, shapes, spelled
+from metagraph.playback.life.graphemes import PACE, SHORTEST, shapes, spelled
 
 
 @pytest.mark.parametrize(
