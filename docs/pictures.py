@@ -128,7 +128,7 @@ def half_labelled() -> None:
 def requests() -> None:
     """The lanes of a performance: requests, what plays, one that is late and one that cannot."""
     from app.project.files import SAMPLE
-    from metagraph.graph import asks as a
+    from metagraph.graph import requests as a
 
     out = window()
     out.files.open(SAMPLE, template=True)

@@ -12,8 +12,8 @@ from pathlib import Path
 from typing import Any
 
 from app.project.opening import open_whole
-from metagraph.graph.asks import Performance
 from metagraph.graph.model import Project
+from metagraph.graph.requests import Performance
 from metagraph.playback.plan import Plan
 from metagraph.playback.planner import make_plan
 from metagraph.playback.running_plan import perform

@@ -11,8 +11,8 @@ from typing import TYPE_CHECKING, Any
 from metagraph.graph.words import LAYERS
 
 if TYPE_CHECKING:
-    from metagraph.graph.asks import Performance
     from metagraph.graph.model import Project
+    from metagraph.graph.requests import Performance
     from metagraph.mimicry.performing import Mimicry
     from metagraph.mimicry.points import Keypoints
     from metagraph.playback.plan import Plan
@@ -68,7 +68,7 @@ def run(options: Namespace) -> int:
     from app.cli.command_output import opened
     from app.cli.render_command import size_of
     from metagraph.formats.keypoints import read_keypoints
-    from metagraph.graph.asks import Performance
+    from metagraph.graph.requests import Performance
     from metagraph.mimicry.performing import REST, mimic_performance, placed
 
     if options.out is not None and options.out.suffix not in OUT:

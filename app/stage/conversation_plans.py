@@ -12,9 +12,9 @@ from app.project.opening import open_whole
 from app.stage.playback_source import Shown
 from metagraph.errors import FileError
 from metagraph.graph import performance_edits
-from metagraph.graph.asks import Performance
 from metagraph.graph.conversation import Side
 from metagraph.graph.model import Project
+from metagraph.graph.requests import Performance
 
 Key = tuple[Any, ...]
 

@@ -18,8 +18,8 @@ from app.project.document import Document
 from app.project.jobs import Jobs
 from app.stage.performance import Performance
 from app.stage.session import Session
-from metagraph.graph.asks import Line
 from metagraph.graph.model import Project
+from metagraph.graph.requests import Line
 
 RATE = 44100  # as speech.soundtrack's, which is not imported before something is said
 LATENCY = 0.08  # seconds of sound on its way to the ear: enough that a busy machine does not tear it

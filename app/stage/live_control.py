@@ -8,8 +8,8 @@ from PySide6.QtCore import QObject, Signal
 
 from app.project.document import Document
 from app.stage.session import Session
-from metagraph.graph.asks import AskError
-from metagraph.graph.asks import Performance as KeptPerformance
+from metagraph.graph.requests import AskError
+from metagraph.graph.requests import Performance as KeptPerformance
 
 if TYPE_CHECKING:
     from app.stage.live_stage import LiveStage

@@ -12,8 +12,8 @@ from collections.abc import Iterable, Sequence
 import msgspec
 from PySide6.QtCore import QElapsedTimer, QObject, Qt, QTimer, Signal
 
-from metagraph.graph.asks import AnyAsk, Performance
 from metagraph.graph.model import Project
+from metagraph.graph.requests import AnyAsk, Performance
 from metagraph.live.messages import Heard, Reply
 from metagraph.live.relay import Relay
 from metagraph.live.server import OSC_PORT, PORT, LiveError, Options

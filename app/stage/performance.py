@@ -17,8 +17,8 @@ from app.stage.live_control import LiveControl
 from app.stage.playback_source import Shown, alone, by_hand, in_context
 from app.stage.request_edits import SOON, RequestEdits
 from app.stage.session import Session
-from metagraph.graph.asks import AnyAsk
 from metagraph.graph.model import LAYERS, Project
+from metagraph.graph.requests import AnyAsk
 from metagraph.motion.skeleton import Pose, Skeleton
 from metagraph.playback.extend_performance import Answer, answers
 from metagraph.playback.manual import Fire

@@ -11,9 +11,9 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from metagraph.graph.asks import AnyAsk
 from metagraph.graph.edits import EditError, place
 from metagraph.graph.model import Layer, Project
+from metagraph.graph.requests import AnyAsk
 from metagraph.motion.skeleton import Pose, Skeleton
 from metagraph.playback.life.evaluate import enliven
 from metagraph.playback.manual import (

@@ -10,9 +10,9 @@ from app.project.document import Document
 from app.stage.live_control import LiveControl
 from app.stage.session import Session
 from metagraph.graph import performance_edits
-from metagraph.graph.asks import AnyAsk
-from metagraph.graph.asks import Performance as KeptPerformance
 from metagraph.graph.model import Project
+from metagraph.graph.requests import AnyAsk
+from metagraph.graph.requests import Performance as KeptPerformance
 
 SOON = 0.15  # seconds from now at which "now" is: the plan needs a moment
 

@@ -15,8 +15,8 @@ from PySide6.QtGui import QFont, QFontMetricsF
 
 from app.stage.playback_source import Shown
 from app.widgets.request_menu import STAGE, ask_words, kind_of, lane_of
-from metagraph.graph.asks import AnyAsk
 from metagraph.graph.model import LAYERS, Layer, Project
+from metagraph.graph.requests import AnyAsk
 from metagraph.playback.extend_performance import Answer
 from metagraph.playback.plan import Cue
 

@@ -10,7 +10,7 @@ from PySide6.QtWidgets import QInputDialog, QMenu, QWidget
 from app.look.theme import KIND_MARKS
 from app.project.document import Document
 from app.stage.performance import Performance
-from metagraph.graph import asks as a
+from metagraph.graph import requests as a
 from metagraph.graph.model import LAYERS, MODES, Layer, Project
 
 STAGE = "stage"  # the lane of what no layer plays: speech, gaze, modes

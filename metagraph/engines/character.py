@@ -20,7 +20,7 @@ from typing import Any, Literal
 import msgspec
 
 from metagraph.engines.reading import read_export
-from metagraph.graph import asks as a
+from metagraph.graph import requests as a
 from metagraph.graph.model import LAYERS, Layer, Project
 from metagraph.motion.skeleton import Pose
 from metagraph.playback.extend_performance import Answer, answer, answers

@@ -12,8 +12,8 @@ from typing import Annotated, Any, Literal
 import msgspec
 from msgspec import Meta, Struct
 
-from metagraph.graph.asks import Line, Performance, Point
 from metagraph.graph.life import Face, Life
+from metagraph.graph.requests import Line, Performance, Point
 
 FORMAT = 1
 

@@ -21,8 +21,8 @@ from metagraph.engines.reading import read_export
 from metagraph.engines.script import Case, Step, cases
 from metagraph.errors import FileError
 from metagraph.formats.atomic import write_atomically
-from metagraph.graph.asks import ask_from
 from metagraph.graph.model import LAYERS, Project
+from metagraph.graph.requests import ask_from
 from metagraph.motion import rotation
 from metagraph.motion.skeleton import Pose
 from metagraph.playback.choice import key32

@@ -30,7 +30,6 @@ from metagraph.formats.fields import (
 )
 from metagraph.formats.manual_data import manual_data, manual_from
 from metagraph.formats.takes import REPAIRS
-from metagraph.graph.asks import words_of
 from metagraph.graph.conversation import Conversation, Segment, Side, Word
 from metagraph.graph.model import (
     KINDS,
@@ -53,6 +52,7 @@ from metagraph.graph.model import (
     Stance,
     Timing,
 )
+from metagraph.graph.requests import words_of
 from metagraph.motion.joint_map import JointMap
 from metagraph.motion.skeleton import Skeleton
 

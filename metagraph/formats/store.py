@@ -22,10 +22,10 @@ from metagraph.formats.clips import digest, read_clips
 from metagraph.formats.data import FORMAT, from_data, to_data
 from metagraph.formats.fields import Data, DataError
 from metagraph.formats.text import TextError, parse, to_text
-from metagraph.graph.asks import Line
 from metagraph.graph.conversation import Conversation, Side
 from metagraph.graph.model import ClipEntry, Project
 from metagraph.graph.project_retargeting import Bringing
+from metagraph.graph.requests import Line
 from metagraph.motion.adopt import SkeletonMismatchError, adopt
 from metagraph.motion.clip import Clip, ClipError
 from metagraph.motion.joint_map import RetargetError

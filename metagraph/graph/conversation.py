@@ -14,7 +14,7 @@ from typing import Annotated, Literal, get_args
 import msgspec
 from msgspec import Meta, Struct
 
-from metagraph.graph.asks import Seconds
+from metagraph.graph.requests import Seconds
 
 Sound = Literal["idle", "clause", "response", "hesitation"]
 SOUNDS: tuple[Sound, ...] = get_args(Sound)

@@ -11,10 +11,10 @@ from functools import cached_property
 from types import MappingProxyType
 from typing import Any
 
-from metagraph.graph.asks import Line, Performance, Point
 from metagraph.graph.conversation import Conversation
 from metagraph.graph.life import Face, Life
 from metagraph.graph.manual import Link, Manual, State
+from metagraph.graph.requests import Line, Performance, Point
 from metagraph.graph.words import KINDS, LAYERS, LIMBS, MODES, PARTS, Kind, Layer, Limb, Mode, Part
 from metagraph.motion.clip import Clip
 from metagraph.motion.joint_map import JointMap

@@ -10,9 +10,9 @@ from typing import Any
 
 import msgspec
 
-from metagraph.graph.asks import AnyAsk, AskError, Line, Performance, Point
 from metagraph.graph.edits import EditError, free_name
 from metagraph.graph.model import Project
+from metagraph.graph.requests import AnyAsk, AskError, Line, Performance, Point
 
 
 def add_performance(project: Project, performance: Performance) -> tuple[Project, str]:
@@ -93,7 +93,7 @@ def change_ask(project: Project, performance: str, ask: str, **changes: Any) -> 
 
 
 def _changed(ask: AnyAsk, changes: Mapping[str, Any]) -> AnyAsk:
-    from metagraph.graph.asks import ask_from
+    from metagraph.graph.requests import ask_from
 
     return ask_from(msgspec.to_builtins(msgspec.structs.replace(ask, **changes)))
 

@@ -5,8 +5,8 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
-from metagraph.graph.asks import AnyAsk
 from metagraph.graph.model import Layer, Project
+from metagraph.graph.requests import AnyAsk
 from metagraph.live.messages import Keypoints
 from metagraph.playback.plan import Plan
 

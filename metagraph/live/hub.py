@@ -13,7 +13,7 @@ from typing import Protocol
 
 import msgspec
 
-from metagraph.graph.asks import AskError
+from metagraph.graph.requests import AskError
 from metagraph.live.messages import Heard, Hello, Reply, encode, read, split
 from metagraph.live.wire import Batch, Result
 

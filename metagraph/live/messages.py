@@ -1,6 +1,6 @@
 """What a client may send and what it gets back: JSON objects, one or a list of them to a message.
 
-A request is an ask (`metagraph.graph.asks`), which may say `in` seconds from now instead of `at`; or one of
+A request is an ask (`metagraph.graph.requests`), which may say `in` seconds from now instead of `at`; or one of
 the session's own: hello, status, describe. Every request gets exactly one reply; what happens later is told
 as events to those who want them.
 """
@@ -12,7 +12,7 @@ from typing import Annotated, Any, Literal, Union, get_args
 import msgspec
 from msgspec import UNSET, Meta, Struct, UnsetType
 
-from metagraph.graph import asks as a
+from metagraph.graph import requests as a
 from metagraph.graph.words import LAYERS, Layer
 
 LONGEST = 64 * 1024  # bytes of one request

@@ -11,8 +11,8 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from metagraph.graph.asks import AskError
 from metagraph.graph.model import Project
+from metagraph.graph.requests import AskError
 from metagraph.live.messages import Poses, encode
 from metagraph.live.osc import padded
 from metagraph.motion.skeleton import Pose

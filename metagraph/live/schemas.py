@@ -9,17 +9,20 @@ from typing import Any
 
 import msgspec
 
-from metagraph.graph import asks
+from metagraph.graph import requests
 from metagraph.live import messages
 
-GRAPH, LIVE = Path(asks.__file__).with_name("asks.schema.json"), Path(__file__).with_name("live.schema.json")
+GRAPH, LIVE = (
+    Path(requests.__file__).with_name("asks.schema.json"),
+    Path(__file__).with_name("live.schema.json"),
+)
 
 
 def texts() -> dict[Path, bytes]:
     """Return the files: one ask as performances, lines and agents have it; all that a live session says and
     hears.
     """
-    return {GRAPH: _text(asks.schema()), LIVE: _text(messages.schema())}
+    return {GRAPH: _text(requests.schema()), LIVE: _text(messages.schema())}
 
 
 def _text(schema: dict[str, Any]) -> bytes:

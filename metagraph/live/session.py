@@ -15,7 +15,7 @@ from typing import Any
 
 import msgspec
 
-from metagraph.graph import asks as a
+from metagraph.graph import requests as a
 from metagraph.graph.model import LAYERS, Layer, Project
 from metagraph.live import describe
 from metagraph.live.answers import Found, find, owner_of

@@ -6,7 +6,7 @@ from collections.abc import Sequence
 
 import msgspec
 
-from metagraph.graph import asks as a
+from metagraph.graph import requests as a
 
 MOST = 32 * 1024 * 1024  # bytes
 

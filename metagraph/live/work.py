@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass, field, replace
 
-from metagraph.graph import asks as a
+from metagraph.graph import requests as a
 from metagraph.graph.words import Layer
 from metagraph.live.camera import Camera
 from metagraph.live.messages import Event, Reply

@@ -15,8 +15,8 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from metagraph.graph import anatomy
-from metagraph.graph.asks import AnyAsk, Go, Look
 from metagraph.graph.model import LAYERS, Layer, Project
+from metagraph.graph.requests import AnyAsk, Go, Look
 from metagraph.mimicry.gaze import Gaze
 from metagraph.mimicry.judge import TURNS, Judge, Mean, View
 from metagraph.mimicry.points import POINTS, choose, swap

@@ -10,8 +10,8 @@ from itertools import count
 
 import msgspec
 
-from metagraph.graph.asks import AnyAsk, Performance
 from metagraph.graph.model import LAYERS, Layer, Project
+from metagraph.graph.requests import AnyAsk, Performance
 from metagraph.mimicry.mimic import Mimic, Sighting
 from metagraph.mimicry.points import Keypoints
 from metagraph.playback.extend_performance import hear

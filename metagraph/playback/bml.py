@@ -15,7 +15,7 @@ from typing import Any, Literal
 
 import msgspec
 
-from metagraph.graph import asks as a
+from metagraph.graph import requests as a
 from metagraph.graph.model import Project
 from metagraph.playback.bml_times import Behaviour, Timing, seconds_of
 from metagraph.playback.bml_words import SYNCS, Words, spelled

@@ -10,7 +10,7 @@ from typing import Any
 
 import msgspec
 
-from metagraph.graph import asks as a
+from metagraph.graph import requests as a
 from metagraph.playback.bml_words import SYNCS, spelled
 from metagraph.playback.bml_xml import Element
 

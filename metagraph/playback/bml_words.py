@@ -7,7 +7,7 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from typing import Any
 
-from metagraph.graph import asks as a
+from metagraph.graph import requests as a
 from metagraph.graph.model import LAYERS, Action, Layer, Project
 
 SYNCS = ("start", "ready", "strokestart", "stroke", "strokeend", "relax", "end", "attackpeak")

@@ -10,7 +10,7 @@ from typing import Any
 
 import msgspec
 
-from metagraph.graph import asks as a
+from metagraph.graph import requests as a
 
 NAMESPACES = 'xmlns="http://www.bml-initiative.org/bml/bml-1.0" xmlns:metagraph="urn:metagraph:bml"'
 _FORBIDDEN = re.compile("[^\t\n\r -\ud7ff\ue000-\ufffd\U00010000-\U0010ffff]")  # what XML 1.0 cannot hold

@@ -8,7 +8,7 @@ from collections.abc import Iterator
 from dataclasses import dataclass, field
 from xml.parsers import expat
 
-from metagraph.graph.asks import AskError
+from metagraph.graph.requests import AskError
 
 DEEPEST = 40  # elements within elements
 MOST = 4000  # elements of one text

@@ -6,8 +6,8 @@ from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from typing import Any, Literal
 
-from metagraph.graph.asks import AnyAsk
 from metagraph.graph.model import LAYERS, Layer, Project
+from metagraph.graph.requests import AnyAsk
 from metagraph.playback.life.track import StayFrom
 from metagraph.playback.plan import Cue, LayerPlan, Past, Plan, Report
 from metagraph.playback.planner import extend

@@ -14,8 +14,8 @@ from dataclasses import dataclass, replace
 from itertools import pairwise
 from statistics import fmean, stdev
 
-from metagraph.graph.asks import AnyAsk, Change, Fidget, Gesture, Performance
 from metagraph.graph.model import KINDS, LIMBS, Kind, Layer, Limb, Markov
+from metagraph.graph.requests import AnyAsk, Change, Fidget, Gesture, Performance
 from metagraph.playback.annotation import IGNORE, PHASES, ROLES, Annotation, Interval, Label, label_of, parted
 from metagraph.playback.plan import MetaAction
 

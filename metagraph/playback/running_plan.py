@@ -15,7 +15,7 @@ from typing import Any
 import msgspec
 import numpy as np
 
-from metagraph.graph import asks as a
+from metagraph.graph import requests as a
 from metagraph.graph.model import LAYERS, Layer, Project
 from metagraph.playback.extend_performance import hear, owners, since
 from metagraph.playback.life.lane import Lane

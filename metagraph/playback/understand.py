@@ -11,7 +11,7 @@ from typing import Any
 
 import msgspec
 
-from metagraph.graph import asks as a
+from metagraph.graph import requests as a
 from metagraph.graph.model import LAYERS, Action, Layer, Project
 from metagraph.playback.life.track import BlinkAt, Item, LookAt, ModeFrom, PlaceFrom, Speech, StayFrom
 from metagraph.playback.plan import Report, Request

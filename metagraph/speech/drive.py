@@ -11,7 +11,9 @@ from __future__ import annotations
 from collections import Counter
 from collections.abc import Iterator
 
-from metagraph.graph.asks import (
+from metagraph.graph.conversation import Conversation, Segment, heard_by
+from metagraph.graph.model import Layer, Mode, Project
+from metagraph.graph.requests import (
     AnyAsk,
     Behave,
     Change,
@@ -24,8 +26,6 @@ from metagraph.graph.asks import (
     Point,
     Say,
 )
-from metagraph.graph.conversation import Conversation, Segment, heard_by
-from metagraph.graph.model import Layer, Mode, Project
 from metagraph.playback.choice import uniform
 from metagraph.playback.phases import phases
 from metagraph.playback.plan import Plan

@@ -13,9 +13,9 @@ from numpy.typing import NDArray
 
 from metagraph.errors import FileError
 from metagraph.graph import anatomy
-from metagraph.graph.asks import Line, Performance
 from metagraph.graph.conversation import Conversation, Side
 from metagraph.graph.model import Project
+from metagraph.graph.requests import Line, Performance
 from metagraph.motion import rotation
 from metagraph.playback.life.voice import Voice
 from metagraph.playback.plan import Plan

@@ -11,9 +11,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from metagraph.errors import FileError
-from metagraph.graph.asks import Line
 from metagraph.graph.conversation import Word
 from metagraph.graph.model import Project
+from metagraph.graph.requests import Line
 from metagraph.playback.life.mouth import Piece, mouth_track
 from metagraph.playback.life.voice import Voice, silent
 from metagraph.speech.phones import pieces_of

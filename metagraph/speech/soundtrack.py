@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from metagraph.errors import FileError
-from metagraph.graph.asks import Line
+from metagraph.graph.requests import Line
 from metagraph.playback.plan import Plan
 from metagraph.speech.sound import read_sound
 

@@ -17,7 +17,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from metagraph.graph.asks import Line
+from metagraph.graph.requests import Line
 
 Array = NDArray[Any]
 

@@ -16,10 +16,10 @@ from metagraph import engines
 from metagraph.engines.export import write
 from metagraph.engines.vectors import write_vectors
 from metagraph.graph import edits
-from metagraph.graph.asks import Gesture, Line, Nod
 from metagraph.graph.face import with_morphs
 from metagraph.graph.life import Life, Manner
 from metagraph.graph.model import Kind, Layer, Limb, Markov, Project
+from metagraph.graph.requests import Gesture, Line, Nod
 from metagraph.motion import rotation
 from metagraph.motion.character import Character, Material, Surface
 from metagraph.motion.clip import Clip

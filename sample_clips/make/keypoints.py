@@ -17,7 +17,7 @@ from typing import Any
 import numpy as np
 
 from metagraph.formats.store import open_project
-from metagraph.graph import asks as a
+from metagraph.graph import requests as a
 from metagraph.graph.model import LAYERS, Layer, Project
 from metagraph.mimicry.points import LAYOUTS
 from metagraph.mimicry.signatures import Body

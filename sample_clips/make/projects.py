@@ -13,8 +13,8 @@ import msgspec
 from metagraph.formats.conversations import read_conversation
 from metagraph.formats.imports import import_files
 from metagraph.formats.store import SUFFIX, save_project
-from metagraph.graph import asks as a
 from metagraph.graph import edits, performance_edits
+from metagraph.graph import requests as a
 from metagraph.graph.conversation import Conversation
 from metagraph.graph.conversation_edits import add_conversation
 from metagraph.graph.model import LAYERS, Kind, Layer, Limb, Project, Timing

@@ -20,7 +20,7 @@ from PySide6.QtWidgets import QFileDialog, QMessageBox
 from metagraph.engines.export import schema_text
 from metagraph.engines.reading import read_export
 from metagraph.formats.store import open_project
-from metagraph.graph import asks as a
+from metagraph.graph import requests as a
 
 pytestmark = [pytest.mark.window, pytest.mark.gl]
 ROOT = Path(__file__).resolve().parents[2]

@@ -22,8 +22,8 @@ import metagraph
 from metagraph import Character
 from metagraph.engines.reading import read_export
 from metagraph.errors import FileError
-from metagraph.graph.asks import Gesture
 from metagraph.graph.model import Project
+from metagraph.graph.requests import Gesture
 from metagraph.playback.extend_performance import hear
 from metagraph.playback.plan import Plan
 from metagraph.playback.player import pose_at

@@ -19,8 +19,8 @@ import numpy as np
 import pytest
 
 from metagraph.engines.reading import read_export
-from metagraph.graph.asks import ask_from
 from metagraph.graph.model import LAYERS
+from metagraph.graph.requests import ask_from
 from metagraph.motion import rotation
 from metagraph.playback.extend_performance import hear, since
 from metagraph.playback.life.voice import voice_from_text

@@ -6,8 +6,8 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from metagraph.graph import asks as a
 from metagraph.graph import performance_edits
+from metagraph.graph import requests as a
 from metagraph.graph.edits import EditError
 from metagraph.graph.model import Project
 

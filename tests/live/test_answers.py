@@ -7,7 +7,7 @@ from typing import Any
 
 import msgspec
 
-from metagraph.graph import asks as a
+from metagraph.graph import requests as a
 from metagraph.graph.model import Project
 from metagraph.live.answers import find, owner_of
 from metagraph.live.messages import Heard, read

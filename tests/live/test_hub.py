@@ -7,7 +7,7 @@ import json
 import msgspec
 import pytest
 
-from metagraph.graph import asks as a
+from metagraph.graph import requests as a
 from metagraph.live import hub as hubs
 from metagraph.live.hub import Hub, same
 from metagraph.live.messages import Hello

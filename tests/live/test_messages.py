@@ -9,7 +9,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from metagraph.graph import asks as a
+from metagraph.graph import requests as a
 from metagraph.live.messages import (
     LONGEST,
     LONGEST_BML,

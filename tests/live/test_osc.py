@@ -8,7 +8,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from metagraph.graph import asks as a
+from metagraph.graph import requests as a
 from metagraph.live.hub import Hub
 from metagraph.live.messages import Heard, Hello, Poses, encode, read
 from metagraph.live.osc import SENDERS, SILENT, OscError, OscLine, padded, request, texts_of

@@ -5,8 +5,8 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from metagraph.graph.asks import AskError
 from metagraph.graph.model import Project
+from metagraph.graph.requests import AskError
 from metagraph.live.messages import Poses
 from metagraph.live.poses import HEADER, Stream, due, frame
 from metagraph.live.session import LiveSession

@@ -13,8 +13,8 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from metagraph.graph import asks as a
 from metagraph.graph import edits
+from metagraph.graph import requests as a
 from metagraph.graph.model import LAYERS, Project
 from metagraph.live import limits
 from metagraph.live.messages import Event, Reply, encode

@@ -12,8 +12,8 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from hypothesis.extra import numpy as hnp
 
-from metagraph.graph.asks import Go, Look, read_ask
 from metagraph.graph.model import LAYERS, Project
+from metagraph.graph.requests import Go, Look, read_ask
 from metagraph.mimicry.measures import turned
 from metagraph.mimicry.mimic import Mimic
 from metagraph.mimicry.points import LAYOUTS, PLACE, POINTS, swap

@@ -7,7 +7,7 @@ from typing import Any
 import numpy as np
 import pytest
 
-from metagraph.graph import asks as a
+from metagraph.graph import requests as a
 from metagraph.graph.model import LAYERS, Project
 from metagraph.graph.performance_edits import add_performance
 from metagraph.mimicry.performing import goals, mimic_performance, placed

@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import replace
 from typing import Any
 
-from metagraph.graph import asks as a
+from metagraph.graph import requests as a
 from metagraph.graph.model import Project
 from metagraph.playback.extend_performance import answer, answers
 from metagraph.playback.running_plan import perform

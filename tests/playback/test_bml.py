@@ -7,7 +7,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from metagraph.graph import asks as a
+from metagraph.graph import requests as a
 from metagraph.graph.model import Project
 from metagraph.graph.words import LAYERS, LIMBS, MODES
 from metagraph.playback.bml import Block, read_block, read_bml, write_bml

@@ -12,8 +12,8 @@ from hypothesis import strategies as st
 
 from metagraph.formats.data import markov_data, markov_from
 from metagraph.formats.elan import read_elan
-from metagraph.graph.asks import Change, Fidget, Gesture, Nod
 from metagraph.graph.model import Layer, Markov
+from metagraph.graph.requests import Change, Fidget, Gesture, Nod
 from metagraph.playback.annotation import Annotation, Interval, Label, Tier, guess_roles, labels
 from metagraph.playback.learn import (
     Act,

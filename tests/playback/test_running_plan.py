@@ -8,7 +8,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from metagraph.graph import asks as a
+from metagraph.graph import requests as a
 from metagraph.graph.model import LAYERS, Project
 from metagraph.playback.extend_performance import answer, hear
 from metagraph.playback.plan import Plan

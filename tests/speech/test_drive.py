@@ -8,9 +8,9 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from metagraph.graph.asks import Behave, Change, Fidget, Gesture, Nod
 from metagraph.graph.conversation import SPOKEN, Conversation, Rates, Segment, Side, Spoken, heard_by
 from metagraph.graph.model import Project
+from metagraph.graph.requests import Behave, Change, Fidget, Gesture, Nod
 from metagraph.playback.running_plan import perform
 from metagraph.speech.drive import TOLERANCE, asks_of, drive, strokes
 

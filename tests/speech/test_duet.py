@@ -86,7 +86,7 @@ def test_both_speak_their_lines_and_look_at_each_other(folder: Path, sample: Pro
 def test_a_line_of_the_same_id_is_kept(folder: Path, sample: Project) -> None:
     from dataclasses import replace
 
-    from metagraph.graph.asks import Line
+    from metagraph.graph.requests import Line
 
     taken = replace(sample, lines={"v1.1": Line(text="mine")})
     made = duet(talk(), "v1", (taken, taken), voices(talk(), folder)[0])

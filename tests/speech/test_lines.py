@@ -12,8 +12,8 @@ import pytest
 import soundfile
 
 from metagraph.errors import FileError
-from metagraph.graph.asks import Line
 from metagraph.graph.model import Project
+from metagraph.graph.requests import Line
 from metagraph.playback.life.schedule import Schedule, schedule
 from metagraph.playback.life.track import Speech, track_of
 from metagraph.speech.lines import load_voices, read_line, read_voice, voice_from_phones

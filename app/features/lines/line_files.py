@@ -14,9 +14,9 @@ from typing import Any
 from metagraph.errors import FileError
 from metagraph.formats.store import relative
 from metagraph.graph import performance_edits
-from metagraph.graph.asks import Line
 from metagraph.graph.edits import free_name
 from metagraph.graph.model import Project
+from metagraph.graph.requests import Line
 
 SOUNDS = (".wav", ".flac", ".ogg", ".mp3")
 LISTS = (".csv", ".tsv", ".txt")

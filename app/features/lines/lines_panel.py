@@ -29,9 +29,9 @@ from app.project.jobs import Jobs
 from app.stage.performance import Performance
 from app.stage.session import Session
 from metagraph.graph import performance_edits
-from metagraph.graph.asks import Line, Say
 from metagraph.graph.edits import EditError
 from metagraph.graph.model import Project
+from metagraph.graph.requests import Line, Say
 from metagraph.playback.understand import spoken_seconds
 
 COLUMNS = ("Id", "Words", "Sound", "Length", "With it")

@@ -28,8 +28,8 @@ from app.look.theme import strengthen
 from app.project.jobs import Job
 from metagraph.formats.keypoints import read_keypoints
 from metagraph.graph import performance_edits
-from metagraph.graph.asks import Performance
 from metagraph.graph.model import LAYERS, Project
+from metagraph.graph.requests import Performance
 from metagraph.mimicry.performing import REST, Mimicry, mimic_performance, placed
 from metagraph.mimicry.points import Keypoints
 

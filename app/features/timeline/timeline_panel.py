@@ -26,11 +26,11 @@ from app.widgets.quiet_fields import ComboBox, SpinBox
 from app.widgets.request_menu import ask_menu
 from app.widgets.sentence import Sentence
 from metagraph.graph import edits, performance_edits
-from metagraph.graph.asks import Performance as KeptPerformance
 from metagraph.graph.conversation import side_name
 from metagraph.graph.conversation_edits import change_conversation
 from metagraph.graph.edits import EditError
 from metagraph.graph.model import LAYERS
+from metagraph.graph.requests import Performance as KeptPerformance
 
 IMPROVISED = "Improvised"
 

@@ -17,7 +17,7 @@ from metagraph.engines.targets.losses import MACHINE
 from metagraph.engines.targets.meshes import mesh_of
 from metagraph.engines.targets.target import Loss, Made, Order, Target
 from metagraph.formats.atomic import write_atomically
-from metagraph.graph import asks as a
+from metagraph.graph import requests as a
 from metagraph.graph.model import LAYERS, Project
 from metagraph.playback.bml_writer import write_bml
 from metagraph.playback.phases import phases

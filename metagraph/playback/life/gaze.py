@@ -20,8 +20,8 @@ from dataclasses import dataclass
 from math import acos, degrees, exp, hypot, inf, radians, sqrt
 from typing import Any
 
-from metagraph.graph.asks import Point
 from metagraph.graph.life import Life
+from metagraph.graph.requests import Point
 from metagraph.playback.life.body import Body
 from metagraph.playback.life.lane import Lane
 from metagraph.playback.life.schedule import Schedule

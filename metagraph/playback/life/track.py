@@ -9,7 +9,7 @@ from collections.abc import Collection, Iterable, Iterator
 from dataclasses import dataclass, replace
 from math import inf
 
-from metagraph.graph.asks import Point
+from metagraph.graph.requests import Point
 from metagraph.graph.words import Layer, Mode
 
 

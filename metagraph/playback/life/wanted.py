@@ -9,7 +9,7 @@ from collections.abc import Iterator
 from dataclasses import dataclass
 from typing import Any
 
-from metagraph.graph.asks import Point
+from metagraph.graph.requests import Point
 from metagraph.graph.words import MODES, Mode
 from metagraph.playback.life.track import LookAt, Track
 

@@ -11,7 +11,7 @@ import pytest
 
 from app.cli.parser import main
 from metagraph.formats.store import open_project
-from metagraph.graph.asks import Performance
+from metagraph.graph.requests import Performance
 
 ROOT = Path(__file__).resolve().parents[3]
 KEYPOINTS = ROOT / "sample_clips" / "keypoints"

@@ -15,8 +15,8 @@ from PySide6.QtTest import QTest
 
 from app.stage.conversation_plans import ConversationPlans
 from metagraph.formats.store import absolute, open_project, save_project
-from metagraph.graph.asks import Gesture
 from metagraph.graph.conversation import Conversation, Segment, Side
+from metagraph.graph.requests import Gesture
 
 ROOT = Path(__file__).parents[3]
 RATE = 16000

@@ -14,7 +14,7 @@ from app.project.jobs import Jobs
 from app.stage.line_player import RATE, Sound
 from app.stage.performance import Performance
 from app.stage.session import Session
-from metagraph.graph import asks as a
+from metagraph.graph import requests as a
 
 
 class Stream:

@@ -13,8 +13,8 @@ from app.stage.performance import Performance
 from app.stage.playback_source import LEAD, alone, in_context
 from app.stage.playhead import Playhead
 from app.stage.session import Session
-from metagraph.graph import asks as a
 from metagraph.graph import edits, performance_edits
+from metagraph.graph import requests as a
 from metagraph.graph.model import LAYERS, Project
 from metagraph.playback.player import pose_at
 

@@ -12,8 +12,8 @@ from app.project.jobs import Job
 from app.stage.render_process import Wanted, write
 from metagraph.formats.bvh import read_bvh
 from metagraph.formats.store import open_project
-from metagraph.graph import asks as a
 from metagraph.graph import performance_edits
+from metagraph.graph import requests as a
 
 ROOT = Path(__file__).resolve().parents[3]
 

@@ -15,7 +15,7 @@ from PySide6.QtTest import QTest
 from PySide6.QtWidgets import QApplication, QDoubleSpinBox, QMenu, QSpinBox
 
 from app.widgets.lane_geometry import LEFT, lanes, rows
-from metagraph.graph import asks as a
+from metagraph.graph import requests as a
 from metagraph.live.server import Options
 
 LEFT_BUTTON = Qt.MouseButton.LeftButton

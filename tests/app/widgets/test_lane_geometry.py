@@ -27,7 +27,7 @@ from app.widgets.lane_geometry import (
     told,
 )
 from app.widgets.request_menu import STAGE
-from metagraph.graph import asks as a
+from metagraph.graph import requests as a
 from metagraph.graph.model import LAYERS
 from metagraph.playback.extend_performance import answer
 from metagraph.playback.planner import make_plan

@@ -9,7 +9,7 @@ from PySide6.QtCore import QPoint, Qt
 from PySide6.QtTest import QTest
 
 from metagraph.graph import conversation_edits, performance_edits
-from metagraph.graph.asks import Performance
+from metagraph.graph.requests import Performance
 
 pytestmark = [pytest.mark.window, pytest.mark.gl]
 

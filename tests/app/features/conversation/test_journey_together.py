@@ -15,7 +15,7 @@ from PySide6.QtTest import QTest
 from app.features.conversation.conversation_dialog import ImportDialog
 from app.features.render.render_dialog import RenderDialog
 from app.project.files import SAMPLE
-from metagraph.graph.asks import Gesture
+from metagraph.graph.requests import Gesture
 from metagraph.speech.drive import strokes
 from tests.speech.talk import make_conversation
 

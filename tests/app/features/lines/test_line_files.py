@@ -14,7 +14,7 @@ from PySide6.QtTest import QTest
 from PySide6.QtWidgets import QLineEdit
 
 from app.features.lines.line_files import add_lines, read_lines
-from metagraph.graph import asks as a
+from metagraph.graph import requests as a
 from metagraph.graph.model import Project
 
 

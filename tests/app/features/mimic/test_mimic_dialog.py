@@ -12,7 +12,7 @@ from PySide6.QtWidgets import QFileDialog, QMessageBox
 
 from app.features.mimic.mimic_dialog import MimicDialog, recording_of
 from app.project.files import SAMPLE
-from metagraph.graph import asks as a
+from metagraph.graph import requests as a
 
 KEYPOINTS = Path(__file__).resolve().parents[4] / "sample_clips" / "keypoints"
 DEEP, FLAT = KEYPOINTS / "conversation.mediapipe.jsonl", KEYPOINTS / "conversation.openpose.json"
