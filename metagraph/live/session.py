@@ -19,7 +19,7 @@ from metagraph.graph import requests as a
 from metagraph.graph.model import LAYERS, Layer, Project
 from metagraph.live import describe
 from metagraph.live.answers import Found, find, owner_of
-from metagraph.live.camera import see
+from metagraph.live.camera_mimicry import see
 from metagraph.live.happenings import happenings
 from metagraph.live.ledger import Known, Ledger, key_of, told
 from metagraph.live.limits import (

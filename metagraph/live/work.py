@@ -6,7 +6,7 @@ from dataclasses import dataclass, field, replace
 
 from metagraph.graph import requests as a
 from metagraph.graph.words import Layer
-from metagraph.live.camera import Camera
+from metagraph.live.camera_mimicry import Camera
 from metagraph.live.messages import Event, Reply
 from metagraph.live.poses import Frame, Stream
 from metagraph.playback.life.track import Track
