@@ -12,7 +12,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from metagraph.motion import rotation
-from metagraph.motion.character import Character, Material
+from metagraph.motion.character_mesh import Character, Material
 from metagraph.motion.skeleton import Skeleton
 from preview import joints as rules
 from preview.mesh import VERTEX, Batch, Mesh, ball, capsule, coarse, egg

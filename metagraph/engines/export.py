@@ -26,7 +26,7 @@ from metagraph.graph.model import (
     Project,
     Settings,
 )
-from metagraph.motion.character import Character
+from metagraph.motion.character_mesh import Character
 from metagraph.motion.clip import Clip
 from metagraph.motion.skeleton import Skeleton, unique_names
 from metagraph.playback import choice, markov

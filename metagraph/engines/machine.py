@@ -23,7 +23,7 @@ from numpy.typing import NDArray
 from metagraph.graph import anatomy
 from metagraph.graph.expand import chain, connections, ends_in
 from metagraph.graph.model import LAYERS, REACH, Action, Layer, MetaGraph, Project
-from metagraph.motion.character import Character
+from metagraph.motion.character_mesh import Character
 from metagraph.motion.clip import Clip
 from metagraph.motion.skeleton import unique_names
 

@@ -16,7 +16,7 @@ from metagraph.formats.gltf_file import extras, open_gltf
 from metagraph.formats.gltf_skeleton import build_rig
 from metagraph.formats.gltf_writer import write_glb
 from metagraph.formats.takes import unique_takes
-from metagraph.motion.character import Character
+from metagraph.motion.character_mesh import Character
 from metagraph.motion.clip import Clip
 
 # Numbers out of a broken file overflow on their way to the check that refuses them; that is no reason to

@@ -12,7 +12,7 @@ from metagraph.errors import FileError
 from metagraph.formats.gltf_clips import morph_names
 from metagraph.formats.gltf_file import Gltf, Primitive
 from metagraph.formats.gltf_skeleton import Rig
-from metagraph.motion.character import Character, Material, Surface
+from metagraph.motion.character_mesh import Character, Material, Surface
 
 Array = NDArray[Any]
 

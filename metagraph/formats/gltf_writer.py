@@ -14,7 +14,7 @@ from numpy.typing import NDArray
 
 from metagraph.formats.atomic import write_atomically
 from metagraph.motion import rotation
-from metagraph.motion.character import Character
+from metagraph.motion.character_mesh import Character
 from metagraph.motion.clip import Clip
 from metagraph.motion.skeleton import Pose, Skeleton
 

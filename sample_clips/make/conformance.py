@@ -21,7 +21,7 @@ from metagraph.graph.life import Life, Manner
 from metagraph.graph.model import Kind, Layer, Limb, Markov, Project
 from metagraph.graph.requests import Gesture, Line, Nod
 from metagraph.motion import rotation
-from metagraph.motion.character import Character, Material, Surface
+from metagraph.motion.character_mesh import Character, Material, Surface
 from metagraph.motion.clip import Clip
 from metagraph.motion.skeleton import Skeleton
 from metagraph.playback.life.voice import voice_from_text

@@ -21,7 +21,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from metagraph.motion.character import Character, Material, Surface
+from metagraph.motion.character_mesh import Character, Material, Surface
 from preview.mesh import lathe
 from sample_clips.make import shapes
 from sample_clips.make.sculpt import Field, gradient, polygonise, project, remesh, union

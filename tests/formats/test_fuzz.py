@@ -23,7 +23,7 @@ from metagraph.formats.bvh import read_bvh, write_bvh
 from metagraph.formats.clips import read_clips
 from metagraph.formats.gltf import read_character, read_gltf_clips, vrm_roles, write_glb
 from metagraph.motion import rotation
-from metagraph.motion.character import Character, Material, Surface
+from metagraph.motion.character_mesh import Character, Material, Surface
 from metagraph.motion.clip import Clip
 from metagraph.motion.skeleton import Skeleton
 

@@ -18,7 +18,7 @@ from metagraph.errors import FileError
 from metagraph.formats.gltf import read_character, read_gltf_clips, vrm_roles, write_glb
 from metagraph.formats.gltf_skeleton import compose
 from metagraph.motion import rotation
-from metagraph.motion.character import Character, Material, Surface
+from metagraph.motion.character_mesh import Character, Material, Surface
 from metagraph.motion.clip import Clip
 from sample_clips.make.skeleton import mannequin_skeleton
 from tests import zoo

@@ -9,7 +9,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from metagraph.motion.character import Character
+from metagraph.motion.character_mesh import Character
 from metagraph.motion.skeleton import Skeleton
 from preview.offscreen import Offscreen, OpenGLError
 from preview.sheet import write_png

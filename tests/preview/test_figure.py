@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from metagraph.motion import rotation
-from metagraph.motion.character import Character, Material, Surface
+from metagraph.motion.character_mesh import Character, Material, Surface
 from metagraph.motion.skeleton import Pose, Skeleton
 from preview.figure import SkinnedFigure, StickFigure
 from preview.mesh import ball, capsule, coarse

@@ -203,7 +203,7 @@ def test_multisampling_draws_nearly_the_same(offscreen):
 
 
 def test_a_broken_texture_is_drawn_white(offscreen):
-    from metagraph.motion.character import Material
+    from metagraph.motion.character_mesh import Material
 
     positions = np.array([[-0.3, 0.0, 0], [0.3, 0.0, 0], [0, 0.6, 0]])
     figure = SkinnedFigure(

@@ -5,7 +5,7 @@ from __future__ import annotations
 from pathlib import Path
 
 from metagraph.engines.targets.target import Order
-from metagraph.motion.character import Character
+from metagraph.motion.character_mesh import Character
 
 
 def mesh_of(order: Order) -> tuple[Character | None, tuple[str, ...]]:

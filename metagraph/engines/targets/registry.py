@@ -13,7 +13,7 @@ from metagraph.engines.targets.placing import Staging
 from metagraph.engines.targets.placing import place as move
 from metagraph.engines.targets.target import Order, Report, Target, Tell
 from metagraph.graph.model import Project
-from metagraph.motion.character import Character
+from metagraph.motion.character_mesh import Character
 
 # Modules of this package that have TARGETS, in the order they are offered.
 MODULES = (

@@ -7,7 +7,7 @@ from dataclasses import dataclass, field
 from pathlib import Path
 
 from metagraph.graph.model import Project
-from metagraph.motion.character import Character
+from metagraph.motion.character_mesh import Character
 
 Tell = Callable[[int, int, str], None]
 
