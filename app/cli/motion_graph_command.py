@@ -420,10 +420,10 @@ def synthesize(options: Namespace) -> int:
     from metagraph.graph.conversation import SOUNDS
     from metagraph.synthesis.assemble import assemble
     from metagraph.synthesis.constraints import changes, heard, wanted
-    from metagraph.synthesis.evaluate import WINDOW, cut
     from metagraph.synthesis.graph import build as build_graph
     from metagraph.synthesis.graph import threshold
     from metagraph.synthesis.search import best, greedy
+    from metagraph.synthesis.search_evaluation import WINDOW, cut
     from metagraph.synthesis.states import key_states
 
     _checked(options)
@@ -494,8 +494,8 @@ def evaluate(options: Namespace) -> int:
     """Print, setting by setting, how much held-out speech finds motion."""
     from app.cli.command_output import say
     from metagraph.formats.atomic import write_atomically
-    from metagraph.synthesis.evaluate import SETTINGS, csv_of, table_of
-    from metagraph.synthesis.evaluate import evaluate as run
+    from metagraph.synthesis.search_evaluation import SETTINGS, csv_of, table_of
+    from metagraph.synthesis.search_evaluation import evaluate as run
 
     _checked(options)
     clips, speech, _ = _paired(options)

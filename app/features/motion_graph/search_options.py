@@ -160,7 +160,7 @@ class Wishes(QFrame):
         if chosen is not None:
             talk = self.document.project.conversations[chosen[0]]
             seconds = min(seconds, max(1.0, talk.length - start))
-            from metagraph.synthesis.evaluate import cut
+            from metagraph.synthesis.search_evaluation import cut
 
             segments = tuple(cut(heard_by(talk, chosen[1]), start, seconds))
         return Wish(

@@ -12,7 +12,16 @@ import pytest
 
 from metagraph.graph.conversation import SOUNDS, Segment
 from metagraph.motion.clip import Clip
-from metagraph.synthesis.evaluate import SETTINGS, Setting, csv_of, cut, evaluate, table_of, windows, without
+from metagraph.synthesis.search_evaluation import (
+    SETTINGS,
+    Setting,
+    csv_of,
+    cut,
+    evaluate,
+    table_of,
+    windows,
+    without,
+)
 from metagraph.synthesis.states import SynthesisError, states_of, with_velocity
 from tests.synthesis.talking import speech, talking
 
