@@ -17,7 +17,7 @@ from numpy.typing import ArrayLike, NDArray
 from metagraph.graph import anatomy
 from metagraph.graph.model import LAYERS, Layer, Project
 from metagraph.graph.requests import AnyAsk, Go, Look
-from metagraph.mimicry.gaze import Gaze
+from metagraph.mimicry.gaze_reading import Gaze
 from metagraph.mimicry.judge import TURNS, Judge, Mean, View
 from metagraph.mimicry.points import POINTS, choose, swap
 from metagraph.mimicry.signatures import Body, signatures

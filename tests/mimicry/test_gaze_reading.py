@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from metagraph.mimicry.gaze import EVERY, FAR, Gaze, head_turn
+from metagraph.mimicry.gaze_reading import EVERY, FAR, Gaze, head_turn
 from metagraph.mimicry.measures import turned
 from metagraph.mimicry.points import PLACE
 from metagraph.motion import rotation
