@@ -10,7 +10,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from metagraph.graph.words import Layer
-from metagraph.mimicry.measures import (
+from metagraph.mimicry.points import POINTS
+from metagraph.mimicry.pose_measures import (
     COUNT,
     LEAST_EVIDENCE,
     MOVED,
@@ -24,7 +25,6 @@ from metagraph.mimicry.measures import (
     trusted,
     turned,
 )
-from metagraph.mimicry.points import POINTS
 from metagraph.mimicry.signatures import Signature
 from metagraph.mimicry.tuning import Tuning
 

@@ -6,8 +6,8 @@ import numpy as np
 import pytest
 
 from metagraph.mimicry.gaze_reading import EVERY, FAR, Gaze, head_turn
-from metagraph.mimicry.measures import turned
 from metagraph.mimicry.points import PLACE
+from metagraph.mimicry.pose_measures import turned
 from metagraph.motion import rotation
 
 FACE = {

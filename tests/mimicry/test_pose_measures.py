@@ -9,7 +9,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from metagraph.mimicry import measures as m
+from metagraph.mimicry import pose_measures as m
 from metagraph.mimicry.points import PLACE, POINTS
 from metagraph.motion import rotation
 
