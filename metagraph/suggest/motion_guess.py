@@ -11,8 +11,8 @@ from dataclasses import dataclass
 from math import exp, log
 
 from metagraph.graph.words import LAYERS, Kind, Layer, Limb
+from metagraph.suggest.clip_measures import SUREST, TYPICAL, energy, layer_of, resting, walks
 from metagraph.suggest.estimate import Belief
-from metagraph.suggest.measures import SUREST, TYPICAL, energy, layer_of, resting, walks
 from metagraph.suggest.stances import Shape, Stances, distance, nearest
 from metagraph.suggest.traits import LayerTraits, Traits
 

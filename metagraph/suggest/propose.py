@@ -17,9 +17,9 @@ import numpy as np
 from metagraph.graph.model import KINDS, LAYERS, LIMBS, Action, Layer, Limb, Project
 from metagraph.suggest.accept import Taken, accept
 from metagraph.suggest.alike import Alike, Example
+from metagraph.suggest.clip_measures import walks
 from metagraph.suggest.details import masked, rest_of, stroked, timed, weighted
 from metagraph.suggest.estimate import Belief
-from metagraph.suggest.measures import walks
 from metagraph.suggest.motion_guess import MotionGuess, guess
 from metagraph.suggest.proposal import Place, Proposal, Proposals, Rest, plain, words_of
 from metagraph.suggest.stances import Shape, discovered, known

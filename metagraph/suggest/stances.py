@@ -16,7 +16,7 @@ from numpy.typing import NDArray
 
 from metagraph.graph.model import Project
 from metagraph.graph.words import KINDS, LAYERS, Layer
-from metagraph.suggest.measures import HELD, SUREST, energy, layer_of, nothing, resting, walks
+from metagraph.suggest.clip_measures import HELD, SUREST, energy, layer_of, nothing, resting, walks
 from metagraph.suggest.traits import LayerTraits, Traits
 
 Array = NDArray[Any]

@@ -15,7 +15,7 @@ from metagraph.graph.model import Project
 from metagraph.motion import rotation
 from metagraph.motion.clip import Clip
 from metagraph.motion.skeleton import Skeleton
-from metagraph.suggest.measures import walks
+from metagraph.suggest.clip_measures import walks
 from metagraph.suggest.motion_guess import guess
 from metagraph.suggest.propose import accept, propose
 from metagraph.suggest.stances import known

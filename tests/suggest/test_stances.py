@@ -13,7 +13,7 @@ from hypothesis import strategies as st
 from metagraph.graph.model import KINDS, LAYERS, LIMBS, Project
 from metagraph.motion.clip import Clip
 from metagraph.motion.skeleton import Skeleton
-from metagraph.suggest.measures import layer_of
+from metagraph.suggest.clip_measures import layer_of
 from metagraph.suggest.motion_guess import MotionGuess, guess
 from metagraph.suggest.stances import Shape, discover, discovered, distance, known, nearest
 from metagraph.suggest.traits import Traits, traits, traits_of
