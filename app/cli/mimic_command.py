@@ -13,8 +13,8 @@ from metagraph.graph.words import LAYERS
 if TYPE_CHECKING:
     from metagraph.graph.model import Project
     from metagraph.graph.requests import Performance
+    from metagraph.mimicry.keypoint_layouts import Keypoints
     from metagraph.mimicry.performing import Mimicry
-    from metagraph.mimicry.points import Keypoints
     from metagraph.playback.plan import Plan
 
 OUT = (".mp4", ".png", ".glb", ".bvh", ".json")

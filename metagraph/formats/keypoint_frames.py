@@ -12,8 +12,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from metagraph.errors import FileError
+from metagraph.mimicry.keypoint_layouts import BY_COUNT, describe_layouts
 from metagraph.mimicry.people import Person
-from metagraph.mimicry.points import BY_COUNT, describe_layouts
 
 Array = NDArray[Any]
 

@@ -29,8 +29,8 @@ from metagraph.formats.keypoint_frames import (
     read_frame,
     spelt,
 )
+from metagraph.mimicry.keypoint_layouts import BY_COUNT, LAYOUTS, PLACE, Keypoints, choose
 from metagraph.mimicry.people import Person, follow
-from metagraph.mimicry.points import BY_COUNT, LAYOUTS, PLACE, Keypoints, choose
 
 Array = NDArray[Any]
 

@@ -7,7 +7,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from metagraph.mimicry.points import PLACE
+from metagraph.mimicry.keypoint_layouts import PLACE
 
 Array = NDArray[Any]
 

@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from metagraph.graph.words import Layer
-from metagraph.mimicry.points import POINTS
+from metagraph.mimicry.keypoint_layouts import POINTS
 from metagraph.mimicry.pose_measures import (
     COUNT,
     LEAST_EVIDENCE,

@@ -19,7 +19,7 @@ from metagraph.graph.model import LAYERS, Layer, Project
 from metagraph.graph.requests import AnyAsk, Go, Look
 from metagraph.mimicry.gaze_reading import Gaze
 from metagraph.mimicry.judge import TURNS, Judge, Mean, View
-from metagraph.mimicry.points import POINTS, choose, swap
+from metagraph.mimicry.keypoint_layouts import POINTS, choose, swap
 from metagraph.mimicry.signatures import Body, signatures
 from metagraph.mimicry.tuning import Tuning
 

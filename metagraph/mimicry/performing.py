@@ -12,8 +12,8 @@ import msgspec
 
 from metagraph.graph.model import LAYERS, Layer, Project
 from metagraph.graph.requests import AnyAsk, Performance
+from metagraph.mimicry.keypoint_layouts import Keypoints
 from metagraph.mimicry.mimic import Mimic, Sighting
-from metagraph.mimicry.points import Keypoints
 from metagraph.playback.extend_performance import hear
 from metagraph.playback.plan import Plan
 

@@ -18,7 +18,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from metagraph.graph.words import Layer
-from metagraph.mimicry.points import PLACE, POINTS
+from metagraph.mimicry.keypoint_layouts import PLACE, POINTS
 
 Array = NDArray[Any]
 Terms = Mapping[str, float]

@@ -13,7 +13,7 @@ from numpy.typing import NDArray
 
 from metagraph.graph import anatomy
 from metagraph.graph.model import LAYERS, Layer, Project
-from metagraph.mimicry.points import PLACE, POINTS, swap
+from metagraph.mimicry.keypoint_layouts import PLACE, POINTS, swap
 from metagraph.mimicry.pose_measures import frame_of, measured
 from metagraph.motion import rotation
 from metagraph.motion.skeleton import Pose, Skeleton

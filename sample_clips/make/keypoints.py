@@ -19,7 +19,7 @@ import numpy as np
 from metagraph.formats.store import open_project
 from metagraph.graph import requests as a
 from metagraph.graph.model import LAYERS, Layer, Project
-from metagraph.mimicry.points import LAYOUTS
+from metagraph.mimicry.keypoint_layouts import LAYOUTS
 from metagraph.mimicry.signatures import Body
 from metagraph.motion.skeleton import Pose
 from metagraph.playback.plan import Plan
@@ -160,7 +160,7 @@ def world(project: Project, plan: Plan, times: Any, person: Mapping[str, float] 
     )
     body = Body(project)
     _, at = project.skeleton.globals(pose)
-    from metagraph.mimicry.points import POINTS
+    from metagraph.mimicry.keypoint_layouts import POINTS
 
     out = {name: body.points(pose)[:, n] for n, name in enumerate(POINTS)}
     for side in ("left", "right"):

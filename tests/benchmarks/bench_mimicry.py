@@ -18,9 +18,9 @@ sys.path.insert(0, str(ROOT))
 
 from metagraph.formats.keypoints import read_keypoints  # noqa: E402
 from metagraph.formats.store import open_project  # noqa: E402
+from metagraph.mimicry.keypoint_layouts import Keypoints  # noqa: E402
 from metagraph.mimicry.mimic import Mimic  # noqa: E402
 from metagraph.mimicry.performing import mimic_performance  # noqa: E402
-from metagraph.mimicry.points import Keypoints  # noqa: E402
 from metagraph.playback.planner import make_plan  # noqa: E402
 from metagraph.playback.player import pose_at  # noqa: E402
 

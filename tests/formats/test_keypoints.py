@@ -16,7 +16,7 @@ from hypothesis import strategies as st
 
 from metagraph.errors import FileError
 from metagraph.formats.keypoints import read_keypoints
-from metagraph.mimicry.points import LAYOUTS, PLACE, Keypoints
+from metagraph.mimicry.keypoint_layouts import LAYOUTS, PLACE, Keypoints
 from tests.mimicry.test_pose_measures import FIGURE
 
 SAMPLES = Path(__file__).resolve().parents[2] / "sample_clips" / "keypoints"

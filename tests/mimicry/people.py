@@ -10,7 +10,7 @@ import numpy as np
 
 from metagraph.graph import edits
 from metagraph.graph.model import Life, Project
-from metagraph.mimicry.points import swap
+from metagraph.mimicry.keypoint_layouts import swap
 from metagraph.mimicry.signatures import Body
 from metagraph.motion import rotation
 from metagraph.motion.clip import Clip

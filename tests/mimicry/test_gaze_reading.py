@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from metagraph.mimicry.gaze_reading import EVERY, FAR, Gaze, head_turn
-from metagraph.mimicry.points import PLACE
+from metagraph.mimicry.keypoint_layouts import PLACE
 from metagraph.mimicry.pose_measures import turned
 from metagraph.motion import rotation
 

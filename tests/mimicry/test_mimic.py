@@ -14,8 +14,8 @@ from hypothesis.extra import numpy as hnp
 
 from metagraph.graph.model import LAYERS, Project
 from metagraph.graph.requests import Go, Look, read_ask
+from metagraph.mimicry.keypoint_layouts import LAYOUTS, PLACE, POINTS, swap
 from metagraph.mimicry.mimic import Mimic
-from metagraph.mimicry.points import LAYOUTS, PLACE, POINTS, swap
 from metagraph.mimicry.pose_measures import turned
 from metagraph.mimicry.tuning import JUDGING, Tuning
 from sample_clips.make.keypoints import SECONDS, View, played, seen, truth

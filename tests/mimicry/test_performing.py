@@ -10,8 +10,8 @@ import pytest
 from metagraph.graph import requests as a
 from metagraph.graph.model import LAYERS, Project
 from metagraph.graph.performance_edits import add_performance
+from metagraph.mimicry.keypoint_layouts import POINTS, Keypoints
 from metagraph.mimicry.performing import goals, mimic_performance, placed
-from metagraph.mimicry.points import POINTS, Keypoints
 from metagraph.playback.extend_performance import answer
 from metagraph.playback.running_plan import perform
 from sample_clips.make.keypoints import SECONDS, View, played, seen, truth

@@ -10,7 +10,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from metagraph.mimicry import pose_measures as m
-from metagraph.mimicry.points import PLACE, POINTS
+from metagraph.mimicry.keypoint_layouts import PLACE, POINTS
 from metagraph.motion import rotation
 
 WIDTH = 0.72

@@ -11,8 +11,8 @@ import pytest
 from metagraph.formats.clips import read_clips
 from metagraph.graph import edits
 from metagraph.graph.model import Layer, Life, Project
+from metagraph.mimicry.keypoint_layouts import PLACE
 from metagraph.mimicry.mimic import Mimic
-from metagraph.mimicry.points import PLACE
 from metagraph.mimicry.pose_measures import turned
 from metagraph.mimicry.signatures import Body
 from tests import zoo

@@ -10,7 +10,7 @@ import pytest
 
 from metagraph.graph import anatomy, edits
 from metagraph.graph.model import Project
-from metagraph.mimicry.points import PLACE, POINTS
+from metagraph.mimicry.keypoint_layouts import PLACE, POINTS
 from metagraph.mimicry.pose_measures import COUNT, SHARP
 from metagraph.mimicry.signatures import Body, signatures
 from tests.mimicry import people

@@ -30,8 +30,8 @@ from metagraph.formats.keypoints import read_keypoints
 from metagraph.graph import performance_edits
 from metagraph.graph.model import LAYERS, Project
 from metagraph.graph.requests import Performance
+from metagraph.mimicry.keypoint_layouts import Keypoints
 from metagraph.mimicry.performing import REST, Mimicry, mimic_performance, placed
-from metagraph.mimicry.points import Keypoints
 
 if TYPE_CHECKING:
     from app.shell.context import Shell

@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from metagraph.mimicry.points import BY_COUNT, LAYOUTS, POINTS, Keypoints, choose, swap
+from metagraph.mimicry.keypoint_layouts import BY_COUNT, LAYOUTS, POINTS, Keypoints, choose, swap
 
 
 @pytest.mark.parametrize("layout", LAYOUTS)
