@@ -16,7 +16,7 @@ from numpy.typing import NDArray
 from metagraph.motion.clip import Clip
 from metagraph.motion.roles import body_parts, find_roles
 from metagraph.motion.skeleton import Pose, Skeleton
-from metagraph.suggest.points import facing_of, seen_from
+from metagraph.suggest.body_points import facing_of, seen_from
 
 Array = NDArray[Any]
 

@@ -21,7 +21,7 @@ from metagraph.graph.words import LAYERS, Layer
 from metagraph.motion.clip import Clip
 from metagraph.motion.roles import find_roles
 from metagraph.motion.skeleton import Skeleton
-from metagraph.suggest.points import NAMES, Figure, figure_of, points_of, seen_from
+from metagraph.suggest.body_points import NAMES, Figure, figure_of, points_of, seen_from
 
 Array = NDArray[Any]
 
