@@ -17,8 +17,8 @@ import numpy as np
 import pytest
 
 from metagraph import engines
+from metagraph.engines.engine_machine import Machine, machines
 from metagraph.engines.export import stem_of
-from metagraph.engines.machine import Machine, machines
 from metagraph.engines.targets import godot_tree
 from metagraph.engines.targets.godot_tree import TARGETS, old_name, owned, paths_of
 from metagraph.engines.targets.target import Order

@@ -15,7 +15,7 @@ import pytest
 import yaml
 from numpy.typing import NDArray
 
-from metagraph.engines.machine import Arrow, Machine, State, animations, machines
+from metagraph.engines.engine_machine import Arrow, Machine, State, animations, machines
 from metagraph.engines.targets.target import Made, Order
 from metagraph.engines.targets.unity_controller import TARGETS
 from metagraph.engines.targets.unity_yaml import text

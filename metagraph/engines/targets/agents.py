@@ -12,7 +12,7 @@ from typing import Any
 
 import msgspec
 
-from metagraph.engines.machine import Machine, State, animations, machines, write_machine_glb
+from metagraph.engines.engine_machine import Machine, State, animations, machines, write_machine_glb
 from metagraph.engines.targets.losses import MACHINE
 from metagraph.engines.targets.meshes import mesh_of
 from metagraph.engines.targets.target import Loss, Made, Order, Target

@@ -34,7 +34,7 @@ import re
 from collections.abc import Iterator, Mapping
 from typing import Literal
 
-from metagraph.engines.machine import Arrow, Machine, State, machines, write_machine_glb
+from metagraph.engines.engine_machine import Arrow, Machine, State, machines, write_machine_glb
 from metagraph.engines.targets.losses import CROSSFADE, MACHINE, WEIGHTS
 from metagraph.engines.targets.meshes import mesh_of
 from metagraph.engines.targets.target import Loss, Made, Order, Target

@@ -1,7 +1,7 @@
 """PlayCanvas: an AnimStateGraph, loaded by the engine as it is. Animations are bound by the states' names.
 
 Parameters, for each layer: the integers `<layer>_stance` and `<layer>_action`, and the trigger
-`<layer>_play`, see `metagraph.engines.machine`. The body overwrites; arms and head add to the pose of the
+`<layer>_play`, see `metagraph.engines.engine_machine`. The body overwrites; arms and head add to the pose of the
 GLB's nodes, which is the base pose.
 """
 
@@ -11,7 +11,7 @@ import json
 from collections.abc import Iterator
 from typing import Any
 
-from metagraph.engines.machine import Arrow, Machine, machines, write_machine_glb
+from metagraph.engines.engine_machine import Arrow, Machine, machines, write_machine_glb
 from metagraph.engines.targets.losses import CROSSFADE, MACHINE, WEIGHTS
 from metagraph.engines.targets.meshes import mesh_of
 from metagraph.engines.targets.target import Made, Order, Target

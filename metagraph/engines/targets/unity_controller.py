@@ -2,7 +2,7 @@
 own text assets.
 
 Parameters, for each layer: the integers `<layer>_stance` and `<layer>_action`, and the trigger
-`<layer>_play`, see `metagraph.engines.machine`. At the bottom is a layer that holds the base pose; the body
+`<layer>_play`, see `metagraph.engines.engine_machine`. At the bottom is a layer that holds the base pose; the body
 overwrites it, arms and head add to it what their clips differ from it.
 """
 
@@ -15,7 +15,7 @@ from typing import Any
 
 import numpy as np
 
-from metagraph.engines.machine import Arrow, Machine, State, animations, machines
+from metagraph.engines.engine_machine import Arrow, Machine, State, animations, machines
 from metagraph.engines.targets.losses import CROSSFADE, MACHINE, WEIGHTS
 from metagraph.engines.targets.meshes import mesh_of
 from metagraph.engines.targets.target import Loss, Made, Order, Target
