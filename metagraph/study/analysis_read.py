@@ -15,7 +15,7 @@ from metagraph.formats.store import open_project, read_project
 from metagraph.graph.model import Layer, Project
 from metagraph.study.klm import USUAL, Times, predicted
 from metagraph.study.log import Log, TaskRun, read
-from metagraph.study.machine import NormalMachine, normal
+from metagraph.study.normal_machine import NormalMachine, normal
 from metagraph.study.plan import Study, read_study
 from metagraph.study.questions import BUILT_IN, sus_score, tlx_raw, tlx_weighted
 from metagraph.study.score import TOLERANCE, Score, score

@@ -14,7 +14,7 @@ from itertools import permutations
 from typing import Literal
 
 from metagraph.graph.model import LAYERS, Layer
-from metagraph.study.machine import NormalMachine, NormalState, Pair
+from metagraph.study.normal_machine import NormalMachine, NormalState, Pair
 
 TOLERANCE = 0.1  # seconds
 MOST_USES = 6  # of one clip, beyond which their order is not tried out

@@ -16,7 +16,7 @@ from numpy.typing import NDArray
 from metagraph.graph import anatomy
 from metagraph.graph.model import Action, Layer, Project
 from metagraph.motion.clip import Clip
-from metagraph.study.machine import NormalMachine, NormalState, clip_names
+from metagraph.study.normal_machine import NormalMachine, NormalState, clip_names
 from metagraph.study.score import Mistake, Score, named
 from metagraph.suggest.compatibility import MOST_FRAMES, shown
 from metagraph.suggest.jumps import Measured

@@ -23,7 +23,7 @@ from metagraph.graph import edits
 from metagraph.graph.expand import ends_in
 from metagraph.graph.model import LAYERS, LIMBS, Layer, Project
 from metagraph.study.klm import predicted
-from metagraph.study.machine import normal
+from metagraph.study.normal_machine import normal
 from metagraph.study.score import Score, score
 
 LEFT = Qt.MouseButton.LeftButton

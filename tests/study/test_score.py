@@ -9,7 +9,7 @@ from hypothesis import given
 
 from metagraph.graph import edits, manual_edits
 from metagraph.graph.model import Project
-from metagraph.study.machine import normal
+from metagraph.study.normal_machine import normal
 from metagraph.study.score import Score, aligned, equivalent, score
 from metagraph.study.simulate_work import drawn
 from tests.projects import projects

@@ -9,7 +9,7 @@ from pathlib import Path
 from metagraph.formats.store import open_project, read_project
 from metagraph.graph import edits, manual_edits
 from metagraph.graph.model import Project
-from metagraph.study.machine import normal
+from metagraph.study.normal_machine import normal
 from metagraph.study.score import Score
 from metagraph.study.score_jumps import with_jumps
 from metagraph.study.simulate_work import drawn

@@ -10,7 +10,7 @@ from metagraph.graph import edits, manual_edits
 from metagraph.graph.expand import size
 from metagraph.graph.manual import ANY
 from metagraph.graph.model import Project
-from metagraph.study.machine import clip_names, is_manual, normal
+from metagraph.study.normal_machine import clip_names, is_manual, normal
 from metagraph.study.simulate_work import drawn
 from tests.projects import clip, projects
 from tests.study.makers import LAYER, small
