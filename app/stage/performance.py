@@ -21,7 +21,7 @@ from metagraph.graph.model import LAYERS, Project
 from metagraph.graph.requests import AnyAsk
 from metagraph.motion.skeleton import Pose, Skeleton
 from metagraph.playback.extend_performance import Answer, answers
-from metagraph.playback.manual import Fire
+from metagraph.playback.manual_playback import Fire
 from metagraph.playback.plan import Plan
 from metagraph.playback.planner import make_plan
 from metagraph.playback.running_plan import perform

@@ -16,7 +16,7 @@ from metagraph.graph.model import Layer, Project
 from metagraph.graph.requests import AnyAsk
 from metagraph.motion.skeleton import Pose, Skeleton
 from metagraph.playback.life.evaluate import enliven
-from metagraph.playback.manual import (
+from metagraph.playback.manual_playback import (
     Fire,
     ManualPlan,
     link_alone,

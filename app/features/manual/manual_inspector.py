@@ -33,7 +33,7 @@ from app.widgets.form_fields import MIXED, Chooser, Field, Mixed, Seconds, commo
 from metagraph.graph import manual_edits
 from metagraph.graph.manual import Link, State
 from metagraph.graph.model import LIMBS, Project
-from metagraph.playback.manual import action_of
+from metagraph.playback.manual_playback import action_of
 
 WHEN = (("when its source has finished", "finished"), ("on request", "request"))
 

@@ -12,7 +12,7 @@ from app.features.manual import manual_painter as painter
 from app.features.manual.manual_scene import Hit
 from app.stage.playback_source import Shown
 from metagraph.graph.model import Layer
-from metagraph.playback.manual import clip_seconds
+from metagraph.playback.manual_playback import clip_seconds
 
 EMPTY = "Drop clips here to make states. Drag from a state's border to draw a link."
 

@@ -15,7 +15,7 @@ from metagraph.graph.manual import ANY
 from metagraph.graph.model import PARTS, Life, Project
 from metagraph.motion import rotation
 from metagraph.motion.skeleton import Pose
-from metagraph.playback.manual import (
+from metagraph.playback.manual_playback import (
     Fire,
     link_alone,
     make_manual_plan,
