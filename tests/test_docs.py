@@ -16,7 +16,7 @@ import pytest
 
 from app.cli.parser import main
 from metagraph.formats.store import from_text
-from metagraph.study.plan import from_text as study_from_text
+from metagraph.study.study_plan import from_text as study_from_text
 
 ROOT = Path(__file__).resolve().parents[1]
 PAGES = [
@@ -155,7 +155,7 @@ def test_every_field_of_the_schema_is_described() -> None:
 
 def test_every_field_of_a_study_file_and_every_event_of_its_log_is_described() -> None:
     from metagraph.study.log import TYPES
-    from metagraph.study.plan import schema_text
+    from metagraph.study.study_plan import schema_text
 
     text = (ROOT / "docs" / "studies.md").read_text(encoding="utf-8")
     schema = json.loads(schema_text())

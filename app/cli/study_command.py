@@ -87,8 +87,8 @@ def run(options: Namespace) -> int:
 
 def report(options: Namespace) -> int:
     from app.cli.command_output import say
-    from metagraph.study.plan import read_study
     from metagraph.study.report import summary, write_report
+    from metagraph.study.study_plan import read_study
 
     place = options.out or read_study(options.folder).folder / "report"
     results = _results(options)
@@ -103,7 +103,7 @@ def report(options: Namespace) -> int:
 def export(options: Namespace) -> int:
     from app.cli.command_output import say
     from metagraph.study.bids import write_bids
-    from metagraph.study.plan import read_study
+    from metagraph.study.study_plan import read_study
 
     results = _results(options)
     written = write_bids(read_study(options.folder), results, options.bids)

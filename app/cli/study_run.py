@@ -20,7 +20,7 @@ def run_arguments(parser: ArgumentParser) -> None:
 
 def run(options: Namespace) -> int:
     """Open the window and lead a participant through. Raises FileError, ValueError."""
-    from metagraph.study.plan import read_study
+    from metagraph.study.study_plan import read_study
 
     study = read_study(options.study)
     if options.participant is not None:
@@ -47,8 +47,8 @@ def check_arguments(parser: ArgumentParser) -> None:
 
 def check(options: Namespace) -> int:
     """Print who does what in which order, and what would hamper the study. Raises FileError."""
-    from metagraph.study.plan import read_study
     from metagraph.study.sitting import standing
+    from metagraph.study.study_plan import read_study
 
     study = read_study(options.study)
     problems = study.problems()

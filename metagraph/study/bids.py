@@ -19,8 +19,8 @@ from metagraph.errors import FileError
 from metagraph.formats.atomic import write_atomically
 from metagraph.study.analysis import Results
 from metagraph.study.log import Event, read
-from metagraph.study.plan import Study
 from metagraph.study.report_tables import clips, participants, table
+from metagraph.study.study_plan import Study
 from metagraph.study.tasks import moment
 
 BIDS = "1.9.0"

@@ -13,7 +13,7 @@ from metagraph.formats.recovery import left_journals, recover
 from metagraph.formats.store import Opened, load_motions, read_project, relative, save_project
 from metagraph.graph import edits
 from metagraph.graph.model import Project
-from metagraph.study.plan import Study
+from metagraph.study.study_plan import Study
 
 Progress = Callable[[int, int], None]
 

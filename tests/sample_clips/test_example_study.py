@@ -6,8 +6,8 @@ import pytest
 
 from metagraph.formats.store import open_project, read_project
 from metagraph.graph.check import check
-from metagraph.study.plan import read_study
 from metagraph.study.sitting import phases
+from metagraph.study.study_plan import read_study
 from metagraph.study.work import make
 from sample_clips.make.study import FOLDER, TASKS, text
 

@@ -17,8 +17,8 @@ from pathlib import Path
 from metagraph.formats.journal import Journal, journal_path
 from metagraph.formats.store import save_project
 from metagraph.graph import edits
-from metagraph.study.plan import read_study
 from metagraph.study.sitting import Sitting
+from metagraph.study.study_plan import read_study
 from metagraph.study.work import make, reopen, write
 
 EDITS = 40  # in each task, each of them another stance

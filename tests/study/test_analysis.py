@@ -15,11 +15,11 @@ from metagraph.errors import FileError
 from metagraph.study.analysis import analyse, compare
 from metagraph.study.analysis_example import example, told
 from metagraph.study.analysis_read import Data, Rating, collect, prediction
-from metagraph.study.plan import FILE
 from metagraph.study.report import page, summary
 from metagraph.study.score import Score
 from metagraph.study.simulate import Truth
 from metagraph.study.simulate_files import write_study
+from metagraph.study.study_plan import FILE
 from tests.study.makers import four, row
 
 DOCS = Path(__file__).resolve().parents[2] / "docs" / "study-report.md"

@@ -15,9 +15,9 @@ from metagraph.study.analysis import analyse
 from metagraph.study.analysis_read import collect
 from metagraph.study.bids import write_bids
 from metagraph.study.log import read
-from metagraph.study.plan import FILE, Study, read_study
 from metagraph.study.simulate import Truth
 from metagraph.study.simulate_files import write_study
+from metagraph.study.study_plan import FILE, Study, read_study
 
 
 @pytest.fixture(scope="module")

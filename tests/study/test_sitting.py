@@ -16,8 +16,8 @@ from metagraph.errors import FileError
 from metagraph.formats.store import read_project
 from metagraph.graph import edits
 from metagraph.study.log import read
-from metagraph.study.plan import read_study
 from metagraph.study.sitting import Sitting, SittingError, phases, where
+from metagraph.study.study_plan import read_study
 from metagraph.study.work import make, reopen, write
 from tests.processes import started
 

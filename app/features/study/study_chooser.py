@@ -24,8 +24,8 @@ from app.look.theme import strengthen
 from app.project.files import Files
 from app.shell.places import Places
 from metagraph.errors import FileError
-from metagraph.study.plan import Study, read_study
 from metagraph.study.sitting import standing
+from metagraph.study.study_plan import Study, read_study
 
 if TYPE_CHECKING:
     from app.shell.context import Shell

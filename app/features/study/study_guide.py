@@ -29,8 +29,8 @@ from app.project.jobs import Job
 from metagraph import __version__
 from metagraph.errors import FileError
 from metagraph.graph.model import Project
-from metagraph.study.plan import CONDITION_TITLES, Study
 from metagraph.study.sitting import Phase, Sitting
+from metagraph.study.study_plan import CONDITION_TITLES, Study
 from metagraph.study.work import make, reopen, write
 
 if TYPE_CHECKING:

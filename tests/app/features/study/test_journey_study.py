@@ -21,8 +21,8 @@ from app.shell.actions import Command
 from metagraph.formats.store import open_project, read_project
 from metagraph.graph import edits, manual_edits
 from metagraph.study.log import read
-from metagraph.study.plan import read_study
 from metagraph.study.questions import sus_score
+from metagraph.study.study_plan import read_study
 
 pytestmark = [pytest.mark.window, pytest.mark.gl]
 ROOT = Path(__file__).resolve().parents[4]
@@ -325,7 +325,7 @@ app = prepare()
 from app.main import make_window
 from app.features.study.study_chooser import begin
 from metagraph.graph import edits
-from metagraph.study.plan import read_study
+from metagraph.study.study_plan import read_study
 window = make_window()
 window.show()
 guide = begin(window.shell, read_study(Path(sys.argv[1])), "P01")

@@ -13,7 +13,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from metagraph.errors import FileError
-from metagraph.study.plan import SCHEMA, from_text, read_study, schema_text
+from metagraph.study.study_plan import SCHEMA, from_text, read_study, schema_text
 
 SMALL = """\
 study: 1
