@@ -12,7 +12,7 @@ from metagraph.graph import anatomy
 from metagraph.graph.model import LAYERS, Project
 from metagraph.graph.words import MODES
 from metagraph.live import limits, messages
-from metagraph.live.poses import Stream
+from metagraph.live.pose_stream import Stream
 
 if TYPE_CHECKING:
     from metagraph.live.session import LiveSession

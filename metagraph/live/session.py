@@ -48,7 +48,7 @@ from metagraph.live.messages import (
     rounded,
     split,
 )
-from metagraph.live.poses import Stream, due
+from metagraph.live.pose_stream import Stream, due
 from metagraph.live.tape import Tape
 from metagraph.live.work import Client, Open, Out, Work, thinned
 from metagraph.playback.bml import Block, read_block

@@ -8,7 +8,7 @@ from metagraph.graph import requests as a
 from metagraph.graph.words import Layer
 from metagraph.live.camera_mimicry import Camera
 from metagraph.live.messages import Event, Reply
-from metagraph.live.poses import Frame, Stream
+from metagraph.live.pose_stream import Frame, Stream
 from metagraph.playback.life.track import Track
 from metagraph.playback.plan import Plan
 

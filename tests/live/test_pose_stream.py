@@ -8,7 +8,7 @@ import pytest
 from metagraph.graph.model import Project
 from metagraph.graph.requests import AskError
 from metagraph.live.messages import Poses
-from metagraph.live.poses import HEADER, Stream, due, frame
+from metagraph.live.pose_stream import HEADER, Stream, due, frame
 from metagraph.live.session import LiveSession
 from metagraph.playback.player import pose_at
 
