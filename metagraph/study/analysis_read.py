@@ -16,7 +16,7 @@ from metagraph.graph.model import Layer, Project
 from metagraph.study.klm import USUAL, Times, predicted
 from metagraph.study.log import Log, TaskRun, read
 from metagraph.study.normal_machine import NormalMachine, normal
-from metagraph.study.questions import BUILT_IN, sus_score, tlx_raw, tlx_weighted
+from metagraph.study.questionnaires import BUILT_IN, sus_score, tlx_raw, tlx_weighted
 from metagraph.study.score import TOLERANCE, Score, score
 from metagraph.study.score_jumps import with_jumps
 from metagraph.study.study_plan import Study, read_study

@@ -24,7 +24,7 @@ from metagraph.motion.clip import Clip
 from metagraph.motion.skeleton import Skeleton
 from metagraph.study.klm import USUAL
 from metagraph.study.log import wall_time
-from metagraph.study.questions import SUS, TLX
+from metagraph.study.questionnaires import SUS, TLX
 from metagraph.study.simulate import Simulated, Truth, Work, simulated
 from metagraph.study.simulate_work import drawn, slipped
 from metagraph.study.sitting import Phase, phases

@@ -12,7 +12,7 @@ from typing import Any, Literal
 
 from metagraph.errors import FileError
 from metagraph.study.log import Event, Log, Writer, read
-from metagraph.study.questions import Questionnaire
+from metagraph.study.questionnaires import Questionnaire
 from metagraph.study.study_plan import CONDITION_TITLES, Study
 from metagraph.study.tasks import steps
 

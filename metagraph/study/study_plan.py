@@ -23,7 +23,7 @@ from metagraph.formats.text import TextError, parse
 from metagraph.study.klm import Times
 from metagraph.study.log import NAME
 from metagraph.study.order import latin
-from metagraph.study.questions import BUILT_IN, Item, Name, Questionnaire, Scale, When
+from metagraph.study.questionnaires import BUILT_IN, Item, Name, Questionnaire, Scale, When
 
 VERSION = 1
 FILE = "study.yaml"

@@ -14,7 +14,7 @@ from metagraph.errors import FileError
 from metagraph.study.analysis import Results, analyse, compare, learning
 from metagraph.study.analysis_read import collect
 from metagraph.study.log import read
-from metagraph.study.questions import sus_score
+from metagraph.study.questionnaires import sus_score
 from metagraph.study.simulate import Truth, numbers, simulated
 from metagraph.study.simulate_files import TASKS, clips_of, write_study
 from metagraph.study.simulate_work import drawn, slipped

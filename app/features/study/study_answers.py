@@ -20,7 +20,7 @@ from PySide6.QtWidgets import (
     QWidget,
 )
 
-from metagraph.study.questions import BUTTONS, Item, Scale
+from metagraph.study.questionnaires import BUTTONS, Item, Scale
 
 _EDGE = 12  # pixels left and right of a line of marks
 

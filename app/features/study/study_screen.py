@@ -23,7 +23,7 @@ from PySide6.QtWidgets import (
 from app.features.study.study_answers import Question
 from app.look.theme import strengthen, theme
 from app.stage.session import Session
-from metagraph.study.questions import Questionnaire
+from metagraph.study.questionnaires import Questionnaire
 
 WIDE = 720  # pixels of a column that reads well
 Run = Callable[[], object]

@@ -21,7 +21,7 @@ from app.shell.actions import Command
 from metagraph.formats.store import open_project, read_project
 from metagraph.graph import edits, manual_edits
 from metagraph.study.log import read
-from metagraph.study.questions import sus_score
+from metagraph.study.questionnaires import sus_score
 from metagraph.study.study_plan import read_study
 
 pytestmark = [pytest.mark.window, pytest.mark.gl]

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import pytest
 
-from metagraph.study.questions import (
+from metagraph.study.questionnaires import (
     SUS,
     TLX,
     TLX_PAIRS,
