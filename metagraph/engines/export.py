@@ -10,7 +10,7 @@ from pathlib import Path
 import msgspec
 
 from metagraph.engines import contract as c
-from metagraph.engines.rig import rig_of, voices_of
+from metagraph.engines.export_rig import rig_of, voices_of
 from metagraph.errors import FileError
 from metagraph.formats.atomic import write_atomically
 from metagraph.graph import anatomy

@@ -9,7 +9,7 @@ import msgspec
 import numpy as np
 
 from metagraph.engines import contract as c
-from metagraph.engines.rig import LIFELESS, read_rig, read_voices
+from metagraph.engines.export_rig import LIFELESS, read_rig, read_voices
 from metagraph.errors import FileError
 from metagraph.formats.data import above, markov_from, skeleton_from
 from metagraph.formats.fields import DataError
