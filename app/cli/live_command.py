@@ -13,8 +13,8 @@ from typing import TYPE_CHECKING
 from metagraph.live import OSC_PORT, PORT
 
 if TYPE_CHECKING:
+    from metagraph.live.live_session import LiveSession
     from metagraph.live.server import Options, Server
-    from metagraph.live.session import LiveSession
     from metagraph.live.wire import Batch, Ready, Result
 
 
@@ -50,8 +50,8 @@ def run(options: Namespace) -> int:
     import gc
 
     from app.project.opening import open_whole
+    from metagraph.live.live_session import LiveSession
     from metagraph.live.server import Options, checked
-    from metagraph.live.session import LiveSession
 
     wanted = checked(
         Options(

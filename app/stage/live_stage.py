@@ -14,10 +14,10 @@ from PySide6.QtCore import QElapsedTimer, QObject, Qt, QTimer, Signal
 
 from metagraph.graph.model import Project
 from metagraph.graph.requests import AnyAsk, Performance
+from metagraph.live.live_session import LiveSession
 from metagraph.live.messages import Heard, Reply
 from metagraph.live.relay import Relay
 from metagraph.live.server import OSC_PORT, PORT, LiveError, Options
-from metagraph.live.session import LiveSession
 from metagraph.live.tape import Tape
 from metagraph.live.work import Out
 from metagraph.playback.extend_performance import Answer, answers

@@ -15,7 +15,7 @@ from metagraph.live import limits, messages
 from metagraph.live.pose_stream import Stream
 
 if TYPE_CHECKING:
-    from metagraph.live.session import LiveSession
+    from metagraph.live.live_session import LiveSession
 
 LINES, POINTS, ACTIONS = 2000, 500, 20000  # described at most
 

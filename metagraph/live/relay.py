@@ -19,7 +19,7 @@ from metagraph.live.server import LiveError, Options, Server, checked
 from metagraph.live.wire import Batch, Ready, Result, pack, unpack_batch, unpack_result
 
 if TYPE_CHECKING:
-    from metagraph.live.session import LiveSession
+    from metagraph.live.live_session import LiveSession
 
 STOP = 2.0  # seconds for the child to end by itself
 

@@ -12,7 +12,7 @@ from msgspec import Struct
 from metagraph.live.messages import Heard, encode
 
 if TYPE_CHECKING:
-    from metagraph.live.session import LiveSession
+    from metagraph.live.live_session import LiveSession
 
 
 class Batch(Struct, frozen=True, array_like=True):

@@ -146,9 +146,9 @@ def spawn(port: int, listed: bool, seconds: float) -> tuple[Any, Any]:
 
 def flood(seconds: float) -> None:
     from metagraph.formats.store import open_project
+    from metagraph.live.live_session import LiveSession
     from metagraph.live.relay import Relay
     from metagraph.live.server import Server
-    from metagraph.live.session import LiveSession
     from metagraph.live.wire import Batch, Result, exchange
     from metagraph.playback.player import pose_at
 
@@ -218,8 +218,8 @@ def resident() -> float:
 
 def soak(seconds: float, rate: int = 100) -> None:
     from metagraph.formats.store import open_project
+    from metagraph.live.live_session import LiveSession
     from metagraph.live.messages import Reply, encode
-    from metagraph.live.session import LiveSession
     from tests.live.traffic import mixed
 
     session = LiveSession(open_project(SAMPLE).project)

@@ -10,8 +10,8 @@ import pytest
 
 from metagraph.graph import edits
 from metagraph.graph.model import LAYERS, Project
+from metagraph.live.live_session import LiveSession
 from metagraph.live.messages import Reply, encode
-from metagraph.live.session import LiveSession
 from metagraph.playback.running_plan import perform
 from sample_clips.make.keypoints import View, played, seen
 

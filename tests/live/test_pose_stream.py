@@ -7,9 +7,9 @@ import pytest
 
 from metagraph.graph.model import Project
 from metagraph.graph.requests import AskError
+from metagraph.live.live_session import LiveSession
 from metagraph.live.messages import Poses
 from metagraph.live.pose_stream import HEADER, Stream, due, frame
-from metagraph.live.session import LiveSession
 from metagraph.playback.player import pose_at
 
 

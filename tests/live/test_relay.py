@@ -14,9 +14,9 @@ import pytest
 from websockets.sync.client import connect
 
 from metagraph.graph.model import Project
+from metagraph.live.live_session import LiveSession
 from metagraph.live.relay import Relay
 from metagraph.live.server import LiveError, Options
-from metagraph.live.session import LiveSession
 
 
 def until(condition: Any, relay: Relay, session: LiveSession, begin: float) -> None:

@@ -17,8 +17,8 @@ from metagraph.graph import edits
 from metagraph.graph import requests as a
 from metagraph.graph.model import LAYERS, Project
 from metagraph.live import limits
+from metagraph.live.live_session import LiveSession
 from metagraph.live.messages import Event, Reply, encode
-from metagraph.live.session import LiveSession
 from metagraph.live.work import Out
 from metagraph.playback.player import pose_at
 from metagraph.playback.running_plan import perform
