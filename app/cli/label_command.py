@@ -119,7 +119,7 @@ def _taught(options: Namespace, path: Path) -> tuple[Patterns | None, list[Examp
     a run is the same everywhere.
     """
     from app.project.pattern_files import read_patterns
-    from metagraph.suggest.words import merged
+    from metagraph.suggest.name_words import merged
 
     given = read_patterns(options.patterns) if options.patterns is not None else None
     if not options.learned:

@@ -12,7 +12,7 @@ from dataclasses import dataclass, field, replace
 from typing import Any, Final
 
 from metagraph.suggest.alike import Example, example_from
-from metagraph.suggest.words import learn
+from metagraph.suggest.name_words import learn
 from metagraph.suggest.words_patterns import Patterns, PatternsError, forget
 
 VERSION: Final = 1

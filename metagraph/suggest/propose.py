@@ -21,11 +21,11 @@ from metagraph.suggest.clip_measures import walks
 from metagraph.suggest.details import masked, rest_of, stroked, timed, weighted
 from metagraph.suggest.estimate import Belief
 from metagraph.suggest.motion_guess import MotionGuess, guess
+from metagraph.suggest.name_words import NameGuess, Patterns, read_names
 from metagraph.suggest.proposal import Place, Proposal, Proposals, Rest, plain, words_of
 from metagraph.suggest.stances import Shape, discovered, known
 from metagraph.suggest.traits import Traits, traits_of
 from metagraph.suggest.vote_fusion import Agreed, combine
-from metagraph.suggest.words import NameGuess, Patterns, read_names
 
 __all__ = [
     "SOURCES",

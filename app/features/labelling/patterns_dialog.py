@@ -45,7 +45,7 @@ from app.project.pattern_files import read_patterns, write_patterns
 from app.stage.session import Session
 from app.widgets.quiet_fields import ComboBox
 from metagraph.errors import FileError
-from metagraph.suggest.words import NameGuess, Patterns, PatternsError, merged, read_names
+from metagraph.suggest.name_words import NameGuess, Patterns, PatternsError, merged, read_names
 from metagraph.suggest.words_patterns import FIELDS
 
 FILTER = "Name patterns (*.json);;All files (*)"

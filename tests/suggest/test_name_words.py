@@ -16,7 +16,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from metagraph.graph.words import KINDS, LAYERS, LIMBS
-from metagraph.suggest.words import NameGuess, Patterns, PatternsError, forget, learn, read_names
+from metagraph.suggest.name_words import NameGuess, Patterns, PatternsError, forget, learn, read_names
 
 ROOT = Path(__file__).resolve().parents[2]
 SEATED = [
