@@ -19,7 +19,7 @@ from metagraph.live.messages import Heard, Reply
 from metagraph.live.relay import Relay
 from metagraph.live.server import OSC_PORT, PORT, LiveError, Options
 from metagraph.live.tape import Tape
-from metagraph.live.work import Out
+from metagraph.live.tick_work import Out
 from metagraph.playback.extend_performance import Answer, answers
 
 TICK = 16  # milliseconds

@@ -50,7 +50,7 @@ from metagraph.live.messages import (
 )
 from metagraph.live.pose_stream import Stream, due
 from metagraph.live.tape import Tape
-from metagraph.live.work import Client, Open, Out, Work, thinned
+from metagraph.live.tick_work import Client, Open, Out, Work, thinned
 from metagraph.playback.bml import Block, read_block
 from metagraph.playback.phases import phases
 from metagraph.playback.plan import Plan

@@ -19,7 +19,7 @@ from metagraph.graph.model import LAYERS, Project
 from metagraph.live import limits
 from metagraph.live.live_session import LiveSession
 from metagraph.live.messages import Event, Reply, encode
-from metagraph.live.work import Out
+from metagraph.live.tick_work import Out
 from metagraph.playback.player import pose_at
 from metagraph.playback.running_plan import perform
 from tests.live.traffic import mixed, valid
