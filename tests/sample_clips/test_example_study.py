@@ -8,7 +8,7 @@ from metagraph.formats.store import open_project, read_project
 from metagraph.graph.check import check
 from metagraph.study.sitting import phases
 from metagraph.study.study_plan import read_study
-from metagraph.study.work import make
+from metagraph.study.task_projects import make
 from sample_clips.make.study import FOLDER, TASKS, text
 
 

@@ -19,7 +19,7 @@ from metagraph.formats.store import save_project
 from metagraph.graph import edits
 from metagraph.study.sitting import Sitting
 from metagraph.study.study_plan import read_study
-from metagraph.study.work import make, reopen, write
+from metagraph.study.task_projects import make, reopen, write
 
 EDITS = 40  # in each task, each of them another stance
 

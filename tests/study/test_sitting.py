@@ -18,7 +18,7 @@ from metagraph.graph import edits
 from metagraph.study.log import read
 from metagraph.study.sitting import Sitting, SittingError, phases, where
 from metagraph.study.study_plan import read_study
-from metagraph.study.work import make, reopen, write
+from metagraph.study.task_projects import make, reopen, write
 from tests.processes import started
 
 ROOT = Path(__file__).resolve().parents[2]

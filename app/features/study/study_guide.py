@@ -31,7 +31,7 @@ from metagraph.errors import FileError
 from metagraph.graph.model import Project
 from metagraph.study.sitting import Phase, Sitting
 from metagraph.study.study_plan import CONDITION_TITLES, Study
-from metagraph.study.work import make, reopen, write
+from metagraph.study.task_projects import make, reopen, write
 
 if TYPE_CHECKING:
     from app.shell.context import Shell

@@ -371,7 +371,7 @@ def test_a_window_that_is_killed_loses_nothing(tiny, tmp_path, qapp):
         found = read(log)
         assert not found.problems and [e["n"] for e in found.events] == list(range(len(found.events)))
         assert sum(e["type"] == "edit" for e in found.events) in (made - 1, made, made + 1)
-    from metagraph.study.work import reopen
+    from metagraph.study.task_projects import reopen
 
     project = reopen(next(log.parent.glob("*training*.yaml")))[0].project
     assert len(project.graphs["head"].stances) in (made, made + 1)
