@@ -10,7 +10,7 @@ def contribute(shell: Shell) -> Contribution:
     session = shell.stage.session
 
     def make() -> None:
-        from app.features.twins.twin_command import make_twins
+        from app.features.twins.mirrored_twins import make_twins
 
         make_twins(shell)
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from app.features.twins.twin_command import FOLDER
+from app.features.twins.mirrored_twins import FOLDER
 
 pytestmark = [pytest.mark.window, pytest.mark.gl]
 
