@@ -356,7 +356,7 @@ def test_whatever_refers_to_whatever_is_read_or_told(tmp_path_factory, slots, ti
 
 
 def test_the_sample_annotation_says_that_it_is_made_up_and_is_what_its_maker_writes(tmp_path: Path) -> None:
-    from sample_clips.make.annotation import write
+    from sample_clips.make.sample_annotation import write
 
     write(tmp_path / "again.eaf")
     assert (tmp_path / "again.eaf").read_bytes() == SAMPLE.read_bytes()

@@ -1,4 +1,4 @@
-"""`python -m sample_clips.make.annotation`: make the sample annotation again, the same to the byte.
+"""`python -m sample_clips.make.sample_annotation`: make the sample annotation again, the same to the byte.
 
 What ELAN would hold had somebody annotated three minutes of talk as Borer et al. did (section 7.2): a tier
 for each arm, two for the head, one for the body, one for who speaks. Nobody was filmed: turns are laid out by
@@ -15,7 +15,7 @@ from pathlib import Path
 from metagraph.playback.choice import pick, uniform
 
 OUT = Path(__file__).resolve().parents[1] / "annotation" / "conversation.eaf"
-WORDS = """ Made up: nobody was filmed and nobody annotated this. Written by sample_clips/make/annotation.py as an example of
+WORDS = """ Made up: nobody was filmed and nobody annotated this. Written by sample_clips/make/sample_annotation.py as an example of
      what Metagraph reads, with the tiers of Borer et al., Animating an Autonomous 3D Talking Avatar, section 7.2. MIT licence. """
 # When each turn begins, seconds, and what this person does in it.
 TURNS = (
