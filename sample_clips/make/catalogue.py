@@ -4,10 +4,10 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
-from sample_clips.make import arms, body, head, tracks
+from sample_clips.make import arms, body_clips, head, tracks
 from sample_clips.make.recipe import Recipe
 
-RECIPES: tuple[Recipe, ...] = (*body.CLIPS, *arms.CLIPS, *head.CLIPS)
+RECIPES: tuple[Recipe, ...] = (*body_clips.CLIPS, *arms.CLIPS, *head.CLIPS)
 
 BASE = ("hands_at_sides__stance", 0)
 """The base pose: a clip's name and a frame."""
