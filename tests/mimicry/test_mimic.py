@@ -18,7 +18,7 @@ from metagraph.mimicry.keypoint_layouts import LAYOUTS, PLACE, POINTS, swap
 from metagraph.mimicry.mimic import Mimic
 from metagraph.mimicry.pose_measures import turned
 from metagraph.mimicry.tuning import JUDGING, Tuning
-from sample_clips.make.keypoints import SECONDS, View, played, seen, truth
+from sample_clips.make.sample_keypoints import SECONDS, View, played, seen, truth
 from tests.mimicry import people
 
 FPS = 25.0

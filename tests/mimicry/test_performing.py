@@ -14,7 +14,7 @@ from metagraph.mimicry.keypoint_layouts import POINTS, Keypoints
 from metagraph.mimicry.performing import goals, mimic_performance, placed
 from metagraph.playback.extend_performance import answer
 from metagraph.playback.running_plan import perform
-from sample_clips.make.keypoints import SECONDS, View, played, seen, truth
+from sample_clips.make.sample_keypoints import SECONDS, View, played, seen, truth
 from tests.mimicry import people
 
 

@@ -11,7 +11,7 @@ from metagraph.formats.keypoints import read_keypoints
 from metagraph.graph.model import LAYERS, Project
 from metagraph.mimicry.keypoint_layouts import LAYOUTS
 from metagraph.mimicry.mimic import Mimic
-from sample_clips.make.keypoints import OUT, SCRIPT, SECONDS, View, played, seen, truth
+from sample_clips.make.sample_keypoints import OUT, SCRIPT, SECONDS, View, played, seen, truth
 
 NAMES = ["conversation.mediapipe.jsonl", "conversation.openpose.json", "conversation.truth.json"]
 

@@ -1,4 +1,4 @@
-"""`python -m sample_clips.make.keypoints`: make the sample keypoints again, the same to the byte.
+"""`python -m sample_clips.make.sample_keypoints`: make the sample keypoints again, the same to the byte.
 
 What a pose estimator would find in a video of somebody who talks, had there been one: the sample character,
 with another person's proportions, performs a script of stances with gestures between them; a camera looks on;
@@ -29,7 +29,7 @@ from metagraph.playback.running_plan import perform
 SAMPLE = Path(__file__).resolve().parents[1] / "sample.metagraph.yaml"
 OUT = Path(__file__).resolve().parents[1] / "keypoints"
 NOTE = (
-    "Made up: nobody was filmed. Written by sample_clips/make/keypoints.py as an example of what "
+    "Made up: nobody was filmed. Written by sample_clips/make/sample_keypoints.py as an example of what "
     "Metagraph mimics. MIT licence."
 )
 SECONDS = 60.0
