@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 from sample_clips.make.phrases import arms_clip, beat, finger_roll
-from sample_clips.make.places import (
+from sample_clips.make.recipe import Recipe, go, home
+from sample_clips.make.stage_places import (
     BEAT,
     FLICK_READY,
     FLICKED,
@@ -13,7 +14,6 @@ from sample_clips.make.places import (
     POINT_YOU,
     READY,
 )
-from sample_clips.make.recipe import Recipe, go, home
 from sample_clips.make.stances import HIP
 
 S = "on_hips"

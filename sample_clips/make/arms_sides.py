@@ -7,7 +7,9 @@ from __future__ import annotations
 from typing import Any
 
 from sample_clips.make.phrases import arms_clip, beat
-from sample_clips.make.places import (
+from sample_clips.make.poses import Hand
+from sample_clips.make.recipe import HOME, Recipe, go, home
+from sample_clips.make.stage_places import (
     BEAT,
     BIG_BEAT,
     BIG_READY,
@@ -36,8 +38,6 @@ from sample_clips.make.places import (
     WEIGHED,
     WIDE_APART,
 )
-from sample_clips.make.poses import Hand
-from sample_clips.make.recipe import HOME, Recipe, go, home
 from sample_clips.make.stances import SIDE
 from sample_clips.make.tracks import Step
 
