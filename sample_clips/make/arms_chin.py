@@ -6,8 +6,8 @@ from typing import Any
 
 import numpy as np
 
+from sample_clips.make.key_poses import Hand, elbow_of
 from sample_clips.make.phrases import arms_clip
-from sample_clips.make.poses import Hand, elbow_of
 from sample_clips.make.recipe import Recipe, go, home
 from sample_clips.make.rig import REST, at
 from sample_clips.make.stage_places import lifted

@@ -3,8 +3,8 @@
 from __future__ import annotations
 
 from sample_clips.make.hands import SHAPES, Finger
+from sample_clips.make.key_poses import Hand
 from sample_clips.make.phrases import arms_clip
-from sample_clips.make.poses import Hand
 from sample_clips.make.recipe import Recipe, go, home
 from sample_clips.make.stage_places import BEAT, LOW, OFFERING, OPEN_PALM, READY, SHRUGGED
 from sample_clips.make.stances import CLASP_OVER, CLASP_UNDER

@@ -6,8 +6,8 @@ from __future__ import annotations
 
 from typing import Any
 
+from sample_clips.make.key_poses import Hand
 from sample_clips.make.phrases import arms_clip, beat
-from sample_clips.make.poses import Hand
 from sample_clips.make.recipe import HOME, Recipe, go, home
 from sample_clips.make.stage_places import (
     BEAT,

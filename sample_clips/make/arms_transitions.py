@@ -7,7 +7,7 @@ another stance, as a person's would.
 from __future__ import annotations
 
 from sample_clips.make import arms_chin, arms_clasped, arms_crossed, arms_hips
-from sample_clips.make.poses import Hand
+from sample_clips.make.key_poses import Hand
 from sample_clips.make.recipe import HOME, Recipe, go, home
 from sample_clips.make.stances import ARMS, SIDE, SUPPORT
 from sample_clips.make.tracks import Step

@@ -9,7 +9,7 @@ from typing import Any
 
 import numpy as np
 
-from sample_clips.make.poses import Foot, Posture
+from sample_clips.make.key_poses import Foot, Posture
 from sample_clips.make.recipe import HOME, Recipe, go, home
 from sample_clips.make.rig import Angles
 from sample_clips.make.stances import BODY

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import Any
 
-from sample_clips.make.poses import Hand
+from sample_clips.make.key_poses import Hand
 from sample_clips.make.recipe import Recipe, go
 from sample_clips.make.stage_places import lifted
 from sample_clips.make.tracks import Step

@@ -9,8 +9,8 @@ from typing import Any
 import numpy as np
 
 from metagraph.motion.clip import Clip
-from sample_clips.make import poses, secondary, tracks
-from sample_clips.make.poses import Posture
+from sample_clips.make import key_poses, secondary, tracks
+from sample_clips.make.key_poses import Posture
 from sample_clips.make.rig import FPS, REACH, REST, SIDES, SKELETON, Array, at
 from sample_clips.make.stances import BASE, PINS, STANCES
 from sample_clips.make.tracks import Step
@@ -160,13 +160,13 @@ def animate(recipe: Recipe) -> Clip:
     rotations = secondary.life(rotations, seed, drifts(recipe), recipe.kind == "stance")
     if recipe.layer == "arms":
         rotations = _arms(recipe, rotations)
-    base, _ = poses.legs(poses.solve(BASE)[None], poses.channels(BASE)[None])
-    root = np.broadcast_to(REST[0] + poses.channels(BASE)[:3], (frames, 3))
+    base, _ = key_poses.legs(key_poses.solve(BASE)[None], key_poses.channels(BASE)[None])
+    root = np.broadcast_to(REST[0] + key_poses.channels(BASE)[:3], (frames, 3))
     if recipe.layer == "body":
         if recipe.kind == "stance":
             sway = tracks.wander(np.random.default_rng(seed + 1), frames, 0.9, 3, True)
             numbers[:, :3] += sway * (0.0065, 0.0012, 0.0045) * recipe.life
-        rotations, root = poses.legs(rotations, numbers)
+        rotations, root = key_poses.legs(rotations, numbers)
     only = [at(name) for name in REACH[recipe.layer]]
     out = np.broadcast_to(base, (frames, len(SKELETON), 4)).copy()
     out[:, only] = rotations[:, only]

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from sample_clips.make import hands
-from sample_clips.make.poses import Hand
+from sample_clips.make.key_poses import Hand
 
 LOW = (0.30, -0.9, -0.35)  # the elbow hangs
 WIDE = (0.75, -0.6, -0.25)  # the elbow stands off

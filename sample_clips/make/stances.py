@@ -8,7 +8,7 @@ from __future__ import annotations
 
 from dataclasses import replace
 
-from sample_clips.make.poses import Foot, Hand, Posture
+from sample_clips.make.key_poses import Foot, Hand, Posture
 
 SIDE = Hand(at=(0.236, 0.893, 0.012), turn=-16, bend=6, shape="hanging", elbow=(0.35, -0.2, -0.9))
 BASE = Posture(left=SIDE, right=SIDE)

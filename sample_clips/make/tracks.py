@@ -17,7 +17,7 @@ from typing import Any
 import numpy as np
 
 from metagraph.motion import rotation
-from sample_clips.make import poses
+from sample_clips.make import key_poses
 from sample_clips.make.rig import FPS, JOINTS, SIDES, Array, arm_joints, at
 from sample_clips.make.skeleton import FINGERS
 
@@ -155,13 +155,13 @@ def lag_array(layer: str, later_side: str = "", later: float = 0.0) -> Array:
 
 
 def blend(
-    postures: Sequence[poses.Posture], moves: Sequence[Move], times: Array, lags: Array
+    postures: Sequence[key_poses.Posture], moves: Sequence[Move], times: Array, lags: Array
 ) -> tuple[Array, Array]:
     """Return rotations `[F, J, 4]` and channels `[F, 13]` of moves through postures (one more than there are
     moves).
     """
-    keyed = np.stack([poses.solve(p) for p in postures])
-    numbers = np.stack([poses.channels(p) for p in postures])
+    keyed = np.stack([key_poses.solve(p) for p in postures])
+    numbers = np.stack([key_poses.channels(p) for p in postures])
     turns = rotation.log(rotation.multiply(rotation.conjugate(keyed[:-1]), keyed[1:]))
     out = np.broadcast_to(keyed[0], (len(times), JOINTS, 4))
     plain = np.broadcast_to(numbers[0], (len(times), len(numbers[0]))).copy()

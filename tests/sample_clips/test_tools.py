@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 from metagraph.motion import rotation
-from sample_clips.make import ik, poses, secondary, tracks
+from sample_clips.make import ik, key_poses, secondary, tracks
 from sample_clips.make.hands import SHAPES, finger_rotations
 from sample_clips.make.recipe import Recipe, animate, go, home
 from sample_clips.make.rig import REST, SIDES, SKELETON, at
@@ -44,16 +44,16 @@ def test_two_bones_bear_a_target_at_their_own_root() -> None:
 
 def test_an_arm_s_wrist_is_where_the_posture_says_and_both_sides_mirror() -> None:
     posture = replace(BASE, left=HIP, right=HIP)
-    turns = poses.solve(posture)
+    turns = key_poses.solve(posture)
     _, places = SKELETON.globals(type(SKELETON.rest)(turns, SKELETON.rest_translations))
     assert np.allclose(places[at("LeftHand")], HIP.at, atol=1e-6)
     assert np.allclose(places[at("RightHand")], np.array(HIP.at) * [-1, 1, 1], atol=1e-6)
 
 
 def test_feet_stay_where_they_are_while_the_hips_move() -> None:
-    numbers = np.tile(poses.channels(BASE), (5, 1))
+    numbers = np.tile(key_poses.channels(BASE), (5, 1))
     numbers[:, 0] = np.linspace(-0.05, 0.05, 5)
-    turns, root = poses.legs(np.tile(poses.solve(BASE), (5, 1, 1)), numbers)
+    turns, root = key_poses.legs(np.tile(key_poses.solve(BASE), (5, 1, 1)), numbers)
     translations = np.tile(SKELETON.rest_translations, (5, 1, 1))
     translations[:, 0] = root
     _, places = SKELETON.globals(type(SKELETON.rest)(turns, translations))
@@ -115,7 +115,7 @@ def test_a_recipe_of_one_step_home_stands_still_but_for_its_life() -> None:
 
 
 def test_a_pinned_hand_stays_where_it_was_while_the_torso_bends() -> None:
-    turns = np.tile(poses.solve(replace(BASE, left=HIP, right=HIP)), (4, 1, 1))
+    turns = np.tile(key_poses.solve(replace(BASE, left=HIP, right=HIP)), (4, 1, 1))
     turns[:, at("Chest")] = rotation.from_axis_angle(np.array([1.0, 0, 0]), np.radians([0.0, 2, 4, 6]))
     _, loose = secondary.globals_of(turns)
     _, held = secondary.globals_of(secondary.pin(turns, "Left", "Hips"))
