@@ -7,9 +7,9 @@ from typing import Any
 import numpy as np
 
 from sample_clips.make.key_poses import Hand, elbow_of
+from sample_clips.make.mannequin_rig import REST, at
 from sample_clips.make.phrases import arms_clip
 from sample_clips.make.recipe import Recipe, go, home
-from sample_clips.make.rig import REST, at
 from sample_clips.make.stage_places import lifted
 from sample_clips.make.stances import CHIN
 

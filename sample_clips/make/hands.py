@@ -10,7 +10,7 @@ from __future__ import annotations
 import numpy as np
 
 from metagraph.motion import rotation
-from sample_clips.make.rig import ARM_AXIS, PALM, THUMB_SIDE, Array, about
+from sample_clips.make.mannequin_rig import ARM_AXIS, PALM, THUMB_SIDE, Array, about
 from sample_clips.make.skeleton import FINGERS
 
 Finger = tuple[float, float, float, float]

@@ -11,7 +11,7 @@ from typing import Any
 import numpy as np
 
 from metagraph.motion import rotation
-from sample_clips.make.rig import ARM_AXIS, PALM, REST, SKELETON, Array, about, at
+from sample_clips.make.mannequin_rig import ARM_AXIS, PALM, REST, SKELETON, Array, about, at
 
 FOREARM_SHARE = 0.65  # of a hand's turning is done by the forearm, the rest shows at the wrist
 FULL_REACH = 0.9985  # of a limb's length: a limb that is quite straight snaps

@@ -15,7 +15,7 @@ import numpy as np
 
 from metagraph.motion import rotation
 from sample_clips.make import hands, ik
-from sample_clips.make.rig import (
+from sample_clips.make.mannequin_rig import (
     ARM_AXIS,
     JOINTS,
     NECK,

@@ -11,7 +11,7 @@ import numpy as np
 from metagraph.motion import rotation
 from metagraph.motion.clip import Clip
 from sample_clips.make import ik
-from sample_clips.make.rig import ARM_AXIS, FPS, PALM, SIDES, SKELETON, Array, at, mirrored
+from sample_clips.make.mannequin_rig import ARM_AXIS, FPS, PALM, SIDES, SKELETON, Array, at, mirrored
 from sample_clips.make.skeleton import FINGERS
 
 # Torso: joint, height above it, half width, half depth, forward shift; metres.

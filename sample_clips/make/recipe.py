@@ -11,7 +11,7 @@ import numpy as np
 from metagraph.motion.clip import Clip
 from sample_clips.make import key_poses, secondary, tracks
 from sample_clips.make.key_poses import Posture
-from sample_clips.make.rig import FPS, REACH, REST, SIDES, SKELETON, Array, at
+from sample_clips.make.mannequin_rig import FPS, REACH, REST, SIDES, SKELETON, Array, at
 from sample_clips.make.stances import BASE, PINS, STANCES
 from sample_clips.make.tracks import Step
 

@@ -9,7 +9,7 @@ import numpy as np
 from metagraph.motion import rotation
 from metagraph.motion.skeleton import Pose
 from sample_clips.make import ik
-from sample_clips.make.rig import (
+from sample_clips.make.mannequin_rig import (
     ARM_AXIS,
     FPS,
     PALM,

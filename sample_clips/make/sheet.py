@@ -9,8 +9,8 @@ import numpy as np
 
 from metagraph.motion import rotation
 from metagraph.motion.skeleton import Pose
+from sample_clips.make.mannequin_rig import SKELETON, Array, at
 from sample_clips.make.measure import TORSO
-from sample_clips.make.rig import SKELETON, Array, at
 
 RADII = {
     "UpperLeg": (0.078, 0.052),

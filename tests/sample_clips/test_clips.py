@@ -12,9 +12,9 @@ from metagraph.formats.gltf import read_gltf_clips
 from metagraph.motion import rotation
 from metagraph.motion.clip import Clip
 from sample_clips.make.catalogue import BASE, RECIPES, Entry, catalogue
+from sample_clips.make.mannequin_rig import FPS, REACH, SKELETON, at
 from sample_clips.make.measure import Measures, measure
 from sample_clips.make.recipe import animate
-from sample_clips.make.rig import FPS, REACH, SKELETON, at
 
 FOLDER = Path(__file__).resolve().parents[2] / "sample_clips" / "clips"
 ENTRIES = {entry.name: entry for entry in catalogue()}
