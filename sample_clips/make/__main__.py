@@ -13,8 +13,8 @@ from pathlib import Path
 
 from metagraph.formats.gltf_writer import write_glb
 from sample_clips.make.catalogue import RECIPES
+from sample_clips.make.clip_sheet import sheet
 from sample_clips.make.recipe import animate
-from sample_clips.make.sheet import sheet
 
 CLIPS = Path(__file__).resolve().parents[1] / "clips"
 TOLERANCE = 1.5e-4  # of a quaternion's component, some 0.02 degrees: what keys are thinned out to
