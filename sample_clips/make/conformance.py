@@ -25,7 +25,7 @@ from metagraph.motion.character_mesh import Character, Material, Surface
 from metagraph.motion.clip import Clip
 from metagraph.motion.skeleton import Skeleton
 from metagraph.playback.life.voice import voice_from_text
-from sample_clips.make.skeleton import mannequin_skeleton
+from sample_clips.make.mannequin_skeleton import mannequin_skeleton
 
 Array = NDArray[np.float64]
 

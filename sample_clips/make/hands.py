@@ -11,7 +11,7 @@ import numpy as np
 
 from metagraph.motion import rotation
 from sample_clips.make.mannequin_rig import ARM_AXIS, PALM, THUMB_SIDE, Array, about
-from sample_clips.make.skeleton import FINGERS
+from sample_clips.make.mannequin_skeleton import FINGERS
 
 Finger = tuple[float, float, float, float]
 

@@ -24,9 +24,9 @@ from numpy.typing import NDArray
 from metagraph.motion.character_mesh import Character, Material, Surface
 from preview.mesh import lathe
 from sample_clips.make import shapes
+from sample_clips.make.mannequin_skeleton import ARM, FINGERS
 from sample_clips.make.sculpt import Field, gradient, polygonise, project, remesh, union
 from sample_clips.make.shapes import EYE_RADIUS, JOINT, LID_RADIUS, MOUTH_HALF, SKELETON, mouth_line, step
-from sample_clips.make.skeleton import ARM, FINGERS
 
 Array = NDArray[Any]
 

@@ -12,7 +12,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from metagraph.motion import rotation
-from sample_clips.make.skeleton import ARM, FINGERS, mannequin_skeleton
+from sample_clips.make.mannequin_skeleton import ARM, FINGERS, mannequin_skeleton
 
 Array = NDArray[Any]
 Angles = tuple[float, float, float]

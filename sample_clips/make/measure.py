@@ -12,7 +12,7 @@ from metagraph.motion import rotation
 from metagraph.motion.clip import Clip
 from sample_clips.make import ik
 from sample_clips.make.mannequin_rig import ARM_AXIS, FPS, PALM, SIDES, SKELETON, Array, at, mirrored
-from sample_clips.make.skeleton import FINGERS
+from sample_clips.make.mannequin_skeleton import FINGERS
 
 # Torso: joint, height above it, half width, half depth, forward shift; metres.
 TORSO = (

@@ -22,7 +22,7 @@ from sample_clips.make.mannequin_rig import (
     flipped,
     mirrored,
 )
-from sample_clips.make.skeleton import FINGERS
+from sample_clips.make.mannequin_skeleton import FINGERS
 from sample_clips.make.tracks import ease, wander
 
 DRAG = 9.0  # degrees the hand lags per metre a second of its wrist

@@ -14,6 +14,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from sample_clips.make.mannequin_skeleton import ARM, FINGERS, mannequin_skeleton
 from sample_clips.make.sculpt import (
     Field,
     common,
@@ -26,7 +27,6 @@ from sample_clips.make.sculpt import (
     union,
     without,
 )
-from sample_clips.make.skeleton import ARM, FINGERS, mannequin_skeleton
 
 Array = NDArray[Any]
 

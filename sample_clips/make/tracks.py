@@ -19,7 +19,7 @@ import numpy as np
 from metagraph.motion import rotation
 from sample_clips.make import key_poses
 from sample_clips.make.mannequin_rig import FPS, JOINTS, SIDES, Array, arm_joints, at
-from sample_clips.make.skeleton import FINGERS
+from sample_clips.make.mannequin_skeleton import FINGERS
 
 LEAD_IN = 0.05  # seconds every clip rests in its first posture, so that a blend has something to hold on to
 REST_OUT = 0.02  # and in its last

@@ -29,7 +29,7 @@ from metagraph.formats.clips import import_clips  # noqa: E402
 from metagraph.formats.gltf import read_gltf_clips, write_glb  # noqa: E402
 from metagraph.motion import rotation  # noqa: E402
 from metagraph.motion.clip import Clip  # noqa: E402
-from sample_clips.make.skeleton import mannequin_skeleton  # noqa: E402
+from sample_clips.make.mannequin_skeleton import mannequin_skeleton  # noqa: E402
 
 DATA = ROOT.parent / "shared" / "data"
 FRAMES, ROUNDS = 10_000, 5

@@ -26,7 +26,7 @@ from metagraph.motion.joint_map import proposed  # noqa: E402
 from metagraph.motion.mirror import mirror, pairs_of  # noqa: E402
 from metagraph.motion.retarget import retarget  # noqa: E402
 from metagraph.motion.skeleton import Skeleton  # noqa: E402
-from sample_clips.make.skeleton import mannequin_skeleton  # noqa: E402
+from sample_clips.make.mannequin_skeleton import mannequin_skeleton  # noqa: E402
 
 CLIPS, FRAMES, ROUNDS = 150, 91, 3
 

@@ -24,7 +24,7 @@ from metagraph.motion import rotation
 from metagraph.motion.adopt import difference
 from metagraph.motion.clip import Clip
 from metagraph.motion.skeleton import Skeleton
-from sample_clips.make.skeleton import mannequin_skeleton
+from sample_clips.make.mannequin_skeleton import mannequin_skeleton
 
 ROOT_CHANNELS = "6 Xposition Yposition Zposition Zrotation Xrotation Yrotation"
 

@@ -14,7 +14,7 @@ from metagraph.formats.clips import SUFFIXES, digest, find_clip_files, import_cl
 from metagraph.formats.gltf import write_glb
 from metagraph.motion import rotation
 from metagraph.motion.clip import Clip
-from sample_clips.make.skeleton import mannequin_skeleton
+from sample_clips.make.mannequin_skeleton import mannequin_skeleton
 from tests import zoo
 
 SKELETON = mannequin_skeleton()

@@ -20,7 +20,7 @@ from metagraph.formats.gltf_skeleton import compose
 from metagraph.motion import rotation
 from metagraph.motion.character_mesh import Character, Material, Surface
 from metagraph.motion.clip import Clip
-from sample_clips.make.skeleton import mannequin_skeleton
+from sample_clips.make.mannequin_skeleton import mannequin_skeleton
 from tests import zoo
 
 COMPONENTS = {"i1": 5120, "u1": 5121, "<i2": 5122, "<u2": 5123, "<u4": 5125, "<f4": 5126}

@@ -20,7 +20,7 @@ from metagraph.motion.roles import (
     missing_roles,
 )
 from metagraph.motion.skeleton import Skeleton
-from sample_clips.make.skeleton import mannequin_skeleton
+from sample_clips.make.mannequin_skeleton import mannequin_skeleton
 from tests.zoo import ANIMALS, FIGURE
 
 

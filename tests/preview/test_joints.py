@@ -7,7 +7,7 @@ import pytest
 
 from metagraph.motion.skeleton import Skeleton
 from preview import joints
-from sample_clips.make.skeleton import mannequin_skeleton
+from sample_clips.make.mannequin_skeleton import mannequin_skeleton
 
 
 def rig(*rows: tuple[str, str | None]) -> Skeleton:

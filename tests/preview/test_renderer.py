@@ -13,7 +13,7 @@ from preview.figure import SkinnedFigure, StickFigure
 from preview.gpu import KEEP_MESHES
 from preview.offscreen import Offscreen
 from preview.scene import DARK, LIGHT, Actor, Scene
-from sample_clips.make.skeleton import mannequin_skeleton
+from sample_clips.make.mannequin_skeleton import mannequin_skeleton
 from tests.preview.conftest import chain
 from tests.preview.test_figure import character
 

@@ -9,7 +9,7 @@ from metagraph.motion import rotation
 from metagraph.motion.clip import Clip
 from preview.figure import StickFigure
 from preview.thumbnail import clip_thumbnail, telling_frame, thumbnail
-from sample_clips.make.skeleton import mannequin_skeleton
+from sample_clips.make.mannequin_skeleton import mannequin_skeleton
 
 SKELETON = mannequin_skeleton()
 

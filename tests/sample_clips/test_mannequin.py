@@ -10,7 +10,7 @@ import pytest
 from metagraph.formats.gltf import read_character
 from metagraph.motion import rotation
 from sample_clips.make import mannequin, sculpt, shapes
-from sample_clips.make.skeleton import mannequin_skeleton
+from sample_clips.make.mannequin_skeleton import mannequin_skeleton
 
 FILE = Path(__file__).parents[2] / "sample_clips" / "mannequin.glb"
 
