@@ -11,7 +11,7 @@ from sample_clips.make.mannequin_rig import REST, at
 from sample_clips.make.phrases import arms_clip
 from sample_clips.make.recipe import Recipe, go, home
 from sample_clips.make.stage_places import lifted
-from sample_clips.make.stances import CHIN
+from sample_clips.make.stance_clips import CHIN
 
 S = "hand_to_chin"
 SHOULDER = REST[at("LeftUpperArm")]

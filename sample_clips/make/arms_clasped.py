@@ -7,7 +7,7 @@ from sample_clips.make.key_poses import Hand
 from sample_clips.make.phrases import arms_clip
 from sample_clips.make.recipe import Recipe, go, home
 from sample_clips.make.stage_places import BEAT, LOW, OFFERING, OPEN_PALM, READY, SHRUGGED
-from sample_clips.make.stances import CLASP_OVER, CLASP_UNDER
+from sample_clips.make.stance_clips import CLASP_OVER, CLASP_UNDER
 
 S = "hands_clasped"
 APART = Hand(at=(0.130, 1.035, 0.245), turn=-14, bend=6, shape="relaxed", elbow=(0.6, -0.6, -0.4))

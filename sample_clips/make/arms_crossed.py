@@ -6,7 +6,7 @@ from sample_clips.make.key_poses import Hand
 from sample_clips.make.phrases import arms_clip, finger_roll
 from sample_clips.make.recipe import HOME, Recipe, go, home
 from sample_clips.make.stage_places import OPEN_PALM, POINT_COCKED, POINT_YOU, READY, WIDE
-from sample_clips.make.stances import CROSS_OVER, CROSS_UNDER
+from sample_clips.make.stance_clips import CROSS_OVER, CROSS_UNDER
 
 S = "arms_crossed"
 OUT = Hand(

@@ -14,7 +14,7 @@ from sample_clips.make.stage_places import (
     POINT_YOU,
     READY,
 )
-from sample_clips.make.stances import HIP
+from sample_clips.make.stance_clips import HIP
 
 S = "on_hips"
 OFF = HIP.moved(0.055, 0.005, 0.055, shape="relaxed", turn=0)  # just off the hip, on the way out and back

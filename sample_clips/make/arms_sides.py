@@ -38,7 +38,7 @@ from sample_clips.make.stage_places import (
     WEIGHED,
     WIDE_APART,
 )
-from sample_clips.make.stances import SIDE
+from sample_clips.make.stance_clips import SIDE
 from sample_clips.make.tracks import Step
 
 

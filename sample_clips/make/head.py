@@ -7,7 +7,7 @@ from typing import Any
 import numpy as np
 
 from sample_clips.make.recipe import Recipe, go, home
-from sample_clips.make.stances import HEAD
+from sample_clips.make.stance_clips import HEAD
 from sample_clips.make.tracks import Step
 
 

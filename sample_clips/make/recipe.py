@@ -12,7 +12,7 @@ from metagraph.motion.clip import Clip
 from sample_clips.make import key_poses, secondary, tracks
 from sample_clips.make.key_poses import Posture
 from sample_clips.make.mannequin_rig import FPS, REACH, REST, SIDES, SKELETON, Array, at
-from sample_clips.make.stances import BASE, PINS, STANCES
+from sample_clips.make.stance_clips import BASE, PINS, STANCES
 from sample_clips.make.tracks import Step
 
 HOME: Any = object()

@@ -12,7 +12,7 @@ from sample_clips.make import ik, key_poses, secondary, tracks
 from sample_clips.make.hands import SHAPES, finger_rotations
 from sample_clips.make.mannequin_rig import REST, SIDES, SKELETON, at
 from sample_clips.make.recipe import Recipe, animate, go, home
-from sample_clips.make.stances import BASE, HIP
+from sample_clips.make.stance_clips import BASE, HIP
 from sample_clips.make.tracks import Move, Step
 
 
