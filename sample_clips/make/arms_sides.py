@@ -7,6 +7,7 @@ from __future__ import annotations
 from typing import Any
 
 from sample_clips.make.key_poses import Hand
+from sample_clips.make.motion_tracks import Step
 from sample_clips.make.phrases import arms_clip, beat
 from sample_clips.make.recipe import HOME, Recipe, go, home
 from sample_clips.make.stage_places import (
@@ -39,7 +40,6 @@ from sample_clips.make.stage_places import (
     WIDE_APART,
 )
 from sample_clips.make.stance_clips import SIDE
-from sample_clips.make.tracks import Step
 
 
 def gesture(action: str, limb: str, *steps: Step, tags: str = "", **more: Any) -> Recipe:

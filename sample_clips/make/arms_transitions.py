@@ -8,9 +8,9 @@ from __future__ import annotations
 
 from sample_clips.make import arms_chin, arms_clasped, arms_crossed, arms_hips
 from sample_clips.make.key_poses import Hand
+from sample_clips.make.motion_tracks import Step
 from sample_clips.make.recipe import HOME, Recipe, go, home
 from sample_clips.make.stance_clips import ARMS, SIDE, SUPPORT
-from sample_clips.make.tracks import Step
 
 # Where both hands (left, right) are just before they arrive in a stance and just after they leave it.
 NEAR: dict[str, tuple[Hand, Hand]] = {

@@ -11,9 +11,9 @@ import numpy as np
 
 from sample_clips.make.key_poses import Foot, Posture
 from sample_clips.make.mannequin_rig import Angles
+from sample_clips.make.motion_tracks import Step
 from sample_clips.make.recipe import HOME, Recipe, go, home
 from sample_clips.make.stance_clips import BODY
-from sample_clips.make.tracks import Step
 
 NONE: Angles = (0.0, 0.0, 0.0)
 

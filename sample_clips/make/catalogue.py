@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
-from sample_clips.make import arms, body_clips, head, tracks
+from sample_clips.make import arms, body_clips, head, motion_tracks
 from sample_clips.make.recipe import Recipe
 
 RECIPES: tuple[Recipe, ...] = (*body_clips.CLIPS, *arms.CLIPS, *head.CLIPS)
@@ -40,7 +40,7 @@ class Entry:
 
 
 BLENDS = {"stance": (0.30, 0.30), "gesture": (0.20, 0.25), "fidget": (0.25, 0.30), "transition": (0.15, 0.20)}
-MOTION_STARTS = tracks.LEAD_IN  # every clip but a stance rests so long before anything moves
+MOTION_STARTS = motion_tracks.LEAD_IN  # every clip but a stance rests so long before anything moves
 
 
 def catalogue() -> tuple[Entry, ...]:
@@ -50,7 +50,9 @@ def catalogue() -> tuple[Entry, ...]:
 
 def _entry(recipe: Recipe) -> Entry:
     seconds = (
-        tracks.schedule(recipe.steps, tracks.lead_of(recipe.layer))[1] if recipe.steps else recipe.seconds
+        motion_tracks.schedule(recipe.steps, motion_tracks.lead_of(recipe.layer))[1]
+        if recipe.steps
+        else recipe.seconds
     )
     start = 0.0 if recipe.kind == "stance" else MOTION_STARTS
     blend_in, blend_out = BLENDS[recipe.kind]

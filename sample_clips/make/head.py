@@ -6,9 +6,9 @@ from typing import Any
 
 import numpy as np
 
+from sample_clips.make.motion_tracks import Step
 from sample_clips.make.recipe import Recipe, go, home
 from sample_clips.make.stance_clips import HEAD
-from sample_clips.make.tracks import Step
 
 
 def head_clip(

@@ -5,9 +5,9 @@ from __future__ import annotations
 from typing import Any
 
 from sample_clips.make.key_poses import Hand
+from sample_clips.make.motion_tracks import Step
 from sample_clips.make.recipe import Recipe, go
 from sample_clips.make.stage_places import lifted
-from sample_clips.make.tracks import Step
 
 LIMBS = {"lf": "left", "rt": "right", "bt": "both"}
 

@@ -9,11 +9,11 @@ from typing import Any
 import numpy as np
 
 from metagraph.motion.clip import Clip
-from sample_clips.make import key_poses, secondary, tracks
+from sample_clips.make import key_poses, motion_tracks, secondary
 from sample_clips.make.key_poses import Posture
 from sample_clips.make.mannequin_rig import FPS, REACH, REST, SIDES, SKELETON, Array, at
+from sample_clips.make.motion_tracks import Step
 from sample_clips.make.stance_clips import BASE, PINS, STANCES
-from sample_clips.make.tracks import Step
 
 HOME: Any = object()
 """As a step's `left`, `spine` ...: back to how the stance has it."""
@@ -144,19 +144,19 @@ def animate(recipe: Recipe) -> Clip:
     """
     postures = postures_of(recipe)
     if recipe.steps:
-        moves, seconds = tracks.schedule(recipe.steps, tracks.lead_of(recipe.layer))
+        moves, seconds = motion_tracks.schedule(recipe.steps, motion_tracks.lead_of(recipe.layer))
     else:
         moves, seconds = [], recipe.seconds
     frames = round(seconds * FPS) + 1
     times = np.arange(frames) / FPS
-    seed = tracks.seed_of(recipe.name)
+    seed = motion_tracks.seed_of(recipe.name)
     later = recipe.later or ("Left" if seed % 2 else "Right")
-    lags = tracks.lag_array(
+    lags = motion_tracks.lag_array(
         recipe.layer,
         later,
         (0.02 + 0.04 * (seed % 97) / 97) if recipe.limb == "both" and not recipe.together else 0.0,
     )
-    rotations, numbers = tracks.blend(postures, moves, times, lags)
+    rotations, numbers = motion_tracks.blend(postures, moves, times, lags)
     rotations = secondary.life(rotations, seed, drifts(recipe), recipe.kind == "stance")
     if recipe.layer == "arms":
         rotations = _arms(recipe, rotations)
@@ -164,7 +164,7 @@ def animate(recipe: Recipe) -> Clip:
     root = np.broadcast_to(REST[0] + key_poses.channels(BASE)[:3], (frames, 3))
     if recipe.layer == "body":
         if recipe.kind == "stance":
-            sway = tracks.wander(np.random.default_rng(seed + 1), frames, 0.9, 3, True)
+            sway = motion_tracks.wander(np.random.default_rng(seed + 1), frames, 0.9, 3, True)
             numbers[:, :3] += sway * (0.0065, 0.0012, 0.0045) * recipe.life
         rotations, root = key_poses.legs(rotations, numbers)
     only = [at(name) for name in REACH[recipe.layer]]

@@ -23,7 +23,7 @@ from sample_clips.make.mannequin_rig import (
     mirrored,
 )
 from sample_clips.make.mannequin_skeleton import FINGERS
-from sample_clips.make.tracks import ease, wander
+from sample_clips.make.motion_tracks import ease, wander
 
 DRAG = 9.0  # degrees the hand lags per metre a second of its wrist
 DRAG_MOST = 22.0  # degrees

@@ -8,12 +8,12 @@ import numpy as np
 import pytest
 
 from metagraph.motion import rotation
-from sample_clips.make import ik, key_poses, secondary, tracks
+from sample_clips.make import ik, key_poses, motion_tracks, secondary
 from sample_clips.make.hands import SHAPES, finger_rotations
 from sample_clips.make.mannequin_rig import REST, SIDES, SKELETON, at
+from sample_clips.make.motion_tracks import Move, Step
 from sample_clips.make.recipe import Recipe, animate, go, home
 from sample_clips.make.stance_clips import BASE, HIP
-from sample_clips.make.tracks import Move, Step
 
 
 def ends(first: np.ndarray, second: np.ndarray, upper: float, lower: float) -> np.ndarray:
@@ -74,18 +74,18 @@ def test_an_ease_goes_from_nothing_to_all_without_turning_back_and_is_fastest_at
     peak: float,
 ) -> None:
     u = np.linspace(0, 1, 401)
-    w = tracks.ease(u, peak)
+    w = motion_tracks.ease(u, peak)
     assert w[0] == 0
     assert w[-1] == pytest.approx(1)
     assert (np.diff(w) >= 0).all()
     assert u[np.argmax(np.diff(w))] == pytest.approx(peak, abs=0.02)
-    assert tracks.ease(-1.0, peak) == 0
-    assert tracks.ease(2.0, peak) == pytest.approx(1)
+    assert motion_tracks.ease(-1.0, peak) == 0
+    assert motion_tracks.ease(2.0, peak) == pytest.approx(1)
 
 
 def test_a_step_with_anticipation_and_overshoot_dips_back_runs_over_and_ends_at_one() -> None:
     move = Move(Step(0.5, hold=0.3, overshoot=0.08, anticipation=0.06), 1.0, 1.5, 2.2)
-    w = tracks.progress(move, np.linspace(0, 3, 301))
+    w = motion_tracks.progress(move, np.linspace(0, 3, 301))
     assert w[0] == 0
     assert w[-1] == pytest.approx(1)
     assert w.min() < -0.01
@@ -95,7 +95,7 @@ def test_a_step_with_anticipation_and_overshoot_dips_back_runs_over_and_ends_at_
 @pytest.mark.parametrize("loop", [True, False])
 @pytest.mark.parametrize("frames", [2, 10, 200])
 def test_drifts_are_nothing_on_the_first_and_last_frame(frames: int, loop: bool) -> None:
-    out = tracks.wander(np.random.default_rng(1), frames, 0.5, 3, loop)
+    out = motion_tracks.wander(np.random.default_rng(1), frames, 0.5, 3, loop)
     assert out.shape == (frames, 3)
     assert np.allclose(out[[0, -1]], 0)
 
