@@ -1,5 +1,5 @@
-"""What a plan does about many asks at once: `metagraph.playback.extend_performance.answer` for a whole tick, in one pass
-over what is near.
+"""What a plan does about many asks at once: `metagraph.playback.extend_performance.answer` for a whole tick,
+in one pass over what is near.
 """
 
 from __future__ import annotations

@@ -34,10 +34,10 @@ def happenings(
                 yield (
                     client.number,
                     Event(
-                        event=word,
-                        t=rounded(now),
+                        event=word,  # type: ignore[arg-type]
+                        t=rounded(now),  # type: ignore[arg-type]
                         id=ask.ident if ask is not None and own else None,
-                        **what,  # type: ignore[arg-type]
+                        **what,
                     ),
                 )
 

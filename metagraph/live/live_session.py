@@ -2,8 +2,8 @@
 what becomes of it.
 
 No threads and no clock: time is passed in, seconds since the session began. The plan of a session is the plan
-of a performance (`metagraph.playback.extend_performance`): what was asked, with when it became known, is kept and performs
-again as it was played.
+of a performance (`metagraph.playback.extend_performance`): what was asked, with when it became known, is kept
+and performs again as it was played.
 """
 
 from __future__ import annotations

@@ -1,8 +1,8 @@
 """What a client may send and what it gets back: JSON objects, one or a list of them to a message.
 
-A request is an ask (`metagraph.graph.requests`), which may say `in` seconds from now instead of `at`; or one of
-the session's own: hello, status, describe. Every request gets exactly one reply; what happens later is told
-as events to those who want them.
+A request is an ask (`metagraph.graph.requests`), which may say `in` seconds from now instead of `at`; or one
+of the session's own: hello, status, describe. Every request gets exactly one reply; what happens later is
+told as events to those who want them.
 """
 
 from __future__ import annotations

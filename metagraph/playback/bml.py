@@ -141,8 +141,8 @@ class _Reader:
                 if e.get("name") and not lexeme:
                     ask: Any = a.Play(
                         action=self.words.action(e.get("name"), layer),
-                        layer=layer or None,
-                        **common,  # type: ignore[arg-type]
+                        layer=layer or None,  # type: ignore[arg-type]
+                        **common,
                     )
                 else:
                     ask = self._gesture(tags, lexeme, layer, common | more)
@@ -187,9 +187,9 @@ class _Reader:
                 return [], {"end": length}
             case "metagraph:change":
                 change = a.Change(
-                    layer=e.get("metagraph:layer") or "arms",
-                    limb=e.get("mode").lower() or None,
-                    **common,  # type: ignore[arg-type]
+                    layer=e.get("metagraph:layer") or "arms",  # type: ignore[arg-type]
+                    limb=e.get("mode").lower() or None,  # type: ignore[arg-type]
+                    **common,
                 )
                 return [change], {"end": 1.0}
             case "metagraph:mode":

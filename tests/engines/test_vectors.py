@@ -116,7 +116,7 @@ MUTATIONS: dict[str, tuple[Any, str, Any]] = {
     ),
     "leading a clip in from its stance": (player, "_lead", lambda shown, stance, edge, weight: shown),
     "the cooldown": (sampling.Performer, "_cooled", lambda self, action, stance: float("-inf")),
-    "the shortest chain": (pick, "chain", lambda graph, start, goal: None),
+    "the shortest chain": (sampling, "chain", lambda graph, start, goal: None),
     "how late a request may start": (replan, "delay", lambda asked, free, settings: (list(asked), [])),
     "lengths of the models": (markov, "length", lambda chain, state, seed, key: 2.0),
     "a breath's shape": (evaluate, "breath_at", lambda lane, life, time: 0.0),

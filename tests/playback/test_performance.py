@@ -46,7 +46,7 @@ def performances(sample: Project) -> list[Performance]:
             return chosen
 
         with pytest.MonkeyPatch.context() as patch:
-            patch.setattr(pick, "pick", watch)
+            patch.setattr(sampling, "pick", watch)
             made.append(Performance(make_plan(sample, LENGTH, seed=seed), draws))
     return made
 

@@ -1,8 +1,8 @@
 """PlayCanvas: an AnimStateGraph, loaded by the engine as it is. Animations are bound by the states' names.
 
 Parameters, for each layer: the integers `<layer>_stance` and `<layer>_action`, and the trigger
-`<layer>_play`, see `metagraph.engines.engine_machine`. The body overwrites; arms and head add to the pose of the
-GLB's nodes, which is the base pose.
+`<layer>_play`, see `metagraph.engines.engine_machine`. The body overwrites; arms and head add to the pose of
+the GLB's nodes, which is the base pose.
 """
 
 from __future__ import annotations

@@ -2,8 +2,8 @@
 own text assets.
 
 Parameters, for each layer: the integers `<layer>_stance` and `<layer>_action`, and the trigger
-`<layer>_play`, see `metagraph.engines.engine_machine`. At the bottom is a layer that holds the base pose; the body
-overwrites it, arms and head add to it what their clips differ from it.
+`<layer>_play`, see `metagraph.engines.engine_machine`. At the bottom is a layer that holds the base pose; the
+body overwrites it, arms and head add to it what their clips differ from it.
 """
 
 from __future__ import annotations
