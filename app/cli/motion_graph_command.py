@@ -155,7 +155,6 @@ def run(options: Namespace) -> int:
 
 
 # --- what is given
-# --------------------------------------------------------------------------------------------------
 
 
 def _takes(paths: Sequence[Path]) -> list[tuple[str, Clip]]:
@@ -291,7 +290,6 @@ def _rates(clips: Sequence[Clip]) -> str:
 
 
 # --- what is done
-# --------------------------------------------------------------------------------------------------
 
 
 def _states(clips: Sequence[Clip]) -> States:

@@ -17,8 +17,8 @@ from app.look.plural import many
 from app.project.document import Document
 from app.project.jobs import Job, Jobs
 from metagraph.graph import edits
-from metagraph.graph.check import Problem
 from metagraph.graph.model import LAYERS, Action, Layer, Project
+from metagraph.graph.problem import Problem
 
 if TYPE_CHECKING:  # their imports wait for the first job
     from metagraph.suggest.compatibility import Matrix, Times

@@ -10,7 +10,8 @@ from app.project.document import Document
 from app.project.jobs import Jobs
 from app.stage.compatibility_state import Compatibility, merged
 from app.stage.session import Session
-from metagraph.graph.check import Problem, check
+from metagraph.graph.check import check
+from metagraph.graph.problem import Problem
 
 AFTER = 250  # milliseconds of quiet after an edit before problems are looked for
 

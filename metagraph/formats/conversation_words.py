@@ -13,7 +13,7 @@ import msgspec
 import numpy as np
 
 from metagraph.errors import FileError
-from metagraph.formats.transcripts import Transcript, count
+from metagraph.formats.transcript_words import Transcript, count
 from metagraph.graph.conversation import SHORTEST, Segment, Word
 from metagraph.speech.activity import HUSH, activity
 from metagraph.speech.pitch import Pitch

@@ -14,7 +14,8 @@ from numpy.typing import NDArray
 from metagraph.errors import FileError
 from metagraph.formats.conversation_words import Told, Voice, sides_of, tell_unheard, within
 from metagraph.formats.store import relative
-from metagraph.formats.transcripts import count, read_transcript
+from metagraph.formats.transcript_words import count
+from metagraph.formats.transcripts import read_transcript
 from metagraph.graph.conversation import HESITATIONS, RESPONSES, SHORTEST, Conversation, Segment, Side
 from metagraph.speech.activity import HUSH, LEAST, activity
 from metagraph.speech.clauses import peak_of, segments
@@ -93,7 +94,6 @@ def read_conversation(
 
 
 # --- the sound
-# --------------------------------------------------------------------------------------------------
 
 
 def _voices(reading: _Reading, audio: list[Path], worded: bool) -> tuple[Voice, Voice]:
@@ -215,7 +215,6 @@ def _tell_clipped(reading: _Reading, called: str, clipped: float) -> None:
 
 
 # --- one side
-# --------------------------------------------------------------------------------------------------
 
 
 def _side(

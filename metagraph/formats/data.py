@@ -205,7 +205,6 @@ def struct_from(data: Any, kind: Any, where: str) -> Any:
 
 
 # --- reading
-# --------------------------------------------------------------------------------------------------
 
 _ACTION_FIELDS = ({f.name for f in fields(Action)} | {f.name for f in fields(Timing)}) - {"layer", "timing"}
 _CLIP_FIELDS = ({f.name for f in fields(ClipEntry)} | {"sha256"}) - {"motion", "digest"}

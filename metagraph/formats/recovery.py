@@ -25,7 +25,6 @@ _ANOTHER = "belongs to another state of the project file"
 
 
 # --- changes worked in
-# --------------------------------------------------------------------------------------------------
 
 
 class _Replay:
@@ -119,7 +118,6 @@ def apply(data: Data, change: Data) -> Data:
 
 
 # --- files
-# --------------------------------------------------------------------------------------------------
 
 
 @dataclass(frozen=True)

@@ -50,7 +50,6 @@ class Opened:
 
 
 # --- text
-# --------------------------------------------------------------------------------------------------
 
 
 def from_text(text: str, path: Path, notes: list[str] | None = None) -> Project:
@@ -98,7 +97,6 @@ def _line_of(lines: Mapping[str, int], where: str) -> str:
 
 
 # --- files
-# --------------------------------------------------------------------------------------------------
 
 
 def save_project(project: Project, path: str | Path, was_at: Path | None = None) -> Project:

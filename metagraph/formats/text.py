@@ -29,7 +29,6 @@ class TextError(ValueError):
 
 
 # --- writing
-# --------------------------------------------------------------------------------------------------
 
 _PLAIN = re.compile(r"[A-Za-z_](?:[A-Za-z0-9_ ./()+-]*[A-Za-z0-9_./()+-])?\Z")
 _WORDS = {
@@ -106,7 +105,6 @@ def to_text(data: Data) -> str:
 
 
 # --- reading
-# --------------------------------------------------------------------------------------------------
 
 _VALUES: dict[str, Any] = dict.fromkeys(("", "~", "null", "Null", "NULL"))
 _VALUES |= {"true": True, "True": True, "TRUE": True, "false": False, "False": False, "FALSE": False}

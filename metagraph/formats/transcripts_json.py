@@ -11,7 +11,7 @@ from pathlib import Path
 from typing import Any
 
 from metagraph.errors import FileError
-from metagraph.formats.transcripts import Collected, Transcript
+from metagraph.formats.transcript_words import Collected, Transcript
 
 _REMEDY = (
     "Whisper writes 'segments', with 'words' where word timestamps were asked for; IBM writes "
@@ -129,7 +129,6 @@ def _name(value: Any) -> str:
 
 
 # --- Whisper
-# --------------------------------------------------------------------------------------------------
 
 
 def _whisper(out: Collected, data: Mapping[str, Any]) -> None:
@@ -200,7 +199,6 @@ def _words(
 
 
 # --- IBM
-# --------------------------------------------------------------------------------------------------
 
 
 def _ibm(out: Collected, data: Mapping[str, Any]) -> None:

@@ -14,7 +14,7 @@ from collections.abc import Iterator
 from dataclasses import dataclass
 from pathlib import Path
 
-from metagraph.formats.transcripts import Collected, Transcript
+from metagraph.formats.transcript_words import Collected, Transcript
 
 _TIME = r"(?:(\d{1,4}):)?(\d{1,2}):(\d{1,2})[.,](\d{1,3})"
 _CUE = re.compile(rf"\s*{_TIME}\s*-->\s*{_TIME}(?:\s.*)?$")
@@ -149,7 +149,6 @@ def _add(out: Collected, speaker: str, text: str, start: float, end: float, wher
 
 
 # --- CTM
-# --------------------------------------------------------------------------------------------------
 
 
 def is_ctm(text: str) -> bool:

@@ -5,45 +5,27 @@ anything.
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator
-from dataclasses import dataclass
 from functools import lru_cache
-from typing import Any, Literal
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
 from metagraph.graph import anatomy
 from metagraph.graph.expand import ends_in, reachable
+from metagraph.graph.manual_check import check_manual
 from metagraph.graph.model import KINDS, LAYERS, REACH, Action, Layer, MetaGraph, Project
+from metagraph.graph.problem import Problem, Severity
 from metagraph.motion import rotation
 from metagraph.motion.clip import Clip
 from metagraph.motion.features import pose_distance
 
 Array = NDArray[Any]
-Severity = Literal["error", "warning", "hint"]
 
 FAR = 0.08  # metres a joint may be from the stance at a clip's ends before it shows (of a 1.7 m character)
 OPEN_LOOP = 0.05  # metres a loop may be open where its seam is not blended
 FLOATS = 0.06  # of the height: how far the base pose's feet may be from where the stances have them
 TWISTED = np.radians(50)  # how far the base pose's hips may be turned from the stance's
-
-
-@dataclass(frozen=True)
-class Problem:
-    """code: stable word for programs. message: what is wrong; remedy: what to do. The ids say where to jump
-    to.
-    """
-
-    severity: Severity
-    code: str
-    message: str
-    remedy: str
-    layer: Layer | None = None
-    stance: str | None = None
-    action: str | None = None
-    clip: str | None = None
-    state: str | None = None
-    link: str | None = None
 
 
 def check(project: Project) -> list[Problem]:
@@ -52,8 +34,6 @@ def check(project: Project) -> list[Problem]:
     for layer in LAYERS:
         found += _graph(project, project.graphs[layer])
     if project.manual:
-        from metagraph.graph.manual_check import check_manual
-
         found += check_manual(project)
     elif project.clips and not any(project.graphs[layer].stances for layer in LAYERS):
         found.append(

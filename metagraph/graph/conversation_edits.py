@@ -24,7 +24,6 @@ Place = tuple[int, int]  # side, and the place among its segments
 
 
 # --- conversations
-# --------------------------------------------------------------------------------------------------
 
 
 def add_conversation(project: Project, conversation: Conversation) -> tuple[Project, str]:
@@ -124,7 +123,6 @@ def _listed(words: Iterable[str]) -> tuple[str, ...]:
 
 
 # --- segments
-# --------------------------------------------------------------------------------------------------
 
 
 def move_segment(project: Project, ident: str, side: int, at: int, by: float) -> Project:
@@ -255,7 +253,6 @@ def gap_at(conversation: Conversation, side: int, seconds: float) -> tuple[float
 
 
 # --- what they share
-# --------------------------------------------------------------------------------------------------
 
 
 def _conversation(project: Project, ident: str) -> Conversation:

@@ -55,7 +55,6 @@ def limb_of(name: str) -> Limb:
 
 
 # --- clips
-# --------------------------------------------------------------------------------------------------
 
 
 def add_clips(project: Project, loaded: Iterable[tuple[str, int, str, Clip]]) -> Project:
@@ -109,7 +108,6 @@ def remove_clips(project: Project, clips: Collection[str]) -> Project:
 
 
 # --- stances
-# --------------------------------------------------------------------------------------------------
 
 
 def add_stance(project: Project, layer: Layer, name: str, clips: Sequence[str] = ()) -> Project:
@@ -146,7 +144,6 @@ def set_start(project: Project, stance: str) -> Project:
 
 
 # --- actions
-# --------------------------------------------------------------------------------------------------
 
 
 def refusal(
@@ -334,7 +331,6 @@ def remove_actions(project: Project, actions: Collection[str]) -> Project:
 
 
 # --- the rest
-# --------------------------------------------------------------------------------------------------
 
 
 def set_base(project: Project, clip: str | None, frame: int = 0) -> Project:

@@ -6,9 +6,9 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterator
 
-from metagraph.graph.check import Problem, Severity
 from metagraph.graph.manual import ANY, Link, Manual, State
 from metagraph.graph.model import LAYERS, Project
+from metagraph.graph.problem import Problem, Severity
 
 
 def check_manual(project: Project) -> list[Problem]:

@@ -48,7 +48,6 @@ FLOATING = 0.25  # of the leg: a rest pose this far off the ground is not standi
 
 
 # --- standing poses
-# --------------------------------------------------------------------------------------------------
 
 
 def stands(skeleton: Skeleton, roles: Mapping[str, int] | None = None) -> bool:
@@ -233,7 +232,6 @@ def _heading(source: _Figure, target: _Figure, side: str) -> Array:
 
 
 # --- the motion
-# --------------------------------------------------------------------------------------------------
 
 
 def retarget(

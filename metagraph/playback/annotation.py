@@ -92,7 +92,6 @@ def _set(text: str) -> frozenset[str]:
 
 
 # --- tiers
-# --------------------------------------------------------------------------------------------------
 
 # English, German, French, Spanish and Italian, as tiers are named in published corpora of gesture.
 _LEFT = _set("left l lh la links linke linker linkehand gauche izquierda izq izquierdo sinistra sx")
@@ -180,7 +179,6 @@ def _clarity(tier: Tier) -> tuple[bool, float]:
 
 
 # --- labels
-# --------------------------------------------------------------------------------------------------
 
 _NOTHING = frozenset(
     """

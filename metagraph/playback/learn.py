@@ -47,7 +47,6 @@ class Act:
 
 
 # --- intervals to sequences
-# ------------------------------------------------------------------------------------------
 
 
 def sequences(
@@ -149,7 +148,6 @@ def _together(a: Act, b: Act) -> Act:
 
 
 # --- sequences to models
-# ---------------------------------------------------------------------------------------------
 
 
 def state_of(act: Act, tagged: bool) -> State:
@@ -239,7 +237,6 @@ def _lengths(acts: Sequence[Act], states: Sequence[State], tagged: bool) -> tupl
 
 
 # --- editing a model
-# --------------------------------------------------------------------------------------------------
 
 
 def with_cell(model: Markov, row: int, column: int, probability: float) -> Markov:
@@ -306,7 +303,6 @@ def without_state(model: Markov, place: int) -> Markov:
 
 
 # --- performing what was seen
-# ----------------------------------------------------------------------------------------
 
 
 def asks_of(layer: Layer, acts: Sequence[Act]) -> tuple[AnyAsk, ...]:

@@ -125,7 +125,6 @@ def action_of(state: State) -> Action:
 
 
 # --- which state when
-# --------------------------------------------------------------------------------------------------
 
 
 def make_manual_plan(
@@ -258,7 +257,6 @@ def route(manual: Manual, state: str, trigger: str) -> tuple[Link, ...] | None:
 
 
 # --- parts of a machine, looked at alone
-# -----------------------------------------------------------------------------
 
 
 def state_alone(project: Project, ident: str) -> ManualPlan:
@@ -301,7 +299,6 @@ def link_alone(project: Project, ident: str) -> ManualPlan:
 
 
 # --- the pose at a time
-# ----------------------------------------------------------------------------------------------
 
 
 def manual_pose_at(plan: ManualPlan, project: Project, seconds: Any, alive: bool = True) -> Pose:

@@ -125,7 +125,6 @@ def peak_of(pitch: Pitch, tones: Array, heard: Heard, start: float, end: float) 
 
 
 # --- by words
-# --------------------------------------------------------------------------------------------------
 
 
 def _parts(
@@ -234,7 +233,6 @@ def _answers(words: Sequence[Word], first: int, last: int) -> bool:
 
 
 # --- without words
-# --------------------------------------------------------------------------------------------------
 
 
 def _by_loudness(pitch: Pitch, tones: Array, heard: Heard, partner: Heard | None) -> tuple[Segment, ...]:

@@ -163,7 +163,6 @@ def analyse(data: Data) -> Results:
 
 
 # --- time
-# --------------------------------------------------------------------------------------------------
 
 
 def compare(rows: Sequence[Row]) -> Comparison | None:
@@ -305,7 +304,6 @@ def _model(row: Row) -> float:
 
 
 # --- mistakes and ratings
-# --------------------------------------------------------------------------------------------
 
 
 def _counted(what: What) -> Callable[[Score], float | None]:

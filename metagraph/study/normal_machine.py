@@ -147,7 +147,6 @@ def _of_graph(project: Project, graph: MetaGraph, names: Mapping[str, str]) -> N
 
 
 # --- by hand
-# --------------------------------------------------------------------------------------------------
 
 
 def _of_manual(project: Project, manual: Manual, meant: MetaGraph, names: Mapping[str, str]) -> NormalMachine:

@@ -172,7 +172,6 @@ def means(rows: Sequence[tuple[str, Mapping[str, Estimate]]], low: float = 0.0, 
 
 
 # --- axes and marks
-# --------------------------------------------------------------------------------------------------
 
 _TIMES = (
     *(m * b for b in (0.01, 0.1, 1) for m in (1, 2, 5)),

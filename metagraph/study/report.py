@@ -92,7 +92,6 @@ def summary(results: Results) -> list[str]:
 
 
 # --- parts
-# --------------------------------------------------------------------------------------------------
 
 
 def _headline(results: Results) -> str:
@@ -279,7 +278,6 @@ def _missing(results: Results) -> str:
 
 
 # --- words and cells
-# --------------------------------------------------------------------------------------------------
 
 
 def times(ratio: Estimate) -> str:

@@ -141,7 +141,6 @@ def equivalent(
 
 
 # --- which is which
-# --------------------------------------------------------------------------------------------------
 
 
 def matched_stances(got: NormalMachine, want: NormalMachine) -> dict[str, str]:
@@ -242,7 +241,6 @@ def _told_by_links(
 
 
 # --- mistakes
-# --------------------------------------------------------------------------------------------------
 
 
 def _placing(

@@ -65,7 +65,6 @@ def _condition(source: Action, target: Action) -> Condition:
 
 
 # --- slips
-# --------------------------------------------------------------------------------------------------
 
 
 def slipped(project: Project, manual: bool, slips: int, rng: np.random.Generator) -> Project:

@@ -122,7 +122,6 @@ def welch(a: Sequence[float], b: Sequence[float], level: float = LEVEL) -> tuple
 
 
 # --- ranks
-# --------------------------------------------------------------------------------------------------
 
 
 def signed_ranks(a: Sequence[float], b: Sequence[float]) -> tuple[np.ndarray, np.ndarray]:
@@ -182,7 +181,6 @@ def rank_biserial(a: Sequence[float], b: Sequence[float]) -> float | None:
 
 
 # --- sizes of effects, and of studies
-# --------------------------------------------------------------------------------
 
 
 def effect_size(a: Sequence[float], b: Sequence[float], level: float = LEVEL) -> Estimate | None:
@@ -246,7 +244,6 @@ def holm(chances: Sequence[float | None]) -> list[float | None]:
 
 
 # --- learning, and order
-# ---------------------------------------------------------------------------------------------
 
 
 def power_law(seconds: Sequence[float], level: float = LEVEL) -> tuple[Estimate, float] | None:
@@ -307,7 +304,6 @@ def order_effects(
 
 
 # --- words
-# --------------------------------------------------------------------------------------------------
 
 
 def cautions(found: Estimate, effect: float | None) -> list[str]:
@@ -338,7 +334,6 @@ def cautions(found: Estimate, effect: float | None) -> list[str]:
 
 
 # --- small ones
-# --------------------------------------------------------------------------------------------------
 
 
 def logs(values: Sequence[float]) -> list[float]:

@@ -216,7 +216,6 @@ class Study:
 
 
 # --- reading
-# --------------------------------------------------------------------------------------------------
 
 
 def read_study(path: str | Path) -> Study:
@@ -378,7 +377,6 @@ def _listed(names: tuple[str, ...]) -> str:
 
 
 # --- the published schema
-# --------------------------------------------------------------------------------------------
 
 SCHEMA = Path(__file__).with_name("study.schema.json")
 

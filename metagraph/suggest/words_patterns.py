@@ -161,7 +161,6 @@ def _kind_of(data: Any) -> str:
 
 
 # --- learning
-# --------------------------------------------------------------------------------------------------
 
 
 def remembered(patterns: Patterns, name: str, words: Sequence[str], value: str) -> Patterns:

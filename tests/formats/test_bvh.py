@@ -85,7 +85,6 @@ def refused(path: Path, text: str, *words: str) -> FileError:
 
 
 # --- refused, with the line
-# --------------------------------------------------------------------------------------------
 
 
 def test_a_file_with_no_frames_is_refused_with_its_line(path: Path) -> None:
@@ -151,7 +150,6 @@ def test_a_missing_file_is_refused(tmp_path: Path) -> None:
 
 
 # --- accepted, with a note
-# ---------------------------------------------------------------------------------------------
 
 
 @pytest.mark.parametrize("frames", [1, 3])
@@ -174,7 +172,6 @@ def test_repeated_names_are_made_unique_with_a_note(path: Path) -> None:
 
 
 # --- accepted as they are
-# ----------------------------------------------------------------------------------------------
 
 
 @pytest.mark.parametrize("order", ["XYZ", "XZY", "YXZ", "YZX", "ZXY", "ZYX", "ZXZ"])
@@ -302,7 +299,6 @@ def test_the_first_frames_place_left_in_a_root_offset_does_not_make_another_skel
 
 
 # --- units and axes
-# --------------------------------------------------------------------------------------------------
 
 
 def person(tmp_path: Path, metres: float, spin: np.ndarray | None = None) -> Path:
@@ -373,7 +369,6 @@ def test_a_bind_pose_left_on_the_first_frame_is_dropped_with_a_note(tmp_path: Pa
 
 
 # --- writing
-# --------------------------------------------------------------------------------------------------
 
 
 def test_written_and_read_back_the_motion_is_the_same(path: Path) -> None:
@@ -403,7 +398,6 @@ def test_writing_into_a_folder_that_cannot_be_made_is_refused(tmp_path: Path) ->
 
 
 # --- two parsers, one answer
-# -------------------------------------------------------------------------------------------
 
 
 def test_a_large_file_split_between_two_threads_reads_as_a_small_one(
@@ -521,7 +515,6 @@ def test_importing_the_reader_does_not_import_numba() -> None:
 
 
 # --- real files
-# --------------------------------------------------------------------------------------------------
 
 
 def test_real_files_read_as_people_of_human_size(shared_data: Path) -> None:

@@ -54,7 +54,6 @@ def sound(path: Path, *channels: Any, rate: int = RATE) -> Path:
 
 
 # --- what is brought together
-# ----------------------------------------------------------------------------------------
 
 
 def test_two_channels_and_one_transcript_make_two_sides(files: tuple[Path, Path]) -> None:
@@ -186,7 +185,6 @@ def test_a_cancelled_reading_ends(files: tuple[Path, Path]) -> None:
 
 
 # --- what is wrong
-# --------------------------------------------------------------------------------------------------
 
 
 def test_silence_says_so(tmp_path: Path) -> None:

@@ -64,7 +64,6 @@ def rows(annotation: Annotation, name: str) -> list[tuple[float, float, str]]:
 
 
 # --- times
-# --------------------------------------------------------------------------------------------------
 
 
 def test_an_annotation_with_nothing_in_it_is_read(read) -> None:
@@ -185,7 +184,6 @@ def test_media_people_and_vocabularies_are_told(read) -> None:
 
 
 # --- files that are broken, or none
-# ------------------------------------------------------------------------------------
 
 GOOD = tier("LH", "m a-b x")
 WRONG = {
@@ -352,7 +350,6 @@ def test_whatever_refers_to_whatever_is_read_or_told(tmp_path_factory, slots, ti
 
 
 # --- real files
-# --------------------------------------------------------------------------------------------------
 
 
 def test_the_sample_annotation_says_that_it_is_made_up_and_is_what_its_maker_writes(tmp_path: Path) -> None:

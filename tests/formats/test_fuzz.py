@@ -122,7 +122,6 @@ def test_noise(tmp_path: Path, data: bytes, suffix: str, head: bytes) -> None:
 
 
 # --- glTF: every value replaced by a hostile one
-# -------------------------------------------------------------------------
 
 HOSTILE = (
     -1,
@@ -272,7 +271,6 @@ def test_deeply_nested_json_is_refused(tmp_path: Path) -> None:
 
 
 # --- BVH: every word replaced by a hostile one
-# ----------------------------------------------------------------------------
 
 WORDS = (
     "",

@@ -112,7 +112,6 @@ def refused(scene: Scene, tmp_path: Path, *words: str) -> FileError:
 
 
 # --- interpolation and accessors
-# ---------------------------------------------------------------------------------------
 
 
 def test_linear_rotations_turn_at_constant_speed_between_far_keys(tmp_path: Path) -> None:
@@ -200,7 +199,6 @@ def test_strides_and_offsets_within_a_view_are_followed(tmp_path: Path) -> None:
 
 
 # --- names, rates, several animations
-# -----------------------------------------------------------------------------------
 
 
 def test_unnamed_and_default_names_become_the_files_and_stay_unique(tmp_path: Path) -> None:
@@ -245,7 +243,6 @@ def test_one_key_makes_one_frame(tmp_path: Path) -> None:
 
 
 # --- skeletons
-# --------------------------------------------------------------------------------------------------
 
 
 def test_scale_and_turn_of_an_armature_are_folded_into_the_top_joint(tmp_path: Path) -> None:
@@ -375,7 +372,6 @@ def test_a_bind_pose_key_at_the_start_is_dropped_only_when_plain(tmp_path: Path)
 
 
 # --- morph targets, VRM
-# --------------------------------------------------------------------------------------------------
 
 
 def smiling() -> Scene:
@@ -430,7 +426,6 @@ def test_files_that_are_not_vrm_state_no_roles(tmp_path: Path) -> None:
 
 
 # --- text files and buffers
-# ----------------------------------------------------------------------------------------------
 
 
 def as_text(scene: Scene, uri: str) -> str:
@@ -478,7 +473,6 @@ def test_buffers_that_are_absent_or_elsewhere_are_refused(tmp_path: Path, uri: s
 
 
 # --- refused
-# --------------------------------------------------------------------------------------------------
 
 
 @pytest.mark.parametrize("name", ["EXT_meshopt_compression", "KHR_draco_mesh_compression", "ACME_future"])
@@ -550,7 +544,6 @@ def test_the_wrong_number_of_values_is_refused(tmp_path: Path) -> None:
 
 
 # --- writing
-# --------------------------------------------------------------------------------------------------
 
 
 def moving(frames: int = 40, fps: float = 24.0) -> list[Clip]:
@@ -693,7 +686,6 @@ def test_written_files_pass_the_khronos_validator(tmp_path: Path, quantize: bool
 
 
 # --- real files
-# --------------------------------------------------------------------------------------------------
 
 
 def by_the_book(path: Path, name: str, seconds: float) -> dict[str, np.ndarray]:

@@ -10,7 +10,8 @@ from pathlib import Path
 import pytest
 
 from metagraph.errors import FileError
-from metagraph.formats.transcripts import Transcript, read_transcript, settled
+from metagraph.formats.transcript_words import Transcript, settled
+from metagraph.formats.transcripts import read_transcript
 from metagraph.graph.conversation import Segment, Word
 
 Reader = Callable[[str], Transcript]
@@ -43,7 +44,6 @@ def grid(*tiers: tuple[str, list[tuple[float, float, str]]]) -> str:
 
 
 # --- what is nothing
-# --------------------------------------------------------------------------------------------------
 
 
 @pytest.mark.parametrize("text", ["", " \n\n", "\ufeff"])
@@ -92,7 +92,6 @@ def test_what_is_no_transcript_says_what_place_and_remedy(read: Reader, text: st
 
 
 # --- words
-# --------------------------------------------------------------------------------------------------
 
 
 def test_words_out_of_order_and_overlapping_are_settled_and_told() -> None:
@@ -116,7 +115,6 @@ def test_a_word_within_another_is_left_out_and_told() -> None:
 
 
 # --- tiers
-# --------------------------------------------------------------------------------------------------
 
 
 def test_textgrid_tiers_are_speakers_and_phones_are_not(read: Reader) -> None:
@@ -217,7 +215,6 @@ def test_real_textgrids_give_words() -> None:
 
 
 # --- subtitles
-# --------------------------------------------------------------------------------------------------
 
 
 def test_webvtt_voices_are_speakers(read: Reader) -> None:
@@ -257,7 +254,6 @@ def test_one_colon_makes_no_speaker(read: Reader) -> None:
 
 
 # --- JSON
-# --------------------------------------------------------------------------------------------------
 
 
 def test_whisper_words_and_segments_without_words(read: Reader) -> None:
@@ -328,7 +324,6 @@ def test_ibm_speakers_come_by_their_labels(read: Reader) -> None:
 
 
 # --- CTM
-# --------------------------------------------------------------------------------------------------
 
 
 def test_ctm_channels_are_speakers(read: Reader) -> None:

@@ -9,8 +9,9 @@ import numpy as np
 import pytest
 
 from metagraph.graph import edits
-from metagraph.graph.check import Problem, check
+from metagraph.graph.check import check
 from metagraph.graph.model import BasePose, Project
+from metagraph.graph.problem import Problem
 from metagraph.motion import rotation
 from metagraph.motion.clip import Clip
 from metagraph.motion.skeleton import Skeleton

@@ -91,7 +91,6 @@ def gesture(skeleton: Skeleton, seed: int, frames: int = 5) -> Clip:
 
 
 # --- which joint is which
-# --------------------------------------------------------------------------------------------
 
 
 def test_a_skeleton_maps_to_itself_joint_by_joint_and_surely(sample: Any) -> None:
@@ -187,7 +186,6 @@ def test_a_retargeted_clip_knows_what_it_was_brought_from(toy: Any, sample: Any)
 
 
 # --- what cannot be done
-# ---------------------------------------------------------------------------------------------
 
 
 def test_too_little_to_go_by_is_refused_in_words(toy: Any) -> None:
@@ -221,7 +219,6 @@ def test_a_target_whose_rest_pose_does_not_stand_needs_a_pose_that_does(toy: Any
 
 
 # --- what comes out
-# --------------------------------------------------------------------------------------------------
 
 
 def test_onto_itself_a_clip_stays_what_it_is(sample: Any) -> None:
@@ -373,7 +370,6 @@ def test_what_was_done_is_noted(toy: Any, sample: Any) -> None:
 
 
 # --- real characters
-# --------------------------------------------------------------------------------------------------
 
 FILES: dict[str, tuple[str, Callable[[Clip], bool]]] = {
     "adult": ("sumerian-hosts/glTF/animations/adult_female/stand_idle.glb", lambda c: True),

@@ -337,7 +337,6 @@ def test_required_roles_are_roles() -> None:
 
 
 # --- real skeletons
-# --------------------------------------------------------------------------------------------------
 
 PEOPLE = {
     "kaykit-rogue/Rogue.glb": ("hips", "wrist.l", "upperarm.l"),

@@ -25,7 +25,6 @@ def act(start: float, end: float, kind: str = "gesture", *tags: str) -> Act:
 
 
 # --- counting
-# --------------------------------------------------------------------------------------------------
 
 
 def test_nothing_is_counted_as_nothing() -> None:
@@ -62,7 +61,6 @@ def test_meaning_counts_where_it_is_part_of_the_states() -> None:
 
 
 # --- the long run
-# --------------------------------------------------------------------------------------------------
 
 
 @given(st.lists(st.lists(st.floats(0, 1), min_size=4, max_size=4), min_size=4, max_size=4))
@@ -101,7 +99,6 @@ def test_the_deviation_is_that_of_many_performances() -> None:
 
 
 # --- the model and what it generates
-# ---------------------------------------------------------------------------------
 
 
 @pytest.mark.parametrize("layer", LAYERS)

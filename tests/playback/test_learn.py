@@ -55,7 +55,6 @@ def kinds(*words: str) -> list[Act]:
 
 
 # --- sequences
-# --------------------------------------------------------------------------------------------------
 
 
 def test_an_annotation_without_anything_gives_no_layers_and_an_empty_tier_gives_an_empty_one() -> None:
@@ -199,7 +198,6 @@ def test_labels_that_were_said_otherwise_count() -> None:
 
 
 # --- models
-# --------------------------------------------------------------------------------------------------
 
 
 def test_transitions_are_counted_and_rows_sum_to_1() -> None:
@@ -336,7 +334,6 @@ def test_every_model_that_is_learned_is_sound_and_can_be_saved(some, tagged: boo
 
 
 # --- editing
-# --------------------------------------------------------------------------------------------------
 
 
 def test_setting_a_cell_evens_out_its_row_in_proportion_and_leaves_the_others() -> None:
@@ -376,7 +373,6 @@ def test_a_state_can_be_added_and_taken_away_again() -> None:
 
 
 # --- performing
-# --------------------------------------------------------------------------------------------------
 
 
 def test_acts_become_asks_with_their_times_and_back() -> None:

@@ -157,7 +157,6 @@ def test_segments_never_overlap_whatever_the_words(rows: list[tuple[str, float, 
 
 
 # --- in speech
-# --------------------------------------------------------------------------------------------------
 
 
 def heard_of(spoken: talk.Talk) -> list[tuple[Heard, Pitch]]:

@@ -27,7 +27,6 @@ NOBODY = Data("Empty", ("meta", "manual"), {"a": "A"}, ("P1",))
 
 
 # --- edge cases
-# --------------------------------------------------------------------------------------------------
 
 
 def test_nobody_has_begun() -> None:
@@ -125,7 +124,6 @@ def test_other_tasks_in_each_condition_are_compared_by_clips() -> None:
 
 
 # --- by hand
-# --------------------------------------------------------------------------------------------------
 
 
 def test_the_example_of_the_documentation_by_hand() -> None:
@@ -219,7 +217,6 @@ def test_the_published_example_has_no_interval() -> None:
 
 
 # --- through files
-# --------------------------------------------------------------------------------------------------
 
 
 @pytest.fixture(scope="module")

@@ -101,7 +101,6 @@ _SPREAD: dict[str, float] = {}
 
 
 # --- slips
-# --------------------------------------------------------------------------------------------------
 
 
 def test_no_slips_change_nothing_and_nothing_to_slip_on_does_no_harm() -> None:
@@ -118,7 +117,6 @@ def test_what_is_drawn_by_hand_has_a_link_for_every_connection() -> None:
 
 
 # --- through files
-# --------------------------------------------------------------------------------------------------
 
 
 @pytest.fixture(scope="module")

@@ -66,7 +66,6 @@ def triple(found: s.Estimate | None) -> tuple[float | None, float | None, float 
 
 
 # --- edge cases
-# --------------------------------------------------------------------------------------------------
 
 
 def test_nobody_has_no_mean() -> None:
@@ -114,7 +113,6 @@ def test_a_group_of_one_has_no_interval() -> None:
 
 
 # --- by hand
-# --------------------------------------------------------------------------------------------------
 
 
 def test_a_ratio_by_hand() -> None:
@@ -197,7 +195,6 @@ def test_words_say_when_people_are_too_few() -> None:
 
 
 # --- against others
-# --------------------------------------------------------------------------------------------------
 
 
 def test_students_t_as_published() -> None:
@@ -303,7 +300,6 @@ def test_it_agrees_with_scipy() -> None:
 
 
 # --- always
-# --------------------------------------------------------------------------------------------------
 
 
 @given(st.floats(0.3, 300), st.floats(0.3, 300), st.floats(0, 1))

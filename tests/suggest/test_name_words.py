@@ -53,7 +53,6 @@ def kinds(names: list[str], patterns: Patterns | None = None) -> dict[str, str |
 
 
 # --- edges
-# --------------------------------------------------------------------------------------------------
 
 
 def test_no_names_give_nothing() -> None:
@@ -130,7 +129,6 @@ def test_what_is_no_conversation_gets_no_kind(name: str) -> None:
 
 
 # --- what names say
-# --------------------------------------------------------------------------------------------------
 
 
 def test_a_shared_beginning_that_is_a_clip_is_a_stance() -> None:
@@ -278,7 +276,6 @@ def test_reasons_quote_the_words() -> None:
 
 
 # --- accuracy
-# --------------------------------------------------------------------------------------------------
 
 FLOORS: dict[str, dict[str, float]] = {
     "sample_clips": {"kind": 0.98, "stance": 0.98, "end_stance": 1.0, "layer": 0.98, "limb": 0.93},
@@ -332,7 +329,6 @@ def test_a_thousand_names_are_quick(bench: ModuleType) -> None:
 
 
 # --- properties
-# --------------------------------------------------------------------------------------------------
 
 PIECES = [
     "Idle",
@@ -390,7 +386,6 @@ def test_a_common_beginning_changes_nothing(bench: ModuleType, name: str, prefix
 
 
 # --- patterns and learning
-# -------------------------------------------------------------------------------------------
 
 
 def test_patterns_are_changed_and_changed_back() -> None:

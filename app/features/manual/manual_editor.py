@@ -11,8 +11,8 @@ from app.features.manual.manual_canvas import ManualCanvas
 from app.features.manual.manual_inspector import Inspector
 from app.look.plural import many
 from app.widgets.form_fields import Chooser
-from metagraph.graph.check import Problem
 from metagraph.graph.model import Project
+from metagraph.graph.problem import Problem
 
 
 class ManualEditor(QWidget):

@@ -208,7 +208,6 @@ def _label(painter: QPainter, look: Look, link: Link, color: QColor | None = Non
 
 
 # --- nodes
-# --------------------------------------------------------------------------------------------------
 
 
 def paint_node(

@@ -39,7 +39,7 @@ from app.look.plural import many
 from app.look.theme import theme
 from app.stage.compatibility_state import Fix
 from app.stage.session import Session
-from metagraph.graph.check import Problem
+from metagraph.graph.problem import Problem
 
 MOST = 500  # rows; a project with more has one cause, seen long before
 FIX = 3  # the column of buttons

@@ -114,7 +114,6 @@ def test_fitting_shows_all_and_never_enlarges() -> None:
 
 
 # --- automatic layout
-# --------------------------------------------------------------------------------------------------
 
 
 def overlaps(places: dict[str, tuple[float, float]]) -> int:

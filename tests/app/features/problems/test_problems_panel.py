@@ -11,8 +11,8 @@ from PySide6.QtTest import QTest
 from app.features.problems.problems_panel import FIX
 from app.stage.compatibility_state import judge, merged, told
 from metagraph.graph import edits
-from metagraph.graph.check import Problem
 from metagraph.graph.model import Project
+from metagraph.graph.problem import Problem
 
 
 @pytest.fixture(scope="module")

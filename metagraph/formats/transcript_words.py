@@ -1,0 +1,191 @@
+"""What a transcript is made of, and its words as they are collected, whatever file they come from."""
+
+from __future__ import annotations
+
+import codecs
+import re
+from collections.abc import Iterable, Mapping
+from dataclasses import dataclass, field
+from itertools import pairwise
+from pathlib import Path
+
+from metagraph.errors import FileError
+from metagraph.graph.conversation import SHORTEST, Segment, Word
+
+LARGEST = 256 << 20  # bytes
+MOST = 1_000_000  # words
+LATEST = 1e6  # seconds
+_TEXT = 1000  # characters of a word
+SUFFIXES = (".TextGrid", ".eaf", ".vtt", ".srt", ".json", ".ctm")
+REMEDY = f"Known are {', '.join(SUFFIXES)}: TextGrid, ELAN, WebVTT, SRT, Whisper's and IBM's JSON, CTM."
+_SILENT = frozenset(
+    (
+        "",
+        "sil",
+        "sp",
+        "spn",
+        "pau",
+        "#",
+        "_",
+        "-",
+        "<p:>",
+        "<p>",
+        "<sil>",
+        "<eps>",
+        "<unk>",
+        "xxx",
+        "...",
+        "…",
+    )
+)
+_NOISE = re.compile(r"[\[(<{*♪#].*[\])>}*♪#]|[♪♫\W_]+")  # [laughter], (coughs), <noise>: no words
+
+
+@dataclass(frozen=True)
+class Transcript:
+    """speakers: name -> words by start, in the file's order; "" where it names nobody. segments: name -> what
+    the file says of clauses, responses and hesitations, for those it does. notes: what was left out or
+    settled, in words.
+    """
+
+    speakers: Mapping[str, tuple[Word, ...]]
+    segments: Mapping[str, tuple[Segment, ...]] = field(default_factory=dict)
+    notes: tuple[str, ...] = ()
+
+
+@dataclass
+class Collected:
+    """Words while a file is being read. spread: texts of several words whose times were shared out; wrong:
+    those out of order.
+    """
+
+    path: Path
+    speakers: dict[str, list[Word]] = field(default_factory=dict)
+    notes: list[str] = field(default_factory=list)
+    spread: int = 0
+    wrong: int = 0
+    count: int = 0
+
+    def fail(
+        self, cause: str, where: str = "", remedy: str = "Correct it there, or save the transcript anew."
+    ) -> FileError:
+        return FileError(self.path, cause, where, remedy)
+
+    def add(
+        self, speaker: str, text: str, start: float, end: float, where: str = "", whole: bool = False
+    ) -> None:
+        """Add a text, of one word or of several, which share its time by their letters unless it is `whole`.
+        start, end: seconds. Raises FileError.
+        """
+        if not (abs(start) <= LATEST and abs(end) <= LATEST):
+            raise self.fail(f"a word's time is {start:g} to {end:g} s", where)
+        words = self.speakers.setdefault(speaker[:200], [])
+        texts = [" ".join(text.split())] if whole else text.split()
+        texts = [t for t in texts if not is_silent(t)] if not is_silent(text) else []
+        if not texts:
+            return
+        start = max(start, 0.0)
+        if end < start:
+            self.wrong += 1
+            end = start + 0.06 * len(text)
+        self.count += len(texts)
+        if self.count > MOST:
+            raise self.fail(f"has more than {MOST:,} words", where, "Cut the recording into pieces.")
+        if len(texts) == 1:
+            words.append(Word(text=texts[0][:_TEXT], start=round(start, 4), end=round(end, 4)))
+            return
+        self.spread += len(texts)
+        sizes = [len(t) + 1 for t in texts]
+        at, total = start, sum(sizes)
+        for word, size in zip(texts, sizes, strict=True):
+            words.append(
+                Word(text=word[:_TEXT], start=round(at, 4), end=round(at + (end - start) * size / total, 4))
+            )
+            at += (end - start) * size / total
+
+    def finished(self, segments: Mapping[str, tuple[Segment, ...]] | None = None) -> Transcript:
+        notes = list(self.notes)
+        out = {}
+        for name, words in self.speakers.items():
+            out[name], told = settled(words)
+            whose = f"'{name}': " if name else ""
+            notes += [whose + t for t in told]
+        if self.wrong:
+            notes.append(
+                f"{count(self.wrong, 'word')} ended before beginning; so long as letters take is kept"
+            )
+        if self.spread:
+            notes.append(
+                f"{count(self.spread, 'word')} had no times of their own; they share those of their sentence "
+                "by their letters"
+            )
+        if not any(out.values()):
+            notes.append("it holds no words")
+        return Transcript(out, dict(segments or {}), tuple(notes))
+
+
+def count(number: int, what: str) -> str:
+    return f"{number:,} {what}{'' if number == 1 else 's'}"
+
+
+def is_silent(text: str) -> bool:
+    """Whether a label stands for silence or noise, not for a word."""
+    bare = text.strip().casefold()
+    return bare in _SILENT or (bare != "%hesitation" and _NOISE.fullmatch(bare) is not None)
+
+
+def settled(words: Iterable[Word]) -> tuple[tuple[Word, ...], list[str]]:
+    """Return words by start, each ending where the next begins at the latest, and what had to be done for
+    that, in words.
+    """
+    given = list(words)
+    ordered = sorted(given, key=lambda w: (w.start, w.end))
+    moved = sum(a.start > b.start for a, b in pairwise(given))
+    out: list[Word] = []
+    over = gone = 0
+    for word in ordered:
+        if out and word.start < out[-1].end - 1e-6:
+            before = out[-1]
+            over += 1
+            if word.start - before.start >= SHORTEST / 2:
+                out[-1] = Word(text=before.text, start=before.start, end=word.start)
+            elif word.end - before.end >= SHORTEST / 2:
+                word = Word(text=word.text, start=before.end, end=word.end)
+            else:
+                gone += 1
+                continue
+        if word.end - word.start < SHORTEST / 2:
+            word = Word(
+                text=word.text, start=word.start, end=word.start + SHORTEST / 2
+            )  # a word takes time, whatever was written
+        out.append(word)
+    for n in range(len(out) - 1):  # what was made longer ends where the next begins
+        if out[n].end > out[n + 1].start > out[n].start:
+            out[n] = Word(text=out[n].text, start=out[n].start, end=out[n + 1].start)
+    notes = []
+    if moved:
+        notes.append(f"{count(moved, 'word')} out of order, sorted by time")
+    if over:
+        notes.append(f"{count(over, 'word')} overlapped the one before, which ends there now")
+    if gone:
+        notes.append(f"{count(gone, 'word')} lay wholly within another and were left out")
+    return tuple(out), notes
+
+
+def text_of(path: Path) -> str:
+    """Return a text file's content. Raises FileError."""
+    try:
+        if path.stat().st_size > LARGEST:
+            raise FileError(path, f"is larger than {LARGEST >> 20} MiB, no transcript is", remedy=REMEDY)
+        data = path.read_bytes()
+    except OSError as error:
+        raise FileError(
+            path, f"cannot be read ({error.strerror or error})", remedy="Check that it is there."
+        ) from None
+    if data.startswith((codecs.BOM_UTF16_LE, codecs.BOM_UTF16_BE)):
+        return data.decode("utf-16", "replace").replace("\r\n", "\n").replace("\r", "\n")
+    try:
+        text = data.decode("utf-8-sig")
+    except UnicodeDecodeError:
+        text = data.decode("cp1252", "replace")
+    return text.replace("\r\n", "\n").replace("\r", "\n")
