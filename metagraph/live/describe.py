@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections import Counter
-from typing import TYPE_CHECKING, Any
+from typing import Any, Protocol
 
 import msgspec
 
@@ -12,10 +12,23 @@ from metagraph.graph import anatomy
 from metagraph.graph.model import LAYERS, Project
 from metagraph.graph.words import MODES
 from metagraph.live import limits, messages
+from metagraph.live.ledger import Ledger
 from metagraph.live.pose_stream import Stream
+from metagraph.live.tick_work import Client
+from metagraph.playback.plan import Plan
 
-if TYPE_CHECKING:
-    from metagraph.live.live_session import LiveSession
+
+class DescribedSession(Protocol):
+    """What of a live session is told. now: seconds since it began."""
+
+    project: Project
+    ledger: Ledger
+    clients: dict[int, Client]
+    now: float
+
+    @property
+    def plan(self) -> Plan: ...
+
 
 LINES, POINTS, ACTIONS = 2000, 500, 20000  # described at most
 
@@ -25,7 +38,7 @@ def named(data: bytes, ident: str) -> bytes:
     return b'{"id":' + messages.encode(ident) + b"," + data[1:] if ident else data
 
 
-def greeting(session: LiveSession, stream: Stream | None, ident: str) -> bytes:
+def greeting(session: DescribedSession, stream: Stream | None, ident: str) -> bytes:
     """Return the reply to hello: what is spoken here, and in which order a stream's numbers come."""
     out: dict[str, Any] = {
         "state": "done",
@@ -49,7 +62,7 @@ def greeting(session: LiveSession, stream: Stream | None, ident: str) -> bytes:
     return named(messages.encode(out), ident)
 
 
-def status(session: LiveSession) -> bytes:
+def status(session: DescribedSession) -> bytes:
     """Return what plays at this moment."""
     now, plan = session.now, session.plan
     playing: dict[str, dict[str, Any]] = {}

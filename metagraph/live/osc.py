@@ -11,6 +11,7 @@ from typing import Any
 from metagraph.graph.words import LAYERS
 from metagraph.live.hub import Hub
 from metagraph.live.messages import LONGEST_MESSAGE, encode
+from metagraph.live.osc_bytes import padded
 
 ROOT = "/metagraph/"
 SILENT = 60.0  # seconds after which a sender is forgotten
@@ -191,9 +192,3 @@ class OscLine(asyncio.DatagramProtocol):
         """Send a datagram."""
         if self.transport is not None and not self.transport.is_closing():
             self.transport.sendto(data, address)
-
-
-def padded(text: str) -> bytes:
-    """Return a text as OSC has it: ended by a zero byte and filled up to four."""
-    data = text.encode("utf-8", "replace").replace(b"\0", b"?") + b"\0"
-    return data + b"\0" * (-len(data) % 4)

@@ -14,7 +14,7 @@ from numpy.typing import NDArray
 from metagraph.graph.model import Project
 from metagraph.graph.requests import AskError
 from metagraph.live.messages import Poses, encode
-from metagraph.live.osc import padded
+from metagraph.live.osc_bytes import padded
 from metagraph.motion.skeleton import Pose
 from metagraph.playback.plan import Plan
 from metagraph.playback.player import morphs_at, pose_at

@@ -9,6 +9,7 @@ from typing import Any
 
 from metagraph.graph import requests as a
 from metagraph.graph.model import LAYERS, Action, Layer, Project
+from metagraph.playback.line_lengths import spoken_seconds
 
 SYNCS = ("start", "ready", "strokestart", "stroke", "strokeend", "relax", "end", "attackpeak")
 GUESSED = {
@@ -125,10 +126,6 @@ class Words:
         """Return how long something takes to say; seconds."""
         if self.project is None:
             return len(text) / SPOKEN if text else UNSAID
-        from metagraph.playback.understand import (
-            spoken_seconds,
-        )  # the planner, which reading alone does not need
-
         known = self.project.lines.get(line)
         return spoken_seconds(self.project, line or None, text or (known.text if known is not None else ""))
 

@@ -14,11 +14,10 @@ import msgspec
 from metagraph.graph import requests as a
 from metagraph.graph.model import LAYERS, Action, Layer, Project
 from metagraph.playback.life.track import BlinkAt, Item, LookAt, ModeFrom, PlaceFrom, Speech, StayFrom
+from metagraph.playback.line_lengths import spoken_seconds
 from metagraph.playback.plan import Report, Request
 
 FOREVER = 1e9  # seconds; a look that lasts until the next
-SPOKEN = 14.0  # characters a second of speech whose sound is not there: about 150 words a minute
-SHORTEST_LINE = 0.4  # seconds
 
 
 @dataclass(frozen=True)
@@ -169,20 +168,6 @@ def _said(project: Project, ask: a.Say, at: float) -> list[Request | Item | a.Wi
             shifted["stroke"] = at + getattr(inner, "stroke")  # noqa: B009 - not every ask has one
         out += _meant(project, _named(msgspec.structs.replace(inner, **shifted), ask.id, n), begins)
     return out
-
-
-def spoken_seconds(project: Project, line: str | None, text: str, duration: float | None = None) -> float:
-    """Return how long something takes to say: as asked, as its sound, as the line says, or as its text is
-    long.
-    """
-    entry = project.lines.get(line or "")
-    if duration is not None:
-        return max(duration, 0.0)
-    if line is not None and line in project.voices:
-        return float(project.voices[line].duration)
-    if entry is not None and entry.duration is not None:
-        return entry.duration
-    return max(SHORTEST_LINE, len(text.strip()) / SPOKEN)
 
 
 def _head(project: Project, ask: a.Nod | a.Shake, word: str, at: float) -> Request:

@@ -11,7 +11,8 @@ from hypothesis import strategies as st
 from metagraph.graph import requests as a
 from metagraph.live.hub import Hub
 from metagraph.live.messages import Heard, Hello, Poses, encode, read
-from metagraph.live.osc import SENDERS, SILENT, OscError, OscLine, padded, request, texts_of
+from metagraph.live.osc import SENDERS, SILENT, OscError, OscLine, request, texts_of
+from metagraph.live.osc_bytes import padded
 
 
 def said(address: str, *values: Any) -> Any:

@@ -23,7 +23,7 @@ from metagraph.graph.model import Project
 from metagraph.live import hub as hubs
 from metagraph.live import websocket as lines
 from metagraph.live.live_session import LiveSession
-from metagraph.live.osc import padded
+from metagraph.live.osc_bytes import padded
 from metagraph.live.pose_stream import HEADER, MAGIC
 from metagraph.live.server import LiveError, Options, Server, checked, is_loopback
 from metagraph.live.wire import Batch, Ready, Result, exchange

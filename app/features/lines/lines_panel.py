@@ -32,7 +32,7 @@ from metagraph.graph import performance_edits
 from metagraph.graph.edits import EditError
 from metagraph.graph.model import Project
 from metagraph.graph.requests import Line, Say
-from metagraph.playback.understand import spoken_seconds
+from metagraph.playback.line_lengths import spoken_seconds
 
 COLUMNS = ("Id", "Words", "Sound", "Length", "With it")
 ID, WORDS, SOUND, LENGTH, ASKS = range(5)
