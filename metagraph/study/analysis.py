@@ -13,7 +13,7 @@ from math import exp, inf, log
 import numpy as np
 
 from metagraph.study import stats
-from metagraph.study.analysis_read import TOTALS, Data, Row
+from metagraph.study.analysis_read import TOTALS, AnalysisRow, Data
 from metagraph.study.score import WORDS, Score, What
 from metagraph.study.stats import Estimate, Order, Test
 from metagraph.study.tasks import SPENT, Spent
@@ -165,9 +165,9 @@ def analyse(data: Data) -> Results:
 # --- time
 
 
-def compare(rows: Sequence[Row]) -> Comparison | None:
+def compare(rows: Sequence[AnalysisRow]) -> Comparison | None:
     """Return the comparison of both conditions; None where one of them was never done."""
-    by: dict[str, dict[str, dict[str, Row]]] = {}  # participant -> condition -> task
+    by: dict[str, dict[str, dict[str, AnalysisRow]]] = {}  # participant -> condition -> task
     for r in rows:
         by.setdefault(r.run.participant, {}).setdefault(r.run.condition, {})[r.run.task] = r
     both = {p: c for p, c in by.items() if ABOVE in c and BELOW in c}
@@ -220,7 +220,7 @@ def compare(rows: Sequence[Row]) -> Comparison | None:
     )
 
 
-def _took(rows: Mapping[str, Row], tasks: set[str] | None) -> float:
+def _took(rows: Mapping[str, AnalysisRow], tasks: set[str] | None) -> float:
     """Return the geometric mean of seconds: a task, over some tasks, or where tasks is None a clip, over
     all.
     """
@@ -229,7 +229,7 @@ def _took(rows: Mapping[str, Row], tasks: set[str] | None) -> float:
     return exp(np.mean([log(rows[t].run.seconds) for t in sorted(tasks)]))
 
 
-def _unpaired(by: Mapping[str, Mapping[str, Mapping[str, Row]]]) -> Comparison | None:
+def _unpaired(by: Mapping[str, Mapping[str, Mapping[str, AnalysisRow]]]) -> Comparison | None:
     groups = {c: [found[c] for found in by.values() if c in found] for c in (ABOVE, BELOW)}
     if not all(groups.values()):
         return None
@@ -252,7 +252,7 @@ def _unpaired(by: Mapping[str, Mapping[str, Mapping[str, Row]]]) -> Comparison |
     return Comparison("task" if same else "clip", False, means, ratio, test, cautions=tuple(words))
 
 
-def learning(rows: Sequence[Row]) -> Curve | None:
+def learning(rows: Sequence[AnalysisRow]) -> Curve | None:
     """Return how people got quicker from clip to clip, within one condition; None where nobody had three
     clips.
     """
@@ -269,9 +269,9 @@ def learning(rows: Sequence[Row]) -> Curve | None:
     return Curve(slope, first, means)
 
 
-def _spent(rows: Sequence[Row]) -> dict[Spent, float]:
+def _spent(rows: Sequence[AnalysisRow]) -> dict[Spent, float]:
     """Return mean seconds a task by what they went into, each person counting once."""
-    people: dict[str, list[Row]] = {}
+    people: dict[str, list[AnalysisRow]] = {}
     for r in rows:
         people.setdefault(r.run.participant, []).append(r)
     return {
@@ -280,8 +280,8 @@ def _spent(rows: Sequence[Row]) -> dict[Spent, float]:
     }
 
 
-def _predicted(rows: Sequence[Row]) -> Predicted | None:
-    people: dict[str, list[Row]] = {}
+def _predicted(rows: Sequence[AnalysisRow]) -> Predicted | None:
+    people: dict[str, list[AnalysisRow]] = {}
     for r in rows:
         if r.predicted > 0:
             people.setdefault(r.run.participant, []).append(r)
@@ -295,11 +295,11 @@ def _predicted(rows: Sequence[Row]) -> Predicted | None:
     )
 
 
-def _observed(row: Row) -> float:
+def _observed(row: AnalysisRow) -> float:
     return row.run.seconds
 
 
-def _model(row: Row) -> float:
+def _model(row: AnalysisRow) -> float:
     return row.predicted
 
 
@@ -331,7 +331,9 @@ MISTAKES: Mapping[str, Callable[[Score], float | None]] = {
 }
 
 
-def _scored(rows: Sequence[Row], get: Callable[[Score], float | None]) -> list[tuple[str, str, float]]:
+def _scored(
+    rows: Sequence[AnalysisRow], get: Callable[[Score], float | None]
+) -> list[tuple[str, str, float]]:
     found = [(r.run.participant, r.run.condition, get(r.score)) for r in rows if r.score is not None]
     return [(who, condition, value) for who, condition, value in found if value is not None]
 

@@ -32,7 +32,7 @@ TOTALS = frozenset(name for name, _ in SCORED.values())  # all from 0 to 100
 
 
 @dataclass(frozen=True)
-class Row:
+class AnalysisRow:
     """A task somebody did. sitting: 1 for the condition they began with, 2 for the next. clips: of the task,
     0 where nobody knows. predicted: seconds by the keystroke-level model. score: None without a reference or
     a project.
@@ -74,7 +74,7 @@ class Data:
     conditions: tuple[str, ...]
     tasks: Mapping[str, str]
     participants: tuple[str, ...]
-    rows: tuple[Row, ...] = ()
+    rows: tuple[AnalysisRow, ...] = ()
     ratings: tuple[Rating, ...] = ()
     answers: tuple[Answer, ...] = ()
     missing: tuple[str, ...] = ()
@@ -106,7 +106,7 @@ def collect(folder: str | Path, jumps: bool = True, progress: Progress | None = 
     plan = study.plan
     missing: list[str] = []
     references = _References(study, jumps, missing)
-    rows: list[Row] = []
+    rows: list[AnalysisRow] = []
     answers: list[Answer] = []
     simulated = False
     for n, participant in enumerate(plan.ids):
@@ -163,8 +163,8 @@ def _log(study: Study, participant: str, missing: list[str]) -> Log | None:
     return log
 
 
-def _rows(study: Study, log: Log, references: _References, missing: list[str]) -> list[Row]:
-    out: list[Row] = []
+def _rows(study: Study, log: Log, references: _References, missing: list[str]) -> list[AnalysisRow]:
+    out: list[AnalysisRow] = []
     order: list[str] = []
     for run in log.tasks():
         who = f"{log.participant}, {run.task} ({run.condition})"
@@ -179,13 +179,13 @@ def _rows(study: Study, log: Log, references: _References, missing: list[str]) -
             clips = len(study.clips(task.clips))
         except FileError:
             clips = len(run.per_clip)
-        row = Row(run, order.index(run.condition) + 1, clips, prediction(run, study.plan.times))
+        row = AnalysisRow(run, order.index(run.condition) + 1, clips, prediction(run, study.plan.times))
         if run.timed_out:
             missing.append(f"{who}: was ended by the time limit; the time it would have taken is not known.")
         elif not row.done:
             missing.append(f"{who}: was not finished; its time is left out.")
         out.append(
-            Row(
+            AnalysisRow(
                 run,
                 row.sitting,
                 clips,

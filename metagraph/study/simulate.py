@@ -14,7 +14,7 @@ from math import exp, log
 
 import numpy as np
 
-from metagraph.study.analysis_read import Data, Rating, Row
+from metagraph.study.analysis_read import AnalysisRow, Data, Rating
 from metagraph.study.order import latin
 from metagraph.study.tasks import SPENT, TaskRun
 
@@ -123,7 +123,7 @@ def _steps(value: float, step: float) -> float:
 
 def numbers(truth: Truth, tasks: Mapping[str, tuple[str, ...]]) -> Data:
     """Return the data of simulated participants without any files: times and ratings, no mistakes."""
-    rows: list[Row] = []
+    rows: list[AnalysisRow] = []
     ratings: list[Rating] = []
     for person in simulated(truth, tasks):
         began = person.works[0].condition
@@ -146,7 +146,7 @@ def numbers(truth: Truth, tasks: Mapping[str, tuple[str, ...]]) -> Data:
                 True,
                 None,
             )
-            rows.append(Row(run, 1 if work.condition == began else 2, len(work.seconds), 0.0))
+            rows.append(AnalysisRow(run, 1 if work.condition == began else 2, len(work.seconds), 0.0))
         for name, scores in (("SUS", person.sus), ("NASA-TLX, raw", person.tlx)):
             ratings += [Rating(person.participant, name, c, value) for c, value in scores.items()]
     people = tuple(dict.fromkeys(r.run.participant for r in rows))

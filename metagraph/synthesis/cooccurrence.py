@@ -40,7 +40,7 @@ HYPOTHESES: tuple[tuple[str, Sound, tuple[Part, ...]], ...] = (
 
 
 @dataclass(frozen=True)
-class Row:
+class CooccurrenceRow:
     """matched of total segments went with a movement. rate: their share, 0..1; low, high: its 95 % interval
     (Wilson). chance: the mean rate when the same speech is laid elsewhere over the same motion.
     """
@@ -133,7 +133,7 @@ def movement(
 
 def table(
     takes: Sequence[Clip], speech: Sequence[Sequence[Segment]], chances: int = CHANCES, seed: int = 1
-) -> list[Row]:
+) -> list[CooccurrenceRow]:
     """Return how often each kind of segment went with which movement, over all takes, as the paper's table 1.
 
     speech: the segments of each take. chances: how often speech is laid elsewhere, turned round within its
@@ -149,7 +149,9 @@ def table(
         by_chance = [_matches(found, kind, parts, s) for s in shifts] if total else []
         chance = float(np.mean([m / max(1, n) for m, n in by_chance])) if by_chance else 0.0
         low, high = wilson(matched, total)
-        rows.append(Row(words, matched, total, matched / total if total else 0.0, low, high, chance))
+        rows.append(
+            CooccurrenceRow(words, matched, total, matched / total if total else 0.0, low, high, chance)
+        )
     return rows
 
 

@@ -100,7 +100,7 @@ class Graph:
 
 
 @dataclass(frozen=True)
-class Row:
+class EvaluationRow:
     """All cases of a setting and a search. success: the share that found motion, 0..1, low, high: its 95 %
     interval (Wilson). seconds: median of the searches, whether they found something or not. per_second, cost:
     of those found, transitions a second, and the mean.
@@ -127,7 +127,7 @@ class Evaluation:
     whole: bool
 
     @property
-    def rows(self) -> list[Row]:
+    def rows(self) -> list[EvaluationRow]:
         """A row for each setting and search, in the order they were tried."""
         groups: dict[tuple[str, Search], list[Case]] = {}
         for case in self.cases:
@@ -135,11 +135,11 @@ class Evaluation:
         return [_row(setting, search, cases) for (setting, search), cases in groups.items()]
 
 
-def _row(setting: str, search: Search, cases: Sequence[Case]) -> Row:
+def _row(setting: str, search: Search, cases: Sequence[Case]) -> EvaluationRow:
     found = [c for c in cases if c.found]
     low, high = wilson(len(found), len(cases))
     moved = sum(c.length for c in found)
-    return Row(
+    return EvaluationRow(
         setting,
         search,
         len(found),

@@ -7,7 +7,7 @@ from dataclasses import replace
 
 from metagraph.graph import edits
 from metagraph.graph.model import Project
-from metagraph.study.analysis_read import Data, Row
+from metagraph.study.analysis_read import AnalysisRow, Data
 from metagraph.study.tasks import SPENT, TaskRun
 from tests.projects import clip
 
@@ -38,14 +38,14 @@ def small() -> Project:
     return edits.place(project, [ids["hips_to_sides"]], LAYER, "transition", hips, sides)
 
 
-def row(who: str, condition: str, task: str, seconds: float, index: int, **more: object) -> Row:
+def row(who: str, condition: str, task: str, seconds: float, index: int, **more: object) -> AnalysisRow:
     """A task that was done, without operators; more: fields of the run, `score` and `sitting`."""
     score, sitting = more.pop("score", None), more.pop("sitting", 1)
     spent = dict.fromkeys(SPENT, seconds / len(SPENT))
     run = TaskRun(
         who, condition, task, index, seconds, seconds, Counter(), 0.0, 0, 0, 0, {}, spent, True, None
     )
-    return Row(replace(run, **more), sitting, 8, 0.0, score)
+    return AnalysisRow(replace(run, **more), sitting, 8, 0.0, score)
 
 
 # Four people, two tasks: who began with what, then seconds of `a` with the meta-graph and by hand, and of

@@ -33,7 +33,7 @@ class Hit:
 
 
 @dataclass(frozen=True)
-class Row:
+class GraphRow:
     action: Action
     rect: QRectF
     bar: QRectF
@@ -48,7 +48,7 @@ class Node:
     rect: QRectF
     header: QRectF
     body: QRectF
-    rows: tuple[Row, ...]
+    rows: tuple[GraphRow, ...]
     count: int
     scroll: int
     most: int
@@ -102,7 +102,7 @@ class Layout:
             return Hit("card", self.stance, "stance")
         return Hit("nothing")
 
-    def row(self, action: str) -> Row | None:
+    def row(self, action: str) -> GraphRow | None:
         return next(
             (row for node in self.nodes.values() for row in node.rows if row.action.id == action), None
         )
@@ -219,13 +219,13 @@ def _node(kind: Kind, rect: QRectF, actions: tuple[Action, ...], scroll: int, co
     most = max(0, total - lines)
     first = min(max(0, scroll), most)
     column = (rect.width() - 2 * GRID - (columns - 1) * GRID) / columns
-    rows: list[Row] = []
+    rows: list[GraphRow] = []
     for place in range(first * columns, min(len(actions), (first + lines) * columns)):
         line, at = divmod(place - first * columns, columns)
         area = QRectF(rect.left() + GRID + at * (column + GRID), body.top() + line * ROW, column, ROW)
         bar = QRectF(area.right() - BAR - 6, area.center().y() - 1.5, BAR, 3)
         head = QRectF(area.left(), area.top(), ARROW, ROW) if kind == "transition" else QRectF()
-        rows.append(Row(actions[place], area, bar, head))
+        rows.append(GraphRow(actions[place], area, bar, head))
     other = (
         QRectF(rect.right() - 168, rect.top() + 7, 160 - 34, HEADER - 14)
         if kind == "transition"
@@ -234,7 +234,7 @@ def _node(kind: Kind, rect: QRectF, actions: tuple[Action, ...], scroll: int, co
     return Node(kind, rect, header, body, tuple(rows), len(actions), first, most, other)
 
 
-def likelihood_at(row: Row, x: float) -> float:
+def likelihood_at(row: GraphRow, x: float) -> float:
     """Return the likelihood a bar shows at a place: 0.1 at its left, 1 in its middle, 3 at its right, in
     steps of 0.1.
     """

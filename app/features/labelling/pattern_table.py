@@ -52,7 +52,7 @@ NOBODY, MINE, LEARNED = "built in", "you", "corrections"
 
 
 @dataclass(frozen=True)
-class Row:
+class PatternRow:
     """field: as `Patterns.changes` or, of what was learned, `Patterns.learned` name it. meaning: None of a
     built-in one taken away.
     """
@@ -74,30 +74,30 @@ class Row:
         )
 
 
-def rows_of(patterns: Patterns) -> list[Row]:
+def rows_of(patterns: Patterns) -> list[PatternRow]:
     """Return all rows: own ones, learned ones, and what is built in and was not changed."""
     out = [
-        Row(MINE, name, phrase, meaning)
+        PatternRow(MINE, name, phrase, meaning)
         for name, mine in patterns.changes.items()
         for phrase, meaning in mine.items()
     ]
     for name, words in patterns.learned.items():
         out += [
-            Row(LEARNED, name, word, value, count)
+            PatternRow(LEARNED, name, word, value, count)
             for word, counts in words.items()
             for value, count in counts.items()
         ]
     for field in FIELDS:
         changed = patterns.changes.get(field, {})
         out += [
-            Row(NOBODY, field, phrase, meaning)
+            PatternRow(NOBODY, field, phrase, meaning)
             for phrase, meaning in DEFAULTS[field].items()
             if phrase not in changed
         ]
     return out
 
 
-def without(patterns: Patterns, row: Row) -> Patterns:
+def without(patterns: Patterns, row: PatternRow) -> Patterns:
     """Return patterns without a row: an own one is forgotten, so that the built-in meaning holds again; a
     learned one too; a built-in one is taken away, which is a change of the user's.
     """
@@ -114,7 +114,7 @@ def without(patterns: Patterns, row: Row) -> Patterns:
     return patterns.with_pattern(row.field, row.phrase, None)  # type: ignore[arg-type]
 
 
-def changed(patterns: Patterns, row: Row, phrase: str, meaning: str) -> Patterns:
+def changed(patterns: Patterns, row: PatternRow, phrase: str, meaning: str) -> Patterns:
     """Return patterns in which a row says something else. Raises PatternsError."""
     if row.source == LEARNED:
         return remembered(without(patterns, row), row.field, phrase.lower().split(), meaning.strip())
@@ -135,7 +135,7 @@ class PatternTable(QAbstractTableModel):
         parent: QWidget,
     ) -> None:
         super().__init__(parent)
-        self.rows: list[Row] = []
+        self.rows: list[PatternRow] = []
         self.patterns = Patterns()
         self._change, self._refused = change, refused
 
@@ -221,7 +221,7 @@ class MeaningEditor(QStyledItemDelegate):
     """Edits a meaning by a list where only some words will do."""
 
     def createEditor(self, parent: QWidget, option: QStyleOptionViewItem, index: Index) -> QWidget:
-        row: Row = index.data(Qt.ItemDataRole.UserRole)
+        row: PatternRow = index.data(Qt.ItemDataRole.UserRole)
         few = MEANINGS[row.field]
         if index.column() != 2 or not few:
             return super().createEditor(parent, option, index)

@@ -33,8 +33,8 @@ from app.features.labelling.pattern_table import (
     NOBODY,
     Chosen,
     MeaningEditor,
+    PatternRow,
     PatternTable,
-    Row,
     fill_meanings,
     without,
 )
@@ -268,7 +268,7 @@ class PatternsDialog(QDialog):
 
     # --- changing
 
-    def _selected(self) -> list[Row]:
+    def _selected(self) -> list[PatternRow]:
         return [index.data(Qt.ItemDataRole.UserRole) for index in self.table.selectionModel().selectedRows()]
 
     def _add(self) -> None:

@@ -28,7 +28,7 @@ from PySide6.QtWidgets import (
 
 from app.features.labelling import review_words
 from app.features.labelling.proposal_preview import Span, trial
-from app.features.labelling.review_fields import ReviewFields, Row
+from app.features.labelling.review_fields import ReviewFields, ReviewRow
 from app.features.labelling.review_queue import ReviewQueue
 from app.features.labelling.review_session import Reviewing
 from app.features.labelling.review_stage import ReviewStage
@@ -367,7 +367,7 @@ class ReviewDialog(QDialog):
                     (belief.confidence, belief.reason) if belief is not None else (0.0, "nothing says which")
                 )
                 rows.append(
-                    Row(
+                    ReviewRow(
                         name, TITLES[name], choices, self.review.value(clip, name), sure, reason, p.kind.value
                     )
                 )

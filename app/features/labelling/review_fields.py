@@ -25,7 +25,7 @@ LINE = 17  # pixels a line of small text takes
 
 
 @dataclass(frozen=True)
-class Row:
+class ReviewRow:
     """name: the field. choices: (value, words). value: the one that holds. sure: 0..1. reason: why, in
     words.
     """
@@ -41,7 +41,7 @@ class Row:
 
 @dataclass
 class _Placed:
-    row: Row
+    row: ReviewRow
     card: QRectF
     chips: list[QRectF] = field(default_factory=list)
     reason: QRectF = field(default_factory=QRectF)
@@ -56,7 +56,7 @@ class ReviewFields(QWidget):
     def __init__(self, session: Session, parent: QWidget | None = None) -> None:
         super().__init__(parent)
         self.session = session
-        self.rows: tuple[Row, ...] = ()
+        self.rows: tuple[ReviewRow, ...] = ()
         self.current = ""
         self._placed: list[_Placed] = []
         self._high = 0.0
@@ -65,7 +65,7 @@ class ReviewFields(QWidget):
         self.setSizePolicy(QSizePolicy.Policy.Expanding, QSizePolicy.Policy.Fixed)
         session.look.changed.connect(self.update)
 
-    def show_rows(self, rows: Sequence[Row], current: str) -> None:
+    def show_rows(self, rows: Sequence[ReviewRow], current: str) -> None:
         self.rows, self.current = tuple(rows), current
         self.setAccessibleDescription(
             "; ".join(f"{r.title}: {self._words(r)}, {r.sure:.0%} sure" for r in rows)
@@ -74,7 +74,7 @@ class ReviewFields(QWidget):
         self.update()
 
     @staticmethod
-    def _words(row: Row) -> str:
+    def _words(row: ReviewRow) -> str:
         return next((words for value, words in row.choices if value == row.value), "not known")
 
     def chip(self, name: str, value: Any) -> QPointF:
@@ -130,7 +130,7 @@ class ReviewFields(QWidget):
         self.setFixedHeight(max(1, round(y)))
 
     @staticmethod
-    def _chip_words(row: Row, number: int, words: str) -> str:
+    def _chip_words(row: ReviewRow, number: int, words: str) -> str:
         return f"{KIND_MARKS[str(row.choices[number][0])]} {words}" if row.name == "kind" else words
 
     def sizeHint(self) -> QSize:
@@ -183,7 +183,7 @@ class ReviewFields(QWidget):
         self,
         painter: QPainter,
         look: Theme,
-        row: Row,
+        row: ReviewRow,
         box: QRectF,
         number: int,
         words: str,

@@ -44,7 +44,7 @@ class DialSlider(Slider):
         self._put_back()
 
 
-class Row:
+class DialRow:
     """One dial: a tick for on and off, its name, its slider, its number with the unit."""
 
     def __init__(
@@ -128,7 +128,7 @@ class LifePanel(QWidget):
         top = QGridLayout()
         top.setHorizontalSpacing(10)
         outer.addLayout(top)
-        self.rows: dict[str, Row] = {"stillness": self._row(DIALS[0], top, 0, None)}
+        self.rows: dict[str, DialRow] = {"stillness": self._row(DIALS[0], top, 0, None)}
         self.rows["stillness"].tick.setText("Stillness")
         tabs = QHBoxLayout()
         tabs.setSpacing(2)
@@ -154,14 +154,14 @@ class LifePanel(QWidget):
         outer.addWidget(area, 1)
         self.area = area
         self.pages: dict[Mode | None, QWidget] = {}
-        self.manner_rows: dict[Mode, dict[str, Row]] = {}
+        self.manner_rows: dict[Mode, dict[str, DialRow]] = {}
         self._fill(None)
         document.changed.connect(self._edited)
         self._show()
 
-    def _row(self, dial: Dial, grid: QGridLayout, row: int, mode: Mode | None) -> Row:
+    def _row(self, dial: Dial, grid: QGridLayout, row: int, mode: Mode | None) -> DialRow:
         default = getattr(Life() if mode is None else MANNERS[mode], dial.name)
-        return Row(dial, grid, row, self, partial(self._dial, dial, mode), default)
+        return DialRow(dial, grid, row, self, partial(self._dial, dial, mode), default)
 
     def _fill(self, mode: Mode | None) -> None:
         """Make the page of the amounts, or of one mode, when it is first shown."""
@@ -172,7 +172,7 @@ class LifePanel(QWidget):
         grid.setHorizontalSpacing(10)
         grid.setVerticalSpacing(5)
         grid.setColumnStretch(1, 1)
-        rows: dict[str, Row] = {}
+        rows: dict[str, DialRow] = {}
         group, n = "", 0
         for dial in DIALS[1:] if mode is None else MANNER_DIALS:
             if dial.group != group:

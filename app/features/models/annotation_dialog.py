@@ -28,7 +28,7 @@ from PySide6.QtWidgets import (
     QWidget,
 )
 
-from app.features.models.meaning_choices import ChoiceTable, Entries, Row
+from app.features.models.meaning_choices import ChoiceTable, Entries, MeaningRow
 from app.look.plural import many
 from app.look.theme import KIND_MARKS, strengthen, theme
 from app.project.annotation_reading import Reading, begin, into, told
@@ -280,12 +280,14 @@ class AnnotateDialog(QDialog):
             some = ", ".join(x or "(empty)" for x in list(tier.labels)[:6])
             role = self.reading.roles[tier.name]
             tip = f"{of}: {some}" if some else f"{of}: nothing in it"
-            rows.append(Row((tier.name, f"{len(tier.intervals):,}"), role.capitalize(), role == IGNORE, tip))
+            rows.append(
+                MeaningRow((tier.name, f"{len(tier.intervals):,}"), role.capitalize(), role == IGNORE, tip)
+            )
         self.tiers.show_rows(rows, "There is no tier in this annotation.")
 
     def _show_labels(self) -> None:
         rows = [
-            Row(
+            MeaningRow(
                 (x.text or "(empty)", x.layer, f"{x.count:,}"),
                 meaning_words(x.meaning),
                 x.meaning == IGNORE,

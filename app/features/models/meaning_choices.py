@@ -26,7 +26,7 @@ Entries = Sequence[tuple[str, object, str]]  # words, value, tooltip
 
 
 @dataclass(frozen=True)
-class Row:
+class MeaningRow:
     """cells: the texts of all but the last column. chosen: the words of the last. dim: of what does not
     count. tip: tells more.
     """
@@ -88,7 +88,7 @@ class ChoiceTable(QTreeWidget):
     ) -> None:
         super().__init__(parent)
         self.session, self.entries = session, entries
-        self.rows: tuple[Row, ...] = ()
+        self.rows: tuple[MeaningRow, ...] = ()
         self.last = len(heads) - 1
         self.setColumnCount(len(heads))
         self.setHeaderLabels(list(heads))
@@ -108,7 +108,7 @@ class ChoiceTable(QTreeWidget):
             self.last - 1, Qt.AlignmentFlag.AlignRight | Qt.AlignmentFlag.AlignVCenter
         )
 
-    def show_rows(self, rows: Sequence[Row], otherwise: str = "") -> None:
+    def show_rows(self, rows: Sequence[MeaningRow], otherwise: str = "") -> None:
         """Show rows, or the words `otherwise` where there are none. The current row and the scroll stay where
         they are.
         """

@@ -12,7 +12,7 @@ from PySide6.QtCore import Qt
 from PySide6.QtTest import QTest
 from PySide6.QtWidgets import QApplication, QComboBox, QFileDialog, QMessageBox, QPushButton
 
-from app.features.labelling.pattern_table import LEARNED, MINE, NOBODY, Row, changed, rows_of, without
+from app.features.labelling.pattern_table import LEARNED, MINE, NOBODY, PatternRow, changed, rows_of, without
 from app.features.labelling.patterns_dialog import PatternsDialog
 from app.project.document import Document
 from app.project.learned import Learned
@@ -44,7 +44,8 @@ def test_rows_are_own_ones_learned_ones_and_what_is_built_in_and_unchanged() -> 
     )
     rows = rows_of(patterns)
     assert (
-        Row(MINE, "kinds", "nod", "fidget") in rows and Row(LEARNED, "kind", "wobble", "gesture", 1) in rows
+        PatternRow(MINE, "kinds", "nod", "fidget") in rows
+        and PatternRow(LEARNED, "kind", "wobble", "gesture", 1) in rows
     )
     assert not any(r.source == NOBODY and (r.field, r.phrase) == ("kinds", "nod") for r in rows)
 
@@ -54,15 +55,15 @@ def test_removing_gives_back_forgets_or_takes_away() -> None:
         Patterns().with_pattern("kinds", "nod", "fidget"), "idle_arms_wobble", "kind", "gesture", NAMES
     )
     patterns = learn(patterns, "idle_arms_wobble", "kind", "fidget", NAMES)
-    assert without(patterns, Row(MINE, "kinds", "nod", "fidget")).meanings["kinds"]["nod"] == "gesture"
-    assert "wave" not in without(patterns, Row(NOBODY, "kinds", "wave", "gesture")).meanings["kinds"]
-    assert without(patterns, Row(LEARNED, "kind", "wobble", "fidget", 1)).learned == {
+    assert without(patterns, PatternRow(MINE, "kinds", "nod", "fidget")).meanings["kinds"]["nod"] == "gesture"
+    assert "wave" not in without(patterns, PatternRow(NOBODY, "kinds", "wave", "gesture")).meanings["kinds"]
+    assert without(patterns, PatternRow(LEARNED, "kind", "wobble", "fidget", 1)).learned == {
         "kind": {"wobble": {"gesture": 1}}
     }
-    assert changed(patterns, Row(LEARNED, "kind", "wobble", "fidget", 1), "wobble", "gesture").learned == {
-        "kind": {"wobble": {"gesture": 2}}
-    }
-    renamed = changed(patterns, Row(MINE, "kinds", "nod", "fidget"), "noddle", "fidget")
+    assert changed(
+        patterns, PatternRow(LEARNED, "kind", "wobble", "fidget", 1), "wobble", "gesture"
+    ).learned == {"kind": {"wobble": {"gesture": 2}}}
+    renamed = changed(patterns, PatternRow(MINE, "kinds", "nod", "fidget"), "noddle", "fidget")
     assert renamed.meanings["kinds"]["nod"] == "gesture" and renamed.meanings["kinds"]["noddle"] == "fidget"
 
 

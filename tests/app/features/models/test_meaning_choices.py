@@ -7,7 +7,7 @@ from PySide6.QtCore import QPoint, Qt
 from PySide6.QtTest import QTest
 from PySide6.QtWidgets import QApplication
 
-from app.features.models.meaning_choices import ChoiceTable, Row
+from app.features.models.meaning_choices import ChoiceTable, MeaningRow
 from app.project.document import Document
 from app.stage.session import Session
 
@@ -21,7 +21,9 @@ def table(qtbot):
     )
     qtbot.addWidget(widget)
     widget.resize(420, 300)
-    widget.show_rows([Row(("LH", "3"), "Left arm", tip="three"), Row(("words", "9"), "Ignore", dim=True)])
+    widget.show_rows(
+        [MeaningRow(("LH", "3"), "Left arm", tip="three"), MeaningRow(("words", "9"), "Ignore", dim=True)]
+    )
     widget.show()
     qtbot.waitExposed(widget)
     widget.told = []
