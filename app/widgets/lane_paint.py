@@ -24,7 +24,7 @@ MIDDLE = Qt.AlignmentFlag.AlignVCenter
 
 
 @dataclass(frozen=True)
-class Scene:
+class LaneScene:
     """All that is painted. ends: seconds at which a kept performance ends. actions, asks: ids of what is
     selected.
     """
@@ -40,7 +40,7 @@ class Scene:
     asks: Collection[str]
 
 
-def paint(painter: QPainter, t: Theme, scene: Scene) -> None:
+def paint(painter: QPainter, t: Theme, scene: LaneScene) -> None:
     """Paint everything but the playhead."""
     painter.fillRect(QRectF(0, 0, scene.width, scene.height), QColor(t.panel))
     painter.setRenderHint(QPainter.RenderHint.Antialiasing)
@@ -94,7 +94,7 @@ def badge(painter: QPainter, t: Theme, at: QPointF, words: str, width: float) ->
     painter.drawText(rect, Qt.AlignmentFlag.AlignCenter, words)
 
 
-def _ruler(painter: QPainter, t: Theme, scene: Scene) -> None:
+def _ruler(painter: QPainter, t: Theme, scene: LaneScene) -> None:
     scale = scene.scale
     step = scale.step()
     mark = max(0.0, (scale.first // step) * step)
@@ -107,7 +107,7 @@ def _ruler(painter: QPainter, t: Theme, scene: Scene) -> None:
         mark = round(mark + step, 3)
 
 
-def _stage(painter: QPainter, t: Theme, scene: Scene) -> None:
+def _stage(painter: QPainter, t: Theme, scene: LaneScene) -> None:
     """Speech as bars with its words, looks as lines under them."""
     scale, shown = scene.scale, scene.shown
     area, track = rows(lanes(scene.height)[STAGE])[1], shown.plan.track
@@ -126,7 +126,7 @@ def _stage(painter: QPainter, t: Theme, scene: Scene) -> None:
             _bar(painter, t, rect, QColor(t.hover), speech.text, t.text, False)
 
 
-def _layer(painter: QPainter, t: Theme, scene: Scene, layer: Layer) -> None:
+def _layer(painter: QPainter, t: Theme, scene: LaneScene, layer: Layer) -> None:
     """Stances as a quiet band, cues on it in their kind's colour."""
     scale, shown = scene.scale, scene.shown
     plan, area = shown.plan.layers[layer], rows(lanes(scene.height)[layer])[1]
@@ -181,7 +181,7 @@ def _fitting(painter: QPainter, words: str, width: float) -> str:
     return out if len(out) > 3 or out == words else words[:1]
 
 
-def _ties(painter: QPainter, t: Theme, scene: Scene) -> None:
+def _ties(painter: QPainter, t: Theme, scene: LaneScene) -> None:
     """Lead from each request down to what plays for it."""
     painter.setPen(QPen(QColor(t.dim), 1.2))
     places = lanes(scene.height)

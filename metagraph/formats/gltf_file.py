@@ -175,13 +175,13 @@ class Image(_Value):
     buffer_view: Index | None = None
 
 
-class Scene(_Value):
+class GltfScene(_Value):
     nodes: list[Index] = []
 
 
 class Document(_Value):
     scene: Index = 0
-    scenes: list[Scene] = []
+    scenes: list[GltfScene] = []
     nodes: list[Node] = []
     skins: list[Skin] = []
     animations: list[Animation] = []

@@ -36,7 +36,7 @@ SMALL = 11  # pixels of what stands beside
 
 
 @dataclass(frozen=True)
-class Scene:
+class SegmentScene:
     """All that is painted. heard: the sound of each side. ratio: pixels of the screen to one of the window.
     chosen: (side, place) of the selected segments. over: what the pointer is on.
     """
@@ -52,7 +52,7 @@ class Scene:
     side: int = 0  # whose plan the timeline shows
 
 
-def paint(painter: QPainter, t: Theme, scene: Scene) -> None:
+def paint(painter: QPainter, t: Theme, scene: SegmentScene) -> None:
     """Paint everything but the playhead."""
     painter.fillRect(QRectF(0, 0, scene.width, scene.height), QColor(t.panel))
     painter.setRenderHint(QPainter.RenderHint.Antialiasing)
@@ -75,7 +75,7 @@ def paint(painter: QPainter, t: Theme, scene: Scene) -> None:
         painter.fillRect(QRectF(max(x, LEFT), RULER, scene.width, scene.height), veil)
 
 
-def _ruler(painter: QPainter, t: Theme, scene: Scene) -> None:
+def _ruler(painter: QPainter, t: Theme, scene: SegmentScene) -> None:
     scale = scene.scale
     step = next((s for s in (0.1, 0.2, *STEPS) if s * scale.each >= 64), STEPS[-1])
     painter.setPen(QColor(t.dim))
@@ -88,7 +88,7 @@ def _ruler(painter: QPainter, t: Theme, scene: Scene) -> None:
         n += 1
 
 
-def _titles(painter: QPainter, t: Theme, scene: Scene, side: int, lane: Lane) -> None:
+def _titles(painter: QPainter, t: Theme, scene: SegmentScene, side: int, lane: Lane) -> None:
     """Who it is, the pitches' axis, and what the rows below are."""
     own, small, bold = painter.font(), QFont(painter.font()), QFont(painter.font())
     small.setPixelSize(SMALL)
@@ -120,7 +120,7 @@ def _titles(painter: QPainter, t: Theme, scene: Scene, side: int, lane: Lane) ->
     painter.setFont(own)
 
 
-def _wave(painter: QPainter, t: Theme, scene: Scene, side: int, lane: Lane) -> None:
+def _wave(painter: QPainter, t: Theme, scene: SegmentScene, side: int, lane: Lane) -> None:
     """The waveform with what is segmented behind it, its pitch over it; where it is not there, why."""
     area, heard = lane.wave, scene.heard[side]
     painter.setPen(Qt.PenStyle.NoPen)
@@ -148,7 +148,7 @@ def _wave(painter: QPainter, t: Theme, scene: Scene, side: int, lane: Lane) -> N
 
 
 def _curve(
-    painter: QPainter, of: Envelope, scene: Scene, area: QRectF, color: QColor, y: object, thick: float
+    painter: QPainter, of: Envelope, scene: SegmentScene, area: QRectF, color: QColor, y: object, thick: float
 ) -> None:
     """Paint an envelope, pixel for pixel of the screen. y: from a value to pixels below the top of the
     area.
@@ -185,7 +185,7 @@ def _told(painter: QPainter, t: Theme, heard: Heard | None, area: QRectF) -> Non
         painter.fillRect(QRectF(area.left(), area.bottom() - 2, area.width() * heard.part, 2), QColor(t.dim))
 
 
-def _words(painter: QPainter, t: Theme, scene: Scene, side: int, lane: Lane) -> None:
+def _words(painter: QPainter, t: Theme, scene: SegmentScene, side: int, lane: Lane) -> None:
     """The words where they are said, as far as there is room before the next."""
     scale, font = scene.scale, QFont(painter.font())
     own = painter.font()
@@ -207,7 +207,7 @@ def _words(painter: QPainter, t: Theme, scene: Scene, side: int, lane: Lane) -> 
     painter.setFont(own)
 
 
-def _segments(painter: QPainter, t: Theme, scene: Scene, side: int, lane: Lane) -> None:
+def _segments(painter: QPainter, t: Theme, scene: SegmentScene, side: int, lane: Lane) -> None:
     scale, segments = scene.scale, scene.conversation.sides[side].segments
     painter.setPen(Qt.PenStyle.NoPen)
     painter.setBrush(QColor(t.field))
@@ -244,7 +244,7 @@ def _segments(painter: QPainter, t: Theme, scene: Scene, side: int, lane: Lane) 
         painter.drawText(QRectF(left + 6, rect.top(), room + 4, rect.height()), MIDDLE, out)
 
 
-def _peaks(painter: QPainter, t: Theme, scene: Scene, side: int, lane: Lane) -> None:
+def _peaks(painter: QPainter, t: Theme, scene: SegmentScene, side: int, lane: Lane) -> None:
     """The stress of every clause: a dot on its pitch, and a line down to its segment."""
     scale, segments, heard = scene.scale, scene.conversation.sides[side].segments, scene.heard[side]
     fill, stem = QColor(t.sounds["clause"]), QColor(t.sounds["clause"])
@@ -265,7 +265,7 @@ def _peaks(painter: QPainter, t: Theme, scene: Scene, side: int, lane: Lane) -> 
 def _strokes(
     painter: QPainter,
     t: Theme,
-    scene: Scene,
+    scene: SegmentScene,
     segments: Sequence[Segment],
     area: QRectF,
     alphas: tuple[int, int],

@@ -26,7 +26,7 @@ from app.features.conversation.segment_gestures import Pan, SegmentDrag, gesture
 from app.features.conversation.segment_hits import NOTHING, Hit, hit_at
 from app.features.conversation.segment_keys import DEEDS, deed_of
 from app.features.conversation.segment_lanes import LEAST, NEAREST, farthest, segment_words, words_in
-from app.features.conversation.segment_paint import Scene, empty, paint
+from app.features.conversation.segment_paint import SegmentScene, empty, paint
 from app.features.conversation.sound_reading import Sounds
 from app.look.theme import theme
 from app.project.document import Edit
@@ -186,7 +186,7 @@ class View(QWidget):
             picture.setDevicePixelRatio(ratio)
             painter = QPainter(picture)
             painter.setFont(self.font())
-            scene = Scene(
+            scene = SegmentScene(
                 of, heard, self.scale(), self.width(), self.height(), ratio, chosen, self.over, s.onstage.side
             )
             paint(painter, theme(s.look.name), scene)

@@ -27,7 +27,7 @@ from app.features.manual import manual_painter as painter
 from app.features.manual.manual_gestures import Band, DrawLink, Move, Pan
 from app.features.manual.manual_overlay import Marks, paint_over, plays
 from app.features.manual.manual_pictures import Pictures
-from app.features.manual.manual_scene import NODE, NOTHING, Scene, View, fitted
+from app.features.manual.manual_scene import NODE, NOTHING, ManualScene, View, fitted
 from app.look.theme import theme
 from app.project.document import Document
 from app.stage.performance import Performance
@@ -72,7 +72,7 @@ class ManualCanvas(QWidget):
         self.troubles: dict[str, str] = {}
         self.at = QPointF(200, 200)  # where the mouse was last
         self._views: dict[Layer, View] = {}
-        self._scene: Scene | None = None
+        self._scene: ManualScene | None = None
         self._dragged: Mapping[str, tuple[float, float]] = {}
         self._band: QRectF | None = None
         self._link: tuple[str, QPointF, str] = ("", QPointF(), "")  # source, where it ends now, target
@@ -99,10 +99,10 @@ class ManualCanvas(QWidget):
 
     # --- what is seen
 
-    def scene(self) -> Scene:
+    def scene(self) -> ManualScene:
         """Return the geometry of the layer's machine as it is, made when first asked for after a change."""
         if self._scene is None:
-            self._scene = Scene(manual_edits.machine(self.document.project, self.session.place.layer))
+            self._scene = ManualScene(manual_edits.machine(self.document.project, self.session.place.layer))
         return self._scene
 
     def look_at(self, view: View) -> None:
@@ -192,7 +192,7 @@ class ManualCanvas(QWidget):
 
     # --- painting
 
-    def _look(self, scene: Scene) -> painter.Look:
+    def _look(self, scene: ManualScene) -> painter.Look:
         s = self.session
         pictures = self.pictures.of(scene, self.view, self.devicePixelRatioF())
         return painter.Look(
@@ -230,7 +230,7 @@ class ManualCanvas(QWidget):
         p = QPainter(self)
         p.drawPixmap(0, 0, self._still[1])
         if self._dragged:
-            scene = Scene(scene.manual, self._dragged)
+            scene = ManualScene(scene.manual, self._dragged)
             look = self._look(scene)
         marks = Marks(
             self._dragged,

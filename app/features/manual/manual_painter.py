@@ -13,7 +13,7 @@ import numpy as np
 from PySide6.QtCore import QLineF, QPointF, QRectF, Qt
 from PySide6.QtGui import QColor, QFont, QFontMetricsF, QPainter, QPainterPath, QPen, QPixmap, QPolygonF
 
-from app.features.manual.manual_scene import LOOP, Scene, View
+from app.features.manual.manual_scene import LOOP, ManualScene, View
 from app.look.theme import Theme
 from metagraph.graph.manual import ANY, Link, State
 from metagraph.graph.model import Project
@@ -32,7 +32,7 @@ class Look:
 
     theme: Theme
     project: Project
-    scene: Scene
+    scene: ManualScene
     view: View
     pictures: Mapping[str, QPixmap]
     font: QFont

@@ -79,7 +79,7 @@ class Hit:
 NOTHING = Hit("nothing")
 
 
-class Scene:
+class ManualScene:
     """A machine's geometry. moved: where nodes stand instead while they are dragged."""
 
     def __init__(self, manual: Manual, moved: Mapping[str, tuple[float, float]] | None = None) -> None:

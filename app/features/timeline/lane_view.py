@@ -25,7 +25,7 @@ from app.stage.performance import Performance
 from app.stage.session import Session
 from app.widgets.gesture import Hand
 from app.widgets.lane_geometry import LEFT, RULER, Mark, Scale, cue_at, lane_at, mark_at, marks, told
-from app.widgets.lane_paint import Scene, badge, paint, playhead
+from app.widgets.lane_paint import LaneScene, badge, paint, playhead
 from app.widgets.memo import Once
 from app.widgets.request_menu import ask_menu
 
@@ -143,7 +143,7 @@ class Lanes(QWidget):
             picture.setDevicePixelRatio(ratio)
             painter = QPainter(picture)
             painter.setFont(font)
-            scene = Scene(
+            scene = LaneScene(
                 p.shown,
                 found,
                 self.scale(),

@@ -7,7 +7,7 @@ import pytest
 from PySide6.QtCore import QPointF, QRectF, QSizeF
 
 from app.features.manual.arranging import arranged
-from app.features.manual.manual_scene import ANY_NODE, LOOP, NODE, NOTHING, Hit, Scene, View, fitted
+from app.features.manual.manual_scene import ANY_NODE, LOOP, NODE, NOTHING, Hit, ManualScene, View, fitted
 from metagraph.graph.manual import ANY, Link, Manual, State
 
 
@@ -22,7 +22,7 @@ FAR = {"a": (0.0, 0.0), "b": (600.0, 0.0), "c": (600.0, 400.0)}
 
 
 def test_an_empty_machine_has_the_node_for_any_state_alone() -> None:
-    scene = Scene(Manual("arms"))
+    scene = ManualScene(Manual("arms"))
     assert list(scene.nodes) == [ANY]
     assert scene.bounds.size() == ANY_NODE
     assert scene.lines.shape == (0, 4)
@@ -30,31 +30,31 @@ def test_an_empty_machine_has_the_node_for_any_state_alone() -> None:
 
 
 def test_an_arrow_goes_from_border_to_border() -> None:
-    scene = Scene(machine(FAR, "a>b"))
+    scene = ManualScene(machine(FAR, "a>b"))
     x1, y1, x2, y2 = scene.lines[0]
     assert (x1, y1, y2) == (NODE.width(), NODE.height() / 2, NODE.height() / 2)
     assert 600 - 4 < x2 < 600
 
 
 def test_arrows_there_and_back_lie_side_by_side() -> None:
-    scene = Scene(machine(FAR, "a>b", "b>a"))
+    scene = ManualScene(machine(FAR, "a>b", "b>a"))
     assert scene.lines[0, 1] == pytest.approx(scene.lines[0, 3])
     assert abs(scene.lines[0, 1] - scene.lines[1, 1]) > 8
 
 
 def test_parallel_arrows_of_one_direction_lie_side_by_side() -> None:
-    heights = Scene(machine(FAR, "a>b", "a>b", "a>b")).lines[:, 1]
+    heights = ManualScene(machine(FAR, "a>b", "a>b", "a>b")).lines[:, 1]
     assert len({round(y) for y in heights}) == 3
     assert heights.mean() == pytest.approx(NODE.height() / 2)
 
 
 def test_nodes_on_top_of_each_other_are_joined_all_the_same() -> None:
-    scene = Scene(machine({"a": (0, 0), "b": (20, 10), "c": (0, 0)}, "a>b", "a>c"))
+    scene = ManualScene(machine({"a": (0, 0), "b": (20, 10), "c": (0, 0)}, "a>b", "a>c"))
     assert np.isfinite(scene.lines).all()
 
 
 def test_a_node_is_hit_inside_and_at_its_border_where_links_begin() -> None:
-    scene = Scene(machine(FAR, "a>b"))
+    scene = ManualScene(machine(FAR, "a>b"))
     assert scene.hit(QPointF(90, 30), 1.0) == Hit("node", "a")
     assert scene.hit(QPointF(3, 30), 1.0) == Hit("edge", "a")
     assert scene.hit(QPointF(NODE.width() + 2, 30), 1.0) == Hit("edge", "a")
@@ -62,18 +62,18 @@ def test_a_node_is_hit_inside_and_at_its_border_where_links_begin() -> None:
 
 
 def test_zoomed_far_out_a_node_keeps_a_middle_to_be_moved_by() -> None:
-    assert Scene(machine(FAR)).hit(QPointF(90, 30), 0.1) == Hit("node", "a")
+    assert ManualScene(machine(FAR)).hit(QPointF(90, 30), 0.1) == Hit("node", "a")
 
 
 def test_the_nearest_arrow_within_reach_is_hit() -> None:
-    scene = Scene(machine(FAR, "a>b", "a>c"))
+    scene = ManualScene(machine(FAR, "a>b", "a>c"))
     assert scene.hit(QPointF(400, 33), 1.0) == Hit("link", "l0")
     assert scene.hit(QPointF(400, 60), 1.0) == NOTHING
     assert scene.hit(scene.middle("l1"), 1.0) == Hit("link", "l1")
 
 
 def test_an_arrow_back_to_its_own_node_is_a_circle_that_can_be_hit() -> None:
-    scene = Scene(machine(FAR, "a>a", "a>a"))
+    scene = ManualScene(machine(FAR, "a>a", "a>a"))
     first, second = scene.loops.values()
     assert first != second
     assert scene.hit(first.center() + QPointF(0, -LOOP), 1.0) == Hit("link", "l0")
@@ -81,20 +81,20 @@ def test_an_arrow_back_to_its_own_node_is_a_circle_that_can_be_hit() -> None:
 
 
 def test_links_to_what_is_not_there_are_not_drawn() -> None:
-    scene = Scene(machine(FAR, "a>gone", "gone>gone"))
+    scene = ManualScene(machine(FAR, "a>gone", "gone>gone"))
     assert len(scene.lines) == 0
     assert scene.loops == {}
 
 
 def test_a_rubber_band_takes_nodes_it_touches_else_arrows_it_holds() -> None:
-    scene = Scene(machine(FAR, "a>b", "b>c"))
+    scene = ManualScene(machine(FAR, "a>b", "b>c"))
     assert scene.inside(QRectF(-10, -10, 60, 60)) == (("a",), ())
     assert scene.inside(QRectF(NODE.width() - 1, -50, 10, 10)) == ((), ())
     assert scene.inside(QRectF(202, 20, 390, 24)) == ((), ("l0",))
 
 
 def test_moved_nodes_take_their_arrows_along() -> None:
-    scene = Scene(machine(FAR, "a>b"), {"b": (600.0, 300.0)})
+    scene = ManualScene(machine(FAR, "a>b"), {"b": (600.0, 300.0)})
     assert scene.lines[0, 3] > 250
     assert scene.touching({"b"}) == ("l0",)
 
