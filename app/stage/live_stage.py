@@ -15,7 +15,7 @@ from PySide6.QtCore import QElapsedTimer, QObject, Qt, QTimer, Signal
 from metagraph.graph.model import Project
 from metagraph.graph.requests import AnyAsk, Performance
 from metagraph.live.live_session import LiveSession
-from metagraph.live.messages import Heard, Reply
+from metagraph.live.messages import HeardMessage, Reply
 from metagraph.live.relay import Relay
 from metagraph.live.server import OSC_PORT, PORT, LiveError, Options
 from metagraph.live.tape import Tape
@@ -50,7 +50,7 @@ class _Counted(LiveSession):
 
     answered = 0
 
-    def tick(self, now: float, heard: Iterable[tuple[int, Heard | Reply]] = ()) -> Out:
+    def tick(self, now: float, heard: Iterable[tuple[int, HeardMessage | Reply]] = ()) -> Out:
         out = super().tick(now, heard)
         self.answered += len(out.replies)
         return out

@@ -17,7 +17,7 @@ from metagraph.formats.transcript_words import Transcript, count
 from metagraph.graph.conversation import SHORTEST, Segment, Word
 from metagraph.speech.activity import HUSH, activity
 from metagraph.speech.pitch import Pitch
-from metagraph.speech.sound import Heard
+from metagraph.speech.sound import HeardSound
 
 
 @dataclass(frozen=True, eq=False)
@@ -27,7 +27,7 @@ class Voice:
     path: Path
     channel: int | None
     called: str
-    heard: Heard
+    heard: HeardSound
     pitch: Pitch
 
     @cached_property

@@ -14,7 +14,7 @@ from typing import Protocol
 import msgspec
 
 from metagraph.graph.requests import AskError
-from metagraph.live.messages import Heard, Hello, Reply, encode, read, split
+from metagraph.live.messages import HeardMessage, Hello, Reply, encode, read, split
 from metagraph.live.wire import Batch, Result
 
 CLIENTS = 64  # at most
@@ -85,7 +85,7 @@ class Hub:
     _number: int = 0
     _joined: list[int] = field(default_factory=list)
     _left: list[int] = field(default_factory=list)
-    _asked: list[tuple[int, Heard]] = field(default_factory=list)
+    _asked: list[tuple[int, HeardMessage]] = field(default_factory=list)
     _slots: list[_Slot] = field(default_factory=list)
     _flying: tuple[int, list[_Slot]] | None = None
 
@@ -139,11 +139,11 @@ class Hub:
         if client.waiting > UNANSWERED:
             self.drop(number, POLICY, TOO_FAST)
 
-    def _proves(self, item: Heard | Reply) -> bool:
+    def _proves(self, item: HeardMessage | Reply) -> bool:
         """Whether a request shows the token."""
         return (
             self.token is not None
-            and isinstance(item, Heard)
+            and isinstance(item, HeardMessage)
             and isinstance(item.message, Hello)
             and same(item.message.token, self.token)
         )
@@ -152,7 +152,7 @@ class Hub:
         self.clients[number].waiting += 1
         self._slots.append(_Slot(number, [encode(reply)], False))
 
-    def _request(self, number: int, client: _Client, item: Heard | Reply) -> bytes | None:
+    def _request(self, number: int, client: _Client, item: HeardMessage | Reply) -> bytes | None:
         """Return the answer to a request, None for what the session has to answer."""
         if isinstance(item, Reply):
             return encode(item)
@@ -165,7 +165,7 @@ class Hub:
                     f"{wish.format}"
                 )
                 return encode(Reply(id=message.id or None, error=words))
-            item = Heard(msgspec.structs.replace(message, token=""))
+            item = HeardMessage(msgspec.structs.replace(message, token=""))
         if len(self._asked) >= PER_BATCH or client.taken >= PER_BATCH // 2:
             return encode(Reply(id=message.id, state="refused", why=BUSY_WORDS)) if message.id else BUSY
         client.taken += 1

@@ -37,7 +37,7 @@ from metagraph.live.limits import (
 from metagraph.live.messages import (
     Describe,
     Event,
-    Heard,
+    HeardMessage,
     Hello,
     Keypoints,
     OwnMessage,
@@ -83,7 +83,7 @@ class LiveSession:
         self.ledger = Ledger()
         self._words = Words(project)
         self._names: set[str] = set()
-        self._queue: list[tuple[int, Heard | Reply]] = []
+        self._queue: list[tuple[int, HeardMessage | Reply]] = []
         self.tape = Tape()
         self._tidied = self._begin = 0.0
         self._past: deque[tuple[float, Plan]] = deque()
@@ -132,7 +132,7 @@ class LiveSession:
 
     # --- ticks
 
-    def tick(self, now: float, heard: Iterable[tuple[int, Heard | Reply]] = ()) -> Out:
+    def tick(self, now: float, heard: Iterable[tuple[int, HeardMessage | Reply]] = ()) -> Out:
         """Answer what was received, then `heard`, and move on to `now`, seconds that never decrease."""
         before, self.now = self.now, max(now, self.now)
         queue, self._queue = [*self._queue, *heard], []
@@ -161,7 +161,7 @@ class LiveSession:
         )
         return out
 
-    def _take(self, client: Client, heard: Heard, work: Work, place: int) -> Reply | bytes | None:
+    def _take(self, client: Client, heard: HeardMessage, work: Work, place: int) -> Reply | bytes | None:
         """Return the reply to a request; None for what has to be planned first."""
         message = heard.message
         if isinstance(message, Keypoints):

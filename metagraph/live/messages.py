@@ -86,7 +86,7 @@ Message = Union[a.AnyAsk, Hello, Status, Describe, Keypoints]  # noqa: UP007
 WORDS: tuple[str, ...] = (*a.WORDS, *(str(kind.__struct_config__.tag) for kind in get_args(OwnMessage)))
 
 
-class Heard(Struct, frozen=True, array_like=True):
+class HeardMessage(Struct, frozen=True, array_like=True):
     """A request as it was understood. after: seconds from now at which it should begin, where it said
     `in`.
     """
@@ -178,7 +178,7 @@ def split(data: bytes | str) -> tuple[list[bytes | str | msgspec.Raw], bool]:
     return list(several), True
 
 
-def read(data: bytes | str | msgspec.Raw) -> Heard | Reply:
+def read(data: bytes | str | msgspec.Raw) -> HeardMessage | Reply:
     """Return one request, or the reply that says what is wrong with it."""
     size = len(memoryview(data)) if isinstance(data, msgspec.Raw) else len(data)
     if size > LONGEST and not (size <= LONGEST_BML and _holds_bml(data)):
@@ -187,7 +187,7 @@ def read(data: bytes | str | msgspec.Raw) -> Heard | Reply:
             f"{size // 1024}"
         )
     try:
-        return Heard(_message.decode(data))
+        return HeardMessage(_message.decode(data))
     except msgspec.ValidationError as error:
         return _otherwise(data, error)
     except (msgspec.DecodeError, UnicodeError, RecursionError) as error:
@@ -198,7 +198,7 @@ def _holds_bml(data: bytes | str | msgspec.Raw) -> bool:
     return '"bml"' in data if isinstance(data, str) else b'"bml"' in bytes(data)
 
 
-def _otherwise(data: bytes | str | msgspec.Raw, error: msgspec.ValidationError) -> Heard | Reply:
+def _otherwise(data: bytes | str | msgspec.Raw, error: msgspec.ValidationError) -> HeardMessage | Reply:
     """Read a request that is no ask as it stands: one that says `in`, or one that is wrong."""
     try:
         fields = _seconds.decode(data)
@@ -220,7 +220,7 @@ def _otherwise(data: bytes | str | msgspec.Raw, error: msgspec.ValidationError) 
         return Reply(id=ident, error=_words(wrong))
     if isinstance(message, OwnMessage):
         return Reply(id=ident, error="in: only what the character does can be put off")
-    return Heard(message, float(after))
+    return HeardMessage(message, float(after))
 
 
 def _words(error: Exception) -> str:

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 import msgspec
 from msgspec import Struct
 
-from metagraph.live.messages import Heard, encode
+from metagraph.live.messages import HeardMessage, encode
 
 if TYPE_CHECKING:
     from metagraph.live.live_session import LiveSession
@@ -23,7 +23,7 @@ class Batch(Struct, frozen=True, array_like=True):
     number: int = 0
     joined: tuple[int, ...] = ()
     left: tuple[int, ...] = ()
-    asked: tuple[tuple[int, Heard], ...] = ()
+    asked: tuple[tuple[int, HeardMessage], ...] = ()
 
 
 class Picture(Struct, frozen=True, array_like=True):

@@ -14,7 +14,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from metagraph.speech.pitch import Pitch, stretches
-from metagraph.speech.sound import HOP, Heard
+from metagraph.speech.sound import HOP, HeardSound
 
 Array = NDArray[Any]
 
@@ -38,7 +38,9 @@ class Stretch:
     end: float
 
 
-def activity(heard: Heard, pitch: Pitch | None = None, partner: Heard | None = None) -> tuple[Stretch, ...]:
+def activity(
+    heard: HeardSound, pitch: Pitch | None = None, partner: HeardSound | None = None
+) -> tuple[Stretch, ...]:
     """Return when somebody speaks, by start, pauses between. pitch: of the same channel, to leave out what is
     not voiced. partner: what the other's microphone hears, of the same conversation, to leave out what only
     crosses over.
@@ -46,7 +48,7 @@ def activity(heard: Heard, pitch: Pitch | None = None, partner: Heard | None = N
     return tuple(_spoken(heard, pitch, partner))
 
 
-def _spoken(heard: Heard, pitch: Pitch | None, partner: Heard | None) -> list[Stretch]:
+def _spoken(heard: HeardSound, pitch: Pitch | None, partner: HeardSound | None) -> list[Stretch]:
     level = heard.level
     own = np.ones(len(level), bool) if partner is None else not_crossed(heard, partner)
     if not own.any():
@@ -81,7 +83,7 @@ def _voiced(pitch: Pitch, a: int, b: int) -> bool:
     return float((~np.isnan(pitch.hertz[a:b])).mean() if len(pitch.hertz[a:b]) else 0.0) >= VOICED
 
 
-def crosstalk(heard: Heard, partner: Heard) -> float:
+def crosstalk(heard: HeardSound, partner: HeardSound) -> float:
     """Return how loud the partner is in one's own microphone, dB relative to the partner's: their middle over
     the moments in which only the partner seems to speak. -inf where the partner says nothing.
     """
@@ -102,7 +104,7 @@ def crosstalk(heard: Heard, partner: Heard) -> float:
     return low if high - low > APART else float(np.median(apart))
 
 
-def not_crossed(heard: Heard, partner: Heard) -> Array:
+def not_crossed(heard: HeardSound, partner: HeardSound) -> Array:
     """Return which moments `[K]` are louder than what comes over from the partner."""
     bleed = crosstalk(heard, partner)
     count = min(len(heard.level), len(partner.level))

@@ -25,7 +25,7 @@ from numpy.typing import NDArray
 from metagraph.graph.conversation import HESITATIONS, RESPONSES, SHORTEST, Segment, Spoken, Word
 from metagraph.speech.activity import PAUSE, Stretch, activity
 from metagraph.speech.pitch import Pitch, peaks, smooth
-from metagraph.speech.sound import Heard
+from metagraph.speech.sound import HeardSound
 from metagraph.speech.stress import parted, stresses
 from metagraph.speech.vocabulary import LEXICAL_PHRASES, Vocabulary, tokens
 
@@ -51,10 +51,10 @@ class _Part:
 def segments(
     words: Sequence[Word],
     pitch: Pitch,
-    heard: Heard,
+    heard: HeardSound,
     responses: Collection[str] = RESPONSES,
     hesitations: Collection[str] = HESITATIONS,
-    partner: Heard | None = None,
+    partner: HeardSound | None = None,
 ) -> tuple[Segment, ...]:
     """Return one side's clauses, responses and hesitations, by start, never overlapping.
 
@@ -97,7 +97,7 @@ def in_order(words: Sequence[Word], length: float) -> list[Word]:
     return out
 
 
-def _segment(kind: Spoken, words: Sequence[Word], pitch: Pitch, tones: Array, heard: Heard) -> Segment:
+def _segment(kind: Spoken, words: Sequence[Word], pitch: Pitch, tones: Array, heard: HeardSound) -> Segment:
     start, end = words[0].start, words[-1].end
     return Segment(
         kind,
@@ -108,7 +108,7 @@ def _segment(kind: Spoken, words: Sequence[Word], pitch: Pitch, tones: Array, he
     )
 
 
-def peak_of(pitch: Pitch, tones: Array, heard: Heard, start: float, end: float) -> float:
+def peak_of(pitch: Pitch, tones: Array, heard: HeardSound, start: float, end: float) -> float:
     """Return where the stress between two times is, seconds: F0's most prominent peak, or, of a voiceless
     one, the loudest moment. tones: `pitch.smooth(pitch)`.
     """
@@ -235,7 +235,9 @@ def _answers(words: Sequence[Word], first: int, last: int) -> bool:
 # --- without words
 
 
-def _by_loudness(pitch: Pitch, tones: Array, heard: Heard, partner: Heard | None) -> tuple[Segment, ...]:
+def _by_loudness(
+    pitch: Pitch, tones: Array, heard: HeardSound, partner: HeardSound | None
+) -> tuple[Segment, ...]:
     own = activity(heard, pitch, partner)
     others = activity(partner, None, heard) if partner is not None else ()
     out: list[Segment] = []
@@ -255,7 +257,7 @@ def _meanwhile(s: Stretch, others: Sequence[Stretch]) -> bool:
     return any(o.start < s.end + AROUND and o.end > s.start - AROUND for o in others)
 
 
-def _shorter(s: Stretch, heard: Heard) -> list[tuple[float, float]]:
+def _shorter(s: Stretch, heard: HeardSound) -> list[tuple[float, float]]:
     """Return a stretch in parts of bearable length, cut where it is softest."""
     if s.end - s.start <= LONGEST_CLAUSE:
         return [(s.start, s.end)]

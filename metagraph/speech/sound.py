@@ -36,7 +36,7 @@ _SUFFIXES = "WAV, FLAC, OGG or MP3"
 
 
 @dataclass(frozen=True, eq=False)
-class Heard:
+class HeardSound:
     """A sound, every `HOP` seconds `[K]`. duration: seconds. level: loudness of speech, dB. loud: 0 as soft
     as what is not speech .. 1 as loud as it gets. open, front: of the vowel, 0..1: how far the mouth is open,
     how far forward the tongue. hiss: share of the energy above 3.5 kHz, 0..1; bright: the middle of that
@@ -173,7 +173,7 @@ def _cut_off(samples: Array) -> Array:
     return np.asarray(out.sum(0))
 
 
-def hear(samples: Array, rate: int) -> Heard:
+def hear(samples: Array, rate: int) -> HeardSound:
     """Analyse a sound: samples `[N]`, about -1..1."""
     duration = len(samples) / rate
     hop, size = HOP * rate, max(16, round(WINDOW * rate))
@@ -218,7 +218,7 @@ def hear(samples: Array, rate: int) -> Heard:
     first = _smooth(centres[0], 2.0)
     front = _smooth(10 * np.log10((forward + 1e-12) / (back + 1e-12)), 2.0)
     spoken = loud > 0.25
-    return Heard(
+    return HeardSound(
         duration,
         times,
         level,
@@ -230,7 +230,7 @@ def hear(samples: Array, rate: int) -> Heard:
     )
 
 
-def syllables(heard: Heard) -> tuple[Array, Array]:
+def syllables(heard: HeardSound) -> tuple[Array, Array]:
     """Return times and strengths `[P]`, 0..1, of the peaks of loudness."""
     level, loud = heard.level, heard.loud
     inside = np.flatnonzero((loud[1:-1] > 0.08) & (level[1:-1] >= level[:-2]) & (level[1:-1] > level[2:])) + 1
@@ -254,7 +254,7 @@ def syllables(heard: Heard) -> tuple[Array, Array]:
     return heard.times[kept] if kept else np.zeros(0), strengths
 
 
-def shapes_heard(heard: Heard) -> list[Piece]:
+def shapes_heard(heard: HeardSound) -> list[Piece]:
     """Return the mouth's shapes guessed from the sound alone."""
     labels = _labels(heard)
     out: list[Piece] = []
@@ -271,7 +271,7 @@ def shapes_heard(heard: Heard) -> list[Piece]:
     return out
 
 
-def _labels(heard: Heard) -> list[str]:
+def _labels(heard: HeardSound) -> list[str]:
     """Return a shape for each moment."""
     vowels = np.where(
         heard.open > OPEN,
@@ -306,7 +306,7 @@ def _settled(labels: list[str], least: int) -> list[str]:
     return out
 
 
-def _closures(labels: list[str], heard: Heard) -> list[str]:
+def _closures(labels: list[str], heard: HeardSound) -> list[str]:
     """Make short gaps in speech the stops they are: lips where what follows is dull, tongue where it
     bursts.
     """

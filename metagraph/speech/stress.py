@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from metagraph.graph.conversation import Word
-from metagraph.speech.sound import Heard
+from metagraph.speech.sound import HeardSound
 
 Array = NDArray[Any]
 
@@ -46,7 +46,9 @@ _CONTENT = (
 )
 
 
-def stresses(words: Sequence[Word], said: Sequence[tuple[str, ...]], tones: Array, heard: Heard) -> Array:
+def stresses(
+    words: Sequence[Word], said: Sequence[tuple[str, ...]], tones: Array, heard: HeardSound
+) -> Array:
     """Return how strongly each word is stressed `[W]`, about -3..5: its F0 peak and loudness, each compared
     with the side's other words, how long it lasts, and whether it is one that usually is. tones: semitones
     `[K]` at `heard.times`, nan where voiceless.

@@ -22,7 +22,7 @@ ALL = (1 << len(SOUNDS)) - 1
 
 
 @dataclass(frozen=True, eq=False)
-class Heard:
+class HeardStates:
     """What was heard at the states of a graph. kinds `[F]` uint8: bits of SOUNDS. peaks `[F]`: whether a
     clause's stress is there.
     """
@@ -44,7 +44,7 @@ class Wanted:
         return len(self.allowed)
 
 
-def heard(states: States, takes: Sequence[Sequence[Segment]]) -> Heard:
+def heard(states: States, takes: Sequence[Sequence[Segment]]) -> HeardStates:
     """Return what was heard at states, from each take's segments; where segments of a take overlap the later
     one counts, and where there is none it was idle. Raises SynthesisError when there are not as many takes,
     or a segment ends before it starts.
@@ -60,7 +60,7 @@ def heard(states: States, takes: Sequence[Sequence[Segment]]) -> Heard:
             kinds[max(first, a) : min(after, b)] = 1 << SOUNDS.index(s.kind)
             if s.peak is not None and first <= (p := first + round(s.peak * RATE)) < after:
                 peaks[p] = True
-    return Heard(kinds, peaks)
+    return HeardStates(kinds, peaks)
 
 
 def changes(states: States, takes: Sequence[Sequence[Segment]]) -> list[int]:

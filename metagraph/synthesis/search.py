@@ -18,7 +18,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from metagraph.suggest.tracks import RATE
-from metagraph.synthesis.constraints import Heard, Wanted
+from metagraph.synthesis.constraints import HeardStates, Wanted
 from metagraph.synthesis.graph import MotionGraph
 from metagraph.synthesis.states import SynthesisError
 
@@ -56,7 +56,7 @@ class Path:
     jumps: Array
 
 
-def best(graph: MotionGraph, heard: Heard, wanted: Wanted, cancelled: Cancelled = None) -> Path:
+def best(graph: MotionGraph, heard: HeardStates, wanted: Wanted, cancelled: Cancelled = None) -> Path:
     """Return the cheapest path that has what is wanted. Raises SynthesisError when there is none, saying at
     what time all end, or when it was cancelled.
 
@@ -93,7 +93,12 @@ def _go_on(cancelled: Cancelled) -> None:
 
 
 def _best_within(
-    graph: MotionGraph, heard: Heard, wanted: Wanted, back: Array, bound: float, cancelled: Cancelled = None
+    graph: MotionGraph,
+    heard: HeardStates,
+    wanted: Wanted,
+    back: Array,
+    bound: float,
+    cancelled: Cancelled = None,
 ) -> Path:
     """Return the cheapest path of those that cost no more than a bound. back: room for the way back `[T, 2,
     F]`. Raises SynthesisError when there is none.
@@ -135,7 +140,7 @@ def _best_within(
 
 def greedy(
     graph: MotionGraph,
-    heard: Heard,
+    heard: HeardStates,
     wanted: Wanted,
     seed: int = 1,
     saved: int = SAVED,
@@ -164,7 +169,7 @@ def greedy(
 
 def _greedy(
     graph: MotionGraph,
-    heard: Heard,
+    heard: HeardStates,
     wanted: Wanted,
     seed: int,
     saved: int,
@@ -273,7 +278,7 @@ def _links(graph: MotionGraph) -> Links:
     return found
 
 
-def _speech(graph: MotionGraph, heard: Heard, wanted: Wanted) -> Speech:
+def _speech(graph: MotionGraph, heard: HeardStates, wanted: Wanted) -> Speech:
     from metagraph.synthesis.greedy_search_kernels import Speech, next_of, until_of
 
     new = np.ones(len(wanted), bool)
@@ -299,7 +304,7 @@ def _speech(graph: MotionGraph, heard: Heard, wanted: Wanted) -> Speech:
     )
 
 
-def _fits(graph: MotionGraph, heard: Heard, wanted: Wanted, t: int) -> Array:
+def _fits(graph: MotionGraph, heard: HeardStates, wanted: Wanted, t: int) -> Array:
     return np.asarray(graph.kept & ((heard.kinds & wanted.allowed[t]) != 0))
 
 

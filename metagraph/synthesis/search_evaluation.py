@@ -18,7 +18,7 @@ from numpy.typing import NDArray
 from metagraph.graph.conversation import SOUNDS, Segment, Sound
 from metagraph.motion.clip import Clip
 from metagraph.suggest.tracks import RATE
-from metagraph.synthesis.constraints import TOLERANCE, Heard, changes, heard, wanted
+from metagraph.synthesis.constraints import TOLERANCE, HeardStates, changes, heard, wanted
 from metagraph.synthesis.cooccurrence import wilson
 from metagraph.synthesis.graph import MotionGraph, build, threshold
 from metagraph.synthesis.search import Path, best, greedy
@@ -265,10 +265,10 @@ def _warm(searches: Collection[Search]) -> None:
     )
     graph = build(tiny, threshold(tiny, 2), np.arange(4))
     for search in searches:
-        _SEARCHES[search](graph, Heard(np.ones(4, np.uint8), np.zeros(4, bool)), wanted([], 0.1))
+        _SEARCHES[search](graph, HeardStates(np.ones(4, np.uint8), np.zeros(4, bool)), wanted([], 0.1))
 
 
-def _exact(graph: MotionGraph, sound: Heard, said: Any, seed: int = 1) -> Path:
+def _exact(graph: MotionGraph, sound: HeardStates, said: Any, seed: int = 1) -> Path:
     return best(graph, sound, said)
 
 
@@ -284,7 +284,7 @@ def _graph(
     share: float,
     most: int | None,
     cancelled: Callable[[], bool] | None,
-) -> tuple[MotionGraph, Heard, float] | str:
+) -> tuple[MotionGraph, HeardStates, float] | str:
     """Return the graph without a take, what is heard at its states, and how long it took; or why there is
     none.
     """
@@ -308,7 +308,7 @@ def without(states: States, take: int) -> States:
 
 
 def _tried(
-    case: Case, graph: MotionGraph, sound: Heard, said: Sequence[Segment], setting: Setting, seed: int
+    case: Case, graph: MotionGraph, sound: HeardStates, said: Sequence[Segment], setting: Setting, seed: int
 ) -> Case:
     want = wanted(said, case.length, setting.tolerance, setting.use, setting.peaks)
     begun = perf_counter()

@@ -29,7 +29,7 @@ ROOT = Path(__file__).resolve().parents[2]
 sys.path.insert(0, str(ROOT))
 
 from metagraph.graph.conversation import SOUNDS, Segment  # noqa: E402
-from metagraph.synthesis.constraints import Heard, wanted  # noqa: E402
+from metagraph.synthesis.constraints import HeardStates, wanted  # noqa: E402
 from metagraph.synthesis.graph import MotionGraph, Threshold, build, largest, threshold  # noqa: E402
 from metagraph.synthesis.search import best, greedy  # noqa: E402
 from metagraph.synthesis.states import States, key_states, states_of, terms_of, with_velocity  # noqa: E402
@@ -148,7 +148,7 @@ def components(states: States, limit: float) -> None:
     )
 
 
-def speech(frames: int, seed: int = 3) -> tuple[Heard, list[Segment]]:
+def speech(frames: int, seed: int = 3) -> tuple[HeardStates, list[Segment]]:
     """Return what is heard at states, and 15 s of other speech of the same kind: clauses, answers,
     hesitations, as irregular as talk.
     """
@@ -168,7 +168,7 @@ def speech(frames: int, seed: int = 3) -> tuple[Heard, list[Segment]]:
         peak = start + length * float(chance.uniform(0.1, 0.9)) if kind == "clause" else None
         out.append(Segment(kind, start, start + length, peak))
         start += length + float(chance.uniform(0.2, 2.0))
-    return Heard(kinds, peaks), out
+    return HeardStates(kinds, peaks), out
 
 
 def searched(name: str, graph: MotionGraph) -> None:

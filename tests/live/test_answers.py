@@ -10,7 +10,7 @@ import msgspec
 from metagraph.graph import requests as a
 from metagraph.graph.model import Project
 from metagraph.live.answers import find, owner_of
-from metagraph.live.messages import Heard, read
+from metagraph.live.messages import HeardMessage, read
 from metagraph.playback.extend_performance import answer
 from metagraph.playback.running_plan import perform
 from tests.live.traffic import valid
@@ -29,7 +29,7 @@ def test_found_together_is_what_is_answered_one_by_one(sample: Project) -> None:
         asks: list[Any] = []
         while len(asks) < 25:
             heard = read(msgspec.json.encode(valid(r)))
-            assert isinstance(heard, Heard)
+            assert isinstance(heard, HeardMessage)
             if not isinstance(heard.message, a.Withdraw):
                 asks.append(
                     msgspec.structs.replace(heard.message, id=f"x{len(asks)}", at=round(r.random() * 40, 2))

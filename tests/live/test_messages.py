@@ -17,7 +17,7 @@ from metagraph.live.messages import (
     MOST,
     WORDS,
     Describe,
-    Heard,
+    HeardMessage,
     Hello,
     Poses,
     Reply,
@@ -36,24 +36,26 @@ def error(text: str | bytes) -> str:
 
 
 def test_an_ask_is_read_as_it_is() -> None:
-    assert read('{"do":"gesture","tags":["beat"],"at":2.1}') == Heard(a.Gesture(tags=("beat",), at=2.1))
-    assert read(b'{"do":"nod"}') == Heard(a.Nod())
-    assert read(msgspec.Raw(b'{"do":"blink"}')) == Heard(a.Blink())
+    assert read('{"do":"gesture","tags":["beat"],"at":2.1}') == HeardMessage(
+        a.Gesture(tags=("beat",), at=2.1)
+    )
+    assert read(b'{"do":"nod"}') == HeardMessage(a.Nod())
+    assert read(msgspec.Raw(b'{"do":"blink"}')) == HeardMessage(a.Blink())
 
 
 def test_seconds_from_now_are_kept_beside_the_ask() -> None:
-    assert read('{"do":"nod","in":2}') == Heard(a.Nod(), 2.0)
-    assert read('{"in":0,"do":"nod","id":"n"}') == Heard(a.Nod(id="n"), 0.0)
+    assert read('{"do":"nod","in":2}') == HeardMessage(a.Nod(), 2.0)
+    assert read('{"in":0,"do":"nod","id":"n"}') == HeardMessage(a.Nod(id="n"), 0.0)
 
 
 def test_the_sessions_own_questions_are_read() -> None:
-    assert read('{"do":"status","id":"s"}') == Heard(Status(id="s"))
-    assert read('{"do":"describe"}') == Heard(Describe())
+    assert read('{"do":"status","id":"s"}') == HeardMessage(Status(id="s"))
+    assert read('{"do":"describe"}') == HeardMessage(Describe())
     hello = read('{"do":"hello","token":"t","poses":{"rate":60,"format":"binary"},"events":true}')
-    assert hello == Heard(Hello(token="t", poses=Poses(rate=60, format="binary"), events=True))
+    assert hello == HeardMessage(Hello(token="t", poses=Poses(rate=60, format="binary"), events=True))
     off = read('{"do":"hello","poses":null}')
     assert (
-        isinstance(off, Heard)
+        isinstance(off, HeardMessage)
         and isinstance(off.message, Hello)
         and off.message.poses is None
         and off.message.events is msgspec.UNSET
@@ -106,12 +108,12 @@ def test_what_is_wrong_is_told_with_the_id_it_came_with() -> None:
 
 
 def test_blocks_of_bml_may_be_longer() -> None:
-    assert isinstance(read(json.dumps({"do": "bml", "bml": "x" * 190_000})), Heard)
+    assert isinstance(read(json.dumps({"do": "bml", "bml": "x" * 190_000})), HeardMessage)
 
 
 def test_a_list_is_several_requests_in_order() -> None:
     requests, listed = split(' [{"do":"nod"}, 7, {"do":"blink"}]')
-    assert listed and [type(read(r)) for r in requests] == [Heard, Reply, Heard]
+    assert listed and [type(read(r)) for r in requests] == [HeardMessage, Reply, HeardMessage]
     assert split('{"do":"nod"}') == (['{"do":"nod"}'], False)
     assert split("[]") == ([], True)
 
@@ -138,7 +140,7 @@ def test_any_bytes_get_an_answer(data: str | bytes) -> None:
         return
     for request in requests:
         found = read(request)
-        assert isinstance(found, Heard) or (found.error and encode(found))
+        assert isinstance(found, HeardMessage) or (found.error and encode(found))
 
 
 values = st.recursive(
@@ -156,7 +158,7 @@ values = st.recursive(
 )
 def test_any_fields_get_an_answer(word: str, fields: dict[str, object]) -> None:
     found = read(json.dumps(fields | {"do": word}))
-    assert isinstance(found, Heard) or found.error
+    assert isinstance(found, HeardMessage) or found.error
 
 
 def test_the_schema_says_what_is_read() -> None:
@@ -180,4 +182,6 @@ def test_the_schema_says_what_is_read() -> None:
         '{"do":"say","speed":1}',
     ):
         requests, _ = split(text)
-        assert validator.is_valid(json.loads(text)) == all(isinstance(read(r), Heard) for r in requests), text
+        assert validator.is_valid(json.loads(text)) == all(
+            isinstance(read(r), HeardMessage) for r in requests
+        ), text

@@ -10,14 +10,14 @@ from hypothesis import strategies as st
 
 from metagraph.graph import requests as a
 from metagraph.live.hub import Hub
-from metagraph.live.messages import Heard, Hello, Poses, encode, read
+from metagraph.live.messages import HeardMessage, Hello, Poses, encode, read
 from metagraph.live.osc import SENDERS, SILENT, OscError, OscLine, request, texts_of
 from metagraph.live.osc_bytes import padded
 
 
 def said(address: str, *values: Any) -> Any:
     found = read(encode(request(f"/metagraph/{address}", values)))
-    assert isinstance(found, Heard), found
+    assert isinstance(found, HeardMessage), found
     return found.message if found.after is None else found
 
 
@@ -32,7 +32,7 @@ def said(address: str, *values: Any) -> Any:
             a.Gesture(tags=("beat",), limb="left", at=2.5, prepare=False),
         ),
         ("fidget", ("priority=3", "resume=true"), a.Fidget(priority=3, resume=True)),
-        ("gesture", ("in=1",), Heard(a.Gesture(), 1.0)),
+        ("gesture", ("in=1",), HeardMessage(a.Gesture(), 1.0)),
         ("fidget", ("body",), a.Fidget(layer="body")),
         ("change", ("head",), a.Change(layer="head")),
         ("nod", (), a.Nod()),

@@ -14,7 +14,7 @@ from hypothesis import strategies as st
 from metagraph.graph.conversation import HESITATIONS, RESPONSES, Segment, Side, Word
 from metagraph.speech.clauses import in_order, segments
 from metagraph.speech.pitch import Pitch, pitch
-from metagraph.speech.sound import Heard, hear
+from metagraph.speech.sound import HeardSound, hear
 from metagraph.speech.vocabulary import Vocabulary, tokens
 from tests.speech import talk
 
@@ -159,7 +159,7 @@ def test_segments_never_overlap_whatever_the_words(rows: list[tuple[str, float, 
 # --- in speech
 
 
-def heard_of(spoken: talk.Talk) -> list[tuple[Heard, Pitch]]:
+def heard_of(spoken: talk.Talk) -> list[tuple[HeardSound, Pitch]]:
     return [(hear(s, spoken.rate), pitch(s, spoken.rate)) for s in spoken.samples]
 
 

@@ -12,7 +12,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from metagraph.graph.conversation import SOUNDS, Segment
-from metagraph.synthesis.constraints import ALL, Heard, Wanted, changes, heard, wanted
+from metagraph.synthesis.constraints import ALL, HeardStates, Wanted, changes, heard, wanted
 from metagraph.synthesis.graph import MotionGraph, Threshold
 from metagraph.synthesis.search import Path, best, greedy
 from metagraph.synthesis.states import States, SynthesisError
@@ -36,7 +36,7 @@ def graph_of(frames: int, takes: list[int], links: dict[tuple[int, int], float])
     return MotionGraph(states, limit, np.arange(frames), starts, targets, costs, np.ones(frames, bool))
 
 
-def cheapest(graph: MotionGraph, sound: Heard, want: Wanted) -> float | None:
+def cheapest(graph: MotionGraph, sound: HeardStates, want: Wanted) -> float | None:
     """What the cheapest path costs, by trying all."""
     last = graph.states.last
 
@@ -60,7 +60,7 @@ def cheapest(graph: MotionGraph, sound: Heard, want: Wanted) -> float | None:
     return None if found == np.inf else found
 
 
-def check(graph: MotionGraph, sound: Heard, want: Wanted, path: Path) -> None:
+def check(graph: MotionGraph, sound: HeardStates, want: Wanted, path: Path) -> None:
     """A path is one, has what is wanted, and costs what it says."""
     total = 0.0
     assert len(path.states) == len(want)
@@ -86,7 +86,7 @@ def test_the_best_path_is_the_cheapest_of_all_and_is_found_whenever_there_is_one
     )
     links = data.draw(st.dictionaries(pairs, st.floats(0.125, 2, width=32), max_size=20))
     graph = graph_of(frames, [0, split, frames], links)
-    sound = Heard(
+    sound = HeardStates(
         np.array(
             data.draw(st.lists(st.sampled_from([IDLE, CLAUSE, RESPONSE]), min_size=frames, max_size=frames)),
             np.uint8,
@@ -154,7 +154,7 @@ def test_a_search_that_would_not_fit_in_memory_is_refused() -> None:
     graph = graph_of(40, [0, 40], {})
     want = Wanted(np.full(20_000_000, ALL, np.uint8), np.full(20_000_000, -1, np.int32))
     with pytest.raises(SynthesisError, match="greedy"):
-        best(graph, Heard(np.full(40, ALL, np.uint8), np.zeros(40, bool)), want)
+        best(graph, HeardStates(np.full(40, ALL, np.uint8), np.zeros(40, bool)), want)
 
 
 def test_the_best_path_is_the_same_whatever_bound_it_is_searched_within() -> None:
@@ -165,7 +165,7 @@ def test_the_best_path_is_the_same_whatever_bound_it_is_searched_within() -> Non
         chance = np.random.default_rng(seed)
         pairs = {(int(a), int(b)) for a, b in chance.integers(0, 60, (300, 2)) if b != a + 1}
         graph = graph_of(60, [0, 25, 60], {e: float(chance.uniform(0.1, 2)) for e in pairs})
-        sound = Heard(chance.choice([IDLE, CLAUSE], 60).astype(np.uint8), chance.random(60) < 0.3)
+        sound = HeardStates(chance.choice([IDLE, CLAUSE], 60).astype(np.uint8), chance.random(60) < 0.3)
         want = Wanted(chance.choice([IDLE, CLAUSE, ALL], 25).astype(np.uint8), np.full(25, -1, np.int32))
         try:
             path = best(graph, sound, want)
@@ -184,7 +184,7 @@ def test_the_best_path_is_the_same_whatever_bound_it_is_searched_within() -> Non
 @pytest.mark.parametrize("exact", [True, False])
 def test_a_search_that_is_cancelled_ends_soon_and_says_so(exact: bool) -> None:
     graph = graph_of(40, [0, 40], {(n, 0): 0.5 for n in range(1, 40)})
-    sound = Heard(np.full(40, IDLE, np.uint8), np.zeros(40, bool))
+    sound = HeardStates(np.full(40, IDLE, np.uint8), np.zeros(40, bool))
     want = wanted([], 600.0)
     asked = 0
 

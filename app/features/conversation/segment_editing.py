@@ -10,7 +10,7 @@ from typing import Any
 import numpy as np
 from PySide6.QtCore import QObject, Signal
 
-from app.features.conversation.sound_reading import Heard, Sounds
+from app.features.conversation.sound_reading import SideSound, Sounds
 from app.look.plural import many
 from app.project.document import Document, Edit
 from app.stage.session import Session
@@ -264,7 +264,7 @@ class Editing(QObject):
         return highest(heard, min(start, end), max(start, end)) if heard is not None else None
 
 
-def highest(heard: Heard, start: float, end: float) -> float | None:
+def highest(heard: SideSound, start: float, end: float) -> float | None:
     """Return when in a stretch a pitch is highest; None where there is none."""
     if heard.pitch is None:
         return None

@@ -19,7 +19,7 @@ from app.features.conversation.segment_lanes import (
     visible,
     words_in,
 )
-from app.features.conversation.sound_reading import Heard
+from app.features.conversation.sound_reading import SideSound
 from app.features.conversation.waveforms import Envelope, joined, painted
 from app.look.theme import SOUND_MARKS, Theme
 from app.widgets.act_strip import STEPS, clock
@@ -42,7 +42,7 @@ class SegmentScene:
     """
 
     conversation: Conversation
-    heard: Sequence[Heard | None]
+    heard: Sequence[SideSound | None]
     scale: Scale
     width: float
     height: float
@@ -164,7 +164,7 @@ def _curve(
     painter.drawImage(area.topLeft(), picture)
 
 
-def _told(painter: QPainter, t: Theme, heard: Heard | None, area: QRectF) -> None:
+def _told(painter: QPainter, t: Theme, heard: SideSound | None, area: QRectF) -> None:
     """Say why there is no sound, or how far it is."""
     inner = area.adjusted(14, 2, -14, -2)
     if heard is None or heard.missing:
@@ -300,7 +300,7 @@ def _premultiplied(color: QColor, alpha: int) -> tuple[int, int, int, int]:
     return round(color.blue() * part), round(color.green() * part), round(color.red() * part), alpha
 
 
-def peak_y(seconds: float, heard: Heard | None, lane: Lane) -> float:
+def peak_y(seconds: float, heard: SideSound | None, lane: Lane) -> float:
     """Return how high a peak's dot stands: on the pitch, or below all of it where there is none."""
     if heard is not None and heard.pitch is not None:
         values, at = heard.pitch.lows[0], round(seconds * heard.pitch.rate)

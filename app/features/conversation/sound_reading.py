@@ -30,7 +30,7 @@ Key = tuple[str, int | None]  # a sound's path, and the channel
 
 
 @dataclass
-class Heard:
+class SideSound:
     """One side's sound, filled on the window's thread while another reads it. told: how far it is, in words;
     "" when all is there. missing: why there is none. loudest: of its samples, 0..1. maxima: seconds at which
     the pitch is highest. length: seconds.
@@ -57,7 +57,7 @@ class Sounds(QObject):
     ) -> None:
         super().__init__(parent)
         self.document, self.session, self.jobs = document, session, jobs
-        self.heard: dict[Key, Heard] = {}
+        self.heard: dict[Key, SideSound] = {}
         self._job: Job | None = None
         self._read.connect(_do, Qt.ConnectionType.QueuedConnection)
         document.changed.connect(
@@ -66,7 +66,7 @@ class Sounds(QObject):
         document.loaded.connect(self.forget)
         session.onstage.conversation_changed.connect(self._staged)
 
-    def of(self, conversation: Conversation, side: int) -> Heard | None:
+    def of(self, conversation: Conversation, side: int) -> SideSound | None:
         """Return a side's sound as far as it is read; None where the side has none."""
         key = self._key(conversation, side)
         return self.heard.get(key) if key is not None else None
@@ -108,7 +108,9 @@ class Sounds(QObject):
             self._job.cancel()
             self._job = None
         # What a job before has only begun is begun anew: its thread may still be at it.
-        self.heard = {k: h if (h := self.heard.get(k)) is not None and not h.told else Heard() for k in keys}
+        self.heard = {
+            k: h if (h := self.heard.get(k)) is not None and not h.told else SideSound() for k in keys
+        }
         wanted = {k: h for k, h in self.heard.items() if h.told}
         if wanted:
             work = _Work(wanted, self._read.emit)
@@ -137,10 +139,10 @@ class _Work:
     longest.
     """
 
-    def __init__(self, wanted: dict[Key, Heard], hand_over: Callable[[Callable[[], None]], None]) -> None:
+    def __init__(self, wanted: dict[Key, SideSound], hand_over: Callable[[Callable[[], None]], None]) -> None:
         self.wanted, self.hand_over = wanted, hand_over
 
-    def set(self, heard: Heard, **values: Any) -> None:
+    def set(self, heard: SideSound, **values: Any) -> None:
         """Set fields of what is painted, on the window's thread."""
         self.hand_over(partial(_set, heard, values))
 
@@ -169,7 +171,7 @@ class _Work:
             done += 1
         job.tell(steps, steps)
 
-    def _read(self, path: str, wanted: dict[Key, Heard]) -> dict[Key, tuple[Any, int]]:
+    def _read(self, path: str, wanted: dict[Key, SideSound]) -> dict[Key, tuple[Any, int]]:
         """Return the samples `[N]` of each wanted channel, and how many a second. Raises FileError."""
         from metagraph.speech.sound import read_recording
 
@@ -184,7 +186,7 @@ class _Work:
             self.set(heard, length=read.duration)
         return out
 
-    def _draw(self, job: Job, heard: Heard, samples: Any, rate: int, progress: tuple[int, int]) -> None:
+    def _draw(self, job: Job, heard: SideSound, samples: Any, rate: int, progress: tuple[int, int]) -> None:
         """Fill the waveform, a minute at a time."""
         wave, loudest = Envelope(len(samples) / rate), 0.0
         self.set(heard, wave=wave)
@@ -200,7 +202,7 @@ class _Work:
             job.tell(*progress, "waveform")
         self.set(heard, part=0.5, told="Finding the pitch …")
 
-    def _sing(self, heard: Heard, samples: Any, rate: int) -> None:
+    def _sing(self, heard: SideSound, samples: Any, rate: int) -> None:
         """Find the pitch."""
         from metagraph.speech.pitch import pitch
 
@@ -210,7 +212,7 @@ class _Work:
         self.set(heard, maxima=pitch_maxima(found.times, found.hertz), pitch=curve, part=1.0, told="")
 
 
-def _set(heard: Heard, values: dict[str, Any]) -> None:
+def _set(heard: SideSound, values: dict[str, Any]) -> None:
     for name, value in values.items():
         setattr(heard, name, value)
 

@@ -213,14 +213,14 @@ def test_waves_pitch_and_segments_are_painted_and_the_playhead_alone_paints_noth
 
 
 def test_panning_half_an_hour_looks_only_at_what_is_in_sight(talk: Any) -> None:
-    from app.features.conversation.sound_reading import Heard
+    from app.features.conversation.sound_reading import SideSound
     from app.features.conversation.waveforms import RATE, Envelope
 
     sounds = talk.drive.conversation.sounds
     long = Envelope(1800)
     long.fill(0, np.random.default_rng(1).standard_normal(round(1800 * RATE)))
     for key in sounds.heard:
-        sounds.heard[key] = Heard(wave=long, pitch=long, told="")
+        sounds.heard[key] = SideSound(wave=long, pitch=long, told="")
     width = talk.view.width()
     for each in (0.7, 40, 400):
         talk.view.each = each

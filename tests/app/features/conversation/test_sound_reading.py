@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 from app.features.conversation import sound_reading
-from app.features.conversation.sound_reading import Heard, Sounds
+from app.features.conversation.sound_reading import SideSound, Sounds
 from app.features.conversation.waveforms import Envelope
 from app.project.document import Document
 from app.project.jobs import Jobs
@@ -39,7 +39,7 @@ def sounds(qapp, tmp_path):
     document.close_journal()
 
 
-def read(sounds, qtbot) -> list[Heard]:
+def read(sounds, qtbot) -> list[SideSound]:
     sounds.session.onstage.set_conversation(sounds.ident)
     qtbot.waitUntil(lambda: sounds.heard and all(not h.told for h in sounds.heard.values()), timeout=60000)
     return [sounds.of(sounds.talk, side) for side in (0, 1)]
@@ -65,8 +65,8 @@ def test_nothing_that_is_painted_is_touched_by_the_thread_that_reads(sounds, qtb
 
         return wrapped
 
-    originals = {"set": Heard.__setattr__, "put": Envelope.put}
-    monkeypatch.setattr(Heard, "__setattr__", note("set"))
+    originals = {"set": SideSound.__setattr__, "put": Envelope.put}
+    monkeypatch.setattr(SideSound, "__setattr__", note("set"))
     monkeypatch.setattr(Envelope, "put", note("put"))
     monkeypatch.setattr(sound_reading, "BLOCK", 1)
     read(sounds, qtbot)
