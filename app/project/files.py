@@ -15,7 +15,14 @@ from PySide6.QtWidgets import QFileDialog, QMessageBox, QWidget
 from app.project.document import Document, state_folder
 from app.project.jobs import Job, Jobs
 from app.project.keeper import Keeper
-from app.project.leftovers import Found, forget, keep_as_copy, look_beside, read_untitled, untitled_journals
+from app.project.leftovers import (
+    FoundJournal,
+    forget,
+    keep_as_copy,
+    look_beside,
+    read_untitled,
+    untitled_journals,
+)
 from app.project.opening import load_whole, open_whole
 from app.project.questions import ask_changed, ask_held, ask_keep, ask_recover, holder_words
 from app.project.saver import Saver
@@ -107,7 +114,7 @@ class Files(QObject):
             self.show_failure,
         )
 
-    def _looked(self, path: Path, before: Project, found: Found) -> None:
+    def _looked(self, path: Path, before: Project, found: FoundJournal) -> None:
         """Ask about what was found beside a project file, and open it."""
         read_only = False
         holder = found.holder
@@ -136,7 +143,7 @@ class Files(QObject):
         self,
         path: Path,
         before: Project,
-        found: Found | None = None,
+        found: FoundJournal | None = None,
         chosen: Left | None = None,
         copies: Sequence[Left] = (),
         template: bool = False,
@@ -208,7 +215,7 @@ class Files(QObject):
         else:
             otherwise()
 
-    def _offer(self, found: Found, otherwise: Callable[[], object]) -> None:
+    def _offer(self, found: FoundJournal, otherwise: Callable[[], object]) -> None:
         for note in found.notes:
             self.told.emit(note)
         for n, left in enumerate(found.left):

@@ -21,7 +21,7 @@ UNTITLED = (
 
 
 @dataclass(frozen=True)
-class Found:
+class FoundJournal:
     """lock: ours, unless there is a holder. left: journals with edits, the latest first. notes: what cannot
     be recovered, in words.
     """
@@ -32,12 +32,12 @@ class Found:
     notes: tuple[str, ...]
 
 
-def look_beside(path: Path, owner: Owner) -> Found:
+def look_beside(path: Path, owner: Owner) -> FoundJournal:
     """Take the lock of a project file, and read the journals that were left beside it."""
     if not path.is_file():
-        return Found(None, None, (), ())
+        return FoundJournal(None, None, (), ())
     lock = Lock(path, owner)
-    return Found(lock, lock.acquire(), *_read(left_journals(path), path))
+    return FoundJournal(lock, lock.acquire(), *_read(left_journals(path), path))
 
 
 def untitled_journals() -> list[Path]:
@@ -45,8 +45,8 @@ def untitled_journals() -> list[Path]:
     return journals_in(state_folder(), UNTITLED)
 
 
-def read_untitled(journals: Sequence[Path]) -> Found:
-    return Found(None, None, *_read(journals, None))
+def read_untitled(journals: Sequence[Path]) -> FoundJournal:
+    return FoundJournal(None, None, *_read(journals, None))
 
 
 def _read(journals: Sequence[Path], saved: Path | None) -> tuple[tuple[Left, ...], tuple[str, ...]]:

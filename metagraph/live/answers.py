@@ -15,7 +15,7 @@ ENDLESS = 1e8  # seconds; what ends later than this ends when something else beg
 
 
 @dataclass(slots=True)
-class Found:
+class FoundAnswer:
     """All that a plan holds of one ask. starts, ends: seconds. what: actions, or words for what the life
     layers do.
     """
@@ -63,15 +63,15 @@ class Found:
 WORDS = {"LookAt": "look", "Speech": "speech", "ModeFrom": "mode", "PlaceFrom": "place", "BlinkAt": "blink"}
 
 
-def find(plan: Plan, wanted: Collection[str], since: float = -inf) -> dict[str, Found]:
+def find(plan: Plan, wanted: Collection[str], since: float = -inf) -> dict[str, FoundAnswer]:
     """Return what a plan holds of asks, for those of which it holds anything. since: seconds before which
     nothing matters.
     """
-    out: dict[str, Found] = {}
+    out: dict[str, FoundAnswer] = {}
 
-    def of(ident: str) -> Found | None:
+    def of(ident: str) -> FoundAnswer | None:
         owner = owner_of(ident, wanted)
-        return None if owner is None else out.setdefault(owner, Found())
+        return None if owner is None else out.setdefault(owner, FoundAnswer())
 
     for layer, lane in plan.layers.items():
         for cue in reversed(lane.cues):

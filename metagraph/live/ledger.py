@@ -9,7 +9,7 @@ import re
 from collections.abc import Iterator
 from dataclasses import dataclass, field
 
-from metagraph.live.answers import Found, owner_of
+from metagraph.live.answers import FoundAnswer, owner_of
 from metagraph.live.limits import Limits
 
 OVER = 2.0  # seconds for which an ask that has ended is remembered
@@ -62,7 +62,7 @@ class Known:
             return True
         return (self.at if self.until is None else self.until) < now - OVER
 
-    def differs(self, found: Found | None) -> bool:
+    def differs(self, found: FoundAnswer | None) -> bool:
         """Whether a plan now does something else than was answered. Times are told to the millisecond."""
         if found is None:
             return True
@@ -70,7 +70,7 @@ class Known:
         same = found.said(self.missed) == self.state and _close(at, self.at) and _close(until, self.until)
         return not same or tuple(found.what) != self.actions
 
-    def settle(self, found: Found) -> None:
+    def settle(self, found: FoundAnswer) -> None:
         """Take in what the plan does about it."""
         self.state, self.until, self.actions = found.said(self.missed), found.until, tuple(found.what)
         self.at = self.at if found.at is None else found.at
@@ -104,7 +104,7 @@ class Ledger:
                 out.append((each, ask))
         return out
 
-    def settle(self, key: str, found: Found) -> None:
+    def settle(self, key: str, found: FoundAnswer) -> None:
         """Take in what the plan does about an ask."""
         ask = self.known[key]
         self._wait(key, ask, False)

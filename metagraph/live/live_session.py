@@ -18,7 +18,7 @@ import msgspec
 from metagraph.graph import requests as a
 from metagraph.graph.model import LAYERS, Layer, Project
 from metagraph.live import describe
-from metagraph.live.answers import Found, find, owner_of
+from metagraph.live.answers import FoundAnswer, find, owner_of
 from metagraph.live.camera_mimicry import see
 from metagraph.live.happenings import happenings
 from metagraph.live.ledger import Known, Ledger, key_of, told
@@ -366,14 +366,14 @@ class LiveSession:
         found = find(self.plan, watched, now - 1.0)
         for key, ask in watched.items():
             if ask.settled and ask.differs(found.get(key)):
-                self._tell_changed(key, ask, found.get(key, Found()), out)
+                self._tell_changed(key, ask, found.get(key, FoundAnswer()), out)
         for open_ in work.open.values():
             if open_.parts is None:
-                out.replies[open_.place] = self._settle(open_.key, found.get(open_.key, Found()))
+                out.replies[open_.place] = self._settle(open_.key, found.get(open_.key, FoundAnswer()))
             else:
                 out.replies[open_.place] = self._settle_block(open_, found)
 
-    def _settle(self, key: str, found: Found) -> Reply:
+    def _settle(self, key: str, found: FoundAnswer) -> Reply:
         """Return the reply to an ask that was planned, or was not."""
         ask = self.ledger.known[key]
         if found.state in ("refused", "done"):
@@ -394,14 +394,14 @@ class LiveSession:
             why=told(why, ask.client),
         )
 
-    def _settle_block(self, open_: Open, found: Mapping[str, Found]) -> Reply:
+    def _settle_block(self, open_: Open, found: Mapping[str, FoundAnswer]) -> Reply:
         """Return the reply to a block of BML: of each behaviour, and of all of them."""
         parts: list[Part] = []
         for key, called, word, why in open_.parts or ():
             if why or key not in self.ledger.known:
                 parts.append(Part(id=called, do=word, state="refused", why=why or "taken back"))
                 continue
-            r = self._settle(key, found.get(key, Found()))
+            r = self._settle(key, found.get(key, FoundAnswer()))
             parts.append(
                 Part(
                     id=called,
@@ -429,7 +429,7 @@ class LiveSession:
             seen=open_.seen,
         )
 
-    def _tell_changed(self, key: str, ask: Known, found: Found, out: Out) -> None:
+    def _tell_changed(self, key: str, ask: Known, found: FoundAnswer, out: Out) -> None:
         """Tell who asked that what was answered holds no longer."""
         if found.state in ("refused", "done"):
             self.ledger.drop(key)

@@ -14,7 +14,7 @@ from metagraph.graph.words import Kind, Layer, Limb
 from metagraph.suggest.estimate import Belief
 from metagraph.suggest.words_defaults import Field
 from metagraph.suggest.words_patterns import Patterns, PatternsError, forget, merged, recalled, remembered
-from metagraph.suggest.words_stances import Found, Stances, Words, is_low, label
+from metagraph.suggest.words_stances import FoundStance, Stances, Words, is_low, label
 from metagraph.suggest.words_tokens import (
     Phrase,
     Taken,
@@ -59,11 +59,11 @@ class _Parse:
     """
 
     words: Words
-    stance: Found | None
+    stance: FoundStance | None
     own: int
     act: Words
     joined: str = ""
-    end: Found | None = None
+    end: FoundStance | None = None
     end_words: Words = ()
     end_confidence: float = 0.0
     sure: float = 0.9
@@ -126,7 +126,7 @@ class _Reader:
     def _act(self, rest: Words) -> Words:
         return without_numbers(rest[: len(rest) - variant(rest)] or rest)
 
-    def _passing(self, words: Words, stance: Found | None, rest: Words) -> _Parse | None:
+    def _passing(self, words: Words, stance: FoundStance | None, rest: Words) -> _Parse | None:
         """Read a transition: from one stance to another, down into one, up out of one."""
         if (
             rest
@@ -160,7 +160,7 @@ class _Reader:
                         )
         return self._moving(words, stance, rest)
 
-    def _to(self, words: Words, stance: Found | None, joined: str, end: Words, sure: float) -> _Parse:
+    def _to(self, words: Words, stance: FoundStance | None, joined: str, end: Words, sure: float) -> _Parse:
         end = end[: len(end) - variant(end)] or end
         found = self._stances.named(end, stance.words if stance else ())
         shown = f"{joined} {label(end)}".strip()
@@ -168,7 +168,7 @@ class _Reader:
             return _Parse(words, stance, int(stance is not None), (), shown, found[0], end, found[1], sure)
         return _Parse(words, stance, int(stance is not None), (), shown, None, end, 0.6 if end else 0.0, sure)
 
-    def _moving(self, words: Words, stance: Found | None, rest: Words) -> _Parse | None:
+    def _moving(self, words: Words, stance: FoundStance | None, rest: Words) -> _Parse | None:
         told = next((p for p in phrases(words, self._kinds) if p.meaning == "transition"), None)
         text = without_numbers(rest)
         if (
@@ -218,7 +218,7 @@ class _Reader:
             0.85,
         )
 
-    def _end(self, found: Found | None, otherwise: Words) -> tuple[Found | None, Words, float]:
+    def _end(self, found: FoundStance | None, otherwise: Words) -> tuple[FoundStance | None, Words, float]:
         return (found, found.words, 0.9) if found else (None, otherwise, 0.5)
 
     # -- what it says
@@ -325,7 +325,7 @@ class _Reader:
             return Belief(self._called(parse.end), parse.end_confidence, reason)
         return Belief(label(parse.end_words), parse.end_confidence, reason) if parse.end_words else None
 
-    def _called(self, stance: Found) -> str:
+    def _called(self, stance: FoundStance) -> str:
         """Return a stance's name, as the user corrected it where that happened."""
         found = recalled(self._patterns, "stance", without_numbers(stance.words))
         return found[0] if found else stance.text

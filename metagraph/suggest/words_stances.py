@@ -77,7 +77,7 @@ _STEMS_DOWN = ("sit", "lie", "kneel", "crouch")
 
 
 @dataclass
-class Found:
+class FoundStance:
     """A stance that names speak of. prefixes: how names begin that belong to it. confidence: that it is one.
     why: the words.
     """
@@ -105,7 +105,7 @@ class Stances:
         self._patterns = patterns
         self._kinds = patterns.meanings["kinds"]
         self._joins = patterns.meanings["joins"]
-        self.found: dict[Words, Found] = {}
+        self.found: dict[Words, FoundStance] = {}
         self._bares: dict[Words, Words] = {}
         distinct = sorted({t for t in batch if t.words}, key=lambda t: (t.words, t.splits))
         followers = _followers(distinct)
@@ -117,14 +117,14 @@ class Stances:
         self._passed_between(distinct)
         self._numbered(distinct, followers)
         self._united()
-        self._by_prefix: dict[Words, Found] = {}
+        self._by_prefix: dict[Words, FoundStance] = {}
         for stance in self.found.values():
             for prefix in stance.prefixes:
                 held = self._by_prefix.get(prefix)
                 if held is None or (held.confidence, held.words) < (stance.confidence, stance.words):
                     self._by_prefix[prefix] = stance
         self._longest = max(map(len, self._by_prefix), default=0)
-        self._resolved: dict[tuple[Words, Words], tuple[Found, float] | None] = {}
+        self._resolved: dict[tuple[Words, Words], tuple[FoundStance, float] | None] = {}
 
     # -- finding
 
@@ -133,7 +133,7 @@ class Stances:
             words = words[1:]
         held = self.found.get(words)
         if held is None:
-            held = self.found[words] = Found(words, confidence, why)
+            held = self.found[words] = FoundStance(words, confidence, why)
         elif confidence > held.confidence:
             held.confidence, held.why = confidence, why
         held.prefixes.update(p for p in prefixes if p)
@@ -321,7 +321,7 @@ class Stances:
 
     def _united(self) -> None:
         """One stance spelled in several ways ("seated", "sitting") is one, called by its surest name."""
-        spelled: dict[Words, list[Found]] = {}
+        spelled: dict[Words, list[FoundStance]] = {}
         for stance in self.found.values():
             spelled.setdefault(tuple(map(stem, stance.words)), []).append(stance)
         for several in spelled.values():
@@ -332,7 +332,7 @@ class Stances:
 
     # -- asking
 
-    def of(self, words: Words, split: int = 0) -> tuple[Found, int] | None:
+    def of(self, words: Words, split: int = 0) -> tuple[FoundStance, int] | None:
         """Return the stance whose clips begin as these words do, and how many words that takes."""
         for n in range(min(len(words), self._longest), 0, -1):
             found = self._by_prefix.get(words[:n])
@@ -340,7 +340,7 @@ class Stances:
                 return found, n
         return None
 
-    def named(self, words: Sequence[str], beside: Words = ()) -> tuple[Found, float] | None:
+    def named(self, words: Sequence[str], beside: Words = ()) -> tuple[FoundStance, float] | None:
         """Return the stance that words mean and how surely; `beside`: the stance one comes from, whose
         sisters are likelier.
         """
@@ -349,7 +349,7 @@ class Stances:
             self._resolved[key] = self._named(*key)
         return self._resolved[key]
 
-    def _named(self, words: Words, beside: Words) -> tuple[Found, float] | None:
+    def _named(self, words: Words, beside: Words) -> tuple[FoundStance, float] | None:
         if words in self._by_prefix:
             return self._by_prefix[words], 0.98
         asked = self._bare(words)
@@ -357,7 +357,7 @@ class Stances:
             whole = [w for w in words if not is_number(w)]
             plain = [s for s in self.found.values() if whole and s.words == tuple(whole)]
             return (plain[0], 0.95) if plain else None
-        best: tuple[tuple[float, float, int, Words], Found] | None = None
+        best: tuple[tuple[float, float, int, Words], FoundStance] | None = None
         for stance in self.found.values():
             own = self._bare(stance.words)
             if not own:
@@ -386,14 +386,14 @@ class Stances:
             known = self._bares[words] = tuple(stem(w) for w in kept)
         return known
 
-    def standing(self) -> Found | None:
+    def standing(self) -> FoundStance | None:
         """Return the stance of standing with nothing more said: "stand", or plain "idle"."""
         upright = [s for s in self.found.values() if "stand" in map(stem, s.words)]
         if upright:
             return min(upright, key=lambda s: (len(s.words), s.words))
         return self.found.get(("idle",))
 
-    def low(self, words: Sequence[str] = ()) -> Found | None:
+    def low(self, words: Sequence[str] = ()) -> FoundStance | None:
         """Return the stance of sitting or lying that words speak of; without any, the only one there is."""
         there = [s for s in self.found.values() if is_low(s.words)]
         told = {stem(w) for w in without_numbers(words)}
@@ -403,7 +403,7 @@ class Stances:
             return None
         return min(fitting, key=lambda s: (-len(told & {stem(w) for w in s.words}), len(s.words), s.words))
 
-    def usual(self) -> tuple[Found, float] | None:
+    def usual(self) -> tuple[FoundStance, float] | None:
         """Return the stance of clips that name none: the only one, or the plain one among several."""
         if len(self.found) == 1:
             return next(iter(self.found.values())), 0.75

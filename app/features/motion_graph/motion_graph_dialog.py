@@ -27,7 +27,7 @@ from app.features.motion_graph.synthesis_jobs import (
     FOLDER,
     LEAST,
     MOST,
-    Found,
+    FoundMotion,
     Takes,
     pieces,
     save,
@@ -379,7 +379,7 @@ class MotionGraphDialog(QDialog):
     def _found(self, made: Any) -> None:
         self.graph, found, loaded = made[0], made[1], made[2]
         graph, takes_told = self.graph, self.takes.told
-        assert isinstance(found, Found)
+        assert isinstance(found, FoundMotion)
         self._keep(loaded, "Add new motion", self._for)
         self.graph = graph  # the takes are the same
         deaf = (

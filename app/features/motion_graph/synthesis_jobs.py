@@ -121,7 +121,7 @@ class Wish:
 
 
 @dataclass(frozen=True, eq=False)
-class Found:
+class FoundMotion:
     """A new motion. took: seconds of search."""
 
     clip: Clip
@@ -143,7 +143,7 @@ class Found:
 
 def synthesise(
     graph: Any, takes: Takes, wish: Wish, name: str, cancelled: Callable[[], bool] | None = None
-) -> Found:
+) -> FoundMotion:
     """Return motion of the takes that goes with what is wished. Raises SynthesisError when there is none,
     saying what would help, or when it was cancelled.
     """
@@ -171,7 +171,7 @@ def synthesise(
             "the level, or ask for less"
         ) from error
     took = time.perf_counter() - began
-    return Found(assemble(graph.states, takes.clips, path, name), path.cost, len(path.jumps), took)
+    return FoundMotion(assemble(graph.states, takes.clips, path, name), path.cost, len(path.jumps), took)
 
 
 def table(
