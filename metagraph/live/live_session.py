@@ -50,7 +50,7 @@ from metagraph.live.messages import (
 )
 from metagraph.live.pose_stream import Stream, due
 from metagraph.live.tape import Tape
-from metagraph.live.tick_work import Client, Open, Out, Work, thinned
+from metagraph.live.tick_work import Client, Open, Out, TickWork, thinned
 from metagraph.playback.bml import Block, read_block
 from metagraph.playback.phases import phases
 from metagraph.playback.plan import Plan
@@ -138,7 +138,7 @@ class LiveSession:
         queue, self._queue = [*self._queue, *heard], []
         self.ledger.limits.tick(self.now)
         self._told.pop("status", None)
-        out, work = Out(), Work()
+        out, work = Out(), TickWork()
         for place, (client, item) in enumerate(queue):
             if isinstance(item, Reply):
                 out.replies.append(item)
@@ -161,7 +161,7 @@ class LiveSession:
         )
         return out
 
-    def _take(self, client: Client, heard: HeardMessage, work: Work, place: int) -> Reply | bytes | None:
+    def _take(self, client: Client, heard: HeardMessage, work: TickWork, place: int) -> Reply | bytes | None:
         """Return the reply to a request; None for what has to be planned first."""
         message = heard.message
         if isinstance(message, Keypoints):
@@ -213,7 +213,7 @@ class LiveSession:
 
     # --- what becomes of a request
 
-    def _admit(self, client: Client, ident: str, key: str, ask: Any, work: Work) -> str:
+    def _admit(self, client: Client, ident: str, key: str, ask: Any, work: TickWork) -> str:
         """Take an ask on; return why not, if it is not."""
         wait = self.project.settings.wait
         stroke, missed = getattr(ask, "stroke", None), 0.0
@@ -253,7 +253,7 @@ class LiveSession:
         work.asks[key] = msgspec.structs.replace(ask, id=key)
         return ""
 
-    def _withdraw(self, client: Client, ident: str, ask: a.Withdraw, work: Work) -> Reply:
+    def _withdraw(self, client: Client, ident: str, ask: a.Withdraw, work: TickWork) -> Reply:
         """Take back what a client asked for itself; what has begun plays on."""
         if self.ledger.limits.refusal("withdraw", self.now, 0.0, 0, self.now):
             return Reply(id=ident, state="refused", why=BUSY)
@@ -273,7 +273,7 @@ class LiveSession:
         self._take_back([target] if ask.what else keys, work)
         return Reply(id=ident, state="done", why=f"{len(keys)} taken back; what has begun plays on")
 
-    def _take_back(self, keys: Iterable[str], work: Work) -> None:
+    def _take_back(self, keys: Iterable[str], work: TickWork) -> None:
         for key in keys:
             work.close(key, "taken back")
             for each, _ in self.ledger.drop(key):
@@ -281,7 +281,7 @@ class LiveSession:
                 work.asks.pop(each, None)
             work.asks[key] = a.Withdraw(id=key, what=key, told=self.now)
 
-    def _block(self, client: Client, open_: Open, ask: a.Bml, work: Work) -> Reply | None:
+    def _block(self, client: Client, open_: Open, ask: a.Bml, work: TickWork) -> Reply | None:
         """Take a block's behaviours on, each for itself."""
         limits = self.ledger.limits
         cost = len(ask.bml) + TAG * ask.bml.count("<")
@@ -308,7 +308,7 @@ class LiveSession:
         return None
 
     def _parts(
-        self, client: Client, open_: Open, block: Block, at: float | None, work: Work
+        self, client: Client, open_: Open, block: Block, at: float | None, work: TickWork
     ) -> list[tuple[str, str, str, str]]:
         """Take on what a block asks for; return of each its key, what it is called, the ask, and why it was
         refused already.
@@ -326,7 +326,7 @@ class LiveSession:
             out.append((key, called, word, self._admit(client, called, key, timed, work)))
         return out
 
-    def _keypoints(self, client: Client, message: Keypoints, work: Work, place: int) -> Reply | None:
+    def _keypoints(self, client: Client, message: Keypoints, work: TickWork, place: int) -> Reply | None:
         """Look at whoever is before a client's camera; take on what is asked for because of them."""
         ident = message.id or None
         if self.ledger.limits.refusal("keypoints", self.now, 0.0, 0, self.now):
@@ -347,7 +347,7 @@ class LiveSession:
 
     # --- the plan
 
-    def _plan(self, work: Work, out: Out) -> None:
+    def _plan(self, work: TickWork, out: Out) -> None:
         """Work a tick's asks in, answer them, and tell of others that are planned otherwise because of
         them.
         """

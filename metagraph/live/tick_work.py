@@ -56,7 +56,7 @@ class Open:
 
 
 @dataclass
-class Work:
+class TickWork:
     """A tick's asks on their way into the plan."""
 
     asks: dict[str, a.AnyAsk] = field(default_factory=dict)

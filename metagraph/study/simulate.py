@@ -63,7 +63,7 @@ class Truth:
 
 
 @dataclass(frozen=True)
-class Work:
+class SimulatedWork:
     """What a simulated participant does in one task. seconds: clip -> how long. slips: how many mistakes."""
 
     condition: str
@@ -77,7 +77,7 @@ class Simulated:
     """works: in the order they are done. sus, tlx: condition -> score, 0..100 (SUS in steps of 2.5)."""
 
     participant: str
-    works: tuple[Work, ...]
+    works: tuple[SimulatedWork, ...]
     sus: Mapping[str, float]
     tlx: Mapping[str, float]
 
@@ -104,7 +104,7 @@ def simulated(truth: Truth, tasks: Mapping[str, tuple[str, ...]]) -> Iterator[Si
                         + log(truth.order) * sitting
                     )
                     seconds[clip] = exp(at + rng.normal(0, truth.chance))
-                works.append(Work(condition, task, seconds, int(rng.poisson(truth.slips[by_hand]))))
+                works.append(SimulatedWork(condition, task, seconds, int(rng.poisson(truth.slips[by_hand]))))
         liking, load = rng.normal(0, truth.sus_spread), rng.normal(0, truth.tlx_spread)
         sus = {
             c: _steps(m + liking + rng.normal(0, truth.sus_spread), 2.5)

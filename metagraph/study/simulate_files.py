@@ -25,7 +25,7 @@ from metagraph.motion.skeleton import Skeleton
 from metagraph.study.klm import USUAL
 from metagraph.study.log import wall_time
 from metagraph.study.questionnaires import SUS, TLX
-from metagraph.study.simulate import Simulated, Truth, Work, simulated
+from metagraph.study.simulate import Simulated, SimulatedWork, Truth, simulated
 from metagraph.study.simulate_work import drawn, slipped
 from metagraph.study.sitting import Phase, phases
 from metagraph.study.study_plan import FILE, Study, read_study
@@ -220,7 +220,7 @@ class _Sitting:
             self.study.log(self.person.participant), "".join(f"{line}\n" for line in lines).encode()
         )
 
-    def _work(self, phase: Phase, work: Work) -> None:
+    def _work(self, phase: Phase, work: SimulatedWork) -> None:
         for clip, seconds in work.seconds.items():
             self._clip(clip, seconds, work.condition)
         folder = self.study.data(self.person.participant)

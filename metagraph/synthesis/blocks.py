@@ -38,7 +38,7 @@ CANCELLED = "the motion graph was cancelled"
 
 
 @dataclass(frozen=True, eq=False)
-class Work:
+class BlockWork:
     """What all blocks are made from. rows `[K, T, 3]`: the terms of key states, those that differ most first;
     keys `[K]`: which states they are. blocks `[B, T, 3, 64]`: the terms of the frames before `into [N]`, the
     states transitions may enter, filled up with what is far from everything. limit: what a transition may
@@ -67,7 +67,7 @@ class Work:
         return told.hexdigest()
 
 
-def work_of(states: States, keys: Array, limit: float, most: int | None) -> Work:
+def work_of(states: States, keys: Array, limit: float, most: int | None) -> BlockWork:
     """Return what the blocks of a graph are made from. Only key states are copied, whatever the number of
     frames.
 
@@ -85,7 +85,7 @@ def work_of(states: States, keys: Array, limit: float, most: int | None) -> Work
     for n in range(len(blocks)):
         some = terms_of(states, into[n * LANES : (n + 1) * LANES] - 1)[:, order]
         blocks[n, :, :, : len(some)] = some.transpose(1, 2, 0)
-    return Work(rows, keys, blocks, into, limit, most)
+    return BlockWork(rows, keys, blocks, into, limit, most)
 
 
 def _order(terms: Array) -> Array:
@@ -93,7 +93,7 @@ def _order(terms: Array) -> Array:
     return np.argsort(-np.linalg.norm(terms - terms.mean(0), axis=-1).mean(0), kind="stable")
 
 
-def block(work: Work, first: int, cancelled: Callable[[], bool] | None = None) -> Block:
+def block(work: BlockWork, first: int, cancelled: Callable[[], bool] | None = None) -> Block:
     """Return the transitions of the key states from the `first` on, one after another, targets ascending.
     Raises SynthesisError when it was cancelled.
     """
@@ -127,7 +127,7 @@ def block(work: Work, first: int, cancelled: Callable[[], bool] | None = None) -
 
 
 def transitions(
-    work: Work,
+    work: BlockWork,
     progress: Callable[[int, int], None] | None = None,
     cancelled: Callable[[], bool] | None = None,
     threads: int | None = None,
@@ -220,7 +220,7 @@ class _Kept:
 
 
 def _here(
-    work: Work, firsts: list[int], cancelled: Callable[[], bool] | None, threads: int | None
+    work: BlockWork, firsts: list[int], cancelled: Callable[[], bool] | None, threads: int | None
 ) -> Iterator[tuple[int, Block]]:
     """Make blocks on this machine's cores; a few are under way at a time, so that what was made does not wait
     in memory.
@@ -247,7 +247,7 @@ def _here(
 
 
 def _there(
-    work: Work, firsts: list[int], cancelled: Callable[[], bool] | None, cluster: Any
+    work: BlockWork, firsts: list[int], cancelled: Callable[[], bool] | None, cluster: Any
 ) -> Iterator[tuple[int, Block]]:
     """Make blocks on a Dask cluster, which is sent the work once."""
     distributed: Any = import_module("distributed")
