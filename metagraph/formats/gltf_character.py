@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 from metagraph.errors import FileError
 from metagraph.formats.gltf_clips import morph_names
 from metagraph.formats.gltf_file import Gltf, Primitive
-from metagraph.formats.gltf_skeleton import Rig
+from metagraph.formats.gltf_skeleton import GltfRig
 from metagraph.motion.character_mesh import Character, Material, Surface
 
 Array = NDArray[Any]
@@ -28,7 +28,7 @@ class _Part:
     morphs: dict[str, Array] = field(default_factory=dict)
 
 
-def character_of(gltf: Gltf, rig: Rig) -> Character:
+def character_of(gltf: Gltf, rig: GltfRig) -> Character:
     """Return the default scene's meshes on the rig's skeleton. Raises FileError when there are none."""
     doc = gltf.json
     notes = [*rig.notes, *(repair.words for repair in rig.repairs)]
@@ -99,7 +99,7 @@ def character_of(gltf: Gltf, rig: Rig) -> Character:
     )
 
 
-def _scene_nodes(gltf: Gltf, rig: Rig) -> list[int]:
+def _scene_nodes(gltf: Gltf, rig: GltfRig) -> list[int]:
     """Return the nodes of the default scene, depth first."""
     doc = gltf.json
     if not doc.scenes:
@@ -121,7 +121,7 @@ def _scene_nodes(gltf: Gltf, rig: Rig) -> list[int]:
 
 
 def _part(
-    gltf: Gltf, rig: Rig, node: int, primitive: Primitive, triangles: Array, where: str, notes: list[str]
+    gltf: Gltf, rig: GltfRig, node: int, primitive: Primitive, triangles: Array, where: str, notes: list[str]
 ) -> _Part | None:
     """Return one primitive's vertices in the rest pose, in metres, or None when they are scaled to
     nothing.
@@ -203,7 +203,7 @@ def _triangles(gltf: Gltf, primitive: Primitive, count: int, where: str) -> Arra
 
 
 def _skinned(
-    gltf: Gltf, rig: Rig, skin_index: int, attributes: dict[str, int], count: int, where: str
+    gltf: Gltf, rig: GltfRig, skin_index: int, attributes: dict[str, int], count: int, where: str
 ) -> tuple[Array, Array, Array]:
     """Return per vertex its matrix to the rest pose `[V, 4, 4]`, its joints and its weights `[V, 4]`."""
     skin = gltf.item(gltf.json.skins, skin_index, "skin", where)
@@ -240,7 +240,7 @@ def _skinned(
     return matrices, own[place], weight
 
 
-def _attached(gltf: Gltf, rig: Rig, node: int) -> tuple[Array, int] | None:
+def _attached(gltf: Gltf, rig: GltfRig, node: int) -> tuple[Array, int] | None:
     """Return the matrix of a mesh without a skin and the joint that carries it, or None when it is scaled to
     nothing.
     """

@@ -11,7 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from metagraph.formats.gltf_file import Animation, Gltf, extras
-from metagraph.formats.gltf_skeleton import Rig
+from metagraph.formats.gltf_skeleton import GltfRig
 from metagraph.formats.takes import frame_rate, repaired, take_name, take_repair, without_bind_pose
 from metagraph.motion import rotation
 from metagraph.motion.clip import Clip
@@ -30,7 +30,7 @@ class _Grid:
     fps: float
 
 
-def read_clip(gltf: Gltf, rig: Rig, number: int, as_is: Collection[str] = ()) -> Clip | None:
+def read_clip(gltf: Gltf, rig: GltfRig, number: int, as_is: Collection[str] = ()) -> Clip | None:
     """Return animation `number` as a clip, or None when it moves nothing of the skeleton. Raises FileError.
 
     as_is: repairs (`takes.REPAIRS`) not to make.
@@ -133,7 +133,7 @@ _Group = tuple[int, str, str]
 
 
 def _channels(
-    gltf: Gltf, rig: Rig, animation: Animation, where: str
+    gltf: Gltf, rig: GltfRig, animation: Animation, where: str
 ) -> tuple[dict[_Group, list[tuple[int, int]]], list[tuple[int, str, int, int]], list[str]]:
     """Sort channels into groups that share key times: (input, mode, path) -> [(joint, output)], and the morph
     channels.

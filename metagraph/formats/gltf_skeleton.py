@@ -25,7 +25,7 @@ _LARGEST = 1e7  # a translation or scale beyond this is damage
 
 
 @dataclass(frozen=True, eq=False)
-class Rig:
+class GltfRig:
     """A skeleton and how the file's nodes map onto it.
 
     nodes: the node of each joint. places: node -> joint. parents: the parent of every node. A joint's
@@ -73,10 +73,10 @@ def decompose(matrices: Array) -> tuple[Array, Array, Array]:
 
 
 _CACHED = 16  # rigs remembered: the files of a folder mostly share one
-_rigs: dict[bytes, Rig] = {}
+_rigs: dict[bytes, GltfRig] = {}
 
 
-def build_rig(gltf: Gltf, as_is: Collection[str] = ()) -> Rig:
+def build_rig(gltf: Gltf, as_is: Collection[str] = ()) -> GltfRig:
     """Return the one skeleton of the file; the same object for files whose nodes and skins are the same.
     Raises FileError.
 
@@ -107,7 +107,7 @@ def _build(
     order: list[int],
     members: set[int],
     as_is: Collection[str],
-) -> Rig:
+) -> GltfRig:
     translations, rotations, scales = _transforms(gltf, nodes)
     joints = _in_order(gltf, members, parents, order)
     if len(joints) > MOST_JOINTS:
@@ -183,7 +183,7 @@ def _build(
         lift, shift, rest_translations = lift * unit, shift * unit, rest_translations * unit
         rest_matrices[:, :3] *= unit
     skeleton = Skeleton(names, above, rest_rotations, rest_translations)
-    return Rig(
+    return GltfRig(
         skeleton,
         tuple(joints),
         places,

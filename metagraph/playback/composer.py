@@ -77,7 +77,7 @@ class Ground:
 
 
 @dataclass(frozen=True, eq=False)
-class Rig:
+class ComposerRig:
     """How layers reach joints."""
 
     ground: Ground
@@ -113,7 +113,7 @@ def _ground(skeleton: Skeleton, clip: Clip | None, frame: int) -> Ground:
 @lru_cache(maxsize=16)
 def _rig(
     ground: Ground, parts: tuple[Part, ...], weights: tuple[tuple[float, ...], ...], order: tuple[Part, ...]
-) -> Rig:
+) -> ComposerRig:
     reach: dict[Layer, Reach] = {}
     for layer, row in zip(LAYERS, weights, strict=True):
         by_part = dict(zip(order, row, strict=True))
@@ -121,10 +121,10 @@ def _rig(
         joints = np.flatnonzero(each > 0)
         chosen = each[joints, None]
         reach[layer] = Reach(joints, None if np.all(chosen == 1) else chosen)
-    return Rig(ground, reach)
+    return ComposerRig(ground, reach)
 
 
-def rig(project: Project) -> Rig:
+def rig(project: Project) -> ComposerRig:
     """Return the project's rig; the same object as long as skeleton, base pose, parts and weights stay as
     they are.
     """

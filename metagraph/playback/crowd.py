@@ -18,7 +18,7 @@ from metagraph.graph import anatomy
 from metagraph.graph.model import LAYERS, Action, Layer, Project
 from metagraph.motion.clip import Clip
 from metagraph.motion.skeleton import Pose
-from metagraph.playback.composer import Offsets, Rig, rig
+from metagraph.playback.composer import ComposerRig, Offsets, rig
 from metagraph.playback.plan import Cue, Plan, Rest
 from metagraph.playback.player import playable
 
@@ -127,7 +127,7 @@ class _Blocks:
     `[J]`: of each joint's x.
     """
 
-    def __init__(self, frame: Rig) -> None:
+    def __init__(self, frame: ComposerRig) -> None:
         self.rotations = frame.ground.base.rotations
         reached = np.zeros(len(self.rotations), int)
         for n, layer in enumerate(LAYERS):
@@ -176,7 +176,7 @@ def _held(cue: Cue) -> tuple[float, float, float]:
 class _Tables:
     """One layer of the plans, and the clips they play, laid out flat: what the loops read."""
 
-    def __init__(self, project: Project, frame: Rig, layer: Layer, blocks: _Blocks) -> None:
+    def __init__(self, project: Project, frame: ComposerRig, layer: Layer, blocks: _Blocks) -> None:
         self.project, self.ground, self.reach, self.layer, self.blocks = (
             project,
             frame.ground,

@@ -24,7 +24,7 @@ RATE = 30.0  # frames a second
 
 
 @dataclass(frozen=True, eq=False)
-class Rig:
+class TrackRig:
     """What counts of a skeleton. small: the joints `keep` of it."""
 
     small: Skeleton
@@ -36,7 +36,7 @@ class Rig:
 
 
 @lru_cache(maxsize=32)
-def _rig(skeleton: Skeleton, named: tuple[tuple[str, int], ...]) -> Rig:
+def _rig(skeleton: Skeleton, named: tuple[tuple[str, int], ...]) -> TrackRig:
     roles = dict(named)
     parts = body_parts(skeleton, roles)
     hands = [roles[r] for r in ("left_hand", "right_hand") if r in roles]
@@ -53,13 +53,15 @@ def _rig(skeleton: Skeleton, named: tuple[tuple[str, int], ...]) -> Rig:
     )
     limbs = {r: place[j] for r, j in roles.items() if r.endswith(("upper_leg", "upper_arm")) and j in place}
     root = place.get(roles.get("hips", 0), 0)
-    return Rig(small, keep, np.array([place[j] for j in used]), tuple(parts[j] for j in used), limbs, root)
+    return TrackRig(
+        small, keep, np.array([place[j] for j in used]), tuple(parts[j] for j in used), limbs, root
+    )
 
 
-_TRACKS: WeakKeyDictionary[Clip, tuple[Rig, Array]] = WeakKeyDictionary()
+_TRACKS: WeakKeyDictionary[Clip, tuple[TrackRig, Array]] = WeakKeyDictionary()
 
 
-def track_of(rig: Rig, clip: Clip) -> Array:
+def track_of(rig: TrackRig, clip: Clip) -> Array:
     """Return where the counted joints are, `[F, J, 3]` float32, metres, from the root as the character faces,
     RATE frames a second.
     """
@@ -77,8 +79,8 @@ def poses_of(clip: Clip) -> Pose:
     return clip.pose_at(times_of(clip)) if abs(clip.fps - RATE) > 1e-6 else clip.poses()
 
 
-def stands(rig: Rig, poses: Pose) -> tuple[Array, Array]:
-    """Return where a character faces `[F, 2]`, as `points.facing_of`, and where the joints `Rig.keep` are
+def stands(rig: TrackRig, poses: Pose) -> tuple[Array, Array]:
+    """Return where a character faces `[F, 2]`, as `points.facing_of`, and where the joints `TrackRig.keep` are
     `[F, K, 3]`, in the world.
     """
     turns, at = rig.small.globals(Pose(poses.rotations[:, rig.keep], poses.translations[:, rig.keep]))
@@ -99,7 +101,7 @@ def velocity_of(track: Array) -> Array:
     return np.gradient(track, 1 / RATE, axis=0) if len(track) > 1 else np.zeros_like(track)
 
 
-def rig_of(clip: Clip, roles: Mapping[str, int] | None) -> Rig:
+def rig_of(clip: Clip, roles: Mapping[str, int] | None) -> TrackRig:
     """Return what counts of a clip's skeleton. roles: as found unless given."""
     named = find_roles(clip.skeleton) if roles is None else roles
     return _rig(clip.skeleton, tuple(sorted(named.items())))
