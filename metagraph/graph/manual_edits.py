@@ -168,14 +168,14 @@ def remove(project: Project, states: Collection[str] = (), links: Collection[str
 
 
 @dataclass(frozen=True)
-class Piece:
+class CopiedPiece:
     """What was copied: states, and the links among them."""
 
     states: tuple[State, ...]
     links: tuple[Link, ...]
 
 
-def copied(project: Project, states: Collection[str]) -> Piece:
+def copied(project: Project, states: Collection[str]) -> CopiedPiece:
     """Return states with the links among them, to be pasted. Their order is the machine's."""
     chosen = [s for m in project.manual.values() for s in m.states.values() if s.id in states]
     inside = {s.id for s in chosen}
@@ -185,11 +185,11 @@ def copied(project: Project, states: Collection[str]) -> Piece:
         for x in m.links.values()
         if x.target in inside and x.source in inside
     ]
-    return Piece(tuple(chosen), tuple(links))
+    return CopiedPiece(tuple(chosen), tuple(links))
 
 
 def paste(
-    project: Project, layer: Layer, piece: Piece, x: float, y: float
+    project: Project, layer: Layer, piece: CopiedPiece, x: float, y: float
 ) -> tuple[Project, tuple[str, ...]]:
     """Return the project with copies of states and of the links among them, and the copies' ids. x, y: their
     left upper corner.

@@ -63,7 +63,7 @@ class Lane:
 
 
 @dataclass
-class Words:
+class RequestWords:
     """The words a project knows, by which most asks that cannot be met are told at once."""
 
     project: Project

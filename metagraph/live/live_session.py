@@ -31,7 +31,7 @@ from metagraph.live.limits import (
     PER_TICK,
     SPEECH,
     TAG,
-    Words,
+    RequestWords,
     unknown,
 )
 from metagraph.live.messages import (
@@ -81,7 +81,7 @@ class LiveSession:
         self.now = 0.0
         self.clients: dict[int, Client] = {}
         self.ledger = Ledger()
-        self._words = Words(project)
+        self._words = RequestWords(project)
         self._names: set[str] = set()
         self._queue: list[tuple[int, HeardMessage | Reply]] = []
         self.tape = Tape()
@@ -126,7 +126,7 @@ class LiveSession:
     def change(self, project: Project) -> None:
         """Go on with an edited project; what has not begun is planned anew at the next tick."""
         self.project = self.running.project = project
-        self._words, self._edited = Words(project), True
+        self._words, self._edited = RequestWords(project), True
         self._cold = [x for x in project.actions() if x.kind == "gesture"]
         self._told.clear()
 

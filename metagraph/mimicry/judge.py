@@ -64,7 +64,7 @@ class Mean:
 
 
 @dataclass(slots=True)
-class View:
+class PersonView:
     """A person as a layer sees them now: points `[17, 3]`, what they are trusted `[17]`, measures `[N, 3]`
     and their trust `[N, 1]`.
     """
@@ -123,17 +123,17 @@ class Judge:
         """Id of the stance the person is in."""
         return None if self.now is None else self.signature.stances[self.now]
 
-    def view(self, dims: int) -> View | None:
+    def view(self, dims: int) -> PersonView | None:
         """Return the person as they are now; None where they cannot be made out or show the back."""
         points, trust = self.mean.points(), self.mean.trust
         frame = frame_of(points, trust, dims, self.width)
         if frame is None or (dims == 2 and frame.width < AWAY):
             return None
-        return View(
+        return PersonView(
             points, trust, frame, measured(self.layer, points, frame), trusted(self.layer, trust)[:, None]
         )
 
-    def misfits(self, view: View) -> Array | None:
+    def misfits(self, view: PersonView) -> Array | None:
         """Return how badly the best stance fits a picture under each of the TURNS, a squared distance; None
         without evidence.
         """
@@ -145,7 +145,7 @@ class Judge:
         return np.asarray(((apart.reshape(*apart.shape[:2], -1) ** 2) @ sharp).min(1) / count)
 
     def judge(
-        self, seconds: float, elapsed: float, view: View, quick: Array, heading: float, dims: int
+        self, seconds: float, elapsed: float, view: PersonView, quick: Array, heading: float, dims: int
     ) -> bool:
         """Take a moment in; return whether the person is in another stance from now on. quick `[17, 3]`: the
         points, hardly smoothed. heading: of somebody in a picture, radians.
@@ -165,7 +165,7 @@ class Judge:
             self._get_used(elapsed, apart, far, view.share, dims)
         return changed
 
-    def _moves(self, view: View, quick: Array) -> bool:
+    def _moves(self, view: PersonView, quick: Array) -> bool:
         """Whether the layer moves too fast for a stance."""
         rows = MOVING[self.layer]
         known = np.where(MOVED[self.layer], view.trust, 1.0).min(1) > 0
@@ -173,7 +173,7 @@ class Judge:
         most = (self.how.still * (self.how.smooth - self.tuning.quick) * view.frame.size) ** 2
         return bool((((way * way).sum(1) > most) & known).any())
 
-    def _measure(self, view: View, heading: float, dims: int) -> tuple[Array, Array, Array] | None:
+    def _measure(self, view: PersonView, heading: float, dims: int) -> tuple[Array, Array, Array] | None:
         """Return by how much the person differs from each look of a stance, `[T, N, dims]`, how far that is,
         `[T]`, and what squared differences count for, `[N * dims]`; None without enough evidence.
         """

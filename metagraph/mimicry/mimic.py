@@ -18,7 +18,7 @@ from metagraph.graph import anatomy
 from metagraph.graph.model import LAYERS, Layer, Project
 from metagraph.graph.requests import AnyAsk, Go, Look
 from metagraph.mimicry.gaze_reading import Gaze
-from metagraph.mimicry.judge import TURNS, Judge, Mean, View
+from metagraph.mimicry.judge import TURNS, Judge, Mean, PersonView
 from metagraph.mimicry.keypoint_layouts import POINTS, choose, swap
 from metagraph.mimicry.signatures import Body, signatures
 from metagraph.mimicry.tuning import Tuning
@@ -125,7 +125,7 @@ class Mimic:
             self._begin()
         self._time, self._dims = seconds, dims
         self._quick.feed(elapsed, weighted)
-        views: dict[Layer, View] = {}
+        views: dict[Layer, PersonView] = {}
         for layer, judge in self.judges.items():
             judge.mean.feed(elapsed, weighted)
             view = judge.view(dims)
@@ -164,7 +164,7 @@ class Mimic:
         self,
         seconds: float,
         elapsed: float,
-        views: Mapping[Layer, View],
+        views: Mapping[Layer, PersonView],
         dims: int,
         goals: Mapping[Layer, str],
     ) -> list[AnyAsk]:
@@ -191,7 +191,7 @@ class Mimic:
                 out.append(Look(id=self._id(), to=point, told=seconds, priority=self.priority))
         return out
 
-    def _weigh_turns(self, elapsed: float, views: Mapping[Layer, View]) -> None:
+    def _weigh_turns(self, elapsed: float, views: Mapping[Layer, PersonView]) -> None:
         """In a picture, take the heading under which shoulders and stances have fitted best over the last
         second or so.
         """

@@ -35,7 +35,7 @@ ARM = _words(
 
 
 @dataclass(frozen=True)
-class Words:
+class JointWords:
     """A joint's name taken apart: words without side and digits, run together, and the side it names."""
 
     words: tuple[str, ...]
@@ -44,7 +44,7 @@ class Words:
     number: int
 
 
-def take_apart(name: str) -> Words:
+def take_apart(name: str) -> JointWords:
     """Split a name at separators, capitals and digits, without its namespace."""
     bare = re.split(r"[:|]", name)[-1]
     pieces = [
@@ -63,10 +63,10 @@ def take_apart(name: str) -> Words:
                 number = int(word)
             elif word not in ("c", "m"):
                 words.append(word)
-    return Words(tuple(words), "".join(words), side, number)
+    return JointWords(tuple(words), "".join(words), side, number)
 
 
-def kind_of(words: Words) -> str:
+def kind_of(words: JointWords) -> str:
     """Return what a name alone says of a limb's joint; "" when it says nothing, or nothing certain."""
     own, joined = set(words.words), words.joined
     if own & _FOUR_LEGGED and ("leg" in joined or "foot" in joined or "paw" in joined or "toe" in joined):

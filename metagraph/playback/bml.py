@@ -18,7 +18,7 @@ import msgspec
 from metagraph.graph import requests as a
 from metagraph.graph.model import Project
 from metagraph.playback.bml_times import Behaviour, Timing, seconds_of
-from metagraph.playback.bml_words import SYNCS, Words, spelled
+from metagraph.playback.bml_words import SYNCS, BmlWords, spelled
 from metagraph.playback.bml_writer import write_bml
 from metagraph.playback.bml_xml import Element, parse
 
@@ -75,7 +75,7 @@ def read_block(text: str, at: float = 0.0, priority: int = 1, project: Project |
         raise a.AskError(
             f"{root.place}: composition is MERGE, APPEND or REPLACE, not '{root.get('composition')}'"
         )
-    reader = _Reader(Words(project), at, priority)
+    reader = _Reader(BmlWords(project), at, priority)
     reader.collect(root)
     try:
         asks = reader.timing.asks()
@@ -88,7 +88,7 @@ def read_block(text: str, at: float = 0.0, priority: int = 1, project: Project |
 
 
 class _Reader:
-    def __init__(self, words: Words, at: float, priority: int) -> None:
+    def __init__(self, words: BmlWords, at: float, priority: int) -> None:
         self.words, self.priority = words, priority
         self.timing = Timing(at, self._note, words.offsets)
         self.notes: list[str] = []

@@ -69,7 +69,7 @@ def index_of(project: Project) -> Index:
     return _latest[0]
 
 
-class Words:
+class BmlWords:
     """What the words of a block mean in a project; without one they are taken as they are and lengths are
     guessed.
     """

@@ -95,7 +95,7 @@ def perform(
         return hear(project, empty, 0.0, first, end, stances, idle)
     running = RunningPlan(project, seed, stances, idle, min(AHEAD, end))
     running.hear(0.0, first)
-    pieces: list[Piece] = []
+    pieces: list[CutPiece] = []
     named: list[str] = []  # what asks were about, in order
     recent, cut, now = max(RECENT, project.settings.memory), 0.0, 0.0
     for now in sorted(groups):
@@ -105,7 +105,7 @@ def perform(
         if now > cut + recent + CUT:
             cut = now - recent
             before = running.forget(cut)
-            pieces.append(Piece(before, running.plan, len(named)))
+            pieces.append(CutPiece(before, running.plan, len(named)))
     if end > running.plan.end:
         running.extend(now, end)
     return whole(running.plan, pieces, named)
@@ -122,7 +122,7 @@ def _on(running: RunningPlan, now: float, end: float) -> None:
 
 
 @dataclass(frozen=True, slots=True)
-class Piece:
+class CutPiece:
     """A cut of a running plan: before it, after it, and how many asks there had been."""
 
     before: Plan
@@ -130,7 +130,7 @@ class Piece:
     asked: int
 
 
-def whole(plan: Plan, pieces: Sequence[Piece], named: Sequence[str]) -> Plan:
+def whole(plan: Plan, pieces: Sequence[CutPiece], named: Sequence[str]) -> Plan:
     """Return a plan with what was put aside. named: the ids that all asks were about, in order; of one asked
     for or taken back again after a cut, what was put aside is not told any more.
     """

@@ -14,7 +14,7 @@ from metagraph.errors import FileError
 from metagraph.graph.conversation import Word
 from metagraph.graph.model import Project
 from metagraph.graph.requests import Line
-from metagraph.playback.life.mouth import Piece, mouth_track
+from metagraph.playback.life.mouth import MouthPiece, mouth_track
 from metagraph.playback.life.voice import Voice, silent
 from metagraph.speech.phones import pieces_of
 from metagraph.speech.sound import hear, read_sound, shapes_heard, syllables
@@ -47,7 +47,7 @@ def read_spoken(audio: str | Path, channel: int | None = None, words: Sequence[W
     return _voice(samples, rate, pieces_of(TextGrid(0.0, len(samples) / rate, (tier,))))
 
 
-def _voice(samples: Array, rate: int, told: list[Piece] | None) -> Voice:
+def _voice(samples: Array, rate: int, told: list[MouthPiece] | None) -> Voice:
     """Return the voice of a sound. told: what the mouth goes through, None to hear it."""
     heard = hear(samples, rate)
     peaks, strengths = syllables(heard)

@@ -11,7 +11,7 @@ import unicodedata
 from collections.abc import Iterable, Sequence
 
 from metagraph.playback.life.graphemes import shapes
-from metagraph.playback.life.mouth import Piece
+from metagraph.playback.life.mouth import MouthPiece
 from metagraph.speech.textgrid import Interval, TextGrid, Tier
 
 _SILENT = {
@@ -160,7 +160,7 @@ def _bare(label: str) -> str:
     return re.sub(r"[^a-z]", "", label.strip().casefold())
 
 
-def pieces_of(grid: TextGrid) -> list[Piece]:
+def pieces_of(grid: TextGrid) -> list[MouthPiece]:
     """Return what the mouth goes through in a TextGrid, by its phones or, where it has none, its words."""
     tiers = [
         t for t in grid.tiers if not t.points and any(i.text.casefold() not in _SILENT for i in t.intervals)
@@ -186,7 +186,7 @@ def _pick(tiers: Sequence[Tier], pattern: str, short: bool) -> Tier | None:
     return max(fitting, key=lambda t: len(t.intervals), default=None)
 
 
-def _spread(interval: Interval, found: list[str], strength: float) -> list[Piece]:
+def _spread(interval: Interval, found: list[str], strength: float) -> list[MouthPiece]:
     """Return an interval's pieces: a diphthong's two, or equal parts."""
     if not found or interval.end <= interval.start:
         return []
@@ -194,12 +194,12 @@ def _spread(interval: Interval, found: list[str], strength: float) -> list[Piece
     out, at = [], interval.start
     for viseme, part in zip(found, parts, strict=True):
         end = at + part * (interval.end - interval.start)
-        out.append(Piece(at, end, viseme, strength))
+        out.append(MouthPiece(at, end, viseme, strength))
         at = end
     return out
 
 
-def _spell(interval: Interval) -> list[Piece]:
+def _spell(interval: Interval) -> list[MouthPiece]:
     if interval.text.casefold() in _SILENT:
         return []
     found = [s for word in interval.text.split() for s in shapes(word)]
@@ -207,6 +207,6 @@ def _spell(interval: Interval) -> list[Piece]:
     scale = (interval.end - interval.start) / sum(sizes) if sizes else 0.0
     out, at = [], interval.start
     for viseme, size in zip(found, sizes, strict=True):
-        out.append(Piece(at, at + size * scale, viseme))
+        out.append(MouthPiece(at, at + size * scale, viseme))
         at += size * scale
     return out

@@ -16,7 +16,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from metagraph.errors import FileError
-from metagraph.playback.life.mouth import Piece
+from metagraph.playback.life.mouth import MouthPiece
 
 Array = NDArray[Any]
 
@@ -254,10 +254,10 @@ def syllables(heard: HeardSound) -> tuple[Array, Array]:
     return heard.times[kept] if kept else np.zeros(0), strengths
 
 
-def shapes_heard(heard: HeardSound) -> list[Piece]:
+def shapes_heard(heard: HeardSound) -> list[MouthPiece]:
     """Return the mouth's shapes guessed from the sound alone."""
     labels = _labels(heard)
-    out: list[Piece] = []
+    out: list[MouthPiece] = []
     start = 0
     for n in range(1, len(labels) + 1):
         if n < len(labels) and labels[n] == labels[start]:
@@ -266,7 +266,7 @@ def shapes_heard(heard: HeardSound) -> list[Piece]:
         if labels[start] != "sil":
             loud = float(heard.loud[start:n].max())
             strength = 0.35 + 0.65 * loud if labels[start] in ("aa", "E", "I", "O", "U") else 1.0
-            out.append(Piece(begin, min(end, heard.duration), labels[start], strength))
+            out.append(MouthPiece(begin, min(end, heard.duration), labels[start], strength))
         start = n
     return out
 

@@ -251,10 +251,10 @@ class Participant:
 
     def _room(self, canvas: Any, across: int, down: int) -> None:
         """Zoom out, by the wheel, until all that comes has room."""
-        from app.features.manual.manual_scene import View
+        from app.features.manual.manual_scene import ManualView
 
         scale = min(1.0, canvas.width() / (230 * across + 40), canvas.height() / (120 * down + 60))
-        canvas.look_at(View(scale, 0.0, 0.0))
+        canvas.look_at(ManualView(scale, 0.0, 0.0))
         canvas.settle()
         self.think()
 

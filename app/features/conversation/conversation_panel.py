@@ -8,7 +8,7 @@ from PySide6.QtWidgets import QHBoxLayout, QLabel, QMenu, QToolButton, QVBoxLayo
 
 from app.features.conversation.segment_editing import Editing
 from app.features.conversation.segment_lanes import segment_words
-from app.features.conversation.segment_view import View
+from app.features.conversation.segment_view import SegmentView
 from app.features.conversation.sound_reading import Sounds
 from app.look.plural import many
 from app.look.theme import SOUND_MARKS, theme
@@ -43,7 +43,7 @@ class ConversationPanel(QWidget):
         layout.setContentsMargins(0, 4, 0, 0)
         layout.setSpacing(0)
         layout.addLayout(self._header())
-        self.view = View(self.editing, self.sounds, self)
+        self.view = SegmentView(self.editing, self.sounds, self)
         layout.addWidget(self.view, 1)
         self._soon = QTimer(self, singleShot=True, interval=0)  # many changes in a row are counted once
         self._soon.timeout.connect(self._words)

@@ -51,7 +51,7 @@ TEXT = (
 )
 
 
-class View(QWidget):
+class SegmentView(QWidget):
     """A press on a segment selects it, a drag moves it, or its edge, or its stress; a drag in a gap makes
     one; elsewhere it moves the playhead. The wheel zooms, with Shift, or the middle button, it moves along.
     """

@@ -27,7 +27,7 @@ from app.features.manual import manual_painter as painter
 from app.features.manual.manual_gestures import Band, DrawLink, Move, Pan
 from app.features.manual.manual_overlay import Marks, paint_over, plays
 from app.features.manual.manual_pictures import Pictures
-from app.features.manual.manual_scene import NODE, NOTHING, ManualScene, View, fitted
+from app.features.manual.manual_scene import NODE, NOTHING, ManualScene, ManualView, fitted
 from app.look.theme import theme
 from app.project.document import Document
 from app.stage.performance import Performance
@@ -66,12 +66,12 @@ class ManualCanvas(QWidget):
         super().__init__(parent)
         self.document, self.session, self.performance = document, session, performance
         self.pictures = Pictures(thumbnails, session)
-        self.view = View()
+        self.view = ManualView()
         self.hand = Hand()
         self.hover = NOTHING
         self.troubles: dict[str, str] = {}
         self.at = QPointF(200, 200)  # where the mouse was last
-        self._views: dict[Layer, View] = {}
+        self._views: dict[Layer, ManualView] = {}
         self._scene: ManualScene | None = None
         self._dragged: Mapping[str, tuple[float, float]] = {}
         self._band: QRectF | None = None
@@ -105,7 +105,7 @@ class ManualCanvas(QWidget):
             self._scene = ManualScene(manual_edits.machine(self.document.project, self.session.place.layer))
         return self._scene
 
-    def look_at(self, view: View) -> None:
+    def look_at(self, view: ManualView) -> None:
         """Show another part, drawn roughly until it rests."""
         if view != self.view:
             self.view, self._fast = view, True

@@ -27,7 +27,7 @@ SHIFT = 28.0  # units by which a duplicate stands beside what it is of
 class Clipboard:
     """What was copied last: states with the links among them, or the settings of a link."""
 
-    piece: manual_edits.Piece | None = None
+    piece: manual_edits.CopiedPiece | None = None
     settings: Link | None = None
 
 
@@ -74,7 +74,7 @@ def duplicate(canvas: ManualHost) -> None:
         _paste(canvas, piece, x + SHIFT, y + SHIFT, "Duplicate")
 
 
-def _paste(canvas: ManualHost, piece: manual_edits.Piece, x: float, y: float, verb: str) -> None:
+def _paste(canvas: ManualHost, piece: manual_edits.CopiedPiece, x: float, y: float, verb: str) -> None:
     layer = canvas.session.place.layer
     made: tuple[str, ...] = ()
 

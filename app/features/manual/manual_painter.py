@@ -13,7 +13,7 @@ import numpy as np
 from PySide6.QtCore import QLineF, QPointF, QRectF, Qt
 from PySide6.QtGui import QColor, QFont, QFontMetricsF, QPainter, QPainterPath, QPen, QPixmap, QPolygonF
 
-from app.features.manual.manual_scene import LOOP, ManualScene, View
+from app.features.manual.manual_scene import LOOP, ManualScene, ManualView
 from app.look.theme import Theme
 from metagraph.graph.manual import ANY, Link, State
 from metagraph.graph.model import Project
@@ -33,7 +33,7 @@ class Look:
     theme: Theme
     project: Project
     scene: ManualScene
-    view: View
+    view: ManualView
     pictures: Mapping[str, QPixmap]
     font: QFont
     states: Collection[str] = ()
@@ -134,7 +134,7 @@ def _heads(painter: QPainter, lines: np.ndarray, color: QColor, size: float) -> 
         painter.drawConvexPolygon([QPointF(*a), QPointF(*b), QPointF(*c)])
 
 
-def _loop(painter: QPainter, view: View, circle: QRectF, color: QColor, width: float) -> None:
+def _loop(painter: QPainter, view: ManualView, circle: QRectF, color: QColor, width: float) -> None:
     box = QRectF(view.to(circle.topLeft()), view.to(circle.bottomRight()))
     painter.setPen(QPen(color, width))
     painter.setBrush(Qt.BrushStyle.NoBrush)

@@ -6,7 +6,7 @@ from PySide6.QtCore import QSizeF, Qt
 from PySide6.QtGui import QPixmap
 
 from app.features.manual.manual_painter import SMALL
-from app.features.manual.manual_scene import NODE, ManualScene, View
+from app.features.manual.manual_scene import NODE, ManualScene, ManualView
 from app.stage.session import Session
 from app.stage.thumbnails import Thumbnails
 
@@ -26,7 +26,7 @@ class Pictures:
         self.count += 1
         self._kept = {key: p for key, p in self._kept.items() if clip and key[0] != clip}
 
-    def of(self, scene: ManualScene, view: View, ratio: float) -> dict[str, QPixmap]:
+    def of(self, scene: ManualScene, view: ManualView, ratio: float) -> dict[str, QPixmap]:
         """Return the pictures of the states in sight by clip; those not drawn yet are asked for and left
         out.
         """

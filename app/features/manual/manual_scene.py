@@ -28,7 +28,7 @@ MARGIN = 60.0
 
 
 @dataclass(frozen=True)
-class View:
+class ManualView:
     """Units to pixels: the widget's left upper corner shows x, y; `scale` pixels a unit."""
 
     scale: float = 1.0
@@ -47,21 +47,21 @@ class View:
         """Return the part of the machine that a widget shows."""
         return QRectF(self.x, self.y, size.width() / self.scale, size.height() / self.scale)
 
-    def zoomed(self, factor: float, at: QPointF) -> View:
+    def zoomed(self, factor: float, at: QPointF) -> ManualView:
         """Return the view with another scale, 0.08 to 2, the place under `at` staying there."""
         scale = min(2.0, max(0.08, self.scale * factor))
         still = self.back(at)
-        return View(scale, still.x() - at.x() / scale, still.y() - at.y() / scale)
+        return ManualView(scale, still.x() - at.x() / scale, still.y() - at.y() / scale)
 
-    def panned(self, by: QPointF) -> View:
-        return View(self.scale, self.x - by.x() / self.scale, self.y - by.y() / self.scale)
+    def panned(self, by: QPointF) -> ManualView:
+        return ManualView(self.scale, self.x - by.x() / self.scale, self.y - by.y() / self.scale)
 
 
-def fitted(rect: QRectF, size: QSizeF, most: float = 1.0) -> View:
+def fitted(rect: QRectF, size: QSizeF, most: float = 1.0) -> ManualView:
     """Return the view that shows all of `rect`, as large as it goes but `most`."""
     wide, high = rect.width() + 2 * MARGIN, rect.height() + 2 * MARGIN
     scale = min(most, max(0.08, min(size.width() / max(wide, 1), size.height() / max(high, 1))))
-    return View(
+    return ManualView(
         scale, rect.center().x() - size.width() / scale / 2, rect.center().y() - size.height() / scale / 2
     )
 
@@ -101,10 +101,10 @@ class ManualScene:
                 out = out.united(rect)
         return out
 
-    def first_view(self, size: QSizeF) -> View:
+    def first_view(self, size: QSizeF) -> ManualView:
         """Return what is seen of a machine not looked at yet: all of it, or where the first clips go."""
         if not self.manual.states:
-            return View(1.0, self.manual.any_x - 50, self.manual.any_y - 120)
+            return ManualView(1.0, self.manual.any_x - 50, self.manual.any_y - 120)
         return fitted(self.bounds, size)
 
     @cached_property

@@ -10,7 +10,7 @@ import unicodedata
 from collections.abc import Iterator
 from zlib import crc32
 
-from metagraph.playback.life.mouth import Piece
+from metagraph.playback.life.mouth import MouthPiece
 
 PACE = 14.0  # characters a second: about 150 words a minute
 SHORTEST = 0.4  # seconds
@@ -164,7 +164,9 @@ def _words(text: str) -> Iterator[tuple[str, float]]:
         yield word, pause
 
 
-def spelled(text: str, duration: float | None = None) -> tuple[list[Piece], list[float], list[float], float]:
+def spelled(
+    text: str, duration: float | None = None
+) -> tuple[list[MouthPiece], list[float], list[float], float]:
     """Return a text's pieces, the times and strengths (0..1) of its syllables, and its length in seconds.
 
     duration: how long it takes, None for `PACE` characters a second, at least `SHORTEST`.
@@ -192,13 +194,15 @@ def spelled(text: str, duration: float | None = None) -> tuple[list[Piece], list
         return [], [], [], length
     edge = min(0.06, 0.1 * length)
     scale, at = (length - 2 * edge) / total, edge
-    pieces: list[Piece] = []
+    pieces: list[MouthPiece] = []
     peaks: list[float] = []
     strengths: list[float] = []
     for shape, size, strength in plan:
         end = at + size * scale
         if shape is not None:
-            pieces.append(Piece(at, end, shape, min(1.0, 0.7 + 0.4 * strength) if shape in VOWELS else 1.0))
+            pieces.append(
+                MouthPiece(at, end, shape, min(1.0, 0.7 + 0.4 * strength) if shape in VOWELS else 1.0)
+            )
         if strength > 0:
             peaks.append(0.5 * (at + end))
             strengths.append(strength)

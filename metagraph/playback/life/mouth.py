@@ -45,7 +45,7 @@ _LEAST = 0.02  # how much rest rules everywhere
 
 
 @dataclass(frozen=True, slots=True)
-class Piece:
+class MouthPiece:
     """A sound from `start` to `end` seconds: its mouth shape and how fully it is made, 0..1."""
 
     start: float
@@ -54,7 +54,7 @@ class Piece:
     strength: float = 1.0
 
 
-def mouth_track(pieces: Sequence[Piece], duration: float) -> tuple[Array, Array]:
+def mouth_track(pieces: Sequence[MouthPiece], duration: float) -> tuple[Array, Array]:
     """Return times `[K]` and weights `[K, 15]` float32 of the shapes, summing to 1; shut at both ends."""
     count = max(2, int(np.ceil(duration / STEP)) + 1)
     times = np.linspace(0.0, max(duration, 1e-3), count)

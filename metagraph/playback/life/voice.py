@@ -14,7 +14,7 @@ from numpy.typing import NDArray
 
 from metagraph.graph.face_names import VISEMES
 from metagraph.playback.life.graphemes import spelled
-from metagraph.playback.life.mouth import Piece, mouth_track
+from metagraph.playback.life.mouth import MouthPiece, mouth_track
 from metagraph.playback.life.track import Speech
 
 __all__ = ["VISEMES", "Voice", "silent", "voice_from_text", "voice_of"]
@@ -82,7 +82,7 @@ def voice_of(voices: Mapping[str, Voice], speech: Speech) -> Voice:
     )
 
 
-def heard(pieces: list[Piece], duration: float, peaks: Array, strengths: Array) -> Voice:
+def heard(pieces: list[MouthPiece], duration: float, peaks: Array, strengths: Array) -> Voice:
     """Return a voice of mouth shapes in time and loudness peaks."""
     times, weights = mouth_track(pieces, duration)
     return Voice(duration, peaks, times, weights, strengths)

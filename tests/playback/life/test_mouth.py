@@ -8,15 +8,15 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from metagraph.graph.face_names import VISEMES
-from metagraph.playback.life.mouth import PLACE, Piece, mouth_track
+from metagraph.playback.life.mouth import PLACE, MouthPiece, mouth_track
 from metagraph.playback.life.voice import Voice, silent, voice_from_text
 
 
-def said(*words: tuple[str, float], start: float = 0.2) -> tuple[list[Piece], float]:
+def said(*words: tuple[str, float], start: float = 0.2) -> tuple[list[MouthPiece], float]:
     """Pieces one after the other, and a length with room behind."""
     out, at = [], start
     for viseme, length in words:
-        out.append(Piece(at, at + length, viseme))
+        out.append(MouthPiece(at, at + length, viseme))
         at += length
     return out, at + 0.2
 
@@ -28,7 +28,7 @@ def test_nothing_said_is_a_shut_mouth() -> None:
 
 @pytest.mark.parametrize("duration", [0.0, 1e-4, 0.01])
 def test_a_line_of_hardly_any_length_has_two_ends(duration: float) -> None:
-    times, weights = mouth_track([Piece(0, duration, "aa")], duration)
+    times, weights = mouth_track([MouthPiece(0, duration, "aa")], duration)
     assert len(times) >= 2 and times[1] > times[0] and np.isfinite(weights).all()
 
 
@@ -55,19 +55,21 @@ def test_no_shape_pops_up_in_a_frame() -> None:
 
 
 def test_a_shape_begins_before_its_sound() -> None:
-    times, weights = mouth_track([Piece(0.5, 0.7, "O")], 1.2)
+    times, weights = mouth_track([MouthPiece(0.5, 0.7, "O")], 1.2)
     begins = times[np.flatnonzero(weights[:, PLACE["O"]] > 0.02)[0]]
     assert 0.4 < begins < 0.5
 
 
 def test_a_weak_vowel_opens_less() -> None:
-    full, weak = (mouth_track([Piece(0.2, 0.4, "aa", s)], 0.6)[1][:, PLACE["aa"]].max() for s in (1.0, 0.5))
+    full, weak = (
+        mouth_track([MouthPiece(0.2, 0.4, "aa", s)], 0.6)[1][:, PLACE["aa"]].max() for s in (1.0, 0.5)
+    )
     assert 0.35 * full < weak < 0.65 * full
 
 
 pieces = st.lists(
     st.builds(
-        lambda start, length, viseme, strength: Piece(start, start + length, viseme, strength),
+        lambda start, length, viseme, strength: MouthPiece(start, start + length, viseme, strength),
         st.floats(-0.5, 4), st.floats(0, 1), st.sampled_from(VISEMES[1:]), st.floats(0, 1),
     ),
     max_size=20,
@@ -75,7 +77,7 @@ pieces = st.lists(
 
 
 @given(pieces, st.floats(0, 5))
-def test_shapes_always_share_the_mouth(some: list[Piece], duration: float) -> None:
+def test_shapes_always_share_the_mouth(some: list[MouthPiece], duration: float) -> None:
     times, weights = mouth_track(some, duration)
     assert weights.shape == (len(times), len(VISEMES)) and (weights >= 0).all()
     assert np.allclose(weights.sum(1), 1, atol=1e-5)

@@ -7,7 +7,16 @@ import pytest
 from PySide6.QtCore import QPointF, QRectF, QSizeF
 
 from app.features.manual.arranging import arranged
-from app.features.manual.manual_scene import ANY_NODE, LOOP, NODE, NOTHING, Hit, ManualScene, View, fitted
+from app.features.manual.manual_scene import (
+    ANY_NODE,
+    LOOP,
+    NODE,
+    NOTHING,
+    Hit,
+    ManualScene,
+    ManualView,
+    fitted,
+)
 from metagraph.graph.manual import ANY, Link, Manual, State
 
 
@@ -100,7 +109,7 @@ def test_moved_nodes_take_their_arrows_along() -> None:
 
 
 def test_zooming_leaves_what_is_under_the_mouse_where_it_is() -> None:
-    view, at = View(0.7, 40, -20), QPointF(300, 200)
+    view, at = ManualView(0.7, 40, -20), QPointF(300, 200)
     for factor in (1.3, 0.5, 100.0, 0.0001):
         after = view.zoomed(factor, at)
         assert (after.back(at) - view.back(at)).manhattanLength() < 1e-6
