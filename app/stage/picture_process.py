@@ -27,7 +27,7 @@ MOVING_SIZE, MOVING_RATE, MOVING_MOST = (
 
 
 @dataclass(frozen=True)
-class Order:
+class PictureOrder:
     """what: "card", "bare" or "moving". paper: sRGB 0..1 behind the figure, None for transparent. character:
     its file.
     """
@@ -40,10 +40,10 @@ class Order:
     character: Path | None
 
 
-_Waiting = queue.PriorityQueue[tuple[bool, float, Order | None]]
+_Waiting = queue.PriorityQueue[tuple[bool, float, PictureOrder | None]]
 
 
-def draw(offscreen: Any, figure: Any, order: Order) -> list[np.ndarray]:
+def draw(offscreen: Any, figure: Any, order: PictureOrder) -> list[np.ndarray]:
     """Return a clip's pictures `[H, W, 4]`: one telling pose, or its whole loop."""
     from preview.scene import THEMES
     from preview.thumbnail import telling_frame, thumbnail

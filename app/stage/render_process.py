@@ -25,7 +25,7 @@ SUFFIXES = {
 
 
 @dataclass(frozen=True)
-class Wanted:
+class RenderOrder:
     """What to write. performance: id of a kept one, None to improvise. conversation: id of one, then of both.
     size: width and height in pixels.
     """
@@ -39,7 +39,7 @@ class Wanted:
     conversation: str | None = None
 
 
-def write(project: Project, folder: Path, wanted: Wanted, job: Job) -> Path:
+def write(project: Project, folder: Path, wanted: RenderOrder, job: Job) -> Path:
     """Write it; runs on a job's thread. Raises RuntimeError with the reason; a cancelled job leaves nothing
     behind.
     """

@@ -18,7 +18,7 @@ from app.look.theme import theme
 from app.project.document import Document
 from app.stage.figures import Figures
 from app.stage.gl_view import to_image
-from app.stage.picture_process import Order
+from app.stage.picture_process import PictureOrder
 from app.stage.session import Session
 from metagraph.graph.model import Project
 from metagraph.motion.clip import Clip
@@ -50,7 +50,7 @@ class Thumbnails(QObject):
         self._orders: dict[int, tuple[Key, Clip]] = {}
         self._number = 0
         self._process: subprocess.Popen[bytes] | None = None
-        self._queue: queue.SimpleQueue[Order | None] = queue.SimpleQueue()
+        self._queue: queue.SimpleQueue[PictureOrder | None] = queue.SimpleQueue()
         self._threads: list[threading.Thread] = []
         self._stopped = False
         self._begun: int | None = None  # the order that is being drawn
@@ -141,7 +141,9 @@ class Thumbnails(QObject):
         self._number += 1
         self._orders[self._number] = (key, motion)
         self._queue.put(
-            Order(self._number, motion, key[1], key[2], (r, g, b) if key[1] == "card" else None, character)
+            PictureOrder(
+                self._number, motion, key[1], key[2], (r, g, b) if key[1] == "card" else None, character
+            )
         )
 
     def _start(self) -> None:
@@ -160,7 +162,7 @@ class Thumbnails(QObject):
             self._threads.append(thread)
 
     @staticmethod
-    def _send(process: subprocess.Popen[bytes], orders: queue.SimpleQueue[Order | None]) -> None:
+    def _send(process: subprocess.Popen[bytes], orders: queue.SimpleQueue[PictureOrder | None]) -> None:
         assert process.stdin is not None
         with (
             contextlib.suppress(OSError, ValueError),

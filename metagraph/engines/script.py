@@ -17,7 +17,7 @@ Ask = Mapping[str, Any]
 
 
 @dataclass(frozen=True)
-class Step:
+class ScriptStep:
     """At `now`, `asks` become known and the plan is extended to `end` seconds; then what ended before
     `forget` is forgotten.
     """
@@ -36,7 +36,7 @@ class Case:
 
     name: str
     about: str
-    steps: tuple[Step, ...]
+    steps: tuple[ScriptStep, ...]
     seed: int = 1
     idle: bool = False
     stances: Mapping[Layer, str] = field(default_factory=dict)
@@ -51,7 +51,7 @@ def cases(project: Project) -> Iterator[Case]:
 
 
 def _once(name: str, about: str, asks: Sequence[Ask], end: float = 14.0, **more: Any) -> Case:
-    return Case(name, about, (Step(0.0, end, tuple(asks)),), **more)
+    return Case(name, about, (ScriptStep(0.0, end, tuple(asks)),), **more)
 
 
 def _ask(ident: str, do: str, at: float | None = None, **more: Any) -> Ask:
@@ -255,7 +255,7 @@ def _stances(project: Project) -> Iterator[Case]:
             _ask("stay", "stance", 1.0, layer=layer, stance=far, stay=True),
             _ask("leave", "withdraw", 30.0, what="stay"),
         ]
-        steps = (Step(0.0, 40.0, (asks[0],)), Step(20.0, 40.0, (asks[1],)))
+        steps = (ScriptStep(0.0, 40.0, (asks[0],)), ScriptStep(20.0, 40.0, (asks[1],)))
         yield Case(
             f"{layer}: to stay", "the models do not leave a stance that was asked to stay", steps, idle=True
         )
@@ -273,10 +273,12 @@ def _stances(project: Project) -> Iterator[Case]:
                 asks,
                 24.0,
             )
-            hops: tuple[Step, ...] = (Step(0.0, 20.0, (_ask("p", "action", 1.0, action=there[0].id),)),)
+            hops: tuple[ScriptStep, ...] = (
+                ScriptStep(0.0, 20.0, (_ask("p", "action", 1.0, action=there[0].id),)),
+            )
             hops += (
-                Step(1.2, 20.0, (_ask("u", "stance", layer=layer, stance=begin, priority=4),)),
-                Step(3.0, 22.0),
+                ScriptStep(1.2, 20.0, (_ask("u", "stance", layer=layer, stance=begin, priority=4),)),
+                ScriptStep(3.0, 22.0),
             )
             yield Case(
                 f"{layer}: a way that is interrupted", "something more important comes while on the way", hops
@@ -307,23 +309,23 @@ def _refused(project: Project) -> Iterator[Case]:
         _ask("nearly", "gesture", 9.5, layer=layer),
         _ask("now", "gesture", layer=layer),
     ]
-    steps = (Step(0.0, 20.0), Step(10.0, 20.0, tuple(asks)))
+    steps = (ScriptStep(0.0, 20.0), ScriptStep(10.0, 20.0, tuple(asks)))
     yield Case("asked in the past", "too late is past, a little late waits", steps, idle=True)
     yield Case("asked in the past, at rest", "no model plays meanwhile", steps)
     asks = [_ask("negative", "gesture", 0.0, layer=layer), _ask("beyond", "gesture", 60.0, layer=layer)]
     yield Case(
         "beyond the end",
         "what begins after the end waits for the plan to grow",
-        (Step(0.0, 10.0, tuple(asks)), Step(5.0, 70.0)),
+        (ScriptStep(0.0, 10.0, tuple(asks)), ScriptStep(5.0, 70.0)),
         times=(1.0, 60.5, 69.0),
     )
 
 
 def _over_time(project: Project) -> Iterator[Case]:
     layer: Layer = next((x for x in ("arms", "head", "body") if _some(project, x, "gesture")), "arms")
-    grow = tuple(Step(0.0 if n == 0 else n * 2.0, 10.0 + n * 2.0) for n in range(12))
+    grow = tuple(ScriptStep(0.0 if n == 0 else n * 2.0, 10.0 + n * 2.0) for n in range(12))
     yield Case("a horizon that moves", "in many steps as in one", grow, idle=True)
-    forget = tuple(Step(n * 3.0, 12.0 + n * 3.0, forget=max(0.0, n * 3.0 - 6.0)) for n in range(12))
+    forget = tuple(ScriptStep(n * 3.0, 12.0 + n * 3.0, forget=max(0.0, n * 3.0 - 6.0)) for n in range(12))
     yield Case(
         "a past that is forgotten",
         "what is planned on stays as it would have been",
@@ -332,44 +334,46 @@ def _over_time(project: Project) -> Iterator[Case]:
         times=(33.5, 35.0, 41.0, 44.0),
         alive=(True, False),
     )
-    busy = [Step(0.0, 12.0)]
+    busy = [ScriptStep(0.0, 12.0)]
     for n in range(1, 25):
         asked = tuple(
             _ask(f"n{n}.{x}x", "gesture", layer=x, duration=0.5)
             for x in LAYERS
             if _some(project, x, "gesture")
         )
-        busy.append(Step(n * 3.0, 12.0 + n * 3.0, asked, max(0.0, n * 3.0 - 1.0)))
+        busy.append(ScriptStep(n * 3.0, 12.0 + n * 3.0, asked, max(0.0, n * 3.0 - 1.0)))
     late = [
         _ask(f"z{n}{x}x", "gesture", 76.0 + 3 * n, layer=x, duration=0.5) for n in range(16) for x in LAYERS
     ]
-    busy.append(Step(75.0, 130.0, tuple(ask for ask in late if _some(project, ask["layer"], "gesture"))))
+    busy.append(
+        ScriptStep(75.0, 130.0, tuple(ask for ask in late if _some(project, ask["layer"], "gesture")))
+    )
     yield Case(
         "much that is forgotten",
         "counts, spacing and cooldown reach back over what is forgotten",
         tuple(busy),
         idle=True,
     )
-    steps: tuple[Step, ...]
+    steps: tuple[ScriptStep, ...]
     asks: tuple[Ask, ...] = (
         _ask("keep", "gesture", 4.0, layer=layer),
         _ask("gone", "gesture", 9.0, layer=layer),
     )
     steps = (
-        Step(0.0, 20.0, asks),
-        Step(2.0, 20.0, (_ask("w", "withdraw", what="gone"),)),
-        Step(4.6, 20.0, (_ask("v", "withdraw", what="keep"),)),
+        ScriptStep(0.0, 20.0, asks),
+        ScriptStep(2.0, 20.0, (_ask("w", "withdraw", what="gone"),)),
+        ScriptStep(4.6, 20.0, (_ask("v", "withdraw", what="keep"),)),
     )
     yield Case("withdrawn", "what has not begun is taken back; what has plays on", steps)
-    steps = (Step(0.0, 20.0, asks), Step(2.0, 20.0, (_ask("w", "withdraw"),)))
+    steps = (ScriptStep(0.0, 20.0, asks), ScriptStep(2.0, 20.0, (_ask("w", "withdraw"),)))
     yield Case("all withdrawn", "with no name everything is taken back", steps, idle=True)
-    steps = (Step(0.0, 20.0, asks), Step(2.0, 20.0, (_ask("keep", "gesture", 7.0, layer=layer),)))
+    steps = (ScriptStep(0.0, 20.0, asks), ScriptStep(2.0, 20.0, (_ask("keep", "gesture", 7.0, layer=layer),)))
     yield Case("asked again under the same id", "the later one counts", steps)
     asks = (_ask("long", "gesture", 1.0, layer=layer, duration=9.0, resume=True),)
     steps = (
-        Step(0.0, 24.0, asks),
-        Step(3.0, 24.0, (_ask("now", "gesture", layer=layer, priority=3),)),
-        Step(6.0, 30.0),
+        ScriptStep(0.0, 24.0, asks),
+        ScriptStep(3.0, 24.0, (_ask("now", "gesture", layer=layer, priority=3),)),
+        ScriptStep(6.0, 30.0),
     )
     yield Case("interrupted live", "the running action is never touched", steps)
 
@@ -458,7 +462,7 @@ def _life(project: Project) -> Iterator[Case]:
         _ask("long", "say", 1.0, text=long),
         _ask("cut", "say", 14.0, text="Nobody hears the end of this one, ever, at all."),
     ]
-    steps = (Step(0.0, 24.0, tuple(asks)), Step(15.0, 24.0, (_ask("w", "withdraw", what="cut"),)))
+    steps = (ScriptStep(0.0, 24.0, tuple(asks)), ScriptStep(15.0, 24.0, (_ask("w", "withdraw", what="cut"),)))
     yield Case(
         "stressed syllables",
         "blinks on them; a mouth that is cut short closes",
@@ -502,7 +506,7 @@ def _chatter(project: Project) -> Iterator[Case]:
                 _random(project, chance, f"r{n}.{k}x", now) for k in range(chance.choice((0, 1, 1, 2)))
             )
             forget = max(0.0, now - 12.0) if n % 6 == 5 else None
-            steps.append(Step(round(now, 3), round(now + 14.0, 3), asks, forget))
+            steps.append(ScriptStep(round(now, 3), round(now + 14.0, 3), asks, forget))
             now += chance.choice((0.016, 0.2, 1.0, 2.5))
         last = steps[-1].now
         times = tuple(round(last + x, 3) for x in (-4.0, -1.7, 0.1, 0.9, 3.3, 8.0))

@@ -18,7 +18,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from metagraph.engines.reading import read_export
-from metagraph.engines.script import Case, Step, cases
+from metagraph.engines.script import Case, ScriptStep, cases
 from metagraph.errors import FileError
 from metagraph.formats.atomic import write_atomically
 from metagraph.graph.model import LAYERS, Project
@@ -248,7 +248,7 @@ def check_vectors(folder: Path, project: Project | None = None) -> Outcome:
 
 def differences(project: Project, case: Mapping[str, Any]) -> list[str]:
     """Return in words how what this library makes of a case differs from what the case expects."""
-    steps = tuple(Step(s["now"], s["end"], tuple(s["asks"]), s["forget"]) for s in case["steps"])
+    steps = tuple(ScriptStep(s["now"], s["end"], tuple(s["asks"]), s["forget"]) for s in case["steps"])
     plan = follow(project, Case(case["name"], "", steps, case["seed"], case["idle"], case["stances"]))
     out = [*_unlike(plan_data(plan), case["plan"], "plan"), *_unlike(life_data(plan), case["life"], "life")]
     return out or [words for pose in case["poses"] for words in _apart(project, plan, pose)]

@@ -111,14 +111,14 @@ class Skin(_Value):
     skeleton: Index | None = None
 
 
-class Target(_Value):
+class GltfTarget(_Value):
     path: str
     node: Index | None = None
 
 
 class Channel(_Value):
     sampler: Index
-    target: Target
+    target: GltfTarget
 
 
 class Sampler(_Value):

@@ -21,7 +21,7 @@ LOOP_FADE = 0.6  # seconds of crossfade when a long rest changes from one loop o
 
 
 @dataclass(frozen=True, slots=True)
-class Step:
+class SamplingStep:
     """One action of a chain: who may play it, and for a transition on the way the stance it leads to."""
 
     candidates: Sequence[Action]
@@ -166,7 +166,7 @@ class Performer:
             else float("-inf")
         )
 
-    def _steps(self, meta: MetaAction) -> list[Step] | None:
+    def _steps(self, meta: MetaAction) -> list[SamplingStep] | None:
         """Return each action in turn: the transitions to get there, then the action itself; None if
         impossible or needless.
         """
@@ -186,7 +186,7 @@ class Performer:
                 self._tell(meta, "no-stance", f"'{action.name}' ends in a stance that has no loop")
                 return None
             way = () if action.stance == self.stance else self._way(meta, action.stance)
-            return None if way is None else [*way, Step([action])]
+            return None if way is None else [*way, SamplingStep([action])]
         if request.stance is not None and request.kind in ("transition", "stance"):
             if request.stance not in graph.stances:
                 self._tell(
@@ -209,7 +209,7 @@ class Performer:
             hint = "" if meta.written else self._elsewhere(request)
             self._tell(meta, "no-candidate", f"stance '{name}' has no {asked}{hint}")
             return None
-        return [Step(exact)]
+        return [SamplingStep(exact)]
 
     def _elsewhere(self, request: Request) -> str:
         for action in self.graph.actions.values():
@@ -222,7 +222,7 @@ class Performer:
                 return f"; there is one in '{self.graph.stances[action.stance].name}'"
         return ""
 
-    def _way(self, meta: MetaAction, goal: str) -> list[Step] | None:
+    def _way(self, meta: MetaAction, goal: str) -> list[SamplingStep] | None:
         """Return the transitions hop by hop from the current stance to `goal`."""
         if goal == self.stance:
             self._tell(
@@ -242,7 +242,7 @@ class Performer:
             hops = [
                 a for a in self.graph.of(at, "transition") if a.end_stance == following and self._usable(a)
             ]
-            steps.append(Step(hops, following))
+            steps.append(SamplingStep(hops, following))
             at = following
         return steps
 

@@ -46,7 +46,7 @@ class Stand:
 
 
 @dataclass(frozen=True)
-class Part:
+class DuetPart:
     """One of the two. project: its graph, with its voice among the lines. performance: what it is asked."""
 
     project: Project
@@ -59,7 +59,7 @@ class Part:
 class Duet:
     """notes: what could not be read, in words."""
 
-    parts: tuple[Part, Part]
+    parts: tuple[DuetPart, DuetPart]
     length: float
     notes: tuple[str, ...] = ()
 
@@ -110,7 +110,7 @@ def duet(
             )
         head = (0.0, round(heads[1 - n], 3), conversation.distance)
         performance, plan = drive(conversation, n, project, line, head)
-        parts.append(Part(project, performance, plan, stand))
+        parts.append(DuetPart(project, performance, plan, stand))
     return Duet((parts[0], parts[1]), conversation.length)
 
 

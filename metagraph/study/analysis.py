@@ -15,7 +15,7 @@ import numpy as np
 from metagraph.study import stats
 from metagraph.study.analysis_read import TOTALS, AnalysisRow, Data
 from metagraph.study.score import WORDS, Score, What
-from metagraph.study.stats import Estimate, Order, Test
+from metagraph.study.stats import Estimate, PeriodOrder, Test
 from metagraph.study.tasks import SPENT, Spent
 
 ABOVE, BELOW = "manual", "meta"  # the ratio is of the one to the other
@@ -55,7 +55,7 @@ class Comparison:
     effect: Estimate | None = None
     raw_effect: float | None = None
     biserial: float | None = None
-    order: Order | None = None
+    order: PeriodOrder | None = None
     cautions: tuple[str, ...] = ()
 
 

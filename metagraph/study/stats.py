@@ -264,7 +264,7 @@ def power_law(seconds: Sequence[float], level: float = LEVEL) -> tuple[Estimate,
 
 
 @dataclass(frozen=True, slots=True)
-class Order:
+class PeriodOrder:
     """Whether it mattered who began with what, of pairs in two orders (Grizzle 1965, for a cross-over of two
     periods).
 
@@ -286,7 +286,7 @@ def order_effects(
     above_first: Sequence[tuple[float, float]],
     below_first: Sequence[tuple[float, float]],
     level: float = LEVEL,
-) -> Order | None:
+) -> PeriodOrder | None:
     """Return what the order did. Each group's (above, below) seconds, in one those who began with `above`.
     None with fewer than 2 in a group.
     """
@@ -300,7 +300,7 @@ def order_effects(
     both, _ = welch(d_one, [-d for d in d_other], level)
     sums, sums_test = welch([(a + b) / 2 for a, b in one], [(a + b) / 2 for a, b in other], level)
     first, _ = welch([a for a, _ in one], [b for _, b in other], level)
-    return Order(_half(both).exp(), _half(gap).exp(), sums.exp(), first.exp(), gap_test, sums_test)
+    return PeriodOrder(_half(both).exp(), _half(gap).exp(), sums.exp(), first.exp(), gap_test, sums_test)
 
 
 # --- words

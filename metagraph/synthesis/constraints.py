@@ -32,7 +32,7 @@ class HeardStates:
 
 
 @dataclass(frozen=True, eq=False)
-class Wanted:
+class WantedSegment:
     """What is to be heard, frame by frame. allowed `[T]` uint8: bits of the SOUNDS a state may have gone
     with. window `[T]` int32: number of the stress that has to lie in this frame's window, -1 outside of all.
     """
@@ -80,7 +80,7 @@ def wanted(
     tolerance: float = TOLERANCE,
     use: Collection[Sound] = SOUNDS,
     peaks: bool = True,
-) -> Wanted:
+) -> WantedSegment:
     """Return what is to be heard in so many seconds. tolerance: how far starts, ends and stresses may be from
     where they should be. use: the kinds that constrain; during others anything goes. peaks: whether clauses'
     stresses have to be met.
@@ -98,7 +98,7 @@ def wanted(
     allowed = kinds.copy()
     for edge in np.flatnonzero(np.diff(kinds)) + 1:  # at a boundary either side's will do
         allowed[max(0, edge - slack) : edge + slack] |= kinds[edge - 1] | kinds[edge]
-    return Wanted(allowed, window)
+    return WantedSegment(allowed, window)
 
 
 def _checked(segments: Sequence[Segment]) -> list[Segment]:

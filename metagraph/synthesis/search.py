@@ -18,7 +18,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from metagraph.suggest.tracks import RATE
-from metagraph.synthesis.constraints import HeardStates, Wanted
+from metagraph.synthesis.constraints import HeardStates, WantedSegment
 from metagraph.synthesis.graph import MotionGraph
 from metagraph.synthesis.states import SynthesisError
 
@@ -56,7 +56,7 @@ class Path:
     jumps: Array
 
 
-def best(graph: MotionGraph, heard: HeardStates, wanted: Wanted, cancelled: Cancelled = None) -> Path:
+def best(graph: MotionGraph, heard: HeardStates, wanted: WantedSegment, cancelled: Cancelled = None) -> Path:
     """Return the cheapest path that has what is wanted. Raises SynthesisError when there is none, saying at
     what time all end, or when it was cancelled.
 
@@ -95,7 +95,7 @@ def _go_on(cancelled: Cancelled) -> None:
 def _best_within(
     graph: MotionGraph,
     heard: HeardStates,
-    wanted: Wanted,
+    wanted: WantedSegment,
     back: Array,
     bound: float,
     cancelled: Cancelled = None,
@@ -141,7 +141,7 @@ def _best_within(
 def greedy(
     graph: MotionGraph,
     heard: HeardStates,
-    wanted: Wanted,
+    wanted: WantedSegment,
     seed: int = 1,
     saved: int = SAVED,
     branches: int = BRANCHES,
@@ -170,7 +170,7 @@ def greedy(
 def _greedy(
     graph: MotionGraph,
     heard: HeardStates,
-    wanted: Wanted,
+    wanted: WantedSegment,
     seed: int,
     saved: int,
     branches: int,
@@ -249,7 +249,7 @@ def _kept(score: Array, keys: Array, saved: int, chance: np.random.Generator) ->
     return order[:saved]
 
 
-def _stretches(wanted: Wanted) -> list[int]:
+def _stretches(wanted: WantedSegment) -> list[int]:
     """Return the frames after the stretches that are searched one by one: up to where a boundary's tolerance
     has passed, of at most LONGEST frames.
     """
@@ -278,7 +278,7 @@ def _links(graph: MotionGraph) -> Links:
     return found
 
 
-def _speech(graph: MotionGraph, heard: HeardStates, wanted: Wanted) -> Speech:
+def _speech(graph: MotionGraph, heard: HeardStates, wanted: WantedSegment) -> Speech:
     from metagraph.synthesis.greedy_search_kernels import Speech, next_of, until_of
 
     new = np.ones(len(wanted), bool)
@@ -304,16 +304,16 @@ def _speech(graph: MotionGraph, heard: HeardStates, wanted: Wanted) -> Speech:
     )
 
 
-def _fits(graph: MotionGraph, heard: HeardStates, wanted: Wanted, t: int) -> Array:
+def _fits(graph: MotionGraph, heard: HeardStates, wanted: WantedSegment, t: int) -> Array:
     return np.asarray(graph.kept & ((heard.kinds & wanted.allowed[t]) != 0))
 
 
-def _closes(wanted: Wanted, t: int) -> bool:
+def _closes(wanted: WantedSegment, t: int) -> bool:
     """Return whether a stress has to have been met by now."""
     return bool(wanted.window[t] >= 0 and (t + 1 == len(wanted) or wanted.window[t + 1] != wanted.window[t]))
 
 
-def _close(cost: Array, wanted: Wanted, t: int) -> None:
+def _close(cost: Array, wanted: WantedSegment, t: int) -> None:
     """Forget ways on which a stress was not met whose window ends; the others begin anew. Raises
     SynthesisError when none is left.
     """

@@ -16,7 +16,7 @@ import pytest
 
 from metagraph.engines.export import export
 from metagraph.engines.reading import read_export
-from metagraph.engines.script import Case, Step
+from metagraph.engines.script import Case, ScriptStep
 from metagraph.engines.vectors import write_vectors
 from metagraph.playback.life.voice import voice_from_text
 from tests.engines.mutants import broken, folders_to_try
@@ -111,32 +111,32 @@ def rarely(document: dict[str, Any]) -> None:
 def rare_cases(eyes: list[float]) -> Iterator[Case]:
     """Yield cases of what the shipped ones pass over. eyes: where they are at rest."""
     for seed in range(4):
-        yield Case("the models", "", (Step(0, 60),), seed=seed, idle=True)
+        yield Case("the models", "", (ScriptStep(0, 60),), seed=seed, idle=True)
         gestures = tuple({"do": "gesture", "id": f"g{n}", "at": 3.0 * n} for n in range(12))
-        yield Case("spacing", "", (Step(0, 50, gestures),), seed=seed)
+        yield Case("spacing", "", (ScriptStep(0, 50, gestures),), seed=seed)
         yield Case(
             "a way",
             "",
-            (Step(0, 20, ({"do": "stance", "stance": "far away", "id": "go", "at": 1.0},)),),
+            (ScriptStep(0, 20, ({"do": "stance", "stance": "far away", "id": "go", "at": 1.0},)),),
             seed=seed,
         )
-    said = Step(
+    said = ScriptStep(
         0, 20, ({"do": "say", "line": "hello", "id": "say", "at": 2.0}, {"do": "gesture", "id": "g", "at": 6})
     )
     yield Case(
         "withdrawn with its parts",
         "",
-        (said, Step(0.5, 20, ({"do": "withdraw", "what": "say", "id": "w"},))),
+        (said, ScriptStep(0.5, 20, ({"do": "withdraw", "what": "say", "id": "w"},))),
         alive=(True,),
     )
-    cut = Step(2.5, 20, ({"do": "withdraw", "what": "say", "id": "w"},))
+    cut = ScriptStep(2.5, 20, ({"do": "withdraw", "what": "say", "id": "w"},))
     yield Case("cut short", "", (said, cut), times=(2.9, 3.0, 3.05, 3.1, 3.15, 3.2), alive=(True,))
     text = "Well, whatever do you think of all the wonderful things that I have told you about today?"
     for seed in range(3):
         yield Case(
             "a long speech",
             "",
-            (Step(0, 20, ({"do": "say", "text": text, "id": "say", "at": 2.0},)),),
+            (ScriptStep(0, 20, ({"do": "say", "text": text, "id": "say", "at": 2.0},)),),
             seed=seed,
             alive=(True,),
         )
@@ -148,7 +148,7 @@ def rare_cases(eyes: list[float]) -> Iterator[Case]:
             "at": 1.0,
             "strict": True,
         }
-        yield Case("something near", "", (Step(0, 20, (near,)),), times=(1.5, 3.0), alive=(True,))
+        yield Case("something near", "", (ScriptStep(0, 20, (near,)),), times=(1.5, 3.0), alive=(True,))
 
 
 @pytest.fixture(scope="module")

@@ -16,7 +16,7 @@ import yaml
 from numpy.typing import NDArray
 
 from metagraph.engines.engine_machine import Arrow, Machine, State, animations, machines
-from metagraph.engines.targets.target import Made, Order
+from metagraph.engines.targets.target import ExportOrder, Made
 from metagraph.engines.targets.unity_controller import TARGETS
 from metagraph.engines.targets.unity_yaml import text
 from metagraph.graph import edits
@@ -70,7 +70,7 @@ class Objects(dict[str, tuple[str, dict[str, Any]]]):
 
 
 def write(project: Project, folder: Path, stem: str = "talk", **more: Any) -> Made:
-    return TARGET.write(Order(project, folder, stem, **more))
+    return TARGET.write(ExportOrder(project, folder, stem, **more))
 
 
 @pytest.fixture(scope="module")

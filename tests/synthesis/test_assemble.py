@@ -14,7 +14,7 @@ from metagraph.motion import rotation
 from metagraph.motion.clip import Clip
 from metagraph.suggest.tracks import rig_of, stands
 from metagraph.synthesis.assemble import BLEND, assemble
-from metagraph.synthesis.constraints import ALL, HeardStates, Wanted
+from metagraph.synthesis.constraints import ALL, HeardStates, WantedSegment
 from metagraph.synthesis.graph import build
 from metagraph.synthesis.search import Path, best
 from metagraph.synthesis.states import SynthesisError, states_of
@@ -111,7 +111,7 @@ def test_what_a_search_found_plays(takes: list[Clip]) -> None:
     path = best(
         graph,
         HeardStates(np.full(len(states), ALL, np.uint8), np.zeros(len(states), bool)),
-        Wanted(np.full(300, ALL, np.uint8), np.full(300, -1, np.int32)),
+        WantedSegment(np.full(300, ALL, np.uint8), np.full(300, -1, np.int32)),
     )
     out = assemble(states, takes, path)
     assert out.duration == pytest.approx(299 / 30)

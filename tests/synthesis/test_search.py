@@ -12,7 +12,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from metagraph.graph.conversation import SOUNDS, Segment
-from metagraph.synthesis.constraints import ALL, HeardStates, Wanted, changes, heard, wanted
+from metagraph.synthesis.constraints import ALL, HeardStates, WantedSegment, changes, heard, wanted
 from metagraph.synthesis.graph import MotionGraph, Threshold
 from metagraph.synthesis.search import Path, best, greedy
 from metagraph.synthesis.states import States, SynthesisError
@@ -36,7 +36,7 @@ def graph_of(frames: int, takes: list[int], links: dict[tuple[int, int], float])
     return MotionGraph(states, limit, np.arange(frames), starts, targets, costs, np.ones(frames, bool))
 
 
-def cheapest(graph: MotionGraph, sound: HeardStates, want: Wanted) -> float | None:
+def cheapest(graph: MotionGraph, sound: HeardStates, want: WantedSegment) -> float | None:
     """What the cheapest path costs, by trying all."""
     last = graph.states.last
 
@@ -60,7 +60,7 @@ def cheapest(graph: MotionGraph, sound: HeardStates, want: Wanted) -> float | No
     return None if found == np.inf else found
 
 
-def check(graph: MotionGraph, sound: HeardStates, want: Wanted, path: Path) -> None:
+def check(graph: MotionGraph, sound: HeardStates, want: WantedSegment, path: Path) -> None:
     """A path is one, has what is wanted, and costs what it says."""
     total = 0.0
     assert len(path.states) == len(want)
@@ -101,7 +101,7 @@ def test_the_best_path_is_the_cheapest_of_all_and_is_found_whenever_there_is_one
     if data.draw(st.booleans()):
         a = data.draw(st.integers(0, length - 1))
         window[a : a + data.draw(st.integers(1, 4))] = 0
-    want = Wanted(np.array(allowed, np.uint8), window)
+    want = WantedSegment(np.array(allowed, np.uint8), window)
     wanted_cost = cheapest(graph, sound, want)
     if wanted_cost is None:
         with pytest.raises(SynthesisError, match="no motion goes with this speech"):
@@ -152,7 +152,7 @@ def test_what_was_heard_is_told_take_by_take() -> None:
 
 def test_a_search_that_would_not_fit_in_memory_is_refused() -> None:
     graph = graph_of(40, [0, 40], {})
-    want = Wanted(np.full(20_000_000, ALL, np.uint8), np.full(20_000_000, -1, np.int32))
+    want = WantedSegment(np.full(20_000_000, ALL, np.uint8), np.full(20_000_000, -1, np.int32))
     with pytest.raises(SynthesisError, match="greedy"):
         best(graph, HeardStates(np.full(40, ALL, np.uint8), np.zeros(40, bool)), want)
 
@@ -166,7 +166,9 @@ def test_the_best_path_is_the_same_whatever_bound_it_is_searched_within() -> Non
         pairs = {(int(a), int(b)) for a, b in chance.integers(0, 60, (300, 2)) if b != a + 1}
         graph = graph_of(60, [0, 25, 60], {e: float(chance.uniform(0.1, 2)) for e in pairs})
         sound = HeardStates(chance.choice([IDLE, CLAUSE], 60).astype(np.uint8), chance.random(60) < 0.3)
-        want = Wanted(chance.choice([IDLE, CLAUSE, ALL], 25).astype(np.uint8), np.full(25, -1, np.int32))
+        want = WantedSegment(
+            chance.choice([IDLE, CLAUSE, ALL], 25).astype(np.uint8), np.full(25, -1, np.int32)
+        )
         try:
             path = best(graph, sound, want)
         except SynthesisError:

@@ -37,7 +37,7 @@ from app.project.document import Document
 from app.project.jobs import Job, Jobs
 from metagraph.engines.targets import registry
 from metagraph.engines.targets.placing import ForeignFilesError
-from metagraph.engines.targets.target import Report, Target
+from metagraph.engines.targets.target import ExportTarget, Report
 from metagraph.engines.vectors import write_vectors
 from metagraph.graph.check import check
 from metagraph.graph.expand import size
@@ -222,7 +222,7 @@ class ExportDialog(QDialog):
         ]
 
     @property
-    def target(self) -> Target:
+    def target(self) -> ExportTarget:
         """The target that is chosen."""
         item = self.targets.currentItem()
         name = item.data(0, NAME) if item is not None else None

@@ -23,7 +23,7 @@ from PySide6.QtWidgets import (
 from app.look.theme import strengthen
 from app.project.jobs import Job, Jobs
 from app.stage.performance import Performance
-from app.stage.render_process import SUFFIXES, Wanted, write
+from app.stage.render_process import SUFFIXES, RenderOrder, write
 from app.stage.session import Session
 from app.widgets.quiet_fields import ComboBox, DoubleSpinBox
 
@@ -121,7 +121,7 @@ class RenderDialog(QDialog):
 
     def _write(self) -> None:
         document = self.performance.document
-        wanted = Wanted(
+        wanted = RenderOrder(
             Path(self.file.text()),
             self.session.onstage.performance,
             self.seconds.value(),

@@ -15,7 +15,7 @@ import msgspec
 from metagraph.engines.engine_machine import Machine, State, animations, machines, write_machine_glb
 from metagraph.engines.targets.losses import MACHINE
 from metagraph.engines.targets.meshes import mesh_of
-from metagraph.engines.targets.target import Loss, Made, Order, Target
+from metagraph.engines.targets.target import ExportOrder, ExportTarget, Loss, Made
 from metagraph.formats.atomic import write_atomically
 from metagraph.graph import requests as a
 from metagraph.graph.model import LAYERS, Project
@@ -57,7 +57,7 @@ def vocabulary(project: Project) -> dict[str, Any]:
     }
 
 
-def write_blocks(order: Order) -> Made:
+def write_blocks(order: ExportOrder) -> Made:
     """Write a file for each block, and the vocabulary."""
     files: list[Path] = []
     for name, asks in blocks(order.project):
@@ -121,7 +121,7 @@ def _words(state: State) -> tuple[str, str]:
     )
 
 
-def write_smartbody(order: Order) -> Made:
+def write_smartbody(order: ExportOrder) -> Made:
     """Write the map, and a BVH for each animation it names and each posture."""
     from metagraph.formats.bvh import write_bvh
 
@@ -163,7 +163,7 @@ def gestures(project: Project, built: tuple[Machine, ...]) -> dict[str, Any]:
     return out
 
 
-def write_sumerian(order: Order) -> Made:
+def write_sumerian(order: ExportOrder) -> Made:
     """Write gesture.json and the GLB with its animations."""
     built = machines(order.project)
     table, glb = order.folder / "gesture.json", order.folder / f"{order.stem}.glb"
@@ -179,7 +179,7 @@ def _unsaid(project: Project) -> int:
 
 _ALONE = "written by its documentation; the system was not at hand to run it"
 TARGETS = (
-    Target(
+    ExportTarget(
         "bml",
         "BML blocks",
         "a block for each kept performance and each line, and the vocabulary they may use",
@@ -194,7 +194,7 @@ TARGETS = (
         ),
         group="Agents",
     ),
-    Target(
+    ExportTarget(
         "smartbody",
         "SmartBody gesture map",
         "a Python script that maps lexemes to animations, and a BVH for each",
@@ -207,7 +207,7 @@ TARGETS = (
         _ALONE,
         "Agents",
     ),
-    Target(
+    ExportTarget(
         "sumerian",
         "Sumerian Hosts (gesture.json)",
         "gesture.json with in, hold and out, and one GLB",

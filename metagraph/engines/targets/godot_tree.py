@@ -37,7 +37,7 @@ from typing import Literal
 from metagraph.engines.engine_machine import Arrow, Machine, State, machines, write_machine_glb
 from metagraph.engines.targets.losses import CROSSFADE, MACHINE, WEIGHTS
 from metagraph.engines.targets.meshes import mesh_of
-from metagraph.engines.targets.target import Loss, Made, Order, Target
+from metagraph.engines.targets.target import ExportOrder, ExportTarget, Loss, Made
 from metagraph.formats.atomic import write_atomically
 from metagraph.graph import anatomy
 from metagraph.graph.expand import ends_in
@@ -217,7 +217,7 @@ def _places(machine: Machine) -> Iterator[tuple[State, Place]]:
             yield state, (number * step + x, y)
 
 
-def write(order: Order) -> Made:
+def write(order: ExportOrder) -> Made:
     """Write both trees, the GLB and a guide."""
     project, stem = order.project, order.stem
     built = machines(project)
@@ -311,7 +311,7 @@ LOSSES: tuple[Loss, ...] = (
     Loss("where no transition joins two stances, the way between them need not be the planner's"),
 )
 TARGETS = (
-    Target(
+    ExportTarget(
         "godot-tree",
         "Godot AnimationTree (.tres)",
         "an AnimationTree's root for Godot 4 and one for Godot 3, a guide to their states, and one GLB with "

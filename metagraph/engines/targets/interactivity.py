@@ -15,7 +15,7 @@ from typing import Any
 from metagraph.engines.engine_machine import Machine, State, animations, machines
 from metagraph.engines.targets.losses import MACHINE
 from metagraph.engines.targets.meshes import mesh_of
-from metagraph.engines.targets.target import Loss, Made, Order, Target
+from metagraph.engines.targets.target import ExportOrder, ExportTarget, Loss, Made
 from metagraph.formats.atomic import write_atomically
 from metagraph.graph import anatomy
 from metagraph.graph.expand import ends_in
@@ -159,7 +159,7 @@ def _action(graph: _Graph, machine: Machine, state: State, stance: int, busy: in
     graph.flow(then, "2", graph.start(machine.rest(there), endless))
 
 
-def write(order: Order) -> Made:
+def write(order: ExportOrder) -> Made:
     """Write the GLB."""
     from metagraph.formats.gltf_writer import write_glb
 
@@ -189,7 +189,7 @@ def write(order: Order) -> Made:
 
 
 TARGETS = (
-    Target(
+    ExportTarget(
         "interactivity",
         "glTF + KHR_interactivity",
         "one GLB that plays by itself, and a list of the events it hears",

@@ -4,11 +4,11 @@ from __future__ import annotations
 
 from pathlib import Path
 
-from metagraph.engines.targets.target import Order
+from metagraph.engines.targets.target import ExportOrder
 from metagraph.motion.character_mesh import Character
 
 
-def mesh_of(order: Order) -> tuple[Character | None, tuple[str, ...]]:
+def mesh_of(order: ExportOrder) -> tuple[Character | None, tuple[str, ...]]:
     """Return the mesh that goes with an order, and what there is to say about it. Raises FileError."""
     from metagraph.formats.gltf import read_character
 

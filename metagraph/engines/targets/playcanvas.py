@@ -14,7 +14,7 @@ from typing import Any
 from metagraph.engines.engine_machine import Arrow, Machine, machines, write_machine_glb
 from metagraph.engines.targets.losses import CROSSFADE, MACHINE, WEIGHTS
 from metagraph.engines.targets.meshes import mesh_of
-from metagraph.engines.targets.target import Made, Order, Target
+from metagraph.engines.targets.target import ExportOrder, ExportTarget, Made
 from metagraph.formats.atomic import write_atomically
 from metagraph.formats.gltf_writer import SCENE
 from metagraph.graph.model import Project
@@ -85,7 +85,7 @@ def _transitions(machine: Machine, arrow: Arrow) -> Iterator[dict[str, Any]]:
         yield {**whole, "priority": 0 if arrow.on == "action" else 1, "conditions": conditions}
 
 
-def write(order: Order) -> Made:
+def write(order: ExportOrder) -> Made:
     """Write the state graph, a guide to its numbers, and the GLB."""
     built = machines(order.project)
     graph, glb = order.folder / f"{order.stem}.animstategraph.json", order.folder / f"{order.stem}.glb"
@@ -116,7 +116,7 @@ def guide(built: tuple[Machine, ...]) -> dict[str, Any]:
 
 
 TARGETS = (
-    Target(
+    ExportTarget(
         "playcanvas", "PlayCanvas (AnimStateGraph)",
         "a state graph, the numbers of its actions and stances, and one GLB with an animation for each state",
         write, (*MACHINE, WEIGHTS, CROSSFADE),

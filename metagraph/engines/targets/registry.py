@@ -11,7 +11,7 @@ from pathlib import Path
 from metagraph.engines.export import ExportError, sound, stem_of
 from metagraph.engines.targets.placing import Staging
 from metagraph.engines.targets.placing import place as move
-from metagraph.engines.targets.target import Order, Report, Target, Tell
+from metagraph.engines.targets.target import ExportOrder, ExportTarget, Report, Tell
 from metagraph.graph.model import Project
 from metagraph.motion.character_mesh import Character
 
@@ -30,9 +30,9 @@ DEFAULT = "metagraph"
 
 
 @cache
-def targets() -> Mapping[str, Target]:
+def targets() -> Mapping[str, ExportTarget]:
     """Return all targets by name."""
-    found: dict[str, Target] = {}
+    found: dict[str, ExportTarget] = {}
     for module in MODULES:
         found |= {
             target.name: target for target in import_module(f"metagraph.engines.targets.{module}").TARGETS
@@ -40,7 +40,7 @@ def targets() -> Mapping[str, Target]:
     return found
 
 
-def target(name: str) -> Target:
+def target(name: str) -> ExportTarget:
     """Return a target. Raises ExportError naming those there are."""
     known = targets()
     if name in known:
@@ -79,7 +79,7 @@ def write(
     warnings = sound(project)
     place = Path(folder)
     with Staging(place) as staged:
-        order = Order(
+        order = ExportOrder(
             project,
             staged,
             stem_of(project),

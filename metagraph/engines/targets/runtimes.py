@@ -8,14 +8,14 @@ from pathlib import Path
 
 from metagraph import engines
 from metagraph.engines.export import write
-from metagraph.engines.targets.target import Loss, Made, Order, Target
+from metagraph.engines.targets.target import ExportOrder, ExportTarget, Loss, Made
 from metagraph.errors import FileError
 
 RUNTIMES = Path(engines.__file__).with_name("runtimes")
 BML = Loss("requests in Behaviour Markup Language are read by the desktop alone")
 
 
-def written(order: Order) -> Made:
+def written(order: ExportOrder) -> Made:
     """Write JSON, GLB and the lines' sounds."""
     made = write(order.project, order.folder, order.expanded, order.character, order.tell, order.base)
     return Made((made.json, made.glb, *made.sounds), made.warnings)
@@ -43,8 +43,8 @@ def copied(source: Path, target: Path, leave: tuple[str, ...] = ()) -> list[Path
     return out
 
 
-def _with(runtime: str, under: str) -> Callable[[Order], Made]:
-    def write(order: Order) -> Made:
+def _with(runtime: str, under: str) -> Callable[[ExportOrder], Made]:
+    def write(order: ExportOrder) -> Made:
         made = written(order)
         return Made((*made.files, *copied(RUNTIMES / runtime, order.folder / under)), made.notes)
 
@@ -52,14 +52,14 @@ def _with(runtime: str, under: str) -> Callable[[Order], Made]:
 
 
 TARGETS = (
-    Target(
+    ExportTarget(
         "metagraph",
         "Metagraph (JSON + GLB)",
         "one JSON, the graph, and one GLB, its clips",
         written,
         group="Played as the preview does",
     ),
-    Target(
+    ExportTarget(
         "javascript",
         "JavaScript, three.js",
         "JSON and GLB, and in metagraph/ the runtime: ES modules for browsers, Node and three.js",
@@ -67,7 +67,7 @@ TARGETS = (
         (BML,),
         group="Played as the preview does",
     ),
-    Target(
+    ExportTarget(
         "godot",
         "Godot 4 add-on",
         "JSON and GLB, and in addons/metagraph/ the runtime in GDScript",
@@ -75,7 +75,7 @@ TARGETS = (
         (BML,),
         group="Played as the preview does",
     ),
-    Target(
+    ExportTarget(
         "unity",
         "Unity package",
         "JSON and GLB, and in Metagraph/ the runtime in C#",

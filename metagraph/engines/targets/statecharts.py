@@ -15,7 +15,7 @@ from xml.etree import ElementTree as Xml
 from metagraph.engines.engine_machine import Arrow, Machine, State, machines, write_machine_glb
 from metagraph.engines.targets.losses import MACHINE
 from metagraph.engines.targets.meshes import mesh_of
-from metagraph.engines.targets.target import Loss, Made, Order, Target
+from metagraph.engines.targets.target import ExportOrder, ExportTarget, Loss, Made
 from metagraph.formats.atomic import write_atomically
 
 HOST = Loss(
@@ -162,7 +162,7 @@ def _timer(node: Xml.Element, event: str, seconds: float) -> None:
     node.insert(1, leaving)
 
 
-def _write(order: Order, suffix: str, text: bytes, built: tuple[Machine, ...]) -> Made:
+def _write(order: ExportOrder, suffix: str, text: bytes, built: tuple[Machine, ...]) -> Made:
     chart, glb = order.folder / f"{order.stem}.{suffix}", order.folder / f"{order.stem}.glb"
     body, notes = mesh_of(order)
     order.tell(0, 2, "clips")
@@ -173,26 +173,26 @@ def _write(order: Order, suffix: str, text: bytes, built: tuple[Machine, ...]) -
     return Made((chart, glb), notes)
 
 
-def write_xstate(order: Order) -> Made:
+def write_xstate(order: ExportOrder) -> Made:
     built = machines(order.project)
     text = json.dumps(xstate(order.stem, built), indent=1, ensure_ascii=False)
     return _write(order, "xstate.json", text.encode(), built)
 
 
-def write_scxml(order: Order) -> Made:
+def write_scxml(order: ExportOrder) -> Made:
     built = machines(order.project)
     return _write(order, "scxml", scxml(order.stem, built), built)
 
 
 TARGETS = (
-    Target(
+    ExportTarget(
         "xstate",
         "XState (JSON)",
         "one state chart for XState 5, and one GLB with an animation for each state",
         write_xstate,
         (*MACHINE, HOST, FORGETFUL),
     ),
-    Target(
+    ExportTarget(
         "scxml",
         "SCXML",
         "one W3C state chart, and one GLB with an animation for each state",

@@ -28,7 +28,7 @@ class Loss:
 
 
 @dataclass(frozen=True)
-class Order:
+class ExportOrder:
     """What is to be written: a sound project into a folder that is there. stem: what its files are called.
     character: the mesh, or None to leave it out. expanded: the state machine in the JSON, where there is one.
     base: the folder the project's own paths are relative to.
@@ -52,7 +52,7 @@ class Made:
 
 
 @dataclass(frozen=True)
-class Target:
+class ExportTarget:
     """name: on the command line. title: in the window. files: what will be written, in words. write: does it.
     losses: what it loses. untried: why it is experimental; empty where it was run.
     """
@@ -60,7 +60,7 @@ class Target:
     name: str
     title: str
     files: str
-    write: Callable[[Order], Made]
+    write: Callable[[ExportOrder], Made]
     losses: tuple[Loss, ...] = ()
     untried: str = ""
     group: str = "Formats"

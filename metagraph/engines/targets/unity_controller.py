@@ -18,7 +18,7 @@ import numpy as np
 from metagraph.engines.engine_machine import Arrow, Machine, State, animations, machines
 from metagraph.engines.targets.losses import CROSSFADE, MACHINE, WEIGHTS
 from metagraph.engines.targets.meshes import mesh_of
-from metagraph.engines.targets.target import Loss, Made, Order, Target
+from metagraph.engines.targets.target import ExportOrder, ExportTarget, Loss, Made
 from metagraph.engines.targets.unity_yaml import (
     CLIP,
     CONTROLLER,
@@ -261,7 +261,7 @@ def mask(skeleton: Skeleton, machine: Machine) -> bytes:
     return asset((MASK, main_id(MASK), "AvatarMask", whole))
 
 
-def write(order: Order) -> Made:
+def write(order: ExportOrder) -> Made:
     """Write controller, masks, clips and a guide, each with its `.meta`, and the mesh as a GLB, where there
     is one.
     """
@@ -379,7 +379,7 @@ def _cell(words: str) -> str:
 
 
 TARGETS = (
-    Target(
+    ExportTarget(
         "unity-controller",
         "Unity Animator Controller",
         "an Animator Controller with Avatar Masks and clips as Unity's own text assets, a guide to them, and "

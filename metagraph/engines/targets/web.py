@@ -13,7 +13,7 @@ from collections.abc import Iterator
 from pathlib import Path
 
 from metagraph.engines.targets.runtimes import BML, RUNTIMES, copied, written
-from metagraph.engines.targets.target import Loss, Made, Order, Target
+from metagraph.engines.targets.target import ExportOrder, ExportTarget, Loss, Made
 from metagraph.formats.atomic import write_atomically
 
 THREE = "0.187.0"  # the version the player was tested with
@@ -29,7 +29,7 @@ NEEDED = (
 )
 
 
-def write(order: Order) -> Made:
+def write(order: ExportOrder) -> Made:
     """Write export, page, player, runtime and, where it can be had, three.js."""
     made = written(order)
     page = (
@@ -118,7 +118,7 @@ def _fetched(place: Path) -> Path | None:
 
 
 TARGETS = (
-    Target(
+    ExportTarget(
         "web",
         "Web page",
         "a folder for any static server: page, player, runtime, three.js, JSON and GLB",

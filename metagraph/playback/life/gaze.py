@@ -25,7 +25,7 @@ from metagraph.graph.requests import Point
 from metagraph.playback.life.body import Body
 from metagraph.playback.life.lane import Lane
 from metagraph.playback.life.schedule import Schedule
-from metagraph.playback.life.wanted import AHEAD, PARTNER, Target
+from metagraph.playback.life.wanted import AHEAD, PARTNER, GazeTarget
 
 EYE_TIME, EYE_TIME_PER_DEGREE = 0.021, 0.0022  # seconds
 HEAD_LAG = 0.04  # seconds the head sets off after the eyes
@@ -147,7 +147,7 @@ class Gaze:
         )
         return found
 
-    def _seen(self, target: Target) -> tuple[tuple[float, ...], tuple[float, ...]]:
+    def _seen(self, target: GazeTarget) -> tuple[tuple[float, ...], tuple[float, ...]]:
         """Return where a target is, and its direction from where the eyes are at rest; ahead for what is
         nowhere.
         """
@@ -166,7 +166,7 @@ class _Events:
         self.scale = scale
 
 
-def _start(target: Target) -> float:
+def _start(target: GazeTarget) -> float:
     return target.start
 
 

@@ -21,7 +21,7 @@ from metagraph.playback.choice import uniform
 from metagraph.playback.life.lane import Lane, lane
 from metagraph.playback.life.track import Track
 from metagraph.playback.life.voice import Voice, voice_of
-from metagraph.playback.life.wanted import Target, modes_between, targets_between
+from metagraph.playback.life.wanted import GazeTarget, modes_between, targets_between
 
 BLOCK = 8.0  # seconds drawn at a time, so that a running plan need not draw at every tick
 RECALL = 4.0  # seconds of looks kept when the past is forgotten: longer than any turn of the head takes
@@ -55,7 +55,7 @@ class Schedule:
     end: float = 0.0
     drawn: float = 0.0
     modes: Lane = field(default_factory=lambda: lane(1))
-    targets: tuple[Target, ...] = ()
+    targets: tuple[GazeTarget, ...] = ()
     breaths: Lane = field(default_factory=lambda: lane(2))
     aversions: Lane = field(default_factory=lambda: lane(3))
     saccades: Lane = field(default_factory=lambda: lane(2))
@@ -85,7 +85,7 @@ class Schedule:
         return replace(self, modes=self.modes.since(needed, 0), targets=self.targets[kept:], **lanes)
 
 
-def _start(target: Target) -> float:
+def _start(target: GazeTarget) -> float:
     return target.start
 
 

@@ -18,7 +18,7 @@ AHEAD = "ahead"  # nothing in particular: eyes and head as the layers have them
 
 
 @dataclass(frozen=True, slots=True)
-class Target:
+class GazeTarget:
     """What is looked at from `start` on: a point, or a name whose place the project knows. since: when the
     look at it began; its place may have changed meanwhile. asked: not of its own accord.
     """
@@ -30,7 +30,7 @@ class Target:
     strict: bool = False
     asked: bool = False
 
-    def like(self, other: Target) -> bool:
+    def like(self, other: GazeTarget) -> bool:
         """Whether it is the same but for its times."""
         return (self.to, self.amount, self.strict, self.asked) == (
             other.to,
@@ -68,7 +68,7 @@ def modes_between(track: Track, start: float, end: float) -> Iterator[tuple[floa
         last = mode
 
 
-def targets_between(track: Track, start: float, end: float) -> Iterator[Target]:
+def targets_between(track: Track, start: float, end: float) -> Iterator[GazeTarget]:
     """Yield what is looked at from `start` to before `end`; the first begins at `start`.
 
     The latest look holds until it ends or another of its importance or more begins; a lesser one waits
@@ -80,7 +80,7 @@ def targets_between(track: Track, start: float, end: float) -> Iterator[Target]:
     )
     looks: list[LookAt] = []  # the most important first; those beneath are older or lesser
     places: dict[str, Point] = {}
-    last: Target | None = None
+    last: GazeTarget | None = None
     chosen: LookAt | None = None
     since = 0.0
     changes.sort(key=lambda c: (c[0], c[1]))
@@ -105,11 +105,11 @@ def targets_between(track: Track, start: float, end: float) -> Iterator[Target]:
             last = new
 
 
-def _target(at: float, since: float, look: LookAt | None, places: dict[str, Point]) -> Target:
+def _target(at: float, since: float, look: LookAt | None, places: dict[str, Point]) -> GazeTarget:
     if look is None:
-        return Target(at, places.get(PARTNER, PARTNER), since)
+        return GazeTarget(at, places.get(PARTNER, PARTNER), since)
     to = places.get(look.to, look.to) if isinstance(look.to, str) else look.to
-    return Target(at, to, since, look.amount, look.strict, True)
+    return GazeTarget(at, to, since, look.amount, look.strict, True)
 
 
 def _start(item: Any) -> float:

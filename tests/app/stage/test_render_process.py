@@ -9,7 +9,7 @@ from pathlib import Path
 import pytest
 
 from app.project.jobs import Job
-from app.stage.render_process import Wanted, write
+from app.stage.render_process import RenderOrder, write
 from metagraph.formats.bvh import read_bvh
 from metagraph.formats.store import open_project
 from metagraph.graph import performance_edits
@@ -31,7 +31,9 @@ def test_a_video_is_written_and_its_progress_told(qapp, talk, tmp_path):
     project, ident = talk
     job, told = Job("x", lambda job: None), []
     job.progress.connect(lambda done, total, words: told.append((done, total)))
-    out = write(project, ROOT / "sample_clips", Wanted(tmp_path / "a.mp4", ident, 0.5, (320, 180), 10), job)
+    out = write(
+        project, ROOT / "sample_clips", RenderOrder(tmp_path / "a.mp4", ident, 0.5, (320, 180), 10), job
+    )
     assert out.stat().st_size > 1000
     qapp.processEvents()
     assert told[-1] == (5, 5)
@@ -43,7 +45,12 @@ def test_motion_is_the_performance(qapp, talk, tmp_path):
     from metagraph.playback.running_plan import perform
 
     project, ident = talk
-    write(project, ROOT / "sample_clips", Wanted(tmp_path / "a.bvh", ident, 1.0), Job("x", lambda job: None))
+    write(
+        project,
+        ROOT / "sample_clips",
+        RenderOrder(tmp_path / "a.bvh", ident, 1.0),
+        Job("x", lambda job: None),
+    )
     clip = read_bvh(tmp_path / "a.bvh")
     assert clip.frames == 31
     kept = project.performances[ident]
@@ -61,7 +68,7 @@ def test_a_place_that_cannot_be_written_is_said(qapp, talk, tmp_path):
         write(
             project,
             ROOT / "sample_clips",
-            Wanted(tmp_path / "file" / "a.bvh", ident, 0.5),
+            RenderOrder(tmp_path / "file" / "a.bvh", ident, 0.5),
             Job("x", lambda job: None),
         )
 
@@ -70,5 +77,5 @@ def test_a_cancelled_job_leaves_nothing(qapp, talk, tmp_path):
     project, ident = talk
     job = Job("x", lambda job: None)
     job.cancel()
-    write(project, ROOT / "sample_clips", Wanted(tmp_path / "a.mp4", ident, 60.0), job)
+    write(project, ROOT / "sample_clips", RenderOrder(tmp_path / "a.mp4", ident, 60.0), job)
     assert list(tmp_path.iterdir()) == []

@@ -15,7 +15,7 @@ from metagraph.playback.life.gaze import ENDING, Gaze, Moves, ease, eye_time, ga
 from metagraph.playback.life.lane import lane
 from metagraph.playback.life.schedule import RECALL, Schedule, schedule
 from metagraph.playback.life.track import LookAt, PlaceFrom, Track, track_of
-from metagraph.playback.life.wanted import Target
+from metagraph.playback.life.wanted import GazeTarget
 
 STEP = 1 / 240
 CALM = Life(saccades=0, aversion_rate=0)
@@ -120,7 +120,7 @@ def test_a_target_that_moves_every_frame_is_followed_smoothly(sample: Project) -
 
 
 def test_a_moment_needs_only_what_is_near_it(sample: Project) -> None:
-    targets = tuple(Target(0.5 * n, (0.1 * (n % 7), 1.6, 1.2)) for n in range(20000))
+    targets = tuple(GazeTarget(0.5 * n, (0.1 * (n % 7), 1.6, 1.2)) for n in range(20000))
     found = Gaze(replace(Schedule(), targets=targets), CALM, body_of(sample), {})
     assert len(found.at(9000.0).parts) <= 4 and len(found._aims) <= 5
 
@@ -170,7 +170,8 @@ def test_a_strict_look_does_not_avert_and_a_new_look_ends_an_aversion(sample: Pr
 def test_an_aversion_within_a_strict_look_is_not_made(sample: Project) -> None:
     for strict, size in ((False, 14.0), (True, 0.0)):
         drawn = Schedule(
-            targets=(Target(0.0, "user", strict=strict),), aversions=lane(3).plus([5.0], [(7.0, 1.0, 0.0)])
+            targets=(GazeTarget(0.0, "user", strict=strict),),
+            aversions=lane(3).plus([5.0], [(7.0, 1.0, 0.0)]),
         )
         assert np.degrees(gaze_of(drawn, CALM, body_of(sample), {}).at(6.0).eyes[0]) == pytest.approx(size)
 

@@ -8,7 +8,7 @@ from hypothesis import strategies as st
 
 from metagraph.graph.words import MODES
 from metagraph.playback.life.track import LookAt, ModeFrom, PlaceFrom, Speech, Track, cut, track_of
-from metagraph.playback.life.wanted import AHEAD, PARTNER, Target, mode_at, modes_between, targets_between
+from metagraph.playback.life.wanted import AHEAD, PARTNER, GazeTarget, mode_at, modes_between, targets_between
 
 INF = 1e9
 
@@ -115,7 +115,7 @@ items = st.one_of(
 def test_from_any_time_on_the_same_is_looked_at(asked: list[object], at: int) -> None:
     track = track_of(asked)
 
-    def seen(found: list[Target], time: float) -> tuple[object, float]:
+    def seen(found: list[GazeTarget], time: float) -> tuple[object, float]:
         last = [t for t in found if t.start <= time][-1]
         return last.to, last.amount
 
