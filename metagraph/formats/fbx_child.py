@@ -13,7 +13,7 @@ from typing import Any
 
 import numpy as np
 
-from metagraph.formats.gltf_writer import Body, glb_bytes
+from metagraph.formats.gltf_writer import BinaryChunk, glb_bytes
 
 FPS = 30.0
 MISSING, REFUSED = 4, 3  # exit codes
@@ -76,7 +76,7 @@ def _convert(ufbx: Any, scene: Any) -> bytes:
             value["children"] = children
         described.append(value)
     document["nodes"] = described
-    body = Body()
+    body = BinaryChunk()
 
     if bones:
         bind: dict[int, Any] = {}

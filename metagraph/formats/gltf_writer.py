@@ -25,7 +25,7 @@ _TYPES = {1: "SCALAR", 2: "VEC2", 3: "VEC3", 4: "VEC4", 16: "MAT4"}
 _ARRAY_BUFFER, _ELEMENT_BUFFER = 34962, 34963
 
 
-class Body:
+class BinaryChunk:
     """The binary chunk as it grows, with its views and accessors; equal arrays are stored once."""
 
     def __init__(self) -> None:
@@ -118,7 +118,7 @@ def write_glb(
         if clip.skeleton is not skeleton and clip.skeleton != skeleton:
             raise ValueError(f"clip '{clip.name}' is on another skeleton; retarget it first")
     tolerance = (5e-5 if quantize else 0.0) if tolerance is None else tolerance
-    body = Body()
+    body = BinaryChunk()
     document: dict[str, Any] = {"asset": {"version": "2.0", "generator": "Metagraph"}, "scene": 0}
     document["nodes"] = nodes = _joint_nodes(skeleton, skeleton.rest if stand is None else stand)
     roots = [i for i, p in enumerate(skeleton.parents) if p < 0]
@@ -157,7 +157,7 @@ def write_glb(
     write_atomically(path, glb_bytes(document, body))
 
 
-def glb_bytes(document: dict[str, Any], body: Body) -> bytes:
+def glb_bytes(document: dict[str, Any], body: BinaryChunk) -> bytes:
     """Return the file: header, JSON and binary chunk. Adds the accessors, views and buffer of `body` to
     `document`.
     """
@@ -185,7 +185,7 @@ def _joint_nodes(skeleton: Skeleton, pose: Pose) -> list[dict[str, Any]]:
     return out
 
 
-def _add_character(document: dict[str, Any], body: Body, character: Character) -> int:
+def _add_character(document: dict[str, Any], body: BinaryChunk, character: Character) -> int:
     """Add mesh, materials and images; return the node that carries the mesh."""
     weights = np.maximum(np.asarray(character.weights, np.float32), 0)
     total = weights.sum(1, keepdims=True)
@@ -270,7 +270,7 @@ def _pose_still_nodes(nodes: list[dict[str, Any]], clips: Sequence[Clip], tolera
 
 
 def _animation(
-    body: Body,
+    body: BinaryChunk,
     clip: Clip,
     quantize: bool,
     tolerance: float,

@@ -30,7 +30,7 @@ REMEDY = "Choose what OpenPose writes with --write_json, or MediaPipe's pose lan
 
 
 @dataclass
-class Frame:
+class KeypointFrame:
     """A frame while it is being read. where: for messages. time: seconds; number: of the frame; either may be
     unknown.
     """
@@ -71,9 +71,9 @@ def is_person(value: Any) -> bool:
     return len(value) in BY_COUNT and point
 
 
-def read_frame(path: Path, item: Any, where: str) -> Frame:
+def read_frame(path: Path, item: Any, where: str) -> KeypointFrame:
     """Return what a frame holds. Raises FileError for what is no frame."""
-    out = Frame(where)
+    out = KeypointFrame(where)
     if isinstance(item, list):
         out.flat = list(_people(path, item, where, False))
         return out
@@ -95,7 +95,7 @@ def read_frame(path: Path, item: Any, where: str) -> Frame:
     return out
 
 
-def _when(path: Path, said: Mapping[str, Any], out: Frame) -> None:
+def _when(path: Path, said: Mapping[str, Any], out: KeypointFrame) -> None:
     for keys, unit in ((_MILLISECONDS, 1e-3), (_SECONDS, 1.0)):
         value = next((said[k] for k in keys if k in said), None)
         if value is not None:
@@ -116,7 +116,7 @@ def _when(path: Path, said: Mapping[str, Any], out: Frame) -> None:
         out.number = int(value)  # type: ignore[arg-type]
 
 
-def _take(path: Path, said: Mapping[str, Any], out: Frame) -> None:
+def _take(path: Path, said: Mapping[str, Any], out: KeypointFrame) -> None:
     ident = said.get("personid", said.get("id", said.get("idx")))
     ident = ident[0] if isinstance(ident, list) and ident else ident
     number = ident if isinstance(ident, int) and not isinstance(ident, bool) and ident >= 0 else None

@@ -22,7 +22,7 @@ from numpy.typing import NDArray
 from metagraph.errors import FileError
 from metagraph.formats.keypoint_frames import (
     REMEDY,
-    Frame,
+    KeypointFrame,
     has_people,
     is_number,
     is_person,
@@ -83,7 +83,7 @@ def read_keypoints(
 # --- files
 
 
-def _folder(path: Path) -> Iterator[Frame]:
+def _folder(path: Path) -> Iterator[KeypointFrame]:
     found = []
     try:
         for file in path.iterdir():
@@ -107,7 +107,7 @@ def _folder(path: Path) -> Iterator[Frame]:
         yield frame
 
 
-def _file(path: Path, head: _Head) -> Iterator[Frame]:
+def _file(path: Path, head: _Head) -> Iterator[KeypointFrame]:
     text = _bytes(path)
     try:
         data = msgspec.json.decode(text)
@@ -130,7 +130,7 @@ def _file(path: Path, head: _Head) -> Iterator[Frame]:
         yield read_frame(path, item, f"frame {n}")
 
 
-def _lines(path: Path, lines: Sequence[tuple[int, bytes]], head: _Head) -> Iterator[Frame]:
+def _lines(path: Path, lines: Sequence[tuple[int, bytes]], head: _Head) -> Iterator[KeypointFrame]:
     for place, (n, line) in enumerate(lines):
         try:
             item = msgspec.json.decode(line)
@@ -201,7 +201,7 @@ def _heading(path: Path, data: Mapping[str, Any], head: _Head) -> None:
 # --- all of it
 
 
-def _times(frames: Sequence[Frame], fps: float | None, notes: list[str]) -> Array:
+def _times(frames: Sequence[KeypointFrame], fps: float | None, notes: list[str]) -> Array:
     """Return seconds of frames, from 0: as they say, else from their numbers."""
     said = [f.time for f in frames]
     if all(t is not None for t in said) and len(said) > 1:
@@ -222,7 +222,11 @@ def _size(head: _Head) -> tuple[float, float] | None:
 
 
 def _gathered(
-    path: Path, times: Array, frames: Sequence[Frame], picture: tuple[float, float] | None, notes: list[str]
+    path: Path,
+    times: Array,
+    frames: Sequence[KeypointFrame],
+    picture: tuple[float, float] | None,
+    notes: list[str],
 ) -> Keypoints:
     """Follow one person and bring them into our axes."""
     deep = sum(bool(f.space) for f in frames) * 2 >= sum(bool(f.space or f.flat) for f in frames) and any(

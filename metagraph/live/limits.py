@@ -38,7 +38,7 @@ BUSY = "too much at once; try again in a moment"
 
 
 @dataclass
-class Lane:
+class LimitLane:
     """What waits for one layer: (seconds, priority, key), ascending."""
 
     waiting: list[tuple[float, int, str]] = field(default_factory=list)
@@ -107,7 +107,7 @@ def _only(layers: set[str] | None, layer: str | None) -> str | None:
 class Limits:
     """What has been taken on lately. lanes: layer -> what waits. recent: kind -> when such asks came."""
 
-    lanes: dict[str, Lane] = field(default_factory=lambda: {layer: Lane() for layer in LAYERS})
+    lanes: dict[str, LimitLane] = field(default_factory=lambda: {layer: LimitLane() for layer in LAYERS})
     recent: dict[str, deque[float]] = field(default_factory=dict)
     full: dict[str, tuple[float, int]] = field(default_factory=dict)
     planned: int = 0

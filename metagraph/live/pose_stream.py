@@ -27,7 +27,7 @@ MODEL, TRANSLATIONS = 1, 2  # flags
 
 
 @dataclass(frozen=True)
-class Frame:
+class PoseFrame:
     """One pose for some clients. binary: whether it is to be sent as bytes rather than text."""
 
     clients: tuple[int, ...]
@@ -73,7 +73,7 @@ class Stream:
         return self.wish.format, self.wish.space, self.wish.translations, self.names
 
 
-def due(now: float, plan: Plan, project: Project, streams: Sequence[tuple[int, Stream]]) -> list[Frame]:
+def due(now: float, plan: Plan, project: Project, streams: Sequence[tuple[int, Stream]]) -> list[PoseFrame]:
     """Return the poses that are due at `now`, and say when the next are."""
     groups: dict[Any, list[tuple[int, Stream]]] = {}
     for client, stream in streams:
@@ -91,7 +91,7 @@ def due(now: float, plan: Plan, project: Project, streams: Sequence[tuple[int, S
     for group in groups.values():
         stream = group[0][1]
         data = frame(stream, now, pose, turned, weights)
-        out.append(Frame(tuple(client for client, _ in group), data, stream.wish.format != "json"))
+        out.append(PoseFrame(tuple(client for client, _ in group), data, stream.wish.format != "json"))
     return out
 
 

@@ -8,7 +8,7 @@ from metagraph.graph import requests as a
 from metagraph.graph.words import Layer
 from metagraph.live.camera_mimicry import Camera
 from metagraph.live.messages import Event, Reply
-from metagraph.live.pose_stream import Frame, Stream
+from metagraph.live.pose_stream import PoseFrame, Stream
 from metagraph.playback.life.track import Track
 from metagraph.playback.plan import Plan
 
@@ -36,7 +36,7 @@ class Out:
 
     replies: list[Reply | bytes] = field(default_factory=list)
     events: list[tuple[int, Event]] = field(default_factory=list)
-    frames: list[Frame] = field(default_factory=list)
+    frames: list[PoseFrame] = field(default_factory=list)
 
 
 @dataclass(slots=True)

@@ -18,7 +18,7 @@ from metagraph.mimicry.pose_measures import (
     MOVING,
     SCALE,
     SHARP,
-    Frame,
+    MeasuredFrame,
     frame_of,
     measured,
     sharp_in_a_picture,
@@ -71,7 +71,7 @@ class PersonView:
 
     points: Array
     trust: Array
-    frame: Frame
+    frame: MeasuredFrame
     measures: Array
     share: Array
 

@@ -20,7 +20,7 @@ from metagraph.graph.requests import AnyAsk, Go, Look
 from metagraph.mimicry.gaze_reading import Gaze
 from metagraph.mimicry.judge import TURNS, Judge, Mean, PersonView
 from metagraph.mimicry.keypoint_layouts import POINTS, choose, swap
-from metagraph.mimicry.signatures import Body, signatures
+from metagraph.mimicry.signatures import BodySignature, signatures
 from metagraph.mimicry.tuning import Tuning
 
 Array = NDArray[Any]
@@ -64,7 +64,7 @@ class Mimic:
         tuning: Tuning | None = None,
     ) -> None:
         self.mirror, self.priority, self.prefix, self.tuning = mirror, priority, prefix, tuning or Tuning()
-        body = Body(project)
+        body = BodySignature(project)
         found, self.width = signatures(project, body, layers)
         if not found:
             raise ValueError("the project has no stance that could be mimicked: no layer has one with a loop")

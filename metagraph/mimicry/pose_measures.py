@@ -145,7 +145,7 @@ def trusted(layer: Layer, confidence: Array) -> Array:
 
 
 @dataclass(frozen=True, eq=False)
-class Frame:
+class MeasuredFrame:
     """How a person stands in the picture: torso length in its units, its up in the picture `[3]`, heading in
     radians about y, 0 towards the camera (known from three dimensions only), the shoulders' width in torso
     lengths. upright: of the whole figure, always (0, 1, 0).
@@ -181,7 +181,7 @@ def straightened(vectors: Array, up: Array) -> Array:
     return np.asarray(vectors @ m.T)
 
 
-def frame_of(points: Array, confidence: Array, dims: int, usual_width: float) -> Frame | None:
+def frame_of(points: Array, confidence: Array, dims: int, usual_width: float) -> MeasuredFrame | None:
     """Return how a person stands whose POINTS are `points [17, 3]`; None where the shoulders do not say.
 
     Without hips, as at a desk, the torso is taken to be upright, and its length is told from the shoulders'
@@ -210,10 +210,10 @@ def frame_of(points: Array, confidence: Array, dims: int, usual_width: float) ->
     if dims == 3:
         heading = atan2(-float(beside[2]), float(beside[0]))
         up = turned(up, -heading)
-    return Frame(size, up, heading, float(across[0]) / size)
+    return MeasuredFrame(size, up, heading, float(across[0]) / size)
 
 
-def measured(layer: Layer, points: Array, frame: Frame) -> Array:
+def measured(layer: Layer, points: Array, frame: MeasuredFrame) -> Array:
     """Return a layer's measures `[N, 3]` of a person, as if facing the camera; along x and y alone in two
     dimensions.
     """

@@ -52,7 +52,7 @@ class Signature:
     extra: Array
 
 
-class Body:
+class BodySignature:
     """Keypoints of a project's character. Raises ValueError where a project has no humanoid character."""
 
     def __init__(self, project: Project) -> None:
@@ -132,7 +132,7 @@ class Body:
 
 
 def signatures(
-    project: Project, body: Body, layers: Collection[Layer] = LAYERS
+    project: Project, body: BodySignature, layers: Collection[Layer] = LAYERS
 ) -> tuple[dict[Layer, Signature], float]:
     """Return what the stances of each layer look like, and the shoulders' width in torso lengths. Stances
     whose clips are missing are not among them, nor layers without any.
@@ -170,12 +170,12 @@ def signatures(
     return out, width
 
 
-def _width(body: Body, pose: Pose) -> float:
+def _width(body: BodySignature, pose: Pose) -> float:
     frame = frame_of(body.points(pose), body.confidence, 3, 0.7)
     return frame.width if frame is not None else 0.7
 
 
-def _seen(project: Project, body: Body, layer: Layer, rest: Rest) -> Array | None:
+def _seen(project: Project, body: BodySignature, layer: Layer, rest: Rest) -> Array | None:
     """Return the POINTS `[17, 3]` of a loop, averaged; None where they make no figure."""
     start, end = project.span(rest.action)
     layers = {x: LayerPlan(x, rests=(rest,)) if x == layer else LayerPlan(x) for x in LAYERS}

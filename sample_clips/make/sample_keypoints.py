@@ -20,7 +20,7 @@ from metagraph.formats.store import open_project
 from metagraph.graph import requests as a
 from metagraph.graph.model import LAYERS, Layer, Project
 from metagraph.mimicry.keypoint_layouts import LAYOUTS
-from metagraph.mimicry.signatures import Body
+from metagraph.mimicry.signatures import BodySignature
 from metagraph.motion.skeleton import Pose
 from metagraph.playback.plan import Plan
 from metagraph.playback.player import pose_at
@@ -158,7 +158,7 @@ def world(project: Project, plan: Plan, times: Any, person: Mapping[str, float] 
     pose = Pose(
         pose.rotations, pose.translations * np.where(np.arange(len(names)) == 0, 1.0, longer)[:, None]
     )
-    body = Body(project)
+    body = BodySignature(project)
     _, at = project.skeleton.globals(pose)
     from metagraph.mimicry.keypoint_layouts import POINTS
 

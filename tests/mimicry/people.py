@@ -11,7 +11,7 @@ import numpy as np
 from metagraph.graph import edits
 from metagraph.graph.model import Life, Project
 from metagraph.mimicry.keypoint_layouts import swap
-from metagraph.mimicry.signatures import Body
+from metagraph.mimicry.signatures import BodySignature
 from metagraph.motion import rotation
 from metagraph.motion.clip import Clip
 from metagraph.motion.skeleton import Skeleton
@@ -84,7 +84,7 @@ def standing(project: Project, kind: str, tilt: float = 0.0, other: bool = False
     """The POINTS `[17, 3]` of somebody in a stance of the arms. other: left and right changed over."""
     assert project.skeleton is not None
     pose = still(project.skeleton, "now", {**arms(kind), "Head": (0, 0, tilt)}).pose_at(0.0)
-    body = Body(project)
+    body = BodySignature(project)
     points = body.points(pose)
     return swap(points, body.confidence)[0] if other else points
 

@@ -14,7 +14,7 @@ from metagraph.graph.model import Layer, Life, Project
 from metagraph.mimicry.keypoint_layouts import PLACE
 from metagraph.mimicry.mimic import Mimic
 from metagraph.mimicry.pose_measures import turned
-from metagraph.mimicry.signatures import Body
+from metagraph.mimicry.signatures import BodySignature
 from tests import zoo
 
 HEADS = ("head_neutral", "head_l", "head_r", "head_u", "head_d")
@@ -72,7 +72,7 @@ def seen(project: Project, layer: Layer, dims: int, turn: float = 0.0) -> dict[s
     """Stance -> the stance that is seen of somebody who plays its loop for 3 s, jittering by a hundredth of
     the torso's length.
     """
-    body, rng, out = Body(project), np.random.default_rng(3), {}
+    body, rng, out = BodySignature(project), np.random.default_rng(3), {}
     for stance in project.graphs[layer].stances.values():
         clip = next(e.motion for e in project.clips.values() if e.name == stance.name)
         assert clip is not None

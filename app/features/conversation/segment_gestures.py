@@ -6,7 +6,7 @@ from __future__ import annotations
 
 from PySide6.QtCore import QPointF
 
-from app.features.conversation.segment_hits import Hit, snapped, word_edges
+from app.features.conversation.segment_hits import SegmentHit, snapped, word_edges
 from app.features.conversation.segment_host import SegmentHost
 from app.project.document import Edit
 from app.widgets.gesture import Gesture, PressDrag, Reason
@@ -25,7 +25,7 @@ class SegmentDrag(PressDrag):
 
     catch = CATCH
 
-    def __init__(self, view: SegmentHost, hit: Hit) -> None:
+    def __init__(self, view: SegmentHost, hit: SegmentHit) -> None:
         super().__init__()
         self.view, self.hit = view, hit
         self.words = ""
@@ -163,7 +163,7 @@ class Scrub(PressDrag):
         self.view.session.transport.seek(self.before)
 
 
-class Pan(PressDrag):
+class SegmentPan(PressDrag):
     """Moves along in time with the mouse."""
 
     def __init__(self, view: SegmentHost) -> None:
@@ -188,7 +188,7 @@ def _can(view: SegmentHost, edit: Edit) -> bool:
     return True
 
 
-def gesture_for(view: SegmentHost, hit: Hit) -> Gesture:
+def gesture_for(view: SegmentHost, hit: SegmentHit) -> Gesture:
     """Return what a press on something begins."""
     if hit.part in ("start", "end"):
         return EdgeDrag(view, hit)

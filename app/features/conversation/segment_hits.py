@@ -25,7 +25,7 @@ SNAP = 6.0  # pixels within which a dragged time is caught
 
 
 @dataclass(frozen=True)
-class Hit:
+class SegmentHit:
     """part: of what; side: 0 or 1; at: the place of the segment among its side's."""
 
     part: Part
@@ -33,21 +33,21 @@ class Hit:
     at: int = -1
 
 
-NOTHING = Hit("nothing")
+NOTHING = SegmentHit("nothing")
 
 
-def hit_at(conversation: Conversation, scale: Scale, size: tuple[float, float], point: QPointF) -> Hit:
+def hit_at(conversation: Conversation, scale: Scale, size: tuple[float, float], point: QPointF) -> SegmentHit:
     """Return what is under a point. size: width and height of all lanes, pixels."""
     for side, lane in enumerate(lanes(*size)):
         if not lane.whole.top() <= point.y() <= lane.whole.bottom() + 2:
             continue
         if point.x() < LEFT:
-            return Hit("title", side)
+            return SegmentHit("title", side)
         if point.y() < lane.segments.top():
             found = _peak(conversation, side, scale, point.x())
-            return Hit("peak", side, found) if found is not None else Hit("wave", side)
+            return SegmentHit("peak", side, found) if found is not None else SegmentHit("wave", side)
         return _segment(conversation, side, scale, point.x())
-    return NOTHING if point.x() < LEFT else Hit("ruler")
+    return NOTHING if point.x() < LEFT else SegmentHit("ruler")
 
 
 def _peak(conversation: Conversation, side: int, scale: Scale, x: float) -> int | None:
@@ -63,18 +63,18 @@ def _peak(conversation: Conversation, side: int, scale: Scale, x: float) -> int 
     return min(found)[1] if found and min(found)[0] <= DOT else None
 
 
-def _segment(conversation: Conversation, side: int, scale: Scale, x: float) -> Hit:
+def _segment(conversation: Conversation, side: int, scale: Scale, x: float) -> SegmentHit:
     segments, seconds, reach = conversation.sides[side].segments, scale.seconds(x), EDGE / scale.each
-    edges: list[tuple[float, bool, Hit]] = []  # how far off, whether it is held from outside, and what
+    edges: list[tuple[float, bool, SegmentHit]] = []  # how far off, whether it is held from outside, and what
     for n in visible(segments, seconds - reach, seconds + reach):
         left, right = scale.x(segments[n].start), scale.x(segments[n].end)
         inner = EDGE if right - left > NARROW else 0.0
         if left <= x <= right and (inner == 0.0 or left + inner < x < right - inner):
-            return Hit("body", side, n)
+            return SegmentHit("body", side, n)
         for part, inside in (("start", x - left), ("end", right - x)):
             if -EDGE <= inside <= inner:
-                edges.append((round(abs(inside), 3), inside < 0, Hit(part, side, n)))  # type: ignore[arg-type]
-    return min(edges, key=lambda e: e[:2])[2] if edges else Hit("gap", side)
+                edges.append((round(abs(inside), 3), inside < 0, SegmentHit(part, side, n)))  # type: ignore[arg-type]
+    return min(edges, key=lambda e: e[:2])[2] if edges else SegmentHit("gap", side)
 
 
 # --- snapping

@@ -26,7 +26,7 @@ NEAREST = 400.0  # pixels a second at most
 
 
 @dataclass(frozen=True)
-class Lane:
+class SegmentLane:
     """Where a side is. The title stands left of it."""
 
     wave: QRectF
@@ -38,7 +38,7 @@ class Lane:
         return self.wave.united(self.segments)
 
 
-def lanes(width: float, height: float) -> tuple[Lane, Lane]:
+def lanes(width: float, height: float) -> tuple[SegmentLane, SegmentLane]:
     """Return the lanes of the two, one under the other."""
     each = min(TALLEST, max(74.0, (height - RULER - GAP - 4) / 2))
     segments = min(SEGMENTS, each * 0.28)
@@ -47,7 +47,7 @@ def lanes(width: float, height: float) -> tuple[Lane, Lane]:
         top, wide = RULER + side * (each + GAP), max(1.0, width - LEFT)
         tall = each - WORDS - segments
         out.append(
-            Lane(
+            SegmentLane(
                 QRectF(LEFT, top, wide, tall),
                 QRectF(LEFT, top + tall, wide, WORDS),
                 QRectF(LEFT, top + tall + WORDS, wide, segments - 2),
@@ -80,7 +80,7 @@ def words_in(words: Sequence[Word], begin: float, end: float) -> Sequence[Word]:
     return words[max(0, first - 1) : bisect_right(words, end, key=lambda w: w.start)]
 
 
-def segment_rect(segment: Segment, scale: Scale, lane: Lane) -> QRectF:
+def segment_rect(segment: Segment, scale: Scale, lane: SegmentLane) -> QRectF:
     left = scale.x(segment.start)
     return QRectF(left, lane.segments.top(), max(1.5, scale.x(segment.end) - left), lane.segments.height())
 

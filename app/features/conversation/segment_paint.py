@@ -9,10 +9,10 @@ import numpy as np
 from PySide6.QtCore import QPointF, QRectF, Qt
 from PySide6.QtGui import QColor, QFont, QImage, QPainter, QPen
 
-from app.features.conversation.segment_hits import Hit
+from app.features.conversation.segment_hits import SegmentHit
 from app.features.conversation.segment_lanes import (
     AXIS,
-    Lane,
+    SegmentLane,
     lanes,
     pitch_y,
     segment_rect,
@@ -48,7 +48,7 @@ class SegmentScene:
     height: float
     ratio: float
     chosen: Collection[tuple[int, int]]
-    over: Hit
+    over: SegmentHit
     side: int = 0  # whose plan the timeline shows
 
 
@@ -88,12 +88,12 @@ def _ruler(painter: QPainter, t: Theme, scene: SegmentScene) -> None:
         n += 1
 
 
-def _titles(painter: QPainter, t: Theme, scene: SegmentScene, side: int, lane: Lane) -> None:
+def _titles(painter: QPainter, t: Theme, scene: SegmentScene, side: int, lane: SegmentLane) -> None:
     """Who it is, the pitches' axis, and what the rows below are."""
     own, small, bold = painter.font(), QFont(painter.font()), QFont(painter.font())
     small.setPixelSize(SMALL)
     bold.setWeight(QFont.Weight.DemiBold)
-    over, name = scene.over == Hit("title", side), side_name(scene.conversation, side)
+    over, name = scene.over == SegmentHit("title", side), side_name(scene.conversation, side)
     if over:
         painter.fillRect(QRectF(0, lane.whole.top(), LEFT - 1, lane.whole.height()), QColor(t.hover))
     if side == scene.side:
@@ -120,7 +120,7 @@ def _titles(painter: QPainter, t: Theme, scene: SegmentScene, side: int, lane: L
     painter.setFont(own)
 
 
-def _wave(painter: QPainter, t: Theme, scene: SegmentScene, side: int, lane: Lane) -> None:
+def _wave(painter: QPainter, t: Theme, scene: SegmentScene, side: int, lane: SegmentLane) -> None:
     """The waveform with what is segmented behind it, its pitch over it; where it is not there, why."""
     area, heard = lane.wave, scene.heard[side]
     painter.setPen(Qt.PenStyle.NoPen)
@@ -185,7 +185,7 @@ def _told(painter: QPainter, t: Theme, heard: SideSound | None, area: QRectF) ->
         painter.fillRect(QRectF(area.left(), area.bottom() - 2, area.width() * heard.part, 2), QColor(t.dim))
 
 
-def _words(painter: QPainter, t: Theme, scene: SegmentScene, side: int, lane: Lane) -> None:
+def _words(painter: QPainter, t: Theme, scene: SegmentScene, side: int, lane: SegmentLane) -> None:
     """The words where they are said, as far as there is room before the next."""
     scale, font = scene.scale, QFont(painter.font())
     own = painter.font()
@@ -207,7 +207,7 @@ def _words(painter: QPainter, t: Theme, scene: SegmentScene, side: int, lane: La
     painter.setFont(own)
 
 
-def _segments(painter: QPainter, t: Theme, scene: SegmentScene, side: int, lane: Lane) -> None:
+def _segments(painter: QPainter, t: Theme, scene: SegmentScene, side: int, lane: SegmentLane) -> None:
     scale, segments = scene.scale, scene.conversation.sides[side].segments
     painter.setPen(Qt.PenStyle.NoPen)
     painter.setBrush(QColor(t.field))
@@ -244,7 +244,7 @@ def _segments(painter: QPainter, t: Theme, scene: SegmentScene, side: int, lane:
         painter.drawText(QRectF(left + 6, rect.top(), room + 4, rect.height()), MIDDLE, out)
 
 
-def _peaks(painter: QPainter, t: Theme, scene: SegmentScene, side: int, lane: Lane) -> None:
+def _peaks(painter: QPainter, t: Theme, scene: SegmentScene, side: int, lane: SegmentLane) -> None:
     """The stress of every clause: a dot on its pitch, and a line down to its segment."""
     scale, segments, heard = scene.scale, scene.conversation.sides[side].segments, scene.heard[side]
     fill, stem = QColor(t.sounds["clause"]), QColor(t.sounds["clause"])
@@ -300,7 +300,7 @@ def _premultiplied(color: QColor, alpha: int) -> tuple[int, int, int, int]:
     return round(color.blue() * part), round(color.green() * part), round(color.red() * part), alpha
 
 
-def peak_y(seconds: float, heard: SideSound | None, lane: Lane) -> float:
+def peak_y(seconds: float, heard: SideSound | None, lane: SegmentLane) -> float:
     """Return how high a peak's dot stands: on the pitch, or below all of it where there is none."""
     if heard is not None and heard.pitch is not None:
         values, at = heard.pitch.lows[0], round(seconds * heard.pitch.rate)

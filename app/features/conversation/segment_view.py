@@ -22,8 +22,8 @@ from PySide6.QtGui import (
 from PySide6.QtWidgets import QMenu, QToolTip, QWidget
 
 from app.features.conversation.segment_editing import Editing
-from app.features.conversation.segment_gestures import Pan, SegmentDrag, gesture_for
-from app.features.conversation.segment_hits import NOTHING, Hit, hit_at
+from app.features.conversation.segment_gestures import SegmentDrag, SegmentPan, gesture_for
+from app.features.conversation.segment_hits import NOTHING, SegmentHit, hit_at
 from app.features.conversation.segment_keys import DEEDS, deed_of
 from app.features.conversation.segment_lanes import LEAST, NEAREST, farthest, segment_words, words_in
 from app.features.conversation.segment_paint import SegmentScene, empty, paint
@@ -63,7 +63,7 @@ class SegmentView(QWidget):
         self.each, self.first = USUAL, 0.0
         self.hand = Hand()
         self.held: Conversation | None = None  # as it would be if what is dragged were let go
-        self.over: Hit = NOTHING
+        self.over: SegmentHit = NOTHING
         self.pointer = QPointF(-1, -1)
         self.painted = 0  # how often the lanes were painted, not only the playhead over them
         self._still: Once[QPixmap] = Once()
@@ -209,7 +209,7 @@ class SegmentView(QWidget):
 
     # --- the mouse
 
-    def _hit(self, at: QPointF) -> Hit:
+    def _hit(self, at: QPointF) -> SegmentHit:
         of = self.editing.conversation
         return hit_at(of, self.scale(), (self.width(), self.height()), at) if of is not None else NOTHING
 
@@ -219,7 +219,7 @@ class SegmentView(QWidget):
         if self.hand.gesture is not None or hit.part == "nothing":
             return
         if event.button() == Qt.MouseButton.MiddleButton:
-            self.hand.take(Pan(self), at)
+            self.hand.take(SegmentPan(self), at)
         elif event.button() == Qt.MouseButton.LeftButton and hit.part == "title":
             self.session.onstage.set_side(hit.side)
         elif event.button() == Qt.MouseButton.LeftButton:
@@ -230,7 +230,7 @@ class SegmentView(QWidget):
             self.hand.take(gesture_for(self, hit), at)
         self._show_cursor(hit)
 
-    def _select(self, hit: Hit, modifiers: Qt.KeyboardModifier) -> None:
+    def _select(self, hit: SegmentHit, modifiers: Qt.KeyboardModifier) -> None:
         editing, place = self.editing, (hit.side, hit.at)
         last = editing.last
         if modifiers & Qt.KeyboardModifier.ShiftModifier and last is not None and last[0] == hit.side:
@@ -282,11 +282,13 @@ class SegmentView(QWidget):
             self.zoom(ZOOM ** (delta.y() / 120), event.position().x())
         event.accept()
 
-    def _show_cursor(self, hit: Hit) -> None:
+    def _show_cursor(self, hit: SegmentHit) -> None:
         shape = Qt.CursorShape
         by_part = dict.fromkeys(("start", "end", "peak"), shape.SizeHorCursor)
         by_part |= {"gap": shape.CrossCursor, "title": shape.PointingHandCursor}
-        held = isinstance(self.hand.gesture, Pan) or (hit.part == "body" and self.hand.gesture is not None)
+        held = isinstance(self.hand.gesture, SegmentPan) or (
+            hit.part == "body" and self.hand.gesture is not None
+        )
         self.setCursor(shape.ClosedHandCursor if held else by_part.get(hit.part, shape.ArrowCursor))
 
     def _stop_dragging(self) -> bool:

@@ -27,8 +27,8 @@ from PySide6.QtWidgets import QInputDialog, QMenu, QToolTip, QWidget
 
 from app.features.graph.graph_drops import Drop, drop_at, perform
 from app.features.graph.graph_gestures import HeadDrag, LikelihoodDrag, RowDrag
-from app.features.graph.graph_layout import Hit, Layout, arrange
-from app.features.graph.graph_painter import Look, paint
+from app.features.graph.graph_layout import GraphHit, Layout, arrange
+from app.features.graph.graph_painter import GraphLook, paint
 from app.look.plural import many
 from app.look.theme import theme
 from app.project.document import Document
@@ -42,7 +42,7 @@ from metagraph.graph import edits
 from metagraph.graph.expand import size
 from metagraph.graph.model import KINDS, LAYERS, Action, Kind, Project
 
-NOTHING = Hit("nothing")
+NOTHING = GraphHit("nothing")
 HOVER = 350  # milliseconds over a row before it plays, over a chip during a drag before it becomes current
 HERO_RATE = 12  # pictures a second of the stance in the middle
 SLOW = 0.015  # seconds of drawing for each of which a picture of it is left out
@@ -145,7 +145,7 @@ class Canvas(QWidget):
         paint(
             painter,
             self.layout_now(),
-            Look(
+            GraphLook(
                 theme=look,
                 project=project,
                 selected=self.session.selection.actions,
@@ -195,7 +195,7 @@ class Canvas(QWidget):
                 for node in self.layout_now().nodes.values():
                     self.update(node.rect.toAlignedRect())
 
-    def point(self, drop: Drop | None, hit: Hit, arrow: tuple[QPointF, QPointF] | None) -> None:
+    def point(self, drop: Drop | None, hit: GraphHit, arrow: tuple[QPointF, QPointF] | None) -> None:
         """Show an arrow that is being dragged, and what letting it go would do; or none any more."""
         self._drop, self._drop_hit, self._arrow = drop, hit, arrow
         self.update()
@@ -302,7 +302,7 @@ class Canvas(QWidget):
         if hit.area in ("chip", "card") and hit.ident:
             self.rename_stance(hit.ident)
 
-    def _set_hover(self, hit: Hit) -> None:
+    def _set_hover(self, hit: GraphHit) -> None:
         rows = ("row", "head")
         left = self.hover.area in rows and hit.area not in rows
         self.hover = hit
@@ -362,7 +362,7 @@ class Canvas(QWidget):
             return True
         return super().event(event)
 
-    def _tip(self, hit: Hit) -> str:
+    def _tip(self, hit: GraphHit) -> str:
         action = self.document.project.action(hit.ident) if hit.ident else None
         if hit.area == "bar" and action is not None:
             return f"Likelihood {action.likelihood:g}: drag to change"
@@ -407,7 +407,7 @@ class Canvas(QWidget):
             event.ignore()
         self.update()
 
-    def _what(self, hit: Hit, load: Load) -> Drop:
+    def _what(self, hit: GraphHit, load: Load) -> Drop:
         return drop_at(
             self.document.project,
             self.session.place.layer,
@@ -467,11 +467,11 @@ class Canvas(QWidget):
         stance = self.session.place.stance()
         new = kind == "stance" and bool(load.clips)
         hit = (
-            Hit("card", stance, "stance")
+            GraphHit("card", stance, "stance")
             if new
-            else Hit("loop", stance, "stance")
+            else GraphHit("loop", stance, "stance")
             if kind == "stance"
-            else Hit("node", None, kind)
+            else GraphHit("node", None, kind)
         )
         drop = self._what(hit, load)
         if drop.possible:

@@ -6,7 +6,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
-from app.features.graph.graph_layout import Hit
+from app.features.graph.graph_layout import GraphHit
 from app.project.load import ANNOTATIONS, Load
 from metagraph.graph.edits import EditError, move_actions, place, refusal, to_stance
 from metagraph.graph.model import Kind, Layer, Project
@@ -27,7 +27,7 @@ class Drop:
 
 
 def drop_at(
-    project: Project, layer: Layer, stance: str | None, other: str | None, hit: Hit, load: Load
+    project: Project, layer: Layer, stance: str | None, other: str | None, hit: GraphHit, load: Load
 ) -> Drop:
     """Return what dropping `load` on `hit` does; the current stance and the other stance say where."""
     if not load:

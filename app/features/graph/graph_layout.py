@@ -24,7 +24,7 @@ Area = Literal["chip", "add", "card", "loop", "node", "row", "bar", "head", "oth
 
 
 @dataclass(frozen=True)
-class Hit:
+class GraphHit:
     """What lies under a point. ident: stance or action id. kind: of the node."""
 
     area: Area
@@ -76,31 +76,31 @@ class Layout:
     foot: QRectF
     stance: str | None
 
-    def hit(self, at: QPointF, dragging: bool = False) -> Hit:
+    def hit(self, at: QPointF, dragging: bool = False) -> GraphHit:
         """Return what lies under a point; `dragging` splits the card into "a new stance" and "another
         loop".
         """
         for chip in self.chips:
             if chip.rect.contains(at):
-                return Hit("add") if chip.stance is None else Hit("chip", chip.stance)
+                return GraphHit("add") if chip.stance is None else GraphHit("chip", chip.stance)
         for node in self.nodes.values():
             if not node.rect.contains(at):
                 continue
             if node.other.contains(at) and not dragging:
-                return Hit("other", None, node.kind)
+                return GraphHit("other", None, node.kind)
             for row in node.rows:
                 if row.bar.adjusted(-4, -6, 4, 6).contains(at):
-                    return Hit("bar", row.action.id, node.kind)
+                    return GraphHit("bar", row.action.id, node.kind)
                 if row.head.contains(at) and not dragging:
-                    return Hit("head", row.action.id, node.kind)
+                    return GraphHit("head", row.action.id, node.kind)
                 if row.rect.contains(at):
-                    return Hit("row", row.action.id, node.kind)
-            return Hit("node", None, node.kind)
+                    return GraphHit("row", row.action.id, node.kind)
+            return GraphHit("node", None, node.kind)
         if self.card.contains(at):
             if dragging and self.stance is not None and self.loops.contains(at):
-                return Hit("loop", self.stance, "stance")
-            return Hit("card", self.stance, "stance")
-        return Hit("nothing")
+                return GraphHit("loop", self.stance, "stance")
+            return GraphHit("card", self.stance, "stance")
+        return GraphHit("nothing")
 
     def row(self, action: str) -> GraphRow | None:
         return next(

@@ -9,13 +9,13 @@ from PySide6.QtCore import QPointF, QRectF, Qt
 from PySide6.QtGui import QColor, QFont, QFontMetricsF, QImage, QPainter, QPainterPath, QPen, QRegion
 
 from app.features.graph.graph_drops import Drop
-from app.features.graph.graph_layout import GRID, Chip, Hit, Layout, Node, bar_part
+from app.features.graph.graph_layout import GRID, Chip, GraphHit, Layout, Node, bar_part
 from app.look.plural import short
 from app.look.theme import KIND_MARKS, KIND_TITLES, Theme
 from metagraph.graph.model import Action, Kind, Project
 
 RADIUS = 8.0
-NOWHERE = Hit("nothing")
+NOWHERE = GraphHit("nothing")
 TEACH = {
     "gesture": "Drop clips that mean something\nor beat time: a shrug, a point.",
     "fidget": "Drop small habits here:\na scratch, tapping fingers.",
@@ -24,13 +24,13 @@ TEACH = {
 
 
 @dataclass(frozen=True)
-class Look:
+class GraphLook:
     """Everything that is drawn besides the layout."""
 
     theme: Theme
     project: Project
     selected: Collection[str] = ()
-    hover: Hit = NOWHERE
+    hover: GraphHit = NOWHERE
     focus: str | None = None
     playing: Collection[str] = ()  # actions under the playhead
     misfits: dict[str, str] = field(default_factory=dict)  # action -> what is wrong with its ends
@@ -38,12 +38,14 @@ class Look:
     chip_pictures: dict[str, QImage] = field(default_factory=dict)
     other: str | None = None
     drop: Drop | None = None
-    drop_hit: Hit = NOWHERE
+    drop_hit: GraphHit = NOWHERE
     arrow: tuple[QPointF, QPointF] | None = None  # being dragged, from where to where
     sentence: str = ""
 
 
-def paint(painter: QPainter, layout: Layout, look: Look, font: QFont, stale: QRegion | None = None) -> None:
+def paint(
+    painter: QPainter, layout: Layout, look: GraphLook, font: QFont, stale: QRegion | None = None
+) -> None:
     """Draw a canvas. stale: the part that is to be drawn anew, None for all; while the stance moves that is
     little.
     """
@@ -105,7 +107,7 @@ def _elided(font: QFont, text: str, width: float) -> str:
     return QFontMetricsF(font).elidedText(text, Qt.TextElideMode.ElideRight, width)
 
 
-def _curves(painter: QPainter, layout: Layout, look: Look) -> None:
+def _curves(painter: QPainter, layout: Layout, look: GraphLook) -> None:
     """Join the stance to its nodes: thicker with more actions, dashed when there are none."""
     card = layout.card
     for kind, node in layout.nodes.items():
@@ -131,7 +133,7 @@ def _curves(painter: QPainter, layout: Layout, look: Look) -> None:
         painter.drawPath(path)
 
 
-def _chip(painter: QPainter, chip: Chip, layout: Layout, look: Look, font: QFont) -> None:
+def _chip(painter: QPainter, chip: Chip, layout: Layout, look: GraphLook, font: QFont) -> None:
     t = look.theme
     target = look.drop is not None and (
         (look.drop_hit.area == "add" and chip.stance is None)
@@ -189,7 +191,7 @@ def _chip(painter: QPainter, chip: Chip, layout: Layout, look: Look, font: QFont
         )
 
 
-def _card(painter: QPainter, layout: Layout, look: Look, font: QFont) -> None:
+def _card(painter: QPainter, layout: Layout, look: GraphLook, font: QFont) -> None:
     t, card = look.theme, layout.card
     dragging = look.drop is not None
     stance = look.project.stance(layout.stance)
@@ -251,7 +253,7 @@ def _card(painter: QPainter, layout: Layout, look: Look, font: QFont) -> None:
         _offer(painter, zone, look, "stance", font)
 
 
-def _offer(painter: QPainter, rect: QRectF, look: Look, kind: Kind, font: QFont) -> None:
+def _offer(painter: QPainter, rect: QRectF, look: GraphLook, kind: Kind, font: QFont) -> None:
     """Say in a dashed box what a drop will do, or why it will not."""
     assert look.drop is not None
     t = look.theme
@@ -268,7 +270,7 @@ def _offer(painter: QPainter, rect: QRectF, look: Look, kind: Kind, font: QFont)
     )
 
 
-def _node(painter: QPainter, node: Node, layout: Layout, look: Look, font: QFont) -> None:
+def _node(painter: QPainter, node: Node, layout: Layout, look: GraphLook, font: QFont) -> None:
     t = look.theme
     target = (
         look.drop is not None
@@ -319,7 +321,7 @@ def _node(painter: QPainter, node: Node, layout: Layout, look: Look, font: QFont
         _offer(painter, free, look, node.kind, font)
 
 
-def _other(painter: QPainter, node: Node, look: Look, font: QFont) -> None:
+def _other(painter: QPainter, node: Node, look: GraphLook, font: QFont) -> None:
     """The chooser of the stance that dropped transitions end in."""
     t, rect = look.theme, node.other
     found = look.project.stance(look.other)
@@ -337,7 +339,7 @@ def _other(painter: QPainter, node: Node, look: Look, font: QFont) -> None:
 
 
 def _row(
-    painter: QPainter, action: Action, rect: QRectF, bar: QRectF, kind: Kind, look: Look, font: QFont
+    painter: QPainter, action: Action, rect: QRectF, bar: QRectF, kind: Kind, look: GraphLook, font: QFont
 ) -> None:
     t = look.theme
     selected, hover = (

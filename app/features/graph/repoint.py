@@ -6,17 +6,17 @@ from collections.abc import Sequence
 from typing import TYPE_CHECKING
 
 from app.features.graph.graph_drops import Drop
-from app.features.graph.graph_layout import Hit
+from app.features.graph.graph_layout import GraphHit
 from metagraph.graph import edits
 from metagraph.graph.model import Project
 
 if TYPE_CHECKING:
     pass
 
-NOWHERE = Hit("nothing")
+NOWHERE = GraphHit("nothing")
 
 
-def repoint_at(project: Project, actions: Sequence[str], hit: Hit) -> Drop:
+def repoint_at(project: Project, actions: Sequence[str], hit: GraphHit) -> Drop:
     """Return what letting the heads of transitions go on `hit` does."""
     stance = project.stance(hit.ident) if hit.area == "chip" else None
     if stance is None:

@@ -24,7 +24,7 @@ from PySide6.QtWidgets import QMenu, QToolTip, QWidget
 
 from app.features.manual import manual_commands as commands
 from app.features.manual import manual_painter as painter
-from app.features.manual.manual_gestures import Band, DrawLink, Move, Pan
+from app.features.manual.manual_gestures import Band, DrawLink, ManualPan, Move
 from app.features.manual.manual_overlay import Marks, paint_over, plays
 from app.features.manual.manual_pictures import Pictures
 from app.features.manual.manual_scene import NODE, NOTHING, ManualScene, ManualView, fitted
@@ -192,10 +192,10 @@ class ManualCanvas(QWidget):
 
     # --- painting
 
-    def _look(self, scene: ManualScene) -> painter.Look:
+    def _look(self, scene: ManualScene) -> painter.ManualLook:
         s = self.session
         pictures = self.pictures.of(scene, self.view, self.devicePixelRatioF())
-        return painter.Look(
+        return painter.ManualLook(
             theme(s.look.name),
             self.document.project,
             scene,
@@ -294,7 +294,7 @@ class ManualCanvas(QWidget):
             button in (Qt.MouseButton.MiddleButton, Qt.MouseButton.RightButton)
             or keys & Qt.KeyboardModifier.AltModifier
         ):
-            self.hand.take(Pan(self), at)
+            self.hand.take(ManualPan(self), at)
             return
         if button != Qt.MouseButton.LeftButton:
             return
@@ -341,7 +341,11 @@ class ManualCanvas(QWidget):
         gesture = self.hand.let_go(event.position())
         if gesture is None:
             return
-        if isinstance(gesture, Pan) and not gesture.begun and event.button() == Qt.MouseButton.RightButton:
+        if (
+            isinstance(gesture, ManualPan)
+            and not gesture.begun
+            and event.button() == Qt.MouseButton.RightButton
+        ):
             self._menu(event.position())
         hit = self.scene().hit(self.view.back(event.position()), self.view.scale)
         plain = not event.modifiers() and event.button() == Qt.MouseButton.LeftButton

@@ -13,7 +13,7 @@ from PySide6.QtWidgets import QMenu
 from app.features.manual.arranging import arranged
 from app.features.manual.manual_host import ManualHost
 from app.features.manual.manual_painter import facts, words_of
-from app.features.manual.manual_scene import Hit
+from app.features.manual.manual_scene import ManualHit
 from app.project.load import Load
 from metagraph.graph import manual_edits
 from metagraph.graph.manual import ANY, Link
@@ -153,7 +153,7 @@ def for_key(canvas: ManualHost, event: QKeyEvent) -> Run | None:
     return None
 
 
-def fill(out: QMenu, canvas: ManualHost, hit: Hit) -> None:
+def fill(out: QMenu, canvas: ManualHost, hit: ManualHit) -> None:
     """Fill a menu with what can be done with what is under the mouse; it is selected, unless it is
     already.
     """
@@ -207,7 +207,7 @@ def drop_words(project: Project, load: Load) -> tuple[bool, str]:
     return why is None, words[:1].upper() + words[1:]
 
 
-def tip(canvas: ManualHost, hit: Hit) -> str:
+def tip(canvas: ManualHost, hit: ManualHit) -> str:
     """Return what to say about what is under the mouse."""
     manual = canvas.scene().manual
     trouble = canvas.troubles.get(hit.ident, "")

@@ -5,14 +5,14 @@ from __future__ import annotations
 from PySide6.QtCore import QPointF, QRectF, Qt
 
 from app.features.manual.manual_host import ManualHost
-from app.features.manual.manual_scene import Hit
+from app.features.manual.manual_scene import ManualHit
 from app.widgets.gesture import PressDrag, Reason
 from metagraph.graph import manual_edits
 
 SNAP = 8.0  # units to which nodes come to rest
 
 
-class Pan(PressDrag):
+class ManualPan(PressDrag):
     """Moves what is seen."""
 
     def __init__(self, host: ManualHost) -> None:
@@ -116,7 +116,7 @@ class DrawLink(PressDrag):
     def update(self, at: QPointF, free: bool = False) -> None:
         if not self.caught(at):
             return
-        hit: Hit = self.host.scene().hit(self.host.view.back(at), self.host.view.scale)
+        hit: ManualHit = self.host.scene().hit(self.host.view.back(at), self.host.view.scale)
         self.target, self.words = "", ""
         if hit.area in ("node", "edge"):
             why = manual_edits.link_refusal(

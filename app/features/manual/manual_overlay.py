@@ -9,7 +9,7 @@ from PySide6.QtCore import QPointF, QRectF, Qt
 from PySide6.QtGui import QColor, QPainter, QPen
 
 from app.features.manual import manual_painter as painter
-from app.features.manual.manual_scene import Hit
+from app.features.manual.manual_scene import ManualHit
 from app.stage.playback_source import Shown
 from metagraph.graph.model import Layer
 from metagraph.playback.manual_playback import clip_seconds
@@ -27,7 +27,7 @@ class Marks:
     """
 
     dragged: Mapping[str, tuple[float, float]]
-    hover: Hit
+    hover: ManualHit
     source: str
     end: QPointF
     target: str
@@ -51,7 +51,7 @@ def plays(shown: Shown, layer: Layer, seconds: float) -> tuple[str, float]:
     )
 
 
-def paint_over(p: QPainter, look: painter.Look, marks: Marks, rect: QRectF) -> None:
+def paint_over(p: QPainter, look: painter.ManualLook, marks: Marks, rect: QRectF) -> None:
     """Paint what changes under the mouse. rect: the widget."""
     links = look.scene.manual.links
     dim, strong = QColor(look.theme.dim), QColor(look.theme.text)
@@ -83,7 +83,7 @@ def paint_over(p: QPainter, look: painter.Look, marks: Marks, rect: QRectF) -> N
         p.drawText(rect.adjusted(20, 20, -20, -20), where, marks.dropping or EMPTY)
 
 
-def _nodes(p: QPainter, look: painter.Look, marks: Marks) -> None:
+def _nodes(p: QPainter, look: painter.ManualLook, marks: Marks) -> None:
     over = {marks.hover.ident} if marks.hover.area in ("node", "edge") else set()
     for ident in dict.fromkeys((*marks.dragged, *look.states, *over, marks.source, marks.target)):
         if ident in look.scene.nodes:

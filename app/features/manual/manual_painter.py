@@ -25,7 +25,7 @@ LABELS = 40  # arrows, up to which each tells what it waits for
 
 
 @dataclass(frozen=True)
-class Look:
+class ManualLook:
     """What is painted. pictures: clip id -> its picture, as large as it is shown. troubles: state or link id
     -> words.
     """
@@ -42,7 +42,7 @@ class Look:
 
 
 def paint_still(
-    painter: QPainter, look: Look, rect: QRectF, without: Collection[str] = (), fast: bool = False
+    painter: QPainter, look: ManualLook, rect: QRectF, without: Collection[str] = (), fast: bool = False
 ) -> None:
     """Paint ground, arrows and nodes as they are unselected. without: nodes left out, with their arrows.
     fast: lines without smoothing.
@@ -69,7 +69,7 @@ def mixed(a: str, b: str, part: float) -> QColor:
     )
 
 
-def _grid(painter: QPainter, look: Look, rect: QRectF) -> None:
+def _grid(painter: QPainter, look: ManualLook, rect: QRectF) -> None:
     step = GRID * look.view.scale
     if step < 9:
         step *= 4
@@ -87,7 +87,7 @@ def _grid(painter: QPainter, look: Look, rect: QRectF) -> None:
     painter.drawLines(lines)
 
 
-def _arrows(painter: QPainter, look: Look, rect: QRectF, gone: Collection[str], fast: bool) -> None:
+def _arrows(painter: QPainter, look: ManualLook, rect: QRectF, gone: Collection[str], fast: bool) -> None:
     scene, view = look.scene, look.view
     lines = (scene.lines - np.array([view.x, view.y, view.x, view.y])) * view.scale
     keep = np.array([x.id not in gone for x in scene.straight], bool) if gone else np.ones(len(lines), bool)
@@ -151,7 +151,7 @@ def _loop(painter: QPainter, view: ManualView, circle: QRectF, color: QColor, wi
 
 
 def paint_link(
-    painter: QPainter, look: Look, link: Link, color: QColor, width: float, told: bool = True
+    painter: QPainter, look: ManualLook, link: Link, color: QColor, width: float, told: bool = True
 ) -> None:
     """Paint one arrow on top of all. told: with what it waits for."""
     painter.setRenderHint(QPainter.RenderHint.Antialiasing, True)
@@ -185,7 +185,7 @@ def words_of(link: Link) -> str:
     return "" if link.exit_time is None else f"{link.exit_time:g} s"
 
 
-def _label(painter: QPainter, look: Look, link: Link, color: QColor | None = None) -> None:
+def _label(painter: QPainter, look: ManualLook, link: Link, color: QColor | None = None) -> None:
     words = words_of(link)
     trouble = link.id in look.troubles
     if not words and not trouble:
@@ -212,7 +212,7 @@ def _label(painter: QPainter, look: Look, link: Link, color: QColor | None = Non
 
 def paint_node(
     painter: QPainter,
-    look: Look,
+    look: ManualLook,
     ident: str,
     selected: bool = False,
     hover: bool = False,
@@ -264,7 +264,7 @@ def paint_node(
         painter.drawLine(c + QPointF(0, -1.5), c + QPointF(0, 1.5))
 
 
-def _start(painter: QPainter, look: Look, rect: QRectF) -> None:
+def _start(painter: QPainter, look: ManualLook, rect: QRectF) -> None:
     """Mark the state in which the layer begins: an arrow that comes from nowhere."""
     size = max(10.0, 26 * look.view.scale)
     color, y = QColor(look.theme.text), rect.center().y()
@@ -276,7 +276,7 @@ def _start(painter: QPainter, look: Look, rect: QRectF) -> None:
     )
 
 
-def _whole(painter: QPainter, look: Look, state: State, rect: QRectF) -> None:
+def _whole(painter: QPainter, look: ManualLook, state: State, rect: QRectF) -> None:
     t, scale = look.theme, look.view.scale
     side = rect.height() - 12 * scale
     place = QRectF(rect.left() + 6 * scale, rect.top() + 6 * scale, side, side)
@@ -344,7 +344,7 @@ def facts(project: Project, state: State) -> str:
     return "  ".join(words)
 
 
-def _small(painter: QPainter, look: Look, state: State, rect: QRectF) -> None:
+def _small(painter: QPainter, look: ManualLook, state: State, rect: QRectF) -> None:
     """Write a name where there is no room for more: in two lines, or in one what it ends with, which tells it
     from its like.
     """
@@ -366,7 +366,7 @@ def _small(painter: QPainter, look: Look, state: State, rect: QRectF) -> None:
         )
 
 
-def paint_playing(painter: QPainter, look: Look, ident: str, part: float) -> None:
+def paint_playing(painter: QPainter, look: ManualLook, ident: str, part: float) -> None:
     """Show that a state plays, and how far it is, 0..1: a line along its bottom."""
     box = look.scene.nodes.get(ident)
     if box is None:
@@ -379,7 +379,7 @@ def paint_playing(painter: QPainter, look: Look, ident: str, part: float) -> Non
     painter.drawLine(QPointF(left, y), QPointF(left + wide * min(1.0, max(0.0, part)), y))
 
 
-def paint_port(painter: QPainter, look: Look, ident: str, at: QPointF) -> None:
+def paint_port(painter: QPainter, look: ManualLook, ident: str, at: QPointF) -> None:
     """Show on a node's border that a link can be drawn from here. at: a point of the widget."""
     box = look.scene.nodes[ident]
     rect = QRectF(look.view.to(box.topLeft()), look.view.to(box.bottomRight()))
@@ -398,7 +398,7 @@ def paint_port(painter: QPainter, look: Look, ident: str, at: QPointF) -> None:
             return
 
 
-def paint_map(painter: QPainter, look: Look, place: QRectF, size: QRectF) -> None:
+def paint_map(painter: QPainter, look: ManualLook, place: QRectF, size: QRectF) -> None:
     """Paint all nodes small, and which part is shown. place: where; size: the widget."""
     t, bounds = look.theme, look.scene.bounds.united(look.view.rect(size.size()))
     scale = min(place.width() / max(1, bounds.width()), place.height() / max(1, bounds.height()))

@@ -67,7 +67,7 @@ def fitted(rect: QRectF, size: QSizeF, most: float = 1.0) -> ManualView:
 
 
 @dataclass(frozen=True)
-class Hit:
+class ManualHit:
     """What is under a point. "edge" is a node's border, from which links are drawn. ident: a state's or
     link's id, or ANY.
     """
@@ -76,7 +76,7 @@ class Hit:
     ident: str = ""
 
 
-NOTHING = Hit("nothing")
+NOTHING = ManualHit("nothing")
 
 
 class ManualScene:
@@ -148,7 +148,7 @@ class ManualScene:
 
     # --- what is where
 
-    def hit(self, at: QPointF, scale: float) -> Hit:
+    def hit(self, at: QPointF, scale: float) -> ManualHit:
         """Return what is under a point, the last drawn first: nodes over arrows."""
         outer = 4 / scale
         ring = min(EDGE / scale, 13.0)
@@ -156,15 +156,15 @@ class ManualScene:
             rect = self.nodes[ident]
             if rect.adjusted(-outer, -outer, outer, outer).contains(at):
                 inner = rect.adjusted(ring, ring, -ring, -ring)
-                return Hit("node" if inner.contains(at) else "edge", ident)
+                return ManualHit("node" if inner.contains(at) else "edge", ident)
         return self.link_at(at, NEAR / scale)
 
-    def link_at(self, at: QPointF, near: float) -> Hit:
+    def link_at(self, at: QPointF, near: float) -> ManualHit:
         """Return the arrow within `near` units of a point, the nearest of several."""
         for ident, circle in self.loops.items():
             away = np.hypot(at.x() - circle.center().x(), at.y() - circle.center().y())
             if abs(away - LOOP) <= near:
-                return Hit("link", ident)
+                return ManualHit("link", ident)
         if not len(self.lines):
             return NOTHING
         start, end = self.lines[:, :2], self.lines[:, 2:]
@@ -174,7 +174,7 @@ class ManualScene:
         part = np.clip(((point - start) * along).sum(1) / length, 0, 1)
         away = np.hypot(*(start + along * part[:, None] - point).T)
         nearest = int(away.argmin())
-        return Hit("link", self.straight[nearest].id) if away[nearest] <= near else NOTHING
+        return ManualHit("link", self.straight[nearest].id) if away[nearest] <= near else NOTHING
 
     def inside(self, band: QRectF) -> tuple[tuple[str, ...], tuple[str, ...]]:
         """Return the states and links a rubber band takes: nodes it touches, or where there are none the

@@ -10,7 +10,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 from PySide6.QtCore import QPointF
 
-from app.features.conversation.segment_hits import Hit, hit_at, pitch_maxima, snapped, word_edges
+from app.features.conversation.segment_hits import SegmentHit, hit_at, pitch_maxima, snapped, word_edges
 from app.features.conversation.segment_lanes import LEAST, farthest, lanes, pitch_y, visible, words_in
 from app.widgets.lane_geometry import LEFT, RULER, Scale
 from metagraph.graph.conversation import Conversation, Segment, Side, Word
@@ -33,7 +33,7 @@ TALK = Conversation(
 )
 
 
-def at(seconds: float, side: int = 0, row: str = "segments") -> Hit:
+def at(seconds: float, side: int = 0, row: str = "segments") -> SegmentHit:
     lane = getattr(lanes(*SIZE)[side], row)
     return hit_at(TALK, SCALE, SIZE, QPointF(SCALE.x(seconds), lane.center().y()))
 
@@ -49,34 +49,34 @@ def test_lanes_follow_each_other_and_fit(height: float) -> None:
 
 
 def test_a_segment_is_held_by_its_ends_or_its_body() -> None:
-    assert at(1.5) == Hit("body", 0, 0)
-    assert at(1.02) == Hit("start", 0, 0)
-    assert at(0.97) == Hit("start", 0, 0)
-    assert at(2.97) == Hit("end", 0, 1)
-    assert at(1.5, 1) == Hit("body", 1, 0)
-    assert at(3.5) == Hit("gap", 0)
+    assert at(1.5) == SegmentHit("body", 0, 0)
+    assert at(1.02) == SegmentHit("start", 0, 0)
+    assert at(0.97) == SegmentHit("start", 0, 0)
+    assert at(2.97) == SegmentHit("end", 0, 1)
+    assert at(1.5, 1) == SegmentHit("body", 1, 0)
+    assert at(3.5) == SegmentHit("gap", 0)
 
 
 def test_where_two_touch_each_is_held_from_its_own_side() -> None:
-    assert at(1.98) == Hit("end", 0, 0)
-    assert at(2.02) == Hit("start", 0, 1)
+    assert at(1.98) == SegmentHit("end", 0, 0)
+    assert at(2.02) == SegmentHit("start", 0, 1)
 
 
 def test_a_narrow_segment_can_still_be_taken_by_its_body_and_by_its_ends() -> None:
-    assert at(4.025) == Hit("body", 0, 2)
-    assert at(3.97) == Hit("start", 0, 2)
-    assert at(4.09) == Hit("end", 0, 2)
+    assert at(4.025) == SegmentHit("body", 0, 2)
+    assert at(3.97) == SegmentHit("start", 0, 2)
+    assert at(4.09) == SegmentHit("end", 0, 2)
 
 
 def test_only_clauses_have_a_stress_to_take_hold_of() -> None:
-    assert at(1.52, row="wave") == Hit("peak", 0, 0)
-    assert at(1.7, row="wave") == Hit("wave", 0)
-    assert at(1.2, 1, "wave") == Hit("wave", 1)
+    assert at(1.52, row="wave") == SegmentHit("peak", 0, 0)
+    assert at(1.7, row="wave") == SegmentHit("wave", 0)
+    assert at(1.2, 1, "wave") == SegmentHit("wave", 1)
 
 
 def test_names_and_the_ruler_are_no_segments() -> None:
     lane = lanes(*SIZE)[1]
-    assert hit_at(TALK, SCALE, SIZE, QPointF(LEFT - 5, lane.segments.center().y())) == Hit("title", 1)
+    assert hit_at(TALK, SCALE, SIZE, QPointF(LEFT - 5, lane.segments.center().y())) == SegmentHit("title", 1)
     assert hit_at(TALK, SCALE, SIZE, QPointF(LEFT + 50, 4)).part == "ruler"
     assert hit_at(TALK, SCALE, SIZE, QPointF(3, 4)).part == "nothing"
 

@@ -6,7 +6,7 @@ import pytest
 from PySide6.QtCore import QMimeData, QUrl
 
 from app.features.graph.graph_drops import drop_at, perform
-from app.features.graph.graph_layout import Hit
+from app.features.graph.graph_layout import GraphHit
 from app.project.load import Load
 from app.widgets.mime import load_of, mime
 from metagraph.graph import edits
@@ -18,11 +18,11 @@ def project(toy):
     return toy.project()
 
 
-def at(area: str, ident: str | None = None, kind: str | None = None) -> Hit:
-    return Hit(area, ident, kind)
+def at(area: str, ident: str | None = None, kind: str | None = None) -> GraphHit:
+    return GraphHit(area, ident, kind)
 
 
-NODE = {kind: Hit("node", None, kind) for kind in ("gesture", "fidget", "transition")}
+NODE = {kind: GraphHit("node", None, kind) for kind in ("gesture", "fidget", "transition")}
 
 
 @pytest.mark.parametrize(
@@ -58,7 +58,7 @@ def test_a_drop_of_clips_says_what_it_will_do_and_does_it(toy, project, hit, cou
     rest, up = toy.id(project, "rest"), toy.id(project, "up")
     ids = {"rest": rest, "up": up, None: None}
     if hit.area in ("loop", "chip"):
-        hit = Hit(hit.area, ids[hit.ident], "stance")
+        hit = GraphHit(hit.area, ids[hit.ident], "stance")
     load = Load(clips=tuple(project.clips)[:count])
     drop = drop_at(project, "arms", rest, up, hit, load)
     assert drop.possible
@@ -74,14 +74,14 @@ def test_a_drop_of_clips_says_what_it_will_do_and_does_it(toy, project, hit, cou
 @pytest.mark.parametrize("area", ["nothing", "start"])
 def test_beside_the_nodes_nothing_can_be_dropped(toy, project, area):
     drop = drop_at(
-        project, "arms", toy.id(project, "rest"), None, Hit(area), Load(clips=tuple(project.clips)[:1])
+        project, "arms", toy.id(project, "rest"), None, GraphHit(area), Load(clips=tuple(project.clips)[:1])
     )
     assert not drop.possible
     assert drop.words == "drop on one of the nodes"
 
 
 def test_something_else_than_clips_is_refused_with_what_can_be_dropped(project):
-    assert "only clips" in drop_at(project, "arms", None, None, Hit("card"), Load()).words
+    assert "only clips" in drop_at(project, "arms", None, None, GraphHit("card"), Load()).words
 
 
 @pytest.mark.parametrize("kind", ["gesture", "fidget", "transition"])
@@ -120,7 +120,7 @@ def test_a_clip_of_another_skeleton_is_refused_by_name(toy, project):
 
 def test_files_can_be_dropped_before_there_is_any_clip():
     empty, files = Project(), Load(files=("/a/b.bvh", "/a/c.glb"))
-    drop = drop_at(empty, "arms", None, None, Hit("card"), files)
+    drop = drop_at(empty, "arms", None, None, GraphHit("card"), files)
     assert drop.possible
     assert drop.words == "drop 2 files as a new stance"
     drop = drop_at(empty, "arms", None, None, NODE["gesture"], files)
@@ -142,7 +142,7 @@ def test_actions_dropped_on_a_chip_move_there_and_stay_what_they_are(toy, projec
     up = toy.id(project, "up")
     beat, cough = toy.id(project, "rest beat lf"), toy.id(project, "rest cough")
     load = Load(actions=(beat, cough))
-    drop = drop_at(project, "arms", toy.id(project, "rest"), up, Hit("chip", up), load)
+    drop = drop_at(project, "arms", toy.id(project, "rest"), up, GraphHit("chip", up), load)
     assert drop.possible
     assert drop.words == "move 2 actions to *up*"
     after = perform(project, "arms", drop, load)
@@ -155,7 +155,7 @@ def test_actions_dropped_on_a_chip_move_there_and_stay_what_they_are(toy, projec
 def test_actions_dropped_where_they_are_say_so(toy, project):
     rest = toy.id(project, "rest")
     drop = drop_at(
-        project, "arms", rest, None, Hit("chip", rest), Load(actions=(toy.id(project, "rest cough"),))
+        project, "arms", rest, None, GraphHit("chip", rest), Load(actions=(toy.id(project, "rest cough"),))
     )
     assert not drop.possible
     assert drop.words == "already in *rest*"
@@ -168,7 +168,7 @@ def test_a_transition_cannot_move_to_where_it_ends(toy, project):
         "arms",
         toy.id(project, "rest"),
         up,
-        Hit("chip", up),
+        GraphHit("chip", up),
         Load(actions=(toy.id(project, "rest to up"),)),
     )
     assert not drop.possible
@@ -181,7 +181,7 @@ def test_an_action_makes_no_new_stance_but_its_clip_can(toy, project):
         "arms",
         toy.id(project, "rest"),
         None,
-        Hit("card"),
+        GraphHit("card"),
         Load(actions=(toy.id(project, "rest cough"),)),
     )
     assert not drop.possible

@@ -6,30 +6,32 @@ import pytest
 from PySide6.QtCore import QPoint, QPointF, QSizeF, Qt
 from PySide6.QtTest import QTest
 
-from app.features.graph.graph_layout import Hit, arrange
+from app.features.graph.graph_layout import GraphHit, arrange
 from app.features.graph.repoint import repoint_at
 from metagraph.graph import edits
 from metagraph.graph.model import Project
 
 
 def test_nothing_is_pointed_at_nothing():
-    assert not repoint_at(Project(), ["a1"], Hit("nothing")).possible
-    assert not repoint_at(Project(), [], Hit("chip", "s1")).possible
+    assert not repoint_at(Project(), ["a1"], GraphHit("nothing")).possible
+    assert not repoint_at(Project(), [], GraphHit("chip", "s1")).possible
 
 
 def test_what_letting_go_does_is_said(toy):
     project = toy.project()
     up, far, rest = (toy.id(project, n) for n in ("up", "far", "rest"))
     way = toy.id(project, "rest to up")
-    drop = repoint_at(project, [way], Hit("chip", far))
+    drop = repoint_at(project, [way], GraphHit("chip", far))
     assert (drop.possible, drop.end, drop.words) == (True, far, "let go and this transition ends in *far*")
-    assert repoint_at(project, [way], Hit("chip", up)).words == "already ends in *up*"
-    assert repoint_at(project, [way], Hit("chip", rest)).words == "a transition must end in another stance"
-    assert not repoint_at(project, [way], Hit("node", None, "gesture")).possible
+    assert repoint_at(project, [way], GraphHit("chip", up)).words == "already ends in *up*"
+    assert (
+        repoint_at(project, [way], GraphHit("chip", rest)).words == "a transition must end in another stance"
+    )
+    assert not repoint_at(project, [way], GraphHit("node", None, "gesture")).possible
     two = [way, toy.id(project, "far to up")]
-    assert not repoint_at(project, two, Hit("chip", far)).possible, "one of them starts there"
+    assert not repoint_at(project, two, GraphHit("chip", far)).possible, "one of them starts there"
     assert repoint_at(
-        project, [toy.id(project, "up to far"), toy.id(project, "up to rest")], Hit("chip", rest)
+        project, [toy.id(project, "up to far"), toy.id(project, "up to rest")], GraphHit("chip", rest)
     ).words.startswith("let go and 2 transitions end")
 
 

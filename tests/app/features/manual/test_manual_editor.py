@@ -318,21 +318,21 @@ def test_the_view_pans_and_zooms_and_shows_all_again(drawn: Hand) -> None:
 def test_the_menu_draws_a_link_from_click_to_click_and_escape_gives_it_up(drawn: Hand) -> None:
     from app.features.manual.manual_commands import fill
 
-    def menu(hit: Hit) -> QMenu:
+    def menu(hit: ManualHit) -> QMenu:
         out = QMenu(drawn.canvas)
         fill(out, drawn.canvas, hit)
         return out
 
-    from app.features.manual.manual_scene import Hit
+    from app.features.manual.manual_scene import ManualHit
 
     drive = drawn.drive
-    drive.pick(menu(Hit("node", drawn.id("rest wave rt"))), "Draw link from here")
+    drive.pick(menu(ManualHit("node", drawn.id("rest wave rt"))), "Draw link from here")
     drawn.key(Qt.Key.Key_Escape)
     assert drawn.canvas.hand.gesture is None
-    drive.pick(menu(Hit("node", drawn.id("rest wave rt"))), "Draw link from here")
+    drive.pick(menu(ManualHit("node", drawn.id("rest wave rt"))), "Draw link from here")
     drive.click(drawn.middle("rest long"))
     assert drawn.pairs()[-1] == "rest wave rt>rest long"
-    drive.pick(menu(Hit("node", drawn.id("rest long"))), "Start here")
+    drive.pick(menu(ManualHit("node", drawn.id("rest long"))), "Start here")
     assert drawn.machine.start == drawn.id("rest long")
 
 

@@ -12,7 +12,7 @@ from app.features.manual.manual_scene import (
     LOOP,
     NODE,
     NOTHING,
-    Hit,
+    ManualHit,
     ManualScene,
     ManualView,
     fitted,
@@ -64,28 +64,28 @@ def test_nodes_on_top_of_each_other_are_joined_all_the_same() -> None:
 
 def test_a_node_is_hit_inside_and_at_its_border_where_links_begin() -> None:
     scene = ManualScene(machine(FAR, "a>b"))
-    assert scene.hit(QPointF(90, 30), 1.0) == Hit("node", "a")
-    assert scene.hit(QPointF(3, 30), 1.0) == Hit("edge", "a")
-    assert scene.hit(QPointF(NODE.width() + 2, 30), 1.0) == Hit("edge", "a")
+    assert scene.hit(QPointF(90, 30), 1.0) == ManualHit("node", "a")
+    assert scene.hit(QPointF(3, 30), 1.0) == ManualHit("edge", "a")
+    assert scene.hit(QPointF(NODE.width() + 2, 30), 1.0) == ManualHit("edge", "a")
     assert scene.hit(QPointF(-850, -880), 1.0).ident == ANY
 
 
 def test_zoomed_far_out_a_node_keeps_a_middle_to_be_moved_by() -> None:
-    assert ManualScene(machine(FAR)).hit(QPointF(90, 30), 0.1) == Hit("node", "a")
+    assert ManualScene(machine(FAR)).hit(QPointF(90, 30), 0.1) == ManualHit("node", "a")
 
 
 def test_the_nearest_arrow_within_reach_is_hit() -> None:
     scene = ManualScene(machine(FAR, "a>b", "a>c"))
-    assert scene.hit(QPointF(400, 33), 1.0) == Hit("link", "l0")
+    assert scene.hit(QPointF(400, 33), 1.0) == ManualHit("link", "l0")
     assert scene.hit(QPointF(400, 60), 1.0) == NOTHING
-    assert scene.hit(scene.middle("l1"), 1.0) == Hit("link", "l1")
+    assert scene.hit(scene.middle("l1"), 1.0) == ManualHit("link", "l1")
 
 
 def test_an_arrow_back_to_its_own_node_is_a_circle_that_can_be_hit() -> None:
     scene = ManualScene(machine(FAR, "a>a", "a>a"))
     first, second = scene.loops.values()
     assert first != second
-    assert scene.hit(first.center() + QPointF(0, -LOOP), 1.0) == Hit("link", "l0")
+    assert scene.hit(first.center() + QPointF(0, -LOOP), 1.0) == ManualHit("link", "l0")
     assert scene.middle("l0").y() == first.top()
 
 
