@@ -135,15 +135,17 @@ class Places:
         mode = self.session.onstage.mode
         # First what goes: both side by side would want a wider window for a moment, and it would stay so.
         for panel in self.panels.values():
-            if panel.place in ("centre", "beside") and panel.when not in ("any", mode) and panel.id in self._made:
+            if (
+                panel.place in ("centre", "beside")
+                and panel.when not in ("any", mode)
+                and panel.id in self._made
+            ):
                 self._made[panel.id].setVisible(False)
         for panel in self.panels.values():
             if panel.when == mode and mode != "meta":
                 self.panel(panel.id)
-        for panel in self.panels.values():
-            widget = self._made.get(panel.id)
-            if widget is None:
-                continue
+        for ident, widget in self._made.items():
+            panel = self.panels[ident]
             if panel.place == "centre":
                 widget.setVisible(panel.when in ("any", mode))
             elif panel.place == "beside":

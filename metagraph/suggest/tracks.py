@@ -80,8 +80,8 @@ def poses_of(clip: Clip) -> Pose:
 
 
 def stands(rig: TrackRig, poses: Pose) -> tuple[Array, Array]:
-    """Return where a character faces `[F, 2]`, as `points.facing_of`, and where the joints `TrackRig.keep` are
-    `[F, K, 3]`, in the world.
+    """Return where a character faces `[F, 2]`, as `points.facing_of`, and where the joints `TrackRig.keep`
+    are `[F, K, 3]`, in the world.
     """
     turns, at = rig.small.globals(Pose(poses.rotations[:, rig.keep], poses.translations[:, rig.keep]))
     return facing_of(

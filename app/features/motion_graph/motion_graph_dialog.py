@@ -41,6 +41,7 @@ from app.project.document import Document
 from app.project.jobs import Job, Jobs
 from app.stage.session import Session
 from app.widgets.quiet_fields import DoubleSpinBox, SpinBox
+from metagraph.compiling import there
 from metagraph.graph import edits
 from metagraph.graph.conversation_edits import change_side
 from metagraph.graph.model import Project
@@ -48,6 +49,10 @@ from metagraph.graph.model import Project
 KS = (2, 3, 4)  # of the table
 LONG = 4000  # ms after which a wait is explained
 WAIT = "Working… The first time after installing, the search is compiled for this machine: up to a minute."
+LOADING = (
+    "Working… New motion needs a compiler, which is being loaded (60 MB, once); then the search is compiled "
+    "for this machine. That takes a minute or two."
+)
 
 
 class MotionGraphDialog(QDialog):
@@ -274,12 +279,12 @@ class MotionGraphDialog(QDialog):
     def _explain(self) -> None:
         """Say why it takes so long, if it does."""
         if self._job is not None and not self.said.text():
-            self.said.setText(WAIT)
+            self.said.setText(WAIT if there() else LOADING)
 
     def _ended(self) -> None:
         self._job = None
         self._long.stop()
-        if self.said.text() == WAIT:
+        if self.said.text() in (WAIT, LOADING):
             self.said.setText("")
         self.progress.hide()
         self.stop.hide()

@@ -17,7 +17,9 @@ def test_entering_another_mode_makes_the_window_no_wider(toys):
         assert drive.editor.isVisible() is (mode == "manual")
         assert drive.canvas.isVisible() is (mode == "meta")
         inspector = drive.shell.panel("inspector")
-        assert inspector.isVisible() is (mode == "manual") and drive.properties.isVisible() is (mode == "meta")
+        assert inspector.isVisible() is (mode == "manual") and drive.properties.isVisible() is (
+            mode == "meta"
+        )
 
 
 def test_what_stands_beside_the_graph_goes_with_it_and_comes_back(toys):
