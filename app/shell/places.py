@@ -134,13 +134,10 @@ class Places:
         """Show the panels of the mode that is on now; those that were never wanted before are made."""
         mode = self.session.onstage.mode
         # First what goes: both side by side would want a wider window for a moment, and it would stay so.
-        for panel in self.panels.values():
-            if (
-                panel.place in ("centre", "beside")
-                and panel.when not in ("any", mode)
-                and panel.id in self._made
-            ):
-                self._made[panel.id].setVisible(False)
+        for ident, widget in self._made.items():
+            panel = self.panels[ident]
+            if panel.place in ("centre", "beside") and panel.when not in ("any", mode):
+                widget.setVisible(False)
         for panel in self.panels.values():
             if panel.when == mode and mode != "meta":
                 self.panel(panel.id)
