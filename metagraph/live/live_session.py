@@ -439,7 +439,7 @@ class LiveSession:
         if client is not None and client.events:
             event = Event(
                 event="changed",
-                t=rounded(self.now),  # type: ignore[arg-type]
+                t=rounded(self.now),
                 id=ask.ident,
                 state=found.said(ask.missed),  # type: ignore[arg-type]
                 layer=found.layer,

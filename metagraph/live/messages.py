@@ -7,7 +7,7 @@ told as events to those who want them.
 
 from __future__ import annotations
 
-from typing import Annotated, Any, Literal, Union, get_args
+from typing import Annotated, Any, Literal, Union, get_args, overload
 
 import msgspec
 from msgspec import UNSET, Meta, Struct, UnsetType
@@ -154,6 +154,10 @@ _seconds: msgspec.json.Decoder[Any] = msgspec.json.Decoder()
 encode = msgspec.json.Encoder().encode
 
 
+@overload
+def rounded(seconds: float) -> float: ...
+@overload
+def rounded(seconds: None) -> None: ...
 def rounded(seconds: float | None) -> float | None:
     """Return seconds as they are told, to a tenth of a millisecond."""
     return None if seconds is None else round(seconds, 4)

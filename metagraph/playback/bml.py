@@ -128,6 +128,8 @@ class _Reader:
             "priority": self._integer(e, "metagraph:priority", self.priority),
         }
         tags = self._tags(e)
+        layer: Any = e.get("metagraph:layer")  # no word for a layer is refused when the asks are timed
+        limb: Any
         match kind:
             case "gesture" | "pointing":
                 lexeme = e.get("lexeme") or ("" if spelled(e.get("type")) == "lexeme" else e.get("type"))
@@ -135,27 +137,25 @@ class _Reader:
                     lexeme = lexeme or "point"
                     self._note(e, "is a pointing gesture as it was made; it does not aim at its target")
                 hand = spelled(e.get("mode", "hand")).removesuffix("s").removesuffix("hand")
-                limb: Any = hand if hand in ("left", "right", "both") else None
-                layer = e.get("metagraph:layer")
+                limb = hand if hand in ("left", "right", "both") else None
                 more = {"limb": limb, "resume": e.get("metagraph:resume") == "true"}
                 if e.get("name") and not lexeme:
                     ask: Any = a.Play(
                         action=self.words.action(e.get("name"), layer),
-                        layer=layer or None,  # type: ignore[arg-type]
+                        layer=layer or None,
                         **common,
                     )
                 else:
                     ask = self._gesture(tags, lexeme, layer, common | more)
                 return [ask], None
             case "animation":
-                layer = e.get("metagraph:layer")
-                ask = a.Play(action=self.words.action(e.get("name"), layer), layer=layer or None, **common)  # type: ignore[arg-type]
+                ask = a.Play(action=self.words.action(e.get("name"), layer), layer=layer or None, **common)
                 return [ask], None
             case "metagraph:fidget":
                 more = {"limb": e.get("mode").lower() or None, "resume": e.get("metagraph:resume") == "true"}
                 ask = a.Fidget(
                     tags=tags or _listed(e.get("lexeme")),
-                    layer=e.get("metagraph:layer") or "arms",  # type: ignore[arg-type]
+                    layer=layer or "arms",
                     **more,
                     **common,
                 )
@@ -186,12 +186,8 @@ class _Reader:
                 length = self._number(e, "duration", 0.0) or self._number(e, "max-wait", 0.0)
                 return [], {"end": length}
             case "metagraph:change":
-                change = a.Change(
-                    layer=e.get("metagraph:layer") or "arms",  # type: ignore[arg-type]
-                    limb=e.get("mode").lower() or None,  # type: ignore[arg-type]
-                    **common,
-                )
-                return [change], {"end": 1.0}
+                limb = e.get("mode").lower() or None
+                return [a.Change(layer=layer or "arms", limb=limb, **common)], {"end": 1.0}
             case "metagraph:mode":
                 return [a.Behave(mode=e.get("mode") or None, **common)], {"end": 0.0}  # type: ignore[arg-type]
             case "metagraph:place":
