@@ -78,6 +78,7 @@ def run(options: Namespace) -> int:
     if saved:
         save_project(made.project, path, path)
     models = {layer: _layer(layer, acts, options) for layer, acts in reading.observed.items() if acts}
+    notes = [*opened.notes, *doubts]
     data = {
         "annotation": str(options.annotation),
         "seconds": round(reading.annotation.end, 3),
@@ -90,9 +91,9 @@ def run(options: Namespace) -> int:
         "learned": list(made.learned),
         "performance": made.performance,
         "saved": saved,
-        "notes": [*opened.notes, *doubts],
+        "notes": notes,
     }
-    for note in data["notes"]:  # type: ignore[attr-defined]
+    for note in notes:
         print(f"note: {note}", file=sys.stderr)
     print(json.dumps(data) if options.json else "\n".join(_lines(data, reading, path)))
     return 0 if models else 3

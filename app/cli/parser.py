@@ -130,7 +130,7 @@ def main(arguments: Sequence[str] | None = None) -> int:
     try:
         return int(_module(options.command).run(options))
     except BrokenPipeError:  # whoever read our words has read enough
-        sys.stdout = None  # type: ignore[assignment]  # nothing is left to flush
+        sys.stdout = None  # nothing is left to flush
         return 0
     except (FileError, ValueError, RuntimeError) as error:
         return _fail(options, str(error))

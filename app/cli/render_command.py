@@ -256,5 +256,5 @@ def _doing(made: Plan, seconds: float) -> str:
             if (cue := made.layers[layer].cue_at(seconds)) is not None
         ),
         None,
-    )  # type: ignore[index]
+    )
     return cue.action.name if cue is not None else ""

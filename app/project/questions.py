@@ -177,7 +177,7 @@ class DifferencesDialog(QDialog):
                 row, "From the file on disk to what is here", differences(theirs, mine) or ["Nothing"]
             )
         buttons = QDialogButtonBox(QDialogButtonBox.StandardButton.Close, self)
-        strengthen(buttons.button(QDialogButtonBox.StandardButton.Close))  # type: ignore[arg-type]
+        strengthen(buttons.button(QDialogButtonBox.StandardButton.Close))
         buttons.rejected.connect(self.reject)
         layout.addWidget(buttons)
 
@@ -186,7 +186,8 @@ class DifferencesDialog(QDialog):
         label = QLabel(title, self)
         label.setProperty("title", True)
         column.addWidget(label)
-        shown = QListWidget(self, wordWrap=True)
+        shown = QListWidget(self)
+        shown.setWordWrap(True)
         shown.setAccessibleName(title)
         shown.addItems(list(lines))
         column.addWidget(shown)

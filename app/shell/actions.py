@@ -85,7 +85,8 @@ class Actions:
             if command.keys:
                 # A platform's standard key may be the one that is given beside it; twice, it would be
                 # ambiguous.
-                action.setShortcuts(list(dict.fromkeys(QKeySequence(k).toString() for k in command.keys)))
+                keys_once = dict.fromkeys(QKeySequence(k).toString() for k in command.keys)
+                action.setShortcuts([QKeySequence(k) for k in keys_once])
             keys = action.shortcut().toString(QKeySequence.SequenceFormat.NativeText)
             tip = command.tip or command.plain
             action.setToolTip(f"{tip} ({keys})" if keys else tip)

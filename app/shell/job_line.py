@@ -6,6 +6,7 @@ from PySide6.QtCore import Qt, Signal
 from PySide6.QtWidgets import QHBoxLayout, QLabel, QProgressBar, QToolButton, QWidget
 
 from app.project.jobs import Jobs
+from app.widgets.making import make_widget
 
 
 class JobLine(QWidget):
@@ -20,7 +21,7 @@ class JobLine(QWidget):
         row.setContentsMargins(0, 0, 0, 0)
         self.label, self.bar = QLabel(self), QProgressBar(self)
         self.bar.setFixedWidth(180)
-        self.cancel = QToolButton(self, text="Cancel", toolTip="Cancel this job")
+        self.cancel = make_widget(QToolButton, self, text="Cancel", toolTip="Cancel this job")
         self.cancel.clicked.connect(self._cancel)
         for widget in (self.label, self.bar, self.cancel):
             row.addWidget(widget)

@@ -8,7 +8,7 @@ from pathlib import Path
 from typing import Any
 
 from PySide6.QtCore import QEvent, QSettings, Qt, QTimer
-from PySide6.QtGui import QCloseEvent, QDragEnterEvent, QDragMoveEvent, QDropEvent
+from PySide6.QtGui import QCloseEvent, QDragEnterEvent, QDragMoveEvent, QDropEvent, QKeyEvent
 from PySide6.QtWidgets import QAbstractButton, QApplication, QComboBox, QMainWindow
 
 from app.look import icons
@@ -82,8 +82,9 @@ class Window(QMainWindow):
         self.setAcceptDrops(True)
         self.shell = shell = WindowShell(self)
         session = shell.stage.session
-        if shell.settings.value("theme") in ("dark", "light"):
-            session.look.name = str(shell.settings.value("theme"))  # type: ignore[assignment]
+        kept = shell.settings.value("theme")
+        if kept == "dark" or kept == "light":
+            session.look.name = kept
         apply(_application(), theme(session.look.name))
         self.contributions = [*(contribute(shell) for contribute in features), self._own()]
         self.places = shell.places = shell.services.add(
@@ -238,9 +239,13 @@ class Window(QMainWindow):
     def event(self, event: QEvent) -> bool:
         # Asked last, when what has the keyboard does not want a key for itself: the space bar presses a
         # focused button.
-        if event.type() == QEvent.Type.ShortcutOverride and event.key() == Qt.Key.Key_Space:  # type: ignore[attr-defined]
+        if (
+            event.type() == QEvent.Type.ShortcutOverride
+            and isinstance(event, QKeyEvent)
+            and event.key() == Qt.Key.Key_Space
+        ):
             focus = QApplication.focusWidget()
-            if isinstance(focus, QAbstractButton | QComboBox) and not event.modifiers():  # type: ignore[attr-defined]
+            if isinstance(focus, QAbstractButton | QComboBox) and not event.modifiers():
                 event.accept()
                 return True
         return super().event(event)

@@ -9,7 +9,7 @@ from __future__ import annotations
 
 import sys
 from collections.abc import Callable
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import moderngl
 import numpy as np
@@ -33,10 +33,11 @@ from preview.scene import DARK, Scene, Theme
 
 Compose = Callable[[], Scene]
 GL_RENDERER = 0x1F01
+_Base: Any = QWidget if TYPE_CHECKING else object
 
 
-class CameraMouse:
-    """Mouse to camera, for any widget that has `camera` and `camera_changed`."""
+class CameraMouse(_Base):
+    """Mouse to camera, for any widget that has `frame_wanted`."""
 
     camera: Camera
 
@@ -54,25 +55,25 @@ class CameraMouse:
             return
         delta = event.position() - self._last
         self._last = event.position()
-        buttons, height = event.buttons(), max(1, self.height())  # type: ignore[attr-defined]
+        buttons, height = event.buttons(), max(1, self.height())
         shift = bool(event.modifiers() & Qt.KeyboardModifier.ShiftModifier)
         if buttons & Qt.MouseButton.LeftButton and not shift:
             self.camera = self.camera.orbit(delta.x() / height, delta.y() / height)
         else:
             self.camera = self.camera.pan(delta.x() / height, delta.y() / height)
         self.moved_by_hand = True
-        self.update()  # type: ignore[attr-defined]
+        self.update()
 
     def mouseReleaseEvent(self, event: QMouseEvent) -> None:
         self._last = None
 
     def mouseDoubleClickEvent(self, event: QMouseEvent) -> None:
-        self.frame_wanted.emit()  # type: ignore[attr-defined]
+        self.frame_wanted.emit()
 
     def wheelEvent(self, event: QWheelEvent) -> None:
         self.camera = self.camera.zoom(event.angleDelta().y() / 120)
         self.moved_by_hand = True
-        self.update()  # type: ignore[attr-defined]
+        self.update()
         event.accept()
 
 

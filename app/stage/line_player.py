@@ -70,7 +70,7 @@ class Sound(QObject):
             s.line: one.project.lines[s.line]
             for one in both
             for s in one.plan.track.speeches
-            if s.line in one.project.lines
+            if s.line is not None and s.line in one.project.lines
         }
 
     def _want(self, lines: Mapping[str, Line]) -> None:

@@ -14,10 +14,11 @@ from PySide6.QtCore import QElapsedTimer, QObject, Qt, QTimer, Signal
 
 from metagraph.graph.model import Project
 from metagraph.graph.requests import AnyAsk, Performance
+from metagraph.live import OSC_PORT, PORT
 from metagraph.live.live_session import LiveSession
 from metagraph.live.messages import HeardMessage, Reply
 from metagraph.live.relay import Relay
-from metagraph.live.server import OSC_PORT, PORT, LiveError, Options
+from metagraph.live.server import LiveError, Options
 from metagraph.live.tape import Tape
 from metagraph.live.tick_work import Out
 from metagraph.playback.extend_performance import Answer, answers

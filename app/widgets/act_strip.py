@@ -6,7 +6,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 
-from PySide6.QtCore import QPointF, QRectF, Qt
+from PySide6.QtCore import QEvent, QPointF, QRectF, Qt
 from PySide6.QtGui import QColor, QFontMetricsF, QHelpEvent, QMouseEvent, QPainter, QPaintEvent, QWheelEvent
 from PySide6.QtWidgets import QToolTip, QWidget
 
@@ -71,7 +71,7 @@ class Strip(QWidget):
         """Pixels a second."""
         return max(1.0, self.width() - self.left - 8) / self.seconds * self.zoom
 
-    def x(self, seconds: float) -> float:
+    def x_at(self, seconds: float) -> float:
         return self.left + (seconds - self.first) * self.each()
 
     def lane(self, row: int) -> QRectF:
@@ -85,7 +85,7 @@ class Strip(QWidget):
             for act in reversed(acts):
                 top, height = place(lane, act, layer)
                 width = max(NARROWEST, act.length * self.each())
-                if QRectF(self.x(act.start), top, width, height).contains(at):
+                if QRectF(self.x_at(act.start), top, width, height).contains(at):
                     return layer, act
         return None
 
@@ -127,7 +127,7 @@ class Strip(QWidget):
         step = next((s for s in STEPS if s * each >= 58), STEPS[-1])
         painter.setPen(QColor(t.dim))
         n = int(self.first // step)
-        while (x := self.x(n * step)) < self.width() - 4:
+        while (x := self.x_at(n * step)) < self.width() - 4:
             if x >= self.left - 1:
                 width = 80.0
                 box = (
@@ -178,7 +178,7 @@ class Strip(QWidget):
     def mouseReleaseEvent(self, event: QMouseEvent) -> None:
         self._grip = None
 
-    def event(self, event: object) -> bool:
+    def event(self, event: QEvent) -> bool:
         if isinstance(event, QHelpEvent):
             found = self.act_at(QPointF(event.pos()))
             words = ""
@@ -190,4 +190,4 @@ class Strip(QWidget):
                 )
             QToolTip.showText(event.globalPos(), words, self)
             return True
-        return super().event(event)  # type: ignore[arg-type]
+        return super().event(event)

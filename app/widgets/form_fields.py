@@ -50,7 +50,8 @@ class Field(QLineEdit):
     """A line of text. `show_text` shows what the project says, unless the same thing is just being edited."""
 
     def __init__(self, parent: QWidget | None, tip: str, name: str) -> None:
-        super().__init__(parent, toolTip=tip)
+        super().__init__(parent)
+        self.setToolTip(tip)
         self.setAccessibleName(name)
         self._of: object = None
         self._shown = ""

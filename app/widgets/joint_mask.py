@@ -17,6 +17,7 @@ from PySide6.QtWidgets import (
 
 from app.project.document import Document
 from app.stage.session import Session
+from app.widgets.tree_items import items_below
 from metagraph.graph import edits
 from metagraph.graph.model import Project
 
@@ -88,7 +89,7 @@ class MaskDialog(QDialog):
         while below:
             one = below.pop()
             one.setCheckState(0, item.checkState(0))
-            below += [one.child(n) for n in range(one.childCount())]
+            below += items_below(one)
         self.tree.blockSignals(False)
 
     def _all(self, on: bool) -> None:

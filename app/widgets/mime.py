@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from pathlib import Path
 
-from PySide6.QtCore import QMimeData, Qt
+from PySide6.QtCore import QMimeData, QRectF, Qt
 from PySide6.QtGui import QFontMetricsF, QPainter, QPixmap
 from PySide6.QtWidgets import QWidget
 
@@ -58,7 +58,7 @@ def drag_picture(text: str, widget: QWidget) -> QPixmap:
     painter.setBrush(widget.palette().toolTipBase())
     painter.setPen(widget.palette().mid().color())
     rect = out.deviceIndependentSize()
-    painter.drawRoundedRect(0.5, 0.5, rect.width() - 1, rect.height() - 1, 6, 6)
+    painter.drawRoundedRect(QRectF(0.5, 0.5, rect.width() - 1, rect.height() - 1), 6, 6)
     painter.setPen(widget.palette().text().color())
     painter.setFont(widget.font())
     painter.drawText(0, 0, round(rect.width()), round(rect.height()), Qt.AlignmentFlag.AlignCenter, text)

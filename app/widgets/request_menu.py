@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable
+from functools import partial
 from typing import Any
 
 from PySide6.QtWidgets import QInputDialog, QMenu, QWidget
@@ -119,23 +120,23 @@ def _layer_items(menu: QMenu, project: Project, layer: Layer, at: float | None, 
     kinds: tuple[tuple[str, Any], ...] = (("gesture", a.Gesture), ("fidget", a.Fidget))
     for kind, made in kinds:
         if any(x.kind == kind for x in graph.actions.values()):
-            menu.addAction(f"A {kind}", lambda m=made, k=kind: ask(m(layer=layer, at=at), f"Ask for a {k}"))
+            menu.addAction(f"A {kind}", partial(ask, made(layer=layer, at=at), f"Ask for a {kind}"))
     tags = sorted({tag for x in graph.actions.values() if x.kind == "gesture" for tag in x.tags})
     if tags:
         tagged = menu.addMenu("A gesture that is …")
         for tag in tags:
             tagged.addAction(
-                tag, lambda tag=tag: ask(a.Gesture(layer=layer, at=at, tags=(tag,)), "Ask for a gesture")
+                tag, partial(ask, a.Gesture(layer=layer, at=at, tags=(tag,)), "Ask for a gesture")
             )
     certain = menu.addMenu("A certain one …")
     for stance in graph.stances.values():
-        some = [x for k in ("gesture", "fidget") for x in graph.of(stance.id, k)]  # type: ignore[arg-type]
-        inner = certain.addMenu(stance.name) if some else None
+        some = [*graph.of(stance.id, "gesture"), *graph.of(stance.id, "fidget")]
+        if not some:
+            continue
+        inner = certain.addMenu(stance.name)
         for x in some:
-            inner.addAction(
-                f"{KIND_MARKS[x.kind]} {x.name}",
-                lambda x=x: ask(a.Play(action=x.id, at=at), f"Ask for {x.name}"),
-            )  # type: ignore[union-attr]
+            words = f"{KIND_MARKS[x.kind]} {x.name}"
+            inner.addAction(words, partial(ask, a.Play(action=x.id, at=at), f"Ask for {x.name}"))
     certain.menuAction().setVisible(not certain.isEmpty())
     if layer == "head":
         menu.addSeparator()
@@ -144,7 +145,7 @@ def _layer_items(menu: QMenu, project: Project, layer: Layer, at: float | None, 
     menu.addSeparator()
     for stance in graph.stances.values():
         menu.addAction(
-            f"Go to {stance.name}", lambda s=stance: ask(a.Go(stance=s.id, at=at), f"Ask for {s.name}")
+            f"Go to {stance.name}", partial(ask, a.Go(stance=stance.id, at=at), f"Ask for {stance.name}")
         )
     if graph.into:
         menu.addAction(
@@ -157,7 +158,7 @@ def _stage_items(menu: QMenu, parent: QWidget, document: Document, at: float | N
     said = menu.addMenu("Say")
     for ident, line in project.lines.items():
         words = line.text if len(line.text) < 48 else line.text[:46] + "…"
-        said.addAction(f"{ident}: {words}", lambda i=ident: ask(a.Say(line=i, at=at), "Ask for a line"))
+        said.addAction(f"{ident}: {words}", partial(ask, a.Say(line=ident, at=at), "Ask for a line"))
     if project.lines:
         said.addSeparator()
     said.addAction("Other words…", lambda: _say(parent, at, ask))
@@ -165,18 +166,18 @@ def _stage_items(menu: QMenu, parent: QWidget, document: Document, at: float | N
     for name in dict.fromkeys(("user", *project.points)):
         looks.addAction(
             name.capitalize() if name == "user" else name,
-            lambda n=name: ask(a.Look(to=n, at=at), "Ask for a look"),
+            partial(ask, a.Look(to=name, at=at), "Ask for a look"),
         )
     looks.addAction("Ahead", lambda: ask(a.Look(to="ahead", at=at), "Ask for a look"))
     looks.addSeparator()
     for word, point in DIRECTIONS.items():
-        looks.addAction(word, lambda p=point: ask(a.Look(to=p, at=at, duration=2.0), "Ask for a look"))
+        looks.addAction(word, partial(ask, a.Look(to=point, at=at, duration=2.0), "Ask for a look"))
     looks.addSeparator()
     looks.addAction("Another point…", lambda: _point(parent, document, at, ask))
     menu.addAction("Blink", lambda: ask(a.Blink(at=at), "Ask for a blink"))
     modes = menu.addMenu("Mode")
     for mode in MODES:
-        modes.addAction(MODE_WORDS[mode], lambda m=mode: ask(a.Behave(mode=m, at=at), "Ask for a mode"))
+        modes.addAction(MODE_WORDS[mode], partial(ask, a.Behave(mode=mode, at=at), "Ask for a mode"))
     modes.addAction("As it comes", lambda: ask(a.Behave(mode=None, at=at), "Ask for a mode"))
 
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from pathlib import Path
 
 from PySide6.QtWidgets import QFileDialog
@@ -206,9 +207,9 @@ def choose_character(shell: Shell) -> None:
     path = relative(Path(name), folder) if folder is not None else Path(name).as_posix()
     left = document.project.character
 
-    def done(morphs: object) -> None:
+    def done(morphs: Sequence[str]) -> None:
         if document.folder == folder and document.project.character == left:
-            document.edit("Choose character", lambda p: with_morphs(edits.set_character(p, path), morphs))  # type: ignore[arg-type]
+            document.edit("Choose character", lambda p: with_morphs(edits.set_character(p, path), morphs))
 
     shell.jobs.start(
         f"Reading {Path(name).name}",

@@ -14,6 +14,7 @@ from app.stage.performance import Performance
 from app.stage.playback_source import ASIDE
 from app.stage.playhead import Playhead
 from app.stage.session import Session
+from app.widgets.making import make_widget
 from app.widgets.quiet_fields import ComboBox, Slider
 from metagraph.graph import anatomy
 from metagraph.graph.model import LAYERS, Project
@@ -89,7 +90,7 @@ class PreviewPanel(QWidget):
         row.setSpacing(2)
 
         def button(tip: str, slot: object, checkable: bool = False) -> QToolButton:
-            out = QToolButton(self, toolTip=tip, checkable=checkable)
+            out = make_widget(QToolButton, self, toolTip=tip, checkable=checkable)
             out.setFocusPolicy(Qt.FocusPolicy.TabFocus)
             out.setAccessibleName(tip.split(" (")[0])
             out.clicked.connect(slot)
@@ -125,7 +126,7 @@ class PreviewPanel(QWidget):
         lines = QVBoxLayout()
         lines.setContentsMargins(12, 0, 12, 8)
         lines.setSpacing(2)
-        self.caption, self.base = QLabel("", self), QLabel("", self, toolTip=BASE_TIP)
+        self.caption, self.base = QLabel("", self), make_widget(QLabel, "", self, toolTip=BASE_TIP)
         for label in (self.caption, self.base):
             label.setProperty("dim", True)
             label.setSizePolicy(QSizePolicy.Policy.Ignored, QSizePolicy.Policy.Preferred)

@@ -269,9 +269,9 @@ class Marks(QStyledItemDelegate):
         return QSize(84, ROW)
 
     def paint(self, painter: QPainter, option: QStyleOptionViewItem, index: Index) -> None:
-        t, rect = theme(self.session.look.name), QRectF(option.rect)  # type: ignore[attr-defined]
+        t, rect = theme(self.session.look.name), QRectF(option.rect)
         painter.save()
-        if option.state & QStyle.StateFlag.State_Selected:  # type: ignore[attr-defined]
+        if option.state & QStyle.StateFlag.State_Selected:
             painter.fillRect(rect, QColor(t.hover))
         painter.setRenderHint(QPainter.RenderHint.Antialiasing)
         value = index.data(CELL)
@@ -283,7 +283,7 @@ class Marks(QStyledItemDelegate):
             disc = QRectF(rect.center().x() - MARK / 2, rect.center().y() - MARK / 2, MARK, MARK)
             draw_half(painter, t, disc, "in", value.enter)
             draw_half(painter, t, disc, "out", value.leave)
-            if option.state & QStyle.StateFlag.State_HasFocus:  # type: ignore[attr-defined]
+            if option.state & QStyle.StateFlag.State_HasFocus:
                 painter.setPen(QPen(QColor(t.text), 1.4))
                 painter.setBrush(Qt.BrushStyle.NoBrush)
                 painter.drawRoundedRect(rect.adjusted(2, 2, -2, -2), 4, 4)

@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING
 
 from PySide6.QtWidgets import QFileDialog, QInputDialog
 
+from app.project.document import Edit
 from app.project.files import Files
 from app.project.speech_files import SOUNDS, TRANSCRIPTS, beside, kinds_of
 from metagraph.errors import FileError
@@ -147,8 +148,8 @@ def write_segments(shell: Shell) -> None:
     shell.tell(f"Wrote {path.name}")
 
 
-def _edit(shell: Shell, text: str, function: object) -> None:
+def _edit(shell: Shell, text: str, function: Edit) -> None:
     try:
-        shell.document.edit(text, function)  # type: ignore[arg-type]
+        shell.document.edit(text, function)
     except EditError as error:
         shell.tell(str(error))

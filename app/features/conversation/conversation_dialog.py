@@ -37,6 +37,7 @@ from app.project.jobs import Job, Jobs
 from app.project.speech_files import TRANSCRIPTS, facts_of
 from app.stage.session import Session
 from app.widgets.act_strip import clock
+from app.widgets.making import make_widget
 from metagraph.graph import conversation_edits
 from metagraph.graph.conversation import HESITATIONS, RESPONSES, SPOKEN, Conversation, Side
 from metagraph.graph.model import Project
@@ -138,8 +139,11 @@ class ImportDialog(QDialog):
         row = QHBoxLayout()
         row.setSpacing(10)
         self.cards = (Card("First speaker", self), Card("Second speaker", self))
-        self.swap = QToolButton(
-            self, text="⇄", toolTip="Swap the two: who stands left, and is driven by this project's own graph"
+        self.swap = make_widget(
+            QToolButton,
+            self,
+            text="⇄",
+            toolTip="Swap the two: who stands left, and is driven by this project's own graph",
         )
         self.swap.setAccessibleName("Swap the two")
         self.swap.clicked.connect(self.swap_sides)
@@ -172,16 +176,22 @@ class ImportDialog(QDialog):
         row.addWidget(caption("Found", self, True))
         self.files = QLabel(self, wordWrap=True)
         row.addWidget(self.files, 1)
-        self.add_words = QToolButton(
-            self, text="Add words…", toolTip="A transcript: TextGrid, ELAN, WebVTT, SRT, JSON or CTM"
+        self.add_words = make_widget(
+            QToolButton,
+            self,
+            text="Add words…",
+            toolTip="A transcript: TextGrid, ELAN, WebVTT, SRT, JSON or CTM",
         )
         self.add_words.clicked.connect(self.ask_words)
-        self.other_words = QToolButton(
-            self, text="Swap words", toolTip="The words that were taken for the one's are the other's"
+        self.other_words = make_widget(
+            QToolButton,
+            self,
+            text="Swap words",
+            toolTip="The words that were taken for the one's are the other's",
         )
         self.other_words.clicked.connect(self.swap_words)
-        self.no_words = QToolButton(
-            self, text="Without words", toolTip="Read the sound alone: by loudness and pauses"
+        self.no_words = make_widget(
+            QToolButton, self, text="Without words", toolTip="Read the sound alone: by loudness and pauses"
         )
         self.no_words.clicked.connect(lambda: self.take_words(()))
         for button in (self.add_words, self.other_words, self.no_words):
@@ -196,9 +206,9 @@ class ImportDialog(QDialog):
         self.bar = QProgressBar(self, textVisible=False)
         self.bar.setRange(0, 0)
         self.bar.setFixedWidth(150)
-        self.stop = QToolButton(self, text="Stop", toolTip="Stop reading; the dialog stays")
+        self.stop = make_widget(QToolButton, self, text="Stop", toolTip="Stop reading; the dialog stays")
         self.stop.clicked.connect(self.stop_reading)
-        self.again = QToolButton(self, text="Read again", toolTip="Read the files once more")
+        self.again = make_widget(QToolButton, self, text="Read again", toolTip="Read the files once more")
         self.again.clicked.connect(self.start)
         for widget in (self.bar, self.told, self.stop, self.again):
             row.addWidget(widget)

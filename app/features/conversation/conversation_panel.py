@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from PySide6.QtCore import Qt, QTimer, Signal
-from PySide6.QtGui import QDragEnterEvent, QDragMoveEvent, QDropEvent, QResizeEvent
+from PySide6.QtGui import QDragMoveEvent, QDropEvent, QResizeEvent
 from PySide6.QtWidgets import QHBoxLayout, QLabel, QMenu, QToolButton, QVBoxLayout, QWidget
 
 from app.features.conversation.segment_editing import Editing
@@ -15,6 +15,7 @@ from app.look.theme import SOUND_MARKS, theme
 from app.project.document import Document
 from app.project.jobs import Jobs
 from app.stage.session import Session
+from app.widgets.making import make_widget
 from app.widgets.mime import sounds_of
 from app.widgets.quiet_fields import ComboBox
 from app.widgets.sentence import Sentence
@@ -65,7 +66,9 @@ class ConversationPanel(QWidget):
             lambda _: self.session.onstage.set_conversation(self.stage.currentData())
         )
         row.addWidget(self.stage)
-        self.more = QToolButton(self, text="…", toolTip="Rename, rates, word lists, export, remove")
+        self.more = make_widget(
+            QToolButton, self, text="…", toolTip="Rename, rates, word lists, export, remove"
+        )
         self.more.setAccessibleName("Conversations")
         self.more.setPopupMode(QToolButton.ToolButtonPopupMode.InstantPopup)
         self.more_menu = QMenu(self)
@@ -77,7 +80,8 @@ class ConversationPanel(QWidget):
         self.legend = QLabel(self, textFormat=Qt.TextFormat.RichText)
         self.legend.setToolTip("Clauses, responses and hesitations. Keys 1, 2 and 3 label the selected ones.")
         row.addWidget(self.legend)
-        self.add = QToolButton(
+        self.add = make_widget(
+            QToolButton,
             self,
             text="From sound…",
             toolTip="Read a conversation from sound files, and their words if there are any",
@@ -140,12 +144,12 @@ class ConversationPanel(QWidget):
 
     # --- drops
 
-    def dragEnterEvent(self, event: QDragEnterEvent) -> None:
+    def dragEnterEvent(self, event: QDragMoveEvent) -> None:
         if sounds_of(event.mimeData()):
             event.acceptProposedAction()
 
     def dragMoveEvent(self, event: QDragMoveEvent) -> None:
-        self.dragEnterEvent(event)  # type: ignore[arg-type]
+        self.dragEnterEvent(event)
 
     def dropEvent(self, event: QDropEvent) -> None:
         paths = sounds_of(event.mimeData())

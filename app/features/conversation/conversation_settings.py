@@ -26,6 +26,7 @@ from PySide6.QtWidgets import (
 from app.look.theme import SOUND_MARKS, strengthen
 from app.project.document import Document
 from app.project.speech_files import SOUNDS, channels_of
+from app.widgets.making import make_widget
 from app.widgets.quiet_fields import ComboBox, DoubleSpinBox
 from metagraph.formats.store import SUFFIX, relative
 from metagraph.graph import conversation_edits
@@ -71,7 +72,9 @@ class WordLists(QWidget):
         ):
             row = QHBoxLayout()
             row.addWidget(caption(f"{SOUND_MARKS[kind]}  {title}", self), 1)
-            reset = QToolButton(self, text="Usual", toolTip="The list as it comes with the program")
+            reset = make_widget(
+                QToolButton, self, text="Usual", toolTip="The list as it comes with the program"
+            )
             reset.clicked.connect(
                 lambda _=False, n=column, words=usual: self.edits[n].setPlainText(", ".join(words))
             )
@@ -201,7 +204,9 @@ class RatesDialog(SettingDialog):
             row_of = QHBoxLayout()
             row_of.setSpacing(2)
             for actor, words in ACTORS.items():
-                button = QToolButton(self, text=f"As {words}", toolTip=f"The rates of {words} in the paper")
+                button = make_widget(
+                    QToolButton, self, text=f"As {words}", toolTip=f"The rates of {words} in the paper"
+                )
                 button.clicked.connect(
                     lambda _=False, side=side, rates=conversation_edits.PAPER[actor]: self.take(side, rates)
                 )
@@ -266,7 +271,7 @@ class SidesDialog(SettingDialog):
                 (top + 2, "Choose a sound file", self.choose),
                 (top + 4, "Choose a project", self.choose_project),
             ):
-                button = QToolButton(self, text="Choose…", toolTip=tip)
+                button = make_widget(QToolButton, self, text="Choose…", toolTip=tip)
                 button.clicked.connect(lambda _=False, side=side, choose=choose: choose(side))
                 grid.addWidget(button, row, 2)
             grid.setRowMinimumHeight(top + 5, 6)

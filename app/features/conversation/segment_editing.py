@@ -112,8 +112,10 @@ class Editing(QObject):
         if was is now or not self.chosen:
             return
         kept: set[Place] = set()
-        for side, at in self.chosen if was is not None and now is not None else ():
-            old, new = was.sides[side].segments, now.sides[side].segments  # type: ignore[union-attr]
+        for side, at in self.chosen:
+            if was is None or now is None:
+                break
+            old, new = was.sides[side].segments, now.sides[side].segments
             if len(old) == len(new):
                 kept.add((side, at))
             elif at < len(old):

@@ -71,9 +71,10 @@ def _segment(conversation: Conversation, side: int, scale: Scale, x: float) -> S
         inner = EDGE if right - left > NARROW else 0.0
         if left <= x <= right and (inner == 0.0 or left + inner < x < right - inner):
             return SegmentHit("body", side, n)
-        for part, inside in (("start", x - left), ("end", right - x)):
+        ends: dict[Part, float] = {"start": x - left, "end": right - x}
+        for part, inside in ends.items():
             if -EDGE <= inside <= inner:
-                edges.append((round(abs(inside), 3), inside < 0, SegmentHit(part, side, n)))  # type: ignore[arg-type]
+                edges.append((round(abs(inside), 3), inside < 0, SegmentHit(part, side, n)))
     return min(edges, key=lambda e: e[:2])[2] if edges else SegmentHit("gap", side)
 
 

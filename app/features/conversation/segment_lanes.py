@@ -19,7 +19,7 @@ from metagraph.graph.conversation import Segment, Word
 
 GAP = 8.0  # pixels between the two
 WORDS, SEGMENTS, TALLEST = 17.0, 26.0, 190.0  # pixels of the words, of the segments, of a side at most
-LEAST = 2 * 74 + GAP + 4 + RULER  # pixels all of it needs
+LEAST = round(2 * 74 + GAP + 4 + RULER)  # pixels all of it needs
 HERTZ = (60.0, 500.0)  # from the bottom to the top of a waveform; an octave is as high everywhere
 AXIS = (100.0, 200.0, 400.0)
 NEAREST = 400.0  # pixels a second at most

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Collection, Sequence
+from collections.abc import Callable, Collection, Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -148,7 +148,13 @@ def _wave(painter: QPainter, t: Theme, scene: SegmentScene, side: int, lane: Seg
 
 
 def _curve(
-    painter: QPainter, of: Envelope, scene: SegmentScene, area: QRectF, color: QColor, y: object, thick: float
+    painter: QPainter,
+    of: Envelope,
+    scene: SegmentScene,
+    area: QRectF,
+    color: QColor,
+    y: Callable[[np.ndarray], np.ndarray],
+    thick: float,
 ) -> None:
     """Paint an envelope, pixel for pixel of the screen. y: from a value to pixels below the top of the
     area.
@@ -156,7 +162,7 @@ def _curve(
     ratio, wide = scene.ratio, int(area.width() * scene.ratio)
     low, high = of.columns(scene.scale.first, scene.scale.each * ratio, wide)
     there = high >= low
-    top, bottom = (y(np.where(there, v, 1.0)) * ratio for v in (high, low))  # type: ignore[operator]
+    top, bottom = (y(np.where(there, v, 1.0)) * ratio for v in (high, low))
     top, bottom = np.where(there, top, np.inf), np.where(there, bottom, -np.inf)
     top, bottom = joined(top, bottom, thick * ratio)
     picture = painted(top, bottom, int(area.height() * ratio), color)

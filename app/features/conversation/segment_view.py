@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from functools import partial
 
-from PySide6.QtCore import QPointF, QRectF, Qt
+from PySide6.QtCore import QEvent, QPointF, QRectF, Qt
 from PySide6.QtGui import (
     QColor,
     QContextMenuEvent,
@@ -368,7 +368,7 @@ class SegmentView(QWidget):
         super().focusOutEvent(event)
         self.update()
 
-    def event(self, event: object) -> bool:
+    def event(self, event: QEvent) -> bool:
         if isinstance(event, QHelpEvent):
             QToolTip.showText(event.globalPos(), self.tip(QPointF(event.pos())), self)
             return True
@@ -384,7 +384,7 @@ class SegmentView(QWidget):
             if escapes or (deed is not None and (self.editing.chosen or not deed.needs)):
                 event.accept()  # here it is about segments, not about what is selected elsewhere
                 return True
-        return super().event(event)  # type: ignore[arg-type]
+        return super().event(event)
 
     def tip(self, at: QPointF) -> str:
         """Return what to say about what is under a point."""

@@ -25,6 +25,7 @@ from PySide6.QtWidgets import (
 
 from app.look.theme import strengthen
 from app.project.document import Document
+from app.widgets.making import make_widget
 from app.widgets.quiet_fields import ComboBox
 from metagraph.graph import batch
 from metagraph.graph.edits import EditError
@@ -49,7 +50,7 @@ class BatchDialog(QDialog):
         self, document: Document, actions: Sequence[str], title: str, verb: str, parent: QWidget | None = None
     ) -> None:
         super().__init__(parent)
-        self.document, self.actions = document, tuple(actions)
+        self.document, self.edited = document, tuple(actions)
         self.setAttribute(Qt.WidgetAttribute.WA_DeleteOnClose)
         self.setWindowTitle(title)
         self.setMinimumWidth(520)
@@ -84,21 +85,21 @@ class RenameDialog(BatchDialog):
         )
         words.setProperty("dim", True)
         self._page("By pattern", ("Pattern", self.pattern), ("", words))
-        self.find, self.put, self.regex = (
+        self.sought, self.put, self.regex = (
             QLineEdit(self),
             QLineEdit(self),
             QCheckBox("regular expression", self),
         )
-        self.find.setAccessibleName("Find")
+        self.sought.setAccessibleName("Find")
         self.put.setAccessibleName("Replace with")
-        self._page("Find and replace", ("Find", self.find), ("Replace with", self.put), ("", self.regex))
-        self.preview = QTreeWidget(self, rootIsDecorated=False)
+        self._page("Find and replace", ("Find", self.sought), ("Replace with", self.put), ("", self.regex))
+        self.preview = make_widget(QTreeWidget, self, rootIsDecorated=False)
         self.preview.setHeaderLabels(["Now", "Then"])
         self.preview.setColumnWidth(0, 240)
         self.body.addWidget(self.tabs)
         self.body.addWidget(self.preview, 1)
         self.close_up()
-        for line in (self.pattern, self.find, self.put):
+        for line in (self.pattern, self.sought, self.put):
             line.textChanged.connect(self._show)
         self.regex.toggled.connect(self._show)
         self.tabs.currentChanged.connect(self._show)
@@ -116,10 +117,10 @@ class RenameDialog(BatchDialog):
         self.names, words = {}, ""
         try:
             if self.tabs.currentIndex() == 0:
-                self.names = batch.names_by_pattern(project, self.actions, self.pattern.text())
-            elif self.find.text():
+                self.names = batch.names_by_pattern(project, self.edited, self.pattern.text())
+            elif self.sought.text():
                 self.names = batch.names_replaced(
-                    project, self.actions, self.find.text(), self.put.text(), self.regex.isChecked()
+                    project, self.edited, self.sought.text(), self.put.text(), self.regex.isChecked()
                 )
         except EditError as error:
             words = str(error)
@@ -145,7 +146,7 @@ class PasteDialog(BatchDialog):
         super().__init__(document, [a for a in actions if a != source], "Paste properties", "Paste", parent)
         self.source = source
         copied = document.project.action(source)
-        count = len(self.actions)
+        count = len(self.edited)
         name = copied.name if copied is not None else ""
         self.body.addWidget(QLabel(f"From '{name}' to {count} action{'s' if count != 1 else ''}:", self))
         self.boxes = {group: QCheckBox(TITLES[group], self) for group in batch.PROPERTIES}
@@ -157,12 +158,12 @@ class PasteDialog(BatchDialog):
         self._enable()
 
     def _enable(self) -> None:
-        self.go.setEnabled(bool(self.actions) and any(box.isChecked() for box in self.boxes.values()))
+        self.go.setEnabled(bool(self.edited) and any(box.isChecked() for box in self.boxes.values()))
 
     def finish(self) -> None:
         groups = [group for group, box in self.boxes.items() if box.isChecked()]
         try:
-            after = batch.paste(self.document.project, self.source, self.actions, groups)
+            after = batch.paste(self.document.project, self.source, self.edited, groups)
         except EditError as error:
             self.trouble.setText(str(error))
             return
@@ -195,7 +196,7 @@ class ReplaceDialog(BatchDialog):
         self.body.addLayout(form)
         self.body.addWidget(words)
         self.close_up()
-        first = document.project.action(self.actions[0]) if self.actions else None
+        first = document.project.action(self.edited[0]) if self.edited else None
         if first is not None:
             self.clips.setCurrentIndex(self.clips.findData(first.clip))
 
@@ -205,5 +206,5 @@ class ReplaceDialog(BatchDialog):
             self.trouble.setText(f"there is no clip '{self.clips.currentText()}' in the library")
             return
         clip = str(self.clips.itemData(place))
-        self.document.edit("Replace the clip", lambda p: batch.replace_clip(p, self.actions, clip))
+        self.document.edit("Replace the clip", lambda p: batch.replace_clip(p, self.edited, clip))
         self.accept()

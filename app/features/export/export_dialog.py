@@ -35,6 +35,8 @@ from PySide6.QtWidgets import (
 from app.look.theme import strengthen
 from app.project.document import Document
 from app.project.jobs import Job, Jobs
+from app.widgets.making import make_widget
+from app.widgets.tree_items import items_below, top_items
 from metagraph.engines.targets import registry
 from metagraph.engines.targets.placing import ForeignFilesError
 from metagraph.engines.targets.target import ExportTarget, Report
@@ -127,7 +129,7 @@ class ExportDialog(QDialog):
     # --- parts
 
     def _list(self) -> QTreeWidget:
-        out = QTreeWidget(self, headerHidden=True, rootIsDecorated=False)
+        out = make_widget(QTreeWidget, self, headerHidden=True, rootIsDecorated=False)
         out.setAccessibleName("Target")
         out.setFixedWidth(260)
         groups: dict[str, QTreeWidgetItem] = {}
@@ -207,19 +209,9 @@ class ExportDialog(QDialog):
 
     def _select(self, name: str) -> None:
         found = next(
-            i
-            for group in self._groups()
-            for i in (group.child(n) for n in range(group.childCount()))
-            if i.data(0, NAME) == name
+            i for group in top_items(self.targets) for i in items_below(group) if i.data(0, NAME) == name
         )
         self.targets.setCurrentItem(found)
-
-    def _groups(self) -> list[QTreeWidgetItem]:
-        return [
-            item
-            for n in range(self.targets.topLevelItemCount())
-            if (item := self.targets.topLevelItem(n)) is not None
-        ]
 
     @property
     def target(self) -> ExportTarget:

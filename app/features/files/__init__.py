@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from functools import partial
 
 from PySide6.QtCore import Qt
 from PySide6.QtWidgets import QMenu, QMessageBox
@@ -29,7 +30,7 @@ def contribute(shell: Shell) -> Contribution:
 
     def fill_recent(menu: QMenu) -> None:
         for path in files.recent():
-            menu.addAction(f"{path.name.split('.')[0]}   {path.parent}", lambda p=path: files.open(p))
+            menu.addAction(f"{path.name.split('.')[0]}   {path.parent}", partial(files.open, path))
         if menu.isEmpty():
             menu.addAction("None yet").setEnabled(False)
 

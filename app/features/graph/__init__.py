@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from functools import partial
+
 from PySide6.QtWidgets import QButtonGroup, QHBoxLayout, QToolButton, QWidget
 
 from app.features.graph.graph_canvas import Canvas
@@ -11,8 +13,9 @@ from app.shell.actions import Command
 from app.shell.context import Contribution, HeaderItem, Panel, Shell
 from app.shell.verbs import Verbs
 from app.stage.problem_watch import ProblemWatch
+from app.widgets.making import make_widget
 from metagraph.formats.imports import Imported
-from metagraph.graph.model import KINDS, LAYERS, Layer
+from metagraph.graph.model import KINDS, LAYERS, Kind, Layer
 
 LAYER_KEYS: dict[Layer, str] = {"body": "Alt+1", "arms": "Alt+2", "head": "Alt+3"}
 
@@ -57,8 +60,17 @@ def contribute(shell: Shell) -> Contribution:
     some = lambda: bool(session.selection.clips or session.selection.actions)  # noqa: E731
     stances = lambda: list(document.project.graphs[session.place.layer].stances.values())  # noqa: E731
 
+    def label(kind: Kind) -> None:
+        canvas().place_selection(kind)
+
+    def on_layer(layer: Layer) -> bool:
+        return session.place.layer == layer
+
+    def has_stance(place: int) -> bool:
+        return place < len(stances())
+
     def choose(place: int) -> None:
-        if place < len(stances()):
+        if has_stance(place):
             session.place.set_stance(stances()[place].id)
 
     def name(place: int) -> str:
@@ -72,7 +84,7 @@ def contribute(shell: Shell) -> Contribution:
             menu,
             "label",
             f"Label as &{number} {kind}",
-            lambda k=kind: canvas().place_selection(k),
+            partial(label, kind),
             (str(number),),
             enabled=some,
             when="meta",
@@ -86,9 +98,9 @@ def contribute(shell: Shell) -> Contribution:
             menu,
             "layers",
             f"{layer.capitalize()} layer",
-            lambda x=layer: session.place.set_layer(x),
+            partial(session.place.set_layer, layer),
             (LAYER_KEYS[layer],),
-            checked=lambda x=layer: session.place.layer == x,
+            checked=partial(on_layer, layer),
             study=True,
         )
         for layer in LAYERS
@@ -98,11 +110,11 @@ def contribute(shell: Shell) -> Contribution:
             f"stance_{n + 1}",
             menu,
             "stances",
-            lambda n=n: name(n),
-            lambda n=n: choose(n),
+            partial(name, n),
+            partial(choose, n),
             (f"Ctrl+{n + 1}",),
-            enabled=lambda n=n: n < len(stances()),
-            visible=lambda n=n: n < len(stances()),
+            enabled=partial(has_stance, n),
+            visible=partial(has_stance, n),
             when="meta",
             study=True,
         )
@@ -137,7 +149,8 @@ class LayerTabs(QWidget):
         row.setContentsMargins(0, 0, 0, 0)
         row.setSpacing(2)
         for number, layer in enumerate(LAYERS):
-            button = QToolButton(
+            button = make_widget(
+                QToolButton,
                 self,
                 text=layer.capitalize(),
                 checkable=True,

@@ -6,6 +6,7 @@ from __future__ import annotations
 
 import time
 from collections.abc import Sequence
+from functools import partial
 
 from PySide6.QtCore import QEvent, QPoint, QPointF, QSizeF, Qt, QTimer, Signal
 from PySide6.QtGui import (
@@ -72,7 +73,7 @@ class Canvas(QWidget):
             thumbnails,
         )
         self.hand = Hand()
-        self.scroll: dict[Kind, int] = {}
+        self.first_rows: dict[Kind, int] = {}  # in sight of scrolled nodes
         self.row_actions: list[QAction] = []  # the window's commands that go into an action's menu
         self.hover = NOTHING
         self.focus: str | None = None
@@ -119,7 +120,7 @@ class Canvas(QWidget):
                 text: metrics.horizontalAdvance(text)
                 for text in (*names, "no fidgets", "no gestures", "no way out", "no loop")
             }
-            self._layout = arrange(project, layer, stance, QSizeF(self.size()), self.scroll, widths)
+            self._layout = arrange(project, layer, stance, QSizeF(self.size()), self.first_rows, widths)
         return self._layout
 
     def _stale(self) -> None:
@@ -216,7 +217,7 @@ class Canvas(QWidget):
             self.update()
 
     def _moved_on(self) -> None:
-        self.scroll.clear()
+        self.first_rows.clear()
         self._stale()
 
     @property
@@ -342,7 +343,7 @@ class Canvas(QWidget):
         for kind, node in self.layout_now().nodes.items():
             if node.rect.contains(event.position()) and node.most:
                 step = -1 if event.angleDelta().y() > 0 else 1
-                self.scroll[kind] = min(node.most, max(0, node.scroll + step))
+                self.first_rows[kind] = min(node.most, max(0, node.scroll + step))
                 self._stale()
                 event.accept()
                 return
@@ -351,9 +352,10 @@ class Canvas(QWidget):
     def event(self, event: QEvent) -> bool:
         if (
             event.type() == QEvent.Type.ShortcutOverride
+            and isinstance(event, QKeyEvent)
             and self.hand.gesture is not None
             and event.key() == Qt.Key.Key_Escape
-        ):  # type: ignore[attr-defined]
+        ):
             event.accept()  # cancels the drag rather than what the preview shows
             return True
         if event.type() == QEvent.Type.ToolTip and isinstance(event, QHelpEvent):
@@ -530,7 +532,7 @@ class Canvas(QWidget):
         node = self.layout_now().nodes.get(found.kind) if found is not None else None
         if node is not None and found is not None and self.layout_now().row(action) is None:
             ids = [a.id for a in self.document.project.graphs[found.layer].of(found.stance, found.kind)]
-            self.scroll[found.kind] = ids.index(action) // (2 if found.kind == "transition" else 1)
+            self.first_rows[found.kind] = ids.index(action) // (2 if found.kind == "transition" else 1)
             self._stale()
 
     # --- menus and dialogs
@@ -545,14 +547,12 @@ class Canvas(QWidget):
             menu.addSeparator()
             move = menu.addMenu("Move to stance")
             for stance in self.document.project.graphs[self.session.place.layer].stances.values():
-                move.addAction(stance.name, lambda s=stance.id: self._move_to(s))
+                move.addAction(stance.name, partial(self._move_to, stance.id))
             if hit.kind == "transition":
                 ends = menu.addMenu("End in stance")
                 for stance in self.document.project.graphs[self.session.place.layer].stances.values():
                     if stance.id != self.session.place.stance():
-                        ends.addAction(
-                            stance.name, lambda s=stance.id: self.end_in(self.session.selection.actions, s)
-                        )
+                        ends.addAction(stance.name, partial(self._end_selection_in, stance.id))
             menu.addAction("Show clip in the library", self._show_clip)
             menu.addSeparator()
             menu.addActions(self.row_actions)
@@ -581,6 +581,9 @@ class Canvas(QWidget):
         except edits.EditError as error:
             self.refused.emit(str(error))
 
+    def _end_selection_in(self, stance: str) -> None:
+        self.end_in(self.session.selection.actions, stance)
+
     def end_in(self, actions: Sequence[str], stance: str) -> None:
         """Let transitions end in another stance, in one step."""
         try:
@@ -597,7 +600,7 @@ class Canvas(QWidget):
         current, other = self.session.place.stance(), self.session.place.other()
         for stance in self.document.project.graphs[self.session.place.layer].stances.values():
             if stance.id != current:
-                entry = menu.addAction(stance.name, lambda s=stance.id: self.session.place.set_other(s))
+                entry = menu.addAction(stance.name, partial(self.session.place.set_other, stance.id))
                 entry.setCheckable(True)
                 entry.setChecked(stance.id == other)
         if menu.isEmpty():

@@ -160,16 +160,17 @@ def arrange(
     low_top = min(card.bottom() + max(3.0 * GRID, slack * 0.3), bottom - low_h - GRID)
 
     nodes: dict[Kind, Node] = {}
+    lefts: dict[Kind, float] = {"gesture": 2.0 * GRID, "fidget": width - side - 2.0 * GRID}
     beside = (
         max(low_top - 2 * GRID - top, 120.0)
         if wide > width - 2 * side - 6 * GRID
         else max(bottom - top - GRID, 120.0)
     )
-    for kind, left in (("gesture", 2.0 * GRID), ("fidget", width - side - 2.0 * GRID)):
-        actions = graph.of(stance, kind) if stance else ()  # type: ignore[arg-type]
+    for kind, left in lefts.items():
+        actions = graph.of(stance, kind) if stance else ()
         wanted = HEADER + max(len(actions), 2) * ROW + PAD + (ROW if len(actions) else 0)
         h = min(wanted, beside)
-        nodes[kind] = _node(kind, QRectF(left, top, side, h), actions, scroll.get(kind, 0), 1)  # type: ignore[index,arg-type]
+        nodes[kind] = _node(kind, QRectF(left, top, side, h), actions, scroll.get(kind, 0), 1)
     nodes["transition"] = _node(
         "transition",
         QRectF((width - wide) / 2, low_top, wide, low_h),

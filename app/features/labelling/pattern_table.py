@@ -6,7 +6,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass
-from typing import Any
+from typing import Any, cast
 
 from PySide6.QtCore import QAbstractTableModel, QModelIndex, QPersistentModelIndex, QSortFilterProxyModel, Qt
 from PySide6.QtGui import QFont
@@ -14,7 +14,7 @@ from PySide6.QtWidgets import QComboBox, QStyledItemDelegate, QStyleOptionViewIt
 
 from app.widgets.quiet_fields import ComboBox
 from metagraph.graph.words import KINDS, LAYERS, LIMBS
-from metagraph.suggest.words_defaults import DEFAULTS
+from metagraph.suggest.words_defaults import DEFAULTS, Field
 from metagraph.suggest.words_patterns import FIELDS, Patterns, PatternsError, forget, remembered
 
 Index = QModelIndex | QPersistentModelIndex
@@ -63,6 +63,11 @@ class PatternRow:
     meaning: str | None
     count: int = 0
 
+    @property
+    def pattern(self) -> Field:
+        """The field of a row that was not learned."""
+        return cast(Field, self.field)
+
     def texts(self) -> tuple[str, str, str, str]:
         """Return what the columns say."""
         times = "" if not self.count else ", once" if self.count == 1 else f", {self.count} times"
@@ -110,8 +115,8 @@ def without(patterns: Patterns, row: PatternRow) -> Patterns:
             bare = Patterns(bare.changes, {**bare.learned, row.field: words})
         return bare
     if row.source == MINE:
-        return patterns.with_pattern(row.field, row.phrase, DEFAULTS[row.field].get(row.phrase))  # type: ignore[arg-type, index]
-    return patterns.with_pattern(row.field, row.phrase, None)  # type: ignore[arg-type]
+        return patterns.with_pattern(row.pattern, row.phrase, DEFAULTS[row.pattern].get(row.phrase))
+    return patterns.with_pattern(row.pattern, row.phrase, None)
 
 
 def changed(patterns: Patterns, row: PatternRow, phrase: str, meaning: str) -> Patterns:
@@ -120,7 +125,7 @@ def changed(patterns: Patterns, row: PatternRow, phrase: str, meaning: str) -> P
         return remembered(without(patterns, row), row.field, phrase.lower().split(), meaning.strip())
     if phrase != row.phrase and row.source == MINE:
         patterns = without(patterns, row)
-    return patterns.with_pattern(row.field, phrase, meaning.strip())  # type: ignore[arg-type]
+    return patterns.with_pattern(row.pattern, phrase, meaning.strip())
 
 
 class PatternTable(QAbstractTableModel):

@@ -218,13 +218,13 @@ class ReviewDialog(QDialog):
             self.work.tell(self.current, name, value)
             self._play()
 
-    def _pick(self, name: str) -> None:
-        self.row = name  # type: ignore[assignment]
+    def _pick(self, name: Field) -> None:
+        self.row = name
         self._show()
 
-    def _choose(self, name: str, value: Any) -> None:
+    def _choose(self, name: Field, value: Any) -> None:
         """Take a value for a field of the current clip."""
-        self.row = name  # type: ignore[assignment]
+        self.row = name
         if self.current is not None and value != self.review.value(self.current, self.row):
             self._tell(self.row, value)
         self._show()

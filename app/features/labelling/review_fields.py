@@ -14,6 +14,7 @@ from PySide6.QtWidgets import QSizePolicy, QWidget
 
 from app.look.theme import KIND_MARKS, Theme, theme
 from app.stage.session import Session
+from metagraph.suggest.review import Field
 
 TITLE, PAD, CHIP, GAP = (
     78,
@@ -30,7 +31,7 @@ class ReviewRow:
     words.
     """
 
-    name: str
+    name: Field
     title: str
     choices: Sequence[tuple[Any, str]]
     value: Any

@@ -25,6 +25,7 @@ from app.stage.gl_view import make_view
 from app.stage.playback_source import Shown
 from app.stage.session import Session
 from preview.camera import whole_figure
+from preview.figure import Figure
 from preview.scene import THEMES, Actor, Scene
 
 FRAME = 16  # milliseconds between frames
@@ -218,9 +219,9 @@ class ReviewStage(QWidget):
         morphs = figure.morph_weights(self.shown.morphs(self.seconds)) if figure.morphs else None
         return Scene((Actor(figure, rotations, positions, morphs, {}, False),))
 
-    def _frame(self, figure: object, positions: np.ndarray) -> None:
+    def _frame(self, figure: Figure, positions: np.ndarray) -> None:
         aspect = self.view.width() / max(1, self.view.height())
-        low, high = figure.bounds(positions)  # type: ignore[attr-defined]
+        low, high = figure.bounds(positions)
         room = np.array(
             [0.0, ABOVE * (high[1] - low[1]), 0.0]
         )  # what is written over the picture hides no face

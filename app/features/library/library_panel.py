@@ -6,6 +6,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
+from functools import partial
 
 from PySide6.QtCore import (
     QAbstractListModel,
@@ -32,6 +33,7 @@ from PySide6.QtGui import (
     QFont,
     QFontMetrics,
     QKeyEvent,
+    QMouseEvent,
     QPainter,
     QPen,
     QResizeEvent,
@@ -59,6 +61,7 @@ from app.look.theme import KIND_MARKS, theme
 from app.project.document import Document
 from app.stage.session import Session
 from app.stage.thumbnails import Thumbnails
+from app.widgets.making import make_widget
 from app.widgets.mime import drag_picture, load_of, mime
 from metagraph.graph import edits
 from metagraph.graph.model import KINDS, LAYERS, ClipEntry, Kind, Project
@@ -193,8 +196,8 @@ class CardDelegate(QStyledItemDelegate):
             return
         t = theme(self.panel.session.look.name)
         project = self.panel.document.project
-        rect = option.rect.adjusted(4, 4, -4, -4)  # type: ignore[attr-defined]
-        state = option.state  # type: ignore[attr-defined]
+        rect = option.rect.adjusted(4, 4, -4, -4)
+        state = option.state
         selected, hover = (
             bool(state & QStyle.StateFlag.State_Selected),
             bool(state & QStyle.StateFlag.State_MouseOver),
@@ -222,7 +225,7 @@ class CardDelegate(QStyledItemDelegate):
             painter.drawRoundedRect(
                 rect.left() + 3, round(rect.top() + 6 + place * height), 4, round(height - 1), 2, 2
             )
-        font = QFont(option.font)  # type: ignore[attr-defined]
+        font = QFont(option.font)
         font.setPixelSize(12)
         painter.setFont(font)
         painter.setPen(QColor(t.text))
@@ -268,15 +271,17 @@ class Search(QLineEdit):
     left = Signal()
 
     def __init__(self, parent: QWidget) -> None:
-        super().__init__(
-            parent,
-            clearButtonEnabled=True,
-            toolTip="Words of a clip's name or path (Ctrl+F); Down goes to the clips",
-        )
+        super().__init__(parent, clearButtonEnabled=True)
+        self.setToolTip("Words of a clip's name or path (Ctrl+F); Down goes to the clips")
         self.setAccessibleName("Search clips")
 
     def event(self, event: QEvent) -> bool:
-        if event.type() == QEvent.Type.ShortcutOverride and event.key() == Qt.Key.Key_Escape and self.text():  # type: ignore[attr-defined]
+        if (
+            event.type() == QEvent.Type.ShortcutOverride
+            and isinstance(event, QKeyEvent)
+            and event.key() == Qt.Key.Key_Escape
+            and self.text()
+        ):
             event.accept()
             return True
         return super().event(event)
@@ -332,14 +337,14 @@ class ClipList(QListView):
         self.setGridSize(QSize(max(CARD_WIDTH, width // max(1, width // CARD_WIDTH)), CARD_HEIGHT))
         super().resizeEvent(event)
 
-    def mouseReleaseEvent(self, event: object) -> None:
-        super().mouseReleaseEvent(event)  # type: ignore[arg-type]
-        index = self.indexAt(event.position().toPoint())  # type: ignore[attr-defined]
+    def mouseReleaseEvent(self, event: QMouseEvent) -> None:
+        super().mouseReleaseEvent(event)
+        index = self.indexAt(event.position().toPoint())
         if (
             not index.isValid()
             or len(self.selectedIndexes()) != 1
             or event.button() != Qt.MouseButton.LeftButton
-        ):  # type: ignore[attr-defined]
+        ):
             return
         self.play(index.data(ENTRY).id)
 
@@ -430,7 +435,7 @@ class LibraryPanel(QWidget):
         self.chips: dict[str, QToolButton] = {}
 
         def chip(key: str, text: str, tip: str) -> None:
-            button = QToolButton(self, text=text, toolTip=tip, checkable=True)
+            button = make_widget(QToolButton, self, text=text, toolTip=tip, checkable=True)
             button.clicked.connect(lambda _=False, k=key: self._chip(k))
             self.chips[key] = button
             row.addWidget(button)
@@ -438,17 +443,19 @@ class LibraryPanel(QWidget):
         chip("all", "All", "All clips")
         chip("unlabelled", "Unlabelled", "Clips that were not placed yet")
         chip("labelled", "Placed", "Clips that are in the graph")
-        self.more = QToolButton(self, text="Any kind", toolTip="Show the clips of a layer or kind only")
+        self.more = make_widget(
+            QToolButton, self, text="Any kind", toolTip="Show the clips of a layer or kind only"
+        )
         self.more.setAccessibleName("Layer or kind")
         self.more.setPopupMode(QToolButton.ToolButtonPopupMode.InstantPopup)
         menu = QMenu(self.more)
         menu.addAction("Any kind, any layer", lambda: self._narrow(None, None))
         menu.addSeparator()
         for kind in KINDS:
-            menu.addAction(f"{KIND_MARKS[kind]}  {kind.capitalize()}", lambda k=kind: self._narrow(None, k))
+            menu.addAction(f"{KIND_MARKS[kind]}  {kind.capitalize()}", partial(self._narrow, None, kind))
         menu.addSeparator()
         for layer in LAYERS:
-            menu.addAction(f"{layer.capitalize()} layer", lambda x=layer: self._narrow(x, None))
+            menu.addAction(f"{layer.capitalize()} layer", partial(self._narrow, layer, None))
         self.more.setMenu(menu)
         row.addWidget(self.more)
         row.addStretch(1)

@@ -23,6 +23,7 @@ from PySide6.QtWidgets import (
 
 from app.project.document import Document
 from app.stage.session import Session
+from app.widgets.making import make_widget
 from app.widgets.quiet_fields import DoubleSpinBox, Slider
 from app.widgets.request_menu import MODE_WORDS
 from metagraph.graph import performance_edits
@@ -60,7 +61,7 @@ class DialRow:
         self._before = default  # what it was before it was turned off
         self.tick = QCheckBox(dial.label, parent)
         self.tick.setToolTip(f"{dial.tip}\nUntick it to turn it off." if dial.off is not None else dial.tip)
-        self.label = QLabel(dial.label, parent, toolTip=dial.tip)
+        self.label = make_widget(QLabel, dial.label, parent, toolTip=dial.tip)
         self.slider = DialSlider(parent, round((dial.high - dial.low) / dial.step), self.put_back)
         self.slider.setToolTip(f"{dial.tip}\nDouble-click puts it back to {default:g} {dial.unit}".rstrip())
         self.slider.setAccessibleName(dial.label)
@@ -139,7 +140,7 @@ class LifePanel(QWidget):
                 *((MODE_WORDS[m], f"What {m} makes of them, as factors") for m in MODES),
             )
         ):
-            button = QToolButton(self, text=words, checkable=True, toolTip=tip)
+            button = make_widget(QToolButton, self, text=words, checkable=True, toolTip=tip)
             button.setChecked(n == 0)
             self.tabs.addButton(button, n)
             tabs.addWidget(button)
@@ -184,7 +185,7 @@ class LifePanel(QWidget):
             rows[dial.name] = self._row(dial, grid, n, mode)
             n += 1
         if mode is not None:
-            back = QToolButton(page, text="Back to the usual")
+            back = make_widget(QToolButton, page, text="Back to the usual")
             back.clicked.connect(lambda: self._usual(mode))
             grid.addWidget(back, n, 0, 1, 2)
             n += 1

@@ -24,10 +24,11 @@ from PySide6.QtWidgets import (
 from app.features.lines.line_files import LISTS, SOUNDS, Lines, add_lines, read_lines
 from app.look.plural import many
 from app.look.theme import Theme, theme
-from app.project.document import Document
+from app.project.document import Document, Edit
 from app.project.jobs import Jobs
 from app.stage.performance import Performance
 from app.stage.session import Session
+from app.widgets.making import make_widget
 from metagraph.graph import performance_edits
 from metagraph.graph.edits import EditError
 from metagraph.graph.model import Project
@@ -108,7 +109,7 @@ class LinesPanel(QWidget):
             ("Add files…", "Sounds, or a list of lines", self.ask_files),
             ("Add words…", "A line without sound", self.add_words),
         ):
-            button = QToolButton(self, text=text, toolTip=tip)
+            button = make_widget(QToolButton, self, text=text, toolTip=tip)
             button.clicked.connect(run)
             row.addWidget(button)
             if run == self.say:
@@ -225,13 +226,13 @@ class LinesPanel(QWidget):
     def chosen(self) -> list[str]:
         """Return the ids of the selected lines."""
         rows = sorted({i.row() for i in self.table.selectedItems()})
-        return [str(self.table.item(n, ID).data(Qt.ItemDataRole.UserRole)) for n in rows]
+        return [str(self.table.model().index(n, ID).data(Qt.ItemDataRole.UserRole)) for n in rows]
 
     # --- changing
 
-    def _try(self, text: str, function: object) -> None:
+    def _try(self, text: str, function: Edit) -> None:
         try:
-            self.document.edit(text, function)  # type: ignore[arg-type]
+            self.document.edit(text, function)
         except EditError as error:
             self.told.emit(str(error))
             self.refresh()
@@ -271,7 +272,7 @@ class LinesPanel(QWidget):
         number = next(n for n in range(1, len(lines) + 2) if str(n) not in lines)
         self._try("Add line", lambda p: performance_edits.set_line(p, str(number), Line(text="Hello")))
         self.table.setCurrentCell(len(lines), WORDS)
-        self.table.editItem(self.table.item(len(lines), WORDS))
+        self.table.edit(self.table.model().index(len(lines), WORDS))
 
     def ask_files(self) -> None:
         names = " ".join(f"*{s}" for s in (*SOUNDS, *LISTS))

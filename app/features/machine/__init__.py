@@ -7,6 +7,7 @@ from PySide6.QtWidgets import QToolButton, QWidget
 from app.shell.actions import Command
 from app.shell.context import Contribution, HeaderItem, Panel, Shell
 from app.shell.places import Places
+from app.widgets.making import make_widget
 
 
 def contribute(shell: Shell) -> Contribution:
@@ -20,7 +21,7 @@ def contribute(shell: Shell) -> Contribution:
 
     def button(parent: QWidget) -> QWidget:
         action = shell.actions["machine"]
-        out = QToolButton(parent, text="Machine", toolTip=action.toolTip(), checkable=True)
+        out = make_widget(QToolButton, parent, text="Machine", toolTip=action.toolTip(), checkable=True)
         out.clicked.connect(lambda _: action.trigger())
         action.toggled.connect(out.setChecked)
         action.enabledChanged.connect(out.setEnabled)

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 
-from PySide6.QtCore import QPointF, QRectF, Qt
+from PySide6.QtCore import QEvent, QPointF, QRectF, Qt
 from PySide6.QtGui import QColor, QHelpEvent, QMouseEvent, QPainter, QPaintEvent, QPen, QPixmap
 from PySide6.QtWidgets import QToolTip, QWidget
 
@@ -45,12 +45,12 @@ def places(graph: MetaGraph, area: QRectF) -> dict[str, QPointF]:
             start, end = graph.of(action.stance, "stance"), graph.of(action.end_stance or "", "stance")
             if not start or not end or start[0].id not in out or end[0].id not in out:
                 continue
-            a, b = out[start[0].id], out[end[0].id]
+            begin, stop = out[start[0].id], out[end[0].id]
             key = (action.stance, action.end_stance or "")
             spread[key] = spread.get(key, 0) + 1
-            across = QPointF(-(b - a).y(), (b - a).x())
+            across = QPointF(-(stop - begin).y(), (stop - begin).x())
             length = math.hypot(across.x(), across.y()) or 1.0
-            out[action.id] = a * 0.5 + b * 0.5 + across * ((8 + 7 * spread[key]) / length)
+            out[action.id] = begin * 0.5 + stop * 0.5 + across * ((8 + 7 * spread[key]) / length)
     return out
 
 
@@ -170,7 +170,7 @@ class MachinePanel(QWidget):
         if action is not None:
             self.session.jump(action=action.id)
 
-    def event(self, event: object) -> bool:
+    def event(self, event: QEvent) -> bool:
         if isinstance(event, QHelpEvent):
             action = self._at(QPointF(event.pos()))
             words = ""
@@ -179,4 +179,4 @@ class MachinePanel(QWidget):
                 words = f"{KIND_MARKS[action.kind]} {action.name}\nleads to {end.name if end else '?'}"
             QToolTip.showText(event.globalPos(), words, self)
             return True
-        return super().event(event)  # type: ignore[arg-type]
+        return super().event(event)

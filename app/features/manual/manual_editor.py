@@ -11,6 +11,7 @@ from app.features.manual.manual_canvas import ManualCanvas
 from app.features.manual.manual_inspector import Inspector
 from app.look.plural import many
 from app.widgets.form_fields import Chooser
+from app.widgets.making import make_widget
 from metagraph.graph.model import Project
 from metagraph.graph.problem import Problem
 
@@ -86,6 +87,6 @@ class ManualEditor(QWidget):
 
 
 def _button(parent: QWidget, text: str, tip: str) -> QToolButton:
-    out = QToolButton(parent, text=text, toolTip=tip)
+    out = make_widget(QToolButton, parent, text=text, toolTip=tip)
     out.setStyleSheet("QToolButton { padding: 5px 12px; }")
     return out

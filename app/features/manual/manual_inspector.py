@@ -30,6 +30,7 @@ from app.look.plural import many
 from app.look.theme import theme
 from app.stage.performance import Performance
 from app.widgets.form_fields import MIXED, Chooser, Field, Mixed, Seconds, common
+from app.widgets.making import make_widget
 from metagraph.graph import manual_edits
 from metagraph.graph.manual import Link, State
 from metagraph.graph.model import LIMBS, Project
@@ -124,19 +125,19 @@ class Inspector(QScrollArea):
         line.setSpacing(2)
         for n, limb in enumerate(LIMBS):
             tip = f"Moves {limb} arm{'s' if limb == 'both' else ''}; the other keeps to the base pose"
-            button = QToolButton(row, text=limb.capitalize(), checkable=True, toolTip=tip)
+            button = make_widget(QToolButton, row, text=limb.capitalize(), checkable=True, toolTip=tip)
             self.limb.addButton(button, n)
             line.addWidget(button)
         line.addStretch(1)
         self.limb.idClicked.connect(lambda n: self._state("Change limb", limb=LIMBS[n]))
         form.addRow("Limb", row)
-        self.joints = QPushButton(page, toolTip="Let it move only some joints")
+        self.joints = make_widget(QPushButton, page, toolTip="Let it move only some joints")
         self.joints.setFocusPolicy(Qt.FocusPolicy.TabFocus)
         self.joints.clicked.connect(lambda: StateMask(self.document, self.session, self).open())
         form.addRow("Joints", self.joints)
         self.layer = QLabel(page)
         form.addRow("Layer", self.layer)
-        self.begin = QPushButton("Start here", page, toolTip="Let the layer begin in this state")
+        self.begin = make_widget(QPushButton, "Start here", page, toolTip="Let the layer begin in this state")
         self.begin.clicked.connect(lambda: commands.start_here(self.canvas, self.session.selection.states[0]))
         self.alone = QPushButton("Play alone", page)
         self.alone.clicked.connect(lambda: self.session.show_context(self.session.selection.states[0]))
@@ -178,15 +179,18 @@ class Inspector(QScrollArea):
         self.blend.valueChanged.connect(lambda v: self._number("Change blend", "blend", v))
         form.addRow("Blend", self.blend)
         self.form = form
-        self.fire = QPushButton("Fire", page, toolTip="Fire its trigger now")
+        self.fire = make_widget(QPushButton, "Fire", page, toolTip="Fire its trigger now")
         self.fire.clicked.connect(self._fire)
-        self.play = QPushButton(
-            "Play link", page, toolTip="Play its source's end, the blend, and its target's beginning"
+        self.play = make_widget(
+            QPushButton,
+            "Play link",
+            page,
+            toolTip="Play its source's end, the blend, and its target's beginning",
         )
         self.play.clicked.connect(lambda: self.session.show_context(self.session.selection.links[0]))
         box.addWidget(_row(page, self.fire, self.play))
         self.copy = QPushButton("Copy settings", page)
-        self.copy.clicked.connect(lambda: (commands.copy(self.canvas), self.show_selection()))
+        self.copy.clicked.connect(self._copy)
         self.paste = QPushButton("Paste settings", page)
         self.paste.clicked.connect(lambda: commands.paste(self.canvas))
         box.addWidget(_row(page, self.copy, self.paste))
@@ -240,7 +244,8 @@ class Inspector(QScrollArea):
         if manual.triggers != self._shown_triggers:
             self._shown_triggers = manual.triggers
             while (item := self.triggers.takeAt(0)) is not None:
-                item.widget().deleteLater()
+                if (button := item.widget()) is not None:
+                    button.deleteLater()
             for trigger in manual.triggers:
                 button = QPushButton(trigger, self)
                 button.setFocusPolicy(Qt.FocusPolicy.TabFocus)
@@ -383,6 +388,10 @@ class Inspector(QScrollArea):
             return project
 
         self._try("Change exit time", edit)
+        self.show_selection()
+
+    def _copy(self) -> None:
+        commands.copy(self.canvas)
         self.show_selection()
 
     def _fire(self) -> None:

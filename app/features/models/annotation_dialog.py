@@ -5,7 +5,7 @@ what to make of it.
 from __future__ import annotations
 
 import json
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Mapping, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -36,9 +36,11 @@ from app.project.document import Document
 from app.stage.session import Session
 from app.widgets.act_strip import Strip, clock
 from app.widgets.form_fields import Seconds
+from app.widgets.making import make_widget
 from metagraph.formats.elan import read_elan
-from metagraph.graph.model import LAYERS
+from metagraph.graph.model import LAYERS, Layer
 from metagraph.playback.annotation import IGNORE, PHASES, ROLES, Annotation, Label, parted
+from metagraph.playback.learn import Act
 
 if TYPE_CHECKING:
     from app.shell.context import Shell
@@ -237,12 +239,14 @@ class AnnotateDialog(QDialog):
         form.addRow("Learn a model of", row)
         row = QHBoxLayout()
         row.setSpacing(16)
-        self.as_shares = QRadioButton(
+        self.as_shares = make_widget(
+            QRadioButton,
             "shares of all gestures",
             self,
             toolTip="So many of the gestures are positive, whatever came before",
         )
-        self.as_states = QRadioButton(
+        self.as_states = make_widget(
+            QRadioButton,
             "states of their own",
             self,
             toolTip="What follows a positive gesture differs from what follows others",
@@ -254,7 +258,8 @@ class AnnotateDialog(QDialog):
         form.addRow("Positive and negative are", row)
         row = QHBoxLayout()
         row.setSpacing(10)
-        self.keep = QCheckBox(
+        self.keep = make_widget(
+            QCheckBox,
             "as a performance called",
             self,
             toolTip="Played as it was seen; another seed plays it with other actions",
@@ -413,8 +418,8 @@ def open_annotation(
     shell.jobs.start(f"Reading {file.name}", work, show, failed)
 
 
-def _taken(shell: Shell, observed: object, performance: str | None) -> None:
-    count = sum(len(acts) for acts in observed.values())  # type: ignore[attr-defined]
+def _taken(shell: Shell, observed: Mapping[Layer, Sequence[Act]], performance: str | None) -> None:
+    count = sum(len(acts) for acts in observed.values())
     shell.tell(f"Read {many(count, 'action')} from the annotation.")
     shell.panel("models").show_imported(observed, performance)
     shell.show("models")

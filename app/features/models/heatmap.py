@@ -6,7 +6,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
-from PySide6.QtCore import QEvent, QPointF, QRectF, QSize, Qt, Signal
+from PySide6.QtCore import QEvent, QObject, QPointF, QRectF, QSize, Qt, Signal
 from PySide6.QtGui import (
     QColor,
     QContextMenuEvent,
@@ -72,8 +72,12 @@ def shade(color: QColor, ground: QColor, probability: float) -> QColor:
     are seen, too.
     """
     part = 0.0 if probability <= 0 else 0.10 + 0.82 * min(1.0, probability) ** 0.75
-    mix = [round(g + (c - g) * part) for c, g in zip(color.getRgb()[:3], ground.getRgb()[:3], strict=True)]
+    mix = [round(255 * (g + (c - g) * part)) for c, g in zip(_rgb(color), _rgb(ground), strict=True)]
     return QColor(*mix)
+
+
+def _rgb(color: QColor) -> tuple[float, float, float]:
+    return color.redF(), color.greenF(), color.blueF()
 
 
 def ink(ground: QColor) -> QColor:
@@ -92,7 +96,7 @@ def contrast(a: QColor, b: QColor) -> float:
     """Return the contrast of two colours, 1..21 (WCAG 2)."""
 
     def light(color: QColor) -> float:
-        parts = [x / 12.92 if x <= 0.04045 else ((x + 0.055) / 1.055) ** 2.4 for x in color.getRgbF()[:3]]
+        parts = [x / 12.92 if x <= 0.04045 else ((x + 0.055) / 1.055) ** 2.4 for x in _rgb(color)]
         return 0.2126 * parts[0] + 0.7152 * parts[1] + 0.0722 * parts[2]
 
     bright, dark = sorted((light(a), light(b)), reverse=True)
@@ -444,7 +448,7 @@ class HeatMap(QWidget):
         if 0 <= p <= 1:
             self.edited.emit(*self.current, p, False)
 
-    def eventFilter(self, watched: object, event: QEvent) -> bool:
+    def eventFilter(self, watched: QObject, event: QEvent) -> bool:
         if watched is self.field:
             if (
                 event.type() == QEvent.Type.ShortcutOverride
@@ -466,7 +470,7 @@ class HeatMap(QWidget):
                     return True
             if event.type() == QEvent.Type.FocusOut:
                 self.field.hide()
-        return super().eventFilter(watched, event)  # type: ignore[arg-type]
+        return super().eventFilter(watched, event)
 
     def focusInEvent(self, event: object) -> None:
         self.update()

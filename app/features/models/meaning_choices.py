@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
+from functools import partial
 
 from PySide6.QtCore import QEvent, QModelIndex, QPersistentModelIndex, QPointF, QRectF, QSize, Qt, Signal
 from PySide6.QtGui import QColor, QFontMetricsF, QKeyEvent, QMouseEvent, QPainter, QPen
@@ -53,7 +54,7 @@ class _Field(QStyledItemDelegate):
             return
         painter.save()
         painter.setRenderHint(QPainter.RenderHint.Antialiasing)
-        box = QRectF(option.rect).adjusted(2.5, 3.5, -4.5, -3.5)  # type: ignore[attr-defined]
+        box = QRectF(option.rect).adjusted(2.5, 3.5, -4.5, -3.5)
         current = self.table.hasFocus() and self.table.currentIndex().row() == index.row()
         painter.setPen(QPen(QColor(t.dim if current else t.line), 1))
         painter.setBrush(QColor(t.field))
@@ -144,7 +145,7 @@ class ChoiceTable(QTreeWidget):
         menu = QMenu(self)
         menu.setToolTipsVisible(True)
         for words, value, tip in self.entries(row):
-            action = menu.addAction(words, lambda v=value: self.chosen.emit(row, v))
+            action = menu.addAction(words, partial(self.chosen.emit, row, value))
             action.setToolTip(tip)
             action.setCheckable(True)
             action.setChecked(words == self.rows[row].chosen)

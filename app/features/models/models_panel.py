@@ -6,6 +6,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import replace
+from functools import partial
 
 from PySide6.QtCore import QPoint, QSize, Qt, QTimer, Signal
 from PySide6.QtGui import QPaintEvent
@@ -32,11 +33,13 @@ from app.project.jobs import Jobs
 from app.stage.session import Session
 from app.widgets.act_strip import Strip
 from app.widgets.form_fields import Chooser, Seconds
+from app.widgets.making import make_widget
 from metagraph.graph import edits
-from metagraph.graph.model import LIMBS, Layer, Limb, Markov, Project
+from metagraph.graph.model import LIMBS, Kind, Layer, Limb, Markov, Project
 from metagraph.playback.compare import Comparison, compare, generate
 from metagraph.playback.learn import (
     Act,
+    State,
     acts_of_asks,
     state_words,
     states_of,
@@ -101,8 +104,8 @@ class ModelsPanel(QWidget):
         layout.addLayout(row, 1)
         bottom = QHBoxLayout()
         bottom.setSpacing(12)
-        self.again = QPushButton(
-            "Another sample", self, toolTip="Let chance draw other actions from the same model"
+        self.again = make_widget(
+            QPushButton, "Another sample", self, toolTip="Let chance draw other actions from the same model"
         )
         self.again.clicked.connect(self._another)
         self.strip = Strip(self.session, self, titles=False)
@@ -120,10 +123,13 @@ class ModelsPanel(QWidget):
         top.addWidget(self.title)
         top.addWidget(self.origin)
         top.addStretch(1)
-        self.back = QPushButton("Back to default", self, toolTip="Forget this layer's model")
+        self.back = make_widget(QPushButton, "Back to default", self, toolTip="Forget this layer's model")
         self.back.clicked.connect(self._reset)
-        self.learn = QPushButton(
-            "Learn from annotation…", self, toolTip="Read an ELAN file (.eaf) and count what follows what"
+        self.learn = make_widget(
+            QPushButton,
+            "Learn from annotation…",
+            self,
+            toolTip="Read an ELAN file (.eaf) and count what follows what",
         )
         self.learn.clicked.connect(lambda: self.learn_wanted.emit(""))
         top.addWidget(self.back)
@@ -328,6 +334,9 @@ class ModelsPanel(QWidget):
         layer = self.session.place.layer
         self.document.edit(text, lambda p: edits.set_markov(p, change(model(p, layer))), merge)
 
+    def _add_state(self, state: State) -> None:
+        self._edit("Add a state", lambda m: with_state(m, state))
+
     def _cell(self, row: int, column: int, probability: float, dragging: bool) -> None:
         if dragging and self._before is None:
             self._before = self.model()
@@ -381,16 +390,15 @@ class ModelsPanel(QWidget):
             ("", *(tag for _, _, tag in there), *(("positive", "negative") if shown.tags else ()))
         )
         limbs: tuple[Limb, ...] = LIMBS if layer == "arms" else ("both",)
+        kinds: tuple[Kind, ...] = ("gesture", "fidget", "transition")
         add = menu.addMenu("Add a state")
         for limb in limbs:
-            for kind in ("gesture", "fidget", "transition"):
+            for kind in kinds:
                 for tag in tags if kind == "gesture" else ("",):
-                    state = (limb, kind, tag)
+                    state: State = (limb, kind, tag)
                     if state not in there:
-                        words = f"{KIND_MARKS[kind]} {state_words(state, layer)}"  # type: ignore[arg-type]
-                        add.addAction(
-                            words, lambda s=state: self._edit("Add a state", lambda m: with_state(m, s))
-                        )  # type: ignore[arg-type]
+                        words = f"{KIND_MARKS[kind]} {state_words(state, layer)}"
+                        add.addAction(words, partial(self._add_state, state))
         add.setEnabled(not add.isEmpty())
         if 0 <= row < len(shown.states) and len(shown.states) > 1:
             words = state_words(states_of(shown)[row], layer)

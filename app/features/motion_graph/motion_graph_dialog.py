@@ -40,6 +40,7 @@ from app.look.plural import many
 from app.project.document import Document
 from app.project.jobs import Job, Jobs
 from app.stage.session import Session
+from app.widgets.making import make_widget
 from app.widgets.quiet_fields import DoubleSpinBox, SpinBox
 from metagraph.compiling import there
 from metagraph.graph import edits
@@ -83,7 +84,7 @@ class MotionGraphDialog(QDialog):
         self.picked.rates_wanted.connect(self.count_rates)
         self._build_right()
         self.wishes = Wishes(document, self)
-        self.wishes.wanted.connect(self.find)
+        self.wishes.wanted.connect(self.find_motion)
         box = QVBoxLayout(self)
         box.setContentsMargins(14, 12, 14, 12)
         box.setSpacing(10)
@@ -161,7 +162,7 @@ class MotionGraphDialog(QDialog):
         row = QHBoxLayout()
         self.said = QLabel(self, wordWrap=True)
         self.said.setTextInteractionFlags(Qt.TextInteractionFlag.TextSelectableByMouse)
-        self.progress = QProgressBar(self, maximumWidth=180, textVisible=False)
+        self.progress = make_widget(QProgressBar, self, maximumWidth=180, textVisible=False)
         self.progress.hide()
         self.stop = QPushButton("Cancel", self, autoDefault=False)
         self.stop.clicked.connect(self.cancel)
@@ -350,7 +351,7 @@ class MotionGraphDialog(QDialog):
 
     # --- new motion
 
-    def find(self) -> None:
+    def find_motion(self) -> None:
         """Find new motion as wished, and add it to the library."""
         takes, wish, graph, limit = self.takes, self.wishes.wish(), self.graph, self.limit
         if not takes.ids or limit is None or self.states is None or self.states[0] != takes.clips:

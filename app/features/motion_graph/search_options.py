@@ -20,8 +20,9 @@ from app.features.motion_graph.synthesis_jobs import Wish
 from app.features.motion_graph.takes_list import side_words
 from app.look.theme import strengthen
 from app.project.document import Document
+from app.widgets.making import make_widget
 from app.widgets.quiet_fields import ComboBox, DoubleSpinBox
-from metagraph.graph.conversation import SOUNDS, Sound, heard_by
+from metagraph.graph.conversation import SOUNDS, Segment, Sound, heard_by
 
 WINDOW = 15.0  # seconds, as in the paper's evaluation
 KINDS: tuple[tuple[Sound, str], ...] = (
@@ -84,9 +85,9 @@ class Wishes(QFrame):
         row.addWidget(QLabel("Meets", self))
         self.kinds: dict[Sound, QCheckBox] = {}
         for kind, words in KINDS:
-            self.kinds[kind] = QCheckBox(words, self, checked=True)
+            self.kinds[kind] = make_widget(QCheckBox, words, self, checked=True)
             row.addWidget(self.kinds[kind])
-        self.peaks = QCheckBox("Stresses", self, checked=True)
+        self.peaks = make_widget(QCheckBox, "Stresses", self, checked=True)
         self.peaks.setToolTip("A clause's stress lies where the stress lay that the motion was made with")
         row.addWidget(self.peaks)
         self.tolerance = DoubleSpinBox(
@@ -156,7 +157,7 @@ class Wishes(QFrame):
         if self.moves is not None:
             seconds, start = self.document.project.conversations[self.moves[0]].length, 0.0
         use = tuple(kind for kind in SOUNDS if self.kinds[kind].isChecked()) if chosen is not None else ()
-        segments = ()
+        segments: tuple[Segment, ...] = ()
         if chosen is not None:
             talk = self.document.project.conversations[chosen[0]]
             seconds = min(seconds, max(1.0, talk.length - start))

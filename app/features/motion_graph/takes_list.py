@@ -125,7 +125,7 @@ class TakesList(QWidget):
         project = self.document.project
         if column != HEARD or not project.conversations:
             return
-        clip = self.list.item(row, 0).data(Qt.ItemDataRole.UserRole)
+        clip = self._clip(row)
         now = speech_of(project, clip)
         self.menu.clear()
         sides = [
@@ -137,7 +137,7 @@ class TakesList(QWidget):
             action = self.menu.addAction(words, partial(self._tell_speech, clip, key))
             action.setCheckable(True)
             action.setChecked(key == now)
-        below = self.list.visualItemRect(self.list.item(row, HEARD)).bottomLeft()
+        below = self.list.visualRect(self.list.model().index(row, HEARD)).bottomLeft()
         self.menu.popup(self.list.viewport().mapToGlobal(below))
 
     def _tell_speech(self, clip: str, chosen: tuple[str, int] | None) -> None:
@@ -163,10 +163,13 @@ class TakesList(QWidget):
         if item.column() == 0:
             self.changed.emit()
 
+    def _clip(self, row: int) -> str:
+        return str(self.list.model().index(row, 0).data(Qt.ItemDataRole.UserRole))
+
     def selected(self) -> list[str]:
         """Return the ids of the takes in selected rows; of those that are checked where none is selected."""
         rows = sorted({index.row() for index in self.list.selectionModel().selectedRows()})
-        return [self.list.item(row, 0).data(Qt.ItemDataRole.UserRole) for row in rows] or self.chosen()
+        return [self._clip(row) for row in rows] or self.chosen()
 
 
 def side_words(talk: Conversation, side: int) -> str:

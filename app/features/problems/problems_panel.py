@@ -56,7 +56,7 @@ class FixButtons(QStyledItemDelegate):
 
     def place(self, option: QStyleOptionViewItem, words: str) -> QRect:
         """Return where the button is in its cell."""
-        rect, wide = option.rect, option.fontMetrics.horizontalAdvance(words) + 20  # type: ignore[attr-defined]
+        rect, wide = option.rect, option.fontMetrics.horizontalAdvance(words) + 20
         return QRect(rect.left() + 2, rect.top() + 2, min(wide, rect.width() - 4), rect.height() - 4)
 
     def sizeHint(self, option: QStyleOptionViewItem, index: QModelIndex | QPersistentModelIndex) -> QSize:
@@ -67,12 +67,12 @@ class FixButtons(QStyledItemDelegate):
         self, painter: QPainter, option: QStyleOptionViewItem, index: QModelIndex | QPersistentModelIndex
     ) -> None:
         words, look = str(index.data() or ""), theme(self.panel.session.look.name)
-        if option.state & QStyle.StateFlag.State_Selected:  # type: ignore[attr-defined]
-            painter.fillRect(option.rect, QColor(look.hover))  # type: ignore[attr-defined]
+        if option.state & QStyle.StateFlag.State_Selected:
+            painter.fillRect(option.rect, QColor(look.hover))
         if not words:
             return
         rect = self.place(option, words)
-        over = bool(option.state & QStyle.StateFlag.State_MouseOver)  # type: ignore[attr-defined]
+        over = bool(option.state & QStyle.StateFlag.State_MouseOver)
         painter.save()
         painter.setRenderHint(QPainter.RenderHint.Antialiasing)
         painter.setPen(QPen(QColor(look.text if over else look.line), 1))
@@ -100,7 +100,7 @@ class FixButtons(QStyledItemDelegate):
                 and self._down == QPersistentModelIndex(index)
             ):
                 self._down = None
-                self.panel.mend(self.panel.tree.itemFromIndex(index))  # type: ignore[arg-type]
+                self.panel.mend(self.panel.tree.itemFromIndex(index))
                 return True
         return super().editorEvent(event, model, option, index)
 

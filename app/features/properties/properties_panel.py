@@ -29,8 +29,10 @@ from app.project.document import Document
 from app.stage.performance import Performance
 from app.stage.session import Session
 from app.widgets.form_fields import MIXED, Chooser, Field, Mixed, Seconds, common
+from app.widgets.making import make_widget
 from metagraph.graph import edits
 from metagraph.graph.model import LIMBS, PARTS, REACH, Action, Project
+from metagraph.graph.words import Part
 
 
 class PropertiesPanel(QScrollArea):
@@ -122,7 +124,8 @@ class PropertiesPanel(QScrollArea):
         line.setContentsMargins(0, 0, 0, 0)
         line.setSpacing(2)
         for n, limb in enumerate(LIMBS):
-            button = QToolButton(
+            button = make_widget(
+                QToolButton,
                 row,
                 text=limb.capitalize(),
                 checkable=True,
@@ -151,7 +154,7 @@ class PropertiesPanel(QScrollArea):
         self.ends.activated.connect(self._reend)
         form.addRow("Ends in", self.ends)
         self.form = form
-        self.joints = QPushButton(page, toolTip="Let it move only some joints")
+        self.joints = make_widget(QPushButton, page, toolTip="Let it move only some joints")
         self.joints.setFocusPolicy(Qt.FocusPolicy.TabFocus)  # after a click the space bar still plays
         self.joints.clicked.connect(self._mask)
         form.addRow("Joints", self.joints)
@@ -266,7 +269,9 @@ class PropertiesPanel(QScrollArea):
         self.blend_in.show_value(common([a.timing.blend_in for a in actions]))
         self.blend_out.show_value(common([a.timing.blend_out for a in actions]))
         stance = kind == "stance"
-        self.form.labelForField(self.blend_row).setText("Blend at seam" if stance else "Blend in, out")
+        blend_title = self.form.labelForField(self.blend_row)
+        if isinstance(blend_title, QLabel):
+            blend_title.setText("Blend at seam" if stance else "Blend in, out")
         self.blend_out.setVisible(not stance)
         self.form.setRowVisible(self.leave_row, not stance)
         exits = common([a.timing.earliest_exit for a in actions])
@@ -448,12 +453,12 @@ class PropertiesPanel(QScrollArea):
 
         MaskDialog(self.document, self.session, self).open()
 
-    def _weigh(self, part: str, value: float) -> None:
+    def _weigh(self, part: Part, value: float) -> None:
         if value < 0:
             self.show_selection()
         else:
             layer = self.session.place.layer
-            self._try("Change layer weight", lambda p: edits.set_weight(p, layer, part, round(value, 2)))  # type: ignore[arg-type]
+            self._try("Change layer weight", lambda p: edits.set_weight(p, layer, part, round(value, 2)))
 
     def _set_gap(self, value: float) -> None:
         from dataclasses import replace

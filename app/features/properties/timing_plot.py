@@ -138,7 +138,7 @@ def verdict(costs: Mapping[str, float]) -> str:
     """Say what beginning and ending cost: "Begins without a jump, ends 2.7 times what shows as one"."""
     if max(costs.values()) <= 1:
         return f"{' and '.join(costs)} without a jump"
-    told = []
+    told: list[str] = []
     for what, cost in costs.items():
         of = "one" if told else "a jump"
         told.append(f"{what} without {of}" if cost <= 1 else f"{what} {cost:.1f} times what shows as {of}")

@@ -5,12 +5,14 @@ planner's own numbers.
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
+from functools import partial
 from typing import Any
 
 from PySide6.QtCore import Signal
 from PySide6.QtWidgets import QCheckBox, QFormLayout, QHBoxLayout, QToolButton, QWidget
 
 from app.widgets.form_fields import MIXED, Mixed, Seconds, common
+from app.widgets.making import make_widget
 from app.widgets.quiet_fields import SpinBox
 from metagraph.graph import edits
 from metagraph.graph.model import Action, Project, Settings
@@ -35,25 +37,23 @@ class ActionRows(QWidget):
         self.hide()  # it only holds its rows together
         self.form = form
         self.ready, self.stroke_end, self.relax = (Seconds(parent, PHASE_WORDS[f]) for f in PHASE_FIELDS)
-        self.found = QToolButton(parent, text="As found", toolTip="Take the phases from the motion again")
+        self.found = make_widget(
+            QToolButton, parent, text="As found", toolTip="Take the phases from the motion again"
+        )
         self.found.setAccessibleName("Phases as found")
         self.phase_rows = (
             self._row("Ready", self.ready, self.found),
             self._row("Hold", self.stroke_end, self.relax),
         )
         for field, box in zip(PHASE_FIELDS, (self.ready, self.stroke_end, self.relax), strict=True):
-            box.valueChanged.connect(
-                lambda v, f=field: v >= 0 and self.changed.emit("Change phases", {"timing": {f: round(v, 3)}})
-            )
+            box.valueChanged.connect(partial(self._phase, field))
         self.found.clicked.connect(
             lambda: self.changed.emit("Take phases as found", {"timing": dict.fromkeys(PHASE_FIELDS)})
         )
         self.cooldown = Seconds(
             parent, "Seconds after it has ended in which it is not drawn again", 3600, " s", 0.5, 1
         )
-        self.cooldown.valueChanged.connect(
-            lambda v: v >= 0 and self.changed.emit("Change cooldown", {"cooldown": round(v, 2)})
-        )
+        self.cooldown.valueChanged.connect(self._cooled)
         self.spacing = SpinBox(
             parent, toolTip="How many others of its kind and stance play before it may be drawn again"
         )
@@ -93,6 +93,14 @@ class ActionRows(QWidget):
         self.spacing.setSpecialValueText(MIXED if spacing is Mixed else "as usual")
         self.spacing.setValue(-2 if spacing is Mixed else AS_THE_GRAPH if spacing is None else spacing)
         self.spacing.blockSignals(False)
+
+    def _phase(self, field: str, seconds: float) -> None:
+        if seconds >= 0:
+            self.changed.emit("Change phases", {"timing": {field: round(seconds, 3)}})
+
+    def _cooled(self, seconds: float) -> None:
+        if seconds >= 0:
+            self.changed.emit("Change cooldown", {"cooldown": round(seconds, 2)})
 
     def _spaced(self, value: int) -> None:
         if value >= AS_THE_GRAPH:
@@ -135,9 +143,7 @@ class PlannerRows(QWidget):
             ),
         ):
             field = Seconds(parent, tip, most, suffix, step)
-            field.valueChanged.connect(
-                lambda v, n=name, t=title: v >= 0 and self._set(f"Change {t.lower()}", **{n: round(v, 3)})
-            )
+            field.valueChanged.connect(partial(self._number, name, f"Change {title.lower()}"))
             self.fields[name] = field
             form.addRow(title, field)
 
@@ -145,6 +151,10 @@ class PlannerRows(QWidget):
         self.never_twice.setChecked(settings.never_twice)
         for name, field in self.fields.items():
             field.show_value(getattr(settings, name))
+
+    def _number(self, name: str, text: str, value: float) -> None:
+        if value >= 0:
+            self._set(text, **{name: round(value, 3)})
 
     def _set(self, text: str, **changes: Any) -> None:
         self._edit(text, lambda p: edits.set_settings(p, **changes))

@@ -26,6 +26,8 @@ from app.stage.performance import Performance
 from app.stage.render_process import SUFFIXES, RenderOrder, write
 from app.stage.session import Session
 from app.widgets.quiet_fields import ComboBox, DoubleSpinBox
+from metagraph.graph import requests
+from metagraph.graph.conversation import Conversation
 
 SIZES = ((640, 360), (960, 540), (1280, 720), (1920, 1080))
 
@@ -41,7 +43,7 @@ class RenderDialog(QDialog):
         super().__init__(parent)
         self.performance, self.session, self.jobs = performance, session, jobs
         self.setAttribute(Qt.WidgetAttribute.WA_DeleteOnClose)  # what runs goes on; the status bar shows it
-        kept = performance.requests.kept
+        kept: requests.Performance | Conversation | None = performance.requests.kept
         if performance.conversation is not None:
             kept = performance.document.project.conversations[performance.conversation]
         self.setWindowTitle(f"Write '{kept.name}'" if kept is not None else "Write the performance")
@@ -70,7 +72,7 @@ class RenderDialog(QDialog):
         self.size_box = ComboBox(self)
         for width, height in SIZES:
             self.size_box.addItem(f"{width} × {height}", (width, height))
-        self.size_box.setCurrentIndex(int(QSettings().value("render/size", 2)))
+        self.size_box.setCurrentIndex(int(str(QSettings().value("render/size", 2))))
         form.addRow("Size", self.size_box)
         self.fps = ComboBox(self)
         for fps in (24.0, 25.0, 30.0, 60.0):

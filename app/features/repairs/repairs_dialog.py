@@ -19,6 +19,8 @@ from PySide6.QtWidgets import (
 from app.look.theme import strengthen
 from app.project.document import Document
 from app.project.jobs import Job, Jobs
+from app.widgets.making import make_widget
+from app.widgets.tree_items import items_below, top_items
 from metagraph.formats.repairs import Repaired, Reread, repairs_of, reread
 from metagraph.formats.takes import BIND_POSE, NAME, ONE_FRAME, UNIT, UP
 from metagraph.graph.edits import EditError
@@ -59,7 +61,7 @@ class RepairsDialog(QDialog):
         self.headline.setProperty("heading", True)
         self.words = QLabel(self, wordWrap=True)
         self.words.setProperty("dim", True)
-        self.tree = QTreeWidget(self, uniformRowHeights=True)
+        self.tree = make_widget(QTreeWidget, self, uniformRowHeights=True)
         self.tree.setHeaderLabels(["Clip", "What was done"])
         self.tree.setColumnWidth(0, 320)
         self.tree.setAccessibleName("Repairs")
@@ -118,8 +120,7 @@ class RepairsDialog(QDialog):
         self._count()
 
     def _items(self) -> list[QTreeWidgetItem]:
-        tops = [self.tree.topLevelItem(n) for n in range(self.tree.topLevelItemCount())]
-        return [top.child(n) for top in tops if top is not None for n in range(top.childCount())]
+        return [item for top in top_items(self.tree) for item in items_below(top)]
 
     def changes(self) -> list[tuple[Repaired, bool]]:
         """Return the repairs whose tick was changed, with whether they are to be made."""

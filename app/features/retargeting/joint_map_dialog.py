@@ -26,6 +26,7 @@ from PySide6.QtWidgets import (
 from app.features.retargeting.stick_figures import StickFigures
 from app.look.theme import DARK, LIGHT, strengthen
 from app.project.jobs import Jobs
+from app.widgets.making import make_widget
 from app.widgets.quiet_fields import ComboBox
 from metagraph.formats.imports import Strangers
 from metagraph.graph.project_retargeting import Bringing
@@ -134,7 +135,7 @@ class JointMapDialog(QDialog):
         box.setContentsMargins(0, 0, 8, 0)
         self.doubtful = QCheckBox("Only what is not sure or not mapped", page)
         self.doubtful.toggled.connect(self._narrow)
-        self.tree = QTreeWidget(page, rootIsDecorated=False, uniformRowHeights=True)
+        self.tree = make_widget(QTreeWidget, page, rootIsDecorated=False, uniformRowHeights=True)
         self.tree.setHeaderLabels(["Joint of the clips", "Moves", "As", "Sure", "Why"])
         self.tree.setAccessibleName("Joint map")
         header = self.tree.header()

@@ -14,7 +14,7 @@ from dataclasses import dataclass
 from time import monotonic
 
 from PySide6.QtCore import QEvent, QObject
-from PySide6.QtGui import QCursor, QDropEvent, QKeyEvent, QMouseEvent
+from PySide6.QtGui import QCursor, QKeyEvent, QMouseEvent
 from PySide6.QtWidgets import QApplication, QDialog
 
 NEAR = 8.0  # pixels
@@ -188,14 +188,14 @@ class Hands(QObject):
     def eventFilter(self, watched: QObject, event: QEvent) -> bool:
         kind = event.type()
         if kind in _MOUSE:
-            if event.spontaneous():
-                self._mouse(kind, event)  # type: ignore[arg-type]
-        elif kind in _KEYS:
+            if event.spontaneous() and isinstance(event, QMouseEvent):
+                self._mouse(kind, event)
+        elif kind in _KEYS and isinstance(event, QKeyEvent):
             asked = kind == _TYPE.ShortcutOverride  # which Qt sends itself; of a shortcut there is no press
-            if (asked or event.spontaneous()) and not event.isAutoRepeat():  # type: ignore[attr-defined]
-                self._key(_KEYS[kind], event, asked)  # type: ignore[arg-type]
+            if (asked or event.spontaneous()) and not event.isAutoRepeat():
+                self._key(_KEYS[kind], event, asked)
         elif kind == _TYPE.DragMove:
-            self._drag(event)  # type: ignore[arg-type]
+            self._drag()
         elif kind == _TYPE.Drop:
             self.operators.drop(monotonic())
         elif kind == _TYPE.Wheel:
@@ -222,7 +222,7 @@ class Hands(QObject):
         if new:
             self._input(now)
 
-    def _drag(self, event: QDropEvent) -> None:
+    def _drag(self) -> None:
         now, point = monotonic(), QCursor.pos()
         self.operators.move((point.x(), point.y()), True, now)
         self._input(now)

@@ -174,8 +174,8 @@ class Question(QWidget):
         box = QWidget(self)
         self.group = QButtonGroup(box)
         values: tuple[Any, ...] = item.scale.points if item.scale is not None else item.choices
-        for n, one in enumerate(values):
-            button = QRadioButton(str(one), box)
+        buttons = [QRadioButton(str(one), box) for one in values]
+        for n, (one, button) in enumerate(zip(values, buttons, strict=True)):
             button.setAccessibleName(f"{item.text} {one}")
             button.setChecked(one == value)
             self.group.addButton(button, n)
@@ -183,7 +183,7 @@ class Question(QWidget):
         if item.scale is None:
             column = QVBoxLayout(box)
             column.setContentsMargins(18, 0, 0, 0)
-            for button in self.group.buttons():
+            for button in buttons:
                 column.addWidget(button)
             return box
         grid = QGridLayout(box)
@@ -197,7 +197,7 @@ class Question(QWidget):
             label.setAlignment(side | Qt.AlignmentFlag.AlignVCenter)
         row = QHBoxLayout()
         row.setSpacing(26)
-        for button in self.group.buttons():
+        for button in buttons:
             row.addWidget(button)
         grid.addWidget(left, 0, 0)
         grid.addLayout(row, 0, 1)

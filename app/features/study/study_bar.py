@@ -19,6 +19,7 @@ from PySide6.QtWidgets import (
 from app.features.study.study_screen import clock, rich
 from app.look.theme import strengthen, theme
 from app.stage.session import Session
+from app.widgets.making import make_widget
 
 WARNINGS = (120.0, 30.0)  # seconds before the end at which it is said
 
@@ -40,7 +41,7 @@ class StudyBar(QToolBar):
         column.addLayout(row)
         self.title = QLabel(inner)
         self.title.setProperty("heading", True)
-        self.more = QToolButton(inner, text="Instructions", checkable=True)
+        self.more = make_widget(QToolButton, inner, text="Instructions", checkable=True)
         self.more.toggled.connect(self._unfold)
         self.told = QLabel(inner)
         self.time = QLabel(inner)
@@ -49,8 +50,8 @@ class StudyBar(QToolBar):
         self.note, self.pause, self.done = (QPushButton(text, inner) for text in ("Note…", "Pause", "Done"))
         strengthen(self.done)
         self.done.setMinimumWidth(84)
-        for widget in (self.title, self.more):
-            row.addWidget(widget)
+        row.addWidget(self.title)
+        row.addWidget(self.more)
         row.addStretch(1)
         for widget in (self.told, self.time, self.note, self.pause, self.done):
             row.addWidget(widget)

@@ -155,7 +155,8 @@ class QuestionsPage(Page):
         if open_ones:
             first = open_ones[0]
             first.field.setFocus()
-            area = self.parentWidget().parentWidget() if self.parentWidget() is not None else None
+            viewport = self.parentWidget()
+            area = viewport.parentWidget() if viewport is not None else None
             if isinstance(area, QScrollArea):
                 area.ensureWidgetVisible(first)
             return
@@ -170,7 +171,7 @@ class Screen(QWidget):
 
     def __init__(self, window: QWidget, session: Session) -> None:
         super().__init__(window)
-        self.session = session
+        self.covered, self.session = window, session
         self.setAttribute(Qt.WidgetAttribute.WA_StyledBackground)  # else nothing hides what is below
         self.place = QLabel(self)
         self.place.setProperty("dim", True)
@@ -217,7 +218,7 @@ class Screen(QWidget):
         self.page = page
         self.area.setWidget(page)  # which deletes the one before
         self.area.verticalScrollBar().setValue(0)
-        self.setGeometry(self.parentWidget().rect())
+        self.setGeometry(self.covered.rect())
         self.show()
         self.raise_()
         first = page.questions[0].field if isinstance(page, QuestionsPage) else page.go
@@ -226,7 +227,7 @@ class Screen(QWidget):
 
     def eventFilter(self, watched: QObject, event: QEvent) -> bool:
         if event.type() == QEvent.Type.Resize:
-            self.setGeometry(self.parentWidget().rect())
+            self.setGeometry(self.covered.rect())
         return False
 
 

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from PySide6.QtCore import QPointF, QRectF, Qt
+from PySide6.QtCore import QEvent, QPointF, QRectF, Qt
 from PySide6.QtGui import (
     QColor,
     QContextMenuEvent,
@@ -368,7 +368,7 @@ class Lanes(QWidget):
         else:
             super().keyPressEvent(event)
 
-    def event(self, event: object) -> bool:
+    def event(self, event: QEvent) -> bool:
         if isinstance(event, QHelpEvent):
             QToolTip.showText(event.globalPos(), self._tip(QPointF(event.pos())), self)
             return True
@@ -379,7 +379,7 @@ class Lanes(QWidget):
             ):
                 event.accept()
                 return True
-        return super().event(event)  # type: ignore[arg-type]
+        return super().event(event)
 
     def _tip(self, at: QPointF) -> str:
         mark = mark_at(self.marks(), at)

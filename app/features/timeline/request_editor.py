@@ -15,6 +15,7 @@ from PySide6.QtWidgets import (
     QFormLayout,
     QLabel,
     QLineEdit,
+    QPushButton,
     QVBoxLayout,
     QWidget,
 )
@@ -93,8 +94,8 @@ class AskEditor(QDialog):
         self.remove = buttons.addButton("Take it back", QDialogButtonBox.ButtonRole.DestructiveRole)
         self.remove.clicked.connect(self._remove)
         buttons.rejected.connect(self.accept)
-        for button in buttons.buttons():  # Enter takes over what was typed, it does not close
-            button.setAutoDefault(False)  # type: ignore[attr-defined]
+        for button in buttons.findChildren(QPushButton):  # Enter takes over what was typed, it does not close
+            button.setAutoDefault(False)
         layout.addWidget(buttons)
         performance.changed.connect(self._told)
         self._told()
@@ -169,9 +170,13 @@ class AskEditor(QDialog):
 
     def _text(self, value: str, read: Callable[[str], Any], name: str) -> QLineEdit:
         edit = QLineEdit(value, self)
-        edit.editingFinished.connect(
-            lambda: edit.isModified() and (edit.setModified(False), self._set(name, read(edit.text())))
-        )
+
+        def take() -> None:
+            if edit.isModified():
+                edit.setModified(False)
+                self._set(name, read(edit.text()))
+
+        edit.editingFinished.connect(take)
         return edit
 
     def _choice(self, name: str, value: Any, project: Project) -> QComboBox | None:

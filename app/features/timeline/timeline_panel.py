@@ -22,6 +22,7 @@ from app.project.document import Document
 from app.stage.performance import Performance
 from app.stage.session import Session
 from app.widgets.lane_geometry import outcome, wanted
+from app.widgets.making import make_widget
 from app.widgets.quiet_fields import ComboBox, SpinBox
 from app.widgets.request_menu import ask_menu
 from app.widgets.sentence import Sentence
@@ -29,7 +30,7 @@ from metagraph.graph import edits, performance_edits
 from metagraph.graph.conversation import side_name
 from metagraph.graph.conversation_edits import change_conversation
 from metagraph.graph.edits import EditError
-from metagraph.graph.model import LAYERS
+from metagraph.graph.model import LAYERS, Project
 from metagraph.graph.requests import Performance as KeptPerformance
 
 IMPROVISED = "Improvised"
@@ -57,7 +58,7 @@ class TimelinePanel(QWidget):
         self.stage.setMinimumWidth(150)
         self.stage.activated.connect(self._put_on)
         row.addWidget(self.stage)
-        self.more = QToolButton(self, text="…", toolTip="New, rename, length, remove")
+        self.more = make_widget(QToolButton, self, text="…", toolTip="New, rename, length, remove")
         self.more.setAccessibleName("Performances")
         self.more.setPopupMode(QToolButton.ToolButtonPopupMode.InstantPopup)
         self.more_menu = QMenu(self)
@@ -67,19 +68,25 @@ class TimelinePanel(QWidget):
         self.title = Sentence(self)
         self.title.setMinimumHeight(2 * self.title.fontMetrics().height())
         row.addWidget(self.title, 1)
-        self.lost = QToolButton(self, toolTip="Select the next of them; its reason then stands beside")
+        self.lost = make_widget(
+            QToolButton, self, toolTip="Select the next of them; its reason then stands beside"
+        )
         self.lost.clicked.connect(self.show_lost)
         row.addWidget(self.lost)
-        self.now = QToolButton(self, text="Back to now", toolTip="Follow what is played live again")
+        self.now = make_widget(
+            QToolButton, self, text="Back to now", toolTip="Follow what is played live again"
+        )
         self.now.clicked.connect(performance.live.follow)
         row.addWidget(self.now)
-        self.live = QToolButton(self, text="Live", checkable=True)
+        self.live = make_widget(QToolButton, self, text="Live", checkable=True)
         self.live.setToolTip(
             "Let programs on this machine drive the character, over WebSocket and OSC (Ctrl+L)"
         )
         self.live.clicked.connect(self.toggle_live)
         row.addWidget(self.live)
-        self.ask = QToolButton(self, text="Ask for…", toolTip="Ask the character for something now")
+        self.ask = make_widget(
+            QToolButton, self, text="Ask for…", toolTip="Ask the character for something now"
+        )
         self.ask.clicked.connect(self._ask)
         row.addWidget(self.ask)
         row.addWidget(QLabel("Seed", self))
@@ -166,12 +173,12 @@ class TimelinePanel(QWidget):
     def _keep(self, text: str, performance: KeptPerformance) -> None:
         made = ""
 
-        def edit(project: object) -> object:
+        def edit(project: Project) -> Project:
             nonlocal made
-            project, made = performance_edits.add_performance(project, performance)  # type: ignore[arg-type]
+            project, made = performance_edits.add_performance(project, performance)
             return project
 
-        self.document.edit(text, edit)  # type: ignore[arg-type]
+        self.document.edit(text, edit)
         self.session.onstage.set_performance(made)
         self.session.transport.show_plan()
 

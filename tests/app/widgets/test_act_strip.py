@@ -54,11 +54,11 @@ def test_only_arms_have_sides():
 
 def test_what_is_under_the_pointer_is_found_on_its_side(strip):
     lane = strip.lane(0)
-    assert strip.act_at(QPointF(strip.x(1.7), lane.top() + 3)) == ("arms", ACTS["arms"][0])
-    assert strip.act_at(QPointF(strip.x(1.7), lane.bottom() - 3)) == ("arms", ACTS["arms"][1])
-    assert strip.act_at(QPointF(strip.x(6), lane.center().y())) == ("arms", ACTS["arms"][2])
-    assert strip.act_at(QPointF(strip.x(4.5), strip.lane(1).center().y())) == ("head", ACTS["head"][0])
-    assert strip.act_at(QPointF(strip.x(9), lane.center().y())) is None
+    assert strip.act_at(QPointF(strip.x_at(1.7), lane.top() + 3)) == ("arms", ACTS["arms"][0])
+    assert strip.act_at(QPointF(strip.x_at(1.7), lane.bottom() - 3)) == ("arms", ACTS["arms"][1])
+    assert strip.act_at(QPointF(strip.x_at(6), lane.center().y())) == ("arms", ACTS["arms"][2])
+    assert strip.act_at(QPointF(strip.x_at(4.5), strip.lane(1).center().y())) == ("head", ACTS["head"][0])
+    assert strip.act_at(QPointF(strip.x_at(9), lane.center().y())) is None
 
 
 def wheel(strip, x: float, notches: int) -> None:
@@ -69,10 +69,10 @@ def wheel(strip, x: float, notches: int) -> None:
 
 
 def test_the_wheel_zooms_where_the_pointer_is_and_never_beyond_the_ends(strip):
-    x = strip.x(6.0)
+    x = strip.x_at(6.0)
     wheel(strip, x, 3)
     assert strip.zoom > 1.5
-    assert strip.x(6.0) == pytest.approx(x)
+    assert strip.x_at(6.0) == pytest.approx(x)
     wheel(strip, x, 40)
     assert strip.zoom == 2.5, "no closer than four seconds"
     assert 0 <= strip.first <= 10 - 10 / strip.zoom
@@ -81,7 +81,7 @@ def test_the_wheel_zooms_where_the_pointer_is_and_never_beyond_the_ends(strip):
 
 
 def test_dragging_moves_along_once_zoomed(strip, qtbot):
-    wheel(strip, strip.x(0), 40)
+    wheel(strip, strip.x_at(0), 40)
     qtbot.mousePress(strip, Qt.MouseButton.LeftButton, pos=QPoint(300, 40))
     qtbot.mouseMove(strip, QPoint(175, 40))
     qtbot.mouseRelease(strip, Qt.MouseButton.LeftButton, pos=QPoint(175, 40))

@@ -54,7 +54,7 @@ def test_a_pattern_that_cannot_be_read_is_told_and_not_done(toys):
     assert "in braces there may be" in dialog.trouble.text() and not dialog.go.isEnabled()
     dialog.tabs.setCurrentIndex(1)
     assert not dialog.trouble.text() and not dialog.go.isEnabled()
-    QTest.keyClicks(dialog.find, "rest ")
+    QTest.keyClicks(dialog.sought, "rest ")
     assert dialog.go.isEnabled()
     QTest.mouseClick(dialog.go, Qt.MouseButton.LeftButton)
     assert {a.name for a in drive.document.project.actions()} >= {"short", "long"}

@@ -28,8 +28,9 @@ def opened(drive):
 def pick(drive, dialog, name: str) -> None:
     """Click a target in the list."""
     from app.features.export.export_dialog import NAME
+    from app.widgets.tree_items import items_below, top_items
 
-    items = [group.child(n) for group in dialog._groups() for n in range(group.childCount())]
+    items = [item for group in top_items(dialog.targets) for item in items_below(group)]
     item = next(i for i in items if i.data(0, NAME) == name)
     spot = dialog.targets.visualItemRect(item).center()
     QTest.mouseClick(dialog.targets.viewport(), Qt.MouseButton.LeftButton, pos=QPoint(spot.x(), spot.y()))
@@ -60,7 +61,9 @@ def test_a_group_cannot_be_chosen(toys):
     drive = toys
     dialog = opened(drive)
     before = dialog.target
-    spot = dialog.targets.visualItemRect(dialog._groups()[-1]).center()
+    from app.widgets.tree_items import top_items
+
+    spot = dialog.targets.visualItemRect(top_items(dialog.targets)[-1]).center()
     QTest.mouseClick(dialog.targets.viewport(), Qt.MouseButton.LeftButton, pos=spot)
     assert dialog.target is before
     dialog.reject()
