@@ -25,7 +25,7 @@ from metagraph.playback.manual_playback import (
     manual_pose_at,
     state_alone,
 )
-from metagraph.playback.plan import Plan, Request
+from metagraph.playback.plan import MetaRequest, Plan
 from metagraph.playback.planner import make_plan
 from metagraph.playback.player import morphs_at, pose_at
 
@@ -157,7 +157,7 @@ def in_context(
         return Shown(
             scratch, make_plan(scratch, end - start, (), stances=begin, idle=False), max(1.0, end - start)
         )
-    request = Request("shown", action.layer, action.kind, LEAD, action=action.id)
+    request = MetaRequest("shown", action.layer, action.kind, LEAD, action=action.id)
     start, end = scratch.span(action)
     length = LEAD + max(0.0, end - start) + LEAD
     return Shown(scratch, make_plan(scratch, length, (request,), stances=begin, idle=False), length)

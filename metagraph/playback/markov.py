@@ -12,7 +12,7 @@ from collections.abc import Collection, Mapping
 
 from metagraph.graph.model import Kind, Layer, Limb, Markov, Project
 from metagraph.playback.choice import pick, uniform
-from metagraph.playback.plan import WRITTEN, Cursor, MetaAction, Request
+from metagraph.playback.plan import WRITTEN, Cursor, MetaAction, MetaRequest
 
 _LIMB: Mapping[str, Limb] = {"L": "left", "R": "right", "LR": "both"}
 _KIND: Mapping[str, Kind] = {"G": "gesture", "F": "fidget", "T": "transition"}
@@ -103,7 +103,7 @@ def write(
                 tags = ("positive",)
             elif draw < chain.positive + chain.negative:
                 tags = ("negative",)
-        request = Request(key, chain.layer, kind, start, seconds, tags=tags, limb=limb, priority=WRITTEN)
+        request = MetaRequest(key, chain.layer, kind, start, seconds, tags=tags, limb=limb, priority=WRITTEN)
         out.append(MetaAction(request, start, start + seconds, written=True))
         number, time = number + 1, start + seconds
     return out, Cursor(number, state, time)

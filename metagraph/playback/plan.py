@@ -22,7 +22,7 @@ WRITTEN = 0  # priority of what the Markov model writes
 
 
 @dataclass(frozen=True, slots=True)
-class Request:
+class MetaRequest:
     """What an agent or animator asks for, at any level of abstraction.
 
     id: unique; it keys the random draws. start: seconds. duration: how long the activity is wanted, None for
@@ -72,7 +72,7 @@ class MetaAction:
     asked for. part: 0 for the request itself, n for its n-th remainder after a cut.
     """
 
-    request: Request
+    request: MetaRequest
     start: float
     end: float
     part: int = 0
@@ -272,6 +272,6 @@ class Plan:
     end: float
     layers: Mapping[Layer, LayerPlan] = field(default_factory=_empty)
     reports: tuple[Report, ...] = ()
-    requests: tuple[Request, ...] = ()
+    requests: tuple[MetaRequest, ...] = ()
     track: Track = field(default_factory=Track)
     life: Schedule = field(default_factory=Schedule)

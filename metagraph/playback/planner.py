@@ -11,7 +11,7 @@ from collections.abc import Collection, Iterable, Mapping
 from metagraph.graph.model import LAYERS, Layer, MetaGraph, Project
 from metagraph.playback import markov
 from metagraph.playback.life.schedule import schedule
-from metagraph.playback.plan import TEMPORAL, Cursor, LayerPlan, MetaAction, Plan, Report, Request
+from metagraph.playback.plan import TEMPORAL, Cursor, LayerPlan, MetaAction, MetaRequest, Plan, Report
 from metagraph.playback.replan import delay, replan
 from metagraph.playback.sampling import FITS, Performer
 
@@ -21,7 +21,7 @@ WINDOW = 1.0  # seconds a request may use when it does not say how long
 def make_plan(
     project: Project,
     end: float,
-    requests: Iterable[Request] = (),
+    requests: Iterable[MetaRequest] = (),
     seed: int | None = None,
     stances: Mapping[Layer, str] | None = None,
     idle: bool = True,
@@ -40,7 +40,7 @@ def extend(
     project: Project,
     plan: Plan,
     now: float,
-    requests: Iterable[Request],
+    requests: Iterable[MetaRequest],
     end: float,
     stances: Mapping[Layer, str] | None = None,
     idle: bool = True,
@@ -74,7 +74,7 @@ def extend(
     )
 
 
-def _meta(request: Request) -> MetaAction:
+def _meta(request: MetaRequest) -> MetaAction:
     length = WINDOW if request.duration is None else max(0.0, request.duration)
     if request.stroke is not None:
         length = max(length, request.stroke - request.start + FITS)

@@ -20,7 +20,7 @@ from metagraph.graph.model import LAYERS, Layer, Project
 from metagraph.playback.extend_performance import hear, owners, since
 from metagraph.playback.life.lane import Lane
 from metagraph.playback.life.track import Item, track_of
-from metagraph.playback.plan import Cue, LayerPlan, MetaAction, Plan, Report, Request, Rest
+from metagraph.playback.plan import Cue, LayerPlan, MetaAction, MetaRequest, Plan, Report, Rest
 
 AHEAD = 20.0  # seconds of plan
 SLACK = 2.0  # seconds by which a plan may fall behind its horizon before it is extended
@@ -157,7 +157,7 @@ def whole(plan: Plan, pieces: Sequence[CutPiece], named: Sequence[str]) -> Plan:
             past=first.past,
         )
     reports: list[Report] = []
-    requests: list[Request] = []
+    requests: list[MetaRequest] = []
     items: list[Item] = []
     for piece, again in zip(pieces, later, strict=True):
         before, after = piece.before, piece.after

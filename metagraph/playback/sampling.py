@@ -12,7 +12,7 @@ from metagraph.graph.expand import chain
 from metagraph.graph.model import Action, MetaGraph, Project
 from metagraph.playback.choice import pick
 from metagraph.playback.phases import LEAST_BLEND, phases
-from metagraph.playback.plan import Cue, MetaAction, Outcome, Past, Report, Request, Rest
+from metagraph.playback.plan import Cue, MetaAction, MetaRequest, Outcome, Past, Report, Rest
 
 FITS = 1e-6  # seconds by which sums of times may be off
 REMEMBERED = 32  # draws of a stance and kind that spacing can look back on
@@ -211,7 +211,7 @@ class Performer:
             return None
         return [SamplingStep(exact)]
 
-    def _elsewhere(self, request: Request) -> str:
+    def _elsewhere(self, request: MetaRequest) -> str:
         for action in self.graph.actions.values():
             fits = (
                 action.kind == request.kind
@@ -256,7 +256,7 @@ class Performer:
     def _usable(self, action: Action) -> bool:
         return action.likelihood > 0 and self._arrives(action)
 
-    def _shape(self, action: Action, request: Request | None, now: float) -> Shape:
+    def _shape(self, action: Action, request: MetaRequest | None, now: float) -> Shape:
         """Return how an action would play for a request from `now` on, or as a step on the way to it."""
         start, end = self.project.span(action)
         begin, entry, hold_from, hold_to, hold = now, start, 0.0, 0.0, 0.0

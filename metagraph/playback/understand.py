@@ -15,7 +15,7 @@ from metagraph.graph import requests as a
 from metagraph.graph.model import LAYERS, Action, Layer, Project
 from metagraph.playback.life.track import BlinkAt, Item, LookAt, ModeFrom, PlaceFrom, Speech, StayFrom
 from metagraph.playback.line_lengths import spoken_seconds
-from metagraph.playback.plan import Report, Request
+from metagraph.playback.plan import MetaRequest, Report
 
 FOREVER = 1e9  # seconds; a look that lasts until the next
 
@@ -25,7 +25,7 @@ class Understood:
     """requests: for the layers. items: for the track. withdrawn: ids taken back; every id where it holds "".
     refused: what could not be understood, and why."""
 
-    requests: tuple[Request, ...] = ()
+    requests: tuple[MetaRequest, ...] = ()
     items: tuple[Item, ...] = ()
     withdrawn: frozenset[str] = frozenset()
     refused: tuple[Report, ...] = ()
@@ -36,14 +36,14 @@ def understand(project: Project, asks: Iterable[a.AnyAsk], now: float) -> Unders
 
     An ask that makes several requests gives them ids of its own: `<id>`, then `<id>.1`, `<id>.2`, ...
     """
-    requests: list[Request] = []
+    requests: list[MetaRequest] = []
     items: list[Item] = []
     withdrawn: set[str] = set()
     refused: list[Report] = []
     for ask in asks:
         try:
             for meant in _meant(project, ask, now if ask.at is None else ask.at):
-                if isinstance(meant, Request):
+                if isinstance(meant, MetaRequest):
                     requests.append(meant)
                 elif isinstance(meant, a.Withdraw):
                     withdrawn.add(meant.what)
@@ -57,13 +57,13 @@ def understand(project: Project, asks: Iterable[a.AnyAsk], now: float) -> Unders
     return Understood(tuple(requests), tuple(items), frozenset(withdrawn), tuple(refused))
 
 
-def _meant(project: Project, ask: a.AnyAsk, at: float) -> Sequence[Request | Item | a.Withdraw]:
+def _meant(project: Project, ask: a.AnyAsk, at: float) -> Sequence[MetaRequest | Item | a.Withdraw]:
     """Return what one ask means. Raises AskError when there is nothing it could mean."""
     match ask:
         case a.Gesture():
             start, stroke = _timed(project, ask.layer, ask.tags, ask.stroke, at)
             return [
-                Request(
+                MetaRequest(
                     ask.id,
                     ask.layer,
                     "gesture",
@@ -82,7 +82,7 @@ def _meant(project: Project, ask: a.AnyAsk, at: float) -> Sequence[Request | Ite
             ]
         case a.Fidget():
             return [
-                Request(
+                MetaRequest(
                     ask.id,
                     ask.layer,
                     "fidget",
@@ -100,7 +100,7 @@ def _meant(project: Project, ask: a.AnyAsk, at: float) -> Sequence[Request | Ite
             action = find_action(project, ask.action, ask.layer)
             start = at if ask.stroke is None else max(0.0, ask.stroke - lead(project, action))
             return [
-                Request(
+                MetaRequest(
                     ask.id, action.layer, action.kind, start, action=action.id, priority=ask.priority,
                     stroke=ask.stroke, hold=ask.hold, prepare=ask.prepare,
                 )
@@ -108,12 +108,12 @@ def _meant(project: Project, ask: a.AnyAsk, at: float) -> Sequence[Request | Ite
         case a.Go():
             layer, stance = find_stance(project, ask.stance, ask.layer)
             return [
-                Request(ask.id, layer, "transition", at, stance=stance, priority=ask.priority),
+                MetaRequest(ask.id, layer, "transition", at, stance=stance, priority=ask.priority),
                 StayFrom(ask.id, at, layer, ask.stay),
             ]
         case a.Change():
             # Whichever arm was seen to move: stances are joined by few transitions, and mostly of both.
-            return [Request(ask.id, ask.layer, "transition", at, priority=ask.priority)]
+            return [MetaRequest(ask.id, ask.layer, "transition", at, priority=ask.priority)]
         case a.Nod() | a.Shake():
             return [_head(project, ask, "nod" if isinstance(ask, a.Nod) else "shake", at)]
         case a.Look():
@@ -145,7 +145,7 @@ def _named(ask: Any, owner: str, number: int) -> Any:
     return msgspec.structs.replace(ask, id=f"{owner}.{number + 1}")
 
 
-def _said(project: Project, ask: a.Say, at: float) -> list[Request | Item | a.Withdraw]:
+def _said(project: Project, ask: a.Say, at: float) -> list[MetaRequest | Item | a.Withdraw]:
     line = None
     if ask.line is not None:
         ident = str(ask.line)
@@ -156,7 +156,7 @@ def _said(project: Project, ask: a.Say, at: float) -> list[Request | Item | a.Wi
     if line is None and not text:
         raise a.AskError("say what: a line's id, or text")
     length = spoken_seconds(project, str(ask.line) if line is not None else None, text, ask.duration)
-    out: list[Request | Item | a.Withdraw] = [
+    out: list[MetaRequest | Item | a.Withdraw] = [
         Speech(ask.id, at, at + length, str(ask.line) if line is not None else None, text, ask.priority)
     ]
     for n, inner in enumerate(line.asks if line is not None and ask.gestures else ()):
@@ -170,7 +170,7 @@ def _said(project: Project, ask: a.Say, at: float) -> list[Request | Item | a.Wi
     return out
 
 
-def _head(project: Project, ask: a.Nod | a.Shake, word: str, at: float) -> Request:
+def _head(project: Project, ask: a.Nod | a.Shake, word: str, at: float) -> MetaRequest:
     """Nods are gestures tagged so; where none is, the likeliest of those called so, whatever stance it
     needs.
     """
@@ -180,12 +180,12 @@ def _head(project: Project, ask: a.Nod | a.Shake, word: str, at: float) -> Reque
         if x.kind == "gesture" and set(ask.tags) <= set(x.tags)
     ]
     if any(word in x.tags for x in gestures):
-        return Request(ask.id, "head", "gesture", at, tags=(word, *ask.tags), priority=ask.priority)
+        return MetaRequest(ask.id, "head", "gesture", at, tags=(word, *ask.tags), priority=ask.priority)
     called = tuple(x.id for x in gestures if word in x.name.lower())
     if not called:
         tags = f" with the tags {', '.join(ask.tags)}" if ask.tags else ""
         raise a.AskError(f"the head layer has no gesture tagged or called '{word}'{tags}")
-    return Request(ask.id, "head", "gesture", at, priority=ask.priority, among=called)
+    return MetaRequest(ask.id, "head", "gesture", at, priority=ask.priority, among=called)
 
 
 def _timed(

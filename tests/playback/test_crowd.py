@@ -14,7 +14,7 @@ import pytest
 from metagraph.graph import edits
 from metagraph.graph.model import Project
 from metagraph.playback.crowd import Crowd
-from metagraph.playback.plan import Plan, Request
+from metagraph.playback.plan import MetaRequest, Plan
 from metagraph.playback.planner import make_plan
 from metagraph.playback.player import pose_at
 
@@ -62,7 +62,8 @@ def test_weights_masks_seams_early_exits_and_missing_clips_agree_too(toy: Any) -
     missing = project.action(toy.id(project, "rest short")).clip
     project = replace(project, clips={**project.clips, missing: replace(project.clips[missing], motion=None)})
     busy = [
-        Request(f"r{n}", "arms", ("gesture", "fidget", "transition")[n % 3], n * 1.1, 0.4) for n in range(30)
+        MetaRequest(f"r{n}", "arms", ("gesture", "fidget", "transition")[n % 3], n * 1.1, 0.4)
+        for n in range(30)
     ]
     plans = [make_plan(project, 40, busy, seed) for seed in range(150)] + [Plan(1, 0.0)]
     assert_agrees(project, plans, np.random.default_rng(2).uniform(-1, 42, len(plans)))

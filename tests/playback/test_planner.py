@@ -12,7 +12,7 @@ from hypothesis import strategies as st
 
 from metagraph.graph import edits
 from metagraph.graph.model import LAYERS, Project
-from metagraph.playback.plan import Plan, Request
+from metagraph.playback.plan import MetaRequest, Plan
 from metagraph.playback.planner import extend, make_plan
 
 PROJECT = Project()
@@ -41,7 +41,7 @@ def told(plan: Plan) -> list[Any]:
 
 
 def test_an_empty_project_plans_nothing_and_does_not_fail() -> None:
-    plan = make_plan(Project(), 10, [Request("r", "arms", "gesture", 1.0)])
+    plan = make_plan(Project(), 10, [MetaRequest("r", "arms", "gesture", 1.0)])
     assert all(not plan.layers[layer].cues and not plan.layers[layer].rests for layer in LAYERS)
     assert [r.outcome for r in plan.reports] == ["no-stance"]
 
@@ -69,7 +69,7 @@ def test_a_layer_begins_where_it_is_told_to_else_at_its_start_else_where_there_i
 
 
 def test_requests_beyond_the_horizon_wait_for_it() -> None:
-    request = Request("r", "arms", "gesture", 12.0)
+    request = MetaRequest("r", "arms", "gesture", 12.0)
     plan = make_plan(PROJECT, 10, [request], idle=False)
     assert not plan.layers["arms"].cues and plan.reports == () and plan.requests == (request,)
     later = extend(PROJECT, plan, 5, (), 20, idle=False)
@@ -80,7 +80,10 @@ def test_something_important_beyond_the_horizon_is_known_already() -> None:
     near = make_plan(
         PROJECT,
         10,
-        [Request("a", "arms", "gesture", 9.5, 0.7), Request("k", "arms", "gesture", 10.2, priority=5)],
+        [
+            MetaRequest("a", "arms", "gesture", 9.5, 0.7),
+            MetaRequest("k", "arms", "gesture", 10.2, priority=5),
+        ],
         idle=False,
     )
     assert all(c.end <= 10.2 for c in near.layers["arms"].cues)
@@ -88,12 +91,15 @@ def test_something_important_beyond_the_horizon_is_known_already() -> None:
 
 def test_of_two_requests_of_one_id_the_later_counts() -> None:
     plan = make_plan(
-        PROJECT, 20, [Request("r", "arms", "gesture", 2.0), Request("r", "arms", "fidget", 5.0)], idle=False
+        PROJECT,
+        20,
+        [MetaRequest("r", "arms", "gesture", 2.0), MetaRequest("r", "arms", "fidget", 5.0)],
+        idle=False,
     )
     assert [(c.meta, c.start, c.action.kind) for c in plan.layers["arms"].cues] == [("r", 5.0, "fidget")]
-    moved = extend(PROJECT, plan, 1.0, [Request("r", "arms", "gesture", 8.0)], 20, idle=False)
+    moved = extend(PROJECT, plan, 1.0, [MetaRequest("r", "arms", "gesture", 8.0)], 20, idle=False)
     assert [(c.meta, c.start) for c in moved.layers["arms"].cues] == [("r", 8.0)] and len(moved.requests) == 1
-    gone = extend(PROJECT, plan, 1.0, [Request("r", "head", "gesture", 8.0)], 20, idle=False)
+    gone = extend(PROJECT, plan, 1.0, [MetaRequest("r", "head", "gesture", 8.0)], 20, idle=False)
     assert not gone.layers["arms"].cues, "asked for on another layer, it leaves this one"
 
 
@@ -101,9 +107,11 @@ def test_of_two_requests_of_one_id_the_later_counts() -> None:
 
 
 def test_the_running_action_is_kept_and_a_new_request_waits_for_it(toy: Any) -> None:
-    long = Request("a", "arms", "gesture", 1.0, action=toy.id(PROJECT, "rest wave rt"))
+    long = MetaRequest("a", "arms", "gesture", 1.0, action=toy.id(PROJECT, "rest wave rt"))
     plan = make_plan(PROJECT, 20, [long], idle=False)
-    then = extend(PROJECT, plan, 1.5, [Request("now", "arms", "gesture", 1.5, priority=9)], 20, idle=False)
+    then = extend(
+        PROJECT, plan, 1.5, [MetaRequest("now", "arms", "gesture", 1.5, priority=9)], 20, idle=False
+    )
     cues = then.layers["arms"].cues
     assert cues[0] == plan.layers["arms"].cues[0] and (cues[1].meta, cues[1].start) == ("now", cues[0].end)
     assert [(r.request, r.outcome, r.played) for r in then.reports] == [("now", "late", True)]
@@ -114,7 +122,7 @@ def test_a_request_for_the_far_past_is_told_to_be_past() -> None:
         PROJECT,
         make_plan(PROJECT, 30, idle=False),
         20,
-        [Request("old", "arms", "gesture", 3.0)],
+        [MetaRequest("old", "arms", "gesture", 3.0)],
         30,
         idle=False,
     )
@@ -122,12 +130,12 @@ def test_a_request_for_the_far_past_is_told_to_be_past() -> None:
 
 
 def test_new_requests_are_merged_with_what_was_planned() -> None:
-    old = [Request("a", "arms", "gesture", 5.0), Request("b", "arms", "gesture", 10.0)]
+    old = [MetaRequest("a", "arms", "gesture", 5.0), MetaRequest("b", "arms", "gesture", 10.0)]
     plan = extend(
         PROJECT,
         make_plan(PROJECT, 20, old, idle=False),
         1,
-        [Request("c", "arms", "fidget", 7.5)],
+        [MetaRequest("c", "arms", "fidget", 7.5)],
         20,
         idle=False,
     )
@@ -135,7 +143,7 @@ def test_new_requests_are_merged_with_what_was_planned() -> None:
 
 
 def test_a_chain_that_has_begun_is_finished(toy: Any) -> None:
-    ask = Request("go", "arms", "gesture", 1.0, action=toy.id(PROJECT, "up point"))
+    ask = MetaRequest("go", "arms", "gesture", 1.0, action=toy.id(PROJECT, "up point"))
     plan = make_plan(PROJECT, 20, [ask], idle=False)
     for now in (1.0, 1.1, 1.5, 1.8, 2.0, 3.5):
         assert played(extend(PROJECT, plan, now, (), 20, idle=False)) == played(plan)
@@ -143,8 +151,8 @@ def test_a_chain_that_has_begun_is_finished(toy: Any) -> None:
 
 def test_a_meta_action_that_waits_for_a_long_clip_is_not_forgotten_meanwhile(toy: Any) -> None:
     asked = [
-        Request("a", "arms", "gesture", 1.0, 0.5, action=toy.id(PROJECT, "rest wave rt")),
-        Request("b", "arms", "gesture", 1.8, 3.0),
+        MetaRequest("a", "arms", "gesture", 1.0, 0.5, action=toy.id(PROJECT, "rest wave rt")),
+        MetaRequest("b", "arms", "gesture", 1.8, 3.0),
     ]
     plan = make_plan(PROJECT, 20, asked, idle=False)
     assert [c.meta for c in plan.layers["arms"].cues] == ["a", "b"] and plan.layers["arms"].cues[
@@ -155,10 +163,10 @@ def test_a_meta_action_that_waits_for_a_long_clip_is_not_forgotten_meanwhile(toy
 
 def test_what_was_told_stays_told(toy: Any) -> None:
     asked = [
-        Request("long", "arms", "gesture", 5.0, 9.0, resume=True),
-        Request("king", "arms", "gesture", 7.0, priority=5),
-        Request("lost", "arms", "gesture", 6.0, tags=("none",), priority=2),
-        Request("late", "arms", "gesture", 7.2),
+        MetaRequest("long", "arms", "gesture", 5.0, 9.0, resume=True),
+        MetaRequest("king", "arms", "gesture", 7.0, priority=5),
+        MetaRequest("lost", "arms", "gesture", 6.0, tags=("none",), priority=2),
+        MetaRequest("late", "arms", "gesture", 7.2),
     ]
     plan = make_plan(PROJECT, 30, asked, idle=False)
     assert {r.request for r in plan.reports} >= {"long", "late", "lost"}
@@ -171,10 +179,10 @@ def test_what_was_told_stays_told(toy: Any) -> None:
 
 def test_a_stance_that_was_removed_meanwhile_does_not_break_the_plan(toy: Any) -> None:
     plan = make_plan(
-        PROJECT, 20, [Request("go", "arms", "transition", 1.0, stance=toy.id(PROJECT, "up"))], idle=False
+        PROJECT, 20, [MetaRequest("go", "arms", "transition", 1.0, stance=toy.id(PROJECT, "up"))], idle=False
     )
     without = edits.remove_stance(PROJECT, toy.id(PROJECT, "up"))
-    then = extend(without, plan, 5.0, [Request("g", "arms", "gesture", 6.0)], 20, idle=False)
+    then = extend(without, plan, 5.0, [MetaRequest("g", "arms", "gesture", 6.0)], 20, idle=False)
     assert then.layers["arms"].cues[-1].action.id in without.graphs["arms"].actions
 
 
@@ -192,7 +200,7 @@ request_rows = st.lists(
 )
 
 
-def build(rows: list[tuple[float, float | None, str, int, bool]], prefix: str = "r") -> list[Request]:
+def build(rows: list[tuple[float, float | None, str, int, bool]], prefix: str = "r") -> list[MetaRequest]:
     graph = PROJECT.graphs["arms"]
     stances = {s.name: s.id for s in graph.stances.values()}
     point = next(a.id for a in graph.actions.values() if a.name == "up point")
@@ -209,7 +217,9 @@ def build(rows: list[tuple[float, float | None, str, int, bool]], prefix: str = 
         elif what == "tag":
             more = {"tags": ("none",)}
         out.append(
-            Request(f"{prefix}{n}", "arms", kind, start, duration, priority=priority, resume=resume, **more)
+            MetaRequest(
+                f"{prefix}{n}", "arms", kind, start, duration, priority=priority, resume=resume, **more
+            )
         )
     return out
 

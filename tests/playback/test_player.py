@@ -14,7 +14,7 @@ from metagraph.graph import edits
 from metagraph.graph.model import LAYERS, PARTS, Project
 from metagraph.motion import rotation
 from metagraph.motion.skeleton import Pose
-from metagraph.playback.plan import LayerPlan, Plan, Request, Rest
+from metagraph.playback.plan import LayerPlan, MetaRequest, Plan, Rest
 from metagraph.playback.planner import make_plan
 from metagraph.playback.player import cue_weight, ease, loop_seconds, morphs_at, pose_at
 
@@ -47,7 +47,7 @@ def apart(a: Pose, b: Pose) -> float:
 def shown(project: Project, toy: Any, name: str, start: float = 1.0) -> Plan:
     action = project.action(toy.id(project, name))
     return make_plan(
-        project, 10, [Request("r", action.layer, action.kind, start, action=action.id)], idle=False
+        project, 10, [MetaRequest("r", action.layer, action.kind, start, action=action.id)], idle=False
     )
 
 
@@ -115,7 +115,7 @@ def test_poses_have_the_shape_of_the_times(project: Project, shape: tuple[int, .
 def test_before_the_beginning_and_after_the_end_the_stances_rest(project: Project, toy: Any) -> None:
     project = everywhere(project)
     plan = make_plan(
-        project, 10, [Request("r", "arms", "transition", 1, stance=toy.id(project, "up"))], idle=False
+        project, 10, [MetaRequest("r", "arms", "transition", 1, stance=toy.id(project, "up"))], idle=False
     )
     rest, up = (project.action(toy.id(project, f"{n} loop")) for n in ("rest", "up"))
     assert apart(pose_at(plan, project, -0.5), clip_pose_at(project, rest, 1.5)) < 1e-6
@@ -230,7 +230,10 @@ def test_an_action_left_early_leads_to_its_stance_without_a_jump(project: Projec
     project = edits.update_actions(
         everywhere(project), [ident], timing={"earliest_exit": 0.9, "blend_out": 0.3}
     )
-    asked = [Request("a", "arms", "gesture", 1.0, 0.5, action=ident), Request("b", "arms", "gesture", 1.6)]
+    asked = [
+        MetaRequest("a", "arms", "gesture", 1.0, 0.5, action=ident),
+        MetaRequest("b", "arms", "gesture", 1.6),
+    ]
     plan = make_plan(project, 10, asked, idle=False)
     cue = plan.layers["arms"].cues[0]
     assert cue.end - cue.start == pytest.approx(1.2), "left in the middle of its swing"

@@ -10,7 +10,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from metagraph.graph.model import Settings
-from metagraph.playback.plan import MetaAction, Report, Request
+from metagraph.playback.plan import MetaAction, MetaRequest, Report
 from metagraph.playback.replan import delay, replan
 
 SETTINGS = Settings(shortest=0.4, wait=4.0)
@@ -19,7 +19,7 @@ SETTINGS = Settings(shortest=0.4, wait=4.0)
 def meta(
     ident: str, start: float, end: float, priority: int = 1, resume: bool = False, written: bool = False
 ) -> MetaAction:
-    request = Request(ident, "arms", "gesture", start, end - start, priority=priority, resume=resume)
+    request = MetaRequest(ident, "arms", "gesture", start, end - start, priority=priority, resume=resume)
     return MetaAction(request, start, end, written=written)
 
 
@@ -147,7 +147,7 @@ def test_a_request_that_waits_exactly_as_long_as_allowed_plays() -> None:
 def test_times_that_are_not_numbers_are_refused_at_the_door(field: str, bad: float) -> None:
     times: dict[str, Any] = {"start": 0.0, "duration": 1.0, field: bad}
     with pytest.raises(ValueError, match="finite"):
-        Request("a", "arms", "gesture", **times)
+        MetaRequest("a", "arms", "gesture", **times)
 
 
 # --- whatever comes

@@ -14,7 +14,7 @@ import pytest
 from metagraph.graph import edits
 from metagraph.graph.model import Project
 from metagraph.playback import sampling as pick_module
-from metagraph.playback.plan import LayerPlan, MetaAction, Plan, Request
+from metagraph.playback.plan import LayerPlan, MetaAction, MetaRequest, Plan
 from metagraph.playback.planner import make_plan
 
 
@@ -24,7 +24,7 @@ def project(toy: Any) -> Project:
 
 
 def arms(
-    project: Project, *requests: Request, end: float = 30.0, seed: int = 1, stance: str | None = None
+    project: Project, *requests: MetaRequest, end: float = 30.0, seed: int = 1, stance: str | None = None
 ) -> tuple[LayerPlan, Plan]:
     plan = make_plan(project, end, requests, seed, {"arms": stance} if stance else None, idle=False)
     return plan.layers["arms"], plan
@@ -40,8 +40,8 @@ def outcomes(plan: Plan) -> dict[str, str]:
 
 def ask(
     ident: str, start: float, duration: float | None = None, kind: Any = "gesture", **more: Any
-) -> Request:
-    return Request(ident, "arms", kind, start, duration, **more)
+) -> MetaRequest:
+    return MetaRequest(ident, "arms", kind, start, duration, **more)
 
 
 def lengths(project: Project, toy: Any, **seconds: float) -> Project:
@@ -351,7 +351,7 @@ def test_a_transition_into_a_stance_without_a_loop_is_never_drawn(project: Proje
 
 
 def test_a_layer_with_no_loop_to_begin_in_stays_still_and_says_so(project: Project) -> None:
-    plan = make_plan(project, 10, [Request("r", "head", "gesture", 1.0)])
+    plan = make_plan(project, 10, [MetaRequest("r", "head", "gesture", 1.0)])
     assert plan.layers["head"].cues == plan.layers["head"].rests == ()
     assert [(r.request, r.outcome) for r in plan.reports if not r.written] == [("r", "no-stance")]
     assert "head layer" in plan.reports[-1].message
@@ -359,7 +359,9 @@ def test_a_layer_with_no_loop_to_begin_in_stays_still_and_says_so(project: Proje
 
 def test_what_the_model_writes_takes_what_there_is(toy: Any) -> None:
     project = edits.update_actions(toy.project(), [toy.id(toy.project(), "rest short")], tags=("positive",))
-    request = Request("auto/arms/0", "arms", "gesture", 0.0, 1.0, limb="left", tags=("positive",), priority=0)
+    request = MetaRequest(
+        "auto/arms/0", "arms", "gesture", 0.0, 1.0, limb="left", tags=("positive",), priority=0
+    )
     performer = pick_module.Performer(project, project.graphs["arms"], 1, toy.id(project, "rest"))
     performer.perform([MetaAction(request, 0, 1, written=True)], 10)
     assert [c.action.name for c in performer.cues] == ["rest short"], "the tag weighs more than the limb"

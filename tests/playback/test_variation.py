@@ -17,7 +17,7 @@ from metagraph.graph import edits
 from metagraph.graph.model import Project
 from metagraph.playback.crowd import Crowd
 from metagraph.playback.phases import phases
-from metagraph.playback.plan import Cue, LayerPlan, Plan, Request
+from metagraph.playback.plan import Cue, LayerPlan, MetaRequest, Plan
 from metagraph.playback.planner import extend, make_plan
 from metagraph.playback.player import pose_at
 
@@ -27,13 +27,15 @@ def project(toy: Any) -> Project:
     return toy.project()
 
 
-def arms(project: Project, *requests: Request, end: float = 60.0, seed: int = 1) -> tuple[LayerPlan, Plan]:
+def arms(
+    project: Project, *requests: MetaRequest, end: float = 60.0, seed: int = 1
+) -> tuple[LayerPlan, Plan]:
     plan = make_plan(project, end, requests, seed, idle=False)
     return plan.layers["arms"], plan
 
 
-def every(seconds: float, count: int, **more: Any) -> list[Request]:
-    return [Request(f"r{n}", "arms", "gesture", n * seconds, **more) for n in range(count)]
+def every(seconds: float, count: int, **more: Any) -> list[MetaRequest]:
+    return [MetaRequest(f"r{n}", "arms", "gesture", n * seconds, **more) for n in range(count)]
 
 
 def names(plan: LayerPlan) -> list[str]:
@@ -65,8 +67,8 @@ def test_an_action_asked_for_by_name_plays_although_it_cools_down(project: Proje
     project = edits.update_actions(project, [ident], cooldown=100.0)
     plan, _ = arms(
         project,
-        Request("a", "arms", "gesture", 0, action=ident),
-        Request("b", "arms", "gesture", 3, action=ident),
+        MetaRequest("a", "arms", "gesture", 0, action=ident),
+        MetaRequest("b", "arms", "gesture", 3, action=ident),
     )
     assert names(plan) == ["rest wave rt"] * 2
 
@@ -103,12 +105,12 @@ def test_a_short_memory_forgets_what_was_used(project: Project, toy: Any) -> Non
     later.
     """
     ident = toy.id(project, "rest wave rt")
-    used = [Request(f"u{n}", "arms", "gesture", 2.0 * n, action=ident) for n in range(10)]
+    used = [MetaRequest(f"u{n}", "arms", "gesture", 2.0 * n, action=ident) for n in range(10)]
 
     def drawn(memory: float) -> int:
         changed = edits.set_settings(project, memory=memory, never_twice=False)
         first = [
-            arms(changed, *used, Request("x", "arms", "gesture", 80.0), end=100, seed=seed)[0].cues[-1]
+            arms(changed, *used, MetaRequest("x", "arms", "gesture", 80.0), end=100, seed=seed)[0].cues[-1]
             for seed in range(200)
         ]
         return sum(c.action.id == ident for c in first)
@@ -118,19 +120,19 @@ def test_a_short_memory_forgets_what_was_used(project: Project, toy: Any) -> Non
 
 def test_actions_of_a_layer_are_as_far_apart_as_the_settings_say(project: Project) -> None:
     project = edits.set_settings(project, rest=1.5)
-    plan, _ = arms(project, *[Request(f"r{n}", "arms", "gesture", n * 0.8) for n in range(12)])
+    plan, _ = arms(project, *[MetaRequest(f"r{n}", "arms", "gesture", n * 0.8) for n in range(12)])
     assert len(plan.cues) > 3
     assert all(b.start - a.end >= 1.5 - 1e-9 for a, b in pairwise(plan.cues))
 
 
 def test_rest_holds_across_extensions(project: Project) -> None:
     project = edits.set_settings(project, rest=1.5)
-    plan = make_plan(project, 10, [Request("a", "arms", "gesture", 1.0)], idle=False)
+    plan = make_plan(project, 10, [MetaRequest("a", "arms", "gesture", 1.0)], idle=False)
     plan = extend(
         project,
         plan,
         plan.layers["arms"].cues[0].end + 0.1,
-        [Request("b", "arms", "gesture", 2.0)],
+        [MetaRequest("b", "arms", "gesture", 2.0)],
         20,
         idle=False,
     )
@@ -143,7 +145,7 @@ def test_rest_holds_across_extensions(project: Project) -> None:
 
 def test_a_stroke_lands_where_it_is_asked_for(sample: Project) -> None:
     for seed in range(12):
-        request = Request("x", "arms", "gesture", 2.0, stroke=4.25)
+        request = MetaRequest("x", "arms", "gesture", 2.0, stroke=4.25)
         cue = make_plan(sample, 20, [request], seed, idle=False).layers["arms"].cues[0]
         assert cue.clip_seconds(4.25) == pytest.approx(phases(sample, cue.action).stroke)
 
@@ -155,7 +157,7 @@ def test_a_stroke_that_is_nearly_too_late_cuts_the_preparation_and_one_too_late_
         project, [ident], timing={"ready": 1.0, "stroke": 1.2, "stroke_end": 1.4, "relax": 1.6}
     )
     for asked, entry in ((1.2, 0.0), (0.8, 0.4), (0.45, 0.75), (0.2, 0.75)):
-        request = Request("x", "arms", "gesture", 0.0, action=ident, stroke=asked)
+        request = MetaRequest("x", "arms", "gesture", 0.0, action=ident, stroke=asked)
         cue = make_plan(project, 10, [request], idle=False).layers["arms"].cues[0]
         assert (cue.start, cue.entry) == (0.0, pytest.approx(entry)), asked
 
@@ -166,7 +168,7 @@ def test_a_hold_lasts_as_long_as_asked_and_the_rest_keeps_its_speed(sample: Proj
     natural = found.relax - found.stroke_end
     assert natural > 0.2
     for asked in (natural, 1.0, 4.0):
-        request = Request("x", "arms", "gesture", 1.0, action=action.id, hold=asked)
+        request = MetaRequest("x", "arms", "gesture", 1.0, action=action.id, hold=asked)
         cue = make_plan(sample, 20, [request], idle=False).layers["arms"].cues[-1]
         assert cue.end - cue.start == pytest.approx(end - start - natural + asked)
         times = np.linspace(cue.start, cue.end, 400)
@@ -183,7 +185,9 @@ def test_a_hold_is_never_hurried_beyond_twice_its_speed(sample: Project) -> None
     action = next(x for x in sample.actions() if x.name == "open_palms_bt_01")
     natural = phases(sample, action).relax - phases(sample, action).stroke_end
     cue = (
-        make_plan(sample, 20, [Request("x", "arms", "gesture", 1.0, action=action.id, hold=0.0)], idle=False)
+        make_plan(
+            sample, 20, [MetaRequest("x", "arms", "gesture", 1.0, action=action.id, hold=0.0)], idle=False
+        )
         .layers["arms"]
         .cues[-1]
     )
@@ -197,7 +201,7 @@ def test_a_held_pose_does_not_stop_dead_or_jump(sample: Project) -> None:
 
     def fastest(hold: float | None) -> float:
         plan = make_plan(
-            sample, 20, [Request("x", "arms", "gesture", 1.0, action=action.id, hold=hold)], idle=False
+            sample, 20, [MetaRequest("x", "arms", "gesture", 1.0, action=action.id, hold=hold)], idle=False
         )
         cue = plan.layers["arms"].cues[-1]
         times = np.arange(cue.start - 0.5, cue.end + 0.5, 1 / 60)
@@ -213,7 +217,7 @@ def test_a_preparation_is_skipped_and_blended_over(toy: Any) -> None:
     project = edits.update_actions(project, [ident], timing={"ready": 1.0, "stroke": 1.2})
     cue = (
         make_plan(
-            project, 10, [Request("x", "arms", "gesture", 1.0, action=ident, prepare=False)], idle=False
+            project, 10, [MetaRequest("x", "arms", "gesture", 1.0, action=ident, prepare=False)], idle=False
         )
         .layers["arms"]
         .cues[0]
@@ -229,8 +233,8 @@ def test_holds_and_skips_mean_nothing_to_fidgets_and_transitions(toy: Any) -> No
     project = toy.project()
     up = toy.id(project, "up")
     asked = [
-        Request("f", "arms", "fidget", 1.0, hold=3.0, prepare=False),
-        Request("t", "arms", "transition", 4.0, stance=up, hold=3.0),
+        MetaRequest("f", "arms", "fidget", 1.0, hold=3.0, prepare=False),
+        MetaRequest("t", "arms", "transition", 4.0, stance=up, hold=3.0),
     ]
     plan = make_plan(project, 10, asked, idle=False).layers["arms"]
     assert [c.hold for c in plan.cues] == [0.0, 0.0] and all(
@@ -244,7 +248,7 @@ def test_whatever_is_asked_of_the_phases_cues_stay_apart_and_within_their_clips(
     sample: Project, hold: float, prepare: bool, stroke: float | None, seed: int
 ) -> None:
     requests = [
-        Request(f"r{n}", "arms", "gesture", 1.3 * n, hold=hold, prepare=prepare, stroke=stroke)
+        MetaRequest(f"r{n}", "arms", "gesture", 1.3 * n, hold=hold, prepare=prepare, stroke=stroke)
         for n in range(6)
     ]
     cues: tuple[Cue, ...] = make_plan(sample, 40, requests, seed).layers["arms"].cues
@@ -257,7 +261,7 @@ def test_whatever_is_asked_of_the_phases_cues_stay_apart_and_within_their_clips(
 
 def test_a_crowd_holds_as_the_player_does(sample: Project) -> None:
     action = next(x for x in sample.actions() if x.name == "open_palms_bt_01")
-    plan = make_plan(sample, 20, [Request("x", "arms", "gesture", 1.0, action=action.id, hold=3.0)])
+    plan = make_plan(sample, 20, [MetaRequest("x", "arms", "gesture", 1.0, action=action.id, hold=3.0)])
     times = np.linspace(0.5, 8.0, 40)
     crowd = Crowd(sample, [plan] * len(times)).poses(times)
     one = pose_at(plan, sample, times, alive=False)
