@@ -8,8 +8,8 @@ from PySide6.QtCore import QObject, Signal
 
 from app.project.document import Document
 from app.stage.session import Session
-from metagraph.graph.requests import AskError
 from metagraph.graph.requests import Performance as KeptPerformance
+from metagraph.graph.requests import RequestError
 
 if TYPE_CHECKING:
     from app.stage.live_stage import LiveStage
@@ -55,7 +55,7 @@ class LiveControl(QObject):
         stage.stop()
         try:
             self.last = stage.performance() if stage.tape.count else None
-        except AskError as error:
+        except RequestError as error:
             self.last = None
             self.document.failed.emit(str(error))
         stage.deleteLater()

@@ -13,7 +13,7 @@ import msgspec
 from PySide6.QtCore import QElapsedTimer, QObject, Qt, QTimer, Signal
 
 from metagraph.graph.model import Project
-from metagraph.graph.requests import AnyAsk, Performance
+from metagraph.graph.requests import AnyRequest, Performance
 from metagraph.live import OSC_PORT, PORT
 from metagraph.live.live_session import LiveSession
 from metagraph.live.messages import HeardMessage, Reply
@@ -35,10 +35,10 @@ class _Shown(Tape):
 
     def __init__(self) -> None:
         super().__init__()
-        self.latest: tuple[AnyAsk, ...] = ()
+        self.latest: tuple[AnyRequest, ...] = ()
         self.count = 0
 
-    def keep(self, asks: Sequence[AnyAsk]) -> None:
+    def keep(self, asks: Sequence[AnyRequest]) -> None:
         super().keep(asks)
         shown = [ask for ask in asks if ask.__struct_config__.tag != "withdraw"]
         if shown:
@@ -140,7 +140,7 @@ class LiveStage(QObject):
         self.error = error
         self.told.emit(self.words())
 
-    def ask(self, ask: AnyAsk) -> None:
+    def ask(self, ask: AnyRequest) -> None:
         """Ask as a client does."""
         self.session.receive(WINDOW, msgspec.json.encode(ask))
 
@@ -151,7 +151,7 @@ class LiveStage(QObject):
     # --- what is known
 
     @property
-    def asks(self) -> tuple[AnyAsk, ...]:
+    def asks(self) -> tuple[AnyRequest, ...]:
         """The latest requests of all clients."""
         return self.tape.latest
 
@@ -186,5 +186,5 @@ class LiveStage(QObject):
         return f"Live at {ready.websocket}: {who}"
 
     def performance(self) -> Performance:
-        """Return what was played so far, to be kept. Raises AskError when it was too much."""
+        """Return what was played so far, to be kept. Raises RequestError when it was too much."""
         return self.session.performance("Live session")

@@ -18,7 +18,7 @@ from app.stage.playback_source import Shown, alone, by_hand, in_context
 from app.stage.request_edits import SOON, RequestEdits
 from app.stage.session import Session
 from metagraph.graph.model import LAYERS, Project
-from metagraph.graph.requests import AnyAsk
+from metagraph.graph.requests import AnyRequest
 from metagraph.motion.skeleton import Pose, Skeleton
 from metagraph.playback.extend_performance import Answer, answers
 from metagraph.playback.manual_playback import Fire
@@ -228,7 +228,7 @@ class Performance(QObject):
     # --- what was asked for
 
     @property
-    def asks(self) -> tuple[AnyAsk, ...]:
+    def asks(self) -> tuple[AnyRequest, ...]:
         """What is asked for: of the performance on stage, or lately of the live one."""
         if self.live.stage is not None:
             return self.live.stage.asks

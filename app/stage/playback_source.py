@@ -13,7 +13,7 @@ import numpy as np
 
 from metagraph.graph.edits import EditError, place
 from metagraph.graph.model import Layer, Project
-from metagraph.graph.requests import AnyAsk
+from metagraph.graph.requests import AnyRequest
 from metagraph.motion.skeleton import Pose, Skeleton
 from metagraph.playback.life.evaluate import enliven
 from metagraph.playback.manual_playback import (
@@ -56,7 +56,7 @@ class Shown:
     partner: Shown | None = None
     side: int = 0
     stand: Stand | None = None
-    asks: tuple[AnyAsk, ...] = ()
+    asks: tuple[AnyRequest, ...] = ()
     notes: tuple[str, ...] = ()
     folder: Path | None = None
     motion: str | None = None

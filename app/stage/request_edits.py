@@ -11,7 +11,7 @@ from app.stage.live_control import LiveControl
 from app.stage.session import Session
 from metagraph.graph import performance_edits
 from metagraph.graph.model import Project
-from metagraph.graph.requests import AnyAsk
+from metagraph.graph.requests import AnyRequest
 from metagraph.graph.requests import Performance as KeptPerformance
 
 SOON = 0.15  # seconds from now at which "now" is: the plan needs a moment
@@ -38,7 +38,7 @@ class RequestEdits:
         """Whether the asks that are shown can be moved and changed."""
         return self.live.stage is None and self.kept is not None and self.session.transport.show == "plan"
 
-    def ask(self, ask: AnyAsk, text: str = "Ask for something") -> None:
+    def ask(self, ask: AnyRequest, text: str = "Ask for something") -> None:
         """Ask for one thing more, in the performance on stage or a new one; without a time it is wanted as
         soon as can be.
         """
@@ -57,7 +57,7 @@ class RequestEdits:
             if made is None or made not in project.performances:
                 kept = KeptPerformance(name="Performance", length=self._length())
                 project, made = performance_edits.add_performance(project, kept)
-            return performance_edits.add_ask(project, made, ask)
+            return performance_edits.add_request(project, made, ask)
 
         self.document.edit(text, edit)
         self.session.onstage.set_performance(made)
@@ -70,7 +70,9 @@ class RequestEdits:
         stage = self.session.onstage.performance
         if stage is not None:
             self.document.edit(
-                "Change request", lambda p: performance_edits.change_ask(p, stage, ident, **changes), merge
+                "Change request",
+                lambda p: performance_edits.change_request(p, stage, ident, **changes),
+                merge,
             )
 
     def move(self, idents: tuple[str, ...], by: float, merge: str | None = None) -> None:
@@ -78,7 +80,7 @@ class RequestEdits:
         stage = self.session.onstage.performance
         if stage is not None:
             self.document.edit(
-                "Move request", lambda p: performance_edits.move_asks(p, stage, idents, by), merge
+                "Move request", lambda p: performance_edits.move_requests(p, stage, idents, by), merge
             )
 
     def copy(self, idents: tuple[str, ...], by: float) -> None:
@@ -93,7 +95,7 @@ class RequestEdits:
             project = performance_edits.change_performance(
                 project, stage, asks=(*project.performances[stage].asks, *copies)
             )
-            return performance_edits.move_asks(
+            return performance_edits.move_requests(
                 project, stage, {x.id for x in project.performances[stage].asks[number:]}, by
             )
 
@@ -105,5 +107,5 @@ class RequestEdits:
         stage = self.session.onstage.performance
         if stage is not None:
             self.document.edit(
-                "Withdraw request", lambda p: performance_edits.remove_asks(p, stage, idents or None)
+                "Withdraw request", lambda p: performance_edits.remove_requests(p, stage, idents or None)
             )

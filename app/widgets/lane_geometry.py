@@ -14,9 +14,9 @@ from PySide6.QtCore import QPointF, QRectF, Qt
 from PySide6.QtGui import QFont, QFontMetricsF
 
 from app.stage.playback_source import Shown
-from app.widgets.request_menu import STAGE, ask_words, kind_of, lane_of
+from app.widgets.request_menu import STAGE, kind_of, lane_of, request_words
 from metagraph.graph.model import LAYERS, Layer, Project
-from metagraph.graph.requests import AnyAsk
+from metagraph.graph.requests import AnyRequest
 from metagraph.playback.extend_performance import Answer
 from metagraph.playback.plan import Cue
 
@@ -83,7 +83,7 @@ class Mark:
     seconds.
     """
 
-    ask: AnyAsk
+    ask: AnyRequest
     rect: QRectF
     words: str
     kind: str | None
@@ -106,7 +106,7 @@ def is_lost(answer: Answer | None) -> bool:
     return answer is not None and answer.state == "refused"
 
 
-def time_of(ask: AnyAsk, answer: Answer | None) -> float:
+def time_of(ask: AnyRequest, answer: Answer | None) -> float:
     """Return when an ask stands in the timeline: when it was wanted, else when it plays."""
     stroke = getattr(ask, "stroke", None)
     if stroke is not None:
@@ -119,7 +119,7 @@ def time_of(ask: AnyAsk, answer: Answer | None) -> float:
 
 
 def marks(
-    asks: Sequence[AnyAsk],
+    asks: Sequence[AnyRequest],
     answers: Mapping[str, Answer],
     project: Project,
     scale: Scale,
@@ -140,7 +140,7 @@ def marks(
         key=lambda t: t[:2],
     )
     for at, _, ask in timed:
-        lane, words, left = lane_of(ask, project), ask_words(ask, project), scale.x(at)
+        lane, words, left = lane_of(ask, project), request_words(ask, project), scale.x(at)
         area = areas[lane]
         tall = min(TALLEST, (area.height() + 1) / count - 1)
         ends = [out[lasts[lane, n]].rect.right() if (lane, n) in lasts else -1e9 for n in range(count)]
@@ -173,7 +173,7 @@ def mark_at(found: Sequence[Mark], at: QPointF) -> Mark | None:
 VERBS = {"say": "Said", "look": "Looks", "mode": "Changes", "place": "Moves", "blink": "Blinks"}
 
 
-def outcome(ask: AnyAsk, answer: Answer | None) -> str:
+def outcome(ask: AnyRequest, answer: Answer | None) -> str:
     """Return in one sentence what becomes of an ask; nothing while it is not known."""
     if answer is None:
         return ""

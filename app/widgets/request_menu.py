@@ -24,7 +24,7 @@ DIRECTIONS = {
 MODE_WORDS = {"idle": "Idle", "listening": "Listen", "talking": "Talk"}
 
 
-def lane_of(ask: a.AnyAsk, project: Project) -> str:
+def lane_of(ask: a.AnyRequest, project: Project) -> str:
     """Return the lane an ask stands in: its layer, or the stage."""
     match ask:
         case a.Gesture() | a.Fidget() | a.Change():
@@ -42,7 +42,7 @@ def lane_of(ask: a.AnyAsk, project: Project) -> str:
     return STAGE
 
 
-def kind_of(ask: a.AnyAsk) -> str | None:
+def kind_of(ask: a.AnyRequest) -> str | None:
     """Return the kind an ask is coloured as, None for what no layer plays."""
     if isinstance(ask, a.Go | a.Change):
         return "transition"
@@ -51,7 +51,7 @@ def kind_of(ask: a.AnyAsk) -> str | None:
     return "gesture" if isinstance(ask, a.Gesture | a.Play | a.Nod | a.Shake) else None
 
 
-def ask_words(ask: a.AnyAsk, project: Project) -> str:
+def request_words(ask: a.AnyRequest, project: Project) -> str:
     """Return an ask in a few words: "▲ positive", "➜ on hips", "look at user"."""
     match ask:
         case a.Gesture() | a.Fidget():
@@ -85,17 +85,17 @@ def ask_words(ask: a.AnyAsk, project: Project) -> str:
     return "withdraw"
 
 
-Ask = Callable[[a.AnyAsk, str], object]
+Ask = Callable[[a.AnyRequest, str], object]
 
 
-def ask_menu(
+def request_menu(
     parent: QWidget, performance: Performance, seconds: float | None, lane: str | None = None
 ) -> QMenu:
     """Return a menu of everything that can be asked for at a time (None: now), of one lane or all."""
     menu = QMenu(parent)
     project = performance.document.project
 
-    def ask(made: a.AnyAsk, text: str) -> None:
+    def ask(made: a.AnyRequest, text: str) -> None:
         performance.requests.ask(made, text)
 
     for layer in LAYERS:

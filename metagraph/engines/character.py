@@ -67,7 +67,7 @@ class Character:
         self.project = export if isinstance(export, Project) else read_export(export, resolved=True)
         self.now = 0.0
         self._recent = recent
-        self._queue: list[a.AnyAsk] = []
+        self._queue: list[a.AnyRequest] = []
         self._asked: set[str] = set()  # ids that the plan can tell of
         self._settled: dict[str, Answer] = {}  # answers of those it has forgotten or never heard of
         self._happened: list[Happening] = []
@@ -90,7 +90,7 @@ class Character:
             f"clip '{clip.name}' is missing" for clip in self.project.clips.values() if clip.motion is None
         )
 
-    def ask(self, request: Mapping[str, Any] | a.AnyAsk) -> str:
+    def ask(self, request: Mapping[str, Any] | a.AnyRequest) -> str:
         """Ask for something; return the id it goes by, made where there is none. It is worked in at the next
         update.
 
@@ -99,8 +99,8 @@ class Character:
         """
         self._count += 1
         made = f"#{self._count}"
-        if isinstance(request, a.Ask):
-            ask: a.AnyAsk = request if request.id else msgspec.structs.replace(request, id=made)
+        if isinstance(request, a.Request):
+            ask: a.AnyRequest = request if request.id else msgspec.structs.replace(request, id=made)
             return self._take(ask)
         data = dict(request) if isinstance(request, Mapping) else {}  # which is refused
         ident = data.get("id")
@@ -111,11 +111,11 @@ class Character:
                 if after is None or after < 0:
                     return self._refuse(ident, "after: should be a number of seconds from now")
                 data["at"] = self.now + after
-            return self._take(a.ask_from(data))
-        except a.AskError as error:
+            return self._take(a.request_from(data))
+        except a.RequestError as error:
             return self._refuse(ident, str(error))
 
-    def _take(self, ask: a.AnyAsk) -> str:
+    def _take(self, ask: a.AnyRequest) -> str:
         self._settled.pop(ask.id, None)
         self._asked.add(ask.id)
         self._queue.append(ask)

@@ -22,7 +22,7 @@ from metagraph.engines.script import Case, ScriptStep, cases
 from metagraph.errors import FileError
 from metagraph.formats.atomic import write_atomically
 from metagraph.graph.model import LAYERS, Project
-from metagraph.graph.requests import ask_from
+from metagraph.graph.requests import request_from
 from metagraph.motion import rotation
 from metagraph.motion.skeleton import Pose
 from metagraph.playback.choice import key32
@@ -51,7 +51,7 @@ def follow(project: Project, case: Case) -> Plan:
     """Return the plan a case leads to."""
     plan = Plan(case.seed, 0.0)
     for step in case.steps:
-        asks = [ask_from(dict(ask)) for ask in step.asks]
+        asks = [request_from(dict(ask)) for ask in step.asks]
         plan = hear(project, plan, step.now, asks, step.end, case.stances, case.idle)
         if step.forget is not None:
             plan = since(plan, step.forget)

@@ -12,7 +12,7 @@ import msgspec
 
 from metagraph.graph.edits import EditError, free_name
 from metagraph.graph.model import Project
-from metagraph.graph.requests import AnyAsk, AskError, Line, Performance, Point
+from metagraph.graph.requests import AnyRequest, Line, Performance, Point, RequestError
 
 
 def add_performance(project: Project, performance: Performance) -> tuple[Project, str]:
@@ -27,10 +27,10 @@ def add_performance(project: Project, performance: Performance) -> tuple[Project
     return replace(project, performances=kept, next_id=project.next_id + 1), ident
 
 
-def _numbered(asks: Collection[AnyAsk]) -> tuple[AnyAsk, ...]:
+def _numbered(asks: Collection[AnyRequest]) -> tuple[AnyRequest, ...]:
     """Return asks, each with an id no other has."""
     taken = {ask.id for ask in asks if ask.id}
-    out: list[AnyAsk] = []
+    out: list[AnyRequest] = []
     seen: set[str] = set()
     number = 0
     for ask in asks:
@@ -77,35 +77,35 @@ def _performance(project: Project, ident: str) -> Performance:
     return found
 
 
-def add_ask(project: Project, performance: str, ask: AnyAsk) -> Project:
+def add_request(project: Project, performance: str, ask: AnyRequest) -> Project:
     """Ask for one thing more."""
     return change_performance(project, performance, asks=(*_performance(project, performance).asks, ask))
 
 
-def change_ask(project: Project, performance: str, ask: str, **changes: Any) -> Project:
+def change_request(project: Project, performance: str, ask: str, **changes: Any) -> Project:
     """Set fields of one ask. Raises EditError for fields it does not have and values it cannot take."""
     before = _performance(project, performance).asks
     try:
         after = tuple(_changed(x, changes) if x.id == ask else x for x in before)
-    except (AskError, AttributeError, TypeError) as error:
+    except (RequestError, AttributeError, TypeError) as error:
         raise EditError(str(error)) from None
     return change_performance(project, performance, asks=after)
 
 
-def _changed(ask: AnyAsk, changes: Mapping[str, Any]) -> AnyAsk:
-    from metagraph.graph.requests import ask_from
+def _changed(ask: AnyRequest, changes: Mapping[str, Any]) -> AnyRequest:
+    from metagraph.graph.requests import request_from
 
-    return ask_from(msgspec.to_builtins(msgspec.structs.replace(ask, **changes)))
+    return request_from(msgspec.to_builtins(msgspec.structs.replace(ask, **changes)))
 
 
-def move_asks(project: Project, performance: str, asks: Collection[str], by: float) -> Project:
+def move_requests(project: Project, performance: str, asks: Collection[str], by: float) -> Project:
     """Move asks in time by seconds, none to before the beginning; what waits for a stroke moves that."""
     of = _performance(project, performance)
     chosen = [x for x in of.asks if x.id in asks]
     times = [t for x in chosen for t in (x.at, getattr(x, "stroke", None)) if t is not None]
     by = max(by, -min(times, default=0.0))
 
-    def moved(ask: AnyAsk) -> AnyAsk:
+    def moved(ask: AnyRequest) -> AnyRequest:
         if ask.id not in asks:
             return ask
         fields = {
@@ -118,7 +118,7 @@ def move_asks(project: Project, performance: str, asks: Collection[str], by: flo
     return change_performance(project, performance, asks=tuple(moved(x) for x in of.asks))
 
 
-def remove_asks(project: Project, performance: str, asks: Collection[str] | None = None) -> Project:
+def remove_requests(project: Project, performance: str, asks: Collection[str] | None = None) -> Project:
     """Take asks back, all where None is given."""
     of = _performance(project, performance)
     return change_performance(
@@ -154,7 +154,7 @@ def rename_line(project: Project, ident: str, new: str) -> Project:
     lines = {new if i == ident else i: x for i, x in project.lines.items()}
     voices = {new if i == ident else i: v for i, v in project.voices.items()}
 
-    def called(ask: AnyAsk) -> AnyAsk:
+    def called(ask: AnyRequest) -> AnyRequest:
         said = getattr(ask, "line", None)
         return msgspec.structs.replace(ask, line=new) if said is not None and str(said) == ident else ask
 

@@ -27,7 +27,9 @@ Point = Annotated[
 Tags = tuple[Annotated[str, Meta(max_length=200)], ...]
 
 
-class Ask(Struct, frozen=True, kw_only=True, omit_defaults=True, forbid_unknown_fields=True, tag_field="do"):
+class Request(
+    Struct, frozen=True, kw_only=True, omit_defaults=True, forbid_unknown_fields=True, tag_field="do"
+):
     """What all asks have. id: made up where it is empty; the same id again replaces what was asked before.
     at: when it should begin, null for as soon as can be. told: when it became known, null for from the start;
     a planner that acts before then has not heard of it. priority: higher wins over lower; what a model writes
@@ -40,7 +42,7 @@ class Ask(Struct, frozen=True, kw_only=True, omit_defaults=True, forbid_unknown_
     priority: Annotated[int, Meta(ge=-1000, le=1000)] = 1
 
 
-class Gesture(Ask, frozen=True, tag="gesture"):
+class Gesture(Request, frozen=True, tag="gesture"):
     """A gesture of the stance the layer is in. tags: all of them must fit. duration: how long the activity is
     wanted. stroke: when its most telling moment should come, instead of `at`. hold: seconds its hold should
     last. prepare: whether the preparation plays. resume: whether its rest goes on after something more
@@ -57,7 +59,7 @@ class Gesture(Ask, frozen=True, tag="gesture"):
     resume: bool = False
 
 
-class Fidget(Ask, frozen=True, tag="fidget"):
+class Fidget(Request, frozen=True, tag="fidget"):
     """A fidget of the stance the layer is in."""
 
     layer: Layer = "arms"
@@ -67,7 +69,7 @@ class Fidget(Ask, frozen=True, tag="fidget"):
     resume: bool = False
 
 
-class Play(Ask, frozen=True, tag="action"):
+class Play(Request, frozen=True, tag="action"):
     """One action, by id or name; the layer goes to its stance first. stroke, hold, prepare: as for a
     gesture.
     """
@@ -79,7 +81,7 @@ class Play(Ask, frozen=True, tag="action"):
     prepare: bool = True
 
 
-class Go(Ask, frozen=True, tag="stance"):
+class Go(Request, frozen=True, tag="stance"):
     """Go to a stance, by id or name, by the shortest chain of transitions. stay: the models do not leave it
     of their own accord, until another stance is asked for or this is taken back.
     """
@@ -89,7 +91,7 @@ class Go(Ask, frozen=True, tag="stance"):
     stay: bool = False
 
 
-class Change(Ask, frozen=True, tag="change"):
+class Change(Request, frozen=True, tag="change"):
     """Change to another stance, whichever: a transition drawn among those of the stance the layer is in.
     limb, duration: which arm was seen to move, and for how long; any transition will do, and takes its own
     time.
@@ -100,19 +102,19 @@ class Change(Ask, frozen=True, tag="change"):
     duration: Seconds | None = None
 
 
-class Nod(Ask, frozen=True, tag="nod"):
+class Nod(Request, frozen=True, tag="nod"):
     """Nod: a gesture of the head that is tagged or called so."""
 
     tags: Tags = ()
 
 
-class Shake(Ask, frozen=True, tag="shake"):
+class Shake(Request, frozen=True, tag="shake"):
     """Shake the head."""
 
     tags: Tags = ()
 
 
-class Look(Ask, frozen=True, tag="look"):
+class Look(Request, frozen=True, tag="look"):
     """Look at a point, a named point ("user", another character), or "ahead". duration: null until the next
     look. amount: 0 turns nothing, 1 all the way. strict: without averting the gaze meanwhile.
     """
@@ -123,11 +125,11 @@ class Look(Ask, frozen=True, tag="look"):
     strict: bool = False
 
 
-class Blink(Ask, frozen=True, tag="blink"):
+class Blink(Request, frozen=True, tag="blink"):
     """Blink once."""
 
 
-class Say(Ask, frozen=True, tag="say"):
+class Say(Request, frozen=True, tag="say"):
     """Say a line of the project's list, its audio, its lip sync and its own asks with it; or other words with
     `text`, whose length is guessed from them, or `duration`. gestures: whether the line's own asks are made.
     """
@@ -138,7 +140,7 @@ class Say(Ask, frozen=True, tag="say"):
     gestures: bool = True
 
 
-class Behave(Ask, frozen=True, tag="mode"):
+class Behave(Request, frozen=True, tag="mode"):
     """Idle, listen or talk from now on; null goes back to talking while something is said and idling
     otherwise.
     """
@@ -146,26 +148,28 @@ class Behave(Ask, frozen=True, tag="mode"):
     mode: Mode | None = None
 
 
-class Place(Ask, frozen=True, tag="place"):
+class Place(Request, frozen=True, tag="place"):
     """Put a named point somewhere, so that it can be looked at; the gaze follows it."""
 
     name: Id
     point: Point
 
 
-class Withdraw(Ask, frozen=True, tag="withdraw"):
+class Withdraw(Request, frozen=True, tag="withdraw"):
     """Take back what was asked for with an id; all of it where `what` is empty. What has begun plays on."""
 
     what: Annotated[str, Meta(max_length=200)] = ""
 
 
-class Bml(Ask, frozen=True, tag="bml"):
+class Bml(Request, frozen=True, tag="bml"):
     """A block of Behaviour Markup Language; what of it is understood becomes asks."""
 
     bml: Annotated[str, Meta(max_length=200000)]
 
 
-AnyAsk = Union[Gesture, Fidget, Play, Go, Change, Nod, Shake, Look, Blink, Say, Behave, Place, Withdraw, Bml]  # noqa: UP007
+AnyRequest = Union[
+    Gesture, Fidget, Play, Go, Change, Nod, Shake, Look, Blink, Say, Behave, Place, Withdraw, Bml
+]  # noqa: UP007
 
 
 class Line(Struct, frozen=True, kw_only=True, omit_defaults=True, forbid_unknown_fields=True):
@@ -180,7 +184,7 @@ class Line(Struct, frozen=True, kw_only=True, omit_defaults=True, forbid_unknown
     channel: Annotated[int, Meta(ge=0, le=63)] | None = None
     phones: str | None = None
     duration: Seconds | None = None
-    asks: tuple[AnyAsk, ...] = ()
+    asks: tuple[AnyRequest, ...] = ()
 
 
 class Performance(Struct, frozen=True, kw_only=True, omit_defaults=True, forbid_unknown_fields=True):
@@ -190,35 +194,35 @@ class Performance(Struct, frozen=True, kw_only=True, omit_defaults=True, forbid_
     """
 
     name: Annotated[str, Meta(max_length=200)]
-    asks: tuple[AnyAsk, ...] = ()
+    asks: tuple[AnyRequest, ...] = ()
     seed: Annotated[int, Meta(ge=0, le=0xFFFFFFFF)] | None = None
     length: Annotated[float, Meta(gt=0, le=36000)] = 60.0
     idle: bool = True
     stances: dict[Layer, str] = {}
 
 
-class AskError(ValueError):
+class RequestError(ValueError):
     """An ask that cannot be read or understood; the message says what is wrong and what would be right."""
 
 
-_decoder: msgspec.json.Decoder[AnyAsk] = msgspec.json.Decoder(AnyAsk)
+_decoder: msgspec.json.Decoder[AnyRequest] = msgspec.json.Decoder(AnyRequest)
 
 
-def read_ask(text: bytes | str) -> AnyAsk:
-    """Return the ask a JSON text says. Raises AskError naming the field."""
+def read_request(text: bytes | str) -> AnyRequest:
+    """Return the ask a JSON text says. Raises RequestError naming the field."""
     try:
         return _decoder.decode(text)
     except (msgspec.ValidationError, msgspec.DecodeError, UnicodeDecodeError, RecursionError) as error:
-        raise AskError(words_of(error)) from None
+        raise RequestError(words_of(error)) from None
 
 
-def ask_from(data: Any) -> AnyAsk:
-    """Return the ask that plain data says. Raises AskError naming the field."""
+def request_from(data: Any) -> AnyRequest:
+    """Return the ask that plain data says. Raises RequestError naming the field."""
     try:
-        out: AnyAsk = msgspec.convert(data, AnyAsk)
+        out: AnyRequest = msgspec.convert(data, AnyRequest)
         return out
     except (msgspec.ValidationError, RecursionError) as error:
-        raise AskError(words_of(error)) from None
+        raise RequestError(words_of(error)) from None
 
 
 def words_of(error: Exception) -> str:
@@ -233,7 +237,7 @@ def words_of(error: Exception) -> str:
     return f"not JSON: {text}"
 
 
-WORDS: tuple[str, ...] = tuple(str(kind.__struct_config__.tag) for kind in get_args(AnyAsk))
+WORDS: tuple[str, ...] = tuple(str(kind.__struct_config__.tag) for kind in get_args(AnyRequest))
 
 
 def schema() -> dict[str, Any]:
@@ -243,5 +247,5 @@ def schema() -> dict[str, Any]:
         "title": "Metagraph request",
         "description": "What can be asked of a character, at any level. Times are seconds, points metres, Y "
         "up.",
-        **msgspec.json.schema(AnyAsk),
+        **msgspec.json.schema(AnyRequest),
     }

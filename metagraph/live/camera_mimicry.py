@@ -6,7 +6,7 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 from metagraph.graph.model import Layer, Project
-from metagraph.graph.requests import AnyAsk
+from metagraph.graph.requests import AnyRequest
 from metagraph.live.messages import Keypoints
 from metagraph.playback.plan import Plan
 
@@ -25,7 +25,7 @@ class Camera:
 
 def see(
     camera: Camera | None, message: Keypoints, project: Project, plan: Plan, now: float, prefix: str
-) -> tuple[Camera, list[AnyAsk], dict[Layer, str]]:
+) -> tuple[Camera, list[AnyRequest], dict[Layer, str]]:
     """Take a frame in; return the camera, what is asked for because of it, and layer -> name of the stance
     the person is in.
 

@@ -13,7 +13,7 @@ from typing import Protocol
 
 import msgspec
 
-from metagraph.graph.requests import AskError
+from metagraph.graph.requests import RequestError
 from metagraph.live.messages import HeardMessage, Hello, Reply, encode, read, split
 from metagraph.live.wire import Batch, Result
 
@@ -121,7 +121,7 @@ class Hub:
             return
         try:
             requests, listed = split(data)
-        except AskError as error:
+        except RequestError as error:
             self._answered(number, Reply(error=str(error)))
             return
         slot = _Slot(number, [], listed)

@@ -163,7 +163,7 @@ def unknown(project: Project, ask: Any, limits: Limits) -> str:
                 find_action(project, ask.action, ask.layer)
             elif isinstance(ask, a.Go):
                 find_stance(project, ask.stance, ask.layer)
-        except a.AskError as error:
+        except a.RequestError as error:
             return str(error)
     known = f"; there are {', '.join(list(project.lines)[:6]) or 'none'}" if what == "line" else ""
     return f"there is no {what} '{str(name)[:60]}'{known}"

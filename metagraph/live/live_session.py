@@ -110,7 +110,7 @@ class LiveSession:
         """Take a message in, to be answered at the next tick: one reply to each request in it."""
         try:
             requests, _ = split(data)
-        except a.AskError as error:
+        except a.RequestError as error:
             self._queue.append((client, Reply(error=str(error))))
             return
         self._queue += [(client, read(request)) for request in requests]
@@ -207,7 +207,7 @@ class LiveSession:
                 client.stream = (
                     None if message.poses is None else Stream.of(message.poses, self.project, self.now)
                 )
-            except a.AskError as error:
+            except a.RequestError as error:
                 return Reply(id=message.id or None, error=str(error))
         return describe.greeting(self, client.stream, message.id)
 
@@ -294,7 +294,7 @@ class LiveSession:
             if block.composition == "append":
                 last = [k.until or k.at for k in self.ledger.known.values() if k.client == client.number]
                 block = read_block(ask.bml, max(begin, *last, begin), ask.priority, self.project)
-        except a.AskError as error:
+        except a.RequestError as error:
             return Reply(id=open_.ident, error=str(error))
         self._take_back(
             [open_.key] if open_.key in self.ledger.blocks or open_.key in self.ledger.known else [], work
@@ -483,8 +483,8 @@ class LiveSession:
         return next((plan for begin, plan in reversed(self._past) if begin <= seconds), self._past[0][1])
 
     def performance(self, name: str) -> a.Performance:
-        """Return the session so far, to be kept: `perform` plays it as it was played. Raises AskError when it
-        was too long.
+        """Return the session so far, to be kept: `perform` plays it as it was played. Raises RequestError
+        when it was too long.
         """
         asks, length = self.tape.asks(), max(self.now, 0.1)
         return a.Performance(

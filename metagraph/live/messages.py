@@ -82,7 +82,7 @@ class Keypoints(_Own, frozen=True, tag="keypoints"):
 
 
 OwnMessage = Hello | Status | Describe | Keypoints
-Message = Union[a.AnyAsk, Hello, Status, Describe, Keypoints]  # noqa: UP007
+Message = Union[a.AnyRequest, Hello, Status, Describe, Keypoints]  # noqa: UP007
 WORDS: tuple[str, ...] = (*a.WORDS, *(str(kind.__struct_config__.tag) for kind in get_args(OwnMessage)))
 
 
@@ -164,11 +164,11 @@ def rounded(seconds: float | None) -> float | None:
 
 
 def split(data: bytes | str) -> tuple[list[bytes | str | msgspec.Raw], bool]:
-    """Return the requests of a message, and whether it was a list. Raises AskError for one that is too long
-    or no list.
+    """Return the requests of a message, and whether it was a list. Raises RequestError for one that is too
+    long or no list.
     """
     if len(data) > LONGEST_MESSAGE:
-        raise a.AskError(
+        raise a.RequestError(
             f"a message has at most {LONGEST_MESSAGE // 1024} KiB, not {len(data) // 1024}; send several"
         )
     if data.lstrip()[:1] not in ("[", b"["):
@@ -176,9 +176,9 @@ def split(data: bytes | str) -> tuple[list[bytes | str | msgspec.Raw], bool]:
     try:
         several = _several.decode(data)
     except (msgspec.DecodeError, UnicodeError, RecursionError) as error:
-        raise a.AskError(a.words_of(error)) from None
+        raise a.RequestError(a.words_of(error)) from None
     if len(several) > MOST:
-        raise a.AskError(f"a list has at most {MOST} requests, not {len(several)}; send several lists")
+        raise a.RequestError(f"a list has at most {MOST} requests, not {len(several)}; send several lists")
     return list(several), True
 
 
@@ -243,7 +243,7 @@ def schema() -> dict[str, Any]:
     asks = msgspec.json.schema_components([Message, Reply, Event], ref_template="#/$defs/{name}")
     (requests, reply, event), parts = asks
     for name, part in parts.items():
-        if name in {kind.__name__ for kind in get_args(a.AnyAsk)}:
+        if name in {kind.__name__ for kind in get_args(a.AnyRequest)}:
             part["properties"]["in"] = {
                 "type": "number",
                 "minimum": 0,

@@ -12,7 +12,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from metagraph.graph.model import Project
-from metagraph.graph.requests import AskError
+from metagraph.graph.requests import RequestError
 from metagraph.live.messages import Poses, encode
 from metagraph.live.osc_bytes import padded
 from metagraph.motion.skeleton import Pose
@@ -48,13 +48,13 @@ class Stream:
 
     @classmethod
     def of(cls, wish: Poses, project: Project, now: float) -> Stream:
-        """Return the stream of a wish. Raises AskError for joints that are not there."""
+        """Return the stream of a wish. Raises RequestError for joints that are not there."""
         skeleton = project.skeleton
         if skeleton is None:
-            raise AskError("the project has no clips, so there are no poses")
+            raise RequestError("the project has no clips, so there are no poses")
         unknown = [] if wish.joints is None else [j for j in wish.joints if j not in skeleton.names]
         if unknown:
-            raise AskError(f"there is no joint '{unknown[0][:60]}'; 'describe' lists them")
+            raise RequestError(f"there is no joint '{unknown[0][:60]}'; 'describe' lists them")
         names = skeleton.names if wish.joints is None else wish.joints
         morphs = dict.fromkeys(
             name

@@ -10,7 +10,7 @@ from metagraph.graph import requests as a
 
 MOST = 32 * 1024 * 1024  # bytes
 
-_read = msgspec.msgpack.Decoder(list[a.AnyAsk])
+_read = msgspec.msgpack.Decoder(list[a.AnyRequest])
 
 
 class Tape:
@@ -23,21 +23,21 @@ class Tape:
     def __len__(self) -> int:
         return len(self._data)
 
-    def keep(self, asks: Sequence[a.AnyAsk]) -> None:
+    def keep(self, asks: Sequence[a.AnyRequest]) -> None:
         """Add asks; from where it would grow too long on, it keeps nothing more."""
         data = msgspec.msgpack.encode(asks)
         self.whole = self.whole and len(self._data) + len(data) < self.most
         if asks and self.whole:
             self._data += len(data).to_bytes(4, "little") + data
 
-    def asks(self) -> tuple[a.AnyAsk, ...]:
-        """Return all of it. Raises AskError when there was more than it could hold."""
+    def asks(self) -> tuple[a.AnyRequest, ...]:
+        """Return all of it. Raises RequestError when there was more than it could hold."""
         if not self.whole:
-            raise a.AskError(
+            raise a.RequestError(
                 f"more was asked than is kept of a session, {self.most / 1024 / 1024:g} MiB; it cannot be "
                 "replayed"
             )
-        out: list[a.AnyAsk] = []
+        out: list[a.AnyRequest] = []
         place = 0
         while place < len(self._data):
             begin = place + 4

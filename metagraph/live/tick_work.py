@@ -59,7 +59,7 @@ class Open:
 class TickWork:
     """A tick's asks on their way into the plan."""
 
-    asks: dict[str, a.AnyAsk] = field(default_factory=dict)
+    asks: dict[str, a.AnyRequest] = field(default_factory=dict)
     open: dict[str, Open] = field(default_factory=dict)
     over: list[Open] = field(default_factory=list)
 

@@ -16,7 +16,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from metagraph.graph import anatomy
 from metagraph.graph.model import LAYERS, Layer, Project
-from metagraph.graph.requests import AnyAsk, Go, Look
+from metagraph.graph.requests import AnyRequest, Go, Look
 from metagraph.mimicry.gaze_reading import Gaze
 from metagraph.mimicry.judge import TURNS, Judge, Mean, PersonView
 from metagraph.mimicry.keypoint_layouts import POINTS, choose, swap
@@ -108,7 +108,7 @@ class Mimic:
         points: ArrayLike,
         confidence: ArrayLike | None = None,
         goals: Mapping[Layer, str] | None = None,
-    ) -> list[AnyAsk]:
+    ) -> list[AnyRequest]:
         """Take a frame in; return what is asked for because of it, mostly nothing.
 
         seconds: of the frame; one that is not later than the last is passed over. points: `[K, 2]` or `[K,
@@ -167,13 +167,13 @@ class Mimic:
         views: Mapping[Layer, PersonView],
         dims: int,
         goals: Mapping[Layer, str],
-    ) -> list[AnyAsk]:
+    ) -> list[AnyRequest]:
         if dims == 2:
             self._weigh_turns(elapsed, views)
         else:
             self.heading = next(iter(views.values())).frame.heading
         quick = self._quick.points()
-        out: list[AnyAsk] = []
+        out: list[AnyRequest] = []
         for layer, view in views.items():
             judge = self.judges[layer]
             changed = judge.judge(seconds, elapsed, view, quick, self.heading, dims)
@@ -215,12 +215,12 @@ class Mimic:
             a, b, c = self._turns[best - 1 : best + 2]
             self.heading += float((TURNS[1] - TURNS[0]) * 0.5 * (a - c) / max(a - 2 * b + c, 1e-9))
 
-    def _nobody(self, seconds: float, elapsed: float) -> list[AnyAsk]:
+    def _nobody(self, seconds: float, elapsed: float) -> list[AnyRequest]:
         """Nobody is there, or shows the back: what was seen holds; after a while the models may change the
         stances as they like.
         """
         before, self._unseen = self._unseen, self._unseen + elapsed
-        out: list[AnyAsk] = []
+        out: list[AnyRequest] = []
         if before <= self.tuning.lost < self._unseen:
             for layer, judge in self.judges.items():
                 if judge.stance is not None:

@@ -11,7 +11,7 @@ from itertools import count
 import msgspec
 
 from metagraph.graph.model import LAYERS, Layer, Project
-from metagraph.graph.requests import AnyAsk, Performance
+from metagraph.graph.requests import AnyRequest, Performance
 from metagraph.mimicry.keypoint_layouts import Keypoints
 from metagraph.mimicry.mimic import Mimic, Sighting
 from metagraph.playback.extend_performance import hear
@@ -58,7 +58,7 @@ def mimic_performance(
     )
 
 
-def _prefix(asks: Collection[AnyAsk]) -> str:
+def _prefix(asks: Collection[AnyRequest]) -> str:
     """Return what ids begin with that none of these do."""
     some = ("mimic" + "b" * n for n in count())
     return next(
@@ -74,7 +74,7 @@ def _steps(
     mimic: Mimic,
     into: Performance,
     progress: Callable[[int, int], object] | None,
-) -> Iterator[list[AnyAsk]]:
+) -> Iterator[list[AnyRequest]]:
     """Yield what is asked for at each frame at which something is, planning along."""
     named = [
         ask if ask.id else msgspec.structs.replace(ask, id=f"asked{n}") for n, ask in enumerate(into.asks)
@@ -82,7 +82,7 @@ def _steps(
     waiting = sorted(named, key=lambda ask: ask.told or 0.0)
     plan = Plan(project.settings.seed if into.seed is None else into.seed, 0.0)
 
-    def heard(now: float, asks: list[AnyAsk]) -> Plan:
+    def heard(now: float, asks: list[AnyRequest]) -> Plan:
         return hear(project, plan, now, asks, max(plan.end, now + AHEAD), dict(into.stances), into.idle)
 
     points, confidence = keypoints.canonical

@@ -46,7 +46,7 @@ class Block:
     first ask.
     """
 
-    asks: tuple[a.AnyAsk, ...]
+    asks: tuple[a.AnyRequest, ...]
     notes: tuple[str, ...] = ()
     ident: str = ""
     composition: Composition = "merge"
@@ -54,8 +54,8 @@ class Block:
 
 def read_bml(
     text: str, at: float = 0.0, priority: int = 1, project: Project | None = None
-) -> tuple[a.AnyAsk, ...]:
-    """Return the asks of a block that begins at `at` seconds. Raises AskError with line, element and
+) -> tuple[a.AnyRequest, ...]:
+    """Return the asks of a block that begins at `at` seconds. Raises RequestError with line, element and
     remedy.
     """
     return read_block(text, at, priority, project).asks
@@ -69,10 +69,10 @@ def read_block(text: str, at: float = 0.0, priority: int = 1, project: Project |
     if root.name.lower() == "act":
         root = next((e for e in root if e.name.lower() == "bml"), root)
     if root.name.lower() != "bml":
-        raise a.AskError(f"{root.place}: the first element must be <bml>")
+        raise a.RequestError(f"{root.place}: the first element must be <bml>")
     word = spelled(root.get("composition") or "merge").replace("appendafter", "append")
     if word not in ("merge", "append", "replace"):
-        raise a.AskError(
+        raise a.RequestError(
             f"{root.place}: composition is MERGE, APPEND or REPLACE, not '{root.get('composition')}'"
         )
     reader = _Reader(BmlWords(project), at, priority)
@@ -80,10 +80,10 @@ def read_block(text: str, at: float = 0.0, priority: int = 1, project: Project |
     try:
         asks = reader.timing.asks()
     except RecursionError:
-        raise a.AskError(
+        raise a.RequestError(
             f"{root.place}: too many behaviours wait for one another; give some of them times in seconds"
         ) from None
-    first: tuple[a.AnyAsk, ...] = (a.Withdraw(),) if word == "replace" else ()
+    first: tuple[a.AnyRequest, ...] = (a.Withdraw(),) if word == "replace" else ()
     return Block(first + asks, tuple(reader.notes), root.get("id"), word)  # type: ignore[arg-type]
 
 
@@ -116,7 +116,7 @@ class _Reader:
             if (sync := spelled(name)) in SYNCS and value.strip()
         }
         if len(self.timing.behaviours) >= MOST:
-            raise a.AskError(f"{element.place}: a block has at most {MOST} behaviours; send several")
+            raise a.RequestError(f"{element.place}: a block has at most {MOST} behaviours; send several")
         self.timing.add(Behaviour(element, element.get("id"), asks, offsets, times))
 
     def _read(self, kind: str, e: Element) -> tuple[list[Any], dict[str, float] | None]:
@@ -275,7 +275,7 @@ class _Reader:
             return default
         value = seconds_of(text)
         if value is None:
-            raise a.AskError(f"{e.place}: {name} is a number, not '{text}'")
+            raise a.RequestError(f"{e.place}: {name} is a number, not '{text}'")
         return value
 
     def _integer(self, e: Element, name: str, default: int) -> int:
@@ -288,12 +288,14 @@ class _Reader:
         try:
             return msgspec.json.decode(text, type=tuple[str, ...])
         except (msgspec.DecodeError, RecursionError):
-            raise a.AskError(f'{e.place}: metagraph:tags is a JSON list of texts, as ["positive"]') from None
+            raise a.RequestError(
+                f'{e.place}: metagraph:tags is a JSON list of texts, as ["positive"]'
+            ) from None
 
     def _point(self, e: Element, text: str) -> tuple[float, ...]:
         values = [seconds_of(x) for x in text.replace(",", " ").split()]
         if len(values) != 3 or any(v is None for v in values):
-            raise a.AskError(f"{e.place}: a point is three numbers, metres, not '{text}'")
+            raise a.RequestError(f"{e.place}: a point is three numbers, metres, not '{text}'")
         return tuple(v for v in values if v is not None)
 
     def _target(self, e: Element) -> Any:

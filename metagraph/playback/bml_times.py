@@ -48,9 +48,9 @@ class Timing:
     resolving: set[tuple[int, str]] = field(default_factory=set)
 
     def add(self, found: Behaviour) -> None:
-        """Take a behaviour in. Raises AskError for a second one of its id."""
+        """Take a behaviour in. Raises RequestError for a second one of its id."""
         if found.ident and found.ident in self.named:
-            raise a.AskError(
+            raise a.RequestError(
                 f"{found.element.place}: there are two behaviours '{found.ident}'; give each an id of its own"
             )
         start = reference(found.times.get("start", ""))
@@ -62,7 +62,7 @@ class Timing:
         self.behaviours.append(found)
         self.named[found.ident] = found
 
-    def asks(self) -> tuple[a.AnyAsk, ...]:
+    def asks(self) -> tuple[a.AnyRequest, ...]:
         """Return the asks with their times, in the order of their elements."""
         self._constrain()
         for behaviour in self.behaviours:
@@ -89,7 +89,7 @@ class Timing:
                     continue
                 behaviour = self.named.get(found[0]) if found else None
                 if found is None or behaviour is None:
-                    raise a.AskError(
+                    raise a.RequestError(
                         f"{x.place}: '{ref}' is no sync point of a behaviour of this block; write it as "
                         "id:stroke"
                     )
@@ -111,7 +111,7 @@ class Timing:
             return b.known[sync]
         key = (id(b), sync)
         if key in self.resolving:
-            raise a.AskError(
+            raise a.RequestError(
                 f"{b.element.place}: its {sync} waits for itself; give one of these behaviours a time in "
                 "seconds"
             )
@@ -138,7 +138,7 @@ class Timing:
         offsets = b.offsets if b.offsets is not None else self.lengths(b.asks[0])
         if sync not in offsets and sync not in SYNCS:
             known = ", ".join(s for s in offsets if s not in SYNCS)
-            raise a.AskError(
+            raise a.RequestError(
                 f"{b.element.place}: it has no sync point '{sync}'"
                 + (f"; its marks are {known}" if known else "")
             )
@@ -157,7 +157,7 @@ class Timing:
             return self.at + value
         found = reference(text)
         if found is None:
-            raise a.AskError(
+            raise a.RequestError(
                 f"{b.element.place}: {sync}=\"{text}\" is neither seconds nor 'behaviour:sync+seconds'"
             )
         ident, other, offset = found
@@ -166,7 +166,7 @@ class Timing:
         behaviour = b if ident == "this" else self.named.get(ident) if ident else None
         if behaviour is None:
             known = ", ".join(list(filter(None, self.named))[:8]) or "none"
-            raise a.AskError(
+            raise a.RequestError(
                 f"{b.element.place}: {sync}=\"{text}\": there is no behaviour '{ident}' in this block; there "
                 f"are {known}"
             )
@@ -174,7 +174,7 @@ class Timing:
             behaviour.pinned = True
         return self._time(behaviour, other) + offset
 
-    def _timed(self, b: Behaviour) -> Iterable[a.AnyAsk]:
+    def _timed(self, b: Behaviour) -> Iterable[a.AnyRequest]:
         """Yield a behaviour's asks with what its times mean for them."""
         for ask in b.asks:
             changes: dict[str, Any] = {}
@@ -203,9 +203,9 @@ class Timing:
                 else:
                     self.note(b.element, "prepares as its clip does")
             try:
-                yield a.ask_from(msgspec.to_builtins(msgspec.structs.replace(ask, **changes)))
-            except a.AskError as error:
-                raise a.AskError(f"{b.element.place}: {error}") from None
+                yield a.request_from(msgspec.to_builtins(msgspec.structs.replace(ask, **changes)))
+            except a.RequestError as error:
+                raise a.RequestError(f"{b.element.place}: {error}") from None
 
 
 SECONDS = re.compile(r"([+-]?(?:\d+\.?\d*|\.\d+)(?:[eE][+-]?\d+)?)\s*(s|ms)?")

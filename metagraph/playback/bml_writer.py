@@ -17,23 +17,23 @@ _FORBIDDEN = re.compile("[^\t\n\r -\ud7ff\ue000-\ufffd\U00010000-\U0010ffff]")  
 _POINT = re.compile(r"[-+.\deE]+[\s,]+[-+.\deE]+[\s,]+[-+.\deE]+")
 
 
-def write_bml(asks: Iterable[a.AnyAsk]) -> str:
+def write_bml(asks: Iterable[a.AnyRequest]) -> str:
     """Return asks as a block which reads back to the same asks; lines' numbers come back as texts, `told` is
     not kept.
 
-    Raises AskError for what no block can hold: characters XML forbids, ids that are not unique, a block
+    Raises RequestError for what no block can hold: characters XML forbids, ids that are not unique, a block
     within a block.
     """
     rows, seen = [], set[str]()
     for ask in asks:
         if ask.id and ask.id in seen:
-            raise a.AskError(f"two asks are called '{ask.id}'; a block needs ids of their own")
+            raise a.RequestError(f"two asks are called '{ask.id}'; a block needs ids of their own")
         seen.add(ask.id)
         rows.append(f"  {_element(ask)}\n")
     return f"<bml {NAMESPACES}>\n{''.join(rows)}</bml>\n"
 
 
-def _element(ask: a.AnyAsk) -> str:
+def _element(ask: a.AnyRequest) -> str:
     """Return one ask's element."""
     own: dict[str, Any] = {
         "id": ask.id or None,
@@ -110,7 +110,7 @@ def _element(ask: a.AnyAsk) -> str:
         case a.Withdraw():
             return _tag("metagraph:withdraw", own | {"what": ask.what or None} | times)
         case _:
-            raise a.AskError("a block of BML cannot hold another; write its behaviours out")
+            raise a.RequestError("a block of BML cannot hold another; write its behaviours out")
 
 
 def _phased(ask: a.Gesture | a.Play) -> dict[str, Any]:
@@ -153,7 +153,9 @@ def _tag(name: str, attributes: dict[str, Any], inner: str = "") -> str:
 def _escaped(text: str, attribute: bool) -> str:
     bad = _FORBIDDEN.search(text)
     if bad is not None:
-        raise a.AskError(f"XML cannot hold the character U+{ord(bad[0]):04X}; leave it out of {text[:40]!r}")
+        raise a.RequestError(
+            f"XML cannot hold the character U+{ord(bad[0]):04X}; leave it out of {text[:40]!r}"
+        )
     out = text.replace("&", "&amp;").replace("<", "&lt;").replace(">", "&gt;").replace("\r", "&#13;")
     if attribute:
         out = out.replace('"', "&quot;").replace("\n", "&#10;").replace("\t", "&#9;")

@@ -8,7 +8,7 @@ from collections.abc import Iterator
 from dataclasses import dataclass, field
 from xml.parsers import expat
 
-from metagraph.graph.requests import AskError
+from metagraph.graph.requests import RequestError
 
 DEEPEST = 40  # elements within elements
 MOST = 4000  # elements of one text
@@ -40,7 +40,7 @@ class Element:
 
 
 def parse(text: str) -> Element:
-    """Return the root element. Raises AskError with line, cause and remedy."""
+    """Return the root element. Raises RequestError with line, cause and remedy."""
     parser = expat.ParserCreate("utf-8")
     stack: list[Element] = []
     roots: list[Element] = []
@@ -51,9 +51,9 @@ def parse(text: str) -> Element:
         count += 1
         line = parser.CurrentLineNumber
         if len(stack) >= DEEPEST:
-            raise AskError(f"line {line}: elements lie more than {DEEPEST} deep; make the block flatter")
+            raise RequestError(f"line {line}: elements lie more than {DEEPEST} deep; make the block flatter")
         if count > MOST:
-            raise AskError(f"line {line}: there are more than {MOST} elements; send several blocks")
+            raise RequestError(f"line {line}: there are more than {MOST} elements; send several blocks")
         element = Element(_local(name), {_local(k).lower(): v for k, v in attributes.items()}, line)
         (stack[-1].parts if stack else roots).append(element)
         stack.append(element)
@@ -63,7 +63,7 @@ def parse(text: str) -> Element:
             stack[-1].parts.append(data)
 
     def doctype(*_: object) -> None:
-        raise AskError(
+        raise RequestError(
             f"line {parser.CurrentLineNumber}: a block has no <!DOCTYPE ...> and no entities of its own; "
             "leave them out"
         )
@@ -76,9 +76,9 @@ def parse(text: str) -> Element:
     try:
         parser.Parse(text.encode("utf-8", "replace"), True)
     except expat.ExpatError as error:
-        raise AskError(f"line {error.lineno}: not XML: {expat.ErrorString(error.code)}") from None
+        raise RequestError(f"line {error.lineno}: not XML: {expat.ErrorString(error.code)}") from None
     except ValueError as error:
-        raise AskError(f"not XML: {error}") from None
+        raise RequestError(f"not XML: {error}") from None
     return roots[0]
 
 

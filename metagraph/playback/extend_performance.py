@@ -7,7 +7,7 @@ from dataclasses import dataclass, field, replace
 from typing import Any, Literal
 
 from metagraph.graph.model import LAYERS, Layer, Project
-from metagraph.graph.requests import AnyAsk
+from metagraph.graph.requests import AnyRequest
 from metagraph.playback.life.track import StayFrom
 from metagraph.playback.plan import Cue, LayerPlan, Past, Plan, Report
 from metagraph.playback.planner import extend
@@ -21,7 +21,7 @@ def hear(
     project: Project,
     plan: Plan,
     now: float,
-    asks: Sequence[AnyAsk],
+    asks: Sequence[AnyRequest],
     end: float,
     stances: Mapping[Layer, str] | None = None,
     idle: bool = True,

@@ -15,7 +15,7 @@ from itertools import pairwise
 from statistics import fmean, stdev
 
 from metagraph.graph.model import KINDS, LIMBS, Kind, Layer, Limb, Markov
-from metagraph.graph.requests import AnyAsk, Change, Fidget, Gesture, Performance
+from metagraph.graph.requests import AnyRequest, Change, Fidget, Gesture, Performance
 from metagraph.playback.annotation import IGNORE, PHASES, ROLES, Annotation, Interval, Label, label_of, parted
 from metagraph.playback.plan import MetaAction
 
@@ -305,12 +305,12 @@ def without_state(model: Markov, place: int) -> Markov:
 # --- performing what was seen
 
 
-def asks_of(layer: Layer, acts: Sequence[Act]) -> tuple[AnyAsk, ...]:
+def asks_of(layer: Layer, acts: Sequence[Act]) -> tuple[AnyRequest, ...]:
     """Return what to ask for so that a layer does what was seen; which actions that takes is left to chance.
 
     A change of stance does not say which stance it leads to. Only arms are asked for by limb.
     """
-    out: list[AnyAsk] = []
+    out: list[AnyRequest] = []
     for n, act in enumerate(acts):
         limb = act.limb if layer == "arms" else None
         ident, at, seconds = f"{layer}{n + 1}", round(act.start, 3), round(act.length, 3)
@@ -344,7 +344,7 @@ def performance(name: str, observed: Mapping[Layer, Sequence[Act]], seconds: flo
     )
 
 
-def acts_of_asks(layer: Layer, asks: Iterable[AnyAsk]) -> tuple[Act, ...]:
+def acts_of_asks(layer: Layer, asks: Iterable[AnyRequest]) -> tuple[Act, ...]:
     """Return the acts that a performance asks of a layer, as far as it asks for kinds and times: the inverse
     of `asks_of`.
     """

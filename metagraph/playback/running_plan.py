@@ -61,7 +61,7 @@ class RunningPlan:
         """Plan to `end`."""
         self.plan = hear(self.project, self.plan, now, [], end, self.stances, self.idle)
 
-    def hear(self, now: float, asks: Sequence[a.AnyAsk]) -> None:
+    def hear(self, now: float, asks: Sequence[a.AnyRequest]) -> None:
         """Work in what became known at `now`."""
         if asks:
             self.plan = hear(self.project, self.plan, now, asks, self.plan.end, self.stances, self.idle)
@@ -74,7 +74,7 @@ class RunningPlan:
 
 def perform(
     project: Project,
-    asks: Iterable[a.AnyAsk],
+    asks: Iterable[a.AnyRequest],
     end: float,
     seed: int | None = None,
     stances: Mapping[Layer, str] | None = None,
@@ -84,7 +84,7 @@ def perform(
 
     Asks that say when they became known (`told`) are worked in then, as in the session they are of.
     """
-    groups: dict[float, list[a.AnyAsk]] = {0.0: []}
+    groups: dict[float, list[a.AnyRequest]] = {0.0: []}
     for number, ask in enumerate(asks):
         groups.setdefault(ask.told or 0.0, []).append(
             ask if ask.id else msgspec.structs.replace(ask, id=f"ask{number}")

@@ -31,7 +31,7 @@ class Understood:
     refused: tuple[Report, ...] = ()
 
 
-def understand(project: Project, asks: Iterable[a.AnyAsk], now: float) -> Understood:
+def understand(project: Project, asks: Iterable[a.AnyRequest], now: float) -> Understood:
     """Return what asks mean in a project. now: when those begin that do not say; seconds.
 
     An ask that makes several requests gives them ids of its own: `<id>`, then `<id>.1`, `<id>.2`, ...
@@ -49,7 +49,7 @@ def understand(project: Project, asks: Iterable[a.AnyAsk], now: float) -> Unders
                     withdrawn.add(meant.what)
                 else:
                     items.append(meant)
-        except (a.AskError, ValueError) as error:
+        except (a.RequestError, ValueError) as error:
             layer: Layer = getattr(ask, "layer", None) or "arms"
             refused.append(
                 Report(ask.id, "not-understood", str(error), layer, now if ask.at is None else ask.at)
@@ -57,8 +57,8 @@ def understand(project: Project, asks: Iterable[a.AnyAsk], now: float) -> Unders
     return Understood(tuple(requests), tuple(items), frozenset(withdrawn), tuple(refused))
 
 
-def _meant(project: Project, ask: a.AnyAsk, at: float) -> Sequence[MetaRequest | Item | a.Withdraw]:
-    """Return what one ask means. Raises AskError when there is nothing it could mean."""
+def _meant(project: Project, ask: a.AnyRequest, at: float) -> Sequence[MetaRequest | Item | a.Withdraw]:
+    """Return what one ask means. Raises RequestError when there is nothing it could mean."""
     match ask:
         case a.Gesture():
             start, stroke = _timed(project, ask.layer, ask.tags, ask.stroke, at)
@@ -137,7 +137,7 @@ def _meant(project: Project, ask: a.AnyAsk, at: float) -> Sequence[MetaRequest |
                 for n, inner in enumerate(read_bml(ask.bml, at, ask.priority, project))
                 for meant in _meant(project, _named(inner, ask.id, n), at if inner.at is None else inner.at)
             ]
-    raise a.AskError(f"nothing is known of '{type(ask).__name__}'")
+    raise a.RequestError(f"nothing is known of '{type(ask).__name__}'")
 
 
 def _named(ask: Any, owner: str, number: int) -> Any:
@@ -151,17 +151,17 @@ def _said(project: Project, ask: a.Say, at: float) -> list[MetaRequest | Item | 
         ident = str(ask.line)
         line = project.lines.get(ident)
         if line is None:
-            raise a.AskError(f"there is no line '{ident}'{_hint(ident, project.lines)}")
+            raise a.RequestError(f"there is no line '{ident}'{_hint(ident, project.lines)}")
     text = ask.text or (line.text if line is not None else "")
     if line is None and not text:
-        raise a.AskError("say what: a line's id, or text")
+        raise a.RequestError("say what: a line's id, or text")
     length = spoken_seconds(project, str(ask.line) if line is not None else None, text, ask.duration)
     out: list[MetaRequest | Item | a.Withdraw] = [
         Speech(ask.id, at, at + length, str(ask.line) if line is not None else None, text, ask.priority)
     ]
     for n, inner in enumerate(line.asks if line is not None and ask.gestures else ()):
         if isinstance(inner, a.Say):
-            raise a.AskError(f"line '{ask.line}' would say another line; its asks may not")
+            raise a.RequestError(f"line '{ask.line}' would say another line; its asks may not")
         begins = at + (inner.at or 0.0)
         shifted = {"at": begins, "priority": max(inner.priority, ask.priority)}
         if getattr(inner, "stroke", None) is not None:
@@ -184,7 +184,7 @@ def _head(project: Project, ask: a.Nod | a.Shake, word: str, at: float) -> MetaR
     called = tuple(x.id for x in gestures if word in x.name.lower())
     if not called:
         tags = f" with the tags {', '.join(ask.tags)}" if ask.tags else ""
-        raise a.AskError(f"the head layer has no gesture tagged or called '{word}'{tags}")
+        raise a.RequestError(f"the head layer has no gesture tagged or called '{word}'{tags}")
     return MetaRequest(ask.id, "head", "gesture", at, priority=ask.priority, among=called)
 
 
@@ -225,7 +225,7 @@ def lead(project: Project, action: Action) -> float:
 
 def find_action(project: Project, word: str, layer: Layer | None = None) -> Action:
     """Return the action of an id or, failing that, a name; of several of one name the likeliest. Raises
-    AskError.
+    RequestError.
     """
     found = project.action(word)
     if found is not None and layer in (None, found.layer):
@@ -234,12 +234,12 @@ def find_action(project: Project, word: str, layer: Layer | None = None) -> Acti
     if not called:
         names = {x.name: None for x in project.actions() if layer in (None, x.layer)}
         where = f" in the {layer} layer" if layer else ""
-        raise a.AskError(f"there is no action '{word}'{where}{_hint(word, names)}")
+        raise a.RequestError(f"there is no action '{word}'{where}{_hint(word, names)}")
     return max(called, key=lambda x: x.likelihood)
 
 
 def find_stance(project: Project, word: str, layer: Layer | None = None) -> tuple[Layer, str]:
-    """Return layer and id of a stance from its id or name. Raises AskError."""
+    """Return layer and id of a stance from its id or name. Raises RequestError."""
     names: dict[str, None] = {}
     for each in LAYERS:
         if layer not in (None, each):
@@ -251,7 +251,7 @@ def find_stance(project: Project, word: str, layer: Layer | None = None) -> tupl
             if stance.name == word:
                 return each, stance.id
             names[stance.name] = None
-    raise a.AskError(
+    raise a.RequestError(
         f"there is no stance '{word}'{f' in the {layer} layer' if layer else ''}{_hint(word, names)}"
     )
 

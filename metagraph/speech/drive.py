@@ -14,7 +14,7 @@ from collections.abc import Iterator
 from metagraph.graph.conversation import Conversation, Segment, heard_by
 from metagraph.graph.model import Layer, Mode, Project
 from metagraph.graph.requests import (
-    AnyAsk,
+    AnyRequest,
     Behave,
     Change,
     Fidget,
@@ -51,11 +51,11 @@ def asks_of(
     project: Project,
     line: str | None = None,
     head: Point = (0.0, 1.6, 1.3),
-) -> list[AnyAsk]:
+) -> list[AnyRequest]:
     """Return what a side is asked to do. project: whose graph moves it. line: the project's line with its
     voice. head: where the partner's head is, metres, in this side's space.
     """
-    out: list[AnyAsk] = [
+    out: list[AnyRequest] = [
         Place(id=PARTNER, at=0.0, name=PARTNER, point=head),
         Look(id="look", at=0.0, to=PARTNER),
     ]
@@ -158,7 +158,7 @@ def strokes(project: Project, plan: Plan) -> dict[str, float]:
     return out
 
 
-def _missed(project: Project, plan: Plan, asks: list[AnyAsk]) -> set[str]:
+def _missed(project: Project, plan: Plan, asks: list[AnyRequest]) -> set[str]:
     """Return asks for gestures that came to nothing or miss their peak; of several in a row every other,
     since without one the next may fit.
     """

@@ -26,7 +26,7 @@ STARTS = {"body": "weight both", "arms": "hands at sides", "head": "straight"}
 
 
 # What goes with a line, seconds from its start.
-WITH_LINES: dict[str, tuple[a.AnyAsk, ...]] = {
+WITH_LINES: dict[str, tuple[a.AnyRequest, ...]] = {
     "hello": (a.Gesture(tags=("greeting",), at=0.0, priority=2), a.Nod(at=0.9)),
     "happy": (a.Gesture(tags=("positive",), stroke=0.85, priority=2),),
     "maybe": (a.Gesture(tags=("unsure",), stroke=0.9, priority=2), a.Shake(at=0.2)),

@@ -20,7 +20,7 @@ import pytest
 
 from metagraph.engines.reading import read_export
 from metagraph.graph.model import LAYERS
-from metagraph.graph.requests import ask_from
+from metagraph.graph.requests import request_from
 from metagraph.motion import rotation
 from metagraph.playback.extend_performance import hear, since
 from metagraph.playback.life.voice import voice_from_text
@@ -485,7 +485,9 @@ def test_a_character_plans_what_the_library_hears(probe: Probe, tmp_path: Path) 
                 ask["at"] = now + ask.pop("after")
         far = plan.end >= now + 18
         if asks or not far:
-            plan = hear(project, plan, now, [ask_from(ask) for ask in asks], plan.end if far else now + 20)
+            plan = hear(
+                project, plan, now, [request_from(ask) for ask in asks], plan.end if far else now + 20
+            )
         if now - cut >= 15:
             cut, plan = now, since(plan, now - 30)
     expected = [

@@ -12,7 +12,7 @@ from metagraph.graph.edits import EditError
 from metagraph.graph.model import Project
 
 
-def staged(*asks: a.AnyAsk) -> tuple[Project, str]:
+def staged(*asks: a.AnyRequest) -> tuple[Project, str]:
     return performance_edits.add_performance(Project(), a.Performance(name="talk", asks=asks))
 
 
@@ -31,11 +31,11 @@ def test_two_performances_of_one_name_are_told_apart() -> None:
 
 def test_an_ask_is_added_changed_and_taken_back() -> None:
     project, ident = staged()
-    project = performance_edits.add_ask(project, ident, a.Gesture(at=2.0, tags=("beat",)))
-    project = performance_edits.change_ask(project, ident, "r1", priority=3, at=2.5)
+    project = performance_edits.add_request(project, ident, a.Gesture(at=2.0, tags=("beat",)))
+    project = performance_edits.change_request(project, ident, "r1", priority=3, at=2.5)
     (ask,) = project.performances[ident].asks
     assert (ask.at, ask.priority, ask.tags) == (2.5, 3, ("beat",))
-    assert performance_edits.remove_asks(project, ident, ["r1"]).performances[ident].asks == ()
+    assert performance_edits.remove_requests(project, ident, ["r1"]).performances[ident].asks == ()
 
 
 @pytest.mark.parametrize(
@@ -44,7 +44,7 @@ def test_an_ask_is_added_changed_and_taken_back() -> None:
 def test_what_an_ask_cannot_take_is_refused(changes: dict[str, object]) -> None:
     project, ident = staged(a.Gesture(id="x"))
     with pytest.raises(EditError):
-        performance_edits.change_ask(project, ident, "x", **changes)
+        performance_edits.change_request(project, ident, "x", **changes)
 
 
 @given(st.lists(st.floats(0, 100), min_size=1, max_size=5), st.floats(-200, 200))
@@ -53,7 +53,7 @@ def test_moving_asks_keeps_their_distance_and_stays_after_the_beginning(
 ) -> None:
     project, ident = staged(*[a.Nod(id=f"n{n}", at=t) for n, t in enumerate(times)])
     after = (
-        performance_edits.move_asks(project, ident, [f"n{n}" for n in range(len(times))], by)
+        performance_edits.move_requests(project, ident, [f"n{n}" for n in range(len(times))], by)
         .performances[ident]
         .asks
     )
@@ -66,7 +66,7 @@ def test_moving_asks_keeps_their_distance_and_stays_after_the_beginning(
 
 def test_an_ask_without_a_time_can_be_moved_and_one_with_a_stroke_moves_its_stroke() -> None:
     project, ident = staged(a.Nod(id="n"), a.Gesture(id="g", stroke=3.0))
-    after = performance_edits.move_asks(project, ident, ["n", "g"], 1.5).performances[ident].asks
+    after = performance_edits.move_requests(project, ident, ["n", "g"], 1.5).performances[ident].asks
     assert (after[0].at, after[1].at, after[1].stroke) == (1.5, None, 4.5)
 
 

@@ -509,7 +509,7 @@ def test_a_session_performs_again_exactly_as_it_was_played(seed: int, idle: bool
 def test_a_session_too_long_to_be_kept_says_so(session: LiveSession) -> None:
     session.tape.most = 200
     ask(session, *({"do": "nod", "at": 5 + 2 * n} for n in range(10)))
-    with pytest.raises(a.AskError, match="cannot be replayed"):
+    with pytest.raises(a.RequestError, match="cannot be replayed"):
         session.performance("x")
 
 

@@ -127,7 +127,7 @@ def test_a_list_is_several_requests_in_order() -> None:
     ],
 )
 def test_lists_that_cannot_be_taken_apart_are_refused_whole(data: str, words: str) -> None:
-    with pytest.raises(a.AskError, match=words):
+    with pytest.raises(a.RequestError, match=words):
         split(data)
 
 
@@ -135,7 +135,7 @@ def test_lists_that_cannot_be_taken_apart_are_refused_whole(data: str, words: st
 def test_any_bytes_get_an_answer(data: str | bytes) -> None:
     try:
         requests, _ = split(data)
-    except a.AskError as refused:
+    except a.RequestError as refused:
         assert str(refused)
         return
     for request in requests:

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from metagraph.graph.model import Project
-from metagraph.graph.requests import AskError
+from metagraph.graph.requests import RequestError
 from metagraph.live.live_session import LiveSession
 from metagraph.live.messages import Poses
 from metagraph.live.pose_stream import HEADER, Stream, due, frame
@@ -53,7 +53,7 @@ def test_weights_of_morph_targets_come_in_the_order_of_the_greeting(sample: Proj
 
 
 def test_what_is_not_there_cannot_be_streamed(sample: Project) -> None:
-    with pytest.raises(AskError, match="no joint 'Tail'"):
+    with pytest.raises(RequestError, match="no joint 'Tail'"):
         Stream.of(Poses(joints=("Tail",)), sample, 0.0)
-    with pytest.raises(AskError, match="no clips"):
+    with pytest.raises(RequestError, match="no clips"):
         Stream.of(Poses(), Project(), 0.0)

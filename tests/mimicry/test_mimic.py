@@ -13,7 +13,7 @@ from hypothesis import strategies as st
 from hypothesis.extra import numpy as hnp
 
 from metagraph.graph.model import LAYERS, Project
-from metagraph.graph.requests import Go, Look, read_ask
+from metagraph.graph.requests import Go, Look, read_request
 from metagraph.mimicry.keypoint_layouts import LAYOUTS, PLACE, POINTS, swap
 from metagraph.mimicry.mimic import Mimic
 from metagraph.mimicry.pose_measures import turned
@@ -265,7 +265,7 @@ def test_asks_can_be_sent_as_they_are(somebody: Project) -> None:
     for ask in feed(
         Mimic(somebody, priority=4, prefix="cam", gaze=True), people.standing(somebody, "down"), 2.0
     ):
-        assert read_ask(msgspec.json.encode(ask)) == ask
+        assert read_request(msgspec.json.encode(ask)) == ask
         assert ask.id.startswith("cam") and ask.priority == 4
 
 

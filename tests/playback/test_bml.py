@@ -18,7 +18,7 @@ def block(inner: str, at: float = 0.0, project: Project | None = None, head: str
     return read_block(f"{head}\n{inner}\n</bml>", at, 1, project)
 
 
-def one(inner: str, at: float = 0.0, project: Project | None = None) -> a.AnyAsk:
+def one(inner: str, at: float = 0.0, project: Project | None = None) -> a.AnyRequest:
     asks = block(inner, at, project).asks
     assert len(asks) == 1
     return asks[0]
@@ -74,7 +74,7 @@ def test_an_empty_block_asks_for_nothing() -> None:
     ],
 )
 def test_what_cannot_be_read_is_told_with_its_line_and_remedy(text: str, words: str) -> None:
-    with pytest.raises(a.AskError) as caught:
+    with pytest.raises(a.RequestError) as caught:
         read_bml(text)
     assert words in str(caught.value)
 
@@ -90,7 +90,7 @@ def test_what_cannot_be_read_is_told_with_its_line_and_remedy(text: str, words: 
     ],
 )
 def test_document_types_and_their_entities_are_refused_unread(text: str) -> None:
-    with pytest.raises(a.AskError, match="no <!DOCTYPE"):
+    with pytest.raises(a.RequestError, match="no <!DOCTYPE"):
         read_bml(text)
 
 
@@ -98,7 +98,7 @@ def test_a_long_chain_of_behaviours_is_read_or_refused_in_words() -> None:
     chain = "".join(f'<gesture id="g{n}" start="g{n + 1}:end"/>' for n in range(499)) + '<gesture id="g499"/>'
     try:
         asks = block(chain).asks
-    except a.AskError as error:
+    except a.RequestError as error:
         assert "wait for one another" in str(error)
     else:
         assert len(asks) == 500
@@ -109,7 +109,7 @@ def test_any_text_is_read_or_refused_with_an_ask_error(text: str) -> None:
     for whole in (text, f"<bml>{text}</bml>", f'<bml><gesture id="g" start="{text}" lexeme="{text}"/></bml>'):
         try:
             read_bml(whole)
-        except a.AskError as error:
+        except a.RequestError as error:
             assert str(error)
 
 
@@ -168,7 +168,7 @@ def test_namespaces_do_not_matter() -> None:
         ('<required><head lexeme="NOD"/></required>', a.Nod()),
     ],
 )  # fmt: skip
-def test_a_behaviour_becomes_an_ask(inner: str, ask: a.AnyAsk) -> None:
+def test_a_behaviour_becomes_an_ask(inner: str, ask: a.AnyRequest) -> None:
     found = one(inner)
     assert found == ask
 
@@ -277,7 +277,7 @@ def test_constraints_bring_sync_points_together() -> None:
     ],
 )
 def test_lexemes_find_tags_names_and_stances_however_they_are_spelled(
-    inner: str, expected: a.AnyAsk, sample: Project
+    inner: str, expected: a.AnyRequest, sample: Project
 ) -> None:
     assert one(inner, project=sample) == expected
 
@@ -345,17 +345,17 @@ plain = st.one_of(
 
 
 @given(st.lists(plain, max_size=6))
-def test_what_is_written_reads_back_to_the_same_asks(asks: list[a.AnyAsk]) -> None:
+def test_what_is_written_reads_back_to_the_same_asks(asks: list[a.AnyRequest]) -> None:
     named = tuple(msgspec.structs.replace(ask, id=f"b{n}" if n % 2 else "") for n, ask in enumerate(asks))
     assert read_bml(write_bml(named)) == named
 
 
 def test_what_no_block_can_hold_is_refused_in_words() -> None:
-    with pytest.raises(a.AskError, match=r"U\+0000"):
+    with pytest.raises(a.RequestError, match=r"U\+0000"):
         write_bml([a.Say(text="a\0b")])
-    with pytest.raises(a.AskError, match="two asks are called 'x'"):
+    with pytest.raises(a.RequestError, match="two asks are called 'x'"):
         write_bml([a.Nod(id="x"), a.Nod(id="x")])
-    with pytest.raises(a.AskError, match="cannot hold another"):
+    with pytest.raises(a.RequestError, match="cannot hold another"):
         write_bml([a.Bml(bml="<bml/>")])
 
 

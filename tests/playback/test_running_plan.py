@@ -18,11 +18,11 @@ from metagraph.playback.running_plan import AHEAD, RunningPlan, perform
 LENGTH = 150.0
 
 
-def at_once(project: Project, asks: list[a.AnyAsk], end: float, idle: bool = True) -> Plan:
+def at_once(project: Project, asks: list[a.AnyRequest], end: float, idle: bool = True) -> Plan:
     """Plan every group of asks to the very end: what performing means, in time that grows with the square of
     the length.
     """
-    groups: dict[float, list[a.AnyAsk]] = {0.0: []}
+    groups: dict[float, list[a.AnyRequest]] = {0.0: []}
     for ask in asks:
         groups.setdefault(ask.told or 0.0, []).append(ask)
     plan = Plan(project.settings.seed, 0.0)
@@ -32,9 +32,9 @@ def at_once(project: Project, asks: list[a.AnyAsk], end: float, idle: bool = Tru
 
 
 @st.composite
-def session(draw) -> list[a.AnyAsk]:
+def session(draw) -> list[a.AnyRequest]:
     """Requests of all kinds, as they may come in over two minutes and a half; some are taken back."""
-    out: list[a.AnyAsk] = []
+    out: list[a.AnyRequest] = []
     now = 0.0
     for n in range(draw(st.integers(3, 30))):
         now = round(now + draw(st.sampled_from([0.0, 0.4, 2.0, 9.0, 25.0])), 3)
@@ -66,7 +66,7 @@ def session(draw) -> list[a.AnyAsk]:
 def test_in_pieces_it_is_what_it_is_at_once(sample):
     @settings(max_examples=25)
     @given(asks=session(), idle=st.booleans())
-    def same(asks: list[a.AnyAsk], idle: bool) -> None:
+    def same(asks: list[a.AnyRequest], idle: bool) -> None:
         one, other = at_once(sample, asks, LENGTH, idle), perform(sample, asks, LENGTH, idle=idle)
         for layer in LAYERS:
             assert other.layers[layer].cues == one.layers[layer].cues
@@ -83,13 +83,13 @@ def test_in_pieces_it_is_what_it_is_at_once(sample):
 
 
 def test_what_is_asked_for_at_the_beginning_alone_is_planned_at_once(sample):
-    asks: list[a.AnyAsk] = [a.Nod(id="n", at=2.0), a.Gesture(id="g", at=50.0)]
+    asks: list[a.AnyRequest] = [a.Nod(id="n", at=2.0), a.Gesture(id="g", at=50.0)]
     assert perform(sample, asks, 60.0) == at_once(sample, asks, 60.0)
 
 
 @pytest.mark.parametrize("end", [0.05, 1.0, AHEAD - 1, AHEAD, AHEAD + 0.1])
 def test_a_performance_shorter_than_the_plan_ahead_ends_where_it_should(sample, end):
-    asks: list[a.AnyAsk] = [a.Nod(id="n", at=0.02, told=0.01)]
+    asks: list[a.AnyRequest] = [a.Nod(id="n", at=0.02, told=0.01)]
     plan = perform(sample, asks, end)
     assert plan.end == end and plan.layers["head"].cues == at_once(sample, asks, end).layers["head"].cues
 
@@ -134,5 +134,5 @@ def test_running_on_reaches_ahead_and_hears(sample):
 
 def test_what_came_from_a_file_performs_as_before_it_was_written(sample):
     asks = [a.Nod(id="n", at=40.0, told=3.0), a.Gesture(id="g", at=80.0, told=70.0)]
-    again = msgspec.json.decode(msgspec.json.encode(asks), type=list[a.AnyAsk])
+    again = msgspec.json.decode(msgspec.json.encode(asks), type=list[a.AnyRequest])
     assert perform(sample, again, 100.0) == perform(sample, asks, 100.0)

@@ -182,7 +182,7 @@ class ImportDialog(QDialog):
             text="Add words…",
             toolTip="A transcript: TextGrid, ELAN, WebVTT, SRT, JSON or CTM",
         )
-        self.add_words.clicked.connect(self.ask_words)
+        self.add_words.clicked.connect(self.request_words)
         self.other_words = make_widget(
             QToolButton,
             self,
@@ -328,7 +328,7 @@ class ImportDialog(QDialog):
         self.transcripts = tuple(transcripts)[-2:]  # one for both, or one for each
         self.start()
 
-    def ask_words(self) -> None:
+    def request_words(self) -> None:
         ends = " ".join(f"*{s}" for s in (*TRANSCRIPTS, ".TextGrid"))
         names, _ = QFileDialog.getOpenFileNames(
             self, "Words of the conversation", str(self.sounds[0].parent), f"Transcripts ({ends})"

@@ -27,7 +27,7 @@ from app.widgets.gesture import Hand
 from app.widgets.lane_geometry import LEFT, RULER, Mark, Scale, cue_at, lane_at, mark_at, marks, told
 from app.widgets.lane_paint import LaneScene, badge, paint, playhead
 from app.widgets.memo import Once
-from app.widgets.request_menu import ask_menu
+from app.widgets.request_menu import request_menu
 
 NUDGE, FAR = 0.1, 1.0  # seconds an arrow key moves what is selected, and with Shift
 CATCH = 3  # pixels the mouse must move for a press to become a drag
@@ -254,7 +254,9 @@ class Lanes(QWidget):
         if mark is not None and self.performance.requests.editable:
             self._mark_menu(mark).popup(on_screen.toPoint())
         else:
-            ask_menu(self, self.performance, seconds, lane_at(self.height(), at)).popup(on_screen.toPoint())
+            request_menu(self, self.performance, seconds, lane_at(self.height(), at)).popup(
+                on_screen.toPoint()
+            )
 
     def _mark_menu(self, mark: Mark) -> QMenu:
         """Return what can be done with a request, or with all that are selected with it."""
@@ -273,10 +275,10 @@ class Lanes(QWidget):
 
     def edit(self, ident: str) -> None:
         """Show the fields of a request."""
-        from app.features.timeline.request_editor import AskEditor
+        from app.features.timeline.request_editor import RequestEditor
 
         if self.performance.requests.editable:
-            AskEditor(self.performance, ident, self).open()
+            RequestEditor(self.performance, ident, self).open()
 
     def contextMenuEvent(self, event: QContextMenuEvent) -> None:
         if event.reason() == QContextMenuEvent.Reason.Keyboard:
@@ -288,7 +290,7 @@ class Lanes(QWidget):
         """Ask for something at the playhead."""
         x = min(max(LEFT, self.scale().x(self.session.transport.seconds)), self.width())
         seconds = round(self.session.transport.seconds, 2) if self.performance.live.stage is None else None
-        ask_menu(self, self.performance, seconds).popup(self.mapToGlobal(QPointF(x, RULER).toPoint()))
+        request_menu(self, self.performance, seconds).popup(self.mapToGlobal(QPointF(x, RULER).toPoint()))
 
     def _scrub(self, x: float) -> None:
         self.session.transport.set_playing(False)

@@ -23,7 +23,7 @@ from PySide6.QtWidgets import (
 from app.stage.performance import Performance
 from app.widgets.lane_geometry import outcome
 from app.widgets.quiet_fields import ComboBox, DoubleSpinBox, SpinBox
-from app.widgets.request_menu import MODE_WORDS, ask_words, lane_of
+from app.widgets.request_menu import MODE_WORDS, lane_of, request_words
 from metagraph.graph.edits import EditError
 from metagraph.graph.model import LAYERS, LIMBS, MODES, Project
 
@@ -65,7 +65,7 @@ TIPS = {
 ORDER = tuple(LABELS)
 
 
-class AskEditor(QDialog):
+class RequestEditor(QDialog):
     def __init__(self, performance: Performance, ident: str, parent: QWidget | None = None) -> None:
         super().__init__(parent)
         self.performance, self.ident = performance, ident
@@ -73,7 +73,7 @@ class AskEditor(QDialog):
         self.setMinimumWidth(340)
         ask = self._ask()
         self.setWindowTitle(
-            f"Request: {ask_words(ask, performance.document.project)}" if ask is not None else "Request"
+            f"Request: {request_words(ask, performance.document.project)}" if ask is not None else "Request"
         )
         layout = QVBoxLayout(self)
         form = QFormLayout()

@@ -24,7 +24,7 @@ from app.stage.session import Session
 from app.widgets.lane_geometry import outcome, wanted
 from app.widgets.making import make_widget
 from app.widgets.quiet_fields import ComboBox, SpinBox
-from app.widgets.request_menu import ask_menu
+from app.widgets.request_menu import request_menu
 from app.widgets.sentence import Sentence
 from metagraph.graph import edits, performance_edits
 from metagraph.graph.conversation import side_name
@@ -259,7 +259,7 @@ class TimelinePanel(QWidget):
     # --- asking, seed
 
     def _ask(self) -> None:
-        ask_menu(self, self.performance, None).exec(self.ask.mapToGlobal(self.ask.rect().bottomLeft()))
+        request_menu(self, self.performance, None).exec(self.ask.mapToGlobal(self.ask.rect().bottomLeft()))
 
     def _seeded(self, seed: int) -> None:
         kept, talk = self.performance.requests.kept, self.performance.conversation

@@ -25,7 +25,7 @@ from metagraph.playback.phases import phases
 # --- BML
 
 
-def blocks(project: Project) -> Iterator[tuple[str, tuple[a.AnyAsk, ...]]]:
+def blocks(project: Project) -> Iterator[tuple[str, tuple[a.AnyRequest, ...]]]:
     """Yield a name and the asks of each block: the kept performances, then the lines."""
     for performance in project.performances.values():
         yield performance.name, tuple(x for x in performance.asks if not isinstance(x, a.Bml))
@@ -74,7 +74,7 @@ def write_blocks(order: ExportOrder) -> Made:
     return Made((*files, words), none)
 
 
-def _numbered(asks: tuple[a.AnyAsk, ...]) -> Iterator[a.AnyAsk]:
+def _numbered(asks: tuple[a.AnyRequest, ...]) -> Iterator[a.AnyRequest]:
     """Yield asks with ids that are unique in their block."""
     seen: set[str] = set()
     for n, ask in enumerate(asks, 1):

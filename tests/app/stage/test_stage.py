@@ -282,10 +282,10 @@ def test_performances_are_made_renamed_and_removed_from_the_panel(stage, monkeyp
 
 
 def test_a_point_is_put_somewhere_and_looked_at(stage):
-    from app.widgets.request_menu import ask_menu
+    from app.widgets.request_menu import request_menu
 
     drive = stage
-    menu = ask_menu(drive.timeline, drive.performance, 2.0)
+    menu = request_menu(drive.timeline, drive.performance, 2.0)
     drive.pick(menu, "Look at", "Another point…")
     drive.wait(lambda: QApplication.activeModalWidget() is not None)
     editor = QApplication.activeModalWidget()
