@@ -169,7 +169,7 @@ class Bml(Request, frozen=True, tag="bml"):
 
 AnyRequest = Union[
     Gesture, Fidget, Play, Go, Change, Nod, Shake, Look, Blink, Say, Behave, Place, Withdraw, Bml
-]  # noqa: UP007
+]
 
 
 class Line(Struct, frozen=True, kw_only=True, omit_defaults=True, forbid_unknown_fields=True):
