@@ -167,7 +167,7 @@ class Bml(Request, frozen=True, tag="bml"):
     bml: Annotated[str, Meta(max_length=200000)]
 
 
-AnyRequest = Union[
+AnyRequest = Union[  # noqa: UP007 - msgspec reads it at run time
     Gesture, Fidget, Play, Go, Change, Nod, Shake, Look, Blink, Say, Behave, Place, Withdraw, Bml
 ]
 
