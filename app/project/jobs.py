@@ -42,6 +42,10 @@ class Job(QObject):
             else:
                 self.failed.emit(error)
         self.ended.emit()
+        self.forget()
+
+    def forget(self) -> None:
+        """Free it, and what its work and what is connected hold."""
         self._work = _nothing
         self.deleteLater()  # what is connected keeps the job alive, and is kept by it: Qt alone can part them
 
@@ -111,7 +115,9 @@ class Jobs(QObject):
         else:
             self._alive.add(job)
             job.ended.connect(lambda: self._alive.discard(job))
-        if not self._stopped:
+        if self._stopped:
+            job.forget()
+        else:
             (self._quick if quick else self._pool).start(_Runner(job))
         return job
 
@@ -129,10 +135,14 @@ class Jobs(QObject):
         destroyed.
         """
         self._stopped = True
-        for job in [*self.running, *self._alive]:
+        left = [*self.running, *self._alive]
+        for job in left:
             job.cancel()
         for pool in (self._pool, self._quick):
             pool.clear()
             if not pool.waitForDone(5000):
                 pool.setParent(None)
                 _BUSY.append(pool)
+                left = []  # one of them still works, and ends by itself
+        for job in left:  # those that waited for their turn will never end
+            job.forget()

@@ -67,6 +67,7 @@ def ask_held(window: QWidget, path: Path, holder: Holder) -> Held | None:
     box.addButton(QMessageBox.StandardButton.Cancel)
     box.setDefaultButton(first)
     box.exec()
+    box.deleteLater()  # its parent would keep it
     return answers.get(box.clickedButton())
 
 
@@ -141,8 +142,11 @@ def ask_changed(
     while True:
         box.exec()
         if box.clickedButton() is not show:
+            box.deleteLater()  # its parent would keep it
             return answers.get(box.clickedButton())
-        DifferencesDialog(changed, common, mine, window).exec()
+        differences = DifferencesDialog(changed, common, mine, window)
+        differences.exec()
+        differences.deleteLater()
 
 
 class DifferencesDialog(QDialog):

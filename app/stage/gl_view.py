@@ -131,6 +131,8 @@ class ImageView(CameraMouse, QWidget):
         self._init_camera()
         self._compose = compose
         self._offscreen: Any = None
+        self._contexts: list[Any] = []  # nobody else gives a context back when the widget goes
+        self.destroyed.connect(lambda *_, made=self._contexts: [each.release() for each in made])
         self.theme: Theme = DARK
         self.setAttribute(Qt.WidgetAttribute.WA_OpaquePaintEvent)
         self.setFocusPolicy(Qt.FocusPolicy.ClickFocus)
@@ -143,6 +145,7 @@ class ImageView(CameraMouse, QWidget):
 
             try:
                 self._offscreen = Offscreen(*size)
+                self._contexts.append(self._offscreen)
             except OpenGLError as error:
                 self._offscreen = False
                 self.failed.emit(str(error))

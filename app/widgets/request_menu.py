@@ -6,6 +6,7 @@ from collections.abc import Callable
 from functools import partial
 from typing import Any
 
+from PySide6.QtCore import Qt
 from PySide6.QtWidgets import QInputDialog, QMenu, QWidget
 
 from app.look.theme import KIND_MARKS
@@ -93,6 +94,7 @@ def request_menu(
 ) -> QMenu:
     """Return a menu of everything that can be asked for at a time (None: now), of one lane or all."""
     menu = QMenu(parent)
+    menu.setAttribute(Qt.WidgetAttribute.WA_DeleteOnClose)
     project = performance.document.project
 
     def ask(made: a.AnyRequest, text: str) -> None:

@@ -7,6 +7,7 @@ from __future__ import annotations
 from collections.abc import Callable, Iterator
 from functools import lru_cache
 from typing import Any
+from weakref import ref
 
 import numpy as np
 from numpy.typing import NDArray
@@ -320,7 +321,7 @@ def _ends(
     scale = project.skeleton.height / 1.6
     start, end = project.span(action)
     if action.kind == "stance":
-        gap = _gap(motion, start, motion, end, joints)
+        gap = _gap(ref(motion), start, ref(motion), end, joints)
         if gap > OPEN_LOOP * scale and action.timing.blend_in <= 0:
             yield at(
                 "warning",
@@ -334,7 +335,7 @@ def _ends(
         target = _motion(project, loop) if loop is not None else None
         if loop is None or target is None:
             continue
-        gap = _gap(motion, moment, target, project.span(loop)[0], joints)
+        gap = _gap(ref(motion), moment, ref(target), project.span(loop)[0], joints)
         if gap > FAR * scale:
             yield at(
                 "warning",
@@ -357,11 +358,13 @@ def _reached(project: Project, graph: MetaGraph, action: Action) -> tuple[int, .
 
 
 @lru_cache(maxsize=65536)
-def _gap(a: Clip, seconds_a: float, b: Clip, seconds_b: float, joints: tuple[int, ...]) -> float:
+def _gap(a: ref[Clip], seconds_a: float, b: ref[Clip], seconds_b: float, joints: tuple[int, ...]) -> float:
     """Largest distance in metres of the joints, root aside. Clips compare by identity, so edits elsewhere
-    cost nothing.
+    cost nothing; and by `ref`, so that those of a closed project are let go.
     """
-    return float(pose_distance(a.skeleton, a.pose_at(seconds_a), b.pose_at(seconds_b), joints))
+    one, other = a(), b()
+    assert one is not None and other is not None
+    return float(pose_distance(one.skeleton, one.pose_at(seconds_a), other.pose_at(seconds_b), joints))
 
 
 def _motion(project: Project, action: Action | None) -> Clip | None:

@@ -8,7 +8,6 @@ at 1: `upper_lid_left` ... `lower_lid_right` (1 is shut), `blink` (what else mov
 
 from __future__ import annotations
 
-from collections import OrderedDict
 from collections.abc import Collection, Iterable, Mapping, Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
@@ -22,6 +21,7 @@ from metagraph.graph import anatomy
 from metagraph.graph.face_names import VISEMES, clip_shapes, find_morphs
 from metagraph.graph.life import FacePose
 from metagraph.graph.model import ClipEntry, Project
+from metagraph.graph.remembered import Remembered
 from metagraph.motion import rotation
 from metagraph.motion.joint_names import take_apart
 from metagraph.motion.skeleton import Skeleton
@@ -121,19 +121,15 @@ def find_face(project: Project, morphs: Sequence[str] = ()) -> FaceRig:
     morphs: names of the character's morph targets beside those its clips move and the project remembers
     (`Face.morphs`). What was found is kept for as long as nothing it depends on changes.
     """
-    parts: tuple[Any, ...] = (project.skeleton, project.roles, project.parts, project.face, project.clips)
-    key = (*map(id, parts), tuple(morphs))
-    known = _found.get(key)
-    if known is None:
-        known = _found[key] = (parts, _find(project, morphs))
-        while len(_found) > 8:
-            _found.popitem(last=False)
-    return known[1]
+    return _found.of(project, tuple(morphs), lambda: _find(project, morphs))
 
 
-_found: OrderedDict[tuple[Any, ...], tuple[tuple[Any, ...], FaceRig]] = (
-    OrderedDict()
-)  # with what the ids in the key belong to
+def made_of(project: Project) -> tuple[object, ...]:
+    """Return the parts of a project that faces and bodies are found in."""
+    return project.skeleton, project.roles, project.parts, project.face, project.clips
+
+
+_found: Remembered[FaceRig] = Remembered(made_of)
 
 
 def morph_names(project: Project, morphs: Sequence[str] = ()) -> tuple[str, ...]:

@@ -6,6 +6,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from typing import Any
+from weakref import ref
 
 from metagraph.graph import requests as a
 from metagraph.graph.model import LAYERS, Action, Layer, Project
@@ -41,11 +42,11 @@ class Index:
     """
 
     def __init__(self, project: Project) -> None:
-        self.project = project
         self.tags: dict[str, dict[str, str]] = {}
         self.called: dict[str, dict[str, list[Action]]] = {}
         self.actions: dict[str, list[Action]] = {}  # by id and name
         self.names: dict[str, list[Action]] = {}  # by spelled name
+        self.starts = {layer: project.graphs[layer].start for layer in LAYERS}
         self.stances = [s for layer in LAYERS for s in project.graphs[layer].stances.values()]
         for layer in LAYERS:
             tags, called = self.tags.setdefault(layer, {}), self.called.setdefault(layer, {})
@@ -59,14 +60,15 @@ class Index:
                         called.setdefault(word, []).append(action)
 
 
-_latest: list[Index] = []  # of the project that was asked for last: agents send block after block
+# Of the project that was asked for last: agents send block after block.
+_latest: list[tuple[ref[Project], Index]] = []
 
 
 def index_of(project: Project) -> Index:
     """Return a project's index."""
-    if not _latest or _latest[0].project is not project:
-        _latest[:] = [Index(project)]
-    return _latest[0]
+    if not _latest or _latest[0][0]() is not project:
+        _latest[:] = [(ref(project), Index(project))]
+    return _latest[0][1]
 
 
 class BmlWords:
@@ -94,7 +96,7 @@ class BmlWords:
             found = index.called[each].get("".join(map(spelled, words)))
             if found:
                 # The likeliest one; of equals that of the stance the layer starts in.
-                start, limb = index.project.graphs[each].start, fields.get("limb")
+                start, limb = index.starts[each], fields.get("limb")
                 best = max(found, key=lambda g: (g.limb == limb, g.likelihood, g.stance == start))
                 return a.Play(id=fields["id"], priority=fields["priority"], action=best.id, layer=each)
         return a.Gesture(layer=layer or "arms", tags=tuple(words), **fields)  # type: ignore[arg-type]

@@ -10,7 +10,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 from functools import cached_property, lru_cache
 from typing import Any
-from weakref import WeakKeyDictionary
+from weakref import WeakKeyDictionary, ref
 
 import numpy as np
 from numpy.typing import NDArray
@@ -103,7 +103,8 @@ class ComposerRig:
 
 
 @lru_cache(maxsize=8)
-def _ground(skeleton: Skeleton, clip: Clip | None, frame: int) -> Ground:
+def _ground(skeleton: Skeleton, whose: ref[Clip] | None, frame: int) -> Ground:
+    clip = whose() if whose is not None else None  # not kept: its project may be closed
     if clip is None:
         rest = skeleton.rest
         return Ground(skeleton, Pose(rest.rotations.astype(np.float32), rest.translations.astype(np.float32)))
@@ -137,4 +138,5 @@ def rig(project: Project) -> ComposerRig:
     frame = min(project.base.frame, motion.frames - 1) if motion is not None else 0
     order: tuple[Part, ...] = ("legs", "spine", "arms", "head", "face")
     weights = tuple(tuple(project.graphs[layer].weight(part) for part in order) for layer in LAYERS)
-    return _rig(_ground(project.skeleton, motion, frame), anatomy.parts(project), weights, order)
+    ground = _ground(project.skeleton, ref(motion) if motion is not None else None, frame)
+    return _rig(ground, anatomy.parts(project), weights, order)

@@ -13,6 +13,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import lru_cache
 from typing import Any
+from weakref import ref
 
 import numpy as np
 from numpy.typing import NDArray
@@ -63,7 +64,7 @@ def phases(project: Project, action: Action) -> Phases:
         found = Phases(start, middle, middle, middle, middle, end)
     else:
         movers, seen_from = _movers(project, motion, action.layer, action.limb)
-        found = _found(motion, movers, seen_from, start, end)
+        found = _found(ref(motion), movers, seen_from, start, end)
     ready = _within(timing.ready, found.ready, start, end)
     stroke = _within(timing.stroke, max(ready, found.stroke), start, end)
     stroke_end = _within(timing.stroke_end, max(stroke, found.stroke_end), start, end)
@@ -92,9 +93,12 @@ def _movers(project: Project, motion: Clip, layer: Layer, limb: str) -> tuple[tu
 
 
 @lru_cache(maxsize=4096)
-def _found(motion: Clip, movers: tuple[int, ...], seen_from: int, start: float, end: float) -> Phases:
+def _found(whose: ref[Clip], movers: tuple[int, ...], seen_from: int, start: float, end: float) -> Phases:
+    # What is remembered must not keep a clip whose project was closed; a `ref` is equal while its clip lives.
+    motion = whose()
+    assert motion is not None
     first, last = int(np.ceil(start * motion.fps)), int(np.floor(end * motion.fps + 1e-6))
-    track = _track(motion, movers, seen_from)[first : last + 1]
+    track = _track(whose, movers, seen_from)[first : last + 1]
     speed, away = _speed(track, motion.fps), np.linalg.norm(track - track[0], axis=-1).max(-1)
     times = start + np.arange(len(track)) / motion.fps
     bouts = _bouts(speed, motion.fps)
@@ -124,12 +128,14 @@ def _of(times: Array, start: float, end: float, ready: int, stroke: int, gone: i
 
 
 @lru_cache(maxsize=512)
-def _track(motion: Clip, movers: tuple[int, ...], seen_from: int) -> Array:
+def _track(whose: ref[Clip], movers: tuple[int, ...], seen_from: int) -> Array:
     """Return where the joints are `[F, n, 3]`, metres, in the frame of the joint they are seen from, or of
     the clip.
     """
     from metagraph.motion import rotation
 
+    motion = whose()
+    assert motion is not None
     turns, places = motion.skeleton.globals(motion.poses())
     chosen = places[:, list(movers)]
     if seen_from >= 0:

@@ -540,6 +540,7 @@ class Canvas(QWidget):
     def contextMenuEvent(self, event: QContextMenuEvent) -> None:
         hit = self.layout_now().hit(QPointF(event.pos()))
         menu = QMenu(self)
+        menu.setAttribute(Qt.WidgetAttribute.WA_DeleteOnClose)
         if hit.area in ("row", "bar", "head") and hit.ident:
             if hit.ident not in self.session.selection.actions:
                 self.session.selection.select_actions((hit.ident,))
@@ -597,6 +598,7 @@ class Canvas(QWidget):
 
     def _choose_other(self, at: QPoint) -> None:
         menu = QMenu(self)
+        menu.setAttribute(Qt.WidgetAttribute.WA_DeleteOnClose)
         current, other = self.session.place.stance(), self.session.place.other()
         for stance in self.document.project.graphs[self.session.place.layer].stances.values():
             if stance.id != current:

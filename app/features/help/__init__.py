@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from PySide6.QtCore import Qt
 from PySide6.QtGui import QKeySequence
 from PySide6.QtWidgets import QMessageBox
 
@@ -27,9 +28,11 @@ def contribute(shell: Shell) -> Contribution:
             "choose</td></tr>"
         )
         table = f"<table>{''.join(rows)}</table>"
-        QMessageBox(
+        box = QMessageBox(
             QMessageBox.Icon.NoIcon, "Keyboard shortcuts", table, QMessageBox.StandardButton.Ok, shell.widget
-        ).open()
+        )
+        box.setAttribute(Qt.WidgetAttribute.WA_DeleteOnClose)
+        box.open()
 
     def about() -> None:
         from metagraph import __version__

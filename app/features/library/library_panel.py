@@ -593,6 +593,7 @@ class LibraryPanel(QWidget):
     def menu(self, entry: ClipEntry) -> QMenu:
         """Return what can be done with a clip, and with all selected ones."""
         out = QMenu(self)
+        out.setAttribute(Qt.WidgetAttribute.WA_DeleteOnClose)
         chosen = self.session.selection.clips if entry.id in self.session.selection.clips else (entry.id,)
         out.addAction("Play alone", lambda: self.session.transport.show_clip(entry.id))
         out.addAction("Play in context", lambda: self.session.show_context(entry.id))

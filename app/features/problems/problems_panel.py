@@ -217,6 +217,7 @@ class ProblemsPanel(QWidget):
     def menu(self, item: QTreeWidgetItem) -> QMenu:
         """Return what can be done about a row."""
         menu = QMenu(self)
+        menu.setAttribute(Qt.WidgetAttribute.WA_DeleteOnClose)
         menu.addAction("Go there", lambda: self._go(item))
         problem = item.data(0, ROLE)
         fix = self.fixes.get(problem) if isinstance(problem, Problem) else None

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from collections import OrderedDict
 from collections.abc import Callable
 from dataclasses import dataclass
 from typing import Any
@@ -11,8 +10,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from metagraph.graph import anatomy
-from metagraph.graph.face import SIDES, FaceRig, axes_of, find_face
+from metagraph.graph.face import SIDES, FaceRig, axes_of, find_face, made_of
 from metagraph.graph.model import Project
+from metagraph.graph.remembered import Remembered
 from metagraph.motion import rotation
 from metagraph.motion.skeleton import Skeleton
 
@@ -102,9 +102,7 @@ class Body:
         )
 
 
-_known: OrderedDict[tuple[Any, ...], tuple[tuple[Any, ...], Body]] = (
-    OrderedDict()
-)  # with what the ids in the key belong to
+_known: Remembered[Body] = Remembered(made_of)
 
 
 def body_of(project: Project) -> Body:
@@ -113,15 +111,7 @@ def body_of(project: Project) -> Body:
     """
     if isinstance(project.body, Body):
         return project.body
-    base = project.base
-    parts = (project.skeleton, project.roles, project.parts, project.face, project.clips)
-    key = (*map(id, parts), base.clip, base.frame)
-    found = _known.get(key)
-    if found is None:
-        found = _known[key] = (parts, _find(project))
-        while len(_known) > 8:
-            _known.popitem(last=False)
-    return found[1]
+    return _known.of(project, project.base, lambda: _find(project))
 
 
 def _vector(values: Any) -> Vector:
