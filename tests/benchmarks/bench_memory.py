@@ -6,9 +6,8 @@
 watching: 2,400 looks at 10,000 clip files for changes, without the 1.5 s between them; resident memory before
 and after, and the median time of a look on its thread and on the window's. windows: one after the other in
 this process, each on the sample project, played, edited 50 times, all undone, every dialog opened and closed;
-after each, resident memory, what the allocator has given out, and what more of ours is alive
-than after the one before. Without a screen it runs in
-Xvfb. Nothing of the user's is touched.
+after each, resident memory, what the allocator has given out, and what more of ours is alive than after the
+one before. Without a screen it runs in Xvfb. Nothing of the user's is touched.
 """
 
 from __future__ import annotations
@@ -28,6 +27,9 @@ from pathlib import Path
 ROOT = Path(__file__).resolve().parents[2]
 sys.path.insert(0, str(ROOT))
 EDITS = 50
+MALLINFO = (
+    "arena", "ordblks", "smblks", "hblks", "hblkhd", "usmblks", "fsmblks", "uordblks", "fordblks", "keepcost",
+)  # fmt: skip
 
 
 def resident() -> float:
@@ -159,10 +161,7 @@ def in_use() -> float:
     """
 
     class Told(ctypes.Structure):
-        _fields_ = [
-            (name, ctypes.c_size_t)
-            for name in "arena ordblks smblks hblks hblkhd usmblks fsmblks uordblks fordblks keepcost".split()
-        ]
+        _fields_ = [(name, ctypes.c_size_t) for name in MALLINFO]
 
     library = ctypes.CDLL(None)
     if not hasattr(library, "mallinfo2"):
@@ -196,7 +195,8 @@ def windows(count: int = 5, dialogs: int = 1) -> None:
             more = sorted((now - before).items(), key=lambda x: -x[1])
             words = ", ".join(f"{name} {k:+}" for name, k in more[:12]) if n else ""
             print(
-                f"{n + 1:6} {size:6.1f} MB {size - last:+6.1f} MB  {used:6.1f} MB {used - held:+6.1f} MB  {words}",
+                f"{n + 1:6} {size:6.1f} MB {size - last:+6.1f} MB  {used:6.1f} MB {used - held:+6.1f} MB  "
+                f"{words}",
                 flush=True,
             )
             before, last, held = now, size, used
