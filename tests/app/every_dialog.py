@@ -8,7 +8,7 @@ from pathlib import Path
 from PySide6.QtWidgets import QApplication, QDialog
 
 from metagraph.formats.bvh import write_bvh
-from metagraph.graph import asks, edits
+from metagraph.graph import edits, requests
 from tests.app.handles import Handles
 
 ROOT = Path(__file__).resolve().parents[2] / "sample_clips"
@@ -61,11 +61,11 @@ def _state_joints(w: Handles, _: Path) -> None:
 
 
 def _request(w: Handles, _: Path) -> None:
-    from app.features.timeline.request_editor import AskEditor
+    from app.features.timeline.request_editor import RequestEditor
 
-    w.performance.requests.ask(asks.Gesture(at=2.0), "Ask for a gesture")
+    w.performance.requests.ask(requests.Gesture(at=2.0), "Ask for a gesture")
     ident = w.performance.asks[-1].id
-    AskEditor(w.performance, ident, w.timeline.lanes).open()
+    RequestEditor(w.performance, ident, w.timeline.lanes).open()
 
 
 def _point(w: Handles, _: Path) -> None:
