@@ -113,6 +113,13 @@ class Slider(OneStep, QSlider):
         self.quietly(super().keyPressEvent, event)
 
 
+class Scrub(Slider):
+    """A slider that is followed at once, by keys, too: what it moves is no edit."""
+
+    def quietly(self, change: Any, *arguments: Any) -> None:
+        change(*arguments)
+
+
 class ComboBox(QComboBox):
     """A choice; scrolling never changes it."""
 

@@ -11,12 +11,13 @@ from pathlib import Path
 
 import pytest
 from PySide6.QtCore import QMimeData, QPoint, QPointF, QSettings, Qt, QUrl
-from PySide6.QtGui import QDragEnterEvent, QDragLeaveEvent, QDragMoveEvent, QDropEvent, QGuiApplication
+from PySide6.QtGui import QCursor, QDragEnterEvent, QDragLeaveEvent, QDragMoveEvent, QDropEvent, QGuiApplication
 from PySide6.QtTest import QTest
 from PySide6.QtWidgets import QApplication, QMenu, QMessageBox, QWidget
 
 from app.main import prepare
 from tests.app.handles import Handles
+from tests.app.shared_window import SharedWindow, close
 
 
 def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
@@ -29,6 +30,41 @@ def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
             )  # Xvfb has no transparent windows for dragged pictures
 
 
+PASSED = pytest.StashKey[bool]()
+
+
+@pytest.hookimpl(wrapper=True)
+def pytest_runtest_makereport(item: pytest.Item, call: pytest.CallInfo[None]) -> Iterator[None]:
+    report = yield
+    if call.when == "call":
+        item.stash[PASSED] = report.passed
+    return report
+
+
+def wants_own_window(item: pytest.Item) -> bool:
+    """Journeys, and what is marked as looking at how a window begins or ends."""
+    return "journey" in item.path.stem or item.get_closest_marker("fresh_window") is not None
+
+
+@pytest.hookimpl(trylast=True)
+def pytest_runtest_teardown(item: pytest.Item, nextitem: pytest.Item | None) -> None:
+    """Hide the shared window from tests that have none, or their own."""
+    if "drive" in getattr(item, "fixturenames", ()) and "drive" not in getattr(nextitem, "fixturenames", ()):
+        SHARED.hide()
+
+
+SHARED = SharedWindow()
+
+
+@pytest.fixture(scope="session")
+def shared(qapp: object) -> Iterator[SharedWindow]:
+    yield SHARED
+    SHARED.throw_away()
+    print(SHARED.made, SHARED.own, SHARED.taken_back)
+    for words, n in SHARED.spoilt.most_common():
+        print(n, words[:300])
+
+
 @pytest.fixture(scope="session")
 def qapp() -> object:
     """The application as the program makes it: OpenGL format and shared contexts set before."""
@@ -36,13 +72,20 @@ def qapp() -> object:
     yield app
 
 
+@pytest.fixture(scope="session", autouse=True)
+def settings_place(tmp_path_factory: pytest.TempPathFactory) -> None:
+    """A window that many tests take turns with keeps to one place of settings."""
+    place = str(tmp_path_factory.mktemp("settings"))
+    QSettings.setDefaultFormat(QSettings.Format.IniFormat)
+    QSettings.setPath(QSettings.Format.IniFormat, QSettings.Scope.UserScope, place)
+
+
 @pytest.fixture(autouse=True)
 def own_settings(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    """Nothing of the user's settings is read or written."""
+    """Nothing of the user's settings is read or written, and nothing of another test's."""
     monkeypatch.setenv("XDG_DATA_HOME", str(tmp_path / "data"))
     monkeypatch.setenv("XDG_CONFIG_HOME", str(tmp_path / "config"))
-    QSettings.setDefaultFormat(QSettings.Format.IniFormat)
-    QSettings.setPath(QSettings.Format.IniFormat, QSettings.Scope.UserScope, str(tmp_path / "settings"))
+    QSettings().clear()
 
 
 class Driver(Handles):
@@ -52,8 +95,14 @@ class Driver(Handles):
         super().__init__(window)
         self.bot = qtbot
         self.told: list[str] = []
-        self.shell.stage.refused.connect(self.told.append)
-        self.shell.document.failed.connect(self.told.append)
+        self._words = (self.shell.stage.refused, self.shell.document.failed)
+        for words in self._words:
+            words.connect(self.told.append)
+
+    def let_go(self) -> None:
+        """The test is over."""
+        for words in self._words:
+            words.disconnect(self.told.append)
 
     def wait(self, until: Callable[[], bool], seconds: float = 20) -> None:
         self.bot.waitUntil(until, timeout=int(seconds * 1000))  # type: ignore[attr-defined]
@@ -181,12 +230,30 @@ class Driver(Handles):
         return [a.name for a in found if kind in (None, a.kind) and layer in (None, a.layer)]
 
 
+def activate(window: QWidget) -> None:
+    """Give a window the keyboard: without a window manager, a click does."""
+    corner = window.statusBar().mapToGlobal(QPoint(300, 8))
+    if window.isActiveWindow():
+        QCursor.setPos(corner)  # nothing is hovered over
+        return
+    window.activateWindow()
+    subprocess.run(
+        ["xdotool", "mousemove", str(corner.x()), str(corner.y()), "click", "1"], check=True, timeout=10
+    )
+    assert QTest.qWaitForWindowActive(window, 5000)
+
+
 @pytest.fixture
 def drive(
-    qapp: object, qtbot: object, monkeypatch: pytest.MonkeyPatch, request: pytest.FixtureRequest
+    qapp: object,
+    qtbot: object,
+    monkeypatch: pytest.MonkeyPatch,
+    request: pytest.FixtureRequest,
+    shared: SharedWindow,
 ) -> Iterator[Driver]:
-    """A window with nothing in it. Its clips have pictures in journeys only: the process that draws them
-    costs more than most tests.
+    """A window with nothing in it. It is one that many tests take turns with, but in journeys and in tests
+    marked `fresh_window`. Its clips have pictures in those only: the process that draws them costs more than
+    most tests.
     """
     if sys.platform.startswith("linux"):
         if QGuiApplication.platformName() != "xcb":
@@ -207,33 +274,32 @@ def drive(
         if app.styleSheet() != style_sheet(look):
             apply(app, look)
 
-    monkeypatch.setattr(app.shell.window, "apply", styled)
-    if "journey" not in request.path.stem:
-        monkeypatch.setattr(Thumbnails, "_order", lambda *order: None)
-
     def unexpected(*args: object, **kwargs: object) -> object:
         raise AssertionError(f"an unexpected question: {args[1:3]}")
 
+    monkeypatch.setattr(app.shell.window, "apply", styled)
     monkeypatch.setattr(QMessageBox, "question", unexpected)
     monkeypatch.setattr(QMessageBox, "warning", unexpected)
-    window = make_window()
-    window.resize(1680, 1020)
-    window.show()
+    own = wants_own_window(request.node)
+    if own:
+        shared.hide()
+        shared.own += 1
+        window = make_window()
+        window.resize(1680, 1020)
+        window.show()
+        window.make_late_panels()
+    else:
+        monkeypatch.setattr(Thumbnails, "_order", lambda *order: None)
+        window = shared.take()
     qtbot.waitExposed(window)  # type: ignore[attr-defined]
-    window.make_late_panels()
-    window.activateWindow()
-    # Without a window manager a click gives the window the keyboard.
-    corner = window.statusBar().mapToGlobal(QPoint(300, 8))
-    subprocess.run(
-        ["xdotool", "mousemove", str(corner.x()), str(corner.y()), "click", "1"], check=True, timeout=10
-    )
-    qtbot.waitUntil(window.isActiveWindow, timeout=5000)  # type: ignore[attr-defined]
-    qtbot.wait(100)  # type: ignore[attr-defined]
-    yield Driver(window, qtbot)
-    window.shell.document.undo_stack.setClean()
-    window.close()
-    window.deleteLater()
-    qtbot.wait(20)  # type: ignore[attr-defined]
+    activate(window)
+    driver = Driver(window, qtbot)
+    yield driver
+    driver.let_go()
+    if own:
+        close(window)
+    else:
+        shared.give_back(whole=request.node.stash.get(PASSED, False))
 
 
 @pytest.fixture

@@ -15,7 +15,7 @@ from app.stage.playback_source import ASIDE
 from app.stage.playhead import Playhead
 from app.stage.session import Session
 from app.widgets.making import make_widget
-from app.widgets.quiet_fields import ComboBox, Slider
+from app.widgets.quiet_fields import ComboBox, Scrub
 from metagraph.graph import anatomy
 from metagraph.graph.model import LAYERS, Project
 from preview.camera import close_up, whole_figure
@@ -53,7 +53,7 @@ class PreviewPanel(QWidget):
         layout.setContentsMargins(0, 0, 0, 0)
         layout.setSpacing(0)
         layout.addWidget(self.view, 1)
-        self.scrub = Slider(Qt.Orientation.Horizontal, self, toolTip="Scrub")
+        self.scrub = Scrub(Qt.Orientation.Horizontal, self, toolTip="Scrub")
         self.scrub.setRange(0, 10000)
         self.scrub.setAccessibleName("Playhead")
         self.scrub.setSingleStep(50)

@@ -205,7 +205,7 @@ def test_a_log_that_cannot_be_written_is_told_once(recorded, monkeypatch):
 
     told = []
     monkeypatch.setattr(recorded.log, "add", full)
-    monkeypatch.setattr(recorded.window, "tell", told.append)
+    monkeypatch.setattr(recorded.shell, "tell", told.append)
     recorded.session.place.set_layer("head")
     recorded.session.place.set_layer("body")
     assert len([t for t in told if "No space left" in t]) == 1
