@@ -17,6 +17,7 @@ from metagraph.graph.model import LAYERS, Layer, Life, Project
 from metagraph.motion import rotation
 from metagraph.motion.clip import Clip
 from tests import kernels
+from tests.run_notes import KEY, NOTES
 
 ROOT = Path(__file__).resolve().parents[1]
 
@@ -33,12 +34,12 @@ settings.register_profile("desk", deadline=None)
 settings.load_profile("gate" if os.environ.get("CI") else "desk")
 
 
-PEAK = pytest.StashKey[dict[str, float]]()
+ALL_NOTES = pytest.StashKey[dict[str, dict[str, str]]]()
 
 
 def pytest_configure(config: pytest.Config) -> None:
     """Before the first process starts, compile what tests would wait for longer than a window is given."""
-    config.stash[PEAK] = {}
+    config.stash[NOTES], config.stash[ALL_NOTES] = {}, {}
     if config.getoption("numprocesses", None):
         kernels.make()
 
@@ -50,22 +51,23 @@ def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
 
 
 def pytest_sessionfinish(session: pytest.Session) -> None:
-    """A process of several tells the one that started it how much memory it took."""
+    """A process of several tells the one that started it how it fared."""
+    session.config.stash[NOTES]["peak memory"] = f"{memory():,.0f} MB"
     if WORKER:
-        session.config.workeroutput["peak"] = memory()  # type: ignore[attr-defined]
+        session.config.workeroutput[KEY] = session.config.stash[NOTES]  # type: ignore[attr-defined]
 
 
 @pytest.hookimpl(optionalhook=True)
 def pytest_testnodedown(node: Any, error: object) -> None:
-    node.config.stash[PEAK][node.gateway.id] = getattr(node, "workeroutput", {}).get("peak", math.nan)
+    node.config.stash[ALL_NOTES][node.gateway.id] = getattr(node, "workeroutput", {}).get(KEY, {})
 
 
 def pytest_terminal_summary(terminalreporter: Any, config: pytest.Config) -> None:
-    """Say at the end how much memory the tests took, so that nothing grows unseen."""
-    peaks = config.stash[PEAK] or {"this process": memory()}
-    terminalreporter.write_line(
-        "peak memory: " + ", ".join(f"{name} {peak:,.0f} MB" for name, peak in sorted(peaks.items()))
-    )
+    """Say at the end how much memory the tests took, so that nothing grows unseen, and what else is noted."""
+    every = config.stash[ALL_NOTES] or {"this process": config.stash[NOTES]}
+    for about in dict.fromkeys(about for notes in every.values() for about in notes):
+        said = [f"{name} {notes[about]}" for name, notes in sorted(every.items()) if about in notes]
+        terminalreporter.write_line(f"{about}: {', '.join(said)}")
 
 
 def memory() -> float:

@@ -4,20 +4,27 @@ from __future__ import annotations
 
 import shutil
 import subprocess
-import sys
 import time
 from collections.abc import Callable, Iterator
 from pathlib import Path
 
 import pytest
 from PySide6.QtCore import QMimeData, QPoint, QPointF, QSettings, Qt, QUrl
-from PySide6.QtGui import QCursor, QDragEnterEvent, QDragLeaveEvent, QDragMoveEvent, QDropEvent, QGuiApplication
+from PySide6.QtGui import (
+    QCursor,
+    QDragEnterEvent,
+    QDragLeaveEvent,
+    QDragMoveEvent,
+    QDropEvent,
+    QGuiApplication,
+)
 from PySide6.QtTest import QTest
 from PySide6.QtWidgets import QApplication, QMenu, QMessageBox, QWidget
 
 from app.main import prepare
 from tests.app.handles import Handles
 from tests.app.shared_window import SharedWindow, close
+from tests.run_notes import NOTES
 
 
 def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
@@ -57,12 +64,10 @@ SHARED = SharedWindow()
 
 
 @pytest.fixture(scope="session")
-def shared(qapp: object) -> Iterator[SharedWindow]:
+def shared(qapp: object, request: pytest.FixtureRequest) -> Iterator[SharedWindow]:
     yield SHARED
     SHARED.throw_away()
-    print(SHARED.made, SHARED.own, SHARED.taken_back)
-    for words, n in SHARED.spoilt.most_common():
-        print(n, words[:300])
+    request.config.stash[NOTES]["windows"] = SHARED.words()
 
 
 @pytest.fixture(scope="session")
@@ -150,6 +155,8 @@ class Driver(Handles):
         self, start: tuple[QWidget, QPoint], end: tuple[QWidget, QPoint], until: Callable[[], bool]
     ) -> None:
         """A true drag through the X server, from press to release, until something has come of it."""
+        if not real_pointer():
+            pytest.skip("a real drag needs X11 and xdotool")
         a, b = start[0].mapToGlobal(start[1]), end[0].mapToGlobal(end[1])
         words = [
             "xdotool",
@@ -230,16 +237,22 @@ class Driver(Handles):
         return [a.name for a in found if kind in (None, a.kind) and layer in (None, a.layer)]
 
 
+def real_pointer() -> bool:
+    """Return whether a real pointer can be moved: on X11, by xdotool."""
+    return QGuiApplication.platformName() == "xcb" and shutil.which("xdotool") is not None
+
+
 def activate(window: QWidget) -> None:
-    """Give a window the keyboard: without a window manager, a click does."""
+    """Give a window the keyboard: on X11 without a window manager, a click does."""
     corner = window.statusBar().mapToGlobal(QPoint(300, 8))
     if window.isActiveWindow():
         QCursor.setPos(corner)  # nothing is hovered over
         return
     window.activateWindow()
-    subprocess.run(
-        ["xdotool", "mousemove", str(corner.x()), str(corner.y()), "click", "1"], check=True, timeout=10
-    )
+    if real_pointer():
+        subprocess.run(
+            ["xdotool", "mousemove", str(corner.x()), str(corner.y()), "click", "1"], check=True, timeout=10
+        )
     assert QTest.qWaitForWindowActive(window, 5000)
 
 
@@ -255,13 +268,6 @@ def drive(
     marked `fresh_window`. Its clips have pictures in those only: the process that draws them costs more than
     most tests.
     """
-    if sys.platform.startswith("linux"):
-        if QGuiApplication.platformName() != "xcb":
-            pytest.skip("needs an X screen (Xvfb): real drags and OpenGL widgets do not work on others")
-        if shutil.which("xdotool") is None:
-            pytest.skip("needs xdotool to move the real pointer")
-    else:
-        pytest.skip("real drags are driven on X11 only")
     import app.shell.window
     from app.look.theme import Theme, apply, style_sheet
     from app.main import make_window

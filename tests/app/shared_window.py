@@ -10,11 +10,13 @@ from typing import Any
 
 from PySide6.QtCore import QCoreApplication, QEvent, QSettings, QTimer
 from PySide6.QtTest import QTest
-from PySide6.QtWidgets import QAbstractScrollArea, QApplication, QDialog, QMenu
+from PySide6.QtWidgets import QApplication, QDialog, QMenu, QScrollBar, QWidget
+from shiboken6 import isValid
 
+from app.features.character.character_panel import SPEEDS
 from app.project.files import Files
 from app.project.learned import Learned
-from app.project.watching import Watcher
+from app.project.watching import EVERY, Watcher
 from metagraph.graph.model import Project
 from tests.app.window_state import differences, state_of
 
@@ -68,6 +70,12 @@ class SharedWindow:
         except Exception as error:
             self.spoilt[f"{type(error).__name__}: {error}"] += 1
             self.throw_away()
+
+    def words(self) -> str:
+        """Say how often, and what spoilt a window most."""
+        out = f"{self.made} made and {self.taken_back} times taken back, {self.own} of their tests alone"
+        worst = "; ".join(f"{what[:150]} ({n})" for what, n in self.spoilt.most_common(2))
+        return f"{out}; spoilt by {worst}" if worst else out
 
     def hide(self) -> None:
         """Nothing is drawn while other tests run."""
@@ -123,18 +131,19 @@ def empty(window: Any) -> None:
 def settle(window: Any) -> None:
     """Wait until nothing goes on; what would be done soon is done now."""
     jobs, deadline = window.shell.jobs, time.monotonic() + SETTLED
-    soon = [t for t in window.findChildren(QTimer) if t.isSingleShot()]
-    pauses = [t.interval() for t in soon]
-    try:
+    soon = {t: t.interval() for t in window.findChildren(QTimer) if t.isSingleShot()}
+
+    def waiting() -> list[QTimer]:
+        return [t for t in soon if isValid(t) and t.isActive()]
+
+    QTest.qWait(1)
+    while jobs.running or jobs._alive or waiting():
+        for timer in waiting():
+            timer.start(0)
         QTest.qWait(1)
-        while jobs.running or jobs._alive or any(t.isActive() for t in soon):
-            for timer in soon:
-                if timer.isActive():
-                    timer.start(0)
-            QTest.qWait(1)
-            assert time.monotonic() < deadline, f"still at work: {[j.title for j in (*jobs.running, *jobs._alive)]}"
-    finally:
-        for timer, pause in zip(soon, pauses, strict=True):
+        assert time.monotonic() < deadline, f"at work: {[j.title for j in (*jobs.running, *jobs._alive)]}"
+    for timer, pause in soon.items():
+        if isValid(timer):
             timer.setInterval(pause)
 
 
@@ -142,9 +151,9 @@ def reset(window: Any) -> None:
     """Take a window back to how it begins, on a new project."""
     shell = window.shell
     services, session = shell.services, shell.stage.session
-    QSettings().clear()
     services[Files].closed = ""
     services[Learned].paused = False
+    services[Watcher]._timer.setInterval(EVERY)
     services[Watcher].set_on(True)
     shell.actions.allowed = None
     session.set_mode("meta")
@@ -155,32 +164,47 @@ def reset(window: Any) -> None:
     session.place.forget()
     session.selection.clear()
     session.selection.copied = None
-    session.transport.speed, session.transport.loop = 1.0, True
-    session.transport.set_playing(True)
     session.look.choose("dark")
     shell.stage.sound.set_muted(False)
+    shell.stage.sound._silent = False
+    session.transport.set_playing(True)
     shell.document.load(Project(), None)
     shell.files.opened.emit()
     for panel in window.places.panels.values():
         if panel.place == "beside":
             window.places.show(panel.id, False)
+    reset_panels(window)
+    settle(window)
     window.arrange()
-    _panels(window)
     shell.notice.clear()
     window.statusBar().clearMessage()
+    QSettings().clear()
     window.setFocus()
-    settle(window)
     window.refresh()
 
 
-def _panels(window: Any) -> None:
+def reset_panels(window: Any) -> None:
     """Take back what the panels hold themselves."""
     panel = window.shell.panel
-    library, canvas = panel("library"), panel("graph")
+    library, canvas, preview, lanes = (
+        panel("library"),
+        panel("graph"),
+        panel("character"),
+        panel("timeline").lanes,
+    )
     library.search.clear()
     library.chips["all"].click()
     library._narrow(None, None)
     canvas.focus = None
-    for area in window.findChildren(QAbstractScrollArea):
-        for bar in (area.horizontalScrollBar(), area.verticalScrollBar()):
-            bar.setValue(bar.minimum())
+    preview._set_loop(True)
+    preview._set_bones(False)
+    preview.frame_all()
+    normal = SPEEDS.index(1.0)
+    preview.speed_box.setCurrentIndex(normal)
+    preview.speed_box.activated.emit(normal)
+    lanes.each, lanes.first, lanes.follow = 44.0, 0.0, True
+    for widget in window.findChildren(QWidget):
+        if widget.hasMouseTracking() and type(widget).__module__.startswith("app."):
+            QCoreApplication.sendEvent(widget, QEvent(QEvent.Type.Leave))
+        elif isinstance(widget, QScrollBar):
+            widget.setValue(widget.minimum())

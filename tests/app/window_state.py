@@ -20,6 +20,7 @@ from PySide6.QtWidgets import (
     QDockWidget,
     QLabel,
     QLineEdit,
+    QMainWindow,
     QStackedWidget,
     QStatusBar,
     QTabBar,
@@ -28,11 +29,11 @@ from PySide6.QtWidgets import (
 )
 
 PLAIN = (bool, int, float, str, bytes, Path, Enum, type(None))
-# What differs without a difference: what is counted, remembered for speed, or drawn from it at the next
-# occasion.
+# What differs without a difference: what is counted, kept for speed, or drawn from it when there is occasion.
 PASSING = frozenset(
-    "common frames owner painted pictures seconds _beat _by_keys _clips _counted _curves _era _journal _known _last"
-    " _layout _matrices _paths _plan_seconds _played _read _rest _sticks".split()
+    """common frames owner painted pictures seconds sounds _beat _by_keys _came _clips _counted _curves _era _guests
+    _journal _known _last _layout _marks _matrices _paths _places _plan_seconds _played _read _rest _rows _skinned
+    _sticks _still _voices""".split()  # noqa: SIM905 - thirty quotes more to read
 )
 
 
@@ -67,13 +68,15 @@ def differences(before: Mapping[str, str], after: Mapping[str, str]) -> list[str
 
 def _parts(part: QObject, place: str) -> Iterator[tuple[str, QObject]]:
     """Give an object and what belongs to it, each with its place; siblings of a class are counted. What is in
-    a widget that is hidden is left out: it is filled when it is shown.
+    a widget that is hidden is left out: it is filled when it is shown. So is a field's button, which fades.
     """
     yield place, part
-    if isinstance(part, QWidget) and part.isHidden() and not part.isWindow():
+    if isinstance(part, QLineEdit) or (isinstance(part, QWidget) and part.isHidden() and not part.isWindow()):
         return
     count: dict[str, int] = {}
     for child in part.children():
+        if isinstance(child, QTabBar) and isinstance(part, QMainWindow):
+            continue  # Qt hands them out anew; docks tell which is in front
         name = child.objectName() or type(child).__name__
         n = count[name] = count.get(name, -1) + 1
         yield from _parts(child, f"{place}/{name}{n or ''}")
@@ -112,7 +115,9 @@ def _values(part: object, place: str, seen: set[int]) -> Iterator[tuple[str, str
     if not _ours(part):
         return
     held = (
-        {f.name: getattr(part, f.name) for f in fields(part)} if is_dataclass(part) else dict(getattr(part, "__dict__", {}))
+        {f.name: getattr(part, f.name) for f in fields(part)}
+        if is_dataclass(part)
+        else dict(getattr(part, "__dict__", {}))
     )
     for name, value in held.items():
         if name in PASSING:

@@ -34,7 +34,7 @@ def contribute(shell: Shell) -> Contribution:
 
         canvas = ManualCanvas(document, session, stage.performance, stage.thumbnails, shell.widget)
         canvas.refused.connect(stage.refused)
-        canvas.viewed.connect(stage.scrolled)
+        canvas.viewed.connect(lambda: here() and stage.scrolled.emit())  # hidden, it follows the layer, too
         canvas.files_dropped.connect(lambda paths, at: importing.import_paths(list(paths), at))
         out = ManualEditor(canvas, shell.widget)
         problems.changed.connect(lambda: out.show_problems(problems.problems))
