@@ -28,7 +28,6 @@ from tests.app.handles import Handles
 from tests.app.shared_window import SharedWindow, close
 from tests.run_notes import NOTES
 
-
 # Off Linux windows are driven unseen: what needs a real pointer or OpenGL is left out there, and nothing else.
 if not sys.platform.startswith("linux"):
     os.environ.setdefault("QT_QPA_PLATFORM", "offscreen")
