@@ -28,13 +28,17 @@ def contribute(shell: Shell) -> Contribution:
     )
     here = lambda: session.onstage.mode == "manual"  # noqa: E731
 
+    def scrolled() -> None:
+        if here():  # hidden, it follows the layer, too
+            stage.scrolled.emit()
+
     def make() -> ManualEditor:
         from app.features.manual.manual_canvas import ManualCanvas
         from app.features.manual.manual_editor import ManualEditor
 
         canvas = ManualCanvas(document, session, stage.performance, stage.thumbnails, shell.widget)
         canvas.refused.connect(stage.refused)
-        canvas.viewed.connect(lambda: here() and stage.scrolled.emit())  # hidden, it follows the layer, too
+        canvas.viewed.connect(scrolled)
         canvas.files_dropped.connect(lambda paths, at: importing.import_paths(list(paths), at))
         out = ManualEditor(canvas, shell.widget)
         problems.changed.connect(lambda: out.show_problems(problems.problems))
