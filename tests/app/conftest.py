@@ -25,7 +25,7 @@ from PySide6.QtWidgets import QApplication, QMenu, QMessageBox, QWidget
 
 from app.main import prepare
 from tests.app.handles import Handles
-from tests.app.shared_window import SharedWindow, close
+from tests.app.shared_window import SharedWindow, close, settle
 from tests.run_notes import NOTES
 
 # Off Linux windows are driven unseen: what needs a real pointer or OpenGL is left out there, and nothing else.
@@ -121,6 +121,10 @@ class Driver(Handles):
 
     def pause(self, milliseconds: int) -> None:
         self.bot.wait(milliseconds)  # type: ignore[attr-defined]
+
+    def settle(self) -> None:
+        """Wait until all that a change brings with it is done."""
+        settle(self.window)
 
     # --- where things are
 

@@ -35,7 +35,7 @@ def opened(drive, toy, tmp_path, monkeypatch):
         "Time",
         lambda p: edits.update_actions(p, [a.id for a in p.actions() if a.kind == "gesture"], tags=("kept",)),
     )
-    drive.pause(400)
+    drive.wait(lambda: len(drive.watcher._known) > 1)  # it has seen them as they are
     drive.ids, drive.place, drive.toy = ids, tmp_path, toy
     return drive
 

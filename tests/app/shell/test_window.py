@@ -551,6 +551,7 @@ def test_files_are_dropped_on_the_library_and_on_a_node(drive, folder, tmp_path)
     assert not drive.drop_files(drive.middle(), tmp_path / "notes.txt")
 
 
+@pytest.mark.fresh_window
 def test_closing_asks_about_changes_and_windows_follow_each_other(toys, qtbot, monkeypatch):
     from app.main import make_window
 

@@ -231,7 +231,7 @@ def test_while_it_plays_only_the_playhead_is_painted_anew(stage):
     drive = stage
     drive.performance.requests.ask(a.Gesture(at=2.0))
     drive.wait(lambda: len(drive.performance.answers()) == 1)
-    drive.pause(300)
+    drive.settle()
     before = board(drive).painted
     for n in range(20):
         drive.session.transport.seek(0.1 * n)

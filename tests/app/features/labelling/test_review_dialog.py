@@ -137,7 +137,7 @@ def test_the_practice_project_is_labelled_with_the_keyboard_alone(practice, trut
         assert action.kind == wanted["kind"] and action.layer == wanted["layer"]
         assert project.stance(action.stance).name == wanted["stance"]
         assert (project.stance(action.end_stance).name if action.end_stance else None) == wanted["end_stance"]
-    drive.pause(400)
+    drive.settle()
     assert not [p for p in drive.problems.problems if p.severity == "error"]
     seconds = predicted(hands)
     record_property("operators", dict(hands))

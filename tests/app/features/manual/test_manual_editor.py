@@ -98,7 +98,7 @@ def drawn(hand: Hand) -> Hand:
 
     hand.drive.document.edit("Draw", edit)
     hand.canvas.fit()
-    hand.drive.pause(200)
+    hand.drive.settle()
     return hand
 
 

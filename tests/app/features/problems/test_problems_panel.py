@@ -95,7 +95,7 @@ def test_a_flag_marks_the_action_and_a_press_mends_it_in_one_step(toys, toy, wid
     drive.wait(lambda: bool(flagged()))
     assert wave in drive.canvas.misfits and "shows as a jump" in drive.canvas.misfits[wave]
     drive.show("problems")
-    drive.pause(200)
+    drive.wait(drive.problems_panel.tree.isVisible)
     panel = drive.problems_panel
     tree = panel.tree
     item = next(

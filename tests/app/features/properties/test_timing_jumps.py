@@ -107,7 +107,7 @@ def timed(toys, toy, wide):
     )
     drive.session.jump(action=toy.id(wide, "wide"))
     drive.wait(lambda: drive.properties.plot.strip.seen is not None)
-    drive.pause(150)
+    drive.settle()
     return drive
 
 

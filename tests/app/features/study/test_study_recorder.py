@@ -41,7 +41,7 @@ def recorded(toys):
     """The toy project's window, and what is recorded of it."""
     from app.features.study.study_recorder import Recorder
 
-    toys.pause(300)
+    toys.settle()
     log = Kept()
     toys.recorder = Recorder(toys.shell, log)
     toys.log = log
