@@ -1,7 +1,7 @@
 """How long a kept session takes to perform again: python tests/benchmarks/bench_replay.py
 
-Requests of four sorts, one every four seconds of sessions of ever greater length; seconds of processor time, the
-median of three. It should grow with the length and not with its square.
+Requests of four sorts, one every four seconds of sessions of ever greater length; seconds of processor
+time, the median of three. It should grow with the length and not with its square.
 """
 
 from __future__ import annotations
