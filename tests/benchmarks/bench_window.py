@@ -37,7 +37,7 @@ from app.project.files import SAMPLE
 window = open_window(None, sample=True)
 window.resize(1680, 1020)
 seen = []
-def painted(_):
+def painted():
     now = time.time() - started
     if not seen:
         seen.append(now)
