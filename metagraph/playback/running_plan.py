@@ -24,7 +24,9 @@ from metagraph.playback.plan import Cue, LayerPlan, MetaAction, MetaRequest, Pla
 
 AHEAD = 20.0  # seconds of plan
 SLACK = 2.0  # seconds by which a plan may fall behind its horizon before it is extended
-REPLAYED = 10.0  # the same where nobody waits for an answer: fewer, longer steps
+REPLAYED = (
+    10.0  # seconds planned at a time where nobody waits for an answer, beyond what a live session plans
+)
 RECENT = 30.0  # seconds of past that are planned on from; what lies before costs nothing
 CUT = 15.0  # seconds between two cuts
 LANES = ("modes", "breaths", "aversions", "saccades", "blinks")
@@ -93,31 +95,32 @@ def perform(
     if not groups:
         empty = Plan(project.settings.seed if seed is None else seed, 0.0)
         return hear(project, empty, 0.0, first, end, stances, idle)
-    running = RunningPlan(project, seed, stances, idle, min(AHEAD, end))
+    running = RunningPlan(project, seed, stances, idle, min(AHEAD + REPLAYED, end))
     running.hear(0.0, first)
     pieces: list[CutPiece] = []
     named: list[str] = []  # what asks were about, in order
-    recent, cut, now = max(RECENT, project.settings.memory), 0.0, 0.0
+    recent, cut, last = max(RECENT, project.settings.memory), 0.0, 0.0
     for now in sorted(groups):
-        _on(running, now, end)
+        _on(running, last, now, end)
         running.hear(now, groups[now])
         named += (ask.what if isinstance(ask, a.Withdraw) else ask.id for ask in groups[now])
         if now > cut + recent + CUT:
             cut = now - recent
             before = running.forget(cut)
             pieces.append(CutPiece(before, running.plan, len(named)))
+        last = now
     if end > running.plan.end:
-        running.extend(now, end)
+        running.extend(last, end)
     return whole(running.plan, pieces, named)
 
 
-def _on(running: RunningPlan, now: float, end: float) -> None:
-    """Move the horizon along, to no later than the end; as time went by, since a plan must reach beyond what
-    it is planned on from.
+def _on(running: RunningPlan, last: float, now: float, end: float) -> None:
+    """Move the horizon along, to no later than the end: as time went by from what was heard `last` to `now`,
+    since a plan must reach beyond what it is planned on from, and must not go back to before what it heard.
     """
     slack = min(REPLAYED, running.ahead / 2)
     while running.plan.end < min(end, now + running.ahead - slack):
-        then = running.plan.end - running.ahead + slack
+        then = max(last, running.plan.end - running.ahead + slack)
         running.extend(then, min(end, then + running.ahead))
 
 
