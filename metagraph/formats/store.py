@@ -143,6 +143,11 @@ def moved(project: Project, old: Path | None, new: Path) -> Project:
         whole = Path(text) if source is None else source / text
         return relative(whole, new.parent)
 
+    return _with_paths(project, renew)
+
+
+def _with_paths(project: Project, renew: Callable[[str], str]) -> Project:
+    """Return the project with every path to a file beside it made anew."""
     clips = {i: replace(e, path=renew(e.path)) for i, e in project.clips.items()}
     character = renew(project.character) if project.character else None
     return replace(
@@ -187,15 +192,7 @@ def absolute(project: Project, folder: Path) -> Project:
     def renew(text: str) -> str:
         return (folder / text).resolve().as_posix()
 
-    clips = {i: replace(e, path=renew(e.path)) for i, e in project.clips.items()}
-    character = renew(project.character) if project.character else None
-    return replace(
-        project,
-        clips=clips,
-        character=character,
-        lines=_lines(project, renew),
-        conversations=_conversations(project, renew),
-    )
+    return _with_paths(project, renew)
 
 
 def relative(path: Path, folder: Path) -> str:

@@ -173,18 +173,9 @@ def set_point(project: Project, name: str, point: Point | None) -> Project:
 
 def set_life(project: Project, **changes: Any) -> Project:
     """Set fields of the life layers. Raises EditError for a value out of range."""
-    return _set(project, "life", changes)
-
-
-def set_face(project: Project, **changes: Any) -> Project:
-    """Correct what was found in the face. Raises EditError for a value that does not fit."""
-    return _set(project, "face", changes)
-
-
-def _set(project: Project, field: str, changes: Mapping[str, Any]) -> Project:
-    before = getattr(project, field)
+    before = project.life
     try:
         after = msgspec.convert(msgspec.to_builtins(msgspec.structs.replace(before, **changes)), type(before))
     except (msgspec.ValidationError, TypeError) as error:
         raise EditError(str(error)) from None
-    return project if after == before else replace(project, **{field: after})
+    return project if after == before else replace(project, life=after)

@@ -11,7 +11,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import dataclass
 from itertools import pairwise
-from math import erf, exp, inf, isfinite, lgamma, log, sqrt
+from math import exp, inf, isfinite, lgamma, log, sqrt
 from statistics import NormalDist
 
 import numpy as np
@@ -342,11 +342,6 @@ def logs(values: Sequence[float]) -> list[float]:
     if bad:
         raise ValueError(f"{bad[0]} has no logarithm: times are greater than 0")
     return [log(v) for v in values]
-
-
-def normal_cdf(z: float) -> float:
-    """Return the standard normal distribution's share up to z."""
-    return (1 + erf(z / sqrt(2))) / 2
 
 
 def _exp(x: float) -> float:

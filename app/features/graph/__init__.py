@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from functools import partial
 
-from PySide6.QtWidgets import QButtonGroup, QHBoxLayout, QToolButton, QWidget
+from PySide6.QtWidgets import QWidget
 
 from app.features.graph.graph_canvas import Canvas
 from app.features.graph.graph_drops import Drop
@@ -13,7 +13,7 @@ from app.shell.actions import Command
 from app.shell.context import Contribution, HeaderItem, Panel, Shell
 from app.shell.verbs import Verbs
 from app.stage.problem_watch import ProblemWatch
-from app.widgets.making import make_widget
+from app.widgets.choice_row import ChoiceRow
 from metagraph.formats.imports import Imported
 from metagraph.graph.model import KINDS, LAYERS, Kind, Layer
 
@@ -138,28 +138,14 @@ def contribute(shell: Shell) -> Contribution:
     )
 
 
-class LayerTabs(QWidget):
+class LayerTabs(ChoiceRow):
     """The layers, each with how many actions it has; the current one is pressed."""
 
     def __init__(self, shell: Shell, parent: QWidget) -> None:
-        super().__init__(parent)
+        tips = ((x.capitalize(), f"The {x} layer ({LAYER_KEYS[x]})") for x in LAYERS)
+        super().__init__(parent, tips, least_width=72)
         self.document, self.session = shell.document, shell.stage.session
-        self.buttons = QButtonGroup(self)
-        row = QHBoxLayout(self)
-        row.setContentsMargins(0, 0, 0, 0)
-        row.setSpacing(2)
-        for number, layer in enumerate(LAYERS):
-            button = make_widget(
-                QToolButton,
-                self,
-                text=layer.capitalize(),
-                checkable=True,
-                toolTip=f"The {layer} layer ({LAYER_KEYS[layer]})",
-            )
-            button.setMinimumWidth(72)
-            button.clicked.connect(lambda _=False, x=layer: self.session.place.set_layer(x))
-            self.buttons.addButton(button, number)
-            row.addWidget(button)
+        self.chosen.connect(lambda n: self.session.place.set_layer(LAYERS[n]))
         self.session.place.layer_changed.connect(self.refresh)
         self.document.changed.connect(
             lambda before, after: self.refresh() if before.graphs is not after.graphs else None
@@ -170,7 +156,5 @@ class LayerTabs(QWidget):
         """Show the layer and the counts as they are now."""
         for number, layer in enumerate(LAYERS):
             count = len(self.document.project.graphs[layer].actions)
-            self.buttons.button(number).setText(
-                f"{layer.capitalize()}  {count}" if count else layer.capitalize()
-            )
-        self.buttons.button(LAYERS.index(self.session.place.layer)).setChecked(True)
+            self.button(number).setText(f"{layer.capitalize()}  {count}" if count else layer.capitalize())
+        self.show_choice(LAYERS.index(self.session.place.layer))

@@ -10,10 +10,8 @@ from functools import partial
 from PySide6.QtCore import Qt
 from PySide6.QtGui import QMouseEvent
 from PySide6.QtWidgets import (
-    QButtonGroup,
     QCheckBox,
     QGridLayout,
-    QHBoxLayout,
     QLabel,
     QScrollArea,
     QToolButton,
@@ -23,6 +21,7 @@ from PySide6.QtWidgets import (
 
 from app.project.document import Document
 from app.stage.session import Session
+from app.widgets.choice_row import ChoiceRow
 from app.widgets.making import make_widget
 from app.widgets.quiet_fields import DoubleSpinBox, Slider
 from app.widgets.request_menu import MODE_WORDS
@@ -131,22 +130,11 @@ class LifePanel(QWidget):
         outer.addLayout(top)
         self.rows: dict[str, DialRow] = {"stillness": self._row(DIALS[0], top, 0, None)}
         self.rows["stillness"].tick.setText("Stillness")
-        tabs = QHBoxLayout()
-        tabs.setSpacing(2)
-        self.tabs = QButtonGroup(self)
-        for n, (words, tip) in enumerate(
-            (
-                ("Always", "The amounts themselves"),
-                *((MODE_WORDS[m], f"What {m} makes of them, as factors") for m in MODES),
-            )
-        ):
-            button = make_widget(QToolButton, self, text=words, checkable=True, toolTip=tip)
-            button.setChecked(n == 0)
-            self.tabs.addButton(button, n)
-            tabs.addWidget(button)
-        tabs.addStretch(1)
-        self.tabs.idClicked.connect(lambda n: self.show_mode(None if n == 0 else MODES[n - 1]))
-        outer.addLayout(tabs)
+        factors = ((MODE_WORDS[m], f"What {m} makes of them, as factors") for m in MODES)
+        self.tabs = ChoiceRow(self, (("Always", "The amounts themselves"), *factors))
+        self.tabs.show_choice(0)
+        self.tabs.chosen.connect(lambda n: self.show_mode(None if n == 0 else MODES[n - 1]))
+        outer.addWidget(self.tabs)
         area = QScrollArea(self, widgetResizable=True)
         area.setFrameShape(QScrollArea.Shape.NoFrame)
         area.setStyleSheet("QScrollArea { background: transparent; }")  # no box in the panel

@@ -10,7 +10,6 @@ from typing import Any
 
 from PySide6.QtCore import Qt
 from PySide6.QtWidgets import (
-    QButtonGroup,
     QCheckBox,
     QFormLayout,
     QHBoxLayout,
@@ -18,7 +17,6 @@ from PySide6.QtWidgets import (
     QPushButton,
     QScrollArea,
     QStackedWidget,
-    QToolButton,
     QVBoxLayout,
     QWidget,
 )
@@ -29,6 +27,7 @@ from app.features.manual.manual_mask import StateMask
 from app.look.plural import many
 from app.look.theme import theme
 from app.stage.performance import Performance
+from app.widgets.choice_row import LimbRow
 from app.widgets.form_fields import MIXED, Chooser, Field, Mixed, Seconds, common
 from app.widgets.making import make_widget
 from metagraph.graph import manual_edits
@@ -118,19 +117,9 @@ class Inspector(QScrollArea):
         self.first.valueChanged.connect(lambda v: self._trim("start", v))
         self.last.valueChanged.connect(lambda v: self._trim("end", v))
         form.addRow("Start, end", _row(page, self.first, self.last))
-        self.limb = QButtonGroup(page)
-        row = QWidget(page)
-        line = QHBoxLayout(row)
-        line.setContentsMargins(0, 0, 0, 0)
-        line.setSpacing(2)
-        for n, limb in enumerate(LIMBS):
-            tip = f"Moves {limb} arm{'s' if limb == 'both' else ''}; the other keeps to the base pose"
-            button = make_widget(QToolButton, row, text=limb.capitalize(), checkable=True, toolTip=tip)
-            self.limb.addButton(button, n)
-            line.addWidget(button)
-        line.addStretch(1)
-        self.limb.idClicked.connect(lambda n: self._state("Change limb", limb=LIMBS[n]))
-        form.addRow("Limb", row)
+        self.limb = LimbRow(page, "base pose")
+        self.limb.chosen.connect(lambda n: self._state("Change limb", limb=LIMBS[n]))
+        form.addRow("Limb", self.limb)
         self.joints = make_widget(QPushButton, page, toolTip="Let it move only some joints")
         self.joints.setFocusPolicy(Qt.FocusPolicy.TabFocus)
         self.joints.clicked.connect(lambda: StateMask(self.document, self.session, self).open())
@@ -269,10 +258,7 @@ class Inspector(QScrollArea):
         spans = [project.span(action_of(s)) for s in states]
         self.first.show_value(common([round(a, 4) for a, _ in spans]))
         self.last.show_value(common([round(b, 4) for _, b in spans]))
-        limb = common([s.limb for s in states])
-        self.limb.setExclusive(limb is not Mixed)
-        for n, name in enumerate(LIMBS):
-            self.limb.button(n).setChecked(name == limb)
+        self.limb.show_limb(common([s.limb for s in states]))
         joints = common([s.joints for s in states])
         self.joints.setText(MIXED if joints is Mixed else f"{len(joints)} joints…" if joints else "All…")
         self.joints.setEnabled(project.skeleton is not None)

@@ -8,7 +8,6 @@ from typing import Any
 
 from PySide6.QtCore import Qt
 from PySide6.QtWidgets import (
-    QButtonGroup,
     QCheckBox,
     QFormLayout,
     QFrame,
@@ -17,7 +16,6 @@ from PySide6.QtWidgets import (
     QPushButton,
     QScrollArea,
     QStackedWidget,
-    QToolButton,
     QVBoxLayout,
     QWidget,
 )
@@ -28,6 +26,7 @@ from app.look.theme import KIND_MARKS, KIND_TITLES, theme
 from app.project.document import Document
 from app.stage.performance import Performance
 from app.stage.session import Session
+from app.widgets.choice_row import LimbRow
 from app.widgets.form_fields import MIXED, Chooser, Field, Mixed, Seconds, common
 from app.widgets.making import make_widget
 from metagraph.graph import edits
@@ -118,25 +117,9 @@ class PropertiesPanel(QScrollArea):
         self.earliest = Seconds(page, "Earliest exit: from here on the action may be left")
         self.earliest.valueChanged.connect(lambda v: self._timing("earliest_exit", v))
         self.leave_row = pair("Exit", self.leave, self.earliest)
-        self.limb = QButtonGroup(page)
-        row = QWidget(page)
-        line = QHBoxLayout(row)
-        line.setContentsMargins(0, 0, 0, 0)
-        line.setSpacing(2)
-        for n, limb in enumerate(LIMBS):
-            button = make_widget(
-                QToolButton,
-                row,
-                text=limb.capitalize(),
-                checkable=True,
-                toolTip=f"Moves {limb} arm{'s' if limb == 'both' else ''}; the other keeps to the stance",
-            )
-            self.limb.addButton(button, n)
-            line.addWidget(button)
-        line.addStretch(1)
-        self.limb.idClicked.connect(lambda n: self._set("Change limb", limb=LIMBS[n]))
-        form.addRow("Limb", row)
-        self.limb_row = row
+        self.limb = LimbRow(page, "stance")
+        self.limb.chosen.connect(lambda n: self._set("Change limb", limb=LIMBS[n]))
+        form.addRow("Limb", self.limb)
         self.tags = Field(
             page, "Words apart by commas; requests can ask for them: positive, negative, ...", "Tags"
         )
@@ -286,12 +269,8 @@ class PropertiesPanel(QScrollArea):
         self.earliest.setEnabled(exits is not None)
         self.earliest.show_value(0.0 if exits is None else exits)
         arms = layer == "arms" and not stance
-        self.form.setRowVisible(self.limb_row, arms)
-        limb = common([a.limb for a in actions])
-        self.limb.setExclusive(False)
-        for n, name in enumerate(LIMBS):
-            self.limb.button(n).setChecked(limb == name)
-        self.limb.setExclusive(limb is not Mixed)
+        self.form.setRowVisible(self.limb, arms)
+        self.limb.show_limb(common([a.limb for a in actions]))
         tags = common([a.tags for a in actions])
         self.tags.show_text("" if tags is Mixed else ", ".join(tags), of)
         self.tags.setPlaceholderText(MIXED if tags is Mixed else "positive, greeting, …")

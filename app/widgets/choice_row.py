@@ -1,0 +1,60 @@
+"""Buttons side by side, of which one is pressed."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from typing import Any
+
+from PySide6.QtCore import Signal
+from PySide6.QtWidgets import QButtonGroup, QHBoxLayout, QToolButton, QWidget
+
+from app.widgets.form_fields import Mixed
+from app.widgets.making import make_widget
+from metagraph.graph.model import LIMBS
+
+
+class ChoiceRow(QWidget):
+    """The choices are (label, tooltip). chosen: the place of the one that was clicked."""
+
+    chosen = Signal(int)
+
+    def __init__(self, parent: QWidget, choices: Iterable[tuple[str, str]], least_width: int = 0) -> None:
+        super().__init__(parent)
+        self.group = QButtonGroup(self)
+        self._buttons: list[QToolButton] = []
+        row = QHBoxLayout(self)
+        row.setContentsMargins(0, 0, 0, 0)
+        row.setSpacing(2)
+        for n, (text, tip) in enumerate(choices):
+            button = make_widget(QToolButton, self, text=text, checkable=True, toolTip=tip)
+            button.setMinimumWidth(least_width)
+            self.group.addButton(button, n)
+            self._buttons.append(button)
+            row.addWidget(button)
+        row.addStretch(1)
+        self.group.idClicked.connect(self.chosen)
+
+    def button(self, place: int) -> QToolButton:
+        """Return the button at a place."""
+        return self._buttons[place]
+
+    def show_choice(self, place: int | None) -> None:
+        """Press one, or none: what it is about has several values."""
+        self.group.setExclusive(False)
+        for n, button in enumerate(self._buttons):
+            button.setChecked(n == place)
+        self.group.setExclusive(place is not None)
+
+
+class LimbRow(ChoiceRow):
+    """The arms that something moves; the other keeps to what `keeps` names."""
+
+    def __init__(self, parent: QWidget, keeps: str) -> None:
+        words = (
+            (x, f"Moves {x} arm{'s' if x == 'both' else ''}; the other keeps to the {keeps}") for x in LIMBS
+        )
+        super().__init__(parent, ((x.capitalize(), tip) for x, tip in words))
+
+    def show_limb(self, limb: Any) -> None:
+        """Show a limb, or the marker `Mixed`."""
+        self.show_choice(None if limb is Mixed else LIMBS.index(limb))
